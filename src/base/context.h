@@ -1,0 +1,53 @@
+// The run context that every long stage takes: progress, cancellation, warnings and log. It holds
+// no global state, so two jobs can run in one process.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace hydrodip {
+
+class RunContext {
+ public:
+  // stage: what is being done, in words ("dipping"); fraction in [0, 1] of that stage.
+  using ProgressSink = std::function<void(const std::string& stage, double fraction)>;
+  // One line for people who follow along; never needed to understand the result.
+  using LogSink = std::function<void(const std::string& line)>;
+
+  RunContext() = default;
+  RunContext(const RunContext&) = delete;
+  RunContext& operator=(const RunContext&) = delete;
+
+  void on_progress(ProgressSink sink) { progress_sink_ = std::move(sink); }
+  void on_log(LogSink sink) { log_sink_ = std::move(sink); }
+
+  // Reports progress and throws Cancelled if the job was cancelled. Call it from one thread.
+  void progress(const std::string& stage, double fraction);
+
+  // Throws Cancelled if the job was cancelled. Cheap, callable from any thread.
+  void check_cancelled() const;
+
+  // Async-signal-safe: may be called from a signal handler.
+  void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+
+  void log(const std::string& line);
+
+  // A sentence for the user about something tolerated; collected for the report, thread-safe.
+  // Repeating a sentence is ignored.
+  void warn(const std::string& sentence);
+  std::vector<std::string> warnings() const;
+
+ private:
+  static_assert(std::atomic<bool>::is_always_lock_free);
+  std::atomic<bool> cancelled_{false};
+  ProgressSink progress_sink_;
+  LogSink log_sink_;
+  mutable std::mutex mutex_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace hydrodip

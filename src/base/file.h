@@ -1,0 +1,21 @@
+// Whole-file input and a hash that identifies it in reports.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hydrodip {
+
+// The file's bytes. Throws InputError naming the path if it is missing, a folder, unreadable.
+std::vector<std::uint8_t> read_file(const std::filesystem::path& path);
+
+// Writes bytes; throws InputError naming the path (disk full, no permission).
+void write_file(const std::filesystem::path& path, const void* data, std::size_t size);
+void write_file(const std::filesystem::path& path, const std::string& text);
+
+// SHA-256 in lower-case hexadecimal.
+std::string sha256_hex(const std::vector<std::uint8_t>& bytes);
+
+}  // namespace hydrodip

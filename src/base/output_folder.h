@@ -1,0 +1,37 @@
+// Output files that appear under their final names only when all of them are whole.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hydrodip {
+
+// Opens (creating if needed) the folder and a hidden staging folder inside it. Files are written
+// to path(name) and moved to their final names by commit(); without commit() the destructor
+// removes everything, including folders that the constructor itself created.
+class OutputFolder {
+ public:
+  // Throws InputError if the folder cannot be created or written to.
+  explicit OutputFolder(const std::filesystem::path& folder);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  // Where to write the file that will be called name.
+  std::filesystem::path path(const std::string& name);
+
+  // Moves every file asked for with path() to its final name; throws InputError if one is missing
+  // or cannot be moved (disk full, permissions), with the earlier content then left in place.
+  void commit();
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path staging_;
+  std::vector<std::filesystem::path> created_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace hydrodip

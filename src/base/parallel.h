@@ -1,0 +1,28 @@
+// Data-parallel loops whose result cannot depend on the number of threads: every index is
+// independent, and whoever sums results does so afterwards in index order.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace hydrodip {
+
+// Calls body(begin, end) on disjoint chunks that together cover [0, count), on any thread.
+// Chunk limits are fixed multiples of grain, whatever the number of threads. The first exception
+// is rethrown.
+void parallel_for(std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+// While it lives, parallel_for uses at most this many threads (0: all cores).
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  void* control_ = nullptr;
+};
+
+}  // namespace hydrodip

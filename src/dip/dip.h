@@ -1,0 +1,56 @@
+// The dip: lowers the object through the floating film (paper section 3.2) and says where every
+// film vertex ends up.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "film/film.h"
+#include "object/surface.h"
+
+namespace hydrodip {
+
+enum class DipScheme {
+  kContactLine,  // the default: the contact line is resolved inside triangles (docs/model.md)
+  kPaper,        // the paper's four steps, literally
+};
+
+struct FilmMaterial {
+  double z_stretch = 0.65;     // vertical scale of the film's rest shape (contact angle)
+  double poisson = 0;          // below 0.5
+  double tear_stretch = 1.4;   // largest principal stretch the film bears; 0: never tears
+};
+
+struct DipOptions {
+  double step_mm = 0.1;
+  double depth_mm = 0;         // 0: until the object is completely below the water
+  DipScheme scheme = DipScheme::kContactLine;
+  FilmMaterial material;
+  std::vector<double> modulus;  // per film triangle, relative; empty: uniform
+};
+
+// How the computation went; sums over all steps.
+struct DipStatistics {
+  int steps = 0;
+  long newton_iterations = 0;
+  long linear_iterations = 0;
+  long factorizations = 0;
+  long unconverged_steps = 0;   // steps that ended at the iteration bound
+  double largest_residual_mm = 0;  // largest last Newton update over all steps
+  double seconds_contact = 0, seconds_elastic = 0, seconds_mapping = 0;
+};
+
+struct DipResult {
+  DippedFilm film;
+  DipStatistics statistics;
+};
+
+// `positions` and `triangles` are the object's, in the posed-object frame, and `surface` queries
+// the same triangles. Throws DipError (exit code 3) if a step cannot be computed, InputError for
+// options out of range, Cancelled.
+DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
+              const std::vector<Triangle>& triangles, const Surface& surface,
+              const DipOptions& options, RunContext& context);
+
+}  // namespace hydrodip

@@ -1,0 +1,65 @@
+// The film: a triangle mesh over its flat, printed state, and where it is now.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+
+namespace hydrodip {
+
+enum class FilmShape { kRectangle, kDisc };
+
+struct FilmOptions {
+  double width_mm = 210;    // whole sheet, x
+  double height_mm = 297;   // whole sheet, y
+  FilmShape shape = FilmShape::kRectangle;  // disc: inscribed in the smaller extent
+  double margin_mm = 10;    // taped; the free film ends this far inside the edge, clamped there
+  int elements = 40000;     // triangles, met as nearly as the grid allows
+};
+
+// The mesh of the free film. Film coordinates u: mm, origin at the film's centre, seen from above.
+// A regular grid of nearly square cells, each cut along one diagonal in alternation, so that the
+// pattern is symmetric under mirroring and (on a square) quarter turns. On a disc, vertices next to
+// the rim are moved onto it.
+struct FilmMesh {
+  std::vector<Vec2> u;               // per vertex
+  std::vector<Triangle> triangles;   // counter-clockwise in u
+  std::vector<std::uint8_t> on_rim;  // per vertex: clamped
+  double cell_mm = 0;                // grid spacing (larger of the two)
+
+  // Row-major grid behind the mesh, for multigrid and look-up: vertex_at[j * nx + i] or -1.
+  int nx = 0, ny = 0;                // vertices along x, y
+  Vec2 origin = Vec2::Zero();        // u of grid vertex (0, 0)
+  Vec2 spacing = Vec2::Zero();
+  std::vector<std::int32_t> vertex_at;
+
+  // neighbor[t][k]: triangle across the edge opposite corner k, or -1.
+  std::vector<std::array<std::int32_t, 3>> neighbor;
+  // Triangles around vertex v: incident[incident_begin[v] .. incident_begin[v + 1]).
+  std::vector<std::int32_t> incident_begin;
+  std::vector<std::int32_t> incident;
+};
+
+// Throws InputError if the margin leaves no film or there are fewer than 8 triangles.
+FilmMesh make_film_mesh(const FilmOptions& options);
+
+// Film state over a mesh after (or during) a dip.
+enum class VertexState : std::uint8_t { kUnattached = 0, kAttached = 1, kClamped = 2 };
+
+// The result of a dip: where the film is. Posed-object frame (mm).
+struct DippedFilm {
+  FilmMesh mesh;
+  std::vector<Vec3> position;          // per vertex
+  std::vector<VertexState> state;      // per vertex
+  std::vector<double> area_ratio;      // per vertex: deformed area over flat area (Voronoi areas)
+  std::vector<double> stretch;         // per vertex: largest principal stretch around it
+  std::vector<std::uint8_t> torn;      // per triangle
+  double depth_mm = 0;                 // immersion reached
+
+  // A triangle whose corners are all attached and that is not torn: film that lies on the object.
+  bool lies_on_object(std::size_t triangle) const;
+};
+
+}  // namespace hydrodip

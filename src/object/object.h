@@ -1,0 +1,61 @@
+// What is dipped: a triangle mesh with its wanted appearance.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "image/image.h"
+
+namespace hydrodip {
+
+enum class Wrap { kRepeat, kMirror, kClamp, kDecal };  // kDecal: base colour outside [0, 1]
+
+struct Material {
+  std::string name;
+  LinearColor base_color{1, 1, 1, 1};  // multiplies the texture and the vertex colour
+  int texture = -1;                    // index into Object::textures, -1: none
+  Wrap wrap_u = Wrap::kRepeat;
+  Wrap wrap_v = Wrap::kRepeat;
+};
+
+// Per-triangle-corner texture coordinates keep seams sharp: two triangles that share an edge need
+// not agree on it. Convention: v = 0 is the bottom row of the picture (OBJ), whatever the file had.
+using CornerUv = std::array<Eigen::Vector2f, 3>;
+using CornerColor = std::array<LinearColor, 3>;
+
+struct Object {
+  std::vector<Vec3> positions;           // mm once loaded; see object/pose.h for the frame
+  std::vector<Triangle> triangles;       // outward orientation where it could be established
+  std::vector<int> material_of;          // per triangle, index into materials
+  std::vector<CornerUv> uvs;             // per triangle, or empty: the model has no UVs
+  std::vector<CornerColor> colors;       // per triangle, or empty: no vertex colours
+  std::vector<Material> materials;       // never empty
+  std::vector<std::shared_ptr<const Image>> textures;
+
+  // Whether the model says which colour goes where (texture with UVs, vertex colours, or more than
+  // a single plain material). Without it `print` has nothing to print.
+  bool has_appearance() const;
+
+  Box3 bounds() const;
+};
+
+// A point on the surface: barycentric weights (1 - u - v, u, v) of a triangle's corners.
+struct SurfacePoint {
+  int triangle = -1;
+  double u = 0;
+  double v = 0;
+};
+
+Vec3 position_at(const Object& object, const SurfacePoint& point);
+// Unit face normal; zero for a degenerate triangle.
+Vec3 face_normal(const Object& object, int triangle);
+
+// The wanted colour there, in linear light, composited over `base` (the bare object's colour) by
+// its alpha; the result is opaque. Textures are sampled bilinearly in linear light at their full
+// resolution: callers antialias by supersampling.
+LinearColor color_at(const Object& object, const SurfacePoint& point, const LinearColor& base);
+
+}  // namespace hydrodip

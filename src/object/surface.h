@@ -1,0 +1,45 @@
+// Geometric queries on a triangle surface: the only place that knows Embree.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/math.h"
+
+namespace hydrodip {
+
+struct SurfaceHit {
+  int triangle = -1;
+  double u = 0, v = 0;   // barycentric: weights (1 - u - v, u, v)
+  double t = 0;          // distance along the ray in units of |direction|; or distance to the point
+};
+
+// Immutable once built, safe to query from many threads. Queries run in Embree's single precision
+// to find the triangle, then u, v and t are recomputed in double from that triangle, so a hit lies
+// on the surface to about 1e-9 mm.
+class Surface {
+ public:
+  // Keeps references to neither array. Degenerate triangles are never hit.
+  Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+  ~Surface();
+  Surface(Surface&&) noexcept;
+  Surface& operator=(Surface&&) noexcept;
+
+  // First hit of origin + t direction with t in [t_min, t_max], either side of a triangle.
+  std::optional<SurfaceHit> first_hit(const Vec3& origin, const Vec3& direction, double t_min,
+                                      double t_max) const;
+
+  // Closest point within max_distance; SurfaceHit::t is its distance.
+  std::optional<SurfaceHit> closest_point(const Vec3& point, double max_distance) const;
+
+  Vec3 position(const SurfaceHit& hit) const;
+  // Unit normal of the hit triangle.
+  Vec3 normal(const SurfaceHit& hit) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hydrodip

@@ -1,0 +1,36 @@
+// preview.png and preview.glb: what the dipped object will look like beside what was asked for.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "base/context.h"
+#include "film/film.h"
+#include "report/appearance.h"
+
+namespace hydrodip {
+
+struct PreviewOptions {
+  int width_px = 1600;
+  int samples_per_axis = 2;
+  std::string caption;        // one line under the picture, e.g. the verdict
+  LinearColor base{1, 1, 1, 1};
+};
+
+// A ray-cast picture: wanted beside predicted, from the two most telling directions (those that see
+// most of the film-covered area and, second, most of what the first does not see), soft light,
+// neutral ground. `predicted` may be absent (no image): then predicted shows the bare object.
+Image render_preview(const Object& object, const Surface& surface, const DippedFilm& film,
+                     const Appearance& appearance, const PreviewOptions& options,
+                     RunContext& context);
+
+// Binary glTF 2.0, y up, metres: the object in its base colour, and over it the film that lies on
+// it, textured with `film_image` (whole sheet, row 0 at +y) by the film's own coordinates.
+void write_preview_glb(const std::filesystem::path& path, const Object& object,
+                       const DippedFilm& film, const Image& film_image, double sheet_width_mm,
+                       double sheet_height_mm, const LinearColor& base);
+
+// film.ply as product.md fixes it: binary little-endian; x y z u v state area_ratio stretch.
+void write_film_ply(const std::filesystem::path& path, const DippedFilm& film);
+
+}  // namespace hydrodip

@@ -1,0 +1,40 @@
+// Film point <-> object point: the map that the dip left behind (paper section 3.3, per point).
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "film/film.h"
+#include "object/object.h"
+#include "object/surface.h"
+
+namespace hydrodip {
+
+// Immutable once built, safe to query from many threads; keeps references to all three arguments.
+class FilmMap {
+ public:
+  FilmMap(const Object& object, const Surface& surface, const DippedFilm& film);
+  ~FilmMap();
+  FilmMap(FilmMap&&) noexcept;
+  FilmMap& operator=(FilmMap&&) noexcept;
+
+  // Point on the object where film coordinate u (mm) ends up; nothing if no film lies there.
+  std::optional<SurfacePoint> to_object(const Vec2& u) const;
+
+  // Film coordinate (mm) that lands at a point of the object; nothing if it stays bare.
+  std::optional<Vec2> to_film(const Vec3& position, const Vec3& normal) const;
+
+  // Deformed over flat area of the film at u, interpolated between vertices; 1 off the object.
+  double area_ratio(const Vec2& u) const;
+
+  // Bounds of the film that lies on the object, in u.
+  const Box2& covered() const;
+  // Nearest film point that lies on the object, if within max_distance of u.
+  std::optional<Vec2> nearest_covered(const Vec2& u, double max_distance) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hydrodip

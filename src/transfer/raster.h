@@ -1,0 +1,42 @@
+// The film image, pixel by pixel, in tiles: from the wanted appearance (inverse), or back onto the
+// object (forward).
+#pragma once
+
+#include "base/context.h"
+#include "image/image.h"
+#include "transfer/film_map.h"
+
+namespace hydrodip {
+
+// Where a sheet's pixels lie. The sheet is seen from above; row 0 is its +y edge, column 0 its -x
+// edge; film coordinate (0, 0) is the sheet's centre.
+struct SheetRaster {
+  double width_mm = 210;
+  double height_mm = 297;
+  double dpi = 300;
+  int width_px() const;
+  int height_px() const;
+  // Film coordinate of pixel coordinates (x right, y down; pixel centres at +0.5).
+  Vec2 to_film(double x_px, double y_px) const;
+  // And back.
+  Vec2 to_pixel(const Vec2& u) const;
+};
+
+struct InverseOptions {
+  double bleed_mm = 1;         // extended colour around the touched region
+  int samples_per_axis = 3;    // supersampling: squared per pixel
+  LinearColor base{1, 1, 1, 1};  // the bare object's colour
+};
+
+// The image to print: opaque where ink goes, transparent elsewhere (partial alpha along edges).
+Image film_image(const Object& object, const FilmMap& map, const SheetRaster& raster,
+                 const InverseOptions& options, RunContext& context);
+
+// The colour (linear) that a film image leaves at a film coordinate: bilinear, transparent outside.
+LinearColor sample_film_image(const Image& image, const SheetRaster& raster, const Vec2& u);
+
+// Predicted appearance at a point of the object when `image` was printed and dipped; over base.
+LinearColor predicted_color(const Image& image, const SheetRaster& raster, const FilmMap& map,
+                            const Vec3& position, const Vec3& normal, const LinearColor& base);
+
+}  // namespace hydrodip
