@@ -1,0 +1,205 @@
+#include "object/surface.h"
+
+#include <embree3/rtcore.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace hydrodip {
+
+namespace {
+
+struct Closest {
+  double u, v, distance_squared;
+};
+
+// Closest point of triangle (a, b, c) to p, as barycentrics of b and c: the regions of Ericson,
+// "Real-Time Collision Detection", section 5.1.5.
+Closest closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const auto at = [&](double u, double v) {
+    return Closest{u, v, (a + u * ab + v * ac - p).squaredNorm()};
+  };
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return at(0, 0);
+  const Vec3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return at(1, 0);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return at(d1 / (d1 - d3), 0);
+  const Vec3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return at(0, 1);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return at(0, d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return at(1 - w, w);
+  }
+  const double scale = 1.0 / (va + vb + vc);
+  return at(vb * scale, vc * scale);
+}
+
+}  // namespace
+
+struct Surface::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+
+  ~Impl() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  const Vec3& corner(int triangle, int k) const {
+    return positions[static_cast<std::size_t>(
+        triangles[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(k)])];
+  }
+};
+
+namespace {
+
+// One builder thread: Embree's parallel build may order triangles differently from run to run, and
+// with it the choice among triangles hit exactly on their common edge.
+constexpr const char* kDeviceOptions = "threads=1,set_affinity=0";
+
+void build(RTCDevice device, RTCScene scene, const std::vector<Vec3>& positions,
+           const std::vector<Triangle>& triangles) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
+  auto* indices = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(unsigned), triangles.size()));
+  if (!vertices || !indices) throw std::bad_alloc();
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    for (int k = 0; k < 3; ++k) vertices[3 * i + std::size_t(k)] = float(positions[i][k]);
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) indices[3 * i + k] = unsigned(triangles[i][k]);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  rtcCommitScene(scene);
+}
+
+}  // namespace
+
+Surface::Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->positions = positions;
+  impl_->triangles = triangles;
+  impl_->device = rtcNewDevice(kDeviceOptions);
+  if (!impl_->device) throw std::runtime_error("Embree could not be started");
+  impl_->scene = rtcNewScene(impl_->device);
+  if (!triangles.empty())
+    build(impl_->device, impl_->scene, positions, triangles);
+  else
+    rtcCommitScene(impl_->scene);
+}
+
+Surface::~Surface() = default;
+Surface::Surface(Surface&&) noexcept = default;
+Surface& Surface::operator=(Surface&&) noexcept = default;
+
+std::optional<SurfaceHit> Surface::first_hit(const Vec3& origin, const Vec3& direction,
+                                             double t_min, double t_max) const {
+  RTCRayHit ray{};
+  // Embree wants t >= 0: start at t_min and shift.
+  const Vec3 start = origin + t_min * direction;
+  ray.ray.org_x = float(start.x());
+  ray.ray.org_y = float(start.y());
+  ray.ray.org_z = float(start.z());
+  ray.ray.dir_x = float(direction.x());
+  ray.ray.dir_y = float(direction.y());
+  ray.ray.dir_z = float(direction.z());
+  ray.ray.tnear = 0;
+  ray.ray.tfar = float(t_max - t_min);
+  ray.ray.mask = ~0u;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(impl_->scene, &context, &ray);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+
+  SurfaceHit hit;
+  hit.triangle = static_cast<int>(ray.hit.primID);
+  const Vec3& a = impl_->corner(hit.triangle, 0);
+  const Vec3 e1 = impl_->corner(hit.triangle, 1) - a;
+  const Vec3 e2 = impl_->corner(hit.triangle, 2) - a;
+  // Moeller-Trumbore in double precision; Embree's own values where the ray grazes the plane.
+  const Vec3 p = direction.cross(e2);
+  const double determinant = e1.dot(p);
+  if (std::abs(determinant) > 1e-9 * e1.norm() * e2.norm() * direction.norm()) {
+    const Vec3 s = origin - a;
+    const Vec3 q = s.cross(e1);
+    hit.u = s.dot(p) / determinant;
+    hit.v = direction.dot(q) / determinant;
+    hit.t = e2.dot(q) / determinant;
+  } else {
+    hit.u = ray.hit.u;
+    hit.v = ray.hit.v;
+    hit.t = t_min + ray.ray.tfar;
+  }
+  hit.u = std::clamp(hit.u, 0.0, 1.0);
+  hit.v = std::clamp(hit.v, 0.0, 1.0 - hit.u);
+  return hit;
+}
+
+std::optional<SurfaceHit> Surface::closest_point(const Vec3& point, double max_distance) const {
+  struct Search {
+    const Impl* impl;
+    Vec3 point;
+    double best_squared;
+    SurfaceHit hit;
+  } search{impl_.get(), point, max_distance * max_distance, {}};
+
+  RTCPointQuery query;
+  query.x = float(point.x());
+  query.y = float(point.y());
+  query.z = float(point.z());
+  query.time = 0;
+  // Half a micron of slack: the sphere is tested in single precision.
+  query.radius = float(max_distance) * 1.0001f + 5e-4f;
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  const auto visit = [](RTCPointQueryFunctionArguments* args) {
+    auto& s = *static_cast<Search*>(args->userPtr);
+    const int triangle = static_cast<int>(args->primID);
+    const Closest c = closest_on_triangle(s.point, s.impl->corner(triangle, 0),
+                                          s.impl->corner(triangle, 1), s.impl->corner(triangle, 2));
+    // Of equally near triangles the one with the smallest index wins, in whatever order they come.
+    const bool nearer =
+        c.distance_squared < s.best_squared ||
+        (c.distance_squared == s.best_squared && (s.hit.triangle < 0 || triangle < s.hit.triangle));
+    if (!nearer) return false;
+    s.best_squared = c.distance_squared;
+    s.hit = {triangle, c.u, c.v, std::sqrt(c.distance_squared)};
+    args->query->radius = float(std::sqrt(c.distance_squared)) * 1.0001f + 5e-4f;
+    return true;
+  };
+  rtcPointQuery(impl_->scene, &query, &context, visit, &search);
+  if (search.hit.triangle < 0) return std::nullopt;
+  return search.hit;
+}
+
+Vec3 Surface::position(const SurfaceHit& hit) const {
+  return (1 - hit.u - hit.v) * impl_->corner(hit.triangle, 0) +
+         hit.u * impl_->corner(hit.triangle, 1) + hit.v * impl_->corner(hit.triangle, 2);
+}
+
+Vec3 Surface::normal(const SurfaceHit& hit) const {
+  const Vec3& a = impl_->corner(hit.triangle, 0);
+  return (impl_->corner(hit.triangle, 1) - a)
+      .cross(impl_->corner(hit.triangle, 2) - a)
+      .normalized();
+}
+
+}  // namespace hydrodip
