@@ -1,0 +1,161 @@
+#include "film/film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace hydrodip {
+
+namespace {
+
+struct Extent {
+  double x = 0, y = 0;
+};
+
+Extent free_extent(const FilmOptions& options) {
+  Extent free{options.width_mm - 2 * options.margin_mm, options.height_mm - 2 * options.margin_mm};
+  if (options.shape == FilmShape::kDisc) free.x = free.y = std::min(free.x, free.y);
+  if (!(free.x > 0 && free.y > 0))
+    throw InputError(fmt::format(
+        "a margin of {:g} mm leaves no free film on a sheet of {:g} x {:g} mm; set film.margin_mm "
+        "below {:g}",
+        options.margin_mm, options.width_mm, options.height_mm,
+        0.5 * std::min(options.width_mm, options.height_mm)));
+  return free;
+}
+
+int nearest_even(double value) { return std::max(2, 2 * static_cast<int>(std::lround(value / 2))); }
+
+// Even cell counts put a vertex at the centre, so that the alternating diagonals are symmetric.
+void choose_grid(const FilmOptions& options, const Extent& free, FilmMesh& mesh) {
+  const double disc_share = options.shape == FilmShape::kDisc ? M_PI / 4 : 1;
+  const double cells = options.elements / (2 * disc_share);
+  const int cells_x = nearest_even(std::sqrt(cells * free.x / free.y));
+  const int cells_y = free.x == free.y ? cells_x : nearest_even(cells / cells_x);
+  mesh.nx = cells_x + 1;
+  mesh.ny = cells_y + 1;
+  mesh.spacing = {free.x / cells_x, free.y / cells_y};
+  mesh.cell_mm = mesh.spacing.maxCoeff();
+  mesh.origin = {-free.x / 2, -free.y / 2};
+}
+
+// Grid vertices by number j * nx + i, before those outside a disc are left out.
+struct Grid {
+  std::vector<Vec2> u;
+  std::vector<std::uint8_t> on_rim;
+  std::vector<Triangle> triangles;
+};
+
+Grid rectangle_grid(const FilmMesh& mesh) {
+  Grid grid;
+  const int nx = mesh.nx, ny = mesh.ny;
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      // Measured from the centre, so that mirrored vertices are exact mirror images.
+      grid.u.emplace_back((i - (nx - 1) / 2) * mesh.spacing.x(),
+                          (j - (ny - 1) / 2) * mesh.spacing.y());
+      grid.on_rim.push_back(i == 0 || j == 0 || i == nx - 1 || j == ny - 1);
+    }
+  for (int j = 0; j + 1 < ny; ++j)
+    for (int i = 0; i + 1 < nx; ++i) {
+      const std::int32_t a = j * nx + i, b = a + 1, c = a + nx + 1, d = a + nx;
+      const bool rising = (i - (nx - 1) / 2 + j - (ny - 1) / 2) % 2 == 0;
+      if (rising) {
+        grid.triangles.push_back({a, b, c});
+        grid.triangles.push_back({a, c, d});
+      } else {
+        grid.triangles.push_back({a, b, d});
+        grid.triangles.push_back({b, c, d});
+      }
+    }
+  return grid;
+}
+
+// Moves the vertices next to the circle onto it and drops what lies outside.
+void cut_disc(Grid& grid, double radius, double cell) {
+  std::vector<std::uint8_t> inside(grid.u.size());
+  for (std::size_t v = 0; v < grid.u.size(); ++v)
+    inside[v] = grid.u[v].norm() < radius - 0.35 * cell;
+  std::vector<Triangle> kept;
+  for (const Triangle& t : grid.triangles)
+    if (inside[std::size_t(t[0])] || inside[std::size_t(t[1])] || inside[std::size_t(t[2])])
+      kept.push_back(t);
+  grid.triangles = std::move(kept);
+  for (std::size_t v = 0; v < grid.u.size(); ++v) {
+    grid.on_rim[v] = !inside[v];
+    if (!inside[v]) grid.u[v] *= radius / grid.u[v].norm();
+  }
+}
+
+void number_vertices(Grid& grid, FilmMesh& mesh) {
+  std::vector<std::uint8_t> used(grid.u.size(), 0);
+  for (const Triangle& t : grid.triangles)
+    for (std::int32_t v : t) used[std::size_t(v)] = 1;
+  mesh.vertex_at.assign(grid.u.size(), -1);
+  for (std::size_t v = 0; v < grid.u.size(); ++v) {
+    if (!used[v]) continue;
+    mesh.vertex_at[v] = static_cast<std::int32_t>(mesh.u.size());
+    mesh.u.push_back(grid.u[v]);
+    mesh.on_rim.push_back(grid.on_rim[v]);
+  }
+  for (Triangle t : grid.triangles) {
+    for (std::int32_t& v : t) v = mesh.vertex_at[std::size_t(v)];
+    mesh.triangles.push_back(t);
+  }
+}
+
+void list_incident_triangles(FilmMesh& mesh) {
+  mesh.incident_begin.assign(mesh.u.size() + 1, 0);
+  for (const Triangle& t : mesh.triangles)
+    for (std::int32_t v : t) ++mesh.incident_begin[std::size_t(v) + 1];
+  for (std::size_t v = 0; v < mesh.u.size(); ++v)
+    mesh.incident_begin[v + 1] += mesh.incident_begin[v];
+  mesh.incident.resize(3 * mesh.triangles.size());
+  std::vector<std::int32_t> next(mesh.incident_begin.begin(), mesh.incident_begin.end() - 1);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::int32_t v : mesh.triangles[t])
+      mesh.incident[std::size_t(next[std::size_t(v)]++)] = static_cast<std::int32_t>(t);
+}
+
+void find_neighbors(FilmMesh& mesh) {
+  mesh.neighbor.assign(mesh.triangles.size(), {-1, -1, -1});
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t a = mesh.triangles[t][(k + 1) % 3], b = mesh.triangles[t][(k + 2) % 3];
+      for (std::int32_t n = mesh.incident_begin[std::size_t(a)];
+           n < mesh.incident_begin[std::size_t(a) + 1]; ++n) {
+        const std::int32_t other = mesh.incident[std::size_t(n)];
+        const Triangle& o = mesh.triangles[std::size_t(other)];
+        if (other != static_cast<std::int32_t>(t) && (o[0] == b || o[1] == b || o[2] == b))
+          mesh.neighbor[t][k] = other;
+      }
+    }
+}
+
+}  // namespace
+
+FilmMesh make_film_mesh(const FilmOptions& options) {
+  const Extent free = free_extent(options);
+  FilmMesh mesh;
+  choose_grid(options, free, mesh);
+  Grid grid = rectangle_grid(mesh);
+  if (options.shape == FilmShape::kDisc) cut_disc(grid, free.x / 2, mesh.cell_mm);
+  number_vertices(grid, mesh);
+  if (mesh.triangles.size() < 8)
+    throw InputError("the film needs at least 8 triangles; set film.elements higher");
+  list_incident_triangles(mesh);
+  find_neighbors(mesh);
+  return mesh;
+}
+
+bool DippedFilm::lies_on_object(std::size_t triangle) const {
+  if (!torn.empty() && torn[triangle]) return false;
+  for (std::int32_t v : mesh.triangles[triangle])
+    if (state[std::size_t(v)] != VertexState::kAttached) return false;
+  return true;
+}
+
+}  // namespace hydrodip
