@@ -1,6 +1,7 @@
 // Pixel buffers. Row 0 is the top row of the picture.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -17,6 +18,8 @@ float srgb_to_linear(float encoded);
 float linear_to_srgb(float linear);
 // Table look-up of srgb_to_linear(byte / 255).
 float srgb8_to_linear(std::uint8_t encoded);
+// That table, for loops that decode many pixels.
+const std::array<float, 256>& srgb8_table();
 // Rounds to the nearest byte; clamps.
 std::uint8_t linear_to_srgb8(float linear);
 

@@ -27,12 +27,12 @@ using CornerUv = std::array<Eigen::Vector2f, 3>;
 using CornerColor = std::array<LinearColor, 3>;
 
 struct Object {
-  std::vector<Vec3> positions;           // mm once loaded; see object/pose.h for the frame
-  std::vector<Triangle> triangles;       // outward orientation where it could be established
-  std::vector<int> material_of;          // per triangle, index into materials
-  std::vector<CornerUv> uvs;             // per triangle, or empty: the model has no UVs
-  std::vector<CornerColor> colors;       // per triangle, or empty: no vertex colours
-  std::vector<Material> materials;       // never empty
+  std::vector<Vec3> positions;      // mm once loaded; see object/pose.h for the frame
+  std::vector<Triangle> triangles;  // outward orientation where it could be established
+  std::vector<int> material_of;     // per triangle, index into materials
+  std::vector<CornerUv> uvs;        // per triangle, or empty: the model has no UVs
+  std::vector<CornerColor> colors;  // per triangle, or empty: no vertex colours
+  std::vector<Material> materials;  // never empty
   std::vector<std::shared_ptr<const Image>> textures;
 
   // Whether the model says which colour goes where (texture with UVs, vertex colours, or more than

@@ -10,9 +10,9 @@
 namespace hydrodip {
 
 struct PoseOptions {
-  double size_mm = 0;                   // scale so that the largest extent is this; 0: keep
-  std::string down = "-z";              // model side that enters first: +x -x +y -y +z -z
-  Vec3 rotate_deg = Vec3::Zero();       // then about fixed x, y, z, in that order
+  double size_mm = 0;              // scale so that the largest extent is this; 0: keep
+  std::string down = "-z";         // model side that enters first: +x -x +y -y +z -z
+  Vec3 rotate_deg = Vec3::Zero();  // then about fixed x, y, z, in that order
 };
 
 // 4x4 that takes model coordinates (mm) to the posed-object frame. Largest extent: of the model's

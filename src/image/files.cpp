@@ -1,0 +1,373 @@
+#include "image/files.h"
+
+#include <fmt/format.h>
+#include <png.h>
+
+// jpeglib.h needs size_t and FILE first.
+#include <cstdio>
+
+#include <jerror.h>
+#include <jpeglib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csetjmp>
+#include <cstring>
+#include <new>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/math.h"
+
+namespace hydrodip {
+
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::uint32_t kMaxSidePx = 1u << 15;
+constexpr std::uint8_t kPngSignature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+constexpr std::size_t kMessageSize = 256;
+
+bool is_png(const Bytes& bytes) {
+  return bytes.size() >= 8 && std::memcmp(bytes.data(), kPngSignature, 8) == 0;
+}
+
+bool is_jpeg(const Bytes& bytes) {
+  return bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff;
+}
+
+std::uint32_t big_endian32(const std::uint8_t* p) {
+  return std::uint32_t(p[0]) << 24 | std::uint32_t(p[1]) << 16 | std::uint32_t(p[2]) << 8 | p[3];
+}
+
+[[noreturn]] void refuse(const std::string& name, const char* kind, const char* detail) {
+  throw InputError(
+      fmt::format("{}: damaged or truncated {} image ({}); save it again from an image editor.",
+                  name, kind, detail));
+}
+
+// A few bytes may claim any size; believe only what such a file could possibly hold, so that a
+// forged header cannot ask for gigabytes.
+void check_size(const std::string& name, const char* kind, std::uint32_t width,
+                std::uint32_t height, double smallest_file_bytes, std::size_t file_bytes) {
+  if (width == 0 || height == 0) refuse(name, kind, "it has no pixels");
+  if (width > kMaxSidePx || height > kMaxSidePx) {
+    throw InputError(
+        fmt::format("{}: the image is {} x {} px, more than {} px a side; scale it down.", name,
+                    width, height, kMaxSidePx));
+  }
+  if (smallest_file_bytes > double(file_bytes)) refuse(name, kind, "too few bytes for its size");
+}
+
+// ---- PNG ----------------------------------------------------------------------------------------
+
+// libpng reports errors by longjmp: what crosses it lives here, outside the frames it unwinds.
+struct PngSource {
+  const Bytes* bytes = nullptr;
+  std::size_t offset = 0;
+  char message[kMessageSize] = {};
+};
+
+extern "C" {
+
+static void png_read_from_memory(png_structp png, png_bytep out, png_size_t count) {
+  auto* source = static_cast<PngSource*>(png_get_io_ptr(png));
+  if (count > source->bytes->size() - source->offset) png_error(png, "unexpected end of file");
+  std::memcpy(out, source->bytes->data() + source->offset, count);
+  source->offset += count;
+}
+
+static void png_keep_error(png_structp png, png_const_charp message) {
+  auto* text = static_cast<char*>(png_get_error_ptr(png));
+  std::snprintf(text, kMessageSize, "%s", message);
+  png_longjmp(png, 1);
+}
+
+static void png_ignore_warning(png_structp, png_const_charp) {}
+
+static void png_append(png_structp png, png_bytep data, png_size_t count) {
+  auto* out = static_cast<Bytes*>(png_get_io_ptr(png));
+  try {
+    out->insert(out->end(), data, data + count);
+  } catch (const std::bad_alloc&) {
+    png_error(png, "out of memory");
+  }
+}
+
+static void png_no_flush(png_structp) {}
+
+}  // extern "C"
+
+// Everything becomes 8-bit RGBA; sample values are taken as sRGB, whatever gamma the file states.
+bool png_decode_rows(png_structp png, png_infop info, png_bytepp rows) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_read_image(png, rows);
+  png_read_end(png, info);
+  return true;
+}
+
+bool png_read_header(png_structp png, png_infop info) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_read_info(png, info);
+  png_set_expand(png);
+  png_set_scale_16(png);
+  png_set_gray_to_rgb(png);
+  png_set_add_alpha(png, 0xff, PNG_FILLER_AFTER);
+  png_set_interlace_handling(png);
+  png_read_update_info(png, info);
+  return true;
+}
+
+struct PngReader {
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  explicit PngReader(PngSource& source) {
+    png = png_create_read_struct(PNG_LIBPNG_VER_STRING, source.message, png_keep_error,
+                                 png_ignore_warning);
+    if (!png) throw std::bad_alloc();
+    info = png_create_info_struct(png);
+    png_set_read_fn(png, &source, png_read_from_memory);
+    // Colour profiles and text are of no use here, and are where decompression bombs hide.
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, 0);
+    png_set_chunk_malloc_max(png, 1 << 22);
+    png_set_user_limits(png, kMaxSidePx, kMaxSidePx);
+  }
+  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+};
+
+Image decode_png(const Bytes& bytes, const std::string& name) {
+  if (bytes.size() < 33 || std::memcmp(bytes.data() + 12, "IHDR", 4) != 0) {
+    refuse(name, "PNG", "it has no header");
+  }
+  const std::uint32_t width = big_endian32(bytes.data() + 16);
+  const std::uint32_t height = big_endian32(bytes.data() + 20);
+  // Deflate shrinks at most 1032 to 1, and a pixel has at least one bit.
+  check_size(name, "PNG", width, height, double(width) * height / 8 / 1040, bytes.size());
+  PngSource source{&bytes, 0, {}};
+  PngReader reader(source);
+  if (!reader.info || !png_read_header(reader.png, reader.info)) {
+    refuse(name, "PNG", source.message);
+  }
+  if (png_get_rowbytes(reader.png, reader.info) != std::size_t(4) * width) {
+    refuse(name, "PNG", "unusual pixel layout");
+  }
+  Image image{int(width), int(height)};
+  std::vector<png_bytep> rows(height);
+  for (std::uint32_t y = 0; y < height; ++y) rows[y] = image.pixel(0, int(y));
+  if (!png_decode_rows(reader.png, reader.info, rows.data())) refuse(name, "PNG", source.message);
+  return image;
+}
+
+double png_dpi(const Bytes& bytes) {
+  for (std::size_t at = 8; at + 12 <= bytes.size();) {
+    const std::size_t length = big_endian32(&bytes[at]);
+    if (length > bytes.size() - at - 12) return 0;
+    const char* type = reinterpret_cast<const char*>(&bytes[at + 4]);
+    if (std::memcmp(type, "IDAT", 4) == 0) return 0;
+    if (std::memcmp(type, "pHYs", 4) == 0 && length == 9) {
+      if (bytes[at + 16] != 1) return 0;  // only an aspect ratio
+      const double per_m = big_endian32(&bytes[at + 8]);
+      const double dpi = per_m * kMmPerInch / 1000;
+      // pHYs counts whole pixels per metre: 300 dpi is stored as 299.9994.
+      const double whole = std::round(dpi);
+      return std::round(whole * 1000 / kMmPerInch) == per_m ? whole : dpi;
+    }
+    at += length + 12;
+  }
+  return 0;
+}
+
+bool opaque(const Image& image) {
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+    if (image.rgba[i] != 255) return false;
+  }
+  return true;
+}
+
+struct PngWriter {
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  explicit PngWriter(char* message) {
+    png =
+        png_create_write_struct(PNG_LIBPNG_VER_STRING, message, png_keep_error, png_ignore_warning);
+    if (!png) throw std::bad_alloc();
+    info = png_create_info_struct(png);
+    if (!info) {
+      png_destroy_write_struct(&png, &info);
+      throw std::bad_alloc();
+    }
+  }
+  ~PngWriter() { png_destroy_write_struct(&png, &info); }
+  PngWriter(const PngWriter&) = delete;
+  PngWriter& operator=(const PngWriter&) = delete;
+};
+
+bool png_encode(PngWriter& writer, const Image& image, bool drop_alpha, double dpi, Bytes& out) {
+  png_structp png = writer.png;
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_set_write_fn(png, &out, png_append, png_no_flush);
+  png_set_user_limits(png, 0x7fffffff, 0x7fffffff);
+  // Film images are large and mostly flat: a low level is nearly as small and several times faster.
+  png_set_compression_level(png, 4);
+  png_set_IHDR(png, writer.info, png_uint_32(image.width_px), png_uint_32(image.height_px), 8,
+               drop_alpha ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(png, writer.info, PNG_sRGB_INTENT_RELATIVE);
+  if (dpi > 0) {
+    const auto per_m = png_uint_32(std::lround(dpi * 1000 / kMmPerInch));
+    png_set_pHYs(png, writer.info, per_m, per_m, PNG_RESOLUTION_METER);
+  }
+  png_write_info(png, writer.info);
+  if (drop_alpha) png_set_filler(png, 0, PNG_FILLER_AFTER);
+  for (int y = 0; y < image.height_px; ++y) png_write_row(png, image.pixel(0, y));
+  png_write_end(png, nullptr);
+  return true;
+}
+
+// ---- JPEG ---------------------------------------------------------------------------------------
+
+struct JpegErrors {
+  jpeg_error_mgr manager;  // first: libjpeg hands back a pointer to it
+  std::jmp_buf jump;
+  char message[JMSG_LENGTH_MAX];
+  bool truncated;
+};
+
+extern "C" {
+
+static void jpeg_keep_error(j_common_ptr info) {
+  auto* errors = reinterpret_cast<JpegErrors*>(info->err);
+  errors->manager.format_message(info, errors->message);
+  std::longjmp(errors->jump, 1);
+}
+
+static void jpeg_note_warning(j_common_ptr info, int level) {
+  if (level >= 0) return;
+  auto* errors = reinterpret_cast<JpegErrors*>(info->err);
+  const int code = errors->manager.msg_code;
+  if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER) errors->truncated = true;
+}
+
+}  // extern "C"
+
+struct JpegReader {
+  jpeg_decompress_struct info{};
+  JpegErrors errors{};
+  explicit JpegReader(const Bytes& bytes) {
+    info.err = jpeg_std_error(&errors.manager);
+    errors.manager.error_exit = jpeg_keep_error;
+    errors.manager.emit_message = jpeg_note_warning;
+    jpeg_create_decompress(&info);
+    jpeg_mem_src(&info, bytes.data(), static_cast<unsigned long>(bytes.size()));
+  }
+  ~JpegReader() { jpeg_destroy_decompress(&info); }
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
+
+  bool read_header() {
+    if (setjmp(errors.jump)) return false;
+    jpeg_read_header(&info, TRUE);
+    const bool four_inks = info.jpeg_color_space == JCS_CMYK || info.jpeg_color_space == JCS_YCCK;
+    info.out_color_space = four_inks ? JCS_CMYK : JCS_RGB;
+    return true;
+  }
+
+  // row: scratch space for one row of up to four channels.
+  bool read_rows(Image& image, std::uint8_t* row);
+};
+
+// Press files hold CMYK; Adobe's are inverted. A plain device formula is enough for a texture.
+void cmyk_to_rgb(const std::uint8_t* cmyk, bool inverted, std::uint8_t* rgb) {
+  const int k = inverted ? cmyk[3] : 255 - cmyk[3];
+  for (int c = 0; c < 3; ++c) {
+    const int light = inverted ? cmyk[c] : 255 - cmyk[c];
+    rgb[c] = std::uint8_t((light * k + 127) / 255);
+  }
+}
+
+bool JpegReader::read_rows(Image& image, std::uint8_t* row) {
+  if (setjmp(errors.jump)) return false;
+  jpeg_start_decompress(&info);
+  const bool four_inks = info.out_color_space == JCS_CMYK;
+  while (info.output_scanline < info.output_height) {
+    std::uint8_t* out = image.pixel(0, int(info.output_scanline));
+    jpeg_read_scanlines(&info, &row, 1);
+    const std::uint8_t* in = row;
+    for (int x = 0; x < image.width_px; ++x, out += 4, in += four_inks ? 4 : 3) {
+      if (four_inks) {
+        cmyk_to_rgb(in, info.saw_Adobe_marker, out);
+      } else {
+        std::copy_n(in, 3, out);
+      }
+      out[3] = 255;
+    }
+  }
+  jpeg_finish_decompress(&info);
+  return true;
+}
+
+Image decode_jpeg(const Bytes& bytes, const std::string& name) {
+  JpegReader reader(bytes);
+  if (!reader.read_header()) refuse(name, "JPEG", reader.errors.message);
+  const std::uint32_t width = reader.info.image_width;
+  const std::uint32_t height = reader.info.image_height;
+  // A block of 64 pixels takes about a bit at the least.
+  check_size(name, "JPEG", width, height, double(width) * height / 1024, bytes.size());
+  Image image{int(width), int(height)};
+  std::vector<std::uint8_t> row(std::size_t(4) * width);
+  if (!reader.read_rows(image, row.data())) refuse(name, "JPEG", reader.errors.message);
+  if (reader.errors.truncated) refuse(name, "JPEG", "it ends too early");
+  return image;
+}
+
+double jpeg_dpi(const Bytes& bytes) {
+  if (bytes.size() < 18 || bytes[3] != 0xe0 || std::memcmp(&bytes[6], "JFIF", 5) != 0) return 0;
+  const double density = bytes[14] * 256.0 + bytes[15];
+  if (bytes[13] == 1) return density;
+  return bytes[13] == 2 ? density * kMmPerInch / 10 : 0;
+}
+
+}  // namespace
+
+Image decode_image(const Bytes& bytes, const std::string& name) {
+  try {
+    if (is_png(bytes)) return decode_png(bytes, name);
+    if (is_jpeg(bytes)) return decode_jpeg(bytes, name);
+  } catch (const std::bad_alloc&) {
+    throw InputError(fmt::format("{}: not enough memory for this image; scale it down.", name));
+  }
+  throw InputError(fmt::format("{}: {}; give a PNG or JPEG file.", name,
+                               bytes.empty() ? "the file is empty" : "not a PNG or JPEG image"));
+}
+
+Image load_image(const std::filesystem::path& path) {
+  return decode_image(read_file(path), path.string());
+}
+
+double recorded_dpi(const Bytes& bytes) {
+  if (is_png(bytes)) return png_dpi(bytes);
+  return is_jpeg(bytes) ? jpeg_dpi(bytes) : 0;
+}
+
+Bytes encode_png(const Image& image, double dpi) {
+  if (image.width_px <= 0 || image.height_px <= 0) {
+    throw InputError("An image without pixels cannot be written as PNG.");
+  }
+  Bytes out;
+  char message[kMessageSize] = {};
+  PngWriter writer(message);
+  if (!png_encode(writer, image, opaque(image), dpi, out)) {
+    throw InputError(fmt::format("The image could not be written as PNG: {}.", message));
+  }
+  return out;
+}
+
+void save_png(const std::filesystem::path& path, const Image& image, double dpi) {
+  const Bytes bytes = encode_png(image, dpi);
+  write_file(path, bytes.data(), bytes.size());
+}
+
+}  // namespace hydrodip

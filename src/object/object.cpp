@@ -1,0 +1,155 @@
+#include "object/object.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hydrodip {
+
+namespace {
+
+// The two texels that a coordinate falls between, and the weight of the second.
+struct TexelPair {
+  int first;
+  int second;
+  float weight;
+};
+
+TexelPair texels(float coordinate, int size, Wrap wrap) {
+  float t = coordinate;
+  switch (wrap) {
+    case Wrap::kRepeat:
+      t -= std::floor(t);
+      break;
+    case Wrap::kMirror:
+      t -= 2 * std::floor(t / 2);
+      if (t > 1) t = 2 - t;
+      break;
+    case Wrap::kClamp:
+    case Wrap::kDecal:
+      t = std::clamp(t, 0.0f, 1.0f);
+      break;
+  }
+  const float x = t * float(size) - 0.5f;
+  const float cell = std::floor(x);
+  TexelPair pair{int(cell), int(cell) + 1, x - cell};
+  if (wrap == Wrap::kRepeat) {
+    if (pair.first < 0) pair.first += size;
+    if (pair.second >= size) pair.second -= size;
+  } else {
+    pair.first = std::max(pair.first, 0);
+    pair.second = std::min(pair.second, size - 1);
+  }
+  return pair;
+}
+
+// Adds a texel, premultiplied so that the colour hidden under transparent texels does not show.
+void add_texel(const Image& image, int x, int y, float weight, const std::array<float, 256>& decode,
+               LinearColor& sum) {
+  const std::uint8_t* pixel = image.pixel(x, y);
+  const float alpha = weight * float(pixel[3]) * (1.0f / 255.0f);
+  sum.r += alpha * decode[pixel[0]];
+  sum.g += alpha * decode[pixel[1]];
+  sum.b += alpha * decode[pixel[2]];
+  sum.a += alpha;
+}
+
+// Premultiplied, in linear light.
+LinearColor sample(const Image& image, const Material& material, const Eigen::Vector2f& uv) {
+  const std::array<float, 256>& decode = srgb8_table();
+  const TexelPair x = texels(uv.x(), image.width_px, material.wrap_u);
+  const TexelPair row = texels(uv.y(), image.height_px, material.wrap_v);
+  // v runs up, rows run down.
+  const int low = image.height_px - 1 - row.first;
+  const int high = image.height_px - 1 - row.second;
+  LinearColor sum{0, 0, 0, 0};
+  add_texel(image, x.first, low, (1 - x.weight) * (1 - row.weight), decode, sum);
+  add_texel(image, x.second, low, x.weight * (1 - row.weight), decode, sum);
+  add_texel(image, x.first, high, (1 - x.weight) * row.weight, decode, sum);
+  add_texel(image, x.second, high, x.weight * row.weight, decode, sum);
+  return sum;
+}
+
+bool outside(float t) { return t < 0 || t > 1; }
+
+// Whether the texture shows at all here.
+bool covered(const Material& material, const Eigen::Vector2f& uv) {
+  return !(material.wrap_u == Wrap::kDecal && outside(uv.x())) &&
+         !(material.wrap_v == Wrap::kDecal && outside(uv.y()));
+}
+
+// Multiplies a premultiplied colour by a straight factor.
+void tint(LinearColor& color, const LinearColor& factor) {
+  color.r *= factor.r * factor.a;
+  color.g *= factor.g * factor.a;
+  color.b *= factor.b * factor.a;
+  color.a *= factor.a;
+}
+
+LinearColor blend(const CornerColor& corners, float w0, float w1, float w2) {
+  return {w0 * corners[0].r + w1 * corners[1].r + w2 * corners[2].r,
+          w0 * corners[0].g + w1 * corners[1].g + w2 * corners[2].g,
+          w0 * corners[0].b + w1 * corners[1].b + w2 * corners[2].b,
+          w0 * corners[0].a + w1 * corners[1].a + w2 * corners[2].a};
+}
+
+bool same_color(const LinearColor& a, const LinearColor& b) {
+  return a.r == b.r && a.g == b.g && a.b == b.b && a.a == b.a;
+}
+
+}  // namespace
+
+bool Object::has_appearance() const {
+  if (!colors.empty()) return true;
+  const Material* plain = nullptr;
+  for (const int index : material_of) {
+    const Material& material = materials[std::size_t(index)];
+    if (material.texture >= 0 && !uvs.empty()) return true;
+    if (plain && plain != &material && !same_color(plain->base_color, material.base_color)) {
+      return true;
+    }
+    plain = &material;
+  }
+  return false;
+}
+
+Box3 Object::bounds() const {
+  Box3 box;
+  for (const Vec3& p : positions) box.add(p);
+  return box;
+}
+
+Vec3 position_at(const Object& object, const SurfacePoint& point) {
+  const Triangle& t = object.triangles[std::size_t(point.triangle)];
+  return (1 - point.u - point.v) * object.positions[std::size_t(t[0])] +
+         point.u * object.positions[std::size_t(t[1])] +
+         point.v * object.positions[std::size_t(t[2])];
+}
+
+Vec3 face_normal(const Object& object, int triangle) {
+  const Triangle& t = object.triangles[std::size_t(triangle)];
+  const Vec3& a = object.positions[std::size_t(t[0])];
+  const Vec3 normal =
+      (object.positions[std::size_t(t[1])] - a).cross(object.positions[std::size_t(t[2])] - a);
+  const double length = normal.norm();
+  return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
+}
+
+LinearColor color_at(const Object& object, const SurfacePoint& point, const LinearColor& base) {
+  const auto triangle = std::size_t(point.triangle);
+  const Material& material = object.materials[std::size_t(object.material_of[triangle])];
+  const float w1 = float(point.u), w2 = float(point.v), w0 = 1 - w1 - w2;
+  LinearColor color{1, 1, 1, 1};
+  if (material.texture >= 0 && !object.uvs.empty()) {
+    const CornerUv& corners = object.uvs[triangle];
+    const Eigen::Vector2f uv = w0 * corners[0] + w1 * corners[1] + w2 * corners[2];
+    if (covered(material, uv)) {
+      color = sample(*object.textures[std::size_t(material.texture)], material, uv);
+    }
+  }
+  tint(color, material.base_color);
+  if (!object.colors.empty()) tint(color, blend(object.colors[triangle], w0, w1, w2));
+  const float rest = 1 - color.a;
+  return {color.r + rest * base.r, color.g + rest * base.g, color.b + rest * base.b, 1};
+}
+
+}  // namespace hydrodip
