@@ -12,8 +12,8 @@ namespace hydrodip {
 
 struct PreviewOptions {
   int width_px = 1600;
-  int samples_per_axis = 2;
-  std::string caption;        // one line under the picture, e.g. the verdict
+  int samples_per_axis = 3;  // squared per pixel, where neighbouring pixels differ
+  std::string caption;       // one line under the picture, e.g. the verdict
   LinearColor base{1, 1, 1, 1};
 };
 

@@ -1,0 +1,442 @@
+#include "report/studio.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace hydrodip {
+namespace {
+
+// Light levels are chosen so that a white surface facing the lamp comes out just below white.
+constexpr double kSkyAbove = 0.56;
+constexpr double kSkyBelow = 0.30;
+constexpr double kLamp = 0.46;
+constexpr double kFill = 0.07;
+
+// Each pixel of a 4 x 4 block casts its own few rays of one common set; the filter afterwards
+// gathers the whole set at every pixel.
+constexpr int kPhases = 16;
+constexpr int kSkyRays = 5;
+constexpr int kLampRays = 2;
+constexpr double kLampRadius = 0.22;  // at distance 1: how soft the shadows are
+
+constexpr int kGroundScale = 4;  // ground shadows are soft: computed on a coarser raster
+constexpr int kGroundRays = 32;
+
+struct Light {
+  double sky = 1;   // share of the sky that is not hidden
+  double lamp = 1;  // share of the lamp
+};
+
+struct Sample {
+  int triangle = -1;  // -1: the backdrop
+  double u = 0, v = 0, depth = 0;
+};
+
+struct Shade {
+  std::array<float, 3> wanted{};
+  std::array<float, 3> predicted{};
+};
+
+double radical_inverse(unsigned i) {
+  double result = 0;
+  for (double digit = 0.5; i > 0; i /= 2, digit /= 2) result += digit * (i & 1u);
+  return result;
+}
+
+// The phase of a pixel: neighbours get phases that lie far apart.
+int phase_of(int x, int y) {
+  static constexpr std::array<int, 16> kOrder = {0, 8,  2, 10, 12, 4, 14, 6,
+                                                 3, 11, 1, 9,  15, 7, 13, 5};
+  return kOrder[std::size_t((y & 3) * 4 + (x & 3))];
+}
+
+// Two unit vectors that complete a unit vector to a right-handed frame.
+std::array<Vec3, 2> frame_around(const Vec3& n) {
+  const Vec3 helper = std::abs(n.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY();
+  const Vec3 a = helper.cross(n).normalized();
+  return {a, n.cross(a)};
+}
+
+Vec3 cosine_direction(const Vec3& normal, double u1, double u2) {
+  const auto [a, b] = frame_around(normal);
+  const double radius = std::sqrt(u1);
+  const double angle = 2 * std::numbers::pi * u2;
+  return radius * std::cos(angle) * a + radius * std::sin(angle) * b +
+         std::sqrt(std::max(0.0, 1 - u1)) * normal;
+}
+
+class Renderer {
+ public:
+  Renderer(const Studio& studio, const Camera& camera, int width, int height, RunContext& context)
+      : studio_(studio), camera_(camera), width_(width), height_(height), context_(context) {
+    const Box3 box = studio.object.bounds();
+    extent_ = box.empty() ? 1 : std::max(1e-9, box.size().norm());
+    place_ground();
+    lamp_ = (-0.5 * camera.right + 0.8 * camera.up + 0.75 * camera.back).normalized();
+  }
+
+  ViewPair run() {
+    trace_centres();
+    cast_light_rays();
+    smooth_light();
+    shadow_ground();
+    shade_centres();
+    refine_edges();
+    return {picture(&Shade::wanted), picture(&Shade::predicted)};
+  }
+
+ private:
+  std::size_t count() const { return std::size_t(width_) * std::size_t(height_); }
+  std::size_t at(int x, int y) const {
+    return std::size_t(y) * std::size_t(width_) + std::size_t(x);
+  }
+
+  void for_rows(const std::function<void(int y)>& row) const {
+    parallel_for(std::size_t(height_), 8, [&](std::size_t begin, std::size_t end) {
+      context_.check_cancelled();
+      for (std::size_t y = begin; y < end; ++y) row(int(y));
+    });
+  }
+
+  // The ground tilts a little towards the eye, so that it shows, and touches the object.
+  void place_ground() {
+    constexpr double kTilt = 14 * std::numbers::pi / 180;
+    ground_normal_ = std::cos(kTilt) * camera_.up + std::sin(kTilt) * camera_.back;
+    ground_height_ = 1e300;
+    for (const Vec3& p : studio_.object.positions) {
+      ground_height_ = std::min(ground_height_, p.dot(ground_normal_));
+    }
+  }
+
+  Vec3 ray(double x_px, double y_px) const {
+    return camera_.ray(2 * x_px / width_ - 1, 1 - 2 * y_px / height_).normalized();
+  }
+
+  Sample trace(double x_px, double y_px) const {
+    const auto hit = studio_.surface.first_hit(camera_.eye, ray(x_px, y_px), 0, 1e6 * extent_);
+    if (!hit) return {};
+    return {hit->triangle, hit->u, hit->v, hit->t};
+  }
+
+  Vec3 position(const Sample& s) const {
+    return position_at(studio_.object, {s.triangle, s.u, s.v});
+  }
+
+  // Turned to the eye: inside and outside of an open surface look alike.
+  Vec3 flat_normal(const Sample& s, const Vec3& seen_along) const {
+    const Vec3 n = face_normal(studio_.object, s.triangle);
+    return n.dot(seen_along) > 0 ? Vec3(-n) : n;
+  }
+
+  Vec3 smooth_normal(const Sample& s, const Vec3& flat) const {
+    const CornerNormals& corner = studio_.normals[std::size_t(s.triangle)];
+    const Vec3 n = (1 - s.u - s.v) * corner[0] + s.u * corner[1] + s.v * corner[2];
+    const double length = n.norm();
+    if (length < 1e-6) return flat;
+    return n.dot(flat) < 0 ? Vec3(-n / length) : Vec3(n / length);
+  }
+
+  // A point on the curved surface that the triangles stand for: shadow rays from there do not
+  // show where the triangles' edges are.
+  Vec3 rounded_position(const Sample& s, const Vec3& p, const Vec3& flat) const {
+    const CornerNormals& normal = studio_.normals[std::size_t(s.triangle)];
+    const Triangle& triangle = studio_.object.triangles[std::size_t(s.triangle)];
+    const std::array<double, 3> weight = {1 - s.u - s.v, s.u, s.v};
+    const double side = face_normal(studio_.object, s.triangle).dot(flat) < 0 ? -1 : 1;
+    Vec3 lifted = p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 n = side * normal[k];
+      const Vec3& corner = studio_.object.positions[std::size_t(triangle[k])];
+      lifted += weight[k] * std::max(0.0, (corner - p).dot(n)) * n;
+    }
+    return lifted;
+  }
+
+  bool blocked(const Vec3& origin, const Vec3& direction) const {
+    return studio_.surface.first_hit(origin, direction, 0, 2 * extent_).has_value();
+  }
+
+  Vec3 lamp_direction(double u1, double u2) const {
+    const auto [a, b] = frame_around(lamp_);
+    const double radius = kLampRadius * std::sqrt(u1);
+    const double angle = 2 * std::numbers::pi * u2;
+    return (lamp_ + radius * (std::cos(angle) * a + std::sin(angle) * b)).normalized();
+  }
+
+  void trace_centres() {
+    centre_.resize(count());
+    for_rows([&](int y) {
+      for (int x = 0; x < width_; ++x) centre_[at(x, y)] = trace(x + 0.5, y + 0.5);
+    });
+  }
+
+  Light cast_from(const Sample& s, const Vec3& seen_along, int phase) const {
+    const Vec3 flat = flat_normal(s, seen_along);
+    const Vec3 origin = rounded_position(s, position(s), flat) + 2e-4 * extent_ * flat;
+    const Vec3 smooth = smooth_normal(s, flat);
+    Light light{0, 0};
+    for (int k = 0; k < kSkyRays; ++k) {
+      const unsigned i = unsigned(phase + kPhases * k);
+      const Vec3 d = cosine_direction(flat, (i + 0.5) / (kPhases * kSkyRays), radical_inverse(i));
+      if (!blocked(origin, d)) light.sky += 1.0 / kSkyRays;
+    }
+    if (smooth.dot(lamp_) < -kLampRadius) return light;  // turned away: no shadow to know
+    for (int k = 0; k < kLampRays; ++k) {
+      const unsigned i = unsigned(phase + kPhases * k);
+      const Vec3 d = lamp_direction((i + 0.5) / (kPhases * kLampRays), radical_inverse(i));
+      if (!blocked(origin, d)) light.lamp += 1.0 / kLampRays;
+    }
+    return light;
+  }
+
+  void cast_light_rays() {
+    light_.resize(count());
+    for_rows([&](int y) {
+      for (int x = 0; x < width_; ++x) {
+        const Sample& s = centre_[at(x, y)];
+        if (s.triangle < 0) continue;
+        light_[at(x, y)] = cast_from(s, ray(x + 0.5, y + 0.5), phase_of(x, y));
+      }
+    });
+  }
+
+  // Gathers the 4 x 4 phases (a 5 x 5 window with half weight on its rim) among pixels that show
+  // the same piece of surface.
+  void smooth_light() {
+    const std::vector<Light> raw = light_;
+    for_rows([&](int y) {
+      for (int x = 0; x < width_; ++x) {
+        if (centre_[at(x, y)].triangle >= 0) light_[at(x, y)] = gathered(raw, x, y);
+      }
+    });
+  }
+
+  Light gathered(const std::vector<Light>& raw, int x, int y) const {
+    const Sample& self = centre_[at(x, y)];
+    const Vec3 normal = face_normal(studio_.object, self.triangle);
+    const double pixel = 2 * camera_.half_width * self.depth / width_;
+    Light sum{0, 0};
+    double total = 0;
+    for (int dy = -2; dy <= 2; ++dy) {
+      for (int dx = -2; dx <= 2; ++dx) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
+        const Sample& other = centre_[at(x + dx, y + dy)];
+        if (other.triangle < 0 || std::abs(other.depth - self.depth) > 12 * pixel) continue;
+        double weight = (std::abs(dx) == 2 ? 0.5 : 1) * (std::abs(dy) == 2 ? 0.5 : 1);
+        if (other.triangle != self.triangle) {
+          const double turn = std::abs(normal.dot(face_normal(studio_.object, other.triangle)));
+          if (turn < 0.5) continue;
+        }
+        const Light& light = raw[at(x + dx, y + dy)];
+        sum.sky += weight * light.sky;
+        sum.lamp += weight * light.lamp;
+        total += weight;
+      }
+    }
+    return {sum.sky / total, sum.lamp / total};
+  }
+
+  // How dark the object makes the ground, on a coarse raster over the whole picture.
+  void shadow_ground() {
+    coarse_width_ = width_ / kGroundScale + 2;
+    coarse_height_ = height_ / kGroundScale + 2;
+    ground_.assign(std::size_t(coarse_width_) * std::size_t(coarse_height_), Light{});
+    parallel_for(std::size_t(coarse_height_), 2, [&](std::size_t begin, std::size_t end) {
+      context_.check_cancelled();
+      for (std::size_t y = begin; y < end; ++y) {
+        for (int x = 0; x < coarse_width_; ++x) {
+          ground_[y * std::size_t(coarse_width_) + std::size_t(x)] =
+              ground_light(x * kGroundScale, double(y) * kGroundScale);
+        }
+      }
+    });
+  }
+
+  Light ground_light(double x_px, double y_px) const {
+    const Vec3 d = ray(x_px, y_px);
+    const double fall = d.dot(ground_normal_);
+    if (fall > -1e-6) return {};
+    const double t = (ground_height_ - camera_.eye.dot(ground_normal_)) / fall;
+    const Vec3 origin = camera_.eye + t * d + 1e-4 * extent_ * ground_normal_;
+    Light light{0, 0};
+    for (int k = 0; k < kGroundRays; ++k) {
+      const double u1 = (k + 0.5) / kGroundRays;
+      const double u2 = radical_inverse(unsigned(k));
+      if (!blocked(origin, cosine_direction(ground_normal_, u1, u2))) light.sky += 1;
+      if (!blocked(origin, lamp_direction(u1, u2))) light.lamp += 1;
+    }
+    return {light.sky / kGroundRays, light.lamp / kGroundRays};
+  }
+
+  Light ground_at(double x_px, double y_px) const {
+    const double x = x_px / kGroundScale;
+    const double y = y_px / kGroundScale;
+    const int x0 = std::clamp(int(x), 0, coarse_width_ - 2);
+    const int y0 = std::clamp(int(y), 0, coarse_height_ - 2);
+    const double fx = x - x0;
+    const double fy = y - y0;
+    const Light* row = ground_.data() + std::size_t(y0) * std::size_t(coarse_width_) + x0;
+    const Light* next = row + coarse_width_;
+    const auto mix = [&](double Light::*part) {
+      return (1 - fy) * ((1 - fx) * row[0].*part + fx * row[1].*part) +
+             fy * ((1 - fx) * next[0].*part + fx * next[1].*part);
+    };
+    return {mix(&Light::sky), mix(&Light::lamp)};
+  }
+
+  // A pale grey sweep, lighter in the middle, with the object's shadow on it.
+  Shade backdrop(double x_px, double y_px) const {
+    const double x = (x_px - 0.5 * width_) / width_;
+    const double y = (y_px - 0.45 * height_) / height_;
+    const double glow = std::exp(-2.2 * (x * x + y * y));
+    const Light light = ground_at(x_px, y_px);
+    const double shadow = 0.62 * light.sky + 0.38 * (0.35 + 0.65 * light.lamp);
+    const double level = (0.50 + 0.27 * glow) * (0.25 + 0.75 * shadow);
+    Shade shade;
+    shade.wanted = {float(level * 0.985), float(level * 0.995), float(level * 1.01)};
+    shade.predicted = shade.wanted;
+    return shade;
+  }
+
+  Shade shade(const Sample& s, const Light& light, const Vec3& seen_along) const {
+    const Vec3 flat = flat_normal(s, seen_along);
+    const Vec3 n = smooth_normal(s, flat);
+    const double sky = kSkyBelow + (kSkyAbove - kSkyBelow) * (0.5 + 0.5 * n.dot(ground_normal_));
+    const double level = sky * (0.12 + 0.88 * light.sky) +
+                         kLamp * std::max(0.0, n.dot(lamp_)) * light.lamp +
+                         kFill * std::max(0.0, n.dot(camera_.back));
+    const Vec3 p = position(s);
+    const Vec3 normal = face_normal(studio_.object, s.triangle);
+    const SurfacePoint point{s.triangle, s.u, s.v};
+    const auto lit = [&](const LinearColor& c) {
+      const float f = float(level);
+      return std::array<float, 3>{f * c.r, f * c.g, f * c.b};
+    };
+    return {lit(studio_.appearance.wanted(point, p, normal)),
+            lit(studio_.appearance.predicted(point, p, normal))};
+  }
+
+  void shade_centres() {
+    shade_.resize(count());
+    for_rows([&](int y) {
+      for (int x = 0; x < width_; ++x) {
+        const Sample& s = centre_[at(x, y)];
+        shade_[at(x, y)] = s.triangle < 0 ? backdrop(x + 0.5, y + 0.5)
+                                          : shade(s, light_[at(x, y)], ray(x + 0.5, y + 0.5));
+      }
+    });
+  }
+
+  // Whether a pixel differs from a neighbour by more than a barely visible step.
+  bool busy(const std::vector<Shade>& shades, int x, int y) const {
+    const auto differs = [](const std::array<float, 3>& a, const std::array<float, 3>& b) {
+      float most = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        most = std::max(most, std::abs(a[c] - b[c]) / (0.1f + a[c] + b[c]));
+      }
+      return most > 0.035f;
+    };
+    const std::size_t self = at(x, y);
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
+        const std::size_t other = at(x + dx, y + dy);
+        if ((centre_[self].triangle < 0) != (centre_[other].triangle < 0)) return true;
+        if (centre_[self].triangle < 0) continue;
+        if (differs(shades[self].wanted, shades[other].wanted)) return true;
+        if (differs(shades[self].predicted, shades[other].predicted)) return true;
+      }
+    }
+    return false;
+  }
+
+  void refine_edges() {
+    if (studio_.samples_per_axis < 2) return;
+    const std::vector<Shade> single = shade_;
+    for_rows([&](int y) {
+      for (int x = 0; x < width_; ++x) {
+        if (busy(single, x, y)) shade_[at(x, y)] = supersampled(x, y);
+      }
+    });
+  }
+
+  // The light of the nearest pixel centre that shows the surface of this sample.
+  Light light_near(const Sample& s, int x, int y) const {
+    Light best;
+    double nearest = 1e300;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
+        const Sample& other = centre_[at(x + dx, y + dy)];
+        if (other.triangle < 0) continue;
+        const double apart = std::abs(other.depth - s.depth) + 1e-5 * extent_ * (dx * dx + dy * dy);
+        if (apart < nearest) {
+          nearest = apart;
+          best = light_[at(x + dx, y + dy)];
+        }
+      }
+    }
+    return best;
+  }
+
+  Shade supersampled(int x, int y) const {
+    const int n = studio_.samples_per_axis;
+    Shade sum;
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const double x_px = x + (i + 0.5) / n;
+        const double y_px = y + (j + 0.5) / n;
+        const Sample s = trace(x_px, y_px);
+        const Shade part =
+            s.triangle < 0 ? backdrop(x_px, y_px) : shade(s, light_near(s, x, y), ray(x_px, y_px));
+        for (std::size_t c = 0; c < 3; ++c) {
+          sum.wanted[c] += std::clamp(part.wanted[c], 0.0f, 1.0f) / float(n * n);
+          sum.predicted[c] += std::clamp(part.predicted[c], 0.0f, 1.0f) / float(n * n);
+        }
+      }
+    }
+    return sum;
+  }
+
+  Image picture(std::array<float, 3> Shade::*part) const {
+    Image image(width_, height_);
+    for (std::size_t i = 0; i < count(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        image.rgba[4 * i + c] = linear_to_srgb8((shade_[i].*part)[c]);
+      }
+      image.rgba[4 * i + 3] = 255;
+    }
+    return image;
+  }
+
+  const Studio& studio_;
+  const Camera& camera_;
+  int width_;
+  int height_;
+  RunContext& context_;
+  double extent_ = 1;
+  Vec3 ground_normal_, lamp_;
+  double ground_height_ = 0;
+  std::vector<Sample> centre_;
+  std::vector<Light> light_;
+  std::vector<Light> ground_;
+  int coarse_width_ = 0;
+  int coarse_height_ = 0;
+  std::vector<Shade> shade_;
+};
+
+}  // namespace
+
+ViewPair render_view(const Studio& studio, const Camera& camera, int width_px, int height_px,
+                     RunContext& context) {
+  return Renderer(studio, camera, width_px, height_px, context).run();
+}
+
+}  // namespace hydrodip

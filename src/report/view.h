@@ -1,0 +1,37 @@
+// Where to look from, and the camera that stands there.
+#pragma once
+
+#include <array>
+
+#include "film/film.h"
+#include "object/object.h"
+#include "object/surface.h"
+
+namespace hydrodip {
+
+// Two unit directions from the object towards the eye: the first sees most of the area where film
+// lies on the object, the second most of what the first does not see. Without any such film the
+// whole surface counts. Looking from below (-z, the side that meets the film) is the front.
+std::array<Vec3, 2> telling_directions(const Object& object, const Surface& surface,
+                                       const DippedFilm& film);
+
+// A perspective camera. Screen coordinates: x right and y up, both in [-1, 1].
+struct Camera {
+  Vec3 eye = Vec3::Zero();
+  Vec3 right = Vec3::UnitX(), up = Vec3::UnitY();
+  Vec3 back = Vec3::UnitZ();               // from the object towards the eye
+  double half_width = 1, half_height = 1;  // of the screen, at distance 1
+  double shift_y = 0;                      // screen centre above the axis, at distance 1
+
+  // Direction (not unit length) of the ray through a screen point.
+  Vec3 ray(double x, double y) const;
+};
+
+// The object's extent across the picture over its extent up, as seen along `direction`.
+double projected_aspect(const Object& object, const Vec3& direction);
+
+// The camera that sees the whole object from `direction`, filling `fill` of a picture of the given
+// aspect (width over height) in the tighter extent. +y is up wherever it can be.
+Camera frame_object(const Object& object, const Vec3& direction, double aspect, double fill);
+
+}  // namespace hydrodip
