@@ -10,24 +10,26 @@ namespace hydrodip {
 
 struct MeshHealth {
   long vertices = 0;
-  long triangles = 0;              // after repair
-  long degenerate_removed = 0;     // zero area or repeated vertex
-  long duplicates_removed = 0;     // same three positions as an earlier face
-  long flipped = 0;                // faces turned to agree with their neighbours / to face outward
-  long boundary_edges = 0;         // edges with one face: holes
-  long holes = 0;                  // closed loops of boundary edges
-  long nonmanifold_edges = 0;      // edges with more than two faces
-  long shells = 0;                 // connected components (by shared positions)
+  long triangles = 0;           // after repair
+  long degenerate_removed = 0;  // zero area or repeated vertex
+  long duplicates_removed = 0;  // same three positions as an earlier face
+  long flipped = 0;             // faces turned to agree with their neighbours / to face outward
+  long boundary_edges = 0;      // edges with one face: holes
+  long holes = 0;               // closed loops of boundary edges
+  long nonmanifold_edges = 0;   // edges with more than two faces
+  long one_sided_edges = 0;     // where a Moebius-like surface cannot be oriented
+  long shells = 0;              // connected components (by shared positions)
   bool closed() const { return boundary_edges == 0 && nonmanifold_edges == 0; }
-  double volume_mm3 = 0;           // signed volume after orientation
+  double volume_mm3 = 0;  // signed volume after orientation
   double area_mm2 = 0;
 
   // One sentence per finding, empty for a clean mesh.
   std::vector<std::string> findings() const;
 };
 
-// Welds vertices at equal positions for connectivity only (corner attributes stay), removes
-// degenerate and duplicate faces, makes orientation consistent across manifold edges within each
+// Welds vertices at equal positions (attributes live at the corners, so seams stay sharp) and drops
+// unused ones, removes degenerate and duplicate faces (the same three positions in any order: the
+// first one stays), makes orientation consistent across manifold edges within each
 // shell, and turns each closed shell outward (a shell nested in another one keeps the sense that
 // makes it a cavity). Open shells keep the majority orientation of the file. Deterministic,
 // O(n log n).

@@ -1,0 +1,544 @@
+#include "object/health.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <tuple>
+#include <utility>
+
+namespace hydrodip {
+
+namespace {
+
+// ---- welding ------------------------------------------------------------------------------------
+
+std::uint64_t hash_position(const Vec3& p) {
+  std::uint64_t hash = 0x9e3779b97f4a7c15u;
+  for (int i = 0; i < 3; ++i) {
+    const double coordinate = p[i] + 0.0;  // -0 equals 0
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &coordinate, sizeof bits);
+    hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
+    hash ^= hash >> 32;
+  }
+  return hash;
+}
+
+// Merges equal positions and drops those that no triangle uses; attributes live at the triangles'
+// corners, so nothing else has to follow. New order: first use.
+void weld(Object& object) {
+  std::size_t slots = 16;
+  while (slots < 2 * object.positions.size()) slots *= 2;
+  std::vector<std::int32_t> table(slots, -1);
+  std::vector<std::int32_t> renamed(object.positions.size(), -1);
+  std::vector<Vec3> kept;
+  auto rename = [&](std::int32_t old) {
+    std::int32_t& name = renamed[std::size_t(old)];
+    if (name >= 0) return name;
+    const Vec3& p = object.positions[std::size_t(old)];
+    std::size_t slot = hash_position(p) & (slots - 1);
+    while (table[slot] >= 0 && kept[std::size_t(table[slot])] != p) slot = (slot + 1) & (slots - 1);
+    if (table[slot] < 0) {
+      table[slot] = std::int32_t(kept.size());
+      kept.push_back(p);
+    }
+    return name = table[slot];
+  };
+  for (Triangle& triangle : object.triangles) {
+    for (std::int32_t& vertex : triangle) vertex = rename(vertex);
+  }
+  object.positions = std::move(kept);
+}
+
+// ---- faces to drop ------------------------------------------------------------------------------
+
+template <typename T>
+void keep_only(std::vector<T>& values, const std::vector<char>& drop) {
+  if (values.empty()) return;
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!drop[i]) values[out++] = values[i];
+  }
+  values.resize(out);
+}
+
+long drop_faces(Object& object, const std::vector<char>& drop) {
+  const long count = long(std::count(drop.begin(), drop.end(), char(1)));
+  if (count == 0) return 0;
+  keep_only(object.triangles, drop);
+  keep_only(object.material_of, drop);
+  keep_only(object.uvs, drop);
+  keep_only(object.colors, drop);
+  return count;
+}
+
+long drop_collapsed(Object& object) {
+  std::vector<char> drop(object.triangles.size(), 0);
+  for (std::size_t i = 0; i < drop.size(); ++i) {
+    const Triangle& t = object.triangles[i];
+    drop[i] = t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+  }
+  return drop_faces(object, drop);
+}
+
+// Corners on one line: such a sliver still joins its neighbours, so it goes last.
+long drop_slivers(Object& object) {
+  constexpr double kRelativeArea = 1e-14;
+  std::vector<char> drop(object.triangles.size(), 0);
+  for (std::size_t i = 0; i < drop.size(); ++i) {
+    const Triangle& t = object.triangles[i];
+    const Vec3& a = object.positions[std::size_t(t[0])];
+    const Vec3 ab = object.positions[std::size_t(t[1])] - a;
+    const Vec3 ac = object.positions[std::size_t(t[2])] - a;
+    const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+    drop[i] = !(ab.cross(ac).norm() > kRelativeArea * longest2);
+  }
+  return drop_faces(object, drop);
+}
+
+long drop_duplicates(Object& object) {
+  struct Key {
+    Triangle corners;
+    std::int32_t face;
+  };
+  std::vector<Key> keys(object.triangles.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    keys[i] = {object.triangles[i], std::int32_t(i)};
+    std::sort(keys[i].corners.begin(), keys[i].corners.end());
+  }
+  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+    return std::tie(a.corners, a.face) < std::tie(b.corners, b.face);
+  });
+  std::vector<char> drop(keys.size(), 0);
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    if (keys[i].corners == keys[i - 1].corners) drop[std::size_t(keys[i].face)] = 1;
+  }
+  return drop_faces(object, drop);
+}
+
+// ---- edges --------------------------------------------------------------------------------------
+
+// One side of a triangle. Sorting brings those on the same edge together.
+struct Side {
+  std::uint64_t edge;   // smaller vertex in the high half, larger in the low half
+  std::uint32_t place;  // 3 * face + corner
+  bool operator<(const Side& other) const {
+    return edge != other.edge ? edge < other.edge : place < other.place;
+  }
+  std::int32_t low_vertex() const { return std::int32_t(edge >> 32); }
+  std::int32_t high_vertex() const { return std::int32_t(edge & 0xffffffffu); }
+};
+
+std::int32_t face_of(const Side& side) { return std::int32_t(side.place / 3); }
+
+// Whether the triangle runs from the edge's smaller to its larger vertex.
+bool runs_up(const Object& object, const Side& side) {
+  return object.triangles[side.place / 3][side.place % 3] == side.low_vertex();
+}
+
+std::vector<Side> sorted_sides(const Object& object) {
+  std::vector<Side> sides(3 * object.triangles.size());
+  for (std::size_t place = 0; place < sides.size(); ++place) {
+    const Triangle& t = object.triangles[place / 3];
+    const auto a = std::uint64_t(t[place % 3]), b = std::uint64_t(t[(place + 1) % 3]);
+    sides[place] = {std::min(a, b) << 32 | std::max(a, b), std::uint32_t(place)};
+  }
+  std::sort(sides.begin(), sides.end());
+  return sides;
+}
+
+// Calls visit(begin, end) for the sides of every edge, in edge order.
+template <typename Visit>
+void for_each_edge(const std::vector<Side>& sides, Visit visit) {
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && sides[end].edge == sides[begin].edge) ++end;
+    visit(begin, end);
+  }
+}
+
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) {
+    for (std::size_t i = 0; i < count; ++i) parent_[i] = std::uint32_t(i);
+  }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::int32_t a, std::int32_t b) {
+    const std::uint32_t root_a = find(std::uint32_t(a)), root_b = find(std::uint32_t(b));
+    if (root_a != root_b) parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+  }
+  bool is_root(std::size_t i) const { return parent_[i] == i; }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+void count_edges(const Object& object, const std::vector<Side>& sides, MeshHealth& health) {
+  DisjointSets rims(object.positions.size());
+  std::vector<std::int32_t> rim_vertices;
+  for_each_edge(sides, [&](std::size_t begin, std::size_t end) {
+    if (end - begin > 2) ++health.nonmanifold_edges;
+    if (end - begin != 1) return;
+    ++health.boundary_edges;
+    rim_vertices.push_back(sides[begin].low_vertex());
+    rim_vertices.push_back(sides[begin].high_vertex());
+    rims.join(sides[begin].low_vertex(), sides[begin].high_vertex());
+  });
+  std::sort(rim_vertices.begin(), rim_vertices.end());
+  rim_vertices.erase(std::unique(rim_vertices.begin(), rim_vertices.end()), rim_vertices.end());
+  for (const std::int32_t vertex : rim_vertices) health.holes += rims.is_root(std::size_t(vertex));
+}
+
+long count_shells(const Object& object) {
+  DisjointSets sets(object.positions.size());
+  for (const Triangle& t : object.triangles) {
+    sets.join(t[0], t[1]);
+    sets.join(t[1], t[2]);
+  }
+  long shells = 0;  // welding left no unused position
+  for (std::size_t i = 0; i < object.positions.size(); ++i) {
+    shells += sets.is_root(i);
+  }
+  return shells;
+}
+
+// ---- orientation --------------------------------------------------------------------------------
+
+// A patch: faces connected across edges that exactly two faces share.
+struct Patches {
+  std::vector<std::int32_t> patch_of;  // per face
+  std::vector<char> turn;              // per face: whether to flip it
+  std::vector<char> closed;            // per patch
+  long torn_edges = 0;                 // where no choice agrees: a one-sided surface
+  std::size_t count() const { return closed.size(); }
+};
+
+// For each side its partner across a two-face edge, or -1.
+std::vector<std::int32_t> partners(const std::vector<Side>& sides) {
+  std::vector<std::int32_t> partner(sides.size(), -1);
+  for_each_edge(sides, [&](std::size_t begin, std::size_t end) {
+    if (end - begin != 2) return;
+    partner[sides[begin].place] = std::int32_t(sides[begin + 1].place);
+    partner[sides[begin + 1].place] = std::int32_t(sides[begin].place);
+  });
+  return partner;
+}
+
+bool same_direction(const Object& object, std::int32_t place_a, std::int32_t place_b) {
+  const auto start = [&](std::int32_t place) {
+    return object.triangles[std::size_t(place / 3)][std::size_t(place % 3)];
+  };
+  return start(place_a) == start(place_b);
+}
+
+// Floods each patch from its first face; a neighbour that runs along the shared edge in the same
+// direction faces the other way.
+Patches agree_within_patches(const Object& object, const std::vector<Side>& sides) {
+  const std::vector<std::int32_t> partner = partners(sides);
+  Patches patches;
+  patches.patch_of.assign(object.triangles.size(), -1);
+  patches.turn.assign(object.triangles.size(), 0);
+  std::vector<std::int32_t> queue;
+  for (std::size_t seed = 0; seed < object.triangles.size(); ++seed) {
+    if (patches.patch_of[seed] >= 0) continue;
+    const auto patch = std::int32_t(patches.count());
+    patches.closed.push_back(1);
+    patches.patch_of[seed] = patch;
+    queue.assign(1, std::int32_t(seed));
+    while (!queue.empty()) {
+      const std::int32_t face = queue.back();
+      queue.pop_back();
+      for (std::int32_t place = 3 * face; place < 3 * face + 3; ++place) {
+        const std::int32_t across = partner[std::size_t(place)];
+        if (across < 0) continue;
+        const char turn =
+            char(patches.turn[std::size_t(face)] ^ same_direction(object, place, across));
+        const auto other = std::size_t(across / 3);
+        if (patches.patch_of[other] < 0) {
+          patches.patch_of[other] = patch;
+          patches.turn[other] = turn;
+          queue.push_back(std::int32_t(other));
+        } else if (patches.turn[other] != turn && std::size_t(face) < other) {
+          ++patches.torn_edges;
+        }
+      }
+    }
+  }
+  return patches;
+}
+
+// A patch is closed if around every edge its own faces cancel: as many run up as run down.
+void find_closed(const Object& object, const std::vector<Side>& sides, Patches& patches) {
+  std::vector<std::pair<std::int32_t, int>> balance;
+  for_each_edge(sides, [&](std::size_t begin, std::size_t end) {
+    balance.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto face = std::size_t(face_of(sides[i]));
+      const bool up = runs_up(object, sides[i]) != bool(patches.turn[face]);
+      balance.emplace_back(patches.patch_of[face], up ? 1 : -1);
+    }
+    std::sort(balance.begin(), balance.end());
+    for (std::size_t i = 0; i < balance.size();) {
+      const std::int32_t patch = balance[i].first;
+      int sum = 0;
+      for (; i < balance.size() && balance[i].first == patch; ++i) sum += balance[i].second;
+      if (sum != 0) patches.closed[std::size_t(patch)] = 0;
+    }
+  });
+}
+
+// Six times the signed volume between the triangle and `origin`.
+double volume6(const Object& object, std::size_t face, const Vec3& origin) {
+  const Triangle& t = object.triangles[face];
+  return (object.positions[std::size_t(t[0])] - origin)
+      .cross(object.positions[std::size_t(t[1])] - origin)
+      .dot(object.positions[std::size_t(t[2])] - origin);
+}
+
+// What orientation needs to know of a patch.
+struct PatchShape {
+  double volume6 = 0;
+  Box3 box;
+  std::int32_t first_face = -1;
+  long faces = 0;
+  long turned = 0;
+};
+
+std::vector<PatchShape> measure(const Object& object, const Patches& patches) {
+  std::vector<PatchShape> shapes(patches.count());
+  for (std::size_t f = 0; f < object.triangles.size(); ++f) {
+    PatchShape& shape = shapes[std::size_t(patches.patch_of[f])];
+    if (shape.first_face < 0) shape.first_face = std::int32_t(f);
+    const Vec3& origin =
+        object.positions[std::size_t(object.triangles[std::size_t(shape.first_face)][0])];
+    shape.volume6 += (patches.turn[f] ? -1 : 1) * volume6(object, f, origin);
+    for (const std::int32_t v : object.triangles[f])
+      shape.box.add(object.positions[std::size_t(v)]);
+    ++shape.faces;
+    shape.turned += patches.turn[f];
+  }
+  return shapes;
+}
+
+// Counts how often a vertical ray from a point crosses a closed patch. Triangles are filed by the
+// columns of a grid over x and y, so that many small shells inside a large one stay cheap.
+class CrossingCounter {
+ public:
+  CrossingCounter(const Object& object, const std::vector<std::int32_t>& faces, const Box3& box)
+      : object_(object), min_(box.min) {
+    cells_ = std::max(1, int(std::sqrt(double(faces.size()) / 2)));
+    const Vec3 size = box.size();
+    scale_ = Vec2(size.x() > 0 ? cells_ / size.x() : 0, size.y() > 0 ? cells_ / size.y() : 0);
+    for (const std::int32_t face : faces) file(face);
+    std::sort(entries_.begin(), entries_.end());
+  }
+
+  bool inside(const Vec3& p) const {
+    const std::int64_t cell = std::int64_t(column(p.x(), 0)) * cells_ + column(p.y(), 1);
+    auto it = std::lower_bound(entries_.begin(), entries_.end(), std::make_pair(cell, -1));
+    bool odd = false;
+    for (; it != entries_.end() && it->first == cell; ++it) odd ^= crosses_above(it->second, p);
+    return odd;
+  }
+
+ private:
+  int column(double coordinate, int axis) const {
+    return int(std::clamp((coordinate - min_[axis]) * scale_[axis], 0.0, double(cells_ - 1)));
+  }
+
+  void file(std::int32_t face) {
+    Box3 box;
+    for (const std::int32_t v : object_.triangles[std::size_t(face)]) {
+      box.add(object_.positions[std::size_t(v)]);
+    }
+    for (int i = column(box.min.x(), 0); i <= column(box.max.x(), 0); ++i) {
+      for (int j = column(box.min.y(), 1); j <= column(box.max.y(), 1); ++j) {
+        entries_.emplace_back(std::int64_t(i) * cells_ + j, face);
+      }
+    }
+  }
+
+  // The crossing rule of an edge is half-open in y and evaluated from its lower vertex index, so
+  // two triangles that share an edge never both claim or both miss a point on it.
+  bool crosses_above(std::int32_t face, const Vec3& p) const {
+    const Triangle& t = object_.triangles[std::size_t(face)];
+    bool within = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::int32_t ia = t[i], ib = t[(i + 1) % 3];
+      if (ib < ia) std::swap(ia, ib);
+      const Vec3& a = object_.positions[std::size_t(ia)];
+      const Vec3& b = object_.positions[std::size_t(ib)];
+      if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+      const double x = a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+      within ^= p.x() < x;
+    }
+    if (!within) return false;
+    const Vec3& a = object_.positions[std::size_t(t[0])];
+    const Vec3 normal =
+        (object_.positions[std::size_t(t[1])] - a).cross(object_.positions[std::size_t(t[2])] - a);
+    return normal.z() != 0 && normal.dot(a - p) / normal.z() > 0;
+  }
+
+  const Object& object_;
+  Vec3 min_;
+  int cells_ = 1;
+  Vec2 scale_;
+  std::vector<std::pair<std::int64_t, std::int32_t>> entries_;
+};
+
+bool box_inside(const Box3& inner, const Box3& outer) {
+  return (inner.min.array() >= outer.min.array()).all() &&
+         (inner.max.array() <= outer.max.array()).all();
+}
+
+// Per patch: how many other closed patches surround it.
+std::vector<int> nesting_depth(const Object& object, const Patches& patches,
+                               const std::vector<PatchShape>& shapes) {
+  std::vector<int> depth(shapes.size(), 0);
+  std::vector<std::int32_t> by_volume;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (patches.closed[i]) by_volume.push_back(std::int32_t(i));
+  }
+  if (by_volume.size() < 2) return depth;
+  std::vector<std::vector<std::int32_t>> members(shapes.size());
+  for (std::size_t f = 0; f < patches.patch_of.size(); ++f) {
+    members[std::size_t(patches.patch_of[f])].push_back(std::int32_t(f));
+  }
+  // Largest first: only the few large ones can contain many others.
+  std::stable_sort(by_volume.begin(), by_volume.end(), [&](std::int32_t a, std::int32_t b) {
+    return std::abs(shapes[std::size_t(a)].volume6) > std::abs(shapes[std::size_t(b)].volume6);
+  });
+  for (std::size_t outer = 0; outer < by_volume.size(); ++outer) {
+    const auto container = std::size_t(by_volume[outer]);
+    std::vector<std::size_t> candidates;
+    for (std::size_t inner = outer + 1; inner < by_volume.size(); ++inner) {
+      const auto candidate = std::size_t(by_volume[inner]);
+      if (box_inside(shapes[candidate].box, shapes[container].box)) candidates.push_back(candidate);
+    }
+    if (candidates.empty()) continue;
+    const CrossingCounter counter(object, members[container], shapes[container].box);
+    for (const std::size_t candidate : candidates) {
+      const Triangle& t = object.triangles[std::size_t(shapes[candidate].first_face)];
+      const Vec3 probe =
+          (object.positions[std::size_t(t[0])] + object.positions[std::size_t(t[1])] +
+           object.positions[std::size_t(t[2])]) /
+          3;
+      depth[candidate] += counter.inside(probe);
+    }
+  }
+  return depth;
+}
+
+// Whether each patch, made consistent by `turn`, must be turned over as a whole.
+std::vector<char> patches_to_invert(const Object& object, const Patches& patches) {
+  const std::vector<PatchShape> shapes = measure(object, patches);
+  const std::vector<int> depth = nesting_depth(object, patches, shapes);
+  std::vector<char> invert(shapes.size(), 0);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (patches.closed[i] && shapes[i].volume6 != 0) {
+      const bool cavity = depth[i] % 2 == 1;
+      invert[i] = (shapes[i].volume6 < 0) != cavity;
+    } else {
+      invert[i] = 2 * shapes[i].turned > shapes[i].faces;
+    }
+  }
+  return invert;
+}
+
+void flip(Object& object, std::size_t face) {
+  std::swap(object.triangles[face][1], object.triangles[face][2]);
+  if (!object.uvs.empty()) std::swap(object.uvs[face][1], object.uvs[face][2]);
+  if (!object.colors.empty()) std::swap(object.colors[face][1], object.colors[face][2]);
+}
+
+void orient(Object& object, const std::vector<Side>& sides, MeshHealth& health) {
+  Patches patches = agree_within_patches(object, sides);
+  find_closed(object, sides, patches);
+  const std::vector<char> invert = patches_to_invert(object, patches);
+  for (std::size_t f = 0; f < object.triangles.size(); ++f) {
+    if (bool(patches.turn[f]) == bool(invert[std::size_t(patches.patch_of[f])])) continue;
+    flip(object, f);
+    ++health.flipped;
+  }
+  health.one_sided_edges = patches.torn_edges;
+}
+
+void measure_mesh(const Object& object, MeshHealth& health) {
+  const Vec3 origin = object.bounds().center();
+  for (std::size_t f = 0; f < object.triangles.size(); ++f) {
+    const Triangle& t = object.triangles[f];
+    const Vec3& a = object.positions[std::size_t(t[0])];
+    health.area_mm2 += 0.5 * (object.positions[std::size_t(t[1])] - a)
+                                 .cross(object.positions[std::size_t(t[2])] - a)
+                                 .norm();
+    health.volume_mm3 += volume6(object, f, origin) / 6;
+  }
+  health.vertices = long(object.positions.size());
+  health.triangles = long(object.triangles.size());
+}
+
+std::string counted(long count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+}  // namespace
+
+std::vector<std::string> MeshHealth::findings() const {
+  std::vector<std::string> out;
+  if (degenerate_removed > 0) {
+    out.push_back(fmt::format("Removed {} without area.",
+                              counted(degenerate_removed, "triangle", "triangles")));
+  }
+  if (duplicates_removed > 0) {
+    out.push_back(fmt::format("Removed {} of another one.",
+                              counted(duplicates_removed, "duplicate", "duplicates")));
+  }
+  if (flipped > 0) {
+    out.push_back(fmt::format("Turned over {} that faced the wrong way.",
+                              counted(flipped, "triangle", "triangles")));
+  }
+  if (boundary_edges > 0) {
+    out.push_back(fmt::format("The surface has {} ({}); it is dipped as it is, open.",
+                              counted(holes, "hole", "holes"),
+                              counted(boundary_edges, "open edge", "open edges")));
+  }
+  if (nonmanifold_edges > 0) {
+    out.push_back(
+        fmt::format("At {} more than two triangles meet; inner walls are ignored where "
+                    "the film cannot reach them.",
+                    counted(nonmanifold_edges, "edge", "edges")));
+  }
+  if (one_sided_edges > 0) {
+    out.push_back(
+        fmt::format("The surface is one-sided like a Moebius strip at {}, so its outside "
+                    "is undefined there.",
+                    counted(one_sided_edges, "edge", "edges")));
+  }
+  if (shells > 1) {
+    out.push_back(fmt::format("The model consists of {} separate shells.", shells));
+  }
+  return out;
+}
+
+MeshHealth check_and_repair(Object& object) {
+  MeshHealth health;
+  weld(object);
+  health.degenerate_removed = drop_collapsed(object);
+  health.duplicates_removed = drop_duplicates(object);
+  {
+    const std::vector<Side> sides = sorted_sides(object);
+    count_edges(object, sides, health);
+    orient(object, sides, health);
+  }
+  health.degenerate_removed += drop_slivers(object);
+  weld(object);  // positions that only dropped faces used
+  health.shells = count_shells(object);
+  measure_mesh(object, health);
+  return health;
+}
+
+}  // namespace hydrodip
