@@ -27,7 +27,7 @@ constexpr int kLampRays = 2;
 constexpr double kLampRadius = 0.22;  // at distance 1: how soft the shadows are
 
 constexpr int kGroundScale = 4;  // ground shadows are soft: computed on a coarser raster
-constexpr int kGroundRays = 32;
+constexpr int kGroundRays = 10;
 
 struct Light {
   double sky = 1;   // share of the sky that is not hidden
@@ -37,6 +37,7 @@ struct Light {
 struct Sample {
   int triangle = -1;  // -1: the backdrop
   double u = 0, v = 0, depth = 0;
+  Vec3 flat = Vec3::Zero();  // unit normal of the triangle, turned to the eye
 };
 
 struct Shade {
@@ -64,12 +65,28 @@ std::array<Vec3, 2> frame_around(const Vec3& n) {
   return {a, n.cross(a)};
 }
 
-Vec3 cosine_direction(const Vec3& normal, double u1, double u2) {
-  const auto [a, b] = frame_around(normal);
-  const double radius = std::sqrt(u1);
-  const double angle = 2 * std::numbers::pi * u2;
-  return radius * std::cos(angle) * a + radius * std::sin(angle) * b +
-         std::sqrt(std::max(0.0, 1 - u1)) * normal;
+// Directions over the hemisphere around z, denser where they count more, and in a disc's cone.
+std::vector<Vec3> hemisphere_rays(int count) {
+  std::vector<Vec3> rays;
+  for (int i = 0; i < count; ++i) {
+    const double u = (i + 0.5) / count;
+    const double angle = 2 * std::numbers::pi * radical_inverse(unsigned(i));
+    rays.emplace_back(std::sqrt(u) * std::cos(angle), std::sqrt(u) * std::sin(angle),
+                      std::sqrt(1 - u));
+  }
+  return rays;
+}
+
+std::vector<Vec3> cone_rays(int count, double radius) {
+  std::vector<Vec3> rays = hemisphere_rays(count);
+  for (Vec3& d : rays) d = Vec3(radius * d.x(), radius * d.y(), 1).normalized();
+  return rays;
+}
+
+std::vector<Vec3> turned_to(const Vec3& axis, std::vector<Vec3> rays) {
+  const auto [a, b] = frame_around(axis);
+  for (Vec3& d : rays) d = (d.x() * a + d.y() * b + d.z() * axis).eval();
+  return rays;
 }
 
 class Renderer {
@@ -80,6 +97,10 @@ class Renderer {
     extent_ = box.empty() ? 1 : std::max(1e-9, box.size().norm());
     place_ground();
     lamp_ = (-0.5 * camera.right + 0.8 * camera.up + 0.75 * camera.back).normalized();
+    sky_rays_ = hemisphere_rays(kPhases * kSkyRays);
+    lamp_rays_ = turned_to(lamp_, cone_rays(kPhases * kLampRays, kLampRadius));
+    ground_sky_rays_ = turned_to(ground_normal_, hemisphere_rays(kPhases * kGroundRays));
+    ground_lamp_rays_ = turned_to(lamp_, cone_rays(kPhases * kGroundRays, kLampRadius));
   }
 
   ViewPair run() {
@@ -120,39 +141,36 @@ class Renderer {
   }
 
   Sample trace(double x_px, double y_px) const {
-    const auto hit = studio_.surface.first_hit(camera_.eye, ray(x_px, y_px), 0, 1e6 * extent_);
+    const Vec3 along = ray(x_px, y_px);
+    const auto hit = studio_.surface.first_hit(camera_.eye, along, 0, 1e6 * extent_);
     if (!hit) return {};
-    return {hit->triangle, hit->u, hit->v, hit->t};
+    // Turned to the eye: inside and outside of an open surface look alike.
+    const Vec3 n = face_normal(studio_.object, hit->triangle);
+    return {hit->triangle, hit->u, hit->v, hit->t, n.dot(along) > 0 ? Vec3(-n) : n};
   }
 
   Vec3 position(const Sample& s) const {
     return position_at(studio_.object, {s.triangle, s.u, s.v});
   }
 
-  // Turned to the eye: inside and outside of an open surface look alike.
-  Vec3 flat_normal(const Sample& s, const Vec3& seen_along) const {
-    const Vec3 n = face_normal(studio_.object, s.triangle);
-    return n.dot(seen_along) > 0 ? Vec3(-n) : n;
-  }
-
-  Vec3 smooth_normal(const Sample& s, const Vec3& flat) const {
+  Vec3 smooth_normal(const Sample& s) const {
     const CornerNormals& corner = studio_.normals[std::size_t(s.triangle)];
     const Vec3 n = (1 - s.u - s.v) * corner[0] + s.u * corner[1] + s.v * corner[2];
     const double length = n.norm();
-    if (length < 1e-6) return flat;
-    return n.dot(flat) < 0 ? Vec3(-n / length) : Vec3(n / length);
+    if (length < 1e-6) return s.flat;
+    return n.dot(s.flat) < 0 ? Vec3(-n / length) : Vec3(n / length);
   }
 
   // A point on the curved surface that the triangles stand for: shadow rays from there do not
   // show where the triangles' edges are.
-  Vec3 rounded_position(const Sample& s, const Vec3& p, const Vec3& flat) const {
+  Vec3 rounded_position(const Sample& s) const {
+    const Vec3 p = position(s);
     const CornerNormals& normal = studio_.normals[std::size_t(s.triangle)];
     const Triangle& triangle = studio_.object.triangles[std::size_t(s.triangle)];
     const std::array<double, 3> weight = {1 - s.u - s.v, s.u, s.v};
-    const double side = face_normal(studio_.object, s.triangle).dot(flat) < 0 ? -1 : 1;
     Vec3 lifted = p;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 n = side * normal[k];
+      const Vec3 n = normal[k].dot(s.flat) < 0 ? Vec3(-normal[k]) : normal[k];
       const Vec3& corner = studio_.object.positions[std::size_t(triangle[k])];
       lifted += weight[k] * std::max(0.0, (corner - p).dot(n)) * n;
     }
@@ -163,13 +181,6 @@ class Renderer {
     return studio_.surface.first_hit(origin, direction, 0, 2 * extent_).has_value();
   }
 
-  Vec3 lamp_direction(double u1, double u2) const {
-    const auto [a, b] = frame_around(lamp_);
-    const double radius = kLampRadius * std::sqrt(u1);
-    const double angle = 2 * std::numbers::pi * u2;
-    return (lamp_ + radius * (std::cos(angle) * a + std::sin(angle) * b)).normalized();
-  }
-
   void trace_centres() {
     centre_.resize(count());
     for_rows([&](int y) {
@@ -177,20 +188,19 @@ class Renderer {
     });
   }
 
-  Light cast_from(const Sample& s, const Vec3& seen_along, int phase) const {
-    const Vec3 flat = flat_normal(s, seen_along);
-    const Vec3 origin = rounded_position(s, position(s), flat) + 2e-4 * extent_ * flat;
-    const Vec3 smooth = smooth_normal(s, flat);
+  Light cast_from(const Sample& s, int phase) const {
+    const Vec3 origin = rounded_position(s) + 2e-4 * extent_ * s.flat;
+    const auto frame = frame_around(s.flat);
     Light light{0, 0};
     for (int k = 0; k < kSkyRays; ++k) {
-      const unsigned i = unsigned(phase + kPhases * k);
-      const Vec3 d = cosine_direction(flat, (i + 0.5) / (kPhases * kSkyRays), radical_inverse(i));
-      if (!blocked(origin, d)) light.sky += 1.0 / kSkyRays;
+      const Vec3& d = sky_rays_[std::size_t(phase + kPhases * k)];
+      if (!blocked(origin, d.x() * frame[0] + d.y() * frame[1] + d.z() * s.flat)) {
+        light.sky += 1.0 / kSkyRays;
+      }
     }
-    if (smooth.dot(lamp_) < -kLampRadius) return light;  // turned away: no shadow to know
+    if (smooth_normal(s).dot(lamp_) < -kLampRadius) return light;  // turned away: no shadow to know
     for (int k = 0; k < kLampRays; ++k) {
-      const unsigned i = unsigned(phase + kPhases * k);
-      const Vec3 d = lamp_direction((i + 0.5) / (kPhases * kLampRays), radical_inverse(i));
+      const Vec3& d = lamp_rays_[std::size_t(phase + kPhases * k)];
       if (!blocked(origin, d)) light.lamp += 1.0 / kLampRays;
     }
     return light;
@@ -202,7 +212,7 @@ class Renderer {
       for (int x = 0; x < width_; ++x) {
         const Sample& s = centre_[at(x, y)];
         if (s.triangle < 0) continue;
-        light_[at(x, y)] = cast_from(s, ray(x + 0.5, y + 0.5), phase_of(x, y));
+        light_[at(x, y)] = cast_from(s, phase_of(x, y));
       }
     });
   }
@@ -220,7 +230,6 @@ class Renderer {
 
   Light gathered(const std::vector<Light>& raw, int x, int y) const {
     const Sample& self = centre_[at(x, y)];
-    const Vec3 normal = face_normal(studio_.object, self.triangle);
     const double pixel = 2 * camera_.half_width * self.depth / width_;
     Light sum{0, 0};
     double total = 0;
@@ -229,11 +238,8 @@ class Renderer {
         if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
         const Sample& other = centre_[at(x + dx, y + dy)];
         if (other.triangle < 0 || std::abs(other.depth - self.depth) > 12 * pixel) continue;
-        double weight = (std::abs(dx) == 2 ? 0.5 : 1) * (std::abs(dy) == 2 ? 0.5 : 1);
-        if (other.triangle != self.triangle) {
-          const double turn = std::abs(normal.dot(face_normal(studio_.object, other.triangle)));
-          if (turn < 0.5) continue;
-        }
+        const double weight = (std::abs(dx) == 2 ? 0.5 : 1) * (std::abs(dy) == 2 ? 0.5 : 1);
+        if (self.flat.dot(other.flat) < 0.5) continue;  // round a corner
         const Light& light = raw[at(x + dx, y + dy)];
         sum.sky += weight * light.sky;
         sum.lamp += weight * light.lamp;
@@ -247,19 +253,29 @@ class Renderer {
   void shadow_ground() {
     coarse_width_ = width_ / kGroundScale + 2;
     coarse_height_ = height_ / kGroundScale + 2;
-    ground_.assign(std::size_t(coarse_width_) * std::size_t(coarse_height_), Light{});
-    parallel_for(std::size_t(coarse_height_), 2, [&](std::size_t begin, std::size_t end) {
+    const auto cells = std::size_t(coarse_width_) * std::size_t(coarse_height_);
+    std::vector<Light> raw(cells);
+    for_coarse([&](int x, int y) {
+      raw[coarse_at(x, y)] = ground_light(x * kGroundScale, y * kGroundScale, phase_of(x, y));
+    });
+    ground_.resize(cells);
+    for_coarse([&](int x, int y) { ground_[coarse_at(x, y)] = gathered_ground(raw, x, y); });
+  }
+
+  std::size_t coarse_at(int x, int y) const {
+    return std::size_t(y) * std::size_t(coarse_width_) + std::size_t(x);
+  }
+
+  void for_coarse(const std::function<void(int x, int y)>& cell) const {
+    parallel_for(std::size_t(coarse_height_), 4, [&](std::size_t begin, std::size_t end) {
       context_.check_cancelled();
       for (std::size_t y = begin; y < end; ++y) {
-        for (int x = 0; x < coarse_width_; ++x) {
-          ground_[y * std::size_t(coarse_width_) + std::size_t(x)] =
-              ground_light(x * kGroundScale, double(y) * kGroundScale);
-        }
+        for (int x = 0; x < coarse_width_; ++x) cell(x, int(y));
       }
     });
   }
 
-  Light ground_light(double x_px, double y_px) const {
+  Light ground_light(double x_px, double y_px, int phase) const {
     const Vec3 d = ray(x_px, y_px);
     const double fall = d.dot(ground_normal_);
     if (fall > -1e-6) return {};
@@ -267,12 +283,26 @@ class Renderer {
     const Vec3 origin = camera_.eye + t * d + 1e-4 * extent_ * ground_normal_;
     Light light{0, 0};
     for (int k = 0; k < kGroundRays; ++k) {
-      const double u1 = (k + 0.5) / kGroundRays;
-      const double u2 = radical_inverse(unsigned(k));
-      if (!blocked(origin, cosine_direction(ground_normal_, u1, u2))) light.sky += 1;
-      if (!blocked(origin, lamp_direction(u1, u2))) light.lamp += 1;
+      const auto i = std::size_t(phase + kPhases * k);
+      if (!blocked(origin, ground_sky_rays_[i])) light.sky += 1;
+      if (!blocked(origin, ground_lamp_rays_[i])) light.lamp += 1;
     }
     return {light.sky / kGroundRays, light.lamp / kGroundRays};
+  }
+
+  Light gathered_ground(const std::vector<Light>& raw, int x, int y) const {
+    Light sum{0, 0};
+    for (int dy = -2; dy <= 2; ++dy) {
+      for (int dx = -2; dx <= 2; ++dx) {
+        const double weight =
+            (std::abs(dx) == 2 ? 0.125 : 0.25) * (std::abs(dy) == 2 ? 0.125 : 0.25);
+        const Light& light = raw[coarse_at(std::clamp(x + dx, 0, coarse_width_ - 1),
+                                           std::clamp(y + dy, 0, coarse_height_ - 1))];
+        sum.sky += weight * light.sky;
+        sum.lamp += weight * light.lamp;
+      }
+    }
+    return sum;
   }
 
   Light ground_at(double x_px, double y_px) const {
@@ -305,9 +335,8 @@ class Renderer {
     return shade;
   }
 
-  Shade shade(const Sample& s, const Light& light, const Vec3& seen_along) const {
-    const Vec3 flat = flat_normal(s, seen_along);
-    const Vec3 n = smooth_normal(s, flat);
+  Shade shade(const Sample& s, const Light& light) const {
+    const Vec3 n = smooth_normal(s);
     const double sky = kSkyBelow + (kSkyAbove - kSkyBelow) * (0.5 + 0.5 * n.dot(ground_normal_));
     const double level = sky * (0.12 + 0.88 * light.sky) +
                          kLamp * std::max(0.0, n.dot(lamp_)) * light.lamp +
@@ -328,8 +357,7 @@ class Renderer {
     for_rows([&](int y) {
       for (int x = 0; x < width_; ++x) {
         const Sample& s = centre_[at(x, y)];
-        shade_[at(x, y)] = s.triangle < 0 ? backdrop(x + 0.5, y + 0.5)
-                                          : shade(s, light_[at(x, y)], ray(x + 0.5, y + 0.5));
+        shade_[at(x, y)] = s.triangle < 0 ? backdrop(x + 0.5, y + 0.5) : shade(s, light_[at(x, y)]);
       }
     });
   }
@@ -394,8 +422,7 @@ class Renderer {
         const double x_px = x + (i + 0.5) / n;
         const double y_px = y + (j + 0.5) / n;
         const Sample s = trace(x_px, y_px);
-        const Shade part =
-            s.triangle < 0 ? backdrop(x_px, y_px) : shade(s, light_near(s, x, y), ray(x_px, y_px));
+        const Shade part = s.triangle < 0 ? backdrop(x_px, y_px) : shade(s, light_near(s, x, y));
         for (std::size_t c = 0; c < 3; ++c) {
           sum.wanted[c] += std::clamp(part.wanted[c], 0.0f, 1.0f) / float(n * n);
           sum.predicted[c] += std::clamp(part.predicted[c], 0.0f, 1.0f) / float(n * n);
@@ -423,6 +450,8 @@ class Renderer {
   RunContext& context_;
   double extent_ = 1;
   Vec3 ground_normal_, lamp_;
+  std::vector<Vec3> sky_rays_;  // around z
+  std::vector<Vec3> lamp_rays_, ground_sky_rays_, ground_lamp_rays_;
   double ground_height_ = 0;
   std::vector<Sample> centre_;
   std::vector<Light> light_;

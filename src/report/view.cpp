@@ -82,8 +82,10 @@ std::vector<Candidate> candidates() {
   for (const double elevation : {12.0, 30.0, -15.0, 50.0, -40.0, 72.0, -68.0}) {
     for (int turn = 0; turn < 24; ++turn) {
       const double azimuth = turn <= 12 ? 15.0 * turn : 15.0 * turn - 360;
-      const double oddness = std::abs(elevation - 12) / 90 + 0.2 * std::abs(azimuth) / 180;
-      result.push_back({turntable(azimuth, elevation), 1 - 0.15 * oddness});
+      // Views from under the chin or onto the crown are odd; so, a little, is the back.
+      const double tilt = elevation < 0 ? 0.10 - elevation / 150 : std::abs(elevation - 12) / 180;
+      const double oddness = tilt + 0.1 * std::abs(azimuth) / 180;
+      result.push_back({turntable(azimuth, elevation), 1 - oddness});
     }
   }
   return result;
