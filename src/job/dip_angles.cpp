@@ -1,0 +1,36 @@
+#include "job/dip_angles.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hydrodip {
+
+double dip_angle_deg(const Vec3& normal) {
+  return std::acos(std::clamp(-normal.z(), -1.0, 1.0)) * 180 / std::numbers::pi;
+}
+
+DipAngles dip_angles(const Object& posed, double depth_mm) {
+  DipAngles angles;
+  for (const Triangle& triangle : posed.triangles) {
+    const Vec3& a = posed.positions[static_cast<std::size_t>(triangle[0])];
+    const Vec3& b = posed.positions[static_cast<std::size_t>(triangle[1])];
+    const Vec3& c = posed.positions[static_cast<std::size_t>(triangle[2])];
+    if ((a.z() + b.z() + c.z()) / 3 > depth_mm) continue;
+    const Vec3 doubled = (b - a).cross(c - a);
+    const double area = 0.5 * doubled.norm();
+    if (!(area > 0)) continue;
+    const double angle = dip_angle_deg(doubled.normalized());
+    if (angle >= 90) {
+      angles.upward_mm2 += area;
+      continue;
+    }
+    angles.downward_mm2 += area;
+    angles.area_mm2[static_cast<std::size_t>(std::min(angle / 10, DipAngles::kBins - 1.0))] += area;
+    if (angle > kDipAngleLimit_deg) angles.over_limit_mm2 += area;
+  }
+  return angles;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,266 @@
+// The parameter tables, one per options struct. A new parameter is one line here.
+#include <utility>
+
+#include "job/params.h"
+
+namespace hydrodip {
+namespace {
+
+// How a record reaches its member: a stateless function from the config to the member.
+template <class Member>
+using Access = Member& (*)(JobConfig&);
+
+template <class Member>
+const Member& read(Access<Member> access, const JobConfig& config) {
+  return access(const_cast<JobConfig&>(config));  // access only forms a reference
+}
+
+Parameter number(std::string name, std::string unit, double min, double max, Access<double> access,
+                 std::string help, std::string zero = "") {
+  Parameter p{std::move(name),
+              std::move(unit),
+              ParameterType::kNumber,
+              min,
+              max,
+              std::move(zero),
+              {},
+              std::move(help),
+              {},
+              {}};
+  p.get = [access](const JobConfig& c) { return ParameterValue(read(access, c)); };
+  p.set = [access](JobConfig& c, const ParameterValue& v) { access(c) = std::get<double>(v); };
+  return p;
+}
+
+Parameter integer(std::string name, std::string unit, int min, int max, Access<int> access,
+                  std::string help, std::string zero = "") {
+  Parameter p{std::move(name),
+              std::move(unit),
+              ParameterType::kInteger,
+              double(min),
+              double(max),
+              std::move(zero),
+              {},
+              std::move(help),
+              {},
+              {}};
+  p.get = [access](const JobConfig& c) { return ParameterValue(double(read(access, c))); };
+  p.set = [access](JobConfig& c, const ParameterValue& v) { access(c) = int(std::get<double>(v)); };
+  return p;
+}
+
+Parameter text(std::string name, ParameterType type, Access<std::string> access, std::string help) {
+  Parameter p{std::move(name), "", type, 0, 0, "", {}, std::move(help), {}, {}};
+  p.get = [access](const JobConfig& c) { return ParameterValue(read(access, c)); };
+  p.set = [access](JobConfig& c, const ParameterValue& v) { access(c) = std::get<std::string>(v); };
+  return p;
+}
+
+Parameter path(std::string name, Access<std::filesystem::path> access, std::string help) {
+  Parameter p{std::move(name), "", ParameterType::kPath, 0, 0, "", {}, std::move(help), {}, {}};
+  p.get = [access](const JobConfig& c) { return ParameterValue(read(access, c).string()); };
+  p.set = [access](JobConfig& c, const ParameterValue& v) { access(c) = std::get<std::string>(v); };
+  return p;
+}
+
+Parameter vector(std::string name, std::string unit, double min, double max, Access<Vec3> access,
+                 std::string help) {
+  Parameter p{std::move(name),
+              std::move(unit),
+              ParameterType::kVector,
+              min,
+              max,
+              "",
+              {},
+              std::move(help),
+              {},
+              {}};
+  p.get = [access](const JobConfig& c) {
+    const Vec3& v = read(access, c);
+    return ParameterValue(std::array<double, 3>{v.x(), v.y(), v.z()});
+  };
+  p.set = [access](JobConfig& c, const ParameterValue& v) {
+    const auto& xyz = std::get<std::array<double, 3>>(v);
+    access(c) = Vec3(xyz[0], xyz[1], xyz[2]);
+  };
+  return p;
+}
+
+// The choices are the enumerators' names in order.
+template <class Enum>
+Parameter choice(std::string name, std::vector<std::pair<std::string, Enum>> values,
+                 Access<Enum> access, std::string help) {
+  Parameter p{std::move(name), "", ParameterType::kChoice, 0, 0, "", {}, std::move(help), {}, {}};
+  for (const auto& [label, value] : values) p.choices.push_back(label);
+  p.get = [access, values](const JobConfig& c) {
+    for (const auto& [label, value] : values)
+      if (value == read(access, c)) return ParameterValue(label);
+    return ParameterValue(std::string());
+  };
+  p.set = [access, values](JobConfig& c, const ParameterValue& v) {
+    for (const auto& [label, value] : values)
+      if (label == std::get<std::string>(v)) access(c) = value;
+  };
+  return p;
+}
+
+Parameter choice(std::string name, const std::vector<std::string>& values,
+                 Access<std::string> access, std::string help) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const std::string& value : values) pairs.emplace_back(value, value);
+  return choice<std::string>(std::move(name), std::move(pairs), access, std::move(help));
+}
+
+using C = JobConfig;
+
+std::vector<Parameter> object_records() {
+  return {
+      choice(
+          "object.units", {"", "mm", "cm", "m", "in"},
+          [](C& c) -> std::string& { return c.object.load.units; },
+          "unit of the model's coordinates; empty: what the format says, else mm"),
+      number(
+          "object.size_mm", "mm", 0.1, 5000, [](C& c) -> double& { return c.object.pose.size_mm; },
+          "scale the model so that its largest extent is this", "the model's own size"),
+      choice(
+          "object.down", {"-z", "+z", "-y", "+y", "-x", "+x"},
+          [](C& c) -> std::string& { return c.object.pose.down; },
+          "the model's side that enters the water first"),
+      vector(
+          "object.rotate_deg", "deg", -3600, 3600,
+          [](C& c) -> Vec3& { return c.object.pose.rotate_deg; },
+          "then turn about the fixed axes x, y, z, in that order"),
+      path(
+          "object.texture", [](C& c) -> std::filesystem::path& { return c.object.load.texture; },
+          "image that replaces the model's textures; in a file: relative to that file"),
+      text(
+          "object.base_color", ParameterType::kColor,
+          [](C& c) -> std::string& { return c.object.base_color; },
+          "colour of the bare object, sRGB, #rrggbb"),
+  };
+}
+
+std::vector<Parameter> film_records() {
+  return {
+      number(
+          "film.width_mm", "mm", 10, 3000, [](C& c) -> double& { return c.film.width_mm; },
+          "width of the whole sheet (x)"),
+      number(
+          "film.height_mm", "mm", 10, 3000, [](C& c) -> double& { return c.film.height_mm; },
+          "height of the whole sheet (y)"),
+      choice<FilmShape>(
+          "film.shape", {{"rectangle", FilmShape::kRectangle}, {"disc", FilmShape::kDisc}},
+          [](C& c) -> FilmShape& { return c.film.shape; },
+          "outline of the film; disc: inscribed in the smaller extent"),
+      number(
+          "film.margin_mm", "mm", 0, 500, [](C& c) -> double& { return c.film.margin_mm; },
+          "width of the taped, clamped rim"),
+      integer(
+          "film.elements", "", 8, 4000000, [](C& c) -> int& { return c.film.elements; },
+          "triangles of the simulated film"),
+  };
+}
+
+std::vector<Parameter> bath_records() {
+  return {
+      number(
+          "bath.width_mm", "mm", 10, 5000, [](C& c) -> double& { return c.bath.width_mm; },
+          "longer or shorter side of the bath"),
+      number(
+          "bath.height_mm", "mm", 10, 5000, [](C& c) -> double& { return c.bath.height_mm; },
+          "the bath's other side"),
+      number(
+          "bath.depth_mm", "mm", 1, 5000, [](C& c) -> double& { return c.bath.depth_mm; },
+          "depth of the water"),
+  };
+}
+
+std::vector<Parameter> dip_records() {
+  return {
+      number(
+          "dip.step_mm", "mm", 0.001, 10, [](C& c) -> double& { return c.dip.step_mm; },
+          "how far the object is lowered in one step of the simulation"),
+      number(
+          "dip.depth_mm", "mm", 0.001, 5000, [](C& c) -> double& { return c.dip.depth_mm; },
+          "how deep the object is dipped", "the whole object"),
+      choice<DipScheme>(
+          "dip.scheme", {{"contact-line", DipScheme::kContactLine}, {"paper", DipScheme::kPaper}},
+          [](C& c) -> DipScheme& { return c.dip.scheme; },
+          "contact line resolved inside triangles, or the paper's literal steps"),
+  };
+}
+
+std::vector<Parameter> material_records() {
+  return {
+      number(
+          "material.z_stretch", "", 0, 5, [](C& c) -> double& { return c.dip.material.z_stretch; },
+          "vertical scale of the film's rest shape: how it follows slopes"),
+      number(
+          "material.tear_stretch", "", 1, 100,
+          [](C& c) -> double& { return c.dip.material.tear_stretch; },
+          "largest principal stretch that the film bears", "the film never tears"),
+      number(
+          "material.poisson", "", 0, 0.499, [](C& c) -> double& { return c.dip.material.poisson; },
+          "Poisson's ratio of the film"),
+      number(
+          "material.ink_stiffness_ratio", "", 1, 1e6,
+          [](C& c) -> double& { return c.ink.stiffness_ratio; },
+          "modulus of fully inked over blank film (recorded, not used yet)"),
+  };
+}
+
+std::vector<Parameter> ink_records() {
+  return {
+      integer(
+          "ink.rounds_max", "", 1, 100, [](C& c) -> int& { return c.ink.rounds_max; },
+          "most rounds of simulating with the ink's stiffness (recorded, not used yet)"),
+  };
+}
+
+std::vector<Parameter> print_records() {
+  return {
+      number(
+          "print.dpi", "dpi", 36, 1200, [](C& c) -> double& { return c.print.dpi; },
+          "resolution of the film image"),
+      number(
+          "print.bleed_mm", "mm", 0, 50, [](C& c) -> double& { return c.print.bleed_mm; },
+          "colour extended around the region that touches the object"),
+      integer(
+          "print.samples", "", 1, 8, [](C& c) -> int& { return c.print.samples; },
+          "samples per pixel along each axis"),
+      choice<InkSide>(
+          "print.ink_side", {{"up", InkSide::kUp}, {"down", InkSide::kDown}},
+          [](C& c) -> InkSide& { return c.print.ink_side; },
+          "which side of the film carries the ink on the water; down: mirrored"),
+      text(
+          "print.job_name", ParameterType::kText,
+          [](C& c) -> std::string& { return c.print.job_name; },
+          "name in the sheet's margin; empty: the model's file name"),
+  };
+}
+
+std::vector<Parameter> run_records() {
+  return {
+      integer(
+          "preview.width_px", "px", 64, 8192, [](C& c) -> int& { return c.preview_width_px; },
+          "width of preview.png"),
+      integer(
+          "run.threads", "", 1, 1024, [](C& c) -> int& { return c.threads; },
+          "processor threads; the result does not depend on it", "all cores"),
+  };
+}
+
+}  // namespace
+
+const std::vector<Parameter>& parameters() {
+  static const std::vector<Parameter> all = [] {
+    std::vector<Parameter> list;
+    for (auto table : {object_records, film_records, bath_records, dip_records, material_records,
+                       ink_records, print_records, run_records})
+      for (Parameter& p : table()) list.push_back(std::move(p));
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace hydrodip

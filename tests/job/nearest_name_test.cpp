@@ -1,0 +1,34 @@
+#include "job/nearest_name.h"
+
+#include <gtest/gtest.h>
+
+namespace hydrodip {
+namespace {
+
+const std::vector<std::string> kNames = {"film.elements", "film.width_mm", "dip.step_mm"};
+
+TEST(NearestName, FindsSwappedMissingAndExtraLetters) {
+  EXPECT_EQ(nearest_name("film.elemnets", kNames), "film.elements");
+  EXPECT_EQ(nearest_name("film.elemnts", kNames), "film.elements");
+  EXPECT_EQ(nearest_name("film.widthh_mm", kNames), "film.width_mm");
+  EXPECT_EQ(nearest_name("FILM.ELEMENTS", kNames), "film.elements");
+}
+
+TEST(NearestName, FindsTheLastPartAlone) {
+  EXPECT_EQ(nearest_name("elements", kNames), "film.elements");
+  EXPECT_EQ(nearest_name("step_mn", kNames), "dip.step_mm");
+}
+
+TEST(NearestName, SaysNothingWhenNothingIsNear) {
+  EXPECT_EQ(nearest_name("colour", kNames), "");
+  EXPECT_EQ(nearest_name("", kNames), "");
+  EXPECT_EQ(nearest_name(std::string(100000, 'x'), kNames), "");
+  EXPECT_EQ(did_you_mean("zzzz", kNames), "");
+}
+
+TEST(NearestName, PutsItIntoAQuestion) {
+  EXPECT_EQ(did_you_mean("film.elemnts", kNames), "; did you mean 'film.elements'?");
+}
+
+}  // namespace
+}  // namespace hydrodip
