@@ -1,4 +1,13 @@
 // Object in: the only place that knows assimp.
+//
+// Colour, as read: texture images are sRGB; so are OBJ's Kd, 3MF's colours and the vertex colours
+// of PLY, OFF, STL and OBJ. glTF's factors and vertex colours are linear. STL, PLY and OFF have no
+// materials: their base colour is white. OBJ: a Kd beside a map_Kd multiplies it only if it is not
+// grey (exporters write a grey Kd that was never meant as a tint); Kd and d make the base colour.
+// glTF: alphaMode decides what becomes of the alpha; the texture transform is applied to the UVs.
+// Not supported: glTF's compression, quantisation and skins; more than one material, seams in
+// texture coordinates within one mesh, tile styles and several model parts in 3MF; face colours in
+// PLY and OFF.
 #pragma once
 
 #include <filesystem>
@@ -14,15 +23,16 @@ namespace hydrodip {
 struct LoadOptions {
   // "mm", "cm", "m", "in", or "" for what the format says (glTF: m; 3MF: its unit; else mm).
   std::string units;
-  // Replaces every material's texture when not empty; needs UVs.
+  // When not empty, this picture alone decides the colour: it replaces every material's texture,
+  // base colour and the vertex colours. Needs UVs.
   std::filesystem::path texture;
 };
 
 struct LoadedObject {
   Object object;
   MeshHealth health;
-  std::string units;                             // the unit that was applied
-  std::vector<std::filesystem::path> files;      // every file that was read, for the report's hashes
+  std::string units;                         // the unit that was applied
+  std::vector<std::filesystem::path> files;  // every file that was read, for the report's hashes
 };
 
 // Reads OBJ (+MTL, textures), PLY, STL, OFF, 3MF, glTF, GLB. Scales to millimetres, checks and

@@ -1,5 +1,6 @@
 #include "object/object.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
