@@ -24,8 +24,9 @@ Image render_preview(const Object& object, const Surface& surface, const DippedF
                      const Appearance& appearance, const PreviewOptions& options,
                      RunContext& context);
 
-// Binary glTF 2.0, y up, metres: the object in its base colour, and over it the film that lies on
-// it, textured with `film_image` (whole sheet, row 0 at +y) by the film's own coordinates.
+// Binary glTF 2.0, y up, metres, the side that met the film (-z) facing the viewer (+z in glTF):
+// the object in its base colour, and over it the film that lies on it, textured with `film_image`
+// (whole sheet, row 0 at +y) by the film's own coordinates.
 void write_preview_glb(const std::filesystem::path& path, const Object& object,
                        const DippedFilm& film, const Image& film_image, double sheet_width_mm,
                        double sheet_height_mm, const LinearColor& base);
