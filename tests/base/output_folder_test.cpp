@@ -1,0 +1,206 @@
+#include "base/output_folder.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+std::string read(const fs::path& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::ptrdiff_t entries(const fs::path& folder) {
+  return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+}
+
+class OutputFolderTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "output_folder_test_XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    root_ = name;
+  }
+  void TearDown() override { fs::remove_all(root_); }
+  fs::path root_;
+};
+
+TEST_F(OutputFolderTest, FilesAppearAtCommitAndNothingElseRemains) {
+  const fs::path out = root_ / "a" / "b";
+  {
+    OutputFolder folder(out);
+    write(folder.path("one.txt"), "1");
+    write(folder.path("two.txt"), "2");
+    EXPECT_FALSE(fs::exists(out / "one.txt"));
+    folder.commit();
+  }
+  EXPECT_EQ(read(out / "one.txt"), "1");
+  EXPECT_EQ(read(out / "two.txt"), "2");
+  EXPECT_EQ(entries(out), 2);
+}
+
+TEST_F(OutputFolderTest, StagedFilesAreHidden) {
+  OutputFolder folder(root_);
+  write(folder.path("one.txt"), "1");
+  for (const auto& entry : fs::directory_iterator(root_)) {
+    EXPECT_EQ(entry.path().filename().string().front(), '.');
+  }
+}
+
+TEST_F(OutputFolderTest, WithoutCommitNothingIsLeftBehind) {
+  {
+    OutputFolder folder(root_ / "a" / "b" / "c");
+    write(folder.path("one.txt"), "1");
+    EXPECT_TRUE(fs::is_directory(root_ / "a" / "b" / "c"));
+  }
+  EXPECT_EQ(entries(root_), 0);
+}
+
+TEST_F(OutputFolderTest, WithoutCommitExistingFoldersAndFilesStay) {
+  fs::create_directory(root_ / "a");
+  write(root_ / "a" / "keep.txt", "mine");
+  {
+    OutputFolder folder(root_ / "a");
+    write(folder.path("keep.txt"), "new");
+    EXPECT_EQ(read(root_ / "a" / "keep.txt"), "mine");
+  }
+  EXPECT_EQ(read(root_ / "a" / "keep.txt"), "mine");
+  EXPECT_EQ(entries(root_ / "a"), 1);
+}
+
+TEST_F(OutputFolderTest, CommitReplacesEarlierFilesAndLeavesOthersAlone) {
+  write(root_ / "one.txt", "old");
+  write(root_ / "other.txt", "other");
+  OutputFolder folder(root_);
+  write(folder.path("one.txt"), "new");
+  folder.commit();
+  EXPECT_EQ(read(root_ / "one.txt"), "new");
+  EXPECT_EQ(read(root_ / "other.txt"), "other");
+  EXPECT_EQ(entries(root_), 2);
+}
+
+TEST_F(OutputFolderTest, AskingTwiceForANameIsOneFile) {
+  OutputFolder folder(root_);
+  write(folder.path("one.txt"), "first");
+  write(folder.path("one.txt"), "second");
+  folder.commit();
+  EXPECT_EQ(read(root_ / "one.txt"), "second");
+}
+
+TEST_F(OutputFolderTest, AMissingFileStopsTheCommitBeforeAnythingMoves) {
+  write(root_ / "one.txt", "old");
+  {
+    OutputFolder folder(root_);
+    write(folder.path("one.txt"), "new");
+    folder.path("two.txt");
+    EXPECT_THROW(folder.commit(), InputError);
+    EXPECT_EQ(read(root_ / "one.txt"), "old");
+  }
+  EXPECT_EQ(read(root_ / "one.txt"), "old");
+  EXPECT_EQ(entries(root_), 1);
+}
+
+TEST_F(OutputFolderTest, AFolderInTheWayIsRefusedByName) {
+  write(root_ / "one.txt", "old");
+  fs::create_directory(root_ / "two.txt");
+  OutputFolder folder(root_);
+  write(folder.path("one.txt"), "new");
+  write(folder.path("two.txt"), "new");
+  try {
+    folder.commit();
+    FAIL() << "commit over a folder";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("two.txt"), std::string::npos);
+  }
+  EXPECT_EQ(read(root_ / "one.txt"), "old");
+  EXPECT_TRUE(fs::is_directory(root_ / "two.txt"));
+}
+
+TEST_F(OutputFolderTest, AFailureHalfWayRestoresWhatWasThere) {
+  write(root_ / "one.txt", "old");
+  write(root_ / "three.txt", "old");
+  {
+    OutputFolder folder(root_);
+    for (const char* name : {"one.txt", "two.txt", "three.txt"}) write(folder.path(name), "new");
+    // Blocks the place where the earlier three.txt would be kept, so that the third move fails.
+    const fs::path staging = folder.path("one.txt").parent_path();
+    fs::create_directories(staging / "..earlier" / "three.txt" / "blocker");
+    EXPECT_THROW(folder.commit(), InputError);
+    EXPECT_EQ(read(root_ / "one.txt"), "old");
+    EXPECT_EQ(read(root_ / "three.txt"), "old");
+    EXPECT_FALSE(fs::exists(root_ / "two.txt"));
+  }
+  EXPECT_EQ(entries(root_), 2);
+}
+
+TEST_F(OutputFolderTest, ASymbolicLinkIsReplacedNotFollowed) {
+  write(root_ / "target.txt", "precious");
+  fs::create_symlink(root_ / "target.txt", root_ / "one.txt");
+  OutputFolder folder(root_);
+  write(folder.path("one.txt"), "new");
+  folder.commit();
+  EXPECT_EQ(read(root_ / "target.txt"), "precious");
+  EXPECT_EQ(read(root_ / "one.txt"), "new");
+  EXPECT_FALSE(fs::is_symlink(root_ / "one.txt"));
+}
+
+TEST_F(OutputFolderTest, AFolderBelowAFileIsRefusedInOneSentence) {
+  write(root_ / "file", "x");
+  for (const fs::path& bad : {root_ / "file", root_ / "file" / "sub", root_ / "file" / "a" / "b"}) {
+    try {
+      OutputFolder folder(bad);
+      FAIL() << bad;
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      EXPECT_NE(what.find(bad.string()), std::string::npos) << what;
+      EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    }
+  }
+  EXPECT_EQ(read(root_ / "file"), "x");
+  EXPECT_EQ(entries(root_), 1);
+}
+
+TEST_F(OutputFolderTest, FoldersMadeOnTheWayToARefusalAreRemoved) {
+  const std::string long_name(300, 'x');
+  EXPECT_THROW(OutputFolder(root_ / "a" / "b" / long_name), InputError);
+  EXPECT_EQ(entries(root_), 0);
+}
+
+TEST_F(OutputFolderTest, TrailingSlashAndEmptyPathAreFolders) {
+  {
+    OutputFolder folder(root_ / "a" / "");
+    write(folder.path("one.txt"), "1");
+    folder.commit();
+  }
+  EXPECT_EQ(read(root_ / "a" / "one.txt"), "1");
+  const fs::path before = fs::current_path();
+  fs::current_path(root_);
+  {
+    OutputFolder folder("");
+    write(folder.path("here.txt"), "1");
+    folder.commit();
+  }
+  fs::current_path(before);
+  EXPECT_EQ(read(root_ / "here.txt"), "1");
+}
+
+TEST_F(OutputFolderTest, OnlyPlainNamesAreAccepted) {
+  OutputFolder folder(root_);
+  for (const char* bad : {"", ".", "..", "a/b", "/etc/passwd", "../x"}) {
+    EXPECT_THROW(folder.path(bad), std::logic_error) << bad;
+  }
+}
+
+}  // namespace
+}  // namespace hydrodip
