@@ -1,0 +1,34 @@
+// What a dip amounts to, in a few numbers.
+#pragma once
+
+#include "film/film.h"
+#include "object/object.h"
+
+namespace hydrodip {
+
+struct Coverage {
+  double object_mm2 = 0;            // the object's whole surface
+  double downward_mm2 = 0;          // of it: below the dipping depth and facing down
+  double covered_mm2 = 0;           // of the object: film lies on it
+  double covered_downward_mm2 = 0;  // of downward_mm2: film lies on it
+  double film_on_object_mm2 = 0;    // of the flat film: lies on the object
+  double torn_mm2 = 0;              // of the flat film
+  // Of film that lies on the object; means are weighted by flat area.
+  double stretch_mean = 1;  // largest principal stretch
+  double stretch_max = 1;
+  double area_ratio_mean = 1;  // deformed over flat area
+  double area_ratio_max = 1;
+
+  double covered_share() const { return share(covered_mm2, object_mm2); }
+  double covered_downward_share() const { return share(covered_downward_mm2, downward_mm2); }
+  // Of the film that met the object.
+  double torn_share() const { return share(torn_mm2, torn_mm2 + film_on_object_mm2); }
+
+  static double share(double part, double whole) { return whole > 0 ? part / whole : 0; }
+};
+
+// Everything from the triangles of object and film alone: covered_mm2 is the area of the film as
+// it lies on the object, which is the object's to the accuracy of the film's mesh. Never NaN.
+Coverage measure_coverage(const Object& object, const DippedFilm& film);
+
+}  // namespace hydrodip

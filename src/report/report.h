@@ -1,0 +1,103 @@
+// report.json and report.html: everything that is known about a finished job, for programs and for
+// people. Fill a Report, then write it; what is left at its default is left out where it would
+// say nothing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "object/health.h"
+#include "report/coverage.h"
+
+namespace hydrodip {
+
+// Raised when a key changes its meaning or goes away; new keys alone do not raise it.
+inline constexpr int kReportSchemaVersion = 1;
+
+struct ReportInput {
+  std::string role;  // "model", "texture", "settings", "film image"
+  std::string path;  // as given
+  std::string sha256;
+  std::uint64_t bytes = 0;
+};
+
+// Reads the file. Throws InputError if it cannot be read.
+ReportInput describe_input(const std::string& role, const std::filesystem::path& path);
+
+using ReportValue = std::variant<double, std::int64_t, bool, std::string, std::array<double, 3>>;
+
+struct ReportParameter {
+  std::string name;
+  std::string unit;  // "" for none
+  ReportValue value;
+  bool changed = false;  // differs from the default: shown first on the page
+};
+
+struct ReportStage {
+  std::string name;  // "dip"
+  double seconds = 0;
+};
+
+// A figure beyond the fixed ones, as name_with_unit: e.g. {"immersion_depth_mm", "Immersion", 42.5,
+// "mm"}.
+struct ReportFigure {
+  std::string key;    // in report.json; unit in the name
+  std::string label;  // on the page
+  ReportValue value;
+  std::string unit;
+};
+
+// One round of an iteration that has to converge, with whatever measures it.
+struct ReportRound {
+  std::string process;  // "dip", "ink"
+  int round = 0;
+  std::vector<ReportFigure> figures;
+};
+
+struct ReportOutput {
+  std::string name;         // "print.pdf"
+  std::string description;  // "the sheet: print it at 100 %, ink side up"
+};
+
+struct Report {
+  std::string tool_version;
+  std::string command;                    // "print"
+  std::vector<std::string> command_line;  // may be empty
+  std::string title;                      // the job's name; empty: the first input's file name
+  std::string verdict;                    // one sentence; empty: plain_verdict() is used
+
+  std::vector<ReportInput> inputs;
+  std::vector<ReportParameter> parameters;
+  std::vector<ReportStage> stages;  // in the order they ran
+  double total_seconds = 0;         // 0: the sum of the stages
+  std::vector<ReportRound> rounds;
+  std::optional<Coverage> coverage;  // nothing was dipped: absent
+  std::optional<MeshHealth> mesh;
+  std::vector<ReportFigure> figures;
+  std::vector<std::string> warnings;
+  std::vector<ReportOutput> outputs;
+  std::uint64_t peak_memory_bytes = 0;  // 0: unknown
+};
+
+// The result in one plain sentence: how much is covered, how far the film stretches, whether it
+// tears.
+std::string plain_verdict(const Coverage& coverage);
+
+// JSON in UTF-8, keys always in the same order, areas in mm2 and lengths in mm; what is not a
+// number is null. "seconds" and "peak_memory_bytes" alone depend on the machine.
+std::string report_json(const Report& report);
+
+// One self-contained page without scripts or links to the network; every text is escaped.
+// `preview_png` are the bytes of preview.png, or empty.
+std::string report_html(const Report& report, const std::vector<std::uint8_t>& preview_png);
+
+void write_report_json(const std::filesystem::path& path, const Report& report);
+void write_report_html(const std::filesystem::path& path, const Report& report,
+                       const std::vector<std::uint8_t>& preview_png);
+
+}  // namespace hydrodip
