@@ -17,14 +17,14 @@ enum class DipScheme {
 };
 
 struct FilmMaterial {
-  double z_stretch = 0.65;     // vertical scale of the film's rest shape (contact angle)
-  double poisson = 0;          // below 0.5
-  double tear_stretch = 1.4;   // largest principal stretch the film bears; 0: never tears
+  double z_stretch = 0.65;    // vertical scale of the film's rest shape (contact angle)
+  double poisson = 0;         // below 0.5
+  double tear_stretch = 1.4;  // largest principal stretch the film bears; 0: never tears
 };
 
 struct DipOptions {
   double step_mm = 0.1;
-  double depth_mm = 0;         // 0: until the object is completely below the water
+  double depth_mm = 0;  // 0: until the object is completely below the water
   DipScheme scheme = DipScheme::kContactLine;
   FilmMaterial material;
   std::vector<double> modulus;  // per film triangle, relative; empty: uniform
@@ -36,7 +36,7 @@ struct DipStatistics {
   long newton_iterations = 0;
   long linear_iterations = 0;
   long factorizations = 0;
-  long unconverged_steps = 0;   // steps that ended at the iteration bound
+  long unconverged_steps = 0;      // steps that ended at the iteration bound
   double largest_residual_mm = 0;  // largest last Newton update over all steps
   double seconds_contact = 0, seconds_elastic = 0, seconds_mapping = 0;
 };

@@ -1,0 +1,383 @@
+// The default scheme. The contact line runs through triangles: every mesh edge from an attached to
+// a floating vertex has a foot on the contact line, which climbs the object as the water rises and
+// counts the film laid down behind it at the strain that the floating film has there. For the
+// equilibrium of the floating film, the attached end of the edge stands where flat film would have
+// it (its ghost). docs/model.md derives it.
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "dip/locate.h"
+#include "dip/scheme.h"
+#include "dip/waterline.h"
+
+namespace hydrodip {
+
+namespace {
+
+constexpr std::size_t kGrain = 1024;
+// Smallest rest area of a triangle at the contact line, as a share of a cell's area: keeps the
+// energy finite where ghosts of a crumpled contact line meet.
+constexpr double kMinArea = 0.02;
+// A foot that jumps further than this in one step, in cells, has lost its contact line (the object
+// is submerged there, or a shelf begins) and goes on straight up.
+constexpr double kMaxJump = 2.5;
+// Steepness that stands for a vertical wall.
+constexpr double kWall = 1e6;
+
+struct Foot {
+  std::int32_t attached = -1, floating = -1;
+  Vec3 point = Vec3::Zero();    // on the contact line, between the two
+  Vec2 outward = Vec2::Zero();  // from the object, unit, normal to the contact line
+  double steepness = 0;         // of the object there
+  Vec2 laid = Vec2::Zero();   // film between the attached vertex and the point, in film coordinates
+  Vec2 way = Vec2::Zero();    // the same on the object, unrolled into the water plane
+  Mat2 F = Mat2::Identity();  // du/dX of the floating film there
+  Vec2 last_way = Vec2::Zero();     // way of the present step
+  Vec2 laid_before = Vec2::Zero();  // laid at its start
+  Vec2 ghost = Vec2::Zero();
+};
+
+bool usable_gradient(const Mat2& F) {
+  return F.allFinite() && F.determinant() > 1e-3 && F.squaredNorm() < 1e4;
+}
+
+// Length from (0, 0) to (run, rise) with the vertical scaled: along two straight pieces with the
+// given slopes if they meet on the way (a crease lies between), else along the chord.
+double scaled_length(double run, double rise, double first_slope, double last_slope,
+                     double z_stretch) {
+  const auto piece = [&](double x, double z) { return std::hypot(x, z_stretch * z); };
+  if (first_slope != last_slope) {
+    const double x = (rise - last_slope * run) / (first_slope - last_slope);
+    const double z = first_slope * x;
+    if (std::isfinite(x) && z >= 0 && z <= rise) {
+      const double bent = piece(x, z) + piece(run - x, rise - z);
+      // Never longer than over the two sides of the box: slopes of a ragged mesh mean little.
+      if (bent <= std::abs(run) + z_stretch * rise) return bent;
+    }
+  }
+  return piece(run, rise);
+}
+
+double steepness_along(const Vec3& normal, const Vec2& direction) {
+  const double n = normal.head<2>().dot(direction);
+  return std::abs(normal.z()) * kWall > std::abs(n) ? -n / normal.z() : kWall;
+}
+
+RestTriangle rest_from_lengths(double ab, double bc, double ca, double min_area) {
+  const double length = std::max(ab, 1e-9);
+  const double along = (ab * ab + ca * ca - bc * bc) / (2 * length);
+  const double across = std::sqrt(std::max(0.0, ca * ca - along * along));
+  return rest_triangle(Vec2(0, 0), Vec2(length, 0),
+                       Vec2(along, std::max(across, 2 * min_area / length)));
+}
+
+class ContactLineScheme : public Scheme {
+ public:
+  ContactLineScheme(const DipSetting& setting, DipState& state)
+      : set_(setting),
+        film_(setting.film),
+        state_(state),
+        waterline_(setting.positions, setting.triangles, setting.film.cell_mm),
+        energy_(setting.film, setting.options.modulus, setting.options.material.poisson),
+        solver_(make_laplacian_solver()),
+        feet_of_corner_(3 * setting.film.triangles.size(), {-1, -1}) {}
+
+  void advance(double level) override {
+    waterline_.raise_to(level);
+    climb(level);
+    set_rest();
+    const VertexVector u = relaxed();
+    tear(u);
+    slide(u);
+    correct_feet();
+    attach(level);
+    state_.level = level;
+  }
+
+ private:
+  bool floats(std::int32_t v) const {
+    return state_.state[std::size_t(v)] == VertexState::kUnattached;
+  }
+  bool attached(std::int32_t v) const {
+    return state_.state[std::size_t(v)] == VertexState::kAttached;
+  }
+  Vec2 plan(std::int32_t v) const { return state_.position[std::size_t(v)].head<2>(); }
+
+  // From a point on the object to the contact line at `to`, unrolled into the water plane.
+  Vec2 unrolled(const Vec3& from, double first_slope, const Waterline::Point& to,
+                double level) const {
+    const Vec2 way = to.position - from.head<2>();
+    const Vec2 tangent(-to.outward.y(), to.outward.x());
+    const double length = scaled_length(way.dot(to.outward), std::max(0.0, level - from.z()),
+                                        first_slope, to.steepness, set_.options.material.z_stretch);
+    return way.dot(tangent) * tangent + length * to.outward;
+  }
+
+  // The contact line next to `near`. `outside` is a unit vector known to point away from the object
+  // more or less; where faces are turned the wrong way, it decides.
+  Waterline::Point line_near(const Vec2& near, const Vec2& outside) const {
+    const auto found = waterline_.closest(near, kMaxJump * film_.cell_mm);
+    if (!found) return {near, outside, kWall};
+    Waterline::Point point = *found;
+    if (point.outward.dot(outside) < -0.7) {
+      point.outward = -point.outward;
+      point.steepness = -point.steepness;
+    }
+    return point;
+  }
+
+  void climb(double level) {
+    for (Foot& foot : feet_) {
+      const Waterline::Point to = line_near(foot.point.head<2>(), foot.outward);
+      foot.last_way = unrolled(foot.point, foot.steepness, to, level);
+      foot.laid_before = foot.laid;
+      foot.laid += foot.F * foot.last_way;
+      foot.way += foot.last_way;
+      foot.point << to.position, level;
+      foot.outward = to.outward;
+      foot.steepness = to.steepness;
+      place_ghost(foot);
+    }
+  }
+
+  // Where the attached vertex would be if the film laid behind the foot were flat and strained like
+  // the floating film ahead of it.
+  void place_ghost(Foot& foot) const {
+    Vec2 back = foot.way;
+    if (usable_gradient(foot.F)) {
+      const Vec2 strained = foot.F.inverse() * foot.laid;
+      const Vec2 change = strained - foot.way;
+      const double limit = 0.5 * foot.way.norm();
+      back += change.norm() > limit ? Vec2(change * (limit / change.norm())) : change;
+    }
+    foot.ghost = foot.point.head<2>() - back;
+  }
+
+  Vec2 corner(std::size_t t, std::size_t k) const {
+    const std::int32_t v = film_.triangles[t][k];
+    if (!attached(v)) return plan(v);
+    const auto& feet = feet_of_corner_[3 * t + k];
+    if (feet[0] < 0) return plan(v);
+    const Vec2& first = feet_[std::size_t(feet[0])].ghost;
+    return feet[1] < 0 ? first : Vec2(0.5 * (first + feet_[std::size_t(feet[1])].ghost));
+  }
+
+  bool carries_load(std::size_t t) const {
+    const Triangle& v = film_.triangles[t];
+    return !state_.torn[t] && (floats(v[0]) || floats(v[1]) || floats(v[2]));
+  }
+
+  RestTriangle rest_of(std::size_t t) const {
+    const std::array<Vec2, 3> x = {corner(t, 0), corner(t, 1), corner(t, 2)};
+    const double min_area = kMinArea * 0.5 * film_.cell_mm * film_.cell_mm;
+    const double area = 0.5 * cross2(x[1] - x[0], x[2] - x[0]);
+    if (area >= min_area) return rest_triangle(x[0], x[1], x[2]);
+    return rest_from_lengths((x[1] - x[0]).norm(), (x[2] - x[1]).norm(), (x[0] - x[2]).norm(),
+                             min_area);
+  }
+
+  void set_rest() {
+    std::vector<RestTriangle> rest(film_.triangles.size());
+    usable_.assign(film_.triangles.size(), 0);
+    parallel_for(rest.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t)
+        if (carries_load(t)) {
+          rest[t] = rest_of(t);
+          usable_[t] = 1;
+        }
+    });
+    energy_.set_rest(std::move(rest));
+  }
+
+  // A vertex without any film left around it drifts: nothing holds or moves it.
+  std::vector<std::uint8_t> free_vertices() const {
+    std::vector<std::uint8_t> is_free(film_.u.size(), 0);
+    for (std::size_t t = 0; t < film_.triangles.size(); ++t)
+      if (usable_[t])
+        for (std::int32_t v : film_.triangles[t]) is_free[std::size_t(v)] = floats(v);
+    return is_free;
+  }
+
+  VertexVector relaxed() {
+    VertexVector u = film_.u;
+    relax_film(energy_, free_vertices(), *solver_, u, state_.statistics);
+    return u;
+  }
+
+  Mat2 strain(std::size_t t, const VertexVector& u) const {
+    const Triangle& v = film_.triangles[t];
+    return deformation_gradient(energy_.rest()[t], u[std::size_t(v[0])], u[std::size_t(v[1])],
+                                u[std::size_t(v[2])]);
+  }
+
+  void tear(const VertexVector& u) {
+    const double limit = set_.options.material.tear_stretch;
+    if (!(limit > 0)) return;
+    for (std::size_t t = 0; t < film_.triangles.size(); ++t)
+      if (usable_[t] && largest_stretch(strain(t, u)) > limit) state_.torn[t] = 1;
+  }
+
+  // Every floating vertex goes where its film coordinate is found in the relaxed film.
+  void slide(const VertexVector& u) {
+    slid_.resize(film_.u.size());
+    parallel_for(film_.u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        slid_[v] = state_.position[v].head<2>();
+        if (state_.state[v] != VertexState::kUnattached) continue;
+        const FilmLocation at = locate(film_, u, usable_, static_cast<std::int32_t>(v), film_.u[v]);
+        if (at.triangle < 0) continue;
+        Vec2 place = Vec2::Zero();
+        for (std::size_t k = 0; k < 3; ++k)
+          place += at.weight[Eigen::Index(k)] * corner(std::size_t(at.triangle), k);
+        if (place.allFinite()) slid_[v] = place;
+      }
+    });
+  }
+
+  // The gradient du/dX of a triangle with its floating corners where they slid to.
+  Mat2 gradient_after(std::size_t t) const {
+    std::array<Vec2, 3> x;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t v = film_.triangles[t][k];
+      x[k] = floats(v) ? slid_[std::size_t(v)] : corner(t, k);
+    }
+    const RestTriangle rest = rest_triangle(x[0], x[1], x[2]);
+    const Triangle& v = film_.triangles[t];
+    if (!(rest.area > kMinArea * 0.5 * film_.cell_mm * film_.cell_mm)) return Mat2::Zero();
+    return deformation_gradient(rest, film_.u[std::size_t(v[0])], film_.u[std::size_t(v[1])],
+                                film_.u[std::size_t(v[2])]);
+  }
+
+  // Mean over the triangles on both sides of an edge; `otherwise` if neither can say.
+  Mat2 gradient_at_edge(std::int32_t a, std::int32_t b, const Mat2& otherwise) const {
+    Mat2 sum = Mat2::Zero();
+    int count = 0;
+    for_triangles_at_edge(a, b, [&](std::size_t t) {
+      if (!usable_[t]) return;
+      const Mat2 F = gradient_after(t);
+      if (!usable_gradient(F)) return;
+      sum += F;
+      ++count;
+    });
+    return count > 0 ? Mat2(sum / count) : otherwise;
+  }
+
+  template <typename Visit>
+  void for_triangles_at_edge(std::int32_t a, std::int32_t b, const Visit& visit) const {
+    for (auto n = film_.incident_begin[std::size_t(a)];
+         n < film_.incident_begin[std::size_t(a) + 1]; ++n) {
+      const auto t = std::size_t(film_.incident[std::size_t(n)]);
+      const Triangle& v = film_.triangles[t];
+      if (v[0] == b || v[1] == b || v[2] == b) visit(t);
+    }
+  }
+
+  // Trapezoidal rule: the film laid in this step has the mean of the strain before and after.
+  void correct_feet() {
+    for (Foot& foot : feet_) {
+      const Mat2 F = gradient_at_edge(foot.attached, foot.floating, foot.F);
+      foot.laid = foot.laid_before + 0.5 * (foot.F + F) * foot.last_way;
+      next_gradient_.push_back(F);
+    }
+    // All gradients come from the ghosts as they were; only then do they change.
+    for (std::size_t f = 0; f < feet_.size(); ++f) feet_[f].F = next_gradient_[f];
+    next_gradient_.clear();
+  }
+
+  void attach(double level) {
+    std::vector<std::optional<Contact>> contacts(film_.u.size());
+    parallel_for(film_.u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        if (state_.state[v] != VertexState::kUnattached) continue;
+        const Vec3 to(slid_[v].x(), slid_[v].y(), level);
+        contacts[v] = first_contact(set_.surface, state_.position[v], to);
+      }
+    });
+    std::vector<Foot> created;
+    for (std::size_t v = 0; v < film_.u.size(); ++v)
+      if (contacts[v]) create_feet(static_cast<std::int32_t>(v), contacts, level, created);
+    for (std::size_t v = 0; v < film_.u.size(); ++v) {
+      if (state_.state[v] != VertexState::kUnattached) continue;
+      if (contacts[v]) {
+        state_.state[v] = VertexState::kAttached;
+        state_.position[v] = contacts[v]->position;
+      } else {
+        state_.position[v] << slid_[v], level;
+      }
+    }
+    std::erase_if(feet_, [&](const Foot& foot) { return !floats(foot.floating); });
+    feet_.insert(feet_.end(), created.begin(), created.end());
+    for (Foot& foot : feet_) place_ghost(foot);
+    index_feet();
+  }
+
+  // One for every edge from a vertex that attaches now to one that goes on floating.
+  void create_feet(std::int32_t v, const std::vector<std::optional<Contact>>& contacts,
+                   double level, std::vector<Foot>& created) const {
+    const Contact& contact = *contacts[std::size_t(v)];
+    std::vector<std::int32_t> around;
+    for (auto n = film_.incident_begin[std::size_t(v)];
+         n < film_.incident_begin[std::size_t(v) + 1]; ++n)
+      for (std::int32_t w : film_.triangles[std::size_t(film_.incident[std::size_t(n)])])
+        if (w != v && floats(w) && !contacts[std::size_t(w)]) around.push_back(w);
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    for (std::int32_t w : around) {
+      Foot foot;
+      foot.attached = v;
+      foot.floating = w;
+      const Vec2 from = contact.position.head<2>();
+      const Vec2 outside = (slid_[std::size_t(w)] - from).normalized();
+      const auto leaving = waterline_.exit(from, slid_[std::size_t(w)]);
+      const Waterline::Point to = leaving ? *leaving : line_near(from, outside);
+      foot.F = gradient_at_edge(v, w, Mat2::Identity());
+      foot.way = unrolled(contact.position, steepness_along(contact.normal, to.outward), to, level);
+      foot.laid = foot.F * foot.way;
+      foot.point << to.position, level;
+      foot.outward = to.outward;
+      foot.steepness = to.steepness;
+      created.push_back(foot);
+    }
+  }
+
+  void index_feet() {
+    for (std::size_t c : indexed_corners_) feet_of_corner_[c] = {-1, -1};
+    indexed_corners_.clear();
+    for (std::size_t f = 0; f < feet_.size(); ++f)
+      for_triangles_at_edge(feet_[f].attached, feet_[f].floating, [&](std::size_t t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          if (film_.triangles[t][k] != feet_[f].attached) continue;
+          auto& slots = feet_of_corner_[3 * t + k];
+          slots[slots[0] < 0 ? 0 : 1] = static_cast<std::int32_t>(f);
+          indexed_corners_.push_back(3 * t + k);
+        }
+      });
+  }
+
+  const DipSetting set_;
+  const FilmMesh& film_;
+  DipState& state_;
+  Waterline waterline_;
+  FilmEnergy energy_;
+  std::unique_ptr<LinearSolver> solver_;
+  std::vector<Foot> feet_;
+  std::vector<Mat2> next_gradient_;
+  // Per triangle corner, if its vertex is attached: the feet of its edges to floating corners.
+  std::vector<std::array<std::int32_t, 2>> feet_of_corner_;
+  std::vector<std::size_t> indexed_corners_;
+  std::vector<std::uint8_t> usable_;  // per triangle: carries load in this step
+  VertexVector slid_;                 // per vertex, seen from above, after relaxing
+};
+
+}  // namespace
+
+std::unique_ptr<Scheme> make_contact_line_scheme(const DipSetting& setting, DipState& state) {
+  return std::make_unique<ContactLineScheme>(setting, state);
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,110 @@
+#include "dip/dip.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "dip/measure.h"
+#include "dip/scheme.h"
+
+namespace hydrodip {
+
+namespace {
+
+// How far before and behind its straight way a point looks for contact, so that nothing slips
+// between two steps or through single precision.
+constexpr double kContactSlack_mm = 1e-3;
+
+void check(const DipOptions& options, const FilmMesh& film) {
+  const auto refuse = [](const std::string& what) { throw InputError(what); };
+  if (!(options.step_mm > 0)) refuse("dip.step_mm must be above 0");
+  if (!(options.depth_mm >= 0)) refuse("dip.depth_mm must not be negative");
+  if (!(options.material.poisson > -1 && options.material.poisson < 0.5))
+    refuse("material.poisson must be above -1 and below 0.5");
+  if (!(options.material.z_stretch >= 0)) refuse("material.z_stretch must not be negative");
+  if (!options.modulus.empty() && options.modulus.size() != film.triangles.size())
+    refuse("the stiffness field does not fit the film's mesh");
+}
+
+DipState floating_film(const FilmMesh& film) {
+  DipState state;
+  for (std::size_t v = 0; v < film.u.size(); ++v) {
+    state.position.emplace_back(film.u[v].x(), film.u[v].y(), 0.0);
+    state.state.push_back(film.on_rim[v] ? VertexState::kClamped : VertexState::kUnattached);
+  }
+  state.torn.assign(film.triangles.size(), 0);
+  return state;
+}
+
+double depth_of(const std::vector<Vec3>& positions, const DipOptions& options) {
+  double top = 0;
+  for (const Vec3& p : positions) top = std::max(top, p.z());
+  return options.depth_mm > 0 ? std::min(options.depth_mm, top) : top;
+}
+
+void check_rim(const FilmMesh& film, const Surface& surface, double depth, RunContext& context) {
+  for (std::size_t v = 0; v < film.u.size(); ++v) {
+    if (!film.on_rim[v]) continue;
+    const Vec3 below(film.u[v].x(), film.u[v].y(), -1);
+    if (!surface.first_hit(below, Vec3(0, 0, 1), 0, depth + 1)) continue;
+    context.warn(
+        "the object touches the film's taped rim, where the film cannot follow: use a larger film, "
+        "a smaller object or another pose");
+    return;
+  }
+}
+
+}  // namespace
+
+void relax_film(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
+                LinearSolver& solver, VertexVector& u, DipStatistics& statistics) {
+  const RelaxationResult result = relax(energy, is_free, RelaxationOptions{}, solver, u);
+  statistics.newton_iterations += result.newton_iterations;
+  statistics.linear_iterations += result.linear_iterations;
+  statistics.factorizations = solver.factorizations();
+  if (!result.converged) ++statistics.unconverged_steps;
+  statistics.largest_residual_mm = std::max(statistics.largest_residual_mm, result.last_update_mm);
+  for (const Vec2& p : u)
+    if (!p.allFinite()) throw DipError("the film's equilibrium has no finite solution");
+}
+
+std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, const Vec3& to) {
+  const Vec3 way = to - from;
+  const double length = way.norm();
+  if (!(length > 0)) return std::nullopt;
+  const double slack = kContactSlack_mm / length;
+  const auto hit = surface.first_hit(from, way, -slack, 1 + slack);
+  if (!hit) return std::nullopt;
+  return Contact{surface.position(*hit), surface.normal(*hit)};
+}
+
+DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
+              const std::vector<Triangle>& triangles, const Surface& surface,
+              const DipOptions& options, RunContext& context) {
+  check(options, film);
+  const double depth = depth_of(positions, options);
+  check_rim(film, surface, depth, context);
+  DipState state = floating_film(film);
+  const DipSetting setting{film, positions, triangles, surface, options};
+  const auto scheme = options.scheme == DipScheme::kPaper
+                          ? make_paper_scheme(setting, state)
+                          : make_contact_line_scheme(setting, state);
+
+  const int steps = std::max(1, static_cast<int>(std::ceil(depth / options.step_mm - 1e-9)));
+  for (int step = 1; step <= steps; ++step) {
+    context.progress("dipping", double(step - 1) / steps);
+    scheme->advance(depth * step / steps);
+  }
+  context.progress("dipping", 1);
+  state.statistics.steps = steps;
+  if (state.statistics.unconverged_steps > 0)
+    context.warn(fmt::format("in {} of {} steps the film's equilibrium was found only to {:.2g} mm",
+                             state.statistics.unconverged_steps, steps,
+                             state.statistics.largest_residual_mm));
+  return {measured(film, state, options), state.statistics};
+}
+
+}  // namespace hydrodip

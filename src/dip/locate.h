@@ -1,0 +1,23 @@
+// Point location in the deformed film by walking from triangle to triangle.
+#pragma once
+
+#include "elastic/film_energy.h"
+#include "film/film.h"
+
+namespace hydrodip {
+
+struct FilmLocation {
+  std::int32_t triangle = -1;
+  Vec3 weight = Vec3::Zero();  // barycentric; may be slightly negative at the edge of the film
+  bool inside = false;
+};
+
+// Finds the triangle of the mesh, with its vertices at u, that holds the target, starting near
+// vertex `start` (of which the target is usually a small step away). Triangles with usable[t] == 0
+// are not entered. If the walk leaves the usable film, the last triangle it was in is returned with
+// inside = false and weights that extrapolate.
+FilmLocation locate(const FilmMesh& mesh, const VertexVector& u,
+                    const std::vector<std::uint8_t>& usable, std::int32_t start,
+                    const Vec2& target);
+
+}  // namespace hydrodip

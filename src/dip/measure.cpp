@@ -1,0 +1,116 @@
+#include "dip/measure.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace hydrodip {
+
+namespace {
+
+// Voronoi share of a triangle's area at each corner; for an obtuse triangle half of it goes to the
+// obtuse corner (Meyer et al. 2003, section 3.3).
+std::array<double, 3> voronoi_shares(const std::array<double, 3>& squared_edge, double area) {
+  // squared_edge[k] is opposite corner k.
+  const auto& e = squared_edge;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (e[k] >= e[(k + 1) % 3] + e[(k + 2) % 3]) {
+      std::array<double, 3> shares{area / 4, area / 4, area / 4};
+      shares[k] = area / 2;
+      return shares;
+    }
+  std::array<double, 3> shares{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+    const auto cotangent = [&](std::size_t c) {
+      return (e[(c + 1) % 3] + e[(c + 2) % 3] - e[c]) / (4 * area);
+    };
+    shares[k] = (e[l] * cotangent(l) + e[m] * cotangent(m)) / 8;
+  }
+  return shares;
+}
+
+struct TriangleMeasure {
+  double flat_area, area, stretch;
+  std::array<double, 3> flat_share, share;
+};
+
+TriangleMeasure measure_triangle(const FilmMesh& film, const DipState& state, std::size_t t) {
+  const Triangle& v = film.triangles[t];
+  std::array<double, 3> flat{}, now{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto a = std::size_t(v[(k + 1) % 3]), b = std::size_t(v[(k + 2) % 3]);
+    flat[k] = (film.u[a] - film.u[b]).squaredNorm();
+    now[k] = (state.position[a] - state.position[b]).squaredNorm();
+  }
+  const auto at = [&](std::size_t k) -> const Vec3& { return state.position[std::size_t(v[k])]; };
+  TriangleMeasure m{};
+  m.flat_area = 0.5 * cross2(film.u[std::size_t(v[1])] - film.u[std::size_t(v[0])],
+                             film.u[std::size_t(v[2])] - film.u[std::size_t(v[0])]);
+  m.area = 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
+  const RestTriangle rest = rest_triangle(film.u[std::size_t(v[0])], film.u[std::size_t(v[1])],
+                                          film.u[std::size_t(v[2])]);
+  // Largest singular value of dX/du, from the metric G = (dX/du)^T (dX/du).
+  Eigen::Matrix<double, 3, 2> J = Eigen::Matrix<double, 3, 2>::Zero();
+  for (std::size_t k = 0; k < 3; ++k) J += at(k) * rest.gradient.row(Eigen::Index(k));
+  const Mat2 G = J.transpose() * J;
+  const double half = 0.5 * G.trace();
+  m.stretch = std::sqrt(half + std::sqrt(std::max(0.0, half * half - G.determinant())));
+  m.flat_share = voronoi_shares(flat, m.flat_area);
+  if (m.area > 1e-12 * m.flat_area) m.share = voronoi_shares(now, m.area);
+  return m;
+}
+
+}  // namespace
+
+DippedFilm measured(const FilmMesh& film, const DipState& state, const DipOptions& options) {
+  DippedFilm result;
+  result.mesh = film;
+  result.position = state.position;
+  result.state = state.state;
+  result.torn = state.torn;
+  result.depth_mm = state.level;
+
+  const std::size_t vertices = film.u.size();
+  // Vertices on the object are measured on the film that lies there; others on all around them.
+  std::vector<double> flat(vertices, 0), now(vertices, 0), stretch(vertices, 0),
+      weight(vertices, 0);
+  std::vector<TriangleMeasure> measures;
+  measures.reserve(film.triangles.size());
+  for (std::size_t t = 0; t < film.triangles.size(); ++t) {
+    measures.push_back(measure_triangle(film, state, t));
+    const double limit = options.material.tear_stretch;
+    const Triangle& v = film.triangles[t];
+    const bool on_object = std::all_of(v.begin(), v.end(), [&](std::int32_t i) {
+      return state.state[std::size_t(i)] == VertexState::kAttached;
+    });
+    if (limit > 0 && on_object && measures.back().stretch > limit) result.torn[t] = 1;
+  }
+  std::vector<std::uint8_t> done(vertices, 0);
+  const auto gather = [&](auto counts) {
+    for (std::size_t t = 0; t < film.triangles.size(); ++t) {
+      if (!counts(t)) continue;
+      const TriangleMeasure& m = measures[t];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto v = std::size_t(film.triangles[t][k]);
+        if (done[v]) continue;
+        flat[v] += m.flat_share[k];
+        now[v] += m.share[k];
+        stretch[v] += m.flat_area * m.stretch;
+        weight[v] += m.flat_area;
+      }
+    }
+    for (std::size_t v = 0; v < vertices; ++v) done[v] = flat[v] > 0;
+  };
+  gather([&](std::size_t t) { return result.lies_on_object(t); });
+  gather([](std::size_t) { return true; });
+  result.area_ratio.resize(vertices);
+  result.stretch.resize(vertices);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    result.area_ratio[v] = flat[v] > 0 ? now[v] / flat[v] : 1;
+    result.stretch[v] = weight[v] > 0 ? stretch[v] / weight[v] : 1;
+  }
+  return result;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,53 @@
+// What both discretisations of the dip share: the state they advance and their interface.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/context.h"
+#include "dip/dip.h"
+#include "elastic/relaxation.h"
+
+namespace hydrodip {
+
+// Everything a scheme reads; outlives it.
+struct DipSetting {
+  const FilmMesh& film;
+  const std::vector<Vec3>& positions;  // the object's
+  const std::vector<Triangle>& triangles;
+  const Surface& surface;
+  const DipOptions& options;
+};
+
+// The film during the dip. The object stands still, the water rises. Floating vertices have
+// position.z() == level.
+struct DipState {
+  double level = 0;
+  std::vector<Vec3> position;
+  std::vector<VertexState> state;
+  std::vector<std::uint8_t> torn;  // per triangle
+  DipStatistics statistics;
+};
+
+class Scheme {
+ public:
+  virtual ~Scheme() = default;
+  // Raises the water to the level and brings the film to rest there.
+  virtual void advance(double level) = 0;
+};
+
+std::unique_ptr<Scheme> make_contact_line_scheme(const DipSetting& setting, DipState& state);
+std::unique_ptr<Scheme> make_paper_scheme(const DipSetting& setting, DipState& state);
+
+// Relaxes, and adds to the statistics.
+void relax_film(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
+                LinearSolver& solver, VertexVector& u, DipStatistics& statistics);
+
+// First contact of a point moving straight from one place to another, both ends included.
+struct Contact {
+  Vec3 position;
+  Vec3 normal;  // of the object there, unit
+};
+std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, const Vec3& to);
+
+}  // namespace hydrodip

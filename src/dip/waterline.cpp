@@ -1,0 +1,184 @@
+#include "dip/waterline.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace hydrodip {
+
+namespace {
+
+// Steeper than this counts as a vertical wall; keeps slopes finite.
+constexpr double kMaxSteepness = 1e6;
+
+double bottom(const std::vector<Vec3>& p, const Triangle& t) {
+  return std::min({p[std::size_t(t[0])].z(), p[std::size_t(t[1])].z(), p[std::size_t(t[2])].z()});
+}
+double top(const std::vector<Vec3>& p, const Triangle& t) {
+  return std::max({p[std::size_t(t[0])].z(), p[std::size_t(t[1])].z(), p[std::size_t(t[2])].z()});
+}
+
+}  // namespace
+
+Waterline::Waterline(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                     double cell_mm)
+    : positions_(positions), triangles_(triangles), cell_(cell_mm) {
+  by_bottom_.resize(triangles.size());
+  std::iota(by_bottom_.begin(), by_bottom_.end(), 0);
+  std::vector<double> bottoms(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) bottoms[t] = bottom(positions, triangles[t]);
+  std::stable_sort(by_bottom_.begin(), by_bottom_.end(), [&](std::int32_t a, std::int32_t b) {
+    return bottoms[std::size_t(a)] < bottoms[std::size_t(b)];
+  });
+}
+
+// A corner at exactly the level counts as above it, so every triangle is cut in 0 or 2 edges.
+void Waterline::raise_to(double level) {
+  level_ = level;
+  while (next_ < by_bottom_.size() &&
+         bottom(positions_, triangles_[std::size_t(by_bottom_[next_])]) < level)
+    active_.push_back(by_bottom_[next_++]);
+  std::erase_if(
+      active_, [&](std::int32_t t) { return top(positions_, triangles_[std::size_t(t)]) < level; });
+  segments_.clear();
+  for (std::int32_t t : active_) cut(t);
+  build_grid();
+}
+
+void Waterline::cut(std::int32_t triangle) {
+  const Triangle& t = triangles_[std::size_t(triangle)];
+  const Vec3* p[3] = {&positions_[std::size_t(t[0])], &positions_[std::size_t(t[1])],
+                      &positions_[std::size_t(t[2])]};
+  Vec2 ends[2];
+  int found = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 *a = p[k], *b = p[(k + 1) % 3];
+    if ((a->z() >= level_) == (b->z() >= level_)) continue;
+    // From the lower end, so that both triangles of an edge cut it at the same point.
+    if (a->z() > b->z()) std::swap(a, b);
+    const double s = (level_ - a->z()) / (b->z() - a->z());
+    if (found < 2) ends[found++] = a->head<2>() + s * (b->head<2>() - a->head<2>());
+  }
+  if (found < 2) return;
+  const Vec3 n = (*p[1] - *p[0]).cross(*p[2] - *p[0]);
+  const double horizontal = n.head<2>().norm();
+  if (!(horizontal > 0)) return;
+  Segment segment;
+  segment.a = ends[0];
+  segment.b = ends[1];
+  segment.outward = n.head<2>() / horizontal;
+  // On the surface n . (run * outward, dz) = 0.
+  segment.steepness = std::abs(n.z()) * kMaxSteepness > horizontal
+                          ? -horizontal / n.z()
+                          : std::copysign(kMaxSteepness, -n.z());
+  segments_.push_back(segment);
+}
+
+int Waterline::cell_x(double x) const {
+  return static_cast<int>(
+      std::clamp(std::floor((x - grid_origin_.x()) / cell_), 0.0, double(grid_nx_ - 1)));
+}
+int Waterline::cell_y(double y) const {
+  return static_cast<int>(
+      std::clamp(std::floor((y - grid_origin_.y()) / cell_), 0.0, double(grid_ny_ - 1)));
+}
+
+void Waterline::build_grid() {
+  Box2 box;
+  for (const Segment& s : segments_) {
+    box.add(s.a);
+    box.add(s.b);
+  }
+  grid_nx_ = grid_ny_ = 0;
+  if (segments_.empty()) return;
+  grid_origin_ = box.min;
+  const Vec2 size = box.max - box.min;
+  grid_nx_ = static_cast<int>(size.x() / cell_) + 1;
+  grid_ny_ = static_cast<int>(size.y() / cell_) + 1;
+  const auto for_cells = [&](const Segment& s, const auto& visit) {
+    const int x0 = cell_x(std::min(s.a.x(), s.b.x())), x1 = cell_x(std::max(s.a.x(), s.b.x()));
+    const int y0 = cell_y(std::min(s.a.y(), s.b.y())), y1 = cell_y(std::max(s.a.y(), s.b.y()));
+    for (int y = y0; y <= y1; ++y)
+      for (int x = x0; x <= x1; ++x) visit(std::size_t(y) * std::size_t(grid_nx_) + std::size_t(x));
+  };
+  grid_begin_.assign(std::size_t(grid_nx_) * std::size_t(grid_ny_) + 1, 0);
+  for (const Segment& s : segments_) for_cells(s, [&](std::size_t c) { ++grid_begin_[c + 1]; });
+  for (std::size_t c = 1; c < grid_begin_.size(); ++c) grid_begin_[c] += grid_begin_[c - 1];
+  grid_items_.resize(std::size_t(grid_begin_.back()));
+  std::vector<std::int32_t> fill(grid_begin_.begin(), grid_begin_.end() - 1);
+  for (std::size_t i = 0; i < segments_.size(); ++i)
+    for_cells(segments_[i], [&](std::size_t c) {
+      grid_items_[std::size_t(fill[c]++)] = static_cast<std::int32_t>(i);
+    });
+}
+
+std::optional<Waterline::Point> Waterline::exit(const Vec2& from, const Vec2& to) const {
+  if (segments_.empty()) return std::nullopt;
+  const Vec2 way = to - from;
+  double best = 2;
+  const Segment* found = nullptr;
+  const int x0 = cell_x(std::min(from.x(), to.x())), x1 = cell_x(std::max(from.x(), to.x()));
+  const int y0 = cell_y(std::min(from.y(), to.y())), y1 = cell_y(std::max(from.y(), to.y()));
+  for (int y = y0; y <= y1; ++y)
+    for (int x = x0; x <= x1; ++x) {
+      const std::size_t c = std::size_t(y) * std::size_t(grid_nx_) + std::size_t(x);
+      for (auto n = grid_begin_[c]; n < grid_begin_[c + 1]; ++n) {
+        const Segment& s = segments_[std::size_t(grid_items_[std::size_t(n)])];
+        if (way.dot(s.outward) <= 0) continue;
+        const Vec2 edge = s.b - s.a;
+        const double det = cross2(way, edge);
+        if (det == 0) continue;
+        const double along = cross2(s.a - from, edge) / det;
+        const double across = cross2(s.a - from, way) / det;
+        if (along < 0 || along > 1 || across < 0 || across > 1 || along >= best) continue;
+        best = along;
+        found = &s;
+      }
+    }
+  if (!found) return std::nullopt;
+  return Point{from + best * way, found->outward, found->steepness};
+}
+
+std::optional<Waterline::Point> Waterline::closest(const Vec2& point, double max_distance) const {
+  if (segments_.empty()) return std::nullopt;
+  double best = max_distance * max_distance;
+  const Segment* found = nullptr;
+  Vec2 position = point;
+  const int cx = static_cast<int>(std::floor((point.x() - grid_origin_.x()) / cell_));
+  const int cy = static_cast<int>(std::floor((point.y() - grid_origin_.y()) / cell_));
+  const int rings = static_cast<int>(std::ceil(max_distance / cell_)) + 1;
+  const auto visit = [&](int x, int y) {
+    if (x < 0 || y < 0 || x >= grid_nx_ || y >= grid_ny_) return;
+    const std::size_t c = std::size_t(y) * std::size_t(grid_nx_) + std::size_t(x);
+    for (auto n = grid_begin_[c]; n < grid_begin_[c + 1]; ++n) {
+      const Segment& s = segments_[std::size_t(grid_items_[std::size_t(n)])];
+      const Vec2 edge = s.b - s.a;
+      const double length2 = edge.squaredNorm();
+      const double at = length2 > 0 ? std::clamp((point - s.a).dot(edge) / length2, 0.0, 1.0) : 0.0;
+      const Vec2 candidate = s.a + at * edge;
+      const double distance2 = (candidate - point).squaredNorm();
+      if (distance2 < best) {
+        best = distance2;
+        found = &s;
+        position = candidate;
+      }
+    }
+  };
+  for (int ring = 0; ring <= rings; ++ring) {
+    // Cells of this ring are at least (ring - 1) cells away.
+    if (found && best < std::pow(std::max(0, ring - 1) * cell_, 2)) break;
+    for (int x = cx - ring; x <= cx + ring; ++x) {
+      visit(x, cy - ring);
+      if (ring > 0) visit(x, cy + ring);
+    }
+    for (int y = cy - ring + 1; y <= cy + ring - 1; ++y) {
+      visit(cx - ring, y);
+      visit(cx + ring, y);
+    }
+  }
+  if (!found) return std::nullopt;
+  return Point{position, found->outward, found->steepness};
+}
+
+}  // namespace hydrodip

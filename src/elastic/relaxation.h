@@ -1,0 +1,31 @@
+// Quasi-static elasticity (paper section 3.2, step 3): the film coordinates that minimise the
+// energy, by Newton's method with line search.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "elastic/film_energy.h"
+#include "elastic/linear_solver.h"
+
+namespace hydrodip {
+
+struct RelaxationOptions {
+  double tolerance_mm = 1e-5;  // stop once no vertex moves further than this in an iteration
+  int max_iterations = 30;
+  double linear_tolerance = 1e-3;
+};
+
+struct RelaxationResult {
+  int newton_iterations = 0;
+  long linear_iterations = 0;
+  double last_update_mm = 0;  // largest move in the last iteration
+  bool converged = false;
+};
+
+// Minimises energy.value(u) over the vertices with is_free 1, from the u given. Never turns over a
+// triangle that was not turned over, and never raises the energy.
+RelaxationResult relax(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
+                       const RelaxationOptions& options, LinearSolver& solver, VertexVector& u);
+
+}  // namespace hydrodip

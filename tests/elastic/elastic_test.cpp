@@ -1,0 +1,238 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <random>
+
+#include "elastic/film_energy.h"
+#include "elastic/linear_solver.h"
+#include "elastic/relaxation.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr double kPoissonRatios[] = {-0.3, 0.0, 0.3, 0.49};
+
+// A small film with every triangle at its own rest shape, stiffness and strain.
+struct RandomFilm {
+  FilmMesh mesh =
+      make_film_mesh({.width_mm = 60, .height_mm = 50, .margin_mm = 5, .elements = 120});
+  std::vector<double> modulus;
+  std::vector<RestTriangle> rest;
+  VertexVector u;
+  std::vector<std::uint8_t> is_free;
+
+  explicit RandomFilm(unsigned seed) {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    VertexVector x = mesh.u;
+    u = mesh.u;
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      x[v] += 0.12 * mesh.cell_mm * Vec2(unit(generator), unit(generator));
+      u[v] = 0.8 * u[v] + 0.12 * mesh.cell_mm * Vec2(unit(generator), unit(generator));
+      is_free.push_back(!mesh.on_rim[v]);
+    }
+    for (const Triangle& t : mesh.triangles) {
+      modulus.push_back(std::exp(2 * unit(generator)));
+      rest.push_back(
+          rest_triangle(x[std::size_t(t[0])], x[std::size_t(t[1])], x[std::size_t(t[2])]));
+    }
+  }
+  FilmEnergy energy(double poisson) const {
+    FilmEnergy e(mesh, modulus, poisson);
+    e.set_rest(rest);
+    return e;
+  }
+};
+
+TEST(Corotated, EnergyVanishesExactlyForRotations) {
+  for (double nu : kPoissonRatios)
+    for (double angle : {0.0, 0.3, 2.0, -3.1}) {
+      Mat2 R;
+      R << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+      EXPECT_NEAR(energy_density(R, lame(2.5, nu)), 0, 1e-28);
+      EXPECT_NEAR(stress(R, lame(2.5, nu)).norm(), 0, 1e-14);
+    }
+}
+
+// Equation 3 evaluated from the singular values: tr(S - I) and |S - I| directly.
+TEST(Corotated, EnergyIsThePapersEquation3) {
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int i = 0; i < 100; ++i) {
+    Mat2 F = Mat2::Identity();
+    for (int k = 0; k < 4; ++k) F(k / 2, k % 2) += 0.4 * unit(generator);
+    if (F.determinant() < 0.05) continue;
+    const Vec2 s = Eigen::JacobiSVD<Mat2>(F).singularValues();
+    for (double nu : kPoissonRatios) {
+      const double K = 3;
+      const double trace = s.sum() - 2;
+      const double expected = K * (s - Vec2::Ones()).squaredNorm() / (2 * (1 + nu)) +
+                              K * nu * trace * trace / (2 * (1 + nu) * (1 - 2 * nu));
+      EXPECT_NEAR(energy_density(F, lame(K, nu)), expected, 1e-10 * std::max(1.0, expected));
+    }
+    EXPECT_NEAR(largest_stretch(F), 1 / s.minCoeff(), 1e-9);
+  }
+}
+
+TEST(Corotated, RestTriangleReproducesLinearMaps) {
+  const Vec2 a(1, 2), b(4, 2.5), c(2, 6);
+  Mat2 M;
+  M << 1.2, 0.3, -0.1, 0.9;
+  const RestTriangle rest = rest_triangle(a, b, c);
+  EXPECT_NEAR((deformation_gradient(rest, M * a, M * b, M * c) - M).norm(), 0, 1e-14);
+  EXPECT_EQ(rest_triangle(a, c, b).area, 0);
+  const RestTriangle in_space =
+      rest_triangle(Vec3(0, 0, 0), Vec3(3, 0, 4), Vec3(0, 2, 0));  // right angle, legs 5 and 2
+  EXPECT_NEAR(in_space.area, 5, 1e-12);
+}
+
+TEST(FilmEnergy, GradientMatchesFiniteDifferences) {
+  for (double nu : kPoissonRatios) {
+    const RandomFilm film(7);
+    const FilmEnergy energy = film.energy(nu);
+    VertexVector gradient;
+    energy.gradient(film.u, film.is_free, gradient);
+    double scale = 0, worst = 0;
+    for (std::size_t v = 0; v < film.u.size(); ++v) {
+      if (!film.is_free[v]) {
+        EXPECT_EQ(gradient[v].norm(), 0);
+        continue;
+      }
+      for (int k = 0; k < 2; ++k) {
+        const double h = 1e-4;
+        // Fourth-order central difference.
+        const auto at = [&](double d) {
+          VertexVector u = film.u;
+          u[v][k] += d;
+          return energy.value(u);
+        };
+        const double fd = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+        scale = std::max(scale, std::abs(fd));
+        worst = std::max(worst, std::abs(fd - gradient[v][k]));
+      }
+    }
+    EXPECT_LT(worst, 1e-6 * scale) << nu;
+  }
+}
+
+TEST(FilmEnergy, HessianMatchesFiniteDifferences) {
+  for (double nu : kPoissonRatios) {
+    const RandomFilm film(8);
+    const FilmEnergy energy = film.energy(nu);
+    const std::vector<std::uint8_t> all(film.u.size(), 1);
+    BlockMatrix H;
+    energy.hessian(film.u, false, H);
+    double scale = 0, worst = 0;
+    for (std::size_t w = 0; w < film.u.size(); ++w)
+      for (int k = 0; k < 2; ++k) {
+        const double h = 1e-3;
+        const auto at = [&](double d) {
+          VertexVector u = film.u, g;
+          u[w][k] += d;
+          energy.gradient(u, all, g);
+          return g;
+        };
+        const VertexVector p1 = at(h), m1 = at(-h), p2 = at(2 * h), m2 = at(-2 * h);
+        for (std::size_t v = 0; v < film.u.size(); ++v) {
+          Vec2 analytic = Vec2::Zero();
+          for (auto s = H.row_begin[v]; s < H.row_begin[v + 1]; ++s)
+            if (std::size_t(H.column[std::size_t(s)]) == w)
+              analytic = H.block[std::size_t(s)].col(k);
+          const Vec2 fd = (8 * (p1[v] - m1[v]) - (p2[v] - m2[v])) / (12 * h);
+          scale = std::max(scale, fd.norm());
+          worst = std::max(worst, (fd - analytic).norm());
+        }
+      }
+    EXPECT_LT(worst, 1e-6 * scale) << nu;
+  }
+}
+
+Eigen::MatrixXd dense(const BlockMatrix& H) {
+  const auto n = Eigen::Index(H.row_begin.size()) - 1;
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  for (Eigen::Index v = 0; v < n; ++v)
+    for (auto s = H.row_begin[std::size_t(v)]; s < H.row_begin[std::size_t(v) + 1]; ++s)
+      M.block<2, 2>(2 * v, 2 * H.column[std::size_t(s)]) = H.block[std::size_t(s)];
+  return M;
+}
+
+TEST(FilmEnergy, ProjectedHessianIsDefiniteAndExactWhereNothingWasProjected) {
+  const RandomFilm film(9);
+  for (double nu : kPoissonRatios) {
+    const FilmEnergy energy = film.energy(nu);
+    BlockMatrix H;
+    energy.hessian(film.u, true, H);
+    const Eigen::MatrixXd M = dense(H);
+    EXPECT_LT((M - M.transpose()).norm(), 1e-12 * M.norm());
+    const Eigen::VectorXd eigenvalues =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M).eigenvalues();
+    EXPECT_GT(eigenvalues.minCoeff(), -1e-10 * eigenvalues.maxCoeff());
+
+    VertexVector wide = film.u;  // tr S > 2 everywhere: nothing to project
+    for (Vec2& p : wide) p *= 2;
+    BlockMatrix exact;
+    energy.hessian(wide, true, H);
+    energy.hessian(wide, false, exact);
+    EXPECT_LT((dense(H) - dense(exact)).norm(), 1e-12 * dense(exact).norm());
+  }
+}
+
+TEST(LinearSolver, BothSolversSolve) {
+  const RandomFilm film(10);
+  for (double nu : kPoissonRatios) {
+    const FilmEnergy energy = film.energy(nu);
+    BlockMatrix H;
+    energy.hessian(film.u, true, H);
+    VertexVector b(film.u.size()), exact, iterative;
+    for (std::size_t v = 0; v < b.size(); ++v)
+      b[v] = Vec2(std::sin(double(v)), std::cos(2.0 * double(v)));
+    const auto direct = make_direct_solver();
+    const auto laplacian = make_laplacian_solver();
+    EXPECT_TRUE(direct->solve(energy, H, film.is_free, b, 0, exact).converged);
+    EXPECT_TRUE(laplacian->solve(energy, H, film.is_free, b, 1e-10, iterative).converged);
+    double scale = 0, worst = 0;
+    for (std::size_t v = 0; v < b.size(); ++v) {
+      Vec2 residual = Vec2::Zero();
+      for (auto s = H.row_begin[v]; s < H.row_begin[v + 1]; ++s)
+        residual += H.block[std::size_t(s)] * exact[std::size_t(H.column[std::size_t(s)])];
+      if (film.is_free[v])
+        EXPECT_LT((residual - b[v]).norm(), 1e-9);
+      else
+        EXPECT_EQ(exact[v].norm() + iterative[v].norm(), 0);
+      scale = std::max(scale, exact[v].norm());
+      worst = std::max(worst, (exact[v] - iterative[v]).norm());
+    }
+    EXPECT_LT(worst, 1e-8 * scale);
+  }
+}
+
+// Uniform stretching by moving the rim: the linear map is the exact minimiser for every ratio.
+TEST(Relaxation, RecoversALinearMapFromAnyStart) {
+  for (double nu : {0.0, 0.4}) {
+    RandomFilm film(11);
+    Mat2 M;
+    M << 0.9, 0.05, 0.05, 0.8;
+    VertexVector expected = film.mesh.u;
+    for (Vec2& p : expected) p = M * p;
+    for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
+      const Triangle& v = film.mesh.triangles[t];
+      film.modulus[t] = 1;
+      film.rest[t] = rest_triangle(film.mesh.u[std::size_t(v[0])], film.mesh.u[std::size_t(v[1])],
+                                   film.mesh.u[std::size_t(v[2])]);
+    }
+    const FilmEnergy energy = film.energy(nu);
+    VertexVector u = expected;
+    for (std::size_t v = 0; v < u.size(); ++v)
+      if (film.is_free[v]) u[v] += 0.1 * film.mesh.cell_mm * Vec2(std::sin(7.0 * double(v)), 0.5);
+    const auto solver = make_laplacian_solver();
+    const RelaxationResult result =
+        relax(energy, film.is_free, {.tolerance_mm = 1e-10}, *solver, u);
+    EXPECT_TRUE(result.converged);
+    for (std::size_t v = 0; v < u.size(); ++v) EXPECT_LT((u[v] - expected[v]).norm(), 1e-7);
+  }
+}
+
+}  // namespace
+}  // namespace hydrodip
