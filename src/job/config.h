@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "dip/dip.h"
 #include "film/film.h"
@@ -45,6 +46,7 @@ struct JobConfig {
   std::filesystem::path model;
   std::filesystem::path film_image;  // simulate: the image that was printed; may be empty
   std::filesystem::path output;      // folder
+  std::vector<std::filesystem::path> settings_files;  // profiles and configs read, for the report
 
   ObjectOptions object;
   FilmOptions film;

@@ -69,8 +69,11 @@ std::vector<Setting> film_settings(const std::string& film) {
 }
 
 void apply_sources(JobConfig& config, const SettingSources& sources) {
-  for (const auto& file : sources.profiles) apply_settings(config, read_settings(file));
-  for (const auto& file : sources.configs) apply_settings(config, read_settings(file));
+  for (const auto* files : {&sources.profiles, &sources.configs})
+    for (const auto& file : *files) {
+      apply_settings(config, read_settings(file));
+      config.settings_files.push_back(file);
+    }
   apply_settings(config, sources.options);
   apply_settings(config, sources.sets);
 }

@@ -1,0 +1,108 @@
+#include "commands.h"
+
+#include "base/error.h"
+#include "job/params.h"
+
+namespace hydrodip {
+namespace {
+
+void require_model(const std::string& model, const std::string& command) {
+  if (model.empty())
+    throw InputError("name the model to " + command + ", as in 'hydrodip " + command +
+                     " mask.obj'; 'hydrodip sample' makes one to try");
+}
+
+// "models/spot.obj" goes to "spot-print" unless a folder is named.
+std::filesystem::path output_folder(const Request& request, const std::string& command) {
+  if (!request.output.empty()) return request.output;
+  return std::filesystem::path(request.model).stem().string() + "-" + command;
+}
+
+void declare_print(CLI::App& app, Request& request) {
+  declare_model(app, request);
+  declare_output(app, request, "MODEL-print");
+  declare_reporting(app, request);
+  declare_object(app, request);
+  declare_film_and_dip(app, request);
+  declare_resolution(app, request);
+  declare_configuration(app, request);
+}
+
+JobResult run_print(const Request& request, RunContext& context) {
+  require_model(request.model, "print");
+  JobConfig config = configure(request);
+  config.output = output_folder(request, "print");
+  return print_job(config, context);
+}
+
+void declare_simulate(CLI::App& app, Request& request) {
+  declare_model(app, request);
+  declare_output(app, request, "MODEL-simulate");
+  declare_reporting(app, request);
+  declare_object(app, request);
+  declare_film_image(app, request);
+  declare_film_and_dip(app, request);
+  declare_configuration(app, request);
+}
+
+JobResult run_simulate(const Request& request, RunContext& context) {
+  require_model(request.model, "simulate");
+  JobConfig config = configure(request);
+  config.output = output_folder(request, "simulate");
+  return simulate_job(config, context);
+}
+
+void declare_inspect(CLI::App& app, Request& request) {
+  declare_model(app, request);
+  declare_output(app, request, "none, nothing is written");
+  declare_reporting(app, request);
+  declare_object(app, request);
+  declare_film_and_dip(app, request);
+  declare_configuration(app, request);
+}
+
+JobResult run_inspect(const Request& request, RunContext& context) {
+  require_model(request.model, "inspect");
+  return inspect_job(configure(request), context);
+}
+
+void declare_sample_command(CLI::App& app, Request& request) {
+  declare_sample(app, request);
+  declare_output(app, request, "the current folder");
+  declare_reporting(app, request);
+}
+
+JobResult run_sample(const Request& request, RunContext& context) {
+  if (request.sample.empty()) return list_samples();
+  return sample_job(request.sample, request.output.empty() ? "." : request.output, context);
+}
+
+JobResult run_params(const Request&, RunContext&) {
+  JobResult result;
+  result.text = parameters_table();
+  result.json = parameters_json();
+  return result;
+}
+
+}  // namespace
+
+const std::vector<Command>& commands() {
+  static const std::vector<Command> table = {
+      {"print", "from a textured model to a film image, ready to print and dip",
+       "Writes print.pdf (print it at 100 %, no scaling), print.png, print.tif, film.ply,\n"
+       "preview.png, preview.glb, report.json and report.html.",
+       declare_print, run_print},
+      {"simulate", "where the film goes, and what an image on it would look like",
+       "Writes film.ply, preview.png, preview.glb, report.json and report.html.", declare_simulate,
+       run_simulate},
+      {"inspect", "size, mesh health, dip angles, what fits the film; no simulation",
+       "With -o it writes report.json.", declare_inspect, run_inspect},
+      {"sample", "write a built-in sample model with its texture", "", declare_sample_command,
+       run_sample},
+      {"params", "list every parameter: name, default, range, what it does", "", declare_reporting,
+       run_params},
+  };
+  return table;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,23 @@
+// The table of sub-commands.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "job/jobs.h"
+#include "request.h"
+
+namespace hydrodip {
+
+struct Command {
+  std::string name;
+  std::string summary;  // one line
+  std::string details;  // shown below the options; may be empty
+  void (*declare)(CLI::App& app, Request& request);
+  JobResult (*run)(const Request& request, RunContext& context);
+};
+
+const std::vector<Command>& commands();
+
+}  // namespace hydrodip

@@ -1,0 +1,71 @@
+// The command line: parses, runs a job, and turns what it returns or throws into words and an exit
+// code.
+#include <unistd.h>
+
+#include <exception>
+#include <new>
+
+#include "base/error.h"
+#include "command_line.h"
+#include "console.h"
+#include "interrupt.h"
+#include "progress.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr int kExitDone = 0;
+constexpr int kExitInput = 2;
+constexpr int kExitFailed = 3;
+
+JobResult run_with_progress(const CommandLine& line, RunContext& context) {
+  ProgressLine progress(::isatty(STDERR_FILENO) != 0);
+  if (!line.request.quiet)
+    context.on_progress(
+        [&](const std::string& stage, double fraction) { progress.update(stage, fraction); });
+  return line.command->run(line.request, context);
+}
+
+int run(const std::vector<std::string>& arguments) {
+  const CommandLine line = parse_command_line(arguments);
+  if (!line.command) {
+    print_result(line.text);
+  } else {
+    RunContext context;
+    const CancelOnInterrupt cancel_on_interrupt(context);
+    const JobResult result = run_with_progress(line, context);
+    print_result(line.request.json ? result.json : result.text);
+  }
+  finish_results();
+  return kExitDone;
+}
+
+int fail(int code, const std::string& sentence) {
+  print_error(sentence);
+  return code;
+}
+
+int run_safely(const std::vector<std::string>& arguments) {
+  try {
+    return run(arguments);
+  } catch (const InputError& error) {
+    return fail(kExitInput, error.what());
+  } catch (const DipError& error) {
+    return fail(kExitFailed, error.what());
+  } catch (const Cancelled&) {
+    print_notice("cancelled; nothing was written");
+    return kExitCancelled;
+  } catch (const std::bad_alloc&) {
+    return fail(kExitFailed, "not enough memory; a lower print.dpi or film.elements needs less");
+  } catch (const std::exception& error) {
+    return fail(kExitFailed, std::string("unexpected: ") + error.what());
+  }
+}
+
+}  // namespace
+}  // namespace hydrodip
+
+int main(int argc, char** argv) {
+  hydrodip::prepare_console();
+  return hydrodip::run_safely({argv + (argc > 0 ? 1 : 0), argv + argc});
+}

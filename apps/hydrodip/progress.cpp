@@ -1,0 +1,80 @@
+#include "progress.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "console.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr std::chrono::milliseconds kRedrawEvery{100};
+// Plain lines are for logs of long jobs; a short one, or one refused at once, needs none.
+constexpr std::chrono::seconds kQuietStart{2};
+// An estimate needs some evidence first.
+constexpr double kEstimateFrom_s = 1;
+constexpr double kEstimateFromFraction = 0.02;
+
+double seconds(std::chrono::steady_clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+std::string show_time(double duration_s) {
+  const long whole = std::lround(std::ceil(duration_s));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+}  // namespace
+
+ProgressLine::ProgressLine(bool terminal)
+    : terminal_(terminal), job_start_(Clock::now()), stage_start_(job_start_) {}
+
+void ProgressLine::update(const std::string& stage, double fraction) {
+  const auto now = Clock::now();
+  const bool new_stage = stage != stage_;
+  if (new_stage) {
+    stage_ = stage;
+    stage_start_ = now;
+    tenths_shown_ = -1;
+  }
+  if (!terminal_) {
+    if (now - job_start_ >= kQuietStart) add_line(fraction);
+  } else if (new_stage || now - last_draw_ >= kRedrawEvery) {
+    last_draw_ = now;
+    redraw(fraction);
+  }
+}
+
+void ProgressLine::clear() {
+  if (!drawn_) return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+  drawn_ = false;
+}
+
+void ProgressLine::redraw(double fraction) {
+  std::fputs(("\r\033[K" + describe(fraction)).c_str(), stderr);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+void ProgressLine::add_line(double fraction) {
+  const int tenths = static_cast<int>(10 * fraction);
+  if (tenths == tenths_shown_) return;
+  tenths_shown_ = tenths;
+  print_notice(describe(fraction));
+}
+
+std::string ProgressLine::describe(double fraction) const {
+  std::string line = fmt::format("{} {:3.0f} %", stage_, std::floor(100 * fraction));
+  const double spent_s = seconds(Clock::now() - stage_start_);
+  if (spent_s >= kEstimateFrom_s && fraction >= kEstimateFromFraction && fraction < 1)
+    line += ", " + show_time(spent_s * (1 - fraction) / fraction) + " left";
+  return line;
+}
+
+}  // namespace hydrodip

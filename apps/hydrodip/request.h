@@ -1,0 +1,39 @@
+// What the user asked for on the command line, parsed but not yet judged.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "job/settings.h"
+
+namespace CLI {
+class App;
+}
+
+namespace hydrodip {
+
+struct Request {
+  std::string model;
+  std::string sample;
+  std::string output;
+  std::string film_image;
+  SettingSources sources;
+  bool quiet = false;
+  bool json = false;
+};
+
+// Groups of options, declared where a command has them.
+void declare_model(CLI::App& app, Request& request);
+void declare_output(CLI::App& app, Request& request, const std::string& default_folder);
+void declare_reporting(CLI::App& app, Request& request);  // --json, --quiet
+void declare_object(CLI::App& app, Request& request);
+void declare_film_and_dip(CLI::App& app, Request& request);
+void declare_resolution(CLI::App& app, Request& request);
+void declare_configuration(CLI::App& app, Request& request);
+void declare_film_image(CLI::App& app, Request& request);
+void declare_sample(CLI::App& app, Request& request);
+
+// The options as a job's configuration. Throws InputError.
+JobConfig configure(const Request& request);
+
+}  // namespace hydrodip

@@ -1,0 +1,48 @@
+// The stages that print and simulate share.
+#pragma once
+
+#include <memory>
+
+#include "base/context.h"
+#include "job/config.h"
+#include "job/figures.h"
+#include "job/stage_times.h"
+#include "object/surface.h"
+#include "report/appearance.h"
+#include "transfer/film_map.h"
+#include "transfer/raster.h"
+
+namespace hydrodip {
+
+// A dipped object with everything that later stages ask. The film map refers to its neighbours, so
+// it stays where it was made.
+struct DippedObject {
+  LoadedObject loaded;  // posed
+  std::unique_ptr<Surface> surface;
+  DipResult dip;
+  std::unique_ptr<FilmMap> map;
+  DipFigures figures;
+
+  const Object& object() const { return loaded.object; }
+  const DippedFilm& film() const { return dip.film; }
+};
+
+// Simulates the dip of a posed object that fits.
+std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const JobConfig& config,
+                                         StageTimes& times, RunContext& context);
+
+// Where the sheet's pixels lie at `dpi`.
+SheetRaster sheet_raster(const JobConfig& config, double dpi);
+
+// Wanted: the model's own colours; predicted: what `film_image` leaves. Keeps references to all
+// three.
+Appearance appearance(const DippedObject& dipped, const Image& film_image,
+                      const SheetRaster& raster, const LinearColor& base);
+
+// Mirrors left and right: the film as seen from above, when the ink lies on its underside.
+Image mirrored(const Image& image);
+
+// A 10 mm checkerboard over the whole sheet: makes the film's stretch visible.
+Image checkerboard(const SheetRaster& raster);
+
+}  // namespace hydrodip

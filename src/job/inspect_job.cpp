@@ -1,0 +1,220 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "base/output_folder.h"
+#include "base/parallel.h"
+#include "job/dip_angles.h"
+#include "job/jobs.h"
+#include "job/prepare.h"
+#include "job/settings.h"
+
+namespace hydrodip {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+// Widest histogram bar, in characters.
+constexpr double kBarLength = 40;
+
+// A sheet that can be bought, and whether the object fits it.
+struct FilmChoice {
+  std::string name;
+  double width_mm = 0, height_mm = 0;
+  double excess_mm = 0;  // the worst direction's; not positive: fits
+  bool fits() const { return excess_mm <= 0; }
+};
+
+struct Inspection {
+  const JobConfig& config;
+  const LoadedObject& posed;
+  double depth_mm = 0;
+  std::vector<Fit> fit;  // film and bath of this job
+  std::vector<FilmChoice> films;
+  DipAngles angles;
+  std::vector<std::string> warnings;
+};
+
+double worst_excess_mm(const std::vector<Fit>& list) {
+  double worst = -1e300;
+  for (const Fit& fit : list) worst = std::max(worst, fit.excess_mm());
+  return worst;
+}
+
+FilmChoice try_film(const Object& posed, JobConfig config, const std::string& name, double width_mm,
+                    double height_mm) {
+  config.film.width_mm = width_mm;
+  config.film.height_mm = height_mm;
+  // The film's own limits: the bath is the same for every film.
+  config.bath = {1e9, 1e9, 1e9};
+  return {name, width_mm, height_mm, worst_excess_mm(fits(posed, config))};
+}
+
+std::vector<FilmChoice> film_choices(const Object& posed, const JobConfig& config) {
+  std::vector<FilmChoice> list;
+  for (const FilmFormat& format : film_formats()) {
+    list.push_back(try_film(posed, config, format.name, format.width_mm, format.height_mm));
+    list.push_back(
+        try_film(posed, config, format.name + "-landscape", format.height_mm, format.width_mm));
+  }
+  return list;
+}
+
+std::string share(double part, double whole) {
+  return fmt::format("{:.1f} %", whole > 0 ? 100 * part / whole : 0.0);
+}
+
+std::string describe_size(const Inspection& i) {
+  const Vec3 size = i.posed.object.bounds().size();
+  return fmt::format(
+      "size         {:.2f} x {:.2f} x {:.2f} mm (x, y, z as posed; read as {})\n"
+      "dipped       {:.2f} mm deep\n",
+      size.x(), size.y(), size.z(), i.posed.units, i.depth_mm);
+}
+
+std::string describe_mesh(const Inspection& i) {
+  const MeshHealth& h = i.posed.health;
+  std::string text = fmt::format(
+      "mesh         {} triangles, {} vertices, {} {}, {}; area {:.0f} mm2, volume {:.0f} mm3\n",
+      h.triangles, h.vertices, h.shells, h.shells == 1 ? "shell" : "shells",
+      h.closed() ? "closed" : "open", h.area_mm2, h.volume_mm3);
+  text += fmt::format("appearance   {}\n", i.posed.object.has_appearance()
+                                               ? "textured or coloured"
+                                               : "none: print needs UVs and --texture, or colours");
+  return text;
+}
+
+std::string describe_fit(const Inspection& i) {
+  std::string text;
+  for (const Fit& fit : i.fit)
+    text +=
+        fmt::format("{:<12} {:.2f} of {:.2f} mm {}: {}\n", fit.room == "the bath" ? "bath" : "film",
+                    fit.needed_mm, fit.available_mm, fit.what,
+                    fit.excess_mm() > 0 ? fmt::format("{:.2f} mm too much", fit.excess_mm())
+                                        : std::string("fits"));
+  std::string fitting;
+  for (const FilmChoice& film : i.films)
+    if (film.fits()) fitting += (fitting.empty() ? "" : ", ") + film.name;
+  return text + "fits on      " + (fitting.empty() ? "no standard film" : fitting) + "\n";
+}
+
+std::string describe_angles(const DipAngles& a) {
+  std::string text = fmt::format(
+      "dip angles   between dipping direction and surface; film may tear beyond {:.0f} degrees\n",
+      kDipAngleLimit_deg);
+  const double longest = *std::max_element(a.area_mm2.begin(), a.area_mm2.end());
+  for (int bin = 0; bin < DipAngles::kBins; ++bin) {
+    const double area = a.area_mm2[static_cast<std::size_t>(bin)];
+    const auto bar = static_cast<std::size_t>(longest > 0 ? kBarLength * area / longest : 0);
+    text += fmt::format("  {:2} to {:2}   {:>7}  {}\n", 10 * bin, 10 * (bin + 1),
+                        share(area, a.downward_mm2), std::string(bar, '#'));
+  }
+  return text + fmt::format("  {} of the surface that faces down is beyond the limit\n",
+                            share(a.over_limit_mm2, a.downward_mm2));
+}
+
+std::string describe(const Inspection& i) {
+  std::string text =
+      describe_size(i) + describe_mesh(i) + describe_fit(i) + describe_angles(i.angles);
+  for (const std::string& warning : i.warnings) text += "warning: " + warning + "\n";
+  return text;
+}
+
+json health_json(const MeshHealth& h) {
+  return {{"vertices", h.vertices},
+          {"triangles", h.triangles},
+          {"degenerate_removed", h.degenerate_removed},
+          {"duplicates_removed", h.duplicates_removed},
+          {"flipped", h.flipped},
+          {"boundary_edges", h.boundary_edges},
+          {"holes", h.holes},
+          {"nonmanifold_edges", h.nonmanifold_edges},
+          {"shells", h.shells},
+          {"closed", h.closed()},
+          {"volume_mm3", h.volume_mm3},
+          {"area_mm2", h.area_mm2},
+          {"findings", h.findings()}};
+}
+
+json angles_json(const DipAngles& a) {
+  return {{"limit_deg", kDipAngleLimit_deg},
+          {"bin_deg", 10},
+          {"area_mm2", a.area_mm2},
+          {"downward_mm2", a.downward_mm2},
+          {"vertical_or_upward_mm2", a.upward_mm2},
+          {"over_limit_mm2", a.over_limit_mm2},
+          {"over_limit_share", a.over_limit_share()}};
+}
+
+json fit_json(const std::vector<Fit>& list) {
+  json all = json::array();
+  for (const Fit& fit : list)
+    all.push_back({{"direction", fit.what},
+                   {"room", fit.room},
+                   {"needed_mm", fit.needed_mm},
+                   {"available_mm", fit.available_mm},
+                   {"fits", fit.excess_mm() <= 0}});
+  return all;
+}
+
+json films_json(const std::vector<FilmChoice>& films) {
+  json all = json::array();
+  for (const FilmChoice& film : films)
+    all.push_back({{"name", film.name},
+                   {"width_mm", film.width_mm},
+                   {"height_mm", film.height_mm},
+                   {"fits", film.fits()}});
+  return all;
+}
+
+std::string machine_readable(const Inspection& i) {
+  const Vec3 size = i.posed.object.bounds().size();
+  const json all = {{"schema_version", 1},
+                    {"command", "inspect"},
+                    {"model", i.config.model.string()},
+                    {"units", i.posed.units},
+                    {"size_mm", {size.x(), size.y(), size.z()}},
+                    {"depth_mm", i.depth_mm},
+                    {"has_appearance", i.posed.object.has_appearance()},
+                    {"mesh", health_json(i.posed.health)},
+                    {"fit", fit_json(i.fit)},
+                    {"films", films_json(i.films)},
+                    {"dip_angles", angles_json(i.angles)},
+                    {"warnings", i.warnings}};
+  return all.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+void write_report(const std::filesystem::path& output, const std::string& report) {
+  OutputFolder folder(output);
+  write_file(folder.path("report.json"), report);
+  folder.commit();
+}
+
+}  // namespace
+
+JobResult inspect_job(const JobConfig& config, RunContext& context) {
+  const ThreadLimit threads(config.threads);
+  const LoadedObject posed = load_posed(config, context);
+  const double depth_mm = dip_depth_mm(posed.object, config);
+  const Inspection inspection{config,
+                              posed,
+                              depth_mm,
+                              fits(posed.object, config),
+                              film_choices(posed.object, config),
+                              dip_angles(posed.object, depth_mm),
+                              context.warnings()};
+  JobResult result;
+  result.text = describe(inspection);
+  result.json = machine_readable(inspection);
+  context.check_cancelled();
+  if (config.output.empty()) return result;
+  write_report(config.output, result.json);
+  result.folder = config.output;
+  result.files = {"report.json"};
+  result.text += fmt::format("wrote {}\n", (config.output / "report.json").string());
+  return result;
+}
+
+}  // namespace hydrodip

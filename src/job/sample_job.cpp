@@ -1,0 +1,46 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/output_folder.h"
+#include "job/jobs.h"
+#include "object/samples.h"
+
+namespace hydrodip {
+
+JobResult sample_job(const std::string& name, const std::filesystem::path& folder,
+                     RunContext& context) {
+  make_sample(name);  // refuses unknown names before a folder is made
+  OutputFolder output(folder);
+  const std::string model = name + ".obj";
+  JobResult result;
+  result.folder = folder;
+  result.files = write_sample(name, output.path(model).parent_path());
+  for (const std::string& file : result.files)
+    if (file != model) output.path(file);
+  context.check_cancelled();
+  output.commit();
+
+  for (const std::string& file : result.files)
+    result.text += fmt::format("wrote {}\n", (folder / file).string());
+  result.text += fmt::format("try: hydrodip print {}\n", (folder / model).string());
+  result.json =
+      nlohmann::ordered_json{
+          {"command", "sample"}, {"folder", folder.string()}, {"files", result.files}}
+          .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+      "\n";
+  return result;
+}
+
+JobResult list_samples() {
+  JobResult result;
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const SampleInfo& sample : samples()) {
+    result.text += fmt::format("{:<10} {}\n", sample.name, sample.description);
+    list.push_back({{"name", sample.name}, {"description", sample.description}});
+  }
+  result.json = nlohmann::ordered_json{{"samples", list}}.dump(2) + "\n";
+  return result;
+}
+
+}  // namespace hydrodip
