@@ -1,0 +1,33 @@
+#include <cstring>
+
+#include "image/files.h"
+#include "sheet/page.h"
+#include "sheet/sheet.h"
+
+namespace hydrodip {
+
+namespace {
+
+Image mirrored_image(const Image& image) {
+  Image result(image.width_px, image.height_px);
+  for (int y = 0; y < image.height_px; ++y) {
+    for (int x = 0; x < image.width_px; ++x) {
+      std::memcpy(result.pixel(image.width_px - 1 - x, y), image.pixel(x, y), 4);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+void write_print_png(const std::filesystem::path& path, const Image& image,
+                     const SheetOptions& options) {
+  check_sheet(image, options);
+  if (options.ink_side_up) {
+    save_png(path, image, options.dpi);
+  } else {
+    save_png(path, mirrored_image(image), options.dpi);
+  }
+}
+
+}  // namespace hydrodip
