@@ -37,8 +37,9 @@ struct Foot {
   Vec2 laid = Vec2::Zero();   // film between the attached vertex and the point, in film coordinates
   Vec2 way = Vec2::Zero();    // the same on the object, unrolled into the water plane
   Mat2 F = Mat2::Identity();  // du/dX of the floating film there
-  Vec2 last_way = Vec2::Zero();     // way of the present step
-  Vec2 laid_before = Vec2::Zero();  // laid at its start
+  Mat2 F_before = Mat2::Identity();  // one step earlier
+  Vec2 last_way = Vec2::Zero();      // way of the present step
+  Vec2 laid_before = Vec2::Zero();   // laid at its start
   Vec2 ghost = Vec2::Zero();
 };
 
@@ -136,21 +137,22 @@ class ContactLineScheme : public Scheme {
       const Waterline::Point to = line_near(foot.point.head<2>(), foot.outward);
       foot.last_way = unrolled(foot.point, foot.steepness, to, level);
       foot.laid_before = foot.laid;
-      foot.laid += foot.F * foot.last_way;
+      const Mat2 F_next = 2 * foot.F - foot.F_before;
+      foot.laid += 0.5 * (foot.F + F_next) * foot.last_way;
       foot.way += foot.last_way;
       foot.point << to.position, level;
       foot.outward = to.outward;
       foot.steepness = to.steepness;
-      place_ghost(foot);
+      place_ghost(foot, F_next);
     }
   }
 
   // Where the attached vertex would be if the film laid behind the foot were flat and strained like
   // the floating film ahead of it.
-  void place_ghost(Foot& foot) const {
+  void place_ghost(Foot& foot, const Mat2& F) const {
     Vec2 back = foot.way;
-    if (usable_gradient(foot.F)) {
-      const Vec2 strained = foot.F.inverse() * foot.laid;
+    if (usable_gradient(F)) {
+      const Vec2 strained = F.inverse() * foot.laid;
       const Vec2 change = strained - foot.way;
       const double limit = 0.5 * foot.way.norm();
       back += change.norm() > limit ? Vec2(change * (limit / change.norm())) : change;
@@ -285,7 +287,10 @@ class ContactLineScheme : public Scheme {
       next_gradient_.push_back(F);
     }
     // All gradients come from the ghosts as they were; only then do they change.
-    for (std::size_t f = 0; f < feet_.size(); ++f) feet_[f].F = next_gradient_[f];
+    for (std::size_t f = 0; f < feet_.size(); ++f) {
+      feet_[f].F_before = feet_[f].F;
+      feet_[f].F = next_gradient_[f];
+    }
     next_gradient_.clear();
   }
 
@@ -312,7 +317,7 @@ class ContactLineScheme : public Scheme {
     }
     std::erase_if(feet_, [&](const Foot& foot) { return !floats(foot.floating); });
     feet_.insert(feet_.end(), created.begin(), created.end());
-    for (Foot& foot : feet_) place_ghost(foot);
+    for (Foot& foot : feet_) place_ghost(foot, foot.F);
     index_feet();
   }
 
@@ -335,7 +340,7 @@ class ContactLineScheme : public Scheme {
       const Vec2 outside = (slid_[std::size_t(w)] - from).normalized();
       const auto leaving = waterline_.exit(from, slid_[std::size_t(w)]);
       const Waterline::Point to = leaving ? *leaving : line_near(from, outside);
-      foot.F = gradient_at_edge(v, w, Mat2::Identity());
+      foot.F = foot.F_before = gradient_at_edge(v, w, Mat2::Identity());
       foot.way = unrolled(contact.position, steepness_along(contact.normal, to.outward), to, level);
       foot.laid = foot.F * foot.way;
       foot.point << to.position, level;
