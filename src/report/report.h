@@ -88,6 +88,9 @@ struct Report {
 // tears.
 std::string plain_verdict(const Coverage& coverage);
 
+// The report's own verdict, or else the plain one.
+std::string verdict_of(const Report& report);
+
 // JSON in UTF-8, keys always in the same order, areas in mm2 and lengths in mm; what is not a
 // number is null. "seconds" and "peak_memory_bytes" alone depend on the machine.
 std::string report_json(const Report& report);

@@ -1,0 +1,52 @@
+#include "report/report.h"
+
+#include <fmt/format.h>
+
+#include "base/file.h"
+
+namespace hydrodip {
+namespace {
+
+std::string percent(double share) {
+  const double value = 100 * share;
+  if (value > 0 && value < 0.1) return "under 0.1 %";
+  return value < 10 ? fmt::format("{:.1f} %", value) : fmt::format("{:.0f} %", value);
+}
+
+}  // namespace
+
+ReportInput describe_input(const std::string& role, const std::filesystem::path& path) {
+  const std::vector<std::uint8_t> bytes = read_file(path);
+  return {role, path.string(), sha256_hex(bytes), bytes.size()};
+}
+
+std::string plain_verdict(const Coverage& coverage) {
+  if (!(coverage.film_on_object_mm2 > 0)) {
+    return coverage.torn_mm2 > 0 ? "No film stays on the object: all that meets it tears."
+                                 : "No film lies on the object.";
+  }
+  const std::string start = fmt::format(
+      "The film covers {} of the surface that faces down ({} of all) and stretches up to "
+      "{:.2f} times",
+      percent(coverage.covered_downward_share()), percent(coverage.covered_share()),
+      coverage.stretch_max);
+  if (!(coverage.torn_mm2 > 0)) return start + "; it does not tear.";
+  return start + fmt::format("; it tears: {} of what meets the object is lost.",
+                             percent(coverage.torn_share()));
+}
+
+std::string verdict_of(const Report& report) {
+  if (!report.verdict.empty() || !report.coverage) return report.verdict;
+  return plain_verdict(*report.coverage);
+}
+
+void write_report_json(const std::filesystem::path& path, const Report& report) {
+  write_file(path, report_json(report));
+}
+
+void write_report_html(const std::filesystem::path& path, const Report& report,
+                       const std::vector<std::uint8_t>& preview_png) {
+  write_file(path, report_html(report, preview_png));
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,412 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/report.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr const char* kStyle = R"css(
+:root {
+  color-scheme: light dark;
+  --page: #f6f7f8; --card: #ffffff; --ink: #1a1d21; --soft: #5d6570; --line: #e1e4e8;
+  --accent: #1f6f78; --good: #1d7a46; --good-back: #e6f4ec; --care: #8a5a00; --care-back: #fdf3dc;
+}
+@media (prefers-color-scheme: dark) {
+  :root {
+    --page: #14171a; --card: #1d2125; --ink: #e8eaed; --soft: #9aa3ad; --line: #32383e;
+    --accent: #5cc0c9; --good: #6fd09a; --good-back: #16301f; --care: #f0c46a;
+    --care-back: #352a12;
+  }
+}
+* { box-sizing: border-box; }
+body {
+  margin: 0; background: var(--page); color: var(--ink);
+  font: 16px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif;
+}
+main { max-width: 60rem; margin: 0 auto; padding: 1.5rem 1rem 3rem; }
+header p { margin: 0; color: var(--soft); }
+h1 { margin: 0 0 1rem; font-size: 1.7rem; line-height: 1.25; overflow-wrap: anywhere; }
+h2 { margin: 2.2rem 0 0.6rem; font-size: 1.1rem; }
+.verdict {
+  padding: 0.9rem 1.1rem; border-radius: 0.6rem; font-size: 1.1rem;
+  background: var(--good-back); border-left: 0.3rem solid var(--good);
+}
+.verdict.care { background: var(--care-back); border-left-color: var(--care); }
+.warnings { margin: 0.8rem 0 0; padding: 0; list-style: none; }
+.warnings li {
+  margin-top: 0.4rem; padding: 0.55rem 0.9rem; border-radius: 0.5rem;
+  background: var(--care-back); overflow-wrap: anywhere;
+}
+.warnings li::before { content: "Note: "; font-weight: 600; color: var(--care); }
+img {
+  display: block; width: 100%; height: auto; margin-top: 1.2rem;
+  border: 1px solid var(--line); border-radius: 0.6rem;
+}
+.key { display: grid; grid-template-columns: repeat(auto-fit, minmax(9.5rem, 1fr)); gap: 0.7rem;
+  margin: 1.2rem 0 0; }
+.key div { padding: 0.8rem 1rem; border: 1px solid var(--line); border-radius: 0.6rem;
+  background: var(--card); }
+.key dt { color: var(--soft); font-size: 0.85rem; }
+.key dd { margin: 0; font-size: 1.45rem; font-variant-numeric: tabular-nums; }
+.key dd small { font-size: 0.9rem; color: var(--soft); }
+.card { border: 1px solid var(--line); border-radius: 0.6rem; background: var(--card);
+  overflow-x: auto; }
+table { width: 100%; border-collapse: collapse; font-size: 0.93rem; }
+th, td { padding: 0.4rem 0.9rem; text-align: left; vertical-align: top; font-weight: inherit; }
+tr + tr > * { border-top: 1px solid var(--line); }
+thead th { color: var(--soft); font-size: 0.85rem; }
+td { overflow-wrap: anywhere; }
+td.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
+td.unit, td.soft { color: var(--soft); }
+code { font: 0.86em/1.4 ui-monospace, SFMono-Regular, Menlo, Consolas, monospace;
+  overflow-wrap: anywhere; }
+tr.changed th { font-weight: 600; }
+tr.changed th::after { content: " \2022"; color: var(--accent); }
+.bar { display: block; height: 0.5rem; margin-top: 0.45rem; min-width: 2px; border-radius: 0.25rem;
+  background: var(--accent); }
+footer { margin-top: 2.5rem; color: var(--soft); font-size: 0.85rem; overflow-wrap: anywhere; }
+@media (max-width: 34rem) {
+  main { padding: 1rem 0.7rem 2rem; }
+  th, td { padding: 0.35rem 0.55rem; }
+  h1 { font-size: 1.35rem; }
+}
+@media print {
+  :root { --page: #fff; --card: #fff; --ink: #000; --soft: #444; --line: #bbb; }
+  body { font-size: 10.5pt; }
+  main { max-width: none; padding: 0; }
+  h2 { break-after: avoid; }
+  img, tr, .verdict, .key div { break-inside: avoid; }
+  img { max-height: 17cm; width: auto; max-width: 100%; }
+  .verdict, .warnings li, .bar { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+}
+)css";
+
+// Text for element content and quoted attributes alike. Bytes below the space (but line ends and
+// tabs) may not stand in HTML.
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        const auto byte = static_cast<unsigned char>(c);
+        const bool control = (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
+        out += control ? ' ' : c;
+    }
+  }
+  return out;
+}
+
+std::string base64(const std::vector<std::uint8_t>& bytes) {
+  constexpr const char* kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) {
+      out += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
+    }
+  }
+  return out;
+}
+
+// "12 345.7" with narrow spaces that do not break; four significant digits or all of an integer.
+std::string shown(double value) {
+  if (!std::isfinite(value)) return "unknown";
+  const double size = std::abs(value);
+  if (size != 0 && (size >= 1e12 || size < 1e-3)) return fmt::format("{:.3g}", value);
+  const int decimals = size >= 1000 || value == std::floor(value) ? 0
+                       : size >= 100                              ? 1
+                       : size >= 10                               ? 2
+                                                                  : 3;
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  if (size < 10000) return text;
+  for (std::size_t end = text.size(); end > (value < 0 ? 4u : 3u);) {
+    end -= 3;
+    text.insert(end, "\u202f");
+  }
+  return text;
+}
+
+// A parameter exactly as it was set.
+std::string exact(double value) { return fmt::format("{}", value); }
+
+std::string value_text(const ReportValue& value, std::string (*number)(double)) {
+  struct Visitor {
+    std::string (*number)(double);
+    std::string operator()(double v) const { return number(v); }
+    std::string operator()(std::int64_t v) const { return number(double(v)); }
+    std::string operator()(bool v) const { return v ? "yes" : "no"; }
+    std::string operator()(const std::string& v) const { return v; }
+    std::string operator()(const std::array<double, 3>& v) const {
+      return number(v[0]) + ", " + number(v[1]) + ", " + number(v[2]);
+    }
+  };
+  return std::visit(Visitor{number}, value);
+}
+
+std::string unit_text(const std::string& unit) {
+  if (unit == "mm2") return "mm\u00b2";
+  if (unit == "mm3") return "mm\u00b3";
+  if (unit == "deg") return "\u00b0";
+  return unit;
+}
+
+std::string with_unit(const std::string& value, const std::string& unit) {
+  return unit.empty() ? value : value + "\u00a0" + unit_text(unit);
+}
+
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+std::string title_of(const Report& report) {
+  if (!report.title.empty()) return report.title;
+  return report.inputs.empty() ? "hydrodip" : file_name(report.inputs.front().path);
+}
+
+bool needs_care(const Report& report) {
+  if (!report.warnings.empty()) return true;
+  return report.coverage &&
+         (report.coverage->torn_mm2 > 0 || !(report.coverage->film_on_object_mm2 > 0));
+}
+
+std::string heading(const Report& report) {
+  return fmt::format("<header>\n<p>hydrodip {}</p>\n<h1>{}</h1>\n</header>\n",
+                     escaped(report.command), escaped(title_of(report)));
+}
+
+std::string verdict(const Report& report) {
+  const std::string sentence = verdict_of(report);
+  std::string html;
+  if (!sentence.empty()) {
+    html += fmt::format("<p class=\"verdict{}\">{}</p>\n", needs_care(report) ? " care" : "",
+                        escaped(sentence));
+  }
+  if (report.warnings.empty()) return html;
+  html += "<ul class=\"warnings\">\n";
+  for (const std::string& warning : report.warnings) {
+    html += fmt::format("<li>{}</li>\n", escaped(warning));
+  }
+  return html + "</ul>\n";
+}
+
+std::string picture(const std::vector<std::uint8_t>& preview_png) {
+  if (preview_png.empty()) return "";
+  return "<img alt=\"The object as wanted beside the object as predicted, from two sides\" "
+         "src=\"data:image/png;base64," +
+         base64(preview_png) + "\">\n";
+}
+
+std::string key_figure(const std::string& label, const std::string& value,
+                       const std::string& unit) {
+  return fmt::format("<div><dt>{}</dt><dd>{}{}</dd></div>\n", escaped(label), escaped(value),
+                     unit.empty() ? "" : " <small>" + escaped(unit_text(unit)) + "</small>");
+}
+
+std::string key_figures(const Report& report) {
+  std::string cells;
+  if (report.coverage) {
+    const Coverage& c = *report.coverage;
+    cells += key_figure("Covered, facing down",
+                        shown(std::round(1000 * c.covered_downward_share()) / 10), "%");
+    cells += key_figure("Covered area", shown(c.covered_mm2), "mm2");
+    cells += key_figure("Largest stretch", fmt::format("{:.2f}", c.stretch_max), "times");
+    cells +=
+        key_figure("Torn", shown(std::round(1000 * c.torn_share()) / 10), "% of the film there");
+  }
+  for (const ReportFigure& figure : report.figures) {
+    cells += key_figure(figure.label, value_text(figure.value, shown), figure.unit);
+  }
+  return cells.empty() ? "" : "<dl class=\"key\">\n" + cells + "</dl>\n";
+}
+
+std::string section(const std::string& title, const std::string& rows) {
+  if (rows.empty()) return "";
+  return fmt::format(
+      "<section>\n<h2>{}</h2>\n<div class=\"card\"><table>\n{}</table></div>\n</section>\n", title,
+      rows);
+}
+
+std::string row(const std::string& label, const std::string& value) {
+  return fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td></tr>\n",
+                     escaped(label), escaped(value));
+}
+
+std::string outputs(const Report& report) {
+  std::string rows;
+  for (const ReportOutput& output : report.outputs) {
+    rows += fmt::format("<tr><th scope=\"row\"><code>{}</code></th><td>{}</td></tr>\n",
+                        escaped(output.name), escaped(output.description));
+  }
+  return section("Files beside this page", rows);
+}
+
+std::string coverage(const Report& report) {
+  if (!report.coverage) return "";
+  const Coverage& c = *report.coverage;
+  const auto area = [](double mm2) { return with_unit(shown(mm2), "mm2"); };
+  return section(
+      "Coverage and stretch",
+      row("Surface of the object", area(c.object_mm2)) +
+          row("of it facing down, within the dip", area(c.downward_mm2)) +
+          row("Covered by film", area(c.covered_mm2)) +
+          row("of it facing down", area(c.covered_downward_mm2)) +
+          row("Flat film that lies on the object", area(c.film_on_object_mm2)) +
+          row("Flat film that tears", area(c.torn_mm2)) +
+          row("Stretch, mean", with_unit(fmt::format("{:.3f}", c.stretch_mean), "times")) +
+          row("Stretch, largest", with_unit(fmt::format("{:.3f}", c.stretch_max), "times")) +
+          row("Area, mean", with_unit(fmt::format("{:.3f}", c.area_ratio_mean), "times")) +
+          row("Area, largest", with_unit(fmt::format("{:.3f}", c.area_ratio_max), "times")));
+}
+
+std::string mesh(const Report& report) {
+  if (!report.mesh) return "";
+  const MeshHealth& m = *report.mesh;
+  const auto count = [](const std::string& label, long number) {
+    return number == 0 ? "" : row(label, shown(double(number)));
+  };
+  std::string rows =
+      row("Triangles", shown(double(m.triangles))) + row("Vertices", shown(double(m.vertices))) +
+      row("Shells", shown(double(m.shells))) + row("Closed surface", m.closed() ? "yes" : "no") +
+      row("Surface", with_unit(shown(m.area_mm2), "mm2")) +
+      row("Volume", with_unit(shown(m.volume_mm3), "mm3")) +
+      count("Degenerate triangles removed", m.degenerate_removed) +
+      count("Duplicate triangles removed", m.duplicates_removed) +
+      count("Triangles turned over", m.flipped) + count("Holes", m.holes) +
+      count("Edges along holes", m.boundary_edges) +
+      count("Edges with more than two triangles", m.nonmanifold_edges);
+  for (const std::string& finding : m.findings()) {
+    rows += fmt::format("<tr><td colspan=\"2\">{}</td></tr>\n", escaped(finding));
+  }
+  return section("The model's mesh", rows);
+}
+
+std::string rounds(const Report& report) {
+  std::string rows;
+  for (const ReportRound& round : report.rounds) {
+    std::string figures;
+    for (const ReportFigure& figure : round.figures) {
+      if (!figures.empty()) figures += "; ";
+      figures += figure.label + " " + with_unit(value_text(figure.value, shown), figure.unit);
+    }
+    rows +=
+        fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td><td>{}</td></tr>\n",
+                    escaped(round.process), round.round, escaped(figures));
+  }
+  return section("Convergence, round by round", rows);
+}
+
+std::string parameter_rows(const Report& report, bool changed) {
+  std::string rows;
+  for (const ReportParameter& parameter : report.parameters) {
+    if (parameter.changed != changed) continue;
+    rows += fmt::format(
+        "<tr{}><th scope=\"row\"><code>{}</code></th><td class=\"number\">{}</td>"
+        "<td class=\"unit\">{}</td></tr>\n",
+        changed ? " class=\"changed\"" : "", escaped(parameter.name),
+        escaped(value_text(parameter.value, exact)), escaped(unit_text(parameter.unit)));
+  }
+  return rows;
+}
+
+std::string parameters(const Report& report) {
+  return section("Parameters changed from their defaults", parameter_rows(report, true)) +
+         section("Parameters at their defaults", parameter_rows(report, false));
+}
+
+std::string times(const Report& report) {
+  double sum = 0;
+  double longest = 1e-9;
+  for (const ReportStage& stage : report.stages) {
+    sum += stage.seconds;
+    longest = std::max(longest, stage.seconds);
+  }
+  std::string rows;
+  for (const ReportStage& stage : report.stages) {
+    rows += fmt::format(
+        "<tr><th scope=\"row\">{}</th><td style=\"width:55%\"><span class=\"bar\" "
+        "style=\"width:{:.1f}%\"></span></td><td class=\"number\">{:.2f}\u00a0s</td></tr>\n",
+        escaped(stage.name), std::clamp(100 * stage.seconds / longest, 0.0, 100.0), stage.seconds);
+  }
+  if (report.stages.empty() && !(report.total_seconds > 0)) return "";
+  rows += fmt::format(
+      "<tr><th scope=\"row\">all</th><td></td><td class=\"number\">{:.2f}\u00a0s</td></tr>\n",
+      report.total_seconds > 0 ? report.total_seconds : sum);
+  if (report.peak_memory_bytes > 0) {
+    rows += fmt::format(
+        "<tr><th scope=\"row\">memory at its highest</th><td></td>"
+        "<td class=\"number\">{}\u00a0MB</td></tr>\n",
+        shown(std::round(double(report.peak_memory_bytes) / 1e6)));
+  }
+  return section("How long it took", rows);
+}
+
+std::string inputs(const Report& report) {
+  std::string rows;
+  for (const ReportInput& input : report.inputs) {
+    rows += fmt::format(
+        "<tr><th scope=\"row\">{}</th><td>{}<br><code class=\"soft\">sha256 {}</code></td>"
+        "<td class=\"number\">{}\u00a0bytes</td></tr>\n",
+        escaped(input.role), escaped(input.path), escaped(input.sha256),
+        shown(double(input.bytes)));
+  }
+  return section("Files read", rows);
+}
+
+std::string foot(const Report& report) {
+  std::string line;
+  for (const std::string& word : report.command_line) line += (line.empty() ? "" : " ") + word;
+  std::string html = fmt::format("<footer>\n<p>hydrodip {}</p>\n", escaped(report.tool_version));
+  if (!line.empty()) html += "<p><code>" + escaped(line) + "</code></p>\n";
+  return html + "</footer>\n";
+}
+
+}  // namespace
+
+std::string report_html(const Report& report, const std::vector<std::uint8_t>& preview_png) {
+  std::string html =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+      escaped(title_of(report)) + " - hydrodip</title>\n<style>" + kStyle +
+      "</style>\n</head>\n<body>\n<main>\n";
+  html += heading(report);
+  html += verdict(report);
+  html += picture(preview_png);
+  html += key_figures(report);
+  html += outputs(report);
+  html += coverage(report);
+  html += mesh(report);
+  html += rounds(report);
+  html += parameters(report);
+  html += times(report);
+  html += inputs(report);
+  html += foot(report);
+  return html + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,144 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "report/report.h"
+
+namespace hydrodip {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json value_json(const ReportValue& value) {
+  struct Visitor {
+    Json operator()(double v) const { return number(v); }
+    Json operator()(std::int64_t v) const { return v; }
+    Json operator()(bool v) const { return v; }
+    Json operator()(const std::string& v) const { return v; }
+    Json operator()(const std::array<double, 3>& v) const {
+      return Json::array({number(v[0]), number(v[1]), number(v[2])});
+    }
+  };
+  return std::visit(Visitor{}, value);
+}
+
+Json inputs_json(const Report& report) {
+  Json list = Json::array();
+  for (const ReportInput& input : report.inputs) {
+    list.push_back({{"role", input.role},
+                    {"path", input.path},
+                    {"sha256", input.sha256},
+                    {"bytes", input.bytes}});
+  }
+  return list;
+}
+
+Json outputs_json(const Report& report) {
+  Json list = Json::array();
+  for (const ReportOutput& output : report.outputs) {
+    list.push_back({{"name", output.name}, {"description", output.description}});
+  }
+  return list;
+}
+
+Json parameters_json(const Report& report) {
+  Json object = Json::object();
+  for (const ReportParameter& parameter : report.parameters) {
+    object[parameter.name] = {{"value", value_json(parameter.value)},
+                              {"unit", parameter.unit},
+                              {"changed", parameter.changed}};
+  }
+  return object;
+}
+
+Json figures_json(const std::vector<ReportFigure>& figures) {
+  Json object = Json::object();
+  for (const ReportFigure& figure : figures) object[figure.key] = value_json(figure.value);
+  return object;
+}
+
+Json rounds_json(const Report& report) {
+  Json list = Json::array();
+  for (const ReportRound& round : report.rounds) {
+    Json entry = {{"process", round.process}, {"round", round.round}};
+    entry.update(figures_json(round.figures));
+    list.push_back(entry);
+  }
+  return list;
+}
+
+Json coverage_json(const Coverage& c) {
+  return {{"object_mm2", number(c.object_mm2)},
+          {"covered_mm2", number(c.covered_mm2)},
+          {"covered_share", number(c.covered_share())},
+          {"downward_mm2", number(c.downward_mm2)},
+          {"covered_downward_mm2", number(c.covered_downward_mm2)},
+          {"covered_downward_share", number(c.covered_downward_share())},
+          {"film_on_object_mm2", number(c.film_on_object_mm2)},
+          {"torn_mm2", number(c.torn_mm2)},
+          {"torn_share", number(c.torn_share())}};
+}
+
+Json stretch_json(const Coverage& c) {
+  return {{"stretch_mean", number(c.stretch_mean)},
+          {"stretch_max", number(c.stretch_max)},
+          {"area_ratio_mean", number(c.area_ratio_mean)},
+          {"area_ratio_max", number(c.area_ratio_max)}};
+}
+
+Json mesh_json(const MeshHealth& mesh) {
+  return {{"vertices", mesh.vertices},
+          {"triangles", mesh.triangles},
+          {"degenerate_removed", mesh.degenerate_removed},
+          {"duplicates_removed", mesh.duplicates_removed},
+          {"flipped", mesh.flipped},
+          {"boundary_edges", mesh.boundary_edges},
+          {"holes", mesh.holes},
+          {"nonmanifold_edges", mesh.nonmanifold_edges},
+          {"shells", mesh.shells},
+          {"closed", mesh.closed()},
+          {"volume_mm3", number(mesh.volume_mm3)},
+          {"area_mm2", number(mesh.area_mm2)},
+          {"findings", mesh.findings()}};
+}
+
+Json seconds_json(const Report& report) {
+  double total = 0;
+  Json stages = Json::array();
+  for (const ReportStage& stage : report.stages) {
+    total += stage.seconds;
+    stages.push_back({{"stage", stage.name}, {"seconds", number(stage.seconds)}});
+  }
+  if (report.total_seconds > 0) total = report.total_seconds;
+  return {{"total", number(total)}, {"stages", stages}};
+}
+
+}  // namespace
+
+std::string report_json(const Report& report) {
+  Json json;
+  json["schema_version"] = kReportSchemaVersion;
+  json["tool"] = {{"name", "hydrodip"}, {"version", report.tool_version}};
+  json["command"] = report.command;
+  json["command_line"] = report.command_line;
+  json["title"] = report.title;
+  json["verdict"] = verdict_of(report);
+  json["warnings"] = report.warnings;
+  json["inputs"] = inputs_json(report);
+  json["outputs"] = outputs_json(report);
+  json["parameters"] = parameters_json(report);
+  if (report.coverage) {
+    json["coverage"] = coverage_json(*report.coverage);
+    json["stretch"] = stretch_json(*report.coverage);
+  }
+  if (report.mesh) json["mesh"] = mesh_json(*report.mesh);
+  json["figures"] = figures_json(report.figures);
+  json["rounds"] = rounds_json(report);
+  json["seconds"] = seconds_json(report);
+  if (report.peak_memory_bytes > 0) json["peak_memory_bytes"] = report.peak_memory_bytes;
+  // Paths need not be UTF-8; JSON must be.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,139 @@
+#include "report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "fixtures.h"
+
+namespace hydrodip {
+namespace {
+
+using testing::film_under_ball;
+using testing::kRadius;
+using testing::ScratchFolder;
+using testing::two_coloured_ball;
+using Json = nlohmann::json;
+
+Report full_report() {
+  Report report;
+  report.tool_version = "1.2.3";
+  report.command = "print";
+  report.command_line = {"hydrodip", "print", "<script>alert(1)</script>.obj"};
+  report.inputs = {{"model", "a/<script>alert(1)</script>.obj", "00ff", 1234567}};
+  report.parameters = {{"film.width_mm", "mm", 210.0, false},
+                       {"dip.scheme", "", std::string("\"paper\" & co"), true},
+                       {"pose.rotate_deg", "deg", std::array<double, 3>{0, 0, 90}, true}};
+  report.stages = {{"load", 0.25}, {"dip", 1.5}};
+  report.rounds = {{"ink", 1, {{"largest_change_mm", "largest change", 0.5, "mm"}}}};
+  report.coverage = Coverage{};
+  report.mesh = MeshHealth{};
+  report.figures = {{"psnr_db", "PSNR", 36.5, "dB"},
+                    {"nothing_mm", "Nothing", std::numeric_limits<double>::quiet_NaN(), "mm"}};
+  report.warnings = {"The <b>file</b> is \xff odd."};
+  report.outputs = {{"print.pdf", "the sheet"}};
+  report.peak_memory_bytes = 1000;
+  return report;
+}
+
+TEST(Report, JsonHoldsEverythingAndNoNan) {
+  const std::string text = report_json(full_report());
+  EXPECT_EQ(text.find("NaN"), std::string::npos);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  const Json json = Json::parse(text);
+  EXPECT_EQ(json["schema_version"], 1);
+  EXPECT_EQ(json["tool"]["version"], "1.2.3");
+  EXPECT_EQ(json["inputs"][0]["bytes"], 1234567);
+  EXPECT_EQ(json["parameters"]["film.width_mm"]["value"], 210.0);
+  EXPECT_EQ(json["parameters"]["film.width_mm"]["unit"], "mm");
+  EXPECT_EQ(json["parameters"]["pose.rotate_deg"]["value"][2], 90.0);
+  EXPECT_EQ(json["seconds"]["total"], 1.75);
+  EXPECT_EQ(json["seconds"]["stages"][1]["stage"], "dip");
+  EXPECT_EQ(json["rounds"][0]["largest_change_mm"], 0.5);
+  EXPECT_EQ(json["figures"]["psnr_db"], 36.5);
+  EXPECT_TRUE(json["figures"]["nothing_mm"].is_null());
+  EXPECT_EQ(json["warnings"].size(), 1u);
+  EXPECT_EQ(json["verdict"], "No film lies on the object.");
+}
+
+TEST(Report, EmptyReportIsStillAReport) {
+  const Json json = Json::parse(report_json({}));
+  EXPECT_EQ(json["schema_version"], 1);
+  EXPECT_FALSE(json.contains("coverage"));
+  EXPECT_NE(report_html({}, {}).find("</html>"), std::string::npos);
+}
+
+TEST(Report, HtmlEscapesWhateverComesFromOutside) {
+  const std::string html = report_html(full_report(), {});
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  EXPECT_EQ(html.find("<b>file"), std::string::npos);
+  EXPECT_NE(html.find("&lt;script&gt;alert(1)&lt;/script&gt;.obj"), std::string::npos);
+  EXPECT_NE(html.find("&quot;paper&quot; &amp; co"), std::string::npos);
+}
+
+TEST(Report, HtmlNeedsNothingElse) {
+  const std::string html = report_html(full_report(), {1, 2, 3, 4});
+  EXPECT_EQ(html.find("http"), std::string::npos);
+  EXPECT_NE(html.find("data:image/png;base64,AQIDBA=="), std::string::npos);
+}
+
+TEST(Report, HtmlTagsAreBalanced) {
+  const std::string html = report_html(full_report(), {1, 2, 3});
+  const auto count = [&](const std::string& what) {
+    long n = 0;
+    for (std::size_t at = html.find(what); at != std::string::npos; at = html.find(what, at + 1))
+      ++n;
+    return n;
+  };
+  for (const std::string tag : {"table", "tr", "td", "section", "div", "dl", "ul", "li", "code"}) {
+    EXPECT_EQ(count("<" + tag + ">") + count("<" + tag + " "), count("</" + tag + ">")) << tag;
+  }
+}
+
+TEST(Report, InputsCarryTheirHash) {
+  const ScratchFolder folder;
+  write_file(folder / "abc.txt", std::string("abc"));
+  const ReportInput input = describe_input("model", folder / "abc.txt");
+  EXPECT_EQ(input.bytes, 3u);
+  EXPECT_EQ(input.sha256, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_THROW(describe_input("model", folder / "missing"), InputError);
+}
+
+TEST(Coverage, CapOfABall) {
+  const double reach = 16;
+  const Coverage c = measure_coverage(two_coloured_ball(48), film_under_ball(reach));
+  const double ball = 4 * std::numbers::pi * kRadius * kRadius;
+  EXPECT_NEAR(c.object_mm2, ball, 0.003 * ball);
+  EXPECT_NEAR(c.downward_mm2, ball / 2, 0.003 * ball);
+  // The film is cut off along whole triangles: the reach is uncertain by about a cell.
+  const double cell = film_under_ball(reach).mesh.cell_mm;
+  const auto cap = [](double r) {
+    return 2 * std::numbers::pi * kRadius * (kRadius - std::sqrt(kRadius * kRadius - r * r));
+  };
+  EXPECT_GT(c.covered_mm2, cap(reach - 1.5 * cell));
+  EXPECT_LT(c.covered_mm2, cap(reach));
+  EXPECT_EQ(c.covered_mm2, c.covered_downward_mm2);
+  EXPECT_NEAR(c.area_ratio_mean, c.covered_mm2 / c.film_on_object_mm2, 0.01);
+  EXPECT_LE(c.stretch_max, 1 / 0.6 + 1e-9);
+  EXPECT_GT(c.stretch_max, c.stretch_mean);
+  EXPECT_EQ(c.torn_share(), 0);
+}
+
+TEST(Coverage, TornFilmNoLongerCovers) {
+  DippedFilm film = film_under_ball();
+  const Object ball = two_coloured_ball();
+  const Coverage before = measure_coverage(ball, film);
+  for (std::size_t t = 0; t < film.torn.size(); ++t) film.torn[t] = film.lies_on_object(t) ? 1 : 0;
+  const Coverage after = measure_coverage(ball, film);
+  EXPECT_EQ(after.covered_mm2, 0);
+  EXPECT_EQ(after.torn_mm2, before.film_on_object_mm2);
+  EXPECT_EQ(after.torn_share(), 1);
+  EXPECT_EQ(after.stretch_mean, 1);
+}
+
+}  // namespace
+}  // namespace hydrodip
