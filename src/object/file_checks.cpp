@@ -528,7 +528,7 @@ void check_off_face(const std::string& path, const OffLines& lines, std::string_
 CheckedFile check_obj(const std::string& path, FileBytes bytes) {
   refuse_binary(path, text_of(bytes), "OBJ");
   ObjCheck(path, text_of(bytes)).run();
-  return {std::move(bytes), "", {}};
+  return {std::move(bytes), "", {}, {}};
 }
 
 CheckedFile check_ply(const std::string& path, FileBytes bytes) {
@@ -548,7 +548,7 @@ CheckedFile check_ply(const std::string& path, FileBytes bytes) {
   for (const PlyElement& element : header.elements) {
     check_ply_rows(path, element, vertices, body);
   }
-  return {std::move(bytes), "", {}};
+  return {std::move(bytes), "", {}, {}};
 }
 
 CheckedFile check_stl(const std::string& path, FileBytes bytes) {
@@ -558,7 +558,7 @@ CheckedFile check_stl(const std::string& path, FileBytes bytes) {
   } else {
     check_binary_stl(path, bytes);
   }
-  return {std::move(bytes), "", {}};
+  return {std::move(bytes), "", {}, {}};
 }
 
 CheckedFile check_off(const std::string& path, FileBytes bytes) {
@@ -606,7 +606,7 @@ CheckedFile check_off(const std::string& path, FileBytes bytes) {
     check_off_face(path, lines, line, vertices);
     append_line(out, line);
   }
-  return {std::move(out), "", {}};
+  return {std::move(out), "", {}, {}};
 }
 
 }  // namespace hydrodip

@@ -3,6 +3,7 @@
 // checks refuse such files with one sentence each, and hand on bytes that assimp reads safely.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -19,10 +20,16 @@ class SideFiles {
   virtual std::int64_t size(const std::string& relative_path) = 0;
 };
 
+// sRGB bytes with alpha at a triangle's three corners.
+using FaceColors = std::array<std::array<std::uint8_t, 4>, 3>;
+
 struct CheckedFile {
   FileBytes bytes;                    // what assimp is to read in the file's place
   std::string units;                  // what the file itself says, or ""
   std::vector<std::string> warnings;  // about what is left out
+  // 3MF: per mesh in file order, per triangle; empty if no triangle has a material. assimp keeps
+  // one base material per mesh and no colour groups.
+  std::vector<std::vector<FaceColors>> face_colors;
 };
 
 // `path` is used in messages only. All throw InputError.

@@ -1,7 +1,6 @@
 #include "object/load.h"
 
 #include <assimp/material.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
@@ -18,6 +17,16 @@
 #include "base/file.h"
 #include "image/files.h"
 #include "object/file_checks.h"
+#include "object/polygon.h"
+
+// Debian builds assimp with its assertions on, and they abort the process. They are reached through
+// this exported function; the linker prefers ours, so a damaged file becomes an error like others.
+namespace Assimp {
+void aiAssertViolation(const char* failed_expression, const char* file, int line);
+void aiAssertViolation(const char* failed_expression, const char* file, int line) {
+  throw std::runtime_error(fmt::format("{} in {}:{}", failed_expression, file, line));
+}
+}  // namespace Assimp
 
 namespace hydrodip {
 
@@ -238,6 +247,8 @@ CheckedFile check(Format format, const std::string& path, FileBytes bytes, Model
 
 // ---- colour -------------------------------------------------------------------------------------
 
+constexpr LinearColor kWhite{1, 1, 1, 1};
+
 float finite_unit(float value) { return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 1; }
 
 LinearColor linear_color(const aiColor4D& color, bool encoded) {
@@ -294,6 +305,7 @@ class Materials {
         format_(format),
         folder_(folder),
         read_textures_(read_textures),
+        has_mtl_(folder.files().size() > 1),
         object_(object),
         context_(context) {}
 
@@ -336,9 +348,10 @@ class Materials {
     aiString name;
     if (source.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS) material.name = name.C_Str();
     const Alpha alpha = alpha_of(source);
-    // STL, PLY and OFF have no materials; assimp makes up a grey one.
-    const bool made_up = format_ == Format::kStl || format_ == Format::kPly ||
-                         format_ == Format::kOff || material.name == AI_DEFAULT_MATERIAL_NAME;
+    // STL, PLY and OFF have no materials; assimp makes up a grey one. 3MF's come as face colours.
+    const bool made_up = (format_ != Format::kObj && format_ != Format::kGltf) ||
+                         material.name == AI_DEFAULT_MATERIAL_NAME ||
+                         (format_ == Format::kObj && !has_mtl_);
     if (!made_up) material.base_color = base_color(source, alpha);
     aiString texture;
     if (!read_textures_ ||
@@ -350,8 +363,6 @@ class Materials {
     material.texture = texture_index(texture.C_Str(), alpha, finite_unit(cutoff));
     if (material.texture < 0) return;
     if (format_ == Format::kObj) material.base_color = tint_of(material.base_color);
-    // A 3MF texture replaces the colour; assimp reports black.
-    if (format_ == Format::k3mf) material.base_color = {};
     placement(source, material, loaded);
   }
 
@@ -470,6 +481,7 @@ class Materials {
   Format format_;
   ModelFolder& folder_;
   bool read_textures_;
+  bool has_mtl_;  // of an OBJ: without it assimp makes up grey materials
   Object& object_;
   RunContext& context_;
   std::map<unsigned, LoadedMaterial> loaded_;
@@ -509,11 +521,18 @@ std::vector<LinearColor> vertex_colors(const aiMesh& mesh, Format format) {
 
 class SceneReader {
  public:
-  SceneReader(const std::string& path, const aiScene& scene, Format format, Materials& materials,
+  SceneReader(const std::string& path, const aiScene& scene, Format format,
+              const std::vector<std::vector<FaceColors>>& face_colors, Materials& materials,
               Object& object)
-      : path_(path), scene_(scene), format_(format), materials_(materials), object_(object) {}
+      : path_(path),
+        scene_(scene),
+        format_(format),
+        face_colors_(face_colors),
+        materials_(materials),
+        object_(object) {}
 
   void read() {
+    has_colors_ = !face_colors_.empty();
     for (unsigned m = 0; m < scene_.mNumMeshes; ++m) {
       const aiMesh& mesh = *scene_.mMeshes[m];
       has_uvs_ = has_uvs_ || mesh.HasTextureCoords(0);
@@ -533,14 +552,27 @@ class SceneReader {
     }
     const aiMatrix4x4 world = parent * node.mTransformation;
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-      if (node.mMeshes[i] < scene_.mNumMeshes) read_mesh(*scene_.mMeshes[node.mMeshes[i]], world);
+      if (node.mMeshes[i] < scene_.mNumMeshes) read_mesh(node.mMeshes[i], world);
     }
     for (unsigned i = 0; i < node.mNumChildren; ++i) {
       read_node(*node.mChildren[i], world, depth + 1);
     }
   }
 
-  void read_mesh(const aiMesh& mesh, const aiMatrix4x4& world) {
+  // What the triangles of one mesh share.
+  struct MeshContext {
+    const aiMesh& mesh;
+    std::size_t first_position;
+    const LoadedMaterial& material;
+    int material_index;
+    const aiVector3D* uvs;  // or null
+    std::vector<LinearColor> colors;
+    const std::vector<FaceColors>* face_colors;  // 3MF's, or null
+    bool mirrored;
+  };
+
+  void read_mesh(unsigned number, const aiMatrix4x4& world) {
+    const aiMesh& mesh = *scene_.mMeshes[number];
     const std::size_t first = object_.positions.size();
     if (first + mesh.mNumVertices > std::size_t(1) << 30) {
       throw InputError(fmt::format("{}: too many vertices; simplify the model.", path_));
@@ -549,27 +581,61 @@ class SceneReader {
     const LoadedMaterial& material = materials_.get(mesh.mMaterialIndex);
     const unsigned channel = mesh.HasTextureCoords(material.channel) ? material.channel : 0;
     const bool textured = mesh.HasTextureCoords(channel);
-    const int index = textured ? material.index : materials_.without_texture(mesh.mMaterialIndex);
-    const bool mirrored = world.Determinant() < 0;
-    const bool colored = mesh.HasVertexColors(0);
-    const std::vector<LinearColor> colors =
-        colored ? vertex_colors(mesh, format_) : std::vector<LinearColor>();
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3) continue;  // points and lines
-      std::array<unsigned, 3> corners = {face.mIndices[0], face.mIndices[1], face.mIndices[2]};
-      if (mirrored) std::swap(corners[1], corners[2]);
-      object_.triangles.push_back({std::int32_t(first + corners[0]),
-                                   std::int32_t(first + corners[1]),
-                                   std::int32_t(first + corners[2])});
-      object_.material_of.push_back(index);
-      if (has_uvs_) add_uvs(textured ? mesh.mTextureCoords[channel] : nullptr, corners, material);
-      if (has_colors_) {
-        CornerColor corner_colors;
-        for (std::size_t c = 0; colored && c < 3; ++c) corner_colors[c] = colors[corners[c]];
-        object_.colors.push_back(corner_colors);
+    MeshContext context{
+        mesh,
+        first,
+        material,
+        textured ? material.index : materials_.without_texture(mesh.mMaterialIndex),
+        textured ? mesh.mTextureCoords[channel] : nullptr,
+        mesh.HasVertexColors(0) ? vertex_colors(mesh, format_) : std::vector<LinearColor>(),
+        number < face_colors_.size() && face_colors_[number].size() == mesh.mNumFaces
+            ? &face_colors_[number]
+            : nullptr,
+        world.Determinant() < 0};
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) read_face(context, f);
+  }
+
+  // Points and lines are skipped.
+  void read_face(const MeshContext& context, unsigned number) {
+    const aiFace& face = context.mesh.mFaces[number];
+    if (face.mNumIndices == 3) {
+      add_triangle(context, number, {face.mIndices[0], face.mIndices[1], face.mIndices[2]});
+    } else if (face.mNumIndices > 3) {
+      std::vector<Vec3> corners;
+      for (unsigned i = 0; i < face.mNumIndices; ++i) {
+        corners.push_back(object_.positions[context.first_position + face.mIndices[i]]);
+      }
+      for (const auto& cut : triangulate(corners)) {
+        add_triangle(context, number,
+                     {face.mIndices[cut[0]], face.mIndices[cut[1]], face.mIndices[cut[2]]});
       }
     }
+  }
+
+  void add_triangle(const MeshContext& context, unsigned face, std::array<unsigned, 3> corners) {
+    if (context.mirrored) std::swap(corners[1], corners[2]);
+    object_.triangles.push_back({std::int32_t(context.first_position + corners[0]),
+                                 std::int32_t(context.first_position + corners[1]),
+                                 std::int32_t(context.first_position + corners[2])});
+    object_.material_of.push_back(context.material_index);
+    if (has_uvs_) add_uvs(context.uvs, corners, context.material);
+    if (has_colors_) add_colors(context, face, corners);
+  }
+
+  void add_colors(const MeshContext& context, unsigned face,
+                  const std::array<unsigned, 3>& corners) {
+    CornerColor colors{kWhite, kWhite, kWhite};
+    if (context.face_colors) {
+      const FaceColors& rgba = (*context.face_colors)[face];
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t from = context.mirrored && c > 0 ? 3 - c : c;
+        colors[c] = {srgb8_to_linear(rgba[from][0]), srgb8_to_linear(rgba[from][1]),
+                     srgb8_to_linear(rgba[from][2]), float(rgba[from][3]) / 255};
+      }
+    } else if (!context.colors.empty()) {
+      for (std::size_t c = 0; c < 3; ++c) colors[c] = context.colors[corners[c]];
+    }
+    object_.colors.push_back(colors);
   }
 
   void add_positions(const aiMesh& mesh, const aiMatrix4x4& world) {
@@ -611,13 +677,14 @@ class SceneReader {
   const std::string& path_;
   const aiScene& scene_;
   Format format_;
+  const std::vector<std::vector<FaceColors>>& face_colors_;
   Materials& materials_;
   Object& object_;
   bool has_uvs_ = false;
   bool has_colors_ = false;
 };
 
-// What assimp's later steps and we take for granted.
+// What reading it takes for granted.
 void check_scene(const std::string& path, const aiScene& scene) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     const aiMesh* mesh = scene.mMeshes[m];
@@ -652,9 +719,9 @@ const aiScene& import(const std::string& path, const std::string& name,
     scene = importer.ReadFile(name, 0);
     if (scene) {
       check_scene(path, *scene);
-      scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+    } else {
+      problem = importer.GetErrorString();
     }
-    if (!scene) problem = importer.GetErrorString();
   } catch (const InputError&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -696,7 +763,7 @@ void replace_textures(Object& object, const std::vector<int>& bare, const fs::pa
   for (std::size_t i = 0; i < object.materials.size(); ++i) {
     if (std::find(bare.begin(), bare.end(), int(i)) != bare.end()) continue;
     object.materials[i].texture = 0;
-    object.materials[i].base_color = {};
+    object.materials[i].base_color = kWhite;
   }
 }
 
@@ -711,8 +778,8 @@ LoadedObject load_object(const fs::path& path, const LoadOptions& options, RunCo
   for (const std::string& warning : checked.warnings) context.warn(warning);
   context.check_cancelled();
 
-  // assimp picks its reader by extension, in lower case.
-  const std::string name = "model" + lower_extension(path);
+  // assimp picks its reader by extension, in lower case; an OBJ's own name also names its MTL.
+  const std::string name = path.stem().string() + lower_extension(path);
   LoadedObject loaded;
   std::vector<int> bare;
   {
@@ -725,7 +792,7 @@ LoadedObject load_object(const fs::path& path, const LoadOptions& options, RunCo
                                missing, path.filename().string()));
     }
     Materials materials(scene, format, folder, options.texture.empty(), loaded.object, context);
-    SceneReader(shown, scene, format, materials, loaded.object).read();
+    SceneReader(shown, scene, format, checked.face_colors, materials, loaded.object).read();
     bare = materials.bare();
   }
   context.check_cancelled();

@@ -2,6 +2,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <map>
 #include <optional>
@@ -263,13 +264,18 @@ class ModelCheck {
 
   const std::string& units() const { return units_; }
   long long triangles() const { return triangles_; }
-  // Whether triangles of one mesh have different materials or seams, which get lost.
-  bool mixed() const { return mixed_; }
+  bool textured() const { return textured_; }
+  // Empty if no triangle has a colour.
+  std::vector<std::vector<FaceColors>> take_colors() {
+    if (!colored_) colors_.clear();
+    return std::move(colors_);
+  }
 
  private:
+  using Rgba = std::array<std::uint8_t, 4>;
   struct Group {
     long long entries = 0;
-    bool base_materials = false;
+    std::vector<Rgba> colors;  // empty for textures
   };
   struct Object3mf {
     long long placed = 0;  // triangles, components included
@@ -282,16 +288,16 @@ class ModelCheck {
       read_units(tag);
     } else if (name == "basematerials" || name == "colorgroup" || name == "texture2dgroup") {
       group_ = &groups_[integer(tag, "id")];
-      *group_ = {0, name == "basematerials"};
-    } else if (name == "base" || name == "tex2coord") {
+      *group_ = {};
+    } else if (name == "tex2coord") {
       if (group_) ++group_->entries;
-    } else if (name == "color") {
-      check_color(tag);
+    } else if (name == "base" || name == "color") {
+      read_color(tag, name == "base" ? "displaycolor" : "color");
     } else if (name == "object") {
       open_object(tag);
     } else if (name == "mesh") {
       vertices_ = 0;
-      ++meshes_;
+      colors_.emplace_back();
     } else if (name == "vertices") {
       if (vertices_ > 0) refuse(path_, "a mesh has two vertex lists");
     } else if (name == "vertex") {
@@ -331,14 +337,23 @@ class ModelCheck {
     return value;
   }
 
-  // Colours with a wrong form are skipped by the reader and would shift the numbering.
-  void check_color(const Tag& tag) {
+  void read_color(const Tag& tag, std::string_view attribute) {
     if (!group_) return;
-    const std::string_view value = tag.find("color").value_or("");
-    const bool well_formed = (value.size() == 7 || value.size() == 9) && value[0] == '#';
-    if (!well_formed) refuse(path_, "a colour is not #RRGGBB or #RRGGBBAA");
+    Rgba color = {255, 255, 255, 255};
+    if (const auto text = tag.find(attribute)) {
+      const bool well_formed = (text->size() == 7 || text->size() == 9) && (*text)[0] == '#';
+      for (std::size_t c = 0; well_formed && 2 * c + 2 < text->size(); ++c) {
+        const std::string_view digits = text->substr(1 + 2 * c, 2);
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + 2, color[c], 16);
+        if (error != std::errc() || end != digits.data() + 2) refuse_color();
+      }
+      if (!well_formed) refuse_color();
+    }
+    group_->colors.push_back(color);
     ++group_->entries;
   }
+
+  [[noreturn]] void refuse_color() const { refuse(path_, "a colour is not #RRGGBB or #RRGGBBAA"); }
 
   void open_object(const Tag& tag) {
     close_object();
@@ -354,7 +369,6 @@ class ModelCheck {
       object_index_ = integer(tag, "pindex");
       check_property(object_group_, object_index_);
     }
-    seen_ = false;
   }
 
   void close_object() {
@@ -391,27 +405,34 @@ class ModelCheck {
                                   index, vertices_ - 1));
       }
     }
-    long long group = object_group_;
-    if (tag.find("pid")) group = integer(tag, "pid");
-    long long first = -1;
-    for (const char* corner : {"p1", "p2", "p3"}) {
-      if (!tag.find(corner)) continue;
-      const long long index = integer(tag, corner);
-      check_property(group, index);
-      if (first < 0) first = index;
-    }
-    note_mixture(group, first < 0 ? object_index_ : first);
+    if (colors_.empty()) refuse(path_, "a triangle outside a mesh");
+    colors_.back().push_back(face_colors(tag));
     ++current_->placed;
     ++triangles_;
   }
 
-  void note_mixture(long long group, long long index) {
+  // p1 alone goes for all three corners; none of them: the object's own.
+  FaceColors face_colors(const Tag& tag) {
+    long long group = object_group_;
+    if (tag.find("pid")) group = integer(tag, "pid");
+    long long indices[3] = {object_index_, object_index_, object_index_};
+    if (tag.find("p1")) {
+      indices[0] = integer(tag, "p1");
+      indices[1] = tag.find("p2") ? integer(tag, "p2") : indices[0];
+      indices[2] = tag.find("p3") ? integer(tag, "p3") : indices[0];
+    } else if (tag.find("pid")) {
+      return kPlain;
+    }
+    FaceColors colors = kPlain;
     const auto it = groups_.find(group);
-    const bool base = it != groups_.end() && it->second.base_materials;
-    if (seen_ && (group != last_group_ || (base && index != last_index_))) mixed_ = true;
-    seen_ = true;
-    last_group_ = group;
-    last_index_ = index;
+    for (std::size_t c = 0; it != groups_.end() && c < 3; ++c) {
+      check_property(group, indices[c]);
+      if (indices[c] < 0 || it->second.colors.empty()) continue;
+      colors[c] = it->second.colors[std::size_t(indices[c])];
+      colored_ = true;
+    }
+    if (it != groups_.end() && it->second.colors.empty()) textured_ = true;
+    return colors;
   }
 
   // Objects come before those that use them, so components cannot form a loop.
@@ -452,6 +473,9 @@ class ModelCheck {
     }
   }
 
+  static constexpr FaceColors kPlain = {Rgba{255, 255, 255, 255}, Rgba{255, 255, 255, 255},
+                                        Rgba{255, 255, 255, 255}};
+
   const std::string& path_;
   Tags tags_;
   std::string units_;
@@ -461,14 +485,13 @@ class ModelCheck {
   std::optional<Object3mf> current_;
   long long current_id_ = 0;
   long long object_group_ = -1, object_index_ = -1;
-  long long last_group_ = -1, last_index_ = -1;
   long long vertices_ = 0;
-  long long meshes_ = 0;
+  std::vector<std::vector<FaceColors>> colors_;
   long long triangles_ = 0;
   long long placed_ = 0;
   long long placements_ = 0;
-  bool seen_ = false;
-  bool mixed_ = false;
+  bool colored_ = false;
+  bool textured_ = false;
 };
 
 bool ends_with(const std::string& text, std::string_view end) {
@@ -496,10 +519,11 @@ CheckedFile check_3mf(const std::string& path, FileBytes bytes) {
       check.run();
       if (check.triangles() == 0) refuse(path, "it has no triangles");
       checked.units = check.units();
-      if (check.mixed()) {
+      checked.face_colors = check.take_colors();
+      if (check.textured()) {
         checked.warnings.push_back(
-            "The 3MF file gives the triangles of one mesh different materials, of which only one "
-            "is read; export GLB or OBJ to keep them all.");
+            "Textures in 3MF files are read with one texture and one coordinate per vertex of a "
+            "mesh, so seams may smear; export GLB or OBJ to keep them.");
       }
     }
   }
