@@ -63,8 +63,8 @@ td.number { text-align: right; white-space: nowrap; font-variant-numeric: tabula
 td.unit, td.soft { color: var(--soft); }
 code { font: 0.86em/1.4 ui-monospace, SFMono-Regular, Menlo, Consolas, monospace;
   overflow-wrap: anywhere; }
+th code { white-space: nowrap; }
 tr.changed th { font-weight: 600; }
-tr.changed th::after { content: " \2022"; color: var(--accent); }
 .bar { display: block; height: 0.5rem; margin-top: 0.45rem; min-width: 2px; border-radius: 0.25rem;
   background: var(--accent); }
 footer { margin-top: 2.5rem; color: var(--soft); font-size: 0.85rem; overflow-wrap: anywhere; }
@@ -237,7 +237,7 @@ std::string key_figures(const Report& report) {
     cells += key_figure("Covered area", shown(c.covered_mm2), "mm2");
     cells += key_figure("Largest stretch", fmt::format("{:.2f}", c.stretch_max), "times");
     cells +=
-        key_figure("Torn", shown(std::round(1000 * c.torn_share()) / 10), "% of the film there");
+        key_figure("Torn, of the film there", shown(std::round(1000 * c.torn_share()) / 10), "%");
   }
   for (const ReportFigure& figure : report.figures) {
     cells += key_figure(figure.label, value_text(figure.value, shown), figure.unit);
