@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <memory>
 
 #include "base/error.h"
 #include "job/nearest_name.h"
@@ -27,6 +28,39 @@ std::string general_help() {
       "Exit codes: 0 done, 2 bad input or usage, 3 the dip could not be computed, 130 cancelled.\n";
   return help;
 }
+
+// CLI11's layout, with the usage line and the values' names as this program's users read them.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() { column_width(kHelpColumn); }
+
+  std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {
+    std::string help = app->get_description() + "\n\nUsage: " + app->get_name();
+    for (const CLI::Option* option : positionals(app)) help += " " + option->get_name(true);
+    help += " [OPTIONS]\n\n";
+    for (const CLI::Option* option : positionals(app)) help += make_option(option, true);
+    for (const std::string& group : app->get_groups()) help += options_of(app, group);
+    return help + (app->get_footer().empty() ? "" : "\n" + app->get_footer() + "\n");
+  }
+
+  std::string make_option_opts(const CLI::Option* option) const override {
+    return option->get_type_name().empty() ? "" : " " + option->get_type_name();
+  }
+
+ private:
+  static std::vector<const CLI::Option*> positionals(const CLI::App* app) {
+    return app->get_options([](const CLI::Option* option) { return option->get_positional(); });
+  }
+
+  std::string options_of(const CLI::App* app, const std::string& group) const {
+    if (group == "Options") return "";  // only --help itself
+    std::string text = "\n" + group + ":\n";
+    for (const CLI::Option* option : app->get_options())
+      if (option->nonpositional() && option->get_group() == group)
+        text += make_option(option, false);
+    return text;
+  }
+};
 
 const Command& find_command(const std::string& name) {
   std::vector<std::string> names;
@@ -65,9 +99,12 @@ void refuse_rest(const CLI::App& app, const Command& command,
 
 CommandLine parse_command(const Command& command, std::vector<std::string> arguments) {
   CommandLine line;
+  line.request.command_line = {"hydrodip", command.name};
+  line.request.command_line.insert(line.request.command_line.end(), arguments.begin(),
+                                   arguments.end());
   CLI::App app(command.summary, "hydrodip " + command.name);
   app.allow_extras();
-  app.get_formatter()->column_width(kHelpColumn);
+  app.formatter(std::make_shared<HelpFormatter>());
   app.footer(command.details);
   command.declare(app, line.request);
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them

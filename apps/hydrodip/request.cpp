@@ -126,6 +126,7 @@ JobConfig configure(const Request& request) {
   config.model = request.model;
   config.film_image = request.film_image;
   config.output = request.output;
+  config.command_line = request.command_line;
   apply_sources(config, request.sources);
   return config;
 }

@@ -13,6 +13,7 @@ class App;
 namespace hydrodip {
 
 struct Request {
+  std::vector<std::string> command_line;  // as typed
   std::string model;
   std::string sample;
   std::string output;

@@ -46,7 +46,9 @@ struct JobConfig {
   std::filesystem::path model;
   std::filesystem::path film_image;  // simulate: the image that was printed; may be empty
   std::filesystem::path output;      // folder
-  std::vector<std::filesystem::path> settings_files;  // profiles and configs read, for the report
+  // For the report only.
+  std::vector<std::filesystem::path> settings_files;  // profiles and configs that were read
+  std::vector<std::string> command_line;
 
   ObjectOptions object;
   FilmOptions film;

@@ -28,7 +28,7 @@ std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const JobConfig& co
   times.measure("map", [&] {
     context.progress("mapping", 0);
     dipped->map = std::make_unique<FilmMap>(object, *dipped->surface, dipped->film());
-    dipped->figures = dip_figures(object, *dipped->map, dipped->film());
+    dipped->coverage = measure_coverage(object, dipped->film());
     context.progress("mapping", 1);
   });
   return dipped;

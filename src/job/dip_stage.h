@@ -5,10 +5,10 @@
 
 #include "base/context.h"
 #include "job/config.h"
-#include "job/figures.h"
 #include "job/stage_times.h"
 #include "object/surface.h"
 #include "report/appearance.h"
+#include "report/coverage.h"
 #include "transfer/film_map.h"
 #include "transfer/raster.h"
 
@@ -21,7 +21,7 @@ struct DippedObject {
   std::unique_ptr<Surface> surface;
   DipResult dip;
   std::unique_ptr<FilmMap> map;
-  DipFigures figures;
+  Coverage coverage;
 
   const Object& object() const { return loaded.object; }
   const DippedFilm& film() const { return dip.film; }

@@ -1,9 +1,11 @@
 #include "job/output.h"
 
+#include "base/file.h"
 #include "image/files.h"
 #include "job/prepare.h"
 #include "job/resize.h"
 #include "report/preview.h"
+#include "report/report.h"
 
 namespace hydrodip {
 namespace {
@@ -13,20 +15,20 @@ constexpr int kTextureSide_px = 4096;
 
 }  // namespace
 
-Image write_previews(OutputFolder& folder, const JobRecord& record, const Image& film_image,
-                     const SheetRaster& raster) {
+std::vector<std::uint8_t> write_previews(OutputFolder& folder, const JobRecord& record,
+                                         const Image& film_image, const SheetRaster& raster) {
   const DippedObject& dipped = record.dipped;
   const LinearColor base = base_color(record.config);
   write_film_ply(folder.path("film.ply"), dipped.film());
 
   PreviewOptions options;
   options.width_px = record.config.preview_width_px;
-  options.caption = verdict(dipped.figures);
+  options.caption = plain_verdict(dipped.coverage);
   options.base = base;
-  const Image preview =
+  const std::vector<std::uint8_t> preview = encode_png(
       render_preview(dipped.object(), *dipped.surface, dipped.film(),
-                     appearance(dipped, film_image, raster, base), options, record.context);
-  save_png(folder.path("preview.png"), preview);
+                     appearance(dipped, film_image, raster, base), options, record.context));
+  write_file(folder.path("preview.png"), preview.data(), preview.size());
 
   write_preview_glb(folder.path("preview.glb"), dipped.object(), dipped.film(),
                     shrink_to(film_image, kTextureSide_px), raster.width_mm, raster.height_mm,
@@ -34,10 +36,14 @@ Image write_previews(OutputFolder& folder, const JobRecord& record, const Image&
   return preview;
 }
 
-JobResult finish(OutputFolder& folder, const JobRecord& record) {
+JobResult finish(OutputFolder& folder, const JobRecord& record,
+                 const std::vector<std::uint8_t>& preview_png) {
+  const Report report = make_report(record);
+  write_report_json(folder.path("report.json"), report);
+  write_report_html(folder.path("report.html"), report, preview_png);
   record.context.check_cancelled();
   folder.commit();
-  return describe_result(record, folder);
+  return describe_result(report, folder.folder());
 }
 
 }  // namespace hydrodip

@@ -1,16 +1,23 @@
 // The end of print and simulate: film and previews, report, and everything under its final name.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
+#include "base/output_folder.h"
+#include "job/jobs.h"
 #include "job/record.h"
 
 namespace hydrodip {
 
 // film.ply, preview.png and preview.glb for a film that carries `film_image` (as seen from above,
-// over the whole sheet). Returns the picture of preview.png.
-Image write_previews(OutputFolder& folder, const JobRecord& record, const Image& film_image,
-                     const SheetRaster& raster);
+// over the whole sheet). Returns the bytes of preview.png.
+std::vector<std::uint8_t> write_previews(OutputFolder& folder, const JobRecord& record,
+                                         const Image& film_image, const SheetRaster& raster);
 
-// Moves the files to their final names, unless the job was cancelled.
-JobResult finish(OutputFolder& folder, const JobRecord& record);
+// Writes report.json and report.html, then moves all files to their final names, unless the job was
+// cancelled.
+JobResult finish(OutputFolder& folder, const JobRecord& record,
+                 const std::vector<std::uint8_t>& preview_png);
 
 }  // namespace hydrodip

@@ -51,6 +51,7 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
   StageTimes times;
 
   LoadedObject posed = times.measure("load", [&] { return load_posed(config, context); });
+  const std::vector<ReportInput> inputs = describe_inputs(config, posed);
   require_appearance(posed.object, config.model);
   require_fit(posed.object, config, context);
 
@@ -58,12 +59,11 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
   const Image image = times.measure("invert", [&] { return invert(*dipped, config, context); });
   times.measure("sheet", [&] { compose(folder, image, config, context); });
 
-  const JobRecord record{"print", config, *dipped, times, context};
-  const Image preview = times.measure("preview", [&] {
+  const JobRecord record{"print", config, inputs, *dipped, times, context};
+  const auto preview = times.measure("preview", [&] {
     return write_previews(folder, record, image, sheet_raster(config, config.print.dpi));
   });
-  write_reports(folder, record, preview);
-  return finish(folder, record);
+  return finish(folder, record, preview);
 }
 
 }  // namespace hydrodip

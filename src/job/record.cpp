@@ -2,92 +2,116 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "job/params.h"
 
 namespace hydrodip {
 namespace {
 
 using json = nlohmann::ordered_json;
 
-struct OutputFile {
-  const char* name;
-  const char* what;
-};
-
-constexpr OutputFile kPrintFiles[] = {
-    {"print.pdf", "the sheet: print it at 100 % (no scaling), ink side up"},
-    {"print.png", "the film image, sRGB"},
-    {"print.tif", "the film image, CMYK"},
-};
-constexpr OutputFile kCommonFiles[] = {
-    {"preview.png", "what was asked for beside what will come out"},
-    {"preview.glb", "the dipped object in 3D"},
-    {"film.ply", "the film after the dip"},
-    {"report.html", "everything about this job, for people"},
-    {"report.json", "the same for programs"},
-};
-
-std::vector<OutputFile> output_files(const std::string& command) {
-  std::vector<OutputFile> files;
-  if (command == "print") files.assign(std::begin(kPrintFiles), std::end(kPrintFiles));
-  files.insert(files.end(), std::begin(kCommonFiles), std::end(kCommonFiles));
-  return files;
+std::vector<ReportOutput> outputs(const std::string& command, InkSide ink_side) {
+  std::vector<ReportOutput> list;
+  if (command == "print")
+    list = {{"print.pdf", fmt::format("the sheet: print it at 100 % (no scaling), ink side {}",
+                                      ink_side == InkSide::kUp ? "up" : "down")},
+            {"print.png", "the film image, sRGB"},
+            {"print.tif", "the film image, CMYK"}};
+  list.insert(list.end(), {{"preview.png", "what was asked for beside what will come out"},
+                           {"preview.glb", "the dipped object in 3D"},
+                           {"film.ply", "the film after the dip"},
+                           {"report.html", "everything about this job, for people"},
+                           {"report.json", "the same for programs"}});
+  return list;
 }
 
-std::string percent(double share) {
-  const double value = 100 * share;
-  if (value > 0 && value < 0.1) return "under 0.1 %";
-  return value < 10 ? fmt::format("{:.1f} %", value) : fmt::format("{:.0f} %", value);
+ReportParameter describe_parameter(const Parameter& parameter, const JobConfig& config) {
+  const ParameterValue value = parameter.get(config);
+  ReportParameter described{parameter.name, parameter.unit, {}, value != parameter.default_value()};
+  if (parameter.type == ParameterType::kInteger)
+    described.value = static_cast<std::int64_t>(std::get<double>(value));
+  else
+    std::visit([&](const auto& v) { described.value = v; }, value);
+  return described;
 }
 
-json figures_json(const DipFigures& f) {
-  return {{"object_mm2", f.object_mm2},
-          {"covered_mm2", f.covered_mm2},
-          {"covered_share", f.covered_share()},
-          {"downward_mm2", f.downward_mm2},
-          {"covered_downward_share", f.covered_downward_share()},
-          {"film_on_object_mm2", f.film_on_object_mm2},
-          {"torn_mm2", f.torn_mm2},
-          {"torn_share", f.torn_share()},
-          {"largest_stretch", f.largest_stretch},
-          {"mean_area_ratio", f.mean_area_ratio}};
+ReportRound dip_round(const DipStatistics& s) {
+  return {
+      "dip",
+      1,
+      {{"steps", "Steps", std::int64_t(s.steps), ""},
+       {"newton_iterations", "Newton iterations", std::int64_t(s.newton_iterations), ""},
+       {"linear_iterations", "Linear iterations", std::int64_t(s.linear_iterations), ""},
+       {"factorizations", "Factorizations", std::int64_t(s.factorizations), ""},
+       {"unconverged_steps", "Steps at the iteration bound", std::int64_t(s.unconverged_steps), ""},
+       {"largest_residual_mm", "Largest last update", s.largest_residual_mm, "mm"}}};
+}
+
+std::vector<ReportFigure> figures(const DippedObject& dipped) {
+  const Vec3 size = dipped.object().bounds().size();
+  const DippedFilm& film = dipped.film();
+  return {{"object_size_mm", "Object as posed (x, y, z)",
+           std::array<double, 3>{size.x(), size.y(), size.z()}, "mm"},
+          {"depth_mm", "Depth of the dip", film.depth_mm, "mm"},
+          {"film_triangles", "Film triangles", std::int64_t(film.mesh.triangles.size()), ""},
+          {"film_cell_mm", "Film grid spacing", film.mesh.cell_mm, "mm"}};
+}
+
+std::string role_of(const std::filesystem::path& file, const JobConfig& config) {
+  if (file == config.model) return "model";
+  const std::string extension = file.extension().string();
+  if (extension == ".mtl" || extension == ".MTL") return "material";
+  return extension == ".bin" ? "model data" : "texture";
 }
 
 }  // namespace
 
-std::string verdict(const DipFigures& f) {
-  std::string sentence = fmt::format(
-      "Covers {} of the surface that faces down ({} of all); the film stretches up to {:.2f} times",
-      percent(f.covered_downward_share()), percent(f.covered_share()), f.largest_stretch);
-  if (f.torn_mm2 > 0)
-    return sentence +
-           fmt::format(" and tears: {} of what meets the object is lost.", percent(f.torn_share()));
-  return sentence + " and does not tear.";
+std::vector<ReportInput> describe_inputs(const JobConfig& config, const LoadedObject& loaded) {
+  std::vector<ReportInput> inputs;
+  for (const auto& file : loaded.files)
+    inputs.push_back(describe_input(role_of(file, config), file));
+  if (!config.film_image.empty()) inputs.push_back(describe_input("film image", config.film_image));
+  for (const auto& file : config.settings_files) inputs.push_back(describe_input("settings", file));
+  return inputs;
 }
 
-JobResult describe_result(const JobRecord& record, const OutputFolder& folder) {
+Report make_report(const JobRecord& record) {
+  Report report;
+  report.tool_version = HYDRODIP_VERSION;
+  report.command = record.command;
+  report.command_line = record.config.command_line;
+  report.title = record.config.print.job_name;
+  report.verdict = plain_verdict(record.dipped.coverage);
+  report.inputs = record.inputs;
+  for (const Parameter& parameter : parameters())
+    report.parameters.push_back(describe_parameter(parameter, record.config));
+  for (const StageTime& time : record.times.list())
+    report.stages.push_back({time.stage, time.seconds});
+  report.total_seconds = record.times.total_s();
+  report.rounds = {dip_round(record.dipped.dip.statistics)};
+  report.coverage = record.dipped.coverage;
+  report.mesh = record.dipped.loaded.health;
+  report.figures = figures(record.dipped);
+  report.warnings = record.context.warnings();
+  report.outputs = outputs(record.command, record.config.print.ink_side);
+  report.peak_memory_bytes = peak_memory_bytes();
+  return report;
+}
+
+JobResult describe_result(const Report& report, const std::filesystem::path& folder) {
   JobResult result;
-  result.folder = folder.folder();
-  const std::vector<std::string> warnings = record.context.warnings();
-
-  result.text = fmt::format("wrote to {}:\n", folder.folder().string());
-  for (const OutputFile& file : output_files(record.command)) {
-    result.files.emplace_back(file.name);
-    result.text += fmt::format("  {:<12} {}\n", file.name, file.what);
+  result.folder = folder;
+  result.text = fmt::format("wrote to {}:\n", folder.string());
+  for (const ReportOutput& output : report.outputs) {
+    result.files.push_back(output.name);
+    result.text += fmt::format("  {:<12} {}\n", output.name, output.description);
   }
-  for (const std::string& warning : warnings) result.text += "warning: " + warning + "\n";
-  result.text += verdict(record.dipped.figures) + "\n";
+  for (const std::string& warning : report.warnings) result.text += "warning: " + warning + "\n";
+  result.text += report.verdict + "\n";
 
-  json machine = {{"command", record.command},
-                  {"folder", folder.folder().string()},
-                  {"files", result.files},
-                  {"verdict", verdict(record.dipped.figures)},
-                  {"depth_mm", record.dipped.film().depth_mm},
-                  {"figures", figures_json(record.dipped.figures)},
-                  {"warnings", warnings},
-                  {"seconds", record.times.total_s()},
-                  {"peak_memory_bytes", peak_memory_bytes()}};
+  json machine = {{"folder", folder.string()}};
+  machine.update(json::parse(report_json(report)));
   result.json = machine.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
   return result;
 }

@@ -6,30 +6,30 @@
 #include <vector>
 
 #include "base/context.h"
-#include "base/output_folder.h"
 #include "job/config.h"
 #include "job/dip_stage.h"
 #include "job/jobs.h"
 #include "job/stage_times.h"
+#include "report/report.h"
 
 namespace hydrodip {
 
-// References stay valid as long as the job runs.
+// Refers to what the pipeline holds.
 struct JobRecord {
   std::string command;  // "print"
   const JobConfig& config;
+  const std::vector<ReportInput>& inputs;
   const DippedObject& dipped;
   const StageTimes& times;
   RunContext& context;
 };
 
-// One sentence: how much is covered, how far the film stretches, whether it tears.
-std::string verdict(const DipFigures& figures);
+// Every file that the job reads, with its hash as it was read. Call it next to reading them.
+std::vector<ReportInput> describe_inputs(const JobConfig& config, const LoadedObject& loaded);
 
-// report.json and report.html into the folder's staging area; the preview is shown in the page.
-void write_reports(OutputFolder& folder, const JobRecord& record, const Image& preview);
+Report make_report(const JobRecord& record);
 
-// After commit(): what the command prints.
-JobResult describe_result(const JobRecord& record, const OutputFolder& folder);
+// What the command prints: in words, and the report with its folder as JSON.
+JobResult describe_result(const Report& report, const std::filesystem::path& folder);
 
 }  // namespace hydrodip

@@ -73,16 +73,16 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
   StageTimes times;
 
   LoadedObject posed = times.measure("load", [&] { return load_posed(config, context); });
+  const std::vector<ReportInput> inputs = describe_inputs(config, posed);
   require_fit(posed.object, config, context);
   const PrintedFilm film = times.measure("film image", [&] { return printed_film(config); });
 
   const auto dipped = dip_object(std::move(posed), config, times, context);
 
-  const JobRecord record{"simulate", config, *dipped, times, context};
-  const Image preview = times.measure(
+  const JobRecord record{"simulate", config, inputs, *dipped, times, context};
+  const auto preview = times.measure(
       "preview", [&] { return write_previews(folder, record, film.image, film.raster); });
-  write_reports(folder, record, preview);
-  return finish(folder, record);
+  return finish(folder, record, preview);
 }
 
 }  // namespace hydrodip

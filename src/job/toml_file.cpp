@@ -144,7 +144,7 @@ class SettingReader {
       else if constexpr (toml::is_array<decltype(value)>)
         text << value;
     });
-    return "'" + text.str() + "'";
+    return fmt::format("'{}'", text.str());
   }
 
   std::filesystem::path file_;
