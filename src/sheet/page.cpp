@@ -56,6 +56,7 @@ PixelBox inked_box(const Image& image) {
   while (box.y_end > box.y_begin && !row_has_ink(image, box.y_end - 1, 0, image.width_px)) {
     --box.y_end;
   }
+  if (box.empty()) return {};
   box.x_begin = image.width_px;
   box.x_end = 0;
   for (int y = box.y_begin; y < box.y_end; ++y) {

@@ -19,7 +19,7 @@ struct PixelBox {
   bool empty() const { return x_end <= x_begin || y_end <= y_begin; }
 };
 
-// The smallest block that holds every pixel that is not fully transparent.
+// The smallest block that holds every pixel that is not fully transparent; empty if there is none.
 PixelBox inked_box(const Image& image);
 
 // The image flipped left-right.

@@ -38,7 +38,8 @@ struct FreeDocument {
 using Document = std::unique_ptr<std::remove_pointer_t<HPDF_Doc>, FreeDocument>;
 
 // Hands the picture to libharu while it writes the file, row by row as 8-bit RGB over white, so
-// that no second copy of a large image is ever in memory.
+// that no second copy of a large image is ever in memory. Each row begins with a PNG filter number
+// and holds differences to the left neighbour, which compress several times better.
 class PixelStream {
  public:
   PixelStream(const Image& image, const PixelBox& box, bool mirror, RunContext& context)
@@ -46,7 +47,7 @@ class PixelStream {
         box_(box),
         mirror_(mirror),
         context_(context),
-        row_(std::size_t(3) * std::size_t(box.width())) {
+        row_(1 + kChannels * std::size_t(box.width())) {
     rewind();
   }
 
@@ -71,26 +72,41 @@ class PixelStream {
   std::exception_ptr failure;
 
  private:
+  static constexpr std::size_t kChannels = 3;
+  using Rgb = std::array<std::uint8_t, kChannels>;
+
   bool load_next_row() {
     if (next_row_ == box_.y_end) return false;
     if (next_row_ % 64 == 0) {
       context_.progress("writing print.pdf", double(next_row_ - box_.y_begin) / box_.height());
     }
-    std::uint8_t* out = row_.data();
-    for (int i = 0; i < box_.width(); ++i, out += 3) {
-      const int x = mirror_ ? box_.x_end - 1 - i : box_.x_begin + i;
-      over_white(image_.pixel(x, next_row_), out);
-    }
-    ++next_row_;
+    fill_row(next_row_++);
     at_ = 0;
     return true;
   }
 
-  // Ink amounts, 255 - value, scale with coverage, as in the CMYK file.
-  static void over_white(const std::uint8_t* rgba, std::uint8_t* rgb) {
-    for (int i = 0; i < 3; ++i) {
-      rgb[i] = static_cast<std::uint8_t>(255 - ((255 - rgba[i]) * rgba[3] + 127) / 255);
+  void fill_row(int y) {
+    constexpr std::uint8_t kSubFilter = 1;
+    std::uint8_t* out = row_.data();
+    *out++ = kSubFilter;
+    Rgb left{};
+    for (int i = 0; i < box_.width(); ++i) {
+      const Rgb color =
+          over_white(image_.pixel(mirror_ ? box_.x_end - 1 - i : box_.x_begin + i, y));
+      for (std::size_t k = 0; k < kChannels; ++k) {
+        *out++ = static_cast<std::uint8_t>(color[k] - left[k]);
+      }
+      left = color;
     }
+  }
+
+  // Ink amounts, 255 - value, scale with coverage, as in the CMYK file.
+  static Rgb over_white(const std::uint8_t* rgba) {
+    Rgb rgb;
+    for (std::size_t k = 0; k < kChannels; ++k) {
+      rgb[k] = static_cast<std::uint8_t>(255 - ((255 - rgba[k]) * rgba[3] + 127) / 255);
+    }
+    return rgb;
   }
 
   const Image& image_;
@@ -134,6 +150,10 @@ HPDF_Image add_image(HPDF_Doc document, const PixelBox& box, PixelStream& pixels
   if (image == nullptr) return nullptr;
   HPDF_Dict_AddNumber(image, "Width", box.width());
   HPDF_Dict_AddNumber(image, "Height", box.height());
+  image->filterParams = HPDF_Dict_New(image->mmgr);
+  HPDF_Dict_AddNumber(image->filterParams, "Predictor", 15);  // PNG filters
+  HPDF_Dict_AddNumber(image->filterParams, "Colors", 3);
+  HPDF_Dict_AddNumber(image->filterParams, "Columns", box.width());
   HPDF_Stream_Free(image->stream);
   image->stream = HPDF_CallbackReader_New(image->mmgr, read_pixels, rewind_pixels, tell_pixels,
                                           size_of_pixels, &pixels);
