@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "dip/dip.h"
-#include "film/film.h"
-#include "job/prepare.h"
 
 namespace hydrodip {
 namespace {
@@ -15,15 +13,16 @@ constexpr double kCheckerCell_mm = 10;
 
 }  // namespace
 
-std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const JobConfig& config,
-                                         StageTimes& times, RunContext& context) {
+std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const FilmMesh& film,
+                                         const JobConfig& config, StageTimes& times,
+                                         RunContext& context) {
   auto dipped = std::make_unique<DippedObject>();
   dipped->loaded = std::move(posed);
   const Object& object = dipped->object();
   times.measure("dip", [&] {
     dipped->surface = std::make_unique<Surface>(object.positions, object.triangles);
-    dipped->dip = dip(make_film_mesh(config.film), object.positions, object.triangles,
-                      *dipped->surface, config.dip, context);
+    dipped->dip =
+        dip(film, object.positions, object.triangles, *dipped->surface, config.dip, context);
   });
   times.measure("map", [&] {
     context.progress("mapping", 0);

@@ -27,9 +27,10 @@ struct DippedObject {
   const DippedFilm& film() const { return dip.film; }
 };
 
-// Simulates the dip of a posed object that fits.
-std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const JobConfig& config,
-                                         StageTimes& times, RunContext& context);
+// Simulates the dip of a posed object that fits the film.
+std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const FilmMesh& film,
+                                         const JobConfig& config, StageTimes& times,
+                                         RunContext& context);
 
 // Where the sheet's pixels lie at `dpi`.
 SheetRaster sheet_raster(const JobConfig& config, double dpi);

@@ -50,12 +50,13 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
   OutputFolder folder(config.output);
   StageTimes times;
 
+  const FilmMesh film = make_film_mesh(config.film);
   LoadedObject posed = times.measure("load", [&] { return load_posed(config, context); });
   const std::vector<ReportInput> inputs = describe_inputs(config, posed);
   require_appearance(posed.object, config.model);
   require_fit(posed.object, config, context);
 
-  const auto dipped = dip_object(std::move(posed), config, times, context);
+  const auto dipped = dip_object(std::move(posed), film, config, times, context);
   const Image image = times.measure("invert", [&] { return invert(*dipped, config, context); });
   times.measure("sheet", [&] { compose(folder, image, config, context); });
 

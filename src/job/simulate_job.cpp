@@ -54,7 +54,7 @@ PrintedFilm read_film_image(const JobConfig& config) {
   film.raster = sheet_raster(config, image_dpi(film.image, recorded_dpi(bytes), config));
   if (film.image.width_px != film.raster.width_px() ||
       film.image.height_px != film.raster.height_px())
-    film.image = resize(film.image, film.raster.width_px(), film.raster.height_px());
+    film.image = resize(printed.image, printed.raster.width_px(), film.raster.height_px());
   if (config.print.ink_side == InkSide::kDown) film.image = mirrored(film.image);
   return film;
 }
@@ -72,16 +72,17 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
   OutputFolder folder(config.output);
   StageTimes times;
 
+  const FilmMesh film = make_film_mesh(config.film);
   LoadedObject posed = times.measure("load", [&] { return load_posed(config, context); });
   const std::vector<ReportInput> inputs = describe_inputs(config, posed);
   require_fit(posed.object, config, context);
-  const PrintedFilm film = times.measure("film image", [&] { return printed_film(config); });
+  const PrintedFilm printed = times.measure("film image", [&] { return printed_film(config); });
 
-  const auto dipped = dip_object(std::move(posed), config, times, context);
+  const auto dipped = dip_object(std::move(posed), film, config, times, context);
 
   const JobRecord record{"simulate", config, inputs, *dipped, times, context};
   const auto preview = times.measure(
-      "preview", [&] { return write_previews(folder, record, film.image, film.raster); });
+      "preview", [&] { return write_previews(folder, record, printed.image, printed.raster); });
   return finish(folder, record, preview);
 }
 

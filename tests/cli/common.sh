@@ -1,0 +1,67 @@
+# What the command-line tests share. Usage of every test: sh NAME.sh /path/to/hydrodip
+# Works in a temporary folder of its own, removed at the end.
+set -u
+
+hydrodip=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+trap 'exit 1' HUP INT TERM
+cd "$work" || exit 1
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+finish() {
+  [ "$failures" -eq 0 ] || { echo "$failures checks failed"; exit 1; }
+  echo "all passed"
+  exit 0
+}
+
+# A small closed model without appearance.
+write_tetrahedron() {
+  cat > "$1" <<'OBJ'
+v 0 0 0
+v 20 -20 20
+v 20 20 20
+v -20 0 20
+f 1 2 3
+f 1 3 4
+f 1 4 2
+f 2 4 3
+OBJ
+}
+
+# The same with vertex colours, so that it can be printed.
+write_colored() {
+  cat > "$1" <<'PLY'
+ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+property uchar red
+property uchar green
+property uchar blue
+element face 4
+property list uchar int vertex_indices
+end_header
+0 0 0 255 0 0
+20 -20 10 0 255 0
+20 20 10 0 0 255
+-20 0 10 255 255 0
+3 0 2 1
+3 0 3 2
+3 0 1 3
+3 1 2 3
+PLY
+}
+
+# Settings that make a job quick.
+quick='--film 100x80 --set film.elements=800 --set dip.step_mm=1 --dpi 72
+       --set preview.width_px=200 --set print.samples=1'
+quick_simulate='--film 100x80 --set film.elements=800 --set dip.step_mm=1
+       --set preview.width_px=200'

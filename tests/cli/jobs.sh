@@ -1,0 +1,102 @@
+#!/bin/sh
+# Whole jobs: every file is there and other programs read it, the same bytes come out for 1 and 2
+# threads, results can be read by machines, a broken pipe does no harm.
+. "$(dirname "$0")/common.sh"
+
+write_tetrahedron tetra.obj
+write_colored colored.ply
+print_files='film.ply preview.glb preview.png print.pdf print.png print.tif report.html report.json'
+simulate_files='film.ply preview.glb preview.png report.html report.json'
+
+# expect_files FOLDER NAMES: these, whole, and no others.
+expect_files() {
+  folder=$1
+  shift
+  [ "$(cd "$folder" && find . -mindepth 1 | sort | tr -d '\n')" = "$(printf './%s' "$@")" ] ||
+    fail "$folder holds $(ls -A "$folder")"
+  for name in "$@"; do [ -s "$folder/$name" ] || fail "$folder/$name is empty"; done
+}
+
+# shellcheck disable=SC2086
+"$hydrodip" sample sphere -o samples > /dev/null || fail 'sample sphere'
+"$hydrodip" print samples/sphere.obj --size 40 $quick -o out > print.txt || fail "print: $?"
+expect_files out $print_files
+grep -q 'print.pdf' print.txt || fail 'print does not name its files'
+if command -v pdfinfo > /dev/null; then
+  pdfinfo out/print.pdf | grep -q 'Page size: *283.4[0-9]* x 226.7[0-9]* pts' ||
+    fail "page size: $(pdfinfo out/print.pdf)"
+fi
+if command -v tiffinfo > /dev/null; then
+  tiffinfo out/print.tif 2>&1 | grep -q 'separated' || fail 'tiffinfo on print.tif'
+fi
+if command -v pngcheck > /dev/null; then
+  pngcheck -q out/print.png out/preview.png || fail 'pngcheck'
+fi
+head -c 4 out/preview.glb | grep -q glTF || fail 'preview.glb'
+head -c 40 out/film.ply | grep -q binary_little_endian || fail 'film.ply'
+
+# The number of threads changes nothing but the times.
+"$hydrodip" print samples/sphere.obj --size 40 $quick --threads 1 -o one --quiet > /dev/null || fail one
+"$hydrodip" print samples/sphere.obj --size 40 $quick --threads 2 -o two --quiet > /dev/null || fail two
+for name in $print_files; do
+  case $name in report.*) continue ;; esac
+  cmp "one/$name" "two/$name" || fail "$name depends on the number of threads"
+  cmp "one/$name" "out/$name" || fail "$name depends on the run"
+done
+
+# Forward, with and without an image, of a model with and without appearance; odd names.
+"$hydrodip" simulate tetra.obj $quick_simulate -o plain > /dev/null || fail 'simulate'
+expect_files plain $simulate_files
+mkdir 'ordnung müß sein'
+cp colored.ply 'ordnung müß sein/größe 1.ply'
+(cd 'ordnung müß sein' && "$hydrodip" print 'größe 1.ply' $quick > /dev/null) || fail 'odd names'
+expect_files 'ordnung müß sein/größe 1-print' $print_files
+"$hydrodip" simulate colored.ply --film-image 'ordnung müß sein/größe 1-print/print.png' \
+  $quick_simulate -o forward > /dev/null || fail 'simulate --film-image'
+expect_files forward $simulate_files
+
+# A second run replaces the first.
+"$hydrodip" simulate tetra.obj $quick_simulate -o plain > /dev/null || fail 'second run'
+expect_files plain $simulate_files
+
+# Precedence, seen from outside.
+printf 'print.dpi = 50\n[film]\nwidth_mm = 90\nheight_mm = 70\n' > job.toml
+"$hydrodip" print colored.ply $quick --config job.toml --set print.dpi=60 --json --quiet \
+  -o precedence > precedence.json 2> quiet.txt || fail 'config'
+[ ! -s quiet.txt ] || fail '--quiet is not quiet'
+if command -v python3 > /dev/null; then
+  python3 - <<'PY' || fail 'JSON results'
+import json
+result = json.load(open('precedence.json'))
+parameters = result['parameters']
+assert result['folder'] == 'precedence'
+assert parameters['print.dpi']['value'] == 60, '--set wins over options'
+assert parameters['film.width_mm']['value'] == 100, 'options win over files'
+report = json.load(open('precedence/report.json'))
+assert report['parameters'] == parameters
+assert any(entry['role'] == 'settings' for entry in report['inputs'])
+PY
+fi
+if command -v python3 > /dev/null; then
+  "$hydrodip" params --json | python3 -c 'import json, sys
+names = [p["name"] for p in json.load(sys.stdin)["parameters"]]
+assert "film.elements" in names and "dip.step_mm" in names' || fail 'params --json'
+  "$hydrodip" inspect tetra.obj --json | python3 -c 'import json, sys
+report = json.load(sys.stdin)
+assert report["size_mm"] == [40, 40, 20] and report["mesh"]["closed"]' || fail 'inspect --json'
+  "$hydrodip" sample --json | python3 -c 'import json, sys
+assert "mask" in [s["name"] for s in json.load(sys.stdin)["samples"]]' || fail 'sample --json'
+fi
+
+# Help, version, lists; readers that go away; closed streams.
+for command in print simulate inspect sample params; do
+  "$hydrodip" "$command" --help | grep -q "^Usage: hydrodip $command" || fail "$command --help"
+done
+"$hydrodip" --help | grep -q inspect || fail '--help'
+"$hydrodip" --version | grep -q '^hydrodip [0-9]' || fail '--version'
+"$hydrodip" params | grep -q '^film.elements' || fail 'params'
+("$hydrodip" params; echo "$?" > code.txt) | head -n 1 > /dev/null
+[ "$(cat code.txt)" -eq 0 ] || fail "broken pipe: exit code $(cat code.txt)"
+"$hydrodip" simulate tetra.obj $quick_simulate -o closed <&- >&- 2>&- || fail "closed streams: $?"
+expect_files closed $simulate_files
+finish

@@ -1,0 +1,110 @@
+#!/bin/sh
+# Bad input: exit code 2, one clear sentence on stderr, nothing on stdout, no file left behind.
+. "$(dirname "$0")/common.sh"
+
+write_tetrahedron tetra.obj
+write_colored colored.ply
+mkdir inputs
+
+# refused FRAGMENT ARGUMENTS...: the sentence must contain FRAGMENT.
+refused() {
+  fragment=$1
+  shift
+  find . > "$work.before"
+  "$hydrodip" "$@" > "$work.out" 2> "$work.err"
+  code=$?
+  find . > "$work.after"
+  [ "$code" -eq 2 ] || fail "exit code $code instead of 2: $*"
+  [ "$(wc -l < "$work.err")" -eq 1 ] || fail "not one line on stderr: $*: $(cat "$work.err")"
+  grep -q '^error: ' "$work.err" || fail "stderr does not start with 'error: ': $*"
+  grep -qF -- "$fragment" "$work.err" || fail "no '$fragment' in: $(cat "$work.err")"
+  [ ! -s "$work.out" ] || fail "something on stdout: $*"
+  cmp -s "$work.before" "$work.after" || fail "left files behind: $*"
+  rm -f "$work.before" "$work.after" "$work.out" "$work.err"
+}
+
+# Files that are no models.
+: > inputs/empty.obj
+: > inputs/empty.stl
+: > inputs/empty.glb
+: > inputs/empty.png
+: > inputs/empty.ply
+for kind in obj stl glb png ply; do
+  [ "$kind" = png ] || refused "inputs/empty.$kind" print "inputs/empty.$kind" -o out
+done
+head -c 5000 "$hydrodip" | tail -c 4096 > inputs/noise.bin
+for kind in stl glb gltf ply off 3mf; do
+  cp inputs/noise.bin "inputs/noise.$kind"
+  refused "inputs/noise.$kind" print "inputs/noise.$kind" -o out
+done
+refused 'nowhere.obj' print nowhere.obj -o out
+refused 'nowhere.obj' inspect nowhere.obj
+refused 'inputs' print inputs -o out
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 9\n' > inputs/index.obj
+refused 'inputs/index.obj' simulate inputs/index.obj -o out
+printf 'v 0 0 0\nv nan 0 0\nv 0 1 1\nf 1 2 3\n' > inputs/nan.obj
+refused 'inputs/nan.obj' simulate inputs/nan.obj -o out
+
+# Appearance.
+refused 'UVs' print tetra.obj -o out
+cp inputs/noise.bin inputs/noise.png
+"$hydrodip" sample box -o samples > /dev/null || fail 'sample box'
+refused 'inputs/noise.png' print samples/box.obj --texture inputs/noise.png -o out
+refused 'inputs/empty.png' print samples/box.obj --texture inputs/empty.png -o out
+refused 'nowhere.png' print samples/box.obj --texture nowhere.png -o out
+refused 'inputs/noise.png' simulate tetra.obj --film-image inputs/noise.png -o out
+refused 'nowhere.png' simulate tetra.obj --film-image nowhere.png -o out
+refused 'shape of the' simulate tetra.obj --film-image samples/box.png --film 200x100 -o out
+
+# Too large: by how much.
+refused '240 mm long (y), 50 mm more than the 190 mm' simulate tetra.obj --size 240 --film 300x210 -o out
+refused '10 mm more than the 10 mm of the bath' simulate tetra.obj --set bath.depth_mm=10 -o out
+refused 'more than the 30 mm of the free film' simulate tetra.obj --film 50x50 -o out
+refused 'more than' simulate tetra.obj --film 60x60 --set film.shape=disc -o out
+refused '150 mm of the bath' simulate tetra.obj --depth 200 -o out
+refused '--units' simulate tetra.obj --units m -o out
+
+# Parameters and options.
+refused "did you mean 'film.elements'?" simulate tetra.obj --set film.elemnts=800 -o out
+refused "did you mean '--size'?" simulate tetra.obj --sise 30 -o out
+refused "did you mean 'simulate'?" simulte tetra.obj -o out
+refused 'lists them' simulate tetra.obj --zzzzzzzz -o out
+refused 'unexpected argument' simulate tetra.obj other.obj -o out
+refused 'missing' simulate tetra.obj --size
+refused "did you mean 'sphere'?" sample spehre -o out
+for value in 5 1e9 nan inf many '' 800.5 0x320; do
+  refused 'film.elements must be a whole number from 8' simulate tetra.obj \
+    --set "film.elements=$value" -o out
+done
+refused 'object.size_mm' simulate tetra.obj --size -3 -o out
+refused 'object.down' simulate tetra.obj --down z -o out
+refused 'X,Y,Z' simulate tetra.obj --rotate 1,2 -o out
+refused 'object.units' simulate tetra.obj --units km -o out
+refused 'dip.depth_mm' simulate tetra.obj --depth deep -o out
+refused 'neither letter, a4' simulate tetra.obj --film a9 -o out
+refused 'run.threads' simulate tetra.obj --threads -1 -o out
+refused 'film.margin_mm' simulate tetra.obj --set film.margin_mm=-1 -o out
+refused 'margin' simulate tetra.obj --set film.margin_mm=200 -o out
+refused 'NAME=VALUE' simulate tetra.obj --set film.margin_mm -o out
+
+# Configuration files.
+printf '[film]\nwidth_mm = = 3\n' > inputs/broken.toml
+refused 'inputs/broken.toml:2:' simulate tetra.obj --config inputs/broken.toml -o out
+printf '[film]\nwidth_mm = "wide"\n' > inputs/text.toml
+refused 'inputs/text.toml:2: film.width_mm' simulate tetra.obj --profile inputs/text.toml -o out
+printf '\n\nfilm.wdth_mm = 3\n' > inputs/typo.toml
+refused "inputs/typo.toml:3: unknown parameter 'film.wdth_mm'; did you mean 'film.width_mm'?" \
+  simulate tetra.obj --config inputs/typo.toml -o out
+cp inputs/noise.bin inputs/noise.toml
+refused 'inputs/noise.toml' simulate tetra.obj --config inputs/noise.toml -o out
+refused 'nowhere.toml' simulate tetra.obj --config nowhere.toml -o out
+
+# Output folders.
+refused 'tetra.obj' simulate tetra.obj -o tetra.obj/out
+refused 'tetra.obj' print colored.ply -o tetra.obj
+refused 'tetra.obj' sample box -o tetra.obj/out
+
+# No command at all.
+refused 'name a command'
+refused 'name the model' print
+finish
