@@ -54,7 +54,7 @@ PrintedFilm read_film_image(const JobConfig& config) {
   film.raster = sheet_raster(config, image_dpi(film.image, recorded_dpi(bytes), config));
   if (film.image.width_px != film.raster.width_px() ||
       film.image.height_px != film.raster.height_px())
-    film.image = resize(printed.image, printed.raster.width_px(), film.raster.height_px());
+    film.image = resize(film.image, film.raster.width_px(), film.raster.height_px());
   if (config.print.ink_side == InkSide::kDown) film.image = mirrored(film.image);
   return film;
 }

@@ -2,7 +2,7 @@
 # Works in a temporary folder of its own, removed at the end.
 set -u
 
-hydrodip=$1
+hydrodip=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
