@@ -12,6 +12,8 @@
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <type_traits>
@@ -36,6 +38,18 @@ struct FreeDocument {
   void operator()(HPDF_Doc document) const { HPDF_Free(document); }
 };
 using Document = std::unique_ptr<std::remove_pointer_t<HPDF_Doc>, FreeDocument>;
+
+// What libharu makes is null after any earlier failure, and it does not check for that itself.
+[[noreturn]] void refuse_to_compose(HPDF_Doc document) {
+  throw std::runtime_error(fmt::format("print.pdf could not be composed (libharu error {:#x}).",
+                                       HPDF_GetError(document)));
+}
+
+template <typename Handle>
+Handle made(HPDF_Doc document, Handle handle) {
+  if (handle == nullptr) refuse_to_compose(document);
+  return handle;
+}
 
 // Hands the picture to libharu while it writes the file, row by row as 8-bit RGB over white, so
 // that no second copy of a large image is ever in memory. Each row begins with a PNG filter number
@@ -143,6 +157,18 @@ HPDF_INT32 tell_pixels(HPDF_Stream) { return 0; }
 // libharu only asks whether there is anything.
 HPDF_UINT32 size_of_pixels(HPDF_Stream) { return std::numeric_limits<HPDF_UINT32>::max(); }
 
+// One entry for the one filter, that is deflate. (image->filterParams would do the same, but is
+// leaked when the file cannot be opened.)
+void announce_row_filters(HPDF_Doc document, HPDF_Image image, int width) {
+  const HPDF_Array filters = made(document, HPDF_Array_New(image->mmgr));
+  HPDF_Dict_Add(image, "DecodeParms", filters);
+  const HPDF_Dict deflate = made(document, HPDF_Dict_New(image->mmgr));
+  HPDF_Array_Add(filters, deflate);
+  HPDF_Dict_AddNumber(deflate, "Predictor", 15);  // PNG filters
+  HPDF_Dict_AddNumber(deflate, "Colors", 3);
+  HPDF_Dict_AddNumber(deflate, "Columns", width);
+}
+
 // A one-pixel image whose size and source are then exchanged: libharu's own loaders all copy.
 HPDF_Image add_image(HPDF_Doc document, const PixelBox& box, PixelStream& pixels) {
   const std::array<HPDF_BYTE, 3> white = {255, 255, 255};
@@ -150,13 +176,11 @@ HPDF_Image add_image(HPDF_Doc document, const PixelBox& box, PixelStream& pixels
   if (image == nullptr) return nullptr;
   HPDF_Dict_AddNumber(image, "Width", box.width());
   HPDF_Dict_AddNumber(image, "Height", box.height());
-  image->filterParams = HPDF_Dict_New(image->mmgr);
-  HPDF_Dict_AddNumber(image->filterParams, "Predictor", 15);  // PNG filters
-  HPDF_Dict_AddNumber(image->filterParams, "Colors", 3);
-  HPDF_Dict_AddNumber(image->filterParams, "Columns", box.width());
+  announce_row_filters(document, image, box.width());
   HPDF_Stream_Free(image->stream);
-  image->stream = HPDF_CallbackReader_New(image->mmgr, read_pixels, rewind_pixels, tell_pixels,
-                                          size_of_pixels, &pixels);
+  image->stream = nullptr;
+  image->stream = made(document, HPDF_CallbackReader_New(image->mmgr, read_pixels, rewind_pixels,
+                                                         tell_pixels, size_of_pixels, &pixels));
   return image;
 }
 
@@ -206,7 +230,7 @@ void draw_texts(HPDF_Page page, HPDF_Font font, const Marks& marks) {
 
 void draw_marks(HPDF_Doc document, HPDF_Page page, const SheetOptions& options,
                 RunContext& context) {
-  const HPDF_Font font = HPDF_GetFont(document, "Helvetica", "WinAnsiEncoding");
+  const HPDF_Font font = made(document, HPDF_GetFont(document, "Helvetica", "WinAnsiEncoding"));
   const auto text_width = [&](const std::string& text) {
     const auto* bytes = reinterpret_cast<const HPDF_BYTE*>(text.data());
     return HPDF_Font_TextWidth(font, bytes, static_cast<HPDF_UINT>(text.size())).width / 1000.0;
@@ -219,14 +243,16 @@ void draw_marks(HPDF_Doc document, HPDF_Page page, const SheetOptions& options,
   for (const std::string& warning : marks.warnings) context.warn(warning);
 }
 
+[[noreturn]] void refuse_date(const std::string& iso) {
+  throw InputError(fmt::format("'{}' is not a date; write it as 2026-01-31.", iso));
+}
+
 HPDF_Date parse_date(const std::string& iso) {
   HPDF_Date date{};
   date.ind = 'Z';
   const int count = std::sscanf(iso.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d", &date.year, &date.month,
                                 &date.day, &date.hour, &date.minutes, &date.seconds);
-  if (count < 3) {
-    throw InputError(fmt::format("'{}' is not a date; write it as 2026-01-31.", iso));
-  }
+  if (count < 3) refuse_date(iso);
   return date;
 }
 
@@ -237,8 +263,10 @@ void describe(HPDF_Doc document, const SheetOptions& options) {
   std::replace_if(
       title.begin(), title.end(), [](char c) { return (c & 0xE0) == 0x80; }, '?');
   if (!title.empty()) HPDF_SetInfoAttr(document, HPDF_INFO_TITLE, title.c_str());
-  if (!options.date.empty()) {
-    HPDF_SetInfoDateAttr(document, HPDF_INFO_CREATION_DATE, parse_date(options.date));
+  if (options.date.empty()) return;
+  const HPDF_Date date = parse_date(options.date);
+  if (HPDF_SetInfoDateAttr(document, HPDF_INFO_CREATION_DATE, date) != HPDF_OK) {
+    refuse_date(options.date);
   }
 }
 
@@ -285,7 +313,7 @@ void write_print_pdf(const std::filesystem::path& path, const Image& image,
   HPDF_SetViewerPreference(document.get(), HPDF_PRINT_SCALING_NONE);
   describe(document.get(), options);
 
-  const HPDF_Page page = HPDF_AddPage(document.get());
+  const HPDF_Page page = made(document.get(), HPDF_AddPage(document.get()));
   HPDF_Page_SetWidth(page, pt(options.width_mm));
   HPDF_Page_SetHeight(page, pt(options.height_mm));
 
@@ -301,9 +329,7 @@ void write_print_pdf(const std::filesystem::path& path, const Image& image,
   }
   draw_marks(document.get(), page, options, context);
 
-  if (const HPDF_STATUS error = HPDF_GetError(document.get()); error != HPDF_OK) {
-    throw std::runtime_error(fmt::format("print.pdf could not be composed (libharu {:#x})", error));
-  }
+  if (HPDF_GetError(document.get()) != HPDF_OK) refuse_to_compose(document.get());
   try {
     save(document.get(), path);
   } catch (const InputError&) {
