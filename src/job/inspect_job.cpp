@@ -74,15 +74,19 @@ std::string describe_size(const Inspection& i) {
       size.x(), size.y(), size.z(), i.posed.units, i.depth_mm);
 }
 
+std::string describe_appearance(const Object& object) {
+  if (object.has_appearance()) return "textured or coloured";
+  return object.uvs.empty() ? "none; to print, give it UVs and a texture, or vertex colours"
+                            : "UVs without a texture; to print, name one with --texture";
+}
+
 std::string describe_mesh(const Inspection& i) {
   const MeshHealth& h = i.posed.health;
   std::string text = fmt::format(
       "mesh         {} triangles, {} vertices, {} {}, {}; area {:.0f} mm2, volume {:.0f} mm3\n",
       h.triangles, h.vertices, h.shells, h.shells == 1 ? "shell" : "shells",
       h.closed() ? "closed" : "open", h.area_mm2, h.volume_mm3);
-  text += fmt::format("appearance   {}\n", i.posed.object.has_appearance()
-                                               ? "textured or coloured"
-                                               : "none: print needs UVs and --texture, or colours");
+  text += "appearance   " + describe_appearance(i.posed.object) + "\n";
   return text;
 }
 

@@ -18,6 +18,8 @@ constexpr double kComfortableClearance_mm = 5;
 // A unit mistaken (metres read as inches, ...) shows as a misfit of this factor.
 constexpr double kSuspiciousMisfit = 9;
 
+constexpr double kTiny_mm = 5;
+
 // Millimetres to a hundredth, without trailing zeros.
 std::string mm(double length_mm) {
   std::string text = fmt::format("{:.2f}", length_mm);
@@ -129,13 +131,31 @@ void warn_if_tight(const std::vector<Fit>& list, RunContext& context) {
   }
 }
 
+// Area and volume grow with the object.
+void pose(LoadedObject& loaded, const PoseOptions& options) {
+  const Eigen::Matrix4d matrix = pose_matrix(loaded.object, options);
+  apply_pose(loaded.object, matrix);
+  const double scale = matrix.col(0).head<3>().norm();
+  loaded.health.area_mm2 *= scale * scale;
+  loaded.health.volume_mm3 *= scale * scale * scale;
+}
+
+void warn_if_tiny(const Object& object, RunContext& context) {
+  const double largest = object.bounds().size().maxCoeff();
+  if (largest < kTiny_mm)
+    context.warn(fmt::format(
+        "The object's largest extent is {}: if that is not meant, say its --units or --size.",
+        mm(largest)));
+}
+
 }  // namespace
 
 LoadedObject load_posed(const JobConfig& config, RunContext& context) {
   context.progress("loading", 0);
   LoadedObject loaded = load_object(config.model, config.object.load, context);
   for (const std::string& finding : loaded.health.findings()) context.warn(finding);
-  apply_pose(loaded.object, pose_matrix(loaded.object, config.object.pose));
+  pose(loaded, config.object.pose);
+  warn_if_tiny(loaded.object, context);
   context.progress("loading", 1);
   return loaded;
 }

@@ -92,6 +92,25 @@ TEST(Fit, AHugeMisfitAsksForTheUnits) {
   EXPECT_TRUE(contains(fit_error(object, JobConfig{}), "--units"));
 }
 
+TEST(LoadPosed, ScalesAreaAndVolumeWithTheObjectAndWarnsWhenItIsTiny) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "hydrodip_load_posed";
+  std::filesystem::create_directories(folder);
+  write_sample("box", folder);
+  JobConfig config;
+  config.model = folder / "box.obj";
+  RunContext context;
+  const LoadedObject full = load_posed(config, context);
+  EXPECT_NEAR(full.health.volume_mm3, 40 * 40 * 15, 1);
+  config.object.pose.size_mm = 4;
+  const LoadedObject tiny = load_posed(config, context);
+  EXPECT_NEAR(tiny.health.volume_mm3, 4 * 4 * 1.5, 1e-3);
+  EXPECT_NEAR(tiny.health.area_mm2, full.health.area_mm2 / 100, 1e-3);
+  ASSERT_FALSE(context.warnings().empty());
+  EXPECT_TRUE(contains(context.warnings().back(), "largest extent is 4 mm"));
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Appearance, IsAskedForWithTheWayToMend) {
   Object object = funnel();
   try {
