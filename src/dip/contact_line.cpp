@@ -11,9 +11,9 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "dip/locate.h"
 #include "dip/scheme.h"
 #include "dip/waterline.h"
+#include "film/locate.h"
 
 namespace hydrodip {
 

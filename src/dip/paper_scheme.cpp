@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "dip/locate.h"
 #include "dip/scheme.h"
+#include "film/locate.h"
 
 namespace hydrodip {
 

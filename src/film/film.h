@@ -12,11 +12,11 @@ namespace hydrodip {
 enum class FilmShape { kRectangle, kDisc };
 
 struct FilmOptions {
-  double width_mm = 210;    // whole sheet, x
-  double height_mm = 297;   // whole sheet, y
+  double width_mm = 210;                    // whole sheet, x
+  double height_mm = 297;                   // whole sheet, y
   FilmShape shape = FilmShape::kRectangle;  // disc: inscribed in the smaller extent
-  double margin_mm = 10;    // taped; the free film ends this far inside the edge, clamped there
-  int elements = 40000;     // triangles, met as nearly as the grid allows
+  double margin_mm = 10;  // taped; the free film ends this far inside the edge, clamped there
+  int elements = 40000;   // triangles, met as nearly as the grid allows
 };
 
 // The mesh of the free film. Film coordinates u: mm, origin at the film's centre, seen from above.
@@ -30,8 +30,8 @@ struct FilmMesh {
   double cell_mm = 0;                // grid spacing (larger of the two)
 
   // Row-major grid behind the mesh, for multigrid and look-up: vertex_at[j * nx + i] or -1.
-  int nx = 0, ny = 0;                // vertices along x, y
-  Vec2 origin = Vec2::Zero();        // u of grid vertex (0, 0)
+  int nx = 0, ny = 0;          // vertices along x, y
+  Vec2 origin = Vec2::Zero();  // u of grid vertex (0, 0)
   Vec2 spacing = Vec2::Zero();
   std::vector<std::int32_t> vertex_at;
 
@@ -51,12 +51,12 @@ enum class VertexState : std::uint8_t { kUnattached = 0, kAttached = 1, kClamped
 // The result of a dip: where the film is. Posed-object frame (mm).
 struct DippedFilm {
   FilmMesh mesh;
-  std::vector<Vec3> position;          // per vertex
-  std::vector<VertexState> state;      // per vertex
-  std::vector<double> area_ratio;      // per vertex: deformed area over flat area (Voronoi areas)
-  std::vector<double> stretch;         // per vertex: largest principal stretch around it
-  std::vector<std::uint8_t> torn;      // per triangle
-  double depth_mm = 0;                 // immersion reached
+  std::vector<Vec3> position;      // per vertex
+  std::vector<VertexState> state;  // per vertex
+  std::vector<double> area_ratio;  // per vertex: deformed area over flat area (Voronoi areas)
+  std::vector<double> stretch;     // per vertex: largest principal stretch around it
+  std::vector<std::uint8_t> torn;  // per triangle
+  double depth_mm = 0;             // immersion reached
 
   // A triangle whose corners are all attached and that is not torn: film that lies on the object.
   bool lies_on_object(std::size_t triangle) const;

@@ -18,7 +18,15 @@ class FilmMap {
   FilmMap(FilmMap&&) noexcept;
   FilmMap& operator=(FilmMap&&) noexcept;
 
+  // Where the last query ended: makes queries at neighbouring points fast. One per thread of work;
+  // start with a fresh one where results must not depend on how the work was divided.
+  struct Cursor {
+    std::int32_t film_triangle = -1;
+    int object_triangle = -1;
+  };
+
   // Point on the object where film coordinate u (mm) ends up; nothing if no film lies there.
+  std::optional<SurfacePoint> to_object(const Vec2& u, Cursor& cursor) const;
   std::optional<SurfacePoint> to_object(const Vec2& u) const;
 
   // Film coordinate (mm) that lands at a point of the object; nothing if it stays bare.

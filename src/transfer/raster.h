@@ -9,7 +9,8 @@
 namespace hydrodip {
 
 // Where a sheet's pixels lie. The sheet is seen from above; row 0 is its +y edge, column 0 its -x
-// edge; film coordinate (0, 0) is the sheet's centre.
+// edge. The image's centre is the sheet's, film coordinate (0, 0), and a pixel is 25.4 / dpi mm, so
+// that the whole number of pixels may miss the sheet's edge by up to half a pixel.
 struct SheetRaster {
   double width_mm = 210;
   double height_mm = 297;
@@ -23,8 +24,8 @@ struct SheetRaster {
 };
 
 struct InverseOptions {
-  double bleed_mm = 1;         // extended colour around the touched region
-  int samples_per_axis = 3;    // supersampling: squared per pixel
+  double bleed_mm = 1;           // extended colour around the touched region
+  int samples_per_axis = 3;      // supersampling: squared per pixel
   LinearColor base{1, 1, 1, 1};  // the bare object's colour
 };
 
@@ -33,6 +34,7 @@ Image film_image(const Object& object, const FilmMap& map, const SheetRaster& ra
                  const InverseOptions& options, RunContext& context);
 
 // The colour (linear) that a film image leaves at a film coordinate: bilinear, transparent outside.
+// The image is centred on the sheet and has raster.dpi.
 LinearColor sample_film_image(const Image& image, const SheetRaster& raster, const Vec2& u);
 
 // Predicted appearance at a point of the object when `image` was printed and dipped; over base.

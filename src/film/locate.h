@@ -1,7 +1,6 @@
 // Point location in the deformed film by walking from triangle to triangle.
 #pragma once
 
-#include "elastic/film_energy.h"
 #include "film/film.h"
 
 namespace hydrodip {
@@ -16,8 +15,11 @@ struct FilmLocation {
 // vertex `start` (of which the target is usually a small step away). Triangles with usable[t] == 0
 // are not entered. If the walk leaves the usable film, the last triangle it was in is returned with
 // inside = false and weights that extrapolate.
-FilmLocation locate(const FilmMesh& mesh, const VertexVector& u,
+FilmLocation locate(const FilmMesh& mesh, const std::vector<Vec2>& u,
                     const std::vector<std::uint8_t>& usable, std::int32_t start,
                     const Vec2& target);
+
+// The same in the flat film, starting from the nearest vertex of its grid.
+FilmLocation locate_flat(const FilmMesh& mesh, const Vec2& target);
 
 }  // namespace hydrodip

@@ -1,0 +1,73 @@
+#include "film/locate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hydrodip {
+
+namespace {
+
+constexpr int kMaxWalk = 64;
+constexpr double kInside = -1e-12;
+
+bool weights_at(const FilmMesh& mesh, const std::vector<Vec2>& u, std::int32_t triangle,
+                const Vec2& target, Vec3& weight) {
+  const Triangle& t = mesh.triangles[std::size_t(triangle)];
+  const Vec2 &a = u[std::size_t(t[0])], &b = u[std::size_t(t[1])], &c = u[std::size_t(t[2])];
+  const double twice = cross2(b - a, c - a);
+  if (!(twice > 0)) return false;
+  weight[1] = cross2(target - a, c - a) / twice;
+  weight[2] = cross2(b - a, target - a) / twice;
+  weight[0] = 1 - weight[1] - weight[2];
+  return true;
+}
+
+template <typename Usable>
+FilmLocation walk(const FilmMesh& mesh, const std::vector<Vec2>& u, const Usable& usable,
+                  std::int32_t start, const Vec2& target) {
+  // Among the triangles around the vertex, the one that contains the target or comes nearest to it.
+  FilmLocation best;
+  double best_weight = -1e300;
+  for (auto n = mesh.incident_begin[std::size_t(start)];
+       n < mesh.incident_begin[std::size_t(start) + 1]; ++n) {
+    const std::int32_t t = mesh.incident[std::size_t(n)];
+    Vec3 weight;
+    if (!usable(t) || !weights_at(mesh, u, t, target, weight)) continue;
+    if (weight.minCoeff() > best_weight) {
+      best_weight = weight.minCoeff();
+      best = {t, weight, best_weight >= kInside};
+    }
+  }
+  for (int walked = 0; best.triangle >= 0 && !best.inside && walked < kMaxWalk; ++walked) {
+    int exit_corner = 0;
+    best.weight.minCoeff(&exit_corner);
+    const std::int32_t next = mesh.neighbor[std::size_t(best.triangle)][std::size_t(exit_corner)];
+    Vec3 weight;
+    if (next < 0 || !usable(next) || !weights_at(mesh, u, next, target, weight)) break;
+    best = {next, weight, weight.minCoeff() >= kInside};
+  }
+  return best;
+}
+
+}  // namespace
+
+FilmLocation locate(const FilmMesh& mesh, const std::vector<Vec2>& u,
+                    const std::vector<std::uint8_t>& usable, std::int32_t start,
+                    const Vec2& target) {
+  return walk(
+      mesh, u, [&](std::int32_t t) { return usable[std::size_t(t)] != 0; }, start, target);
+}
+
+FilmLocation locate_flat(const FilmMesh& mesh, const Vec2& target) {
+  const Vec2 cell = (target - mesh.origin).cwiseQuotient(mesh.spacing);
+  if (!cell.allFinite() || cell.minCoeff() < -1 || cell.x() > mesh.nx || cell.y() > mesh.ny)
+    return {};
+  const int i = std::clamp(static_cast<int>(std::lround(cell.x())), 0, mesh.nx - 1);
+  const int j = std::clamp(static_cast<int>(std::lround(cell.y())), 0, mesh.ny - 1);
+  const std::int32_t start = mesh.vertex_at[std::size_t(j) * std::size_t(mesh.nx) + std::size_t(i)];
+  if (start < 0) return {};
+  return walk(
+      mesh, mesh.u, [](std::int32_t) { return true; }, start, target);
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,181 @@
+#include "transfer/film_map.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "film/locate.h"
+#include "transfer/covered_rim.h"
+
+namespace hydrodip {
+
+namespace {
+
+constexpr double kInside = -1e-9;
+
+std::vector<Triangle> triangles_on_object(const DippedFilm& film) {
+  std::vector<Triangle> lying;
+  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t)
+    if (film.lies_on_object(t)) lying.push_back(film.mesh.triangles[t]);
+  return lying;
+}
+
+// Barycentric coordinates of target in a flat film triangle.
+bool weights_in(const FilmMesh& mesh, std::int32_t triangle, const Vec2& target, Vec3& weight) {
+  const Triangle& t = mesh.triangles[std::size_t(triangle)];
+  const Vec2& a = mesh.u[std::size_t(t[0])];
+  const Vec2 ab = mesh.u[std::size_t(t[1])] - a, ac = mesh.u[std::size_t(t[2])] - a;
+  const double twice = cross2(ab, ac);
+  weight[1] = cross2(target - a, ac) / twice;
+  weight[2] = cross2(ab, target - a) / twice;
+  weight[0] = 1 - weight[1] - weight[2];
+  return weight.minCoeff() >= kInside;
+}
+
+}  // namespace
+
+struct FilmMap::Impl {
+  const Object& object;
+  const Surface& surface;
+  const DippedFilm& film;
+  std::vector<std::uint8_t> lies;           // per film triangle
+  std::vector<std::int32_t> film_triangle;  // of each triangle of film_surface
+  Surface film_surface;
+  std::vector<Vec3> normal;  // per film vertex: the object's, outward; zero where not attached
+  CoveredRim rim;
+  double reach_mm;  // how far apart film and object may be: chords against curved surface
+
+  Impl(const Object& o, const Surface& s, const DippedFilm& f)
+      : object(o),
+        surface(s),
+        film(f),
+        film_surface(f.position, triangles_on_object(f)),
+        normal(f.position.size(), Vec3::Zero()),
+        rim(f),
+        reach_mm(f.mesh.cell_mm) {
+    for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
+      lies.push_back(film.lies_on_object(t));
+      if (lies.back()) film_triangle.push_back(static_cast<std::int32_t>(t));
+    }
+    parallel_for(normal.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        if (film.state[v] != VertexState::kAttached) continue;
+        const auto hit = surface.closest_point(film.position[v], 1.0);
+        if (hit) normal[v] = surface.normal(*hit);
+      }
+    });
+  }
+
+  bool locate_on_object(const Vec2& u, Cursor& cursor, Vec3& weight) const {
+    if (cursor.film_triangle >= 0 && weights_in(film.mesh, cursor.film_triangle, u, weight))
+      return true;
+    const FilmLocation at = locate_flat(film.mesh, u);
+    if (!at.inside || !lies[std::size_t(at.triangle)]) return false;
+    cursor.film_triangle = at.triangle;
+    weight = at.weight;
+    return true;
+  }
+
+  // The line through the film point along the normal, against one triangle of the object.
+  std::optional<SurfacePoint> project_onto(int triangle, const Vec3& point,
+                                           const Vec3& direction) const {
+    const Triangle& t = object.triangles[std::size_t(triangle)];
+    const Vec3& a = object.positions[std::size_t(t[0])];
+    const Vec3 e1 = object.positions[std::size_t(t[1])] - a;
+    const Vec3 e2 = object.positions[std::size_t(t[2])] - a;
+    const Vec3 p = direction.cross(e2);
+    const double determinant = e1.dot(p);
+    if (!(std::abs(determinant) > 1e-6 * e1.norm() * e2.norm())) return std::nullopt;
+    const Vec3 s = point - a, q = s.cross(e1);
+    const double u = s.dot(p) / determinant, v = direction.dot(q) / determinant;
+    const double distance = std::abs(e2.dot(q) / determinant);
+    if (u < 0 || v < 0 || u + v > 1 || distance > reach_mm) return std::nullopt;
+    return SurfacePoint{triangle, u, v};
+  }
+
+  std::optional<SurfaceHit> project(const Vec3& point, const Vec3& direction) const {
+    const auto ahead = surface.first_hit(point, direction, 0, reach_mm);
+    const auto behind = surface.first_hit(point, -direction, 0, ahead ? ahead->t : reach_mm);
+    if (behind && (!ahead || behind->t < ahead->t)) return behind;
+    return ahead;
+  }
+};
+
+FilmMap::FilmMap(const Object& object, const Surface& surface, const DippedFilm& film)
+    : impl_(std::make_unique<Impl>(object, surface, film)) {}
+FilmMap::~FilmMap() = default;
+FilmMap::FilmMap(FilmMap&&) noexcept = default;
+FilmMap& FilmMap::operator=(FilmMap&&) noexcept = default;
+
+std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u, Cursor& cursor) const {
+  Vec3 weight;
+  if (!impl_->locate_on_object(u, cursor, weight)) return std::nullopt;
+  const Triangle& t = impl_->film.mesh.triangles[std::size_t(cursor.film_triangle)];
+  Vec3 point = Vec3::Zero(), direction = Vec3::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    point += weight[Eigen::Index(k)] * impl_->film.position[std::size_t(t[k])];
+    direction += weight[Eigen::Index(k)] * impl_->normal[std::size_t(t[k])];
+  }
+  const double length = direction.norm();
+  if (length > 1e-6) {
+    direction /= length;
+    if (cursor.object_triangle >= 0)
+      if (const auto same = impl_->project_onto(cursor.object_triangle, point, direction))
+        return same;
+    if (const auto hit = impl_->project(point, direction)) {
+      cursor.object_triangle = hit->triangle;
+      return SurfacePoint{hit->triangle, hit->u, hit->v};
+    }
+  }
+  // Across a sharp edge the interpolated normal may miss; the nearest point is as good as any.
+  const auto nearest = impl_->surface.closest_point(point, 4 * impl_->reach_mm);
+  if (!nearest) return std::nullopt;
+  cursor.object_triangle = nearest->triangle;
+  return SurfacePoint{nearest->triangle, nearest->u, nearest->v};
+}
+
+std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u) const {
+  Cursor cursor;
+  return to_object(u, cursor);
+}
+
+std::optional<Vec2> FilmMap::to_film(const Vec3& position, const Vec3& normal) const {
+  std::optional<Vec2> best;
+  double nearest = impl_->reach_mm;
+  for (const double side : {1.0, -1.0}) {
+    const auto hit = impl_->film_surface.first_hit(position, side * normal, 0, nearest);
+    // The film's upper side lies against the object: film on the far side of a thin wall, whose
+    // upper side looks the other way, is not the film of this point.
+    if (!hit || impl_->film_surface.normal(*hit).dot(normal) >= 0) continue;
+    nearest = hit->t;
+    const std::int32_t film_triangle = impl_->film_triangle[std::size_t(hit->triangle)];
+    const Triangle& t = impl_->film.mesh.triangles[std::size_t(film_triangle)];
+    const auto& u = impl_->film.mesh.u;
+    best = (1 - hit->u - hit->v) * u[std::size_t(t[0])] + hit->u * u[std::size_t(t[1])] +
+           hit->v * u[std::size_t(t[2])];
+  }
+  return best;
+}
+
+double FilmMap::area_ratio(const Vec2& u) const {
+  Cursor cursor;
+  Vec3 weight;
+  if (!impl_->locate_on_object(u, cursor, weight)) return 1;
+  const Triangle& t = impl_->film.mesh.triangles[std::size_t(cursor.film_triangle)];
+  double ratio = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    ratio += weight[Eigen::Index(k)] * impl_->film.area_ratio[std::size_t(t[k])];
+  return ratio;
+}
+
+const Box2& FilmMap::covered() const { return impl_->rim.covered(); }
+
+std::optional<Vec2> FilmMap::nearest_covered(const Vec2& u, double max_distance) const {
+  Cursor cursor;
+  Vec3 weight;
+  if (impl_->locate_on_object(u, cursor, weight)) return u;
+  return impl_->rim.nearest(u, max_distance);
+}
+
+}  // namespace hydrodip

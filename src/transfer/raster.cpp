@@ -1,0 +1,149 @@
+#include "transfer/raster.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace hydrodip {
+
+namespace {
+
+constexpr int kTile_px = 64;
+constexpr std::size_t kTilesPerRound = 256;
+
+// Averages colours by their coverage, in linear light.
+struct ColorSum {
+  float r = 0, g = 0, b = 0, a = 0;
+  void add(const LinearColor& c, float weight) {
+    r += weight * c.a * c.r;
+    g += weight * c.a * c.g;
+    b += weight * c.a * c.b;
+    a += weight * c.a;
+  }
+  LinearColor color() const {
+    if (!(a > 0)) return {0, 0, 0, 0};
+    return {r / a, g / a, b / a, a};
+  }
+};
+
+struct Tile {
+  int x0, y0, x1, y1;
+};
+
+std::vector<Tile> tiles_of(int width_px, int height_px) {
+  std::vector<Tile> tiles;
+  for (int y = 0; y < height_px; y += kTile_px)
+    for (int x = 0; x < width_px; x += kTile_px)
+      tiles.push_back({x, y, std::min(x + kTile_px, width_px), std::min(y + kTile_px, height_px)});
+  return tiles;
+}
+
+bool may_hold_ink(const Tile& tile, const SheetRaster& raster, const Box2& inked) {
+  if (inked.empty()) return false;
+  const Vec2 top_left = raster.to_film(tile.x0, tile.y0);
+  const Vec2 bottom_right = raster.to_film(tile.x1, tile.y1);
+  return top_left.x() <= inked.max.x() && bottom_right.x() >= inked.min.x() &&
+         bottom_right.y() <= inked.max.y() && top_left.y() >= inked.min.y();
+}
+
+// One pixel of the film image: samples on a regular grid inside it.
+LinearColor pixel_color(const Object& object, const FilmMap& map, const SheetRaster& raster,
+                        const InverseOptions& options, int x, int y, FilmMap::Cursor& cursor) {
+  const int n = options.samples_per_axis;
+  const float weight = 1.0f / static_cast<float>(n * n);
+  ColorSum sum;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const Vec2 u = raster.to_film(x + (i + 0.5) / n, y + (j + 0.5) / n);
+      auto point = map.to_object(u, cursor);
+      if (!point && options.bleed_mm > 0)
+        if (const auto near = map.nearest_covered(u, options.bleed_mm))
+          point = map.to_object(*near, cursor);
+      if (point) sum.add(color_at(object, *point, options.base), weight);
+    }
+  return sum.color();
+}
+
+void store(const LinearColor& color, std::uint8_t* pixel) {
+  pixel[0] = linear_to_srgb8(color.r);
+  pixel[1] = linear_to_srgb8(color.g);
+  pixel[2] = linear_to_srgb8(color.b);
+  pixel[3] = static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(color.a, 0.0f, 1.0f)));
+  if (pixel[3] == 0) pixel[0] = pixel[1] = pixel[2] = 0;
+}
+
+}  // namespace
+
+int SheetRaster::width_px() const {
+  return std::max(1, static_cast<int>(std::lround(width_mm / kMmPerInch * dpi)));
+}
+int SheetRaster::height_px() const {
+  return std::max(1, static_cast<int>(std::lround(height_mm / kMmPerInch * dpi)));
+}
+Vec2 SheetRaster::to_film(double x_px, double y_px) const {
+  const double pixel_mm = kMmPerInch / dpi;
+  return {(x_px - 0.5 * width_px()) * pixel_mm, (0.5 * height_px() - y_px) * pixel_mm};
+}
+Vec2 SheetRaster::to_pixel(const Vec2& u) const {
+  const double pixel_mm = kMmPerInch / dpi;
+  return {u.x() / pixel_mm + 0.5 * width_px(), 0.5 * height_px() - u.y() / pixel_mm};
+}
+
+Image film_image(const Object& object, const FilmMap& map, const SheetRaster& raster,
+                 const InverseOptions& options, RunContext& context) {
+  Image image(raster.width_px(), raster.height_px());
+  Box2 inked = map.covered();
+  inked.min -= Vec2::Constant(options.bleed_mm);
+  inked.max += Vec2::Constant(options.bleed_mm);
+  std::vector<Tile> tiles = tiles_of(image.width_px, image.height_px);
+  std::erase_if(tiles, [&](const Tile& t) { return !may_hold_ink(t, raster, inked); });
+
+  const auto paint = [&](const Tile& tile) {
+    FilmMap::Cursor cursor;
+    for (int y = tile.y0; y < tile.y1; ++y)
+      for (int x = tile.x0; x < tile.x1; ++x)
+        store(pixel_color(object, map, raster, options, x, y, cursor), image.pixel(x, y));
+  };
+  // In rounds, so that progress comes from this thread.
+  for (std::size_t first = 0; first < tiles.size(); first += kTilesPerRound) {
+    context.progress("rastering", double(first) / double(tiles.size()));
+    const std::size_t count = std::min(kTilesPerRound, tiles.size() - first);
+    parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (!context.cancelled()) paint(tiles[first + i]);
+    });
+  }
+  context.progress("rastering", 1);
+  return image;
+}
+
+LinearColor sample_film_image(const Image& image, const SheetRaster& raster, const Vec2& u) {
+  const double pixels_per_mm = raster.dpi / kMmPerInch;
+  const double x = u.x() * pixels_per_mm + 0.5 * image.width_px - 0.5;
+  const double y = 0.5 * image.height_px - u.y() * pixels_per_mm - 0.5;
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  const auto fx = static_cast<float>(x - x0), fy = static_cast<float>(y - y0);
+  ColorSum sum;
+  for (int dy = 0; dy < 2; ++dy)
+    for (int dx = 0; dx < 2; ++dx) {
+      const int px = x0 + dx, py = y0 + dy;
+      if (px < 0 || py < 0 || px >= image.width_px || py >= image.height_px) continue;
+      const std::uint8_t* pixel = image.pixel(px, py);
+      sum.add({srgb8_to_linear(pixel[0]), srgb8_to_linear(pixel[1]), srgb8_to_linear(pixel[2]),
+               static_cast<float>(pixel[3]) / 255.0f},
+              (dx ? fx : 1 - fx) * (dy ? fy : 1 - fy));
+    }
+  return sum.color();
+}
+
+LinearColor predicted_color(const Image& image, const SheetRaster& raster, const FilmMap& map,
+                            const Vec3& position, const Vec3& normal, const LinearColor& base) {
+  const auto u = map.to_film(position, normal);
+  const LinearColor ink = u ? sample_film_image(image, raster, *u) : LinearColor{0, 0, 0, 0};
+  const float bare = 1 - ink.a;
+  return {ink.a * ink.r + bare * base.r, ink.a * ink.g + bare * base.g,
+          ink.a * ink.b + bare * base.b, 1};
+}
+
+}  // namespace hydrodip
