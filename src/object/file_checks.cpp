@@ -33,6 +33,17 @@ void refuse_binary(const std::string& path, std::string_view text, const char* f
   }
 }
 
+void append_line(FileBytes& out, std::string_view line) {
+  out.insert(out.end(), line.begin(), line.end());
+  out.push_back('\n');
+}
+
+std::string lower(std::string_view word) {
+  std::string out(word.substr(0, 40));
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  return out;
+}
+
 // ---- OBJ ----------------------------------------------------------------------------------------
 
 // One kind of list that OBJ faces index: v, vt or vn.
@@ -154,6 +165,53 @@ class ObjCheck {
   long faces_ = 0;
   ObjList lists_[3] = {{"vertex"}, {"texture coordinate"}, {"normal"}};
 };
+
+// ---- MTL ----------------------------------------------------------------------------------------
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+// "0.5 0.5 0.5" of a Kd line or "1" of a d line, or "" if it is not that many numbers.
+std::string clean_numbers(std::string_view line, int count) {
+  std::string out;
+  for (int i = 0; i < count; ++i) {
+    double value = 0;
+    if (!parse_number(take_word(line), value)) return "";
+    out += fmt::format(" {:.9f}", std::clamp(value, 0.0, 1.0));
+  }
+  return out;
+}
+
+// Skips what follows an option: one word, or up to three numbers.
+void skip_arguments(std::string_view option, std::string_view& line) {
+  const bool vector = option == "-o" || option == "-s" || option == "-t";
+  const int most = vector ? 3 : option == "-mm" ? 2 : 1;
+  for (int i = 0; i < most; ++i) {
+    std::string_view probe = line;
+    double value = 0;
+    if (i > 0 && !parse_number(take_word(probe), value)) return;
+    take_word(line);
+  }
+}
+
+// "[-clamp on] name" of a map_Kd line, or "".
+std::string clean_map(std::string_view line) {
+  bool clamp = false;
+  for (;;) {
+    std::string_view rest = line;
+    const std::string_view option = take_word(rest);
+    if (option.size() < 2 || option[0] != '-' || !(option[1] >= 'a' && option[1] <= 'z')) break;
+    line = rest;
+    if (option == "-clamp") clamp = take_word(rest) == "on";
+    skip_arguments(option, line);
+  }
+  const std::string_view name = trimmed(line).substr(0, 900);
+  if (name.empty()) return "";
+  return fmt::format("{} {}", clamp ? " -clamp on" : "", name);
+}
 
 // ---- PLY ----------------------------------------------------------------------------------------
 
@@ -384,12 +442,6 @@ bool starts_with_solid(std::string_view text) {
   return word == "solid" || word == "SOLID" || word == "Solid";
 }
 
-std::string lower(std::string_view word) {
-  std::string out(word.substr(0, 40));
-  for (char& c : out) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-  return out;
-}
-
 void check_ascii_stl(const std::string& path, std::string_view text) {
   refuse_binary(path, text, "STL");
   long line_number = 0, facets = 0;
@@ -481,11 +533,6 @@ class OffLines {
   long number_ = 0;
 };
 
-void append_line(FileBytes& out, std::string_view line) {
-  out.insert(out.end(), line.begin(), line.end());
-  out.push_back('\n');
-}
-
 int numbers_in(const std::string& path, const OffLines& lines, std::string_view line) {
   int count = 0;
   for (std::string_view word = take_word(line); !word.empty(); word = take_word(line)) {
@@ -529,6 +576,32 @@ CheckedFile check_obj(const std::string& path, FileBytes bytes) {
   refuse_binary(path, text_of(bytes), "OBJ");
   ObjCheck(path, text_of(bytes)).run();
   return {std::move(bytes), "", {}, {}};
+}
+
+FileBytes clean_mtl(const FileBytes& bytes) {
+  FileBytes out;
+  bool named = false;
+  std::string_view rest = text_of(bytes);
+  while (!rest.empty()) {
+    std::string_view line = take_line(rest);
+    line = line.substr(0, line.find('\0'));
+    const std::string_view keyword = take_word(line);
+    if (keyword == "newmtl" && !trimmed(line).empty()) {
+      named = true;
+      append_line(out, fmt::format("newmtl {}", trimmed(line).substr(0, 900)));
+    }
+    if (!named) continue;
+    const std::string key = lower(keyword);
+    const std::string value = keyword == "Kd"                     ? clean_numbers(line, 3)
+                              : keyword == "d" || keyword == "Tr" ? clean_numbers(line, 1)
+                              : key == "map_kd"                   ? clean_map(line)
+                                                                  : "";
+    if (!value.empty())
+      append_line(out, (key == "map_kd" ? "map_Kd" : std::string(keyword)) + value);
+  }
+  // assimp takes an empty library for a missing one.
+  if (out.empty()) append_line(out, "# no materials");
+  return out;
 }
 
 CheckedFile check_ply(const std::string& path, FileBytes bytes) {

@@ -34,6 +34,9 @@ struct CheckedFile {
 
 // `path` is used in messages only. All throw InputError.
 CheckedFile check_obj(const std::string& path, FileBytes bytes);
+// A material library reduced to names, Kd, d and map_Kd in plain form; assimp crashes on some of
+// the rest, and on what precedes the first name. Lines that make no sense are left out.
+FileBytes clean_mtl(const FileBytes& bytes);
 CheckedFile check_ply(const std::string& path, FileBytes bytes);
 CheckedFile check_stl(const std::string& path, FileBytes bytes);
 CheckedFile check_off(const std::string& path, FileBytes bytes);

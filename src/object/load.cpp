@@ -200,7 +200,9 @@ class CheckedFiles : public Assimp::IOSystem {
       return nullptr;
     }
     try {
-      return new MemoryStream(folder_.read(found));
+      FileBytes bytes = folder_.read(found);
+      return new MemoryStream(lower_extension(name_) == ".obj" ? clean_mtl(bytes)
+                                                               : std::move(bytes));
     } catch (const InputError&) {
       missing_.push_back(relative(file));
       return nullptr;

@@ -5,9 +5,9 @@
 // materials: their base colour is white. OBJ: a Kd beside a map_Kd multiplies it only if it is not
 // grey (exporters write a grey Kd that was never meant as a tint); Kd and d make the base colour.
 // glTF: alphaMode decides what becomes of the alpha; the texture transform is applied to the UVs.
-// Not supported: glTF's compression, quantisation and skins; more than one material, seams in
-// texture coordinates within one mesh, tile styles and several model parts in 3MF; face colours in
-// PLY and OFF.
+// Not supported: -o, -s and -t of MTL maps; glTF's compression, quantisation and skins; more than
+// one material, seams in texture coordinates within one mesh, tile styles and several model parts
+// in 3MF; face colours in PLY and OFF.
 #pragma once
 
 #include <filesystem>
