@@ -1,0 +1,62 @@
+#include "base/file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <string>
+
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+std::filesystem::path temp_path(const std::string& name) {
+  return std::filesystem::temp_directory_path() /
+         ("hydrodip_file_" + std::to_string(::getpid()) + "_" + name);
+}
+
+std::string hash_of(const std::string& text) { return sha256_hex({text.begin(), text.end()}); }
+
+// FIPS 180-2, appendix B.
+TEST(Sha256, PublishedVectors) {
+  EXPECT_EQ(hash_of(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(hash_of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(hash_of("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(hash_of(std::string(1000000, 'a')),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(File, WhatIsWrittenIsRead) {
+  std::string text;
+  for (int i = 0; i < 300000; ++i) text += char(i * 7);
+  const auto path = temp_path("round_trip");
+  write_file(path, text);
+  const auto bytes = read_file(path);
+  EXPECT_EQ(std::string(bytes.begin(), bytes.end()), text);
+  write_file(path, "");
+  EXPECT_TRUE(read_file(path).empty());
+  std::filesystem::remove(path);
+}
+
+TEST(File, ErrorsNameThePath) {
+  const auto check = [](const auto& action, const std::string& name) {
+    try {
+      action();
+      ADD_FAILURE() << "not refused: " << name;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
+    }
+  };
+  const auto missing = temp_path("missing");
+  check([&] { read_file(missing); }, missing.string());
+  check([&] { read_file(std::filesystem::temp_directory_path()); },
+        std::filesystem::temp_directory_path().string());
+  check([&] { write_file(missing / "file", "text"); }, (missing / "file").string());
+  if (std::filesystem::exists("/dev/full")) {
+    check([&] { write_file("/dev/full", std::string(100000, 'x')); }, "/dev/full");
+  }
+}
+
+}  // namespace
+}  // namespace hydrodip

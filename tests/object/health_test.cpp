@@ -1,0 +1,230 @@
+#include "object/health.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "object/polygon.h"
+
+namespace hydrodip {
+namespace {
+
+// A box as a soup: no two triangles share a vertex index, as in STL.
+void add_box(Object& object, const Vec3& center, double side, bool inward = false) {
+  static constexpr int kFaces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
+                                        {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
+                                        {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  for (const auto& face : kFaces) {
+    Triangle triangle{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const int corner = face[inward && c > 0 ? 3 - c : c];
+      triangle[c] = std::int32_t(object.positions.size());
+      object.positions.push_back(
+          center + side * Vec3((corner & 1) - 0.5, (corner >> 1 & 1) - 0.5, (corner >> 2) - 0.5));
+    }
+    object.triangles.push_back(triangle);
+    object.material_of.push_back(0);
+  }
+  if (object.materials.empty()) object.materials.emplace_back();
+}
+
+Object box() {
+  Object object;
+  add_box(object, Vec3::Zero(), 2);
+  return object;
+}
+
+TEST(Health, CleanBox) {
+  Object object = box();
+  const MeshHealth health = check_and_repair(object);
+  EXPECT_EQ(health.vertices, 8);
+  EXPECT_EQ(health.triangles, 12);
+  EXPECT_EQ(health.shells, 1);
+  EXPECT_TRUE(health.closed());
+  EXPECT_NEAR(health.volume_mm3, 8, 1e-12);
+  EXPECT_NEAR(health.area_mm2, 24, 1e-12);
+  EXPECT_TRUE(health.findings().empty());
+}
+
+TEST(Health, RepairsAnyMixtureOfOrientations) {
+  std::mt19937 random(9);
+  for (int round = 0; round < 20; ++round) {
+    Object object = box();
+    object.uvs.resize(12);
+    for (std::size_t f = 0; f < 12; ++f) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        // The attribute names its corner.
+        object.uvs[f][c] =
+            object.positions[std::size_t(object.triangles[f][c])].head<2>().cast<float>();
+      }
+    }
+    long turned = 0;
+    for (std::size_t f = 0; f < 12; ++f) {
+      if (random() % 2 == 0) continue;
+      std::swap(object.triangles[f][1], object.triangles[f][2]);
+      std::swap(object.uvs[f][1], object.uvs[f][2]);
+      ++turned;
+    }
+    const MeshHealth health = check_and_repair(object);
+    EXPECT_EQ(health.flipped, turned);
+    EXPECT_NEAR(health.volume_mm3, 8, 1e-12);
+    for (std::size_t f = 0; f < 12; ++f) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Vec3& p = object.positions[std::size_t(object.triangles[f][c])];
+        EXPECT_EQ(object.uvs[f][c], p.head<2>().cast<float>());
+      }
+    }
+  }
+}
+
+TEST(Health, NestedShellsAlternate) {
+  // Solid, cavity, island, whatever the file says.
+  for (const bool inward : {false, true}) {
+    Object object;
+    add_box(object, Vec3(0.1, 0, 0), 1, inward);
+    add_box(object, Vec3::Zero(), 4, inward);
+    add_box(object, Vec3::Zero(), 2, !inward);
+    add_box(object, Vec3(10, 0, 0), 1, inward);
+    const MeshHealth health = check_and_repair(object);
+    EXPECT_EQ(health.shells, 4);
+    EXPECT_NEAR(health.volume_mm3, 64 - 8 + 1 + 1, 1e-9);
+    EXPECT_TRUE(health.closed());
+  }
+}
+
+TEST(Health, HolesAreCountedAndTheMajorityKept) {
+  Object object = box();
+  object.triangles.erase(object.triangles.begin() + 11);
+  object.triangles.erase(object.triangles.begin() + 0);
+  object.material_of.resize(10);
+  std::swap(object.triangles[3][1], object.triangles[3][2]);
+  const MeshHealth health = check_and_repair(object);
+  EXPECT_EQ(health.boundary_edges, 6);
+  EXPECT_EQ(health.holes, 2);
+  EXPECT_EQ(health.flipped, 1);
+  EXPECT_FALSE(health.closed());
+  EXPECT_EQ(health.findings().size(), 2u);
+
+  // An open shell that faces inward keeps doing so: the file may mean it.
+  Object inward;
+  add_box(inward, Vec3::Zero(), 2, true);
+  inward.triangles.pop_back();
+  inward.material_of.pop_back();
+  EXPECT_EQ(check_and_repair(inward).flipped, 0);
+}
+
+TEST(Health, DropsDegenerateAndDuplicateFaces) {
+  Object object = box();
+  const auto add = [&](const Triangle& triangle) {
+    object.triangles.push_back(triangle);
+    object.material_of.push_back(0);
+  };
+  add({0, 0, 1});                                                                 // repeated vertex
+  add({object.triangles[4][2], object.triangles[4][0], object.triangles[4][1]});  // rotated
+  add({object.triangles[5][1], object.triangles[5][0], object.triangles[5][2]});  // reversed
+  const MeshHealth health = check_and_repair(object);
+  EXPECT_EQ(health.degenerate_removed, 1);
+  EXPECT_EQ(health.duplicates_removed, 2);
+  EXPECT_EQ(health.triangles, 12);
+  EXPECT_EQ(object.material_of.size(), 12u);
+  EXPECT_TRUE(health.closed());
+}
+
+TEST(Health, ASliverWithoutAreaStillJoinsItsNeighbours) {
+  // A tetrahedron with a vertex on the middle of one edge of one face only; the sliver closes it.
+  Object object;
+  object.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0}};
+  object.triangles = {{0, 2, 4}, {4, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 1}};
+  object.material_of.assign(6, 0);
+  object.materials.emplace_back();
+  std::swap(object.triangles[2][1], object.triangles[2][2]);
+  const MeshHealth health = check_and_repair(object);
+  EXPECT_EQ(health.degenerate_removed, 1);
+  EXPECT_EQ(health.boundary_edges, 0);
+  EXPECT_EQ(health.flipped, 1);
+  EXPECT_NEAR(health.volume_mm3, 8.0 / 6, 1e-12);
+}
+
+TEST(Health, BoxesThatShareAnEdge) {
+  Object object;
+  add_box(object, Vec3(0, 0, 0), 2, true);
+  add_box(object, Vec3(2, 2, 0), 2);
+  const MeshHealth health = check_and_repair(object);
+  EXPECT_EQ(health.nonmanifold_edges, 1);
+  EXPECT_EQ(health.shells, 1);
+  EXPECT_NEAR(health.volume_mm3, 16, 1e-12);  // each was turned outward by itself
+}
+
+TEST(Health, MoebiusStripIsReported) {
+  Object object;
+  constexpr int kSegments = 12;
+  for (int i = 0; i < kSegments; ++i) {
+    const double angle = 2 * M_PI * i / kSegments, half = angle / 2;
+    const Vec3 out(std::cos(angle), std::sin(angle), 0);
+    const Vec3 across = 0.3 * (std::cos(half) * out + std::sin(half) * Vec3(0, 0, 1));
+    object.positions.push_back(out + across);
+    object.positions.push_back(out - across);
+  }
+  for (int i = 0; i < kSegments; ++i) {
+    const int a = 2 * i, b = a + 1;
+    const bool last = i == kSegments - 1;
+    const int c = last ? 1 : a + 2, d = last ? 0 : a + 3;
+    object.triangles.push_back({a, b, c});
+    object.triangles.push_back({b, d, c});
+  }
+  object.material_of.assign(object.triangles.size(), 0);
+  object.materials.emplace_back();
+  const MeshHealth health = check_and_repair(object);
+  EXPECT_EQ(health.one_sided_edges, 1);
+  EXPECT_EQ(health.holes, 1);
+}
+
+TEST(Health, ManyShellsInsideALargeOne) {
+  Object object;
+  add_box(object, Vec3::Zero(), 100);
+  for (int i = 0; i < 1000; ++i) {
+    add_box(object, Vec3(i % 10, i / 10 % 10, i / 100) * 4 - Vec3::Constant(18), 1);
+  }
+  const MeshHealth health = check_and_repair(object);
+  EXPECT_EQ(health.shells, 1001);
+  EXPECT_NEAR(health.volume_mm3, 1e6 - 1000, 1e-6);
+}
+
+double signed_area(const std::vector<Vec3>& corners, const std::array<int, 3>& t) {
+  const Vec3& a = corners[std::size_t(t[0])];
+  return 0.5 * cross2((corners[std::size_t(t[1])] - a).head<2>(),
+                      (corners[std::size_t(t[2])] - a).head<2>());
+}
+
+TEST(Triangulate, ConcavePolygonsExactly) {
+  // A comb with teeth: many reflex corners. Area: handle 9 x 1, five teeth 1 x 3.
+  std::vector<Vec3> comb = {{0, 0, 0}, {9, 0, 0}};
+  for (int x = 9; x > 0; --x) {
+    comb.push_back(Vec3(x, x % 2 == 1 ? 4 : 1, 0));
+    comb.push_back(Vec3(x - 1, x % 2 == 1 ? 4 : 1, 0));
+  }
+  const auto triangles = triangulate(comb);
+  ASSERT_EQ(triangles.size(), comb.size() - 2);
+  double area = 0;
+  for (const auto& t : triangles) {
+    EXPECT_GE(signed_area(comb, t), 0);
+    area += signed_area(comb, t);
+  }
+  EXPECT_NEAR(area, 9 + 15, 1e-12);
+  // The same seen from behind.
+  std::reverse(comb.begin(), comb.end());
+  area = 0;
+  for (const auto& t : triangulate(comb)) area += signed_area(comb, t);
+  EXPECT_NEAR(area, -24, 1e-12);
+}
+
+TEST(Triangulate, DegeneratePolygonsEnd) {
+  EXPECT_EQ(triangulate({}).size(), 0u);
+  EXPECT_EQ(triangulate(std::vector<Vec3>(5, Vec3::Zero())).size(), 3u);
+  EXPECT_EQ(triangulate({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2u);
+}
+
+}  // namespace
+}  // namespace hydrodip
