@@ -11,6 +11,7 @@ namespace hydrodip {
 namespace {
 
 constexpr std::chrono::milliseconds kRedrawEvery{100};
+constexpr std::chrono::seconds kPlainLineEvery{1};
 // Plain lines are for logs of long jobs; a short one, or one refused at once, needs none.
 constexpr std::chrono::seconds kQuietStart{2};
 // An estimate needs some evidence first.
@@ -63,13 +64,17 @@ void ProgressLine::redraw(double fraction) {
 }
 
 void ProgressLine::add_line(double fraction) {
+  const auto now = Clock::now();
   const int tenths = static_cast<int>(10 * fraction);
-  if (tenths == tenths_shown_) return;
+  const bool first_of_stage = tenths_shown_ < 0;
+  if (!first_of_stage && (tenths == tenths_shown_ || now - last_draw_ < kPlainLineEvery)) return;
   tenths_shown_ = tenths;
+  last_draw_ = now;
   print_notice(describe(fraction));
 }
 
 std::string ProgressLine::describe(double fraction) const {
+  if (!terminal_ && fraction <= 0) return stage_;
   std::string line = fmt::format("{} {:3.0f} %", stage_, std::floor(100 * fraction));
   const double spent_s = seconds(Clock::now() - stage_start_);
   if (spent_s >= kEstimateFrom_s && fraction >= kEstimateFromFraction && fraction < 1)

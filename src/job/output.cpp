@@ -16,14 +16,15 @@ constexpr int kTextureSide_px = 4096;
 }  // namespace
 
 std::vector<std::uint8_t> write_previews(OutputFolder& folder, const JobRecord& record,
-                                         const Image& film_image, const SheetRaster& raster) {
+                                         const Image& film_image, const SheetRaster& raster,
+                                         const std::string& caption_start) {
   const DippedObject& dipped = record.dipped;
   const LinearColor base = base_color(record.config);
   write_film_ply(folder.path("film.ply"), dipped.film());
 
   PreviewOptions options;
   options.width_px = record.config.preview_width_px;
-  options.caption = plain_verdict(dipped.coverage);
+  options.caption = caption_start + short_verdict(dipped.coverage);
   options.base = base;
   const std::vector<std::uint8_t> preview = encode_png(
       render_preview(dipped.object(), *dipped.surface, dipped.film(),

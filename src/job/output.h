@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/output_folder.h"
@@ -11,9 +12,11 @@
 namespace hydrodip {
 
 // film.ply, preview.png and preview.glb for a film that carries `film_image` (as seen from above,
-// over the whole sheet). Returns the bytes of preview.png.
+// over the whole sheet). The picture's caption is a short verdict after `caption_start`. Returns
+// the bytes of preview.png.
 std::vector<std::uint8_t> write_previews(OutputFolder& folder, const JobRecord& record,
-                                         const Image& film_image, const SheetRaster& raster);
+                                         const Image& film_image, const SheetRaster& raster,
+                                         const std::string& caption_start = "");
 
 // Writes report.json and report.html, then moves all files to their final names, unless the job was
 // cancelled.

@@ -35,11 +35,10 @@ Image invert(const DippedObject& dipped, const JobConfig& config, RunContext& co
 void compose(OutputFolder& folder, const Image& image, const JobConfig& config,
              RunContext& context) {
   const SheetOptions sheet = sheet_options(config);
-  context.progress("writing the sheet", 0);
+  context.progress("writing print.png", 0);
   write_print_png(folder.path("print.png"), image, sheet);
-  context.progress("writing the sheet", 0.4);
+  context.progress("writing print.tif", 0);
   write_print_tiff(folder.path("print.tif"), image, sheet);
-  context.progress("writing the sheet", 0.6);
   write_print_pdf(folder.path("print.pdf"), image, sheet, context);
 }
 

@@ -99,6 +99,15 @@ Report make_report(const JobRecord& record) {
   return report;
 }
 
+std::string short_verdict(const Coverage& coverage) {
+  if (!(coverage.film_on_object_mm2 > 0)) return plain_verdict(coverage);
+  return fmt::format("{:.0f} % of the downward side covered, stretched up to {:.2f} times, {}",
+                     100 * coverage.covered_downward_share(), coverage.stretch_max,
+                     coverage.torn_mm2 > 0
+                         ? fmt::format("{:.1f} % torn", 100 * coverage.torn_share())
+                         : std::string("no tears"));
+}
+
 JobResult describe_result(const Report& report, const std::filesystem::path& folder) {
   JobResult result;
   result.folder = folder;

@@ -29,6 +29,9 @@ std::vector<ReportInput> describe_inputs(const JobConfig& config, const LoadedOb
 
 Report make_report(const JobRecord& record);
 
+// A verdict that fits below a picture.
+std::string short_verdict(const Coverage& coverage);
+
 // What the command prints: in words, and the report with its folder as JSON.
 JobResult describe_result(const Report& report, const std::filesystem::path& folder);
 

@@ -55,6 +55,14 @@ expect_files 'ordnung müß sein/größe 1-print' $print_files
   $quick_simulate -o forward > /dev/null || fail 'simulate --film-image'
 expect_files forward $simulate_files
 
+# Ink below: the printed image is mirrored, and what it leaves on the object is the same.
+"$hydrodip" print colored.ply $quick --set print.ink_side=down -o below > /dev/null ||
+  fail 'print.ink_side=down'
+cmp -s below/print.png 'ordnung müß sein/größe 1-print/print.png' && fail 'the print is not mirrored'
+"$hydrodip" simulate colored.ply --film-image below/print.png --set print.ink_side=down \
+  $quick_simulate -o below-forward > /dev/null || fail 'simulate with print.ink_side=down'
+cmp forward/preview.png below-forward/preview.png || fail 'the mirrored print dips differently'
+
 # A second run replaces the first.
 "$hydrodip" simulate tetra.obj $quick_simulate -o plain > /dev/null || fail 'second run'
 expect_files plain $simulate_files
@@ -97,6 +105,12 @@ done
 "$hydrodip" params | grep -q '^film.elements' || fail 'params'
 ("$hydrodip" params; echo "$?" > code.txt) | head -n 1 > /dev/null
 [ "$(cat code.txt)" -eq 0 ] || fail "broken pipe: exit code $(cat code.txt)"
+if [ -c /dev/full ]; then
+  "$hydrodip" params > /dev/full 2> full.txt
+  code=$?
+  [ "$code" -eq 2 ] || fail "full disk on stdout: exit code $code"
+  grep -q '^error: ' full.txt || fail 'full disk on stdout: no word about it'
+fi
 "$hydrodip" simulate tetra.obj $quick_simulate -o closed <&- >&- 2>&- || fail "closed streams: $?"
 expect_files closed $simulate_files
 finish
