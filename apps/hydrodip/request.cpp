@@ -103,7 +103,7 @@ void declare_configuration(CLI::App& app, Request& request) {
          [&request](const std::vector<std::string>& texts) {
            for (const std::string& text : texts) request.sources.sets.push_back(parse_set(text));
          },
-         "any parameter ('hydrodip params' lists them); repeatable, wins over all else")
+         "any parameter (see 'hydrodip params'); wins over the rest")
       ->group(kConfigGroup)
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
