@@ -29,17 +29,27 @@ constexpr double kMaxJump = 2.5;
 // Steepness that stands for a vertical wall.
 constexpr double kWall = 1e6;
 
+// A gradient du/dX that is followed over the steps.
+struct Gradient {
+  Mat2 now = Mat2::Identity(), before = Mat2::Identity();
+  Mat2 next() const { return 2 * now - before; }  // extrapolated by one step
+  void advance(const Mat2& F) {
+    before = now;
+    now = F;
+  }
+};
+
 struct Foot {
   std::int32_t attached = -1, floating = -1;
   Vec3 point = Vec3::Zero();    // on the contact line, between the two
   Vec2 outward = Vec2::Zero();  // from the object, unit, normal to the contact line
   double steepness = 0;         // of the object there
-  Vec2 laid = Vec2::Zero();   // film between the attached vertex and the point, in film coordinates
-  Vec2 way = Vec2::Zero();    // the same on the object, unrolled into the water plane
-  Mat2 F = Mat2::Identity();  // du/dX of the floating film there
-  Mat2 F_before = Mat2::Identity();  // one step earlier
-  Vec2 last_way = Vec2::Zero();      // way of the present step
-  Vec2 laid_before = Vec2::Zero();   // laid at its start
+  Vec2 laid = Vec2::Zero();  // film between the attached vertex and the point, in film coordinates
+  Vec2 way = Vec2::Zero();   // the same on the object, unrolled into the water plane
+  Gradient element;          // du/dX of the floating triangles on both sides of the edge
+  Gradient line;             // the same on the contact line itself
+  Vec2 last_way = Vec2::Zero();     // way of the present step
+  Vec2 laid_before = Vec2::Zero();  // laid at its start
   Vec2 ghost = Vec2::Zero();
 };
 
@@ -86,7 +96,8 @@ class ContactLineScheme : public Scheme {
         waterline_(setting.positions, setting.triangles, setting.film.cell_mm),
         energy_(setting.film, setting.options.modulus, setting.options.material.poisson),
         solver_(make_laplacian_solver()),
-        feet_of_corner_(3 * setting.film.triangles.size(), {-1, -1}) {}
+        feet_of_corner_(3 * setting.film.triangles.size(), {-1, -1}),
+        last_slide_(setting.film.u.size(), Vec2::Zero()) {}
 
   void advance(double level) override {
     waterline_.raise_to(level);
@@ -132,18 +143,27 @@ class ContactLineScheme : public Scheme {
     return point;
   }
 
+  // Towards the floating vertex, so that the foot stays by the edge whose strain it uses; straight
+  // up where the water does not gain on it that way: on walls and overhangs, or just before
+  // contact.
+  Waterline::Point next_on_line(const Foot& foot) const {
+    const Vec2 from = foot.point.head<2>();
+    if (const auto ahead = waterline_.exit(from, plan(foot.floating)))
+      if ((ahead->position - from).norm() < kMaxJump * film_.cell_mm) return *ahead;
+    return line_near(from, foot.outward);
+  }
+
   void climb(double level) {
     for (Foot& foot : feet_) {
-      const Waterline::Point to = line_near(foot.point.head<2>(), foot.outward);
+      const Waterline::Point to = next_on_line(foot);
       foot.last_way = unrolled(foot.point, foot.steepness, to, level);
       foot.laid_before = foot.laid;
-      const Mat2 F_next = 2 * foot.F - foot.F_before;
-      foot.laid += 0.5 * (foot.F + F_next) * foot.last_way;
+      foot.laid += 0.5 * (foot.line.now + foot.line.next()) * foot.last_way;
       foot.way += foot.last_way;
       foot.point << to.position, level;
       foot.outward = to.outward;
       foot.steepness = to.steepness;
-      place_ghost(foot, F_next);
+      place_ghost(foot, foot.element.next());
     }
   }
 
@@ -206,9 +226,19 @@ class ContactLineScheme : public Scheme {
   }
 
   VertexVector relaxed() {
-    VertexVector u = film_.u;
-    relax_film(energy_, free_vertices(), *solver_, u, state_.statistics);
+    const std::vector<std::uint8_t> is_free = free_vertices();
+    VertexVector u = first_guess(is_free);
+    relax_film(energy_, is_free, *solver_, u, state_.statistics);
+    for (std::size_t v = 0; v < u.size(); ++v) last_slide_[v] = u[v] - film_.u[v];
     return u;
+  }
+
+  // The film slides on as it did in the last step, unless that would turn something over.
+  VertexVector first_guess(const std::vector<std::uint8_t>& is_free) const {
+    VertexVector u = film_.u;
+    for (std::size_t v = 0; v < u.size(); ++v)
+      if (is_free[v]) u[v] += last_slide_[v];
+    return energy_.any_inverted(u) ? film_.u : u;
   }
 
   Mat2 strain(std::size_t t, const VertexVector& u) const {
@@ -281,17 +311,43 @@ class ContactLineScheme : public Scheme {
 
   // Trapezoidal rule: the film laid in this step has the mean of the strain before and after.
   void correct_feet() {
-    for (Foot& foot : feet_) {
-      const Mat2 F = gradient_at_edge(foot.attached, foot.floating, foot.F);
-      foot.laid = foot.laid_before + 0.5 * (foot.F + F) * foot.last_way;
-      next_gradient_.push_back(F);
-    }
-    // All gradients come from the ghosts as they were; only then do they change.
+    std::vector<Mat2> element(feet_.size());
+    for (std::size_t f = 0; f < feet_.size(); ++f)
+      element[f] = gradient_at_edge(feet_[f].attached, feet_[f].floating, feet_[f].element.now);
     for (std::size_t f = 0; f < feet_.size(); ++f) {
-      feet_[f].F_before = feet_[f].F;
-      feet_[f].F = next_gradient_[f];
+      Foot& foot = feet_[f];
+      const Mat2 line = gradient_on_line(foot, element[f]);
+      foot.laid = foot.laid_before + 0.5 * (foot.line.now + line) * foot.last_way;
+      foot.line.advance(line);
+      foot.element.advance(element[f]);
     }
-    next_gradient_.clear();
+  }
+
+  // Around a vertex that is attached alone, the contact line is a circle smaller than the triangles
+  // around it, and the floating film strains as around a hole: u = A r + B / r. Of that, triangles
+  // know the mean slope from the circle (radius c) out to the floating vertex (r), and the foot
+  // knows u / c; the slope at the circle follows.
+  Mat2 gradient_on_line(const Foot& foot, const Mat2& element) const {
+    if (!stands_alone(foot.attached)) return element;
+    const Vec2 centre = plan(foot.attached);
+    const Vec2 out = foot.point.head<2>() - centre;
+    const double c = out.norm();
+    const double r = (slid_[std::size_t(foot.floating)] - centre).norm();
+    if (!(c > 0) || !(r > c)) return element;
+    const Vec2 n = out / c;
+    const double half_q = 0.5 * (1 - c / r);
+    const double around = n.dot(foot.laid) / c;
+    const double mean = n.dot(element * n);
+    const double slope = (mean - half_q * around) / (1 - half_q);
+    return element + (slope - mean) * n * n.transpose();
+  }
+
+  bool stands_alone(std::int32_t v) const {
+    for (auto n = film_.incident_begin[std::size_t(v)];
+         n < film_.incident_begin[std::size_t(v) + 1]; ++n)
+      for (std::int32_t w : film_.triangles[std::size_t(film_.incident[std::size_t(n)])])
+        if (w != v && !floats(w)) return false;
+    return true;
   }
 
   void attach(double level) {
@@ -317,7 +373,7 @@ class ContactLineScheme : public Scheme {
     }
     std::erase_if(feet_, [&](const Foot& foot) { return !floats(foot.floating); });
     feet_.insert(feet_.end(), created.begin(), created.end());
-    for (Foot& foot : feet_) place_ghost(foot, foot.F);
+    for (Foot& foot : feet_) place_ghost(foot, foot.element.now);
     index_feet();
   }
 
@@ -340,9 +396,10 @@ class ContactLineScheme : public Scheme {
       const Vec2 outside = (slid_[std::size_t(w)] - from).normalized();
       const auto leaving = waterline_.exit(from, slid_[std::size_t(w)]);
       const Waterline::Point to = leaving ? *leaving : line_near(from, outside);
-      foot.F = foot.F_before = gradient_at_edge(v, w, Mat2::Identity());
+      const Mat2 F = gradient_at_edge(v, w, Mat2::Identity());
+      foot.element = foot.line = {F, F};
       foot.way = unrolled(contact.position, steepness_along(contact.normal, to.outward), to, level);
-      foot.laid = foot.F * foot.way;
+      foot.laid = F * foot.way;
       foot.point << to.position, level;
       foot.outward = to.outward;
       foot.steepness = to.steepness;
@@ -371,11 +428,11 @@ class ContactLineScheme : public Scheme {
   FilmEnergy energy_;
   std::unique_ptr<LinearSolver> solver_;
   std::vector<Foot> feet_;
-  std::vector<Mat2> next_gradient_;
   // Per triangle corner, if its vertex is attached: the feet of its edges to floating corners.
   std::vector<std::array<std::int32_t, 2>> feet_of_corner_;
   std::vector<std::size_t> indexed_corners_;
   std::vector<std::uint8_t> usable_;  // per triangle: carries load in this step
+  VertexVector last_slide_;           // per vertex, in film coordinates: of the last relaxation
   VertexVector slid_;                 // per vertex, seen from above, after relaxing
 };
 

@@ -20,6 +20,16 @@ double dot(const VertexVector& a, const VertexVector& b) {
   return sum;
 }
 
+// Moves u by -step * direction unless that turns a triangle over.
+bool take_step(const FilmEnergy& energy, const VertexVector& direction, double step,
+               VertexVector& u) {
+  VertexVector trial(u.size());
+  for (std::size_t v = 0; v < u.size(); ++v) trial[v] = u[v] - step * direction[v];
+  if (energy.any_inverted(trial)) return false;
+  u.swap(trial);
+  return true;
+}
+
 // Largest of 1, 1/2, 1/4 ... for which u - step * direction turns nothing over and lowers the
 // energy enough; 0 if there is none. Moves u.
 double line_search(const FilmEnergy& energy, const VertexVector& direction, double slope,
@@ -27,15 +37,12 @@ double line_search(const FilmEnergy& energy, const VertexVector& direction, doub
   const double before = energy.value(u);
   // What rounding alone may add: near the minimum, an energy difference cannot be resolved.
   const double noise = 1e-13 * std::abs(before);
-  VertexVector trial(u.size());
+  const VertexVector start = u;
   double step = 1;
   for (int halving = 0; halving < kMaxHalvings; ++halving, step *= 0.5) {
-    for (std::size_t v = 0; v < u.size(); ++v) trial[v] = u[v] - step * direction[v];
-    if (energy.any_inverted(trial)) continue;
-    if (energy.value(trial) <= before - 1e-4 * step * slope + noise) {
-      u.swap(trial);
-      return step;
-    }
+    if (!take_step(energy, direction, step, u)) continue;
+    if (energy.value(u) <= before - 1e-4 * step * slope + noise) return step;
+    u = start;
   }
   return 0;
 }
@@ -77,13 +84,13 @@ RelaxationResult relax(const FilmEnergy& energy, const std::vector<std::uint8_t>
       return result;
     }
     result.last_update_mm = largest_norm(direction);
+    result.converged = result.last_update_mm <= options.tolerance_mm;
+    // So near the minimum, energy differences drown in rounding: any step that turns nothing over
+    // will do.
+    if (result.converged && take_step(energy, direction, 1, u)) return result;
     const double step = line_search(energy, direction, slope, u);
     if (step == 0) return result;
     result.last_update_mm *= step;
-    if (step == 1 && result.last_update_mm <= options.tolerance_mm) {
-      result.converged = true;
-      return result;
-    }
   }
   return result;
 }
