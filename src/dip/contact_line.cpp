@@ -20,7 +20,7 @@ namespace hydrodip {
 namespace {
 
 constexpr std::size_t kGrain = 1024;
-// Smallest rest area of a triangle at the contact line, as a share of a cell's area: keeps the
+// Smallest rest area of a triangle at the contact line, as a share of its flat area: keeps the
 // energy finite where ghosts of a crumpled contact line meet.
 constexpr double kMinArea = 0.02;
 // A foot that jumps further than this in one step, in cells, has lost its contact line (the object
@@ -194,9 +194,15 @@ class ContactLineScheme : public Scheme {
     return !state_.torn[t] && (floats(v[0]) || floats(v[1]) || floats(v[2]));
   }
 
+  double smallest_area(std::size_t t) const {
+    const Triangle& v = film_.triangles[t];
+    const Vec2& a = film_.u[std::size_t(v[0])];
+    return kMinArea * 0.5 * cross2(film_.u[std::size_t(v[1])] - a, film_.u[std::size_t(v[2])] - a);
+  }
+
   RestTriangle rest_of(std::size_t t) const {
     const std::array<Vec2, 3> x = {corner(t, 0), corner(t, 1), corner(t, 2)};
-    const double min_area = kMinArea * 0.5 * film_.cell_mm * film_.cell_mm;
+    const double min_area = smallest_area(t);
     const double area = 0.5 * cross2(x[1] - x[0], x[2] - x[0]);
     if (area >= min_area) return rest_triangle(x[0], x[1], x[2]);
     return rest_from_lengths((x[1] - x[0]).norm(), (x[2] - x[1]).norm(), (x[0] - x[2]).norm(),
@@ -280,7 +286,7 @@ class ContactLineScheme : public Scheme {
     }
     const RestTriangle rest = rest_triangle(x[0], x[1], x[2]);
     const Triangle& v = film_.triangles[t];
-    if (!(rest.area > kMinArea * 0.5 * film_.cell_mm * film_.cell_mm)) return Mat2::Zero();
+    if (!(rest.area > smallest_area(t))) return Mat2::Zero();
     return deformation_gradient(rest, film_.u[std::size_t(v[0])], film_.u[std::size_t(v[1])],
                                 film_.u[std::size_t(v[2])]);
   }

@@ -16,6 +16,8 @@ struct Extent {
 };
 
 Extent free_extent(const FilmOptions& options) {
+  if (!(options.grading >= 1 && options.grading <= 20))
+    throw InputError("film.grading must lie between 1 and 20");
   Extent free{options.width_mm - 2 * options.margin_mm, options.height_mm - 2 * options.margin_mm};
   if (options.shape == FilmShape::kDisc) free.x = free.y = std::min(free.x, free.y);
   if (!(free.x > 0 && free.y > 0))
@@ -29,17 +31,29 @@ Extent free_extent(const FilmOptions& options) {
 
 int nearest_even(double value) { return std::max(2, 2 * static_cast<int>(std::lround(value / 2))); }
 
+// Lines from -half to half; the distance between them grows with the square of their number.
+// Built outwards from 0, so that mirrored lines are exact mirror images.
+std::vector<double> grid_lines(double half, int cells, double grading) {
+  std::vector<double> lines(2 * std::size_t(cells) + 1, 0.0);
+  const double bend = (grading - 1) / 3;
+  for (int i = 1; i <= cells; ++i) {
+    const double xi = double(i) / cells;
+    const double x = i == cells ? half : half * (xi + bend * xi * xi * xi) / (1 + bend);
+    lines[std::size_t(cells + i)] = x;
+    lines[std::size_t(cells - i)] = -x;
+  }
+  return lines;
+}
+
 // Even cell counts put a vertex at the centre, so that the alternating diagonals are symmetric.
-void choose_grid(const FilmOptions& options, const Extent& free, FilmMesh& mesh) {
-  const double disc_share = options.shape == FilmShape::kDisc ? M_PI / 4 : 1;
-  const double cells = options.elements / (2 * disc_share);
+void choose_grid(const FilmOptions& options, const Extent& free, double cells, FilmMesh& mesh) {
   const int cells_x = nearest_even(std::sqrt(cells * free.x / free.y));
   const int cells_y = free.x == free.y ? cells_x : nearest_even(cells / cells_x);
   mesh.nx = cells_x + 1;
   mesh.ny = cells_y + 1;
-  mesh.spacing = {free.x / cells_x, free.y / cells_y};
-  mesh.cell_mm = mesh.spacing.maxCoeff();
-  mesh.origin = {-free.x / 2, -free.y / 2};
+  mesh.cell_mm = std::max(free.x / cells_x, free.y / cells_y);
+  mesh.line_x = grid_lines(free.x / 2, cells_x / 2, options.grading);
+  mesh.line_y = grid_lines(free.y / 2, cells_y / 2, options.grading);
 }
 
 // Grid vertices by number j * nx + i, before those outside a disc are left out.
@@ -54,9 +68,7 @@ Grid rectangle_grid(const FilmMesh& mesh) {
   const int nx = mesh.nx, ny = mesh.ny;
   for (int j = 0; j < ny; ++j)
     for (int i = 0; i < nx; ++i) {
-      // Measured from the centre, so that mirrored vertices are exact mirror images.
-      grid.u.emplace_back((i - (nx - 1) / 2) * mesh.spacing.x(),
-                          (j - (ny - 1) / 2) * mesh.spacing.y());
+      grid.u.emplace_back(mesh.line_x[std::size_t(i)], mesh.line_y[std::size_t(j)]);
       grid.on_rim.push_back(i == 0 || j == 0 || i == nx - 1 || j == ny - 1);
     }
   for (int j = 0; j + 1 < ny; ++j)
@@ -74,11 +86,22 @@ Grid rectangle_grid(const FilmMesh& mesh) {
   return grid;
 }
 
-// Moves the vertices next to the circle onto it and drops what lies outside.
-void cut_disc(Grid& grid, double radius, double cell) {
+// Moves the vertices next to the circle onto it and drops what lies outside. "Next to": nearer than
+// a third of the shortest edge that leaves the vertex towards it.
+void cut_disc(Grid& grid, double radius, const FilmMesh& mesh) {
+  const auto gap = [](const std::vector<double>& lines, std::size_t i) {
+    return std::min(i > 0 ? lines[i] - lines[i - 1] : 1e300,
+                    i + 1 < lines.size() ? lines[i + 1] - lines[i] : 1e300);
+  };
   std::vector<std::uint8_t> inside(grid.u.size());
-  for (std::size_t v = 0; v < grid.u.size(); ++v)
-    inside[v] = grid.u[v].norm() < radius - 0.35 * cell;
+  for (std::size_t v = 0; v < grid.u.size(); ++v) {
+    const std::size_t nx = mesh.line_x.size();
+    const Vec2 cell(gap(mesh.line_x, v % nx), gap(mesh.line_y, v / nx));
+    const double r = grid.u[v].norm();
+    // Towards the circle the grid is as wide as its cell along that direction.
+    const double width = r > 0 ? 1 / (grid.u[v].cwiseAbs() / r).cwiseQuotient(cell).maxCoeff() : 0;
+    inside[v] = r < radius - 0.35 * std::min(width, cell.maxCoeff());
+  }
   std::vector<Triangle> kept;
   for (const Triangle& t : grid.triangles)
     if (inside[std::size_t(t[0])] || inside[std::size_t(t[1])] || inside[std::size_t(t[2])])
@@ -88,6 +111,13 @@ void cut_disc(Grid& grid, double radius, double cell) {
     grid.on_rim[v] = !inside[v];
     if (!inside[v]) grid.u[v] *= radius / grid.u[v].norm();
   }
+}
+
+Grid make_grid(const FilmOptions& options, const Extent& free, double cells, FilmMesh& mesh) {
+  choose_grid(options, free, cells, mesh);
+  Grid grid = rectangle_grid(mesh);
+  if (options.shape == FilmShape::kDisc) cut_disc(grid, free.x / 2, mesh);
+  return grid;
 }
 
 void number_vertices(Grid& grid, FilmMesh& mesh) {
@@ -140,9 +170,13 @@ void find_neighbors(FilmMesh& mesh) {
 FilmMesh make_film_mesh(const FilmOptions& options) {
   const Extent free = free_extent(options);
   FilmMesh mesh;
-  choose_grid(options, free, mesh);
-  Grid grid = rectangle_grid(mesh);
-  if (options.shape == FilmShape::kDisc) cut_disc(grid, free.x / 2, mesh.cell_mm);
+  double cells = 0.5 * options.elements;
+  Grid grid = make_grid(options, free, cells, mesh);
+  if (options.shape == FilmShape::kDisc && !grid.triangles.empty()) {
+    // How much of a graded grid falls outside the disc is seen only once it is cut.
+    cells *= options.elements / double(grid.triangles.size());
+    grid = make_grid(options, free, cells, mesh);
+  }
   number_vertices(grid, mesh);
   if (mesh.triangles.size() < 8)
     throw InputError("the film needs at least 8 triangles; set film.elements higher");

@@ -17,22 +17,24 @@ struct FilmOptions {
   FilmShape shape = FilmShape::kRectangle;  // disc: inscribed in the smaller extent
   double margin_mm = 10;  // taped; the free film ends this far inside the edge, clamped there
   int elements = 40000;   // triangles, met as nearly as the grid allows
+  // Cell size at the rim over that at the centre, where the object comes down; 1: all alike.
+  double grading = 4;
 };
 
 // The mesh of the free film. Film coordinates u: mm, origin at the film's centre, seen from above.
-// A regular grid of nearly square cells, each cut along one diagonal in alternation, so that the
-// pattern is symmetric under mirroring and (on a square) quarter turns. On a disc, vertices next to
-// the rim are moved onto it.
+// A regular grid whose lines draw together towards the centre (cell size along an axis: quadratic
+// in the line's number), each cell cut along one diagonal in alternation, so that the pattern is
+// symmetric under mirroring and (on a square) quarter turns. On a disc, vertices next to the rim
+// are moved onto it.
 struct FilmMesh {
   std::vector<Vec2> u;               // per vertex
   std::vector<Triangle> triangles;   // counter-clockwise in u
   std::vector<std::uint8_t> on_rim;  // per vertex: clamped
-  double cell_mm = 0;                // grid spacing (larger of the two)
+  double cell_mm = 0;                // mean distance of grid lines (larger of the two axes)
 
   // Row-major grid behind the mesh, for multigrid and look-up: vertex_at[j * nx + i] or -1.
-  int nx = 0, ny = 0;          // vertices along x, y
-  Vec2 origin = Vec2::Zero();  // u of grid vertex (0, 0)
-  Vec2 spacing = Vec2::Zero();
+  int nx = 0, ny = 0;                  // vertices along x, y
+  std::vector<double> line_x, line_y;  // mm, coordinates of the grid's lines, ascending
   std::vector<std::int32_t> vertex_at;
 
   // neighbor[t][k]: triangle across the edge opposite corner k, or -1.

@@ -59,11 +59,14 @@ FilmLocation locate(const FilmMesh& mesh, const std::vector<Vec2>& u,
 }
 
 FilmLocation locate_flat(const FilmMesh& mesh, const Vec2& target) {
-  const Vec2 cell = (target - mesh.origin).cwiseQuotient(mesh.spacing);
-  if (!cell.allFinite() || cell.minCoeff() < -1 || cell.x() > mesh.nx || cell.y() > mesh.ny)
-    return {};
-  const int i = std::clamp(static_cast<int>(std::lround(cell.x())), 0, mesh.nx - 1);
-  const int j = std::clamp(static_cast<int>(std::lround(cell.y())), 0, mesh.ny - 1);
+  if (!target.allFinite()) return {};
+  const auto nearest_line = [](const std::vector<double>& lines, double x) {
+    const auto above = std::lower_bound(lines.begin(), lines.end(), x);
+    if (above == lines.begin()) return std::ptrdiff_t(0);
+    if (above == lines.end()) return std::ptrdiff_t(lines.size()) - 1;
+    return above - lines.begin() - (x - *(above - 1) < *above - x ? 1 : 0);
+  };
+  const auto i = nearest_line(mesh.line_x, target.x()), j = nearest_line(mesh.line_y, target.y());
   const std::int32_t start = mesh.vertex_at[std::size_t(j) * std::size_t(mesh.nx) + std::size_t(i)];
   if (start < 0) return {};
   return walk(

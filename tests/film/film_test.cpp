@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "film/locate.h"
 
 namespace hydrodip {
 namespace {
@@ -31,7 +32,6 @@ TEST(Film, RectangleCoversTheFreeSheet) {
   const FilmMesh mesh = make_film_mesh({.width_mm = 210, .height_mm = 297, .margin_mm = 10});
   EXPECT_NEAR(total_area(mesh), 190.0 * 277.0, 1e-6);
   EXPECT_NEAR(double(mesh.triangles.size()), 40000, 600);
-  EXPECT_NEAR(mesh.spacing.x() / mesh.spacing.y(), 1, 0.02);
   for (const Triangle& t : mesh.triangles) EXPECT_GT(signed_area(mesh, t), 0);
   for (std::size_t v = 0; v < mesh.u.size(); ++v) {
     const bool edge = std::abs(std::abs(mesh.u[v].x()) - 95) < 1e-9 ||
@@ -41,24 +41,28 @@ TEST(Film, RectangleCoversTheFreeSheet) {
 }
 
 TEST(Film, DiscIsRoundAndValidAtAnyResolution) {
-  for (int elements : {60, 200, 1000, 2717, 10000, 40000}) {
-    const FilmMesh mesh = make_film_mesh({.width_mm = 220,
-                                          .height_mm = 300,
-                                          .shape = FilmShape::kDisc,
-                                          .margin_mm = 10,
-                                          .elements = elements});
-    // A polygon with m rim vertices misses about 2 pi^2 / (3 m^2) of the disc.
-    const double relative = total_area(mesh) / (M_PI * 100 * 100);
-    EXPECT_NEAR(relative, 1, 30.0 / elements) << elements;
-    EXPECT_NEAR(double(mesh.triangles.size()), elements, 12 * std::sqrt(elements)) << elements;
-    for (const Triangle& t : mesh.triangles)
-      EXPECT_GT(signed_area(mesh, t), 0.02 * mesh.cell_mm * mesh.cell_mm) << elements;
-    for (std::size_t v = 0; v < mesh.u.size(); ++v)
-      if (mesh.on_rim[v])
-        EXPECT_NEAR(mesh.u[v].norm(), 100, 1e-9);
-      else
-        EXPECT_LT(mesh.u[v].norm(), 100);
-  }
+  for (int elements : {60, 200, 1000, 2717, 10000, 40000})
+    for (double grading : {1.0, 4.0, 8.0}) {
+      const FilmMesh mesh = make_film_mesh({.width_mm = 220,
+                                            .height_mm = 300,
+                                            .shape = FilmShape::kDisc,
+                                            .margin_mm = 10,
+                                            .elements = elements,
+                                            .grading = grading});
+      // A polygon with m rim vertices misses about 2 pi^2 / (3 m^2) of the disc.
+      const double relative = total_area(mesh) / (M_PI * 100 * 100);
+      EXPECT_NEAR(relative, 1, 30.0 * grading / elements) << elements << " " << grading;
+      EXPECT_NEAR(double(mesh.triangles.size()) / elements, 1, 0.02 + 5 / std::sqrt(elements))
+          << elements << " " << grading;
+      for (const Triangle& t : mesh.triangles)
+        EXPECT_GT(signed_area(mesh, t), 0.02 / grading * mesh.cell_mm * mesh.cell_mm)
+            << elements << " " << grading;
+      for (std::size_t v = 0; v < mesh.u.size(); ++v)
+        if (mesh.on_rim[v])
+          EXPECT_NEAR(mesh.u[v].norm(), 100, 1e-9);
+        else
+          EXPECT_LT(mesh.u[v].norm(), 100);
+    }
 }
 
 TEST(Film, GridIsSymmetric) {
@@ -70,6 +74,35 @@ TEST(Film, GridIsSymmetric) {
   for (const Vec2& u : mesh.u) {
     EXPECT_TRUE(has_vertex_at(mesh, {-u.x(), u.y()}));
     EXPECT_TRUE(has_vertex_at(mesh, {-u.y(), u.x()}));
+  }
+}
+
+TEST(Film, GradingMakesCellsSmallerAtTheCentre) {
+  const FilmMesh mesh = make_film_mesh({.elements = 20000, .grading = 4});
+  const auto gap = [&](std::size_t i) { return mesh.line_x[i + 1] - mesh.line_x[i]; };
+  const std::size_t middle = mesh.line_x.size() / 2;
+  EXPECT_NEAR(gap(0) / gap(middle), 4, 0.15);
+  const FilmMesh even = make_film_mesh({.elements = 20000, .grading = 1});
+  for (std::size_t i = 0; i + 1 < even.line_x.size(); ++i)
+    EXPECT_NEAR(even.line_x[i + 1] - even.line_x[i], 190.0 / double(even.nx - 1), 1e-9);
+}
+
+TEST(Film, LocatingFindsEveryPoint) {
+  for (FilmShape shape : {FilmShape::kRectangle, FilmShape::kDisc}) {
+    const FilmMesh mesh = make_film_mesh({.shape = shape, .elements = 3000});
+    for (int i = 0; i < 2000; ++i) {
+      const Vec2 p(90 * std::sin(1.7 * i) * (shape == FilmShape::kDisc ? 0.7 : 1.0),
+                   (shape == FilmShape::kDisc ? 63 : 130) * std::sin(2.3 * i + 1));
+      const FilmLocation at = locate_flat(mesh, p);
+      ASSERT_TRUE(at.inside) << p.transpose();
+      Vec2 back = Vec2::Zero();
+      for (std::size_t k = 0; k < 3; ++k)
+        back += at.weight[Eigen::Index(k)] *
+                mesh.u[std::size_t(mesh.triangles[std::size_t(at.triangle)][k])];
+      EXPECT_LT((back - p).norm(), 1e-9);
+    }
+    EXPECT_FALSE(locate_flat(mesh, {200, 0}).inside);
+    EXPECT_FALSE(locate_flat(mesh, {0, -1e30}).inside);
   }
 }
 
