@@ -21,7 +21,13 @@ constexpr double kRimStart = 1 - kRimRadiusMm / kHalfWidthMm;
 
 // Half-width of the face at y / kHalfHeightMm: broad at the temples, narrow at the chin.
 double half_width_mm(double y_fraction) {
-  return kHalfWidthMm * (0.955 + 0.12 * y_fraction - 0.08 * y_fraction * y_fraction);
+  return kHalfWidthMm * (1 - 0.16 * (y_fraction - 0.25) * (y_fraction - 0.25));
+}
+
+// The outline is a superellipse, |x|^2.5 + |y|^2.5 = 1: a little squarer than an ellipse.
+double outline_norm(double x, double y) {
+  const auto power = [](double v) { return v * v * std::sqrt(std::abs(v)); };
+  return std::pow(power(x) + power(y), 1 / 2.5);
 }
 
 // Smooth bump of the given height; radii are those of a Gaussian.
@@ -115,12 +121,14 @@ void add_band(Object& object, int count, int inner, int outer) {
 
 double mask_radius(const Vec2& p) {
   const double y = p.y() / kHalfHeightMm;
-  return std::hypot(p.x() / half_width_mm(y), y);
+  return outline_norm(p.x() / half_width_mm(y), y);
 }
 
 Vec2 mask_point(double radius, double angle_rad) {
-  const double y = radius * std::sin(angle_rad);
-  return {radius * std::cos(angle_rad) * half_width_mm(y), y * kHalfHeightMm};
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  const double scale = radius / outline_norm(c, s);
+  const double y = scale * s;
+  return {scale * c * half_width_mm(y), y * kHalfHeightMm};
 }
 
 Object make_mask() {

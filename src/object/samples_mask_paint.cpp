@@ -233,7 +233,7 @@ void paint_eye(Canvas& canvas, const Palette& p, const Decorator& side) {
 
 void paint_brow(Canvas& canvas, const Palette& p, const Decorator& side) {
   const Path brow =
-      side(smooth_curve({{6.0, 30.6}, {13, 35.6}, {22, 37.6}, {31, 36.8}, {38.5, 40.8}}));
+      side(smooth_curve({{6.0, 30.4}, {12, 34.6}, {19.5, 36.6}, {27, 35.8}, {33.6, 38.6}}));
   canvas.stroke(
       brow, [](double t) { return 0.15 + 1.25 * std::pow(std::sin(kPi * std::pow(t, 0.62)), 0.8); },
       p.brown);
@@ -328,18 +328,18 @@ void paint_medallion(Canvas& canvas, const Palette& p) {
 
 void paint_forehead_sprays(Canvas& canvas, const Palette& p, const Decorator& side) {
   const auto at = [&](double x, double y) { return side(Path{{x, y}}).front(); };
-  const Path head = spiral({30.4, 47.0}, 2.9, 90, -1.7);
-  const Path stem = join({head, bezier(head.back(), {25.5, 50.2}, {21, 42.6}, {15.2, 43.4})});
+  const Path head = spiral({26.6, 45.6}, 2.7, 90, -1.7);
+  const Path stem = join({head, bezier(head.back(), {22.5, 48.6}, {20, 42.0}, {15.0, 43.0})});
   canvas.stroke(
       side(stem), [](double t) { return 0.16 + 0.36 * std::sin(kPi * t); }, p.gold);
-  const Path head2 = spiral({22.2, 52.6}, 2.2, 270, 1.6);
-  const Path stem2 = join({head2, bezier(head2.back(), {25.5, 50.0}, {19, 46.2}, {15.2, 49.2})});
+  const Path head2 = spiral({19.6, 52.2}, 2.0, 270, 1.6);
+  const Path stem2 = join({head2, bezier(head2.back(), {22.5, 49.8}, {18, 46.4}, {15.0, 48.8})});
   canvas.stroke(
       side(stem2), [](double t) { return 0.14 + 0.3 * std::sin(kPi * t); }, p.teal);
-  canvas.fill(side(leaf({19.5, 44.2}, {24.2, 41.2}, 1.0)), p.teal);
-  canvas.fill(side(leaf({24.8, 46.6}, {27.6, 42.8}, -0.9)), p.gold);
-  for (int i = 0; i < 4; ++i)
-    canvas.dot(at(33.2 - 0.1 * i, 43.2 - 1.7 * i + 0.3), 0.46 - 0.08 * i, p.plum);
+  canvas.fill(side(leaf({18.6, 43.2}, {22.8, 40.6}, 1.0)), p.teal);
+  canvas.fill(side(leaf({21.8, 45.2}, {25.0, 41.9}, -0.8)), p.gold);
+  for (int i = 0; i < 3; ++i)
+    canvas.dot(at(28.7 + 0.25 * i, 41.6 - 1.35 * i), 0.42 - 0.08 * i, p.plum);
 }
 
 // Viewer's right: a tear and its beads.
@@ -357,7 +357,7 @@ void paint_tear(Canvas& canvas, const Palette& p) {
 // Viewer's left: a vine from the temple down to the jaw.
 void paint_vine(Canvas& canvas, const Palette& p) {
   const Path stem = smooth_curve(
-      {{-35.6, -3.6}, {-33.0, -12}, {-34.0, -21}, {-30.2, -29.5}, {-27.8, -38}, {-21, -46.5}});
+      {{-35.0, 1.0}, {-33.0, -12}, {-34.0, -21}, {-30.2, -29.5}, {-27.8, -38}, {-21, -46.5}});
   canvas.stroke(
       stem, [](double t) { return 0.42 - 0.22 * t; }, p.gold);
   for (int i = 0; i < 6; ++i) {
@@ -375,9 +375,8 @@ void paint_vine(Canvas& canvas, const Palette& p) {
     canvas.fill(leaf(root, root + size * Vec2(-turn * 3.6, -2.4), turn * 1.0),
                 i % 2 == 0 ? p.teal : p.plum);
   }
-  const Path tail = spiral({-18.2, -47.4}, 1.9, 190, -1.5);
-  canvas.stroke(join({tail, bezier(tail.back(), {-20.1, -47.0}, {-20.6, -46.6}, {-21, -46.5})}),
-                0.36, p.gold);
+  const Path tail = reversed(spiral({-19.5, -45.3}, 1.92, 218.5, -1.5));
+  canvas.stroke(tail, 0.4, p.gold);
 }
 
 void paint_chin(Canvas& canvas, const Palette& p) {
@@ -390,20 +389,20 @@ void paint_chin(Canvas& canvas, const Palette& p) {
 }
 
 void paint_border(Canvas& canvas, const Palette& p) {
-  canvas.stroke(closed(outline(0.925)), 0.95, p.dark_gold);
-  canvas.stroke(closed(outline(0.925)), 0.65, p.gold);
-  canvas.stroke(closed(outline(0.875)), 0.28, p.gold);
+  canvas.stroke(closed(outline(0.945)), 0.95, p.dark_gold);
+  canvas.stroke(closed(outline(0.945)), 0.65, p.gold);
+  canvas.stroke(closed(outline(0.900)), 0.28, p.gold);
   constexpr int kBeads = 120;
   for (int i = 0; i < kBeads; ++i) {
-    const Vec2 at = mask_point(0.900, 2 * kPi * (i + 0.5) / kBeads);
+    const Vec2 at = mask_point(0.9225, 2 * kPi * (i + 0.5) / kBeads);
     canvas.dot(at, i % 5 == 0 ? 0.72 : 0.40, i % 5 == 0 ? p.plum : p.teal);
   }
   // Beyond the border, over the rounded edge: one deep colour.
-  canvas.fill(join({outline(1.3),
-                    {outline(1.3).front()},
-                    {outline(0.932).front()},
-                    reversed(outline(0.932)),
-                    {outline(0.932).front()}}),
+  canvas.fill(join({outline(2.2),
+                    {outline(2.2).front()},
+                    {outline(0.952).front()},
+                    reversed(outline(0.952)),
+                    {outline(0.952).front()}}),
               p.night);
 }
 
