@@ -57,11 +57,30 @@ void check_rim(const FilmMesh& film, const Surface& surface, double depth, RunCo
   }
 }
 
+std::unique_ptr<Scheme> make_scheme(const DipSetting& setting, DipState& state) {
+  switch (setting.options.method) {
+    case DipMethod::kProjection:
+      return make_projection(setting, state);
+    case DipMethod::kSingleStep:
+      return make_single_step(setting, state);
+    case DipMethod::kFull:
+      break;
+  }
+  return setting.options.scheme == DipScheme::kPaper ? make_paper_scheme(setting, state)
+                                                     : make_contact_line_scheme(setting, state);
+}
+
+int number_of_steps(double depth, const DipOptions& options) {
+  if (options.method != DipMethod::kFull) return 1;
+  return std::max(1, static_cast<int>(std::ceil(depth / options.step_mm - 1e-9)));
+}
+
 }  // namespace
 
 void relax_film(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
-                LinearSolver& solver, VertexVector& u, DipStatistics& statistics) {
-  const RelaxationResult result = relax(energy, is_free, RelaxationOptions{}, solver, u);
+                LinearSolver& solver, VertexVector& u, DipStatistics& statistics,
+                const RelaxationOptions& options) {
+  const RelaxationResult result = relax(energy, is_free, options, solver, u);
   statistics.newton_iterations += result.newton_iterations;
   statistics.linear_iterations += result.linear_iterations;
   statistics.factorizations = solver.factorizations();
@@ -88,12 +107,10 @@ DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
   const double depth = depth_of(positions, options);
   check_rim(film, surface, depth, context);
   DipState state = floating_film(film);
-  const DipSetting setting{film, positions, triangles, surface, options};
-  const auto scheme = options.scheme == DipScheme::kPaper
-                          ? make_paper_scheme(setting, state)
-                          : make_contact_line_scheme(setting, state);
+  const DipSetting setting{film, positions, triangles, surface, options, context};
+  const auto scheme = make_scheme(setting, state);
 
-  const int steps = std::max(1, static_cast<int>(std::ceil(depth / options.step_mm - 1e-9)));
+  const int steps = number_of_steps(depth, options);
   for (int step = 1; step <= steps; ++step) {
     context.progress("dipping", double(step - 1) / steps);
     scheme->advance(depth * step / steps);

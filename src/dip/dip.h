@@ -16,6 +16,13 @@ enum class DipScheme {
   kPaper,        // the paper's four steps, literally
 };
 
+// How the film gets onto the object.
+enum class DipMethod {
+  kFull,        // lowered step by step, glued where it touches, by one of the schemes
+  kSingleStep,  // baseline: draped at once, slides freely on the object, never glued
+  kProjection,  // baseline: straight up, no elasticity
+};
+
 struct FilmMaterial {
   double z_stretch = 0.65;    // vertical scale of the film's rest shape (contact angle)
   double poisson = 0;         // below 0.5
@@ -25,7 +32,8 @@ struct FilmMaterial {
 struct DipOptions {
   double step_mm = 0.1;
   double depth_mm = 0;  // 0: until the object is completely below the water
-  DipScheme scheme = DipScheme::kContactLine;
+  DipMethod method = DipMethod::kFull;
+  DipScheme scheme = DipScheme::kContactLine;  // of kFull
   FilmMaterial material;
   std::vector<double> modulus;  // per film triangle, relative; empty: uniform
 };

@@ -1,4 +1,4 @@
-// What both discretisations of the dip share: the state they advance and their interface.
+// What all discretisations of the dip share: the state they advance and their interface.
 #pragma once
 
 #include <memory>
@@ -17,6 +17,7 @@ struct DipSetting {
   const std::vector<Triangle>& triangles;
   const Surface& surface;
   const DipOptions& options;
+  RunContext& context;
 };
 
 // The film during the dip. The object stands still, the water rises. Floating vertices have
@@ -38,10 +39,14 @@ class Scheme {
 
 std::unique_ptr<Scheme> make_contact_line_scheme(const DipSetting& setting, DipState& state);
 std::unique_ptr<Scheme> make_paper_scheme(const DipSetting& setting, DipState& state);
+// Baselines: made for one advance() from the flat film to the final level.
+std::unique_ptr<Scheme> make_projection(const DipSetting& setting, DipState& state);
+std::unique_ptr<Scheme> make_single_step(const DipSetting& setting, DipState& state);
 
 // Relaxes, and adds to the statistics.
 void relax_film(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
-                LinearSolver& solver, VertexVector& u, DipStatistics& statistics);
+                LinearSolver& solver, VertexVector& u, DipStatistics& statistics,
+                const RelaxationOptions& options = {});
 
 // First contact of a point moving straight from one place to another, both ends included.
 struct Contact {

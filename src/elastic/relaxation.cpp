@@ -74,6 +74,7 @@ RelaxationResult relax(const FilmEnergy& energy, const std::vector<std::uint8_t>
   VertexVector gradient, direction;
   BlockMatrix H;
   while (result.newton_iterations < options.max_iterations) {
+    if (options.context) options.context->check_cancelled();
     energy.gradient(u, is_free, gradient);
     result.linear_iterations +=
         newton_direction(energy, is_free, options, u, gradient, solver, H, direction);

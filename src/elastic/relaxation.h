@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/context.h"
 #include "elastic/film_energy.h"
 #include "elastic/linear_solver.h"
 
@@ -14,6 +15,7 @@ struct RelaxationOptions {
   double tolerance_mm = 1e-5;  // stop once no vertex moves further than this in an iteration
   int max_iterations = 30;
   double linear_tolerance = 1e-3;
+  const RunContext* context = nullptr;  // if given: asked between iterations, Cancelled is thrown
 };
 
 struct RelaxationResult {

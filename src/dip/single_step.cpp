@@ -1,0 +1,71 @@
+// Dipped in one go, a baseline of the paper's figure 9: the film is draped over the object at once
+// and slides freely on it to its energy minimum; nothing is glued before that.
+
+#include "dip/draped_film.h"
+
+namespace hydrodip {
+
+namespace {
+
+// The film is far from its minimum here, unlike between two steps of the full simulation.
+constexpr int kMaxNewtonIterations = 200;
+
+class SingleStep : public Scheme {
+ public:
+  SingleStep(const DipSetting& setting, DipState& state)
+      : set_(setting),
+        film_(setting.film),
+        state_(state),
+        energy_(setting.film, setting.options.modulus, setting.options.material.poisson) {}
+
+  void advance(double level) override {
+    rise_to(level, set_, state_);
+    const std::vector<std::uint8_t> is_free = all_but_the_rim();
+    const VertexVector u = relaxed(is_free);
+    lay_down(mapped_back(film_, state_.position, is_free, u), level);
+    state_.level = level;
+  }
+
+ private:
+  std::vector<std::uint8_t> all_but_the_rim() const {
+    std::vector<std::uint8_t> is_free(film_.u.size());
+    for (std::size_t v = 0; v < is_free.size(); ++v)
+      is_free[v] = state_.state[v] != VertexState::kClamped;
+    return is_free;
+  }
+
+  VertexVector relaxed(const std::vector<std::uint8_t>& is_free) {
+    energy_.set_rest(
+        rest_in_space(film_, state_.position, is_free, set_.options.material.z_stretch));
+    VertexVector u = film_.u;
+    RelaxationOptions options;
+    options.max_iterations = kMaxNewtonIterations;
+    options.context = &set_.context;
+    const auto solver = make_laplacian_solver();
+    relax_film(energy_, is_free, *solver, u, state_.statistics, options);
+    return u;
+  }
+
+  // The draped film lies straight above the flat one, first on the object and else on the water.
+  // So does the film that has slid on it.
+  void lay_down(std::vector<Vec3> slid, double level) {
+    for (Vec3& p : slid) p.z() = 0;
+    state_.position.swap(slid);
+    const std::vector<std::uint8_t> meets = rise_to(level, set_, state_);
+    for (std::size_t v = 0; v < meets.size(); ++v)
+      if (meets[v]) state_.state[v] = VertexState::kAttached;
+  }
+
+  const DipSetting set_;
+  const FilmMesh& film_;
+  DipState& state_;
+  FilmEnergy energy_;
+};
+
+}  // namespace
+
+std::unique_ptr<Scheme> make_single_step(const DipSetting& setting, DipState& state) {
+  return std::make_unique<SingleStep>(setting, state);
+}
+
+}  // namespace hydrodip
