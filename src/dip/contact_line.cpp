@@ -275,6 +275,26 @@ class ContactLineScheme : public Scheme {
         if (place.allFinite()) slid_[v] = place;
       }
     });
+    hold_back_folds();
+  }
+
+  // Where sliding that far would turn floating film over, its vertices stay where they were; there
+  // it lies the right way up, so this ends.
+  void hold_back_folds() {
+    for (bool folded = true; folded;) {
+      folded = false;
+      for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
+        const Triangle& v = film_.triangles[t];
+        if (!usable_[t] || attached(v[0]) || attached(v[1]) || attached(v[2])) continue;
+        const Vec2& a = slid_[std::size_t(v[0])];
+        if (cross2(slid_[std::size_t(v[1])] - a, slid_[std::size_t(v[2])] - a) > 0) continue;
+        for (std::int32_t w : v)
+          if (floats(w) && slid_[std::size_t(w)] != plan(w)) {
+            slid_[std::size_t(w)] = plan(w);
+            folded = true;
+          }
+      }
+    }
   }
 
   // The gradient du/dX of a triangle with its floating corners where they slid to.

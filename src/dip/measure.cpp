@@ -61,9 +61,20 @@ TriangleMeasure measure_triangle(const FilmMesh& film, const DipState& state, st
   return m;
 }
 
+// Whether film that lies on the object lies there with its underside: folded over itself, or
+// spanned between two parts of the object.
+bool folded(const FilmMesh& film, const DipState& state, const Surface& surface, std::size_t t) {
+  const Triangle& v = film.triangles[t];
+  const Vec3 &a = state.position[std::size_t(v[0])], &b = state.position[std::size_t(v[1])],
+             &c = state.position[std::size_t(v[2])];
+  const auto below = surface.closest_point((a + b + c) / 3, 10 * film.cell_mm);
+  return below && (b - a).cross(c - a).dot(surface.normal(*below)) >= 0;
+}
+
 }  // namespace
 
-DippedFilm measured(const FilmMesh& film, const DipState& state, const DipOptions& options) {
+DippedFilm measured(const FilmMesh& film, const DipState& state, const DipOptions& options,
+                    const Surface& surface) {
   DippedFilm result;
   result.mesh = film;
   result.position = state.position;
@@ -84,7 +95,9 @@ DippedFilm measured(const FilmMesh& film, const DipState& state, const DipOption
     const bool on_object = std::all_of(v.begin(), v.end(), [&](std::int32_t i) {
       return state.state[std::size_t(i)] == VertexState::kAttached;
     });
-    if (limit > 0 && on_object && measures.back().stretch > limit) result.torn[t] = 1;
+    if (!on_object) continue;
+    if ((limit > 0 && measures.back().stretch > limit) || folded(film, state, surface, t))
+      result.torn[t] = 1;
   }
   std::vector<std::uint8_t> done(vertices, 0);
   const auto gather = [&](auto counts) {

@@ -57,7 +57,7 @@ struct DippedFilm {
   std::vector<VertexState> state;  // per vertex
   std::vector<double> area_ratio;  // per vertex: deformed area over flat area (Voronoi areas)
   std::vector<double> stretch;     // per vertex: largest principal stretch around it
-  std::vector<std::uint8_t> torn;  // per triangle
+  std::vector<std::uint8_t> torn;  // per triangle: torn, or on the object upside down
   double depth_mm = 0;             // immersion reached
 
   // A triangle whose corners are all attached and that is not torn: film that lies on the object.
