@@ -6,7 +6,7 @@
 #include "base/file.h"
 #include "base/output_folder.h"
 #include "base/parallel.h"
-#include "job/dip_angles.h"
+#include "object/dip_angles.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
 #include "job/settings.h"

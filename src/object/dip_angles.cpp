@@ -1,4 +1,4 @@
-#include "job/dip_angles.h"
+#include "object/dip_angles.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -22,13 +22,13 @@ DipAngles dip_angles(const Object& posed, double depth_mm) {
     const double area = 0.5 * doubled.norm();
     if (!(area > 0)) continue;
     const double angle = dip_angle_deg(doubled.normalized());
-    if (angle >= 90) {
+    if (!faces_down(angle)) {
       angles.upward_mm2 += area;
       continue;
     }
     angles.downward_mm2 += area;
     angles.area_mm2[static_cast<std::size_t>(std::min(angle / 10, DipAngles::kBins - 1.0))] += area;
-    if (angle > kDipAngleLimit_deg) angles.over_limit_mm2 += area;
+    if (beyond_dip_limit(angle)) angles.over_limit_mm2 += area;
   }
   return angles;
 }

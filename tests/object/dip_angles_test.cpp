@@ -1,4 +1,4 @@
-#include "job/dip_angles.h"
+#include "object/dip_angles.h"
 
 #include <gtest/gtest.h>
 
@@ -45,6 +45,38 @@ TEST(DipAngles, OnlyTheWetPartCounts) {
   const DipAngles cap = dip_angles(sphere, 12);
   EXPECT_NEAR(cap.downward_mm2, 2 * std::numbers::pi * 30 * 12, 100);
   EXPECT_EQ(cap.upward_mm2, 0);
+}
+
+// Apex down, walls at 45 degrees to the dipping direction, open above.
+Object cone_of_45_degrees(int facets) {
+  Object cone;
+  cone.positions.emplace_back(0, 0, 0);
+  for (int i = 0; i < facets; ++i) {
+    const double turn = 2 * std::numbers::pi * i / facets;
+    cone.positions.emplace_back(20 * std::cos(turn), 20 * std::sin(turn), 20);
+    cone.triangles.push_back({0, 1 + (i + 1) % facets, 1 + i});
+  }
+  return cone;
+}
+
+TEST(DipAngles, AConeOf45DegreesLiesAtTheLimitNotBeyondIt) {
+  const DipAngles angles = dip_angles(cone_of_45_degrees(64), 20);
+  EXPECT_NEAR(angles.downward_mm2, std::numbers::pi * 20 * 20 * std::sqrt(2), 5);
+  EXPECT_EQ(angles.upward_mm2, 0);
+  EXPECT_EQ(angles.over_limit_mm2, 0);
+  Object steeper = cone_of_45_degrees(64);
+  for (Vec3& p : steeper.positions) p.z() *= 1.01;
+  EXPECT_EQ(dip_angles(steeper, 30).over_limit_share(), 1);
+}
+
+TEST(DipAngles, AVerticalWallDoesNotFaceDownWhateverRoundingMakesOfIt) {
+  for (const double lean : {-1e-9, 0.0, 1e-9}) {
+    Object wall;
+    wall.positions = {{0, 0, 0}, {0, 10, 0}, {lean, 0, 10}};
+    wall.triangles = {{0, 1, 2}};
+    EXPECT_EQ(dip_angles(wall, 10).downward_mm2, 0) << lean;
+    EXPECT_NEAR(dip_angles(wall, 10).upward_mm2, 50, 1e-6) << lean;
+  }
 }
 
 TEST(DipAngles, OfNothingAreZero) {
