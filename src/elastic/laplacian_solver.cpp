@@ -33,6 +33,63 @@ void multiply(const BlockMatrix& H, const std::vector<std::uint8_t>& is_free, co
   });
 }
 
+// The factor L D L^T of a permuted matrix in single precision, for both coordinates at once: a
+// preconditioner need not be exact, and the solve is bound by memory.
+class SinglePrecisionFactor {
+ public:
+  using Cholesky = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+
+  void copy_from(const Cholesky& cholesky) {
+    const auto& L = cholesky.matrixL().nestedExpression();
+    const auto n = L.cols();
+    begin_.assign(L.outerIndexPtr(), L.outerIndexPtr() + n + 1);
+    row_.assign(L.innerIndexPtr(), L.innerIndexPtr() + begin_.back());
+    value_.assign(L.valuePtr(), L.valuePtr() + begin_.back());
+    const auto& D = cholesky.vectorD();
+    inverse_d_.resize(std::size_t(n));
+    for (Eigen::Index i = 0; i < n; ++i) inverse_d_[std::size_t(i)] = float(1 / D[i]);
+    const auto& P = cholesky.permutationP().indices();
+    place_.assign(P.data(), P.data() + n);
+    x_.resize(std::size_t(n));
+  }
+
+  // z = (L D L^T)^-1 r on the free vertices, zero elsewhere.
+  void solve(const std::vector<std::uint8_t>& is_free, const VertexVector& r, VertexVector& z) {
+    const std::size_t n = x_.size();
+    for (std::size_t v = 0; v < n; ++v)
+      x_[std::size_t(place_[v])] = {float(r[v].x()), float(r[v].y())};
+    for (std::size_t j = 0; j < n; ++j) {
+      const Pair xj = x_[j];
+      for (auto k = std::size_t(begin_[j]); k < std::size_t(begin_[j + 1]); ++k) {
+        Pair& xi = x_[std::size_t(row_[k])];
+        xi.x -= value_[k] * xj.x;
+        xi.y -= value_[k] * xj.y;
+      }
+    }
+    for (std::size_t j = n; j-- > 0;) {
+      Pair xj{x_[j].x * inverse_d_[j], x_[j].y * inverse_d_[j]};
+      for (auto k = std::size_t(begin_[j]); k < std::size_t(begin_[j + 1]); ++k) {
+        const Pair& xi = x_[std::size_t(row_[k])];
+        xj.x -= value_[k] * xi.x;
+        xj.y -= value_[k] * xi.y;
+      }
+      x_[j] = xj;
+    }
+    for (std::size_t v = 0; v < n; ++v) {
+      const Pair& xv = x_[std::size_t(place_[v])];
+      z[v] = is_free[v] ? Vec2(xv.x, xv.y) : Vec2::Zero();
+    }
+  }
+
+ private:
+  struct Pair {
+    float x, y;
+  };
+  std::vector<std::int32_t> begin_, row_, place_;
+  std::vector<float> value_, inverse_d_;
+  std::vector<Pair> x_;
+};
+
 class LaplacianSolver : public LinearSolver {
  public:
   LinearSolveResult solve(const FilmEnergy& energy, const BlockMatrix& H,
@@ -75,23 +132,11 @@ class LaplacianSolver : public LinearSolver {
       }
     if (!factored_) cholesky_.analyzePattern(matrix_);
     cholesky_.factorize(matrix_);
+    factor_.copy_from(cholesky_);
     ++factorizations_;
     factored_ = true;
     stale_ = false;
     fresh_ = true;
-  }
-
-  void precondition(const std::vector<std::uint8_t>& is_free, const VertexVector& r,
-                    VertexVector& z) {
-    const auto vertices = static_cast<Eigen::Index>(r.size());
-    using Coordinate = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<2>>;
-    parallel_for(2, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k)
-        solution_[k] = cholesky_.solve(Coordinate(r.data()->data() + k, vertices));
-    });
-    for (std::size_t v = 0; v < r.size(); ++v)
-      z[v] = is_free[v] ? Vec2(solution_[0][Eigen::Index(v)], solution_[1][Eigen::Index(v)])
-                        : Vec2::Zero();
   }
 
   LinearSolveResult conjugate_gradients(const BlockMatrix& H,
@@ -102,7 +147,7 @@ class LaplacianSolver : public LinearSolver {
     VertexVector r = b, z(b.size()), Hp(b.size());
     for (std::size_t v = 0; v < b.size(); ++v)
       if (!is_free[v]) r[v].setZero();
-    precondition(is_free, r, z);
+    factor_.solve(is_free, r, z);
     VertexVector p = z;
     double rz = dot(r, z);
     const double target = rz * relative_tolerance * relative_tolerance;
@@ -118,7 +163,7 @@ class LaplacianSolver : public LinearSolver {
         x[v] += alpha * p[v];
         r[v] -= alpha * Hp[v];
       }
-      precondition(is_free, r, z);
+      factor_.solve(is_free, r, z);
       const double rz_next = dot(r, z);
       if (!std::isfinite(rz_next)) return result;
       if (rz_next <= target) {
@@ -133,8 +178,8 @@ class LaplacianSolver : public LinearSolver {
   }
 
   Eigen::SparseMatrix<double> matrix_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> cholesky_;
-  std::array<Eigen::VectorXd, 2> solution_;
+  SinglePrecisionFactor::Cholesky cholesky_;
+  SinglePrecisionFactor factor_;
   bool factored_ = false, stale_ = false, fresh_ = false;
   int iterations_when_fresh_ = 0;
   long factorizations_ = 0;
