@@ -121,7 +121,7 @@ DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
     context.warn(fmt::format("in {} of {} steps the film's equilibrium was found only to {:.2g} mm",
                              state.statistics.unconverged_steps, steps,
                              state.statistics.largest_residual_mm));
-  return {measured(film, state, options), state.statistics};
+  return {measured(film, state, options, surface), state.statistics};
 }
 
 }  // namespace hydrodip
