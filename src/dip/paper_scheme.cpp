@@ -48,7 +48,7 @@ class PaperScheme : public Scheme {
   }
 
   // An attaching vertex ends on the object, not on a chord of it. The film floats, and where its
-  // slide would enter the object it attaches: on walls nothing else makes it meet the object.
+  // way through this step enters the object it attaches: on walls nothing else makes it meet it.
   void slide(const std::vector<Vec3>& mapped, double level) {
     parallel_for(mapped.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
@@ -58,8 +58,9 @@ class PaperScheme : public Scheme {
           position = on_object(mapped[v]);
           continue;
         }
+        const Vec3 before(position.x(), position.y(), state_.level);
         const Vec3 afloat(mapped[v].x(), mapped[v].y(), level);
-        const auto contact = first_contact(set_.surface, position, afloat);
+        const auto contact = first_contact(set_.surface, before, afloat);
         attaching_[v] = contact.has_value();
         position = contact ? contact->position : afloat;
       }
