@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "base/error.h"
-#include "job/nearest_name.h"
+#include "base/nearest_name.h"
 
 namespace hydrodip {
 namespace {

@@ -75,6 +75,10 @@ void declare_film_and_dip(CLI::App& app, Request& request) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   add_parameter_option(app, request, "--depth", "dip.depth_mm", "MM", kFilmGroup,
                        "how deep to dip (default: the whole object)");
+  add_parameter_option(app, request, "--method", "dip.method", "full|single-step|projection",
+                       kFilmGroup,
+                       "how the film gets onto the object; the last two are simple baselines to "
+                       "compare with (default: full)");
 }
 
 void declare_resolution(CLI::App& app, Request& request) {

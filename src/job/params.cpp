@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "base/error.h"
-#include "job/nearest_name.h"
+#include "base/nearest_name.h"
 
 namespace hydrodip {
 namespace {

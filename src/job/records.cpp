@@ -158,6 +158,9 @@ std::vector<Parameter> film_records() {
       integer(
           "film.elements", "", 8, 4000000, [](C& c) -> int& { return c.film.elements; },
           "triangles of the simulated film"),
+      number(
+          "film.grading", "", 1, 20, [](C& c) -> double& { return c.film.grading; },
+          "cell size at the rim over that at the centre; with dip.scheme=paper: 1"),
   };
 }
 
@@ -183,10 +186,18 @@ std::vector<Parameter> dip_records() {
       number(
           "dip.depth_mm", "mm", 0.001, 5000, [](C& c) -> double& { return c.dip.depth_mm; },
           "how deep the object is dipped", "the whole object"),
+      choice<DipMethod>(
+          "dip.method",
+          {{"full", DipMethod::kFull},
+           {"single-step", DipMethod::kSingleStep},
+           {"projection", DipMethod::kProjection}},
+          [](C& c) -> DipMethod& { return c.dip.method; },
+          "full; single-step: draped at once, never glued; projection: straight up"),
       choice<DipScheme>(
           "dip.scheme", {{"contact-line", DipScheme::kContactLine}, {"paper", DipScheme::kPaper}},
           [](C& c) -> DipScheme& { return c.dip.scheme; },
-          "contact line resolved inside triangles, or the paper's literal steps"),
+          "of dip.method=full: contact line resolved inside triangles, or the paper's literal "
+          "steps"),
   };
 }
 

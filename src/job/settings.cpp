@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "job/nearest_name.h"
+#include "base/nearest_name.h"
 
 namespace hydrodip {
 namespace {
@@ -20,6 +20,14 @@ std::string without_suffix(const std::string& text, const std::string& suffix) {
 Setting option_setting(const std::string& name, const std::string& value,
                        const std::string& shown) {
   return {name, value, false, shown, "--film"};
+}
+
+// The paper's film is a regular grid.
+void apply_dependent_defaults(JobConfig& config, const std::vector<Setting>& given) {
+  const bool graded = std::any_of(given.begin(), given.end(), [](const Setting& setting) {
+    return setting.name == "film.grading";
+  });
+  if (config.dip.scheme == DipScheme::kPaper && !graded) config.film.grading = 1;
 }
 
 }  // namespace
@@ -69,13 +77,19 @@ std::vector<Setting> film_settings(const std::string& film) {
 }
 
 void apply_sources(JobConfig& config, const SettingSources& sources) {
+  std::vector<Setting> all;
+  const auto add = [&](const std::vector<Setting>& settings) {
+    apply_settings(config, settings);
+    all.insert(all.end(), settings.begin(), settings.end());
+  };
   for (const auto* files : {&sources.profiles, &sources.configs})
     for (const auto& file : *files) {
-      apply_settings(config, read_settings(file));
+      add(read_settings(file));
       config.settings_files.push_back(file);
     }
-  apply_settings(config, sources.options);
-  apply_settings(config, sources.sets);
+  add(sources.options);
+  add(sources.sets);
+  apply_dependent_defaults(config, all);
 }
 
 }  // namespace hydrodip

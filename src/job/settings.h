@@ -38,7 +38,8 @@ struct SettingSources {
   std::vector<Setting> sets;                    // --set
 };
 
-// Defaults < profiles < configs < options < sets.
+// Defaults < profiles < configs < options < sets. With dip.scheme=paper, film.grading defaults
+// to 1.
 void apply_sources(JobConfig& config, const SettingSources& sources);
 
 }  // namespace hydrodip

@@ -1,13 +1,14 @@
 #include "object/samples.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
-#include <numeric>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/nearest_name.h"
 #include "image/files.h"
 #include "object/samples_parts.h"
 
@@ -33,33 +34,14 @@ const std::vector<Sample>& table() {
   return all;
 }
 
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
 const Sample& find_sample(const std::string& name) {
   const auto found = std::find_if(table().begin(), table().end(),
                                   [&](const Sample& sample) { return sample.info.name == name; });
   if (found != table().end()) return *found;
-  const auto nearest =
-      std::min_element(table().begin(), table().end(), [&](const Sample& a, const Sample& b) {
-        return edit_distance(a.info.name, name) < edit_distance(b.info.name, name);
-      });
-  std::string names;
-  for (const Sample& sample : table()) names += (names.empty() ? "" : ", ") + sample.info.name;
-  throw InputError(fmt::format("There is no sample called '{}'; did you mean '{}'? Known are: {}.",
-                               name, nearest->info.name, names));
+  std::vector<std::string> names;
+  for (const Sample& sample : table()) names.push_back(sample.info.name);
+  throw InputError(fmt::format("there is no sample '{}'{}; the samples are {}", name,
+                               did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
 std::string obj_text(const Object& object, const std::string& name) {

@@ -188,6 +188,31 @@ TEST_F(Settings, LaterSourcesWin) {
   EXPECT_EQ(config.print.dpi, 400);      // --set over all
 }
 
+TEST_F(Settings, ThePapersSchemeHasARegularGridUnlessAskedOtherwise) {
+  const auto grading = [&](const std::string& toml, const std::vector<Setting>& sets) {
+    SettingSources sources;
+    sources.configs = {file(toml)};
+    sources.sets = sets;
+    JobConfig config;
+    apply_sources(config, sources);
+    return config.film.grading;
+  };
+  const Setting paper = parse_set("dip.scheme=paper");
+  EXPECT_EQ(grading("", {}), FilmOptions{}.grading);
+  EXPECT_EQ(grading("", {paper}), 1);
+  EXPECT_EQ(grading("film.grading = 4\n", {paper}), 4);
+  EXPECT_EQ(grading("dip.scheme = 'paper'\n", {parse_set("film.grading=3")}), 3);
+  EXPECT_EQ(grading("dip.scheme = 'paper'\n", {parse_set("dip.scheme=contact-line")}),
+            FilmOptions{}.grading);
+}
+
+TEST_F(Settings, MethodsHaveNames) {
+  EXPECT_EQ(from_toml("").dip.method, DipMethod::kFull);
+  EXPECT_EQ(from_toml("dip.method = 'single-step'").dip.method, DipMethod::kSingleStep);
+  EXPECT_EQ(from_toml("dip.method = 'projection'").dip.method, DipMethod::kProjection);
+  EXPECT_TRUE(contains(toml_error("dip.method = 'project'"), "projection"));
+}
+
 TEST_F(Settings, PathsInAFileAreRelativeToIt) {
   const JobConfig config = from_toml("object.texture = 'skin.png'\n");
   EXPECT_EQ(config.object.load.texture, folder_ / "skin.png");
