@@ -1,0 +1,114 @@
+#include "dip/waterline.h"
+
+#include <gtest/gtest.h>
+
+#include "exact/shapes.h"
+
+namespace hydrodip {
+namespace {
+
+TEST(Waterline, OfABoxIsItsPlan) {
+  const shapes::Shape box = shapes::box(Vec3(-10, -5, 1), Vec3(20, 8, 6));
+  Waterline line(box.positions, box.triangles, 2);
+  line.raise_to(0.5);
+  EXPECT_TRUE(line.empty());
+  EXPECT_FALSE(line.exit(Vec2(0, 0), Vec2(100, 0)));
+  EXPECT_FALSE(line.closest(Vec2(0, 0), 100));
+  for (const double level : {2.0, 5.5}) {
+    line.raise_to(level);
+    ASSERT_FALSE(line.empty());
+    const auto out = line.exit(Vec2(0, 1), Vec2(50, 1));
+    ASSERT_TRUE(out);
+    EXPECT_LT((out->position - Vec2(20, 1)).norm(), 1e-12);
+    EXPECT_LT((out->outward - Vec2(1, 0)).norm(), 1e-12);
+    EXPECT_GT(out->steepness, 1e5);  // a wall
+    const auto near = line.closest(Vec2(3, 7), 3);
+    ASSERT_TRUE(near);
+    EXPECT_LT((near->position - Vec2(3, 8)).norm(), 1e-12);
+    EXPECT_LT((near->outward - Vec2(0, 1)).norm(), 1e-12);
+    EXPECT_FALSE(line.closest(Vec2(3, 1), 3));  // 6 mm and more from every wall
+  }
+  line.raise_to(7);
+  EXPECT_TRUE(line.empty());
+}
+
+// Into the object is not out of it, and the end of the way counts.
+TEST(Waterline, ExitLooksOutwardsOnly) {
+  const shapes::Shape box = shapes::box(Vec3(-10, -10, 0), Vec3(10, 10, 6));
+  Waterline line(box.positions, box.triangles, 3);
+  line.raise_to(3);
+  EXPECT_FALSE(line.exit(Vec2(-20, 1), Vec2(0, 1)));  // enters
+  EXPECT_FALSE(line.exit(Vec2(0, 1), Vec2(9, 1)));    // stays inside
+  const auto through = line.exit(Vec2(-20, 1), Vec2(20, 1));
+  ASSERT_TRUE(through);
+  EXPECT_LT((through->position - Vec2(10, 1)).norm(), 1e-12);
+}
+
+TEST(Waterline, OfAConeIsACircleWithItsSlope) {
+  for (const double tan_theta : {0.3, 1.0, 4.0}) {
+    const shapes::Shape cone = shapes::cone(20, tan_theta, 40, 720);
+    Waterline line(cone.positions, cone.triangles, 1.5);
+    for (const double radius : {3.1, 9.7, 17.3}) {
+      line.raise_to(radius * tan_theta);
+      for (int i = 0; i < 50; ++i) {
+        const double angle = 0.1 + i * 0.13;
+        const Vec2 out(std::cos(angle), std::sin(angle));
+        // A polygon's sagitta: radius (1 - cos(pi / 720)).
+        const double sagitta = radius * 1e-5;
+        const auto exit = line.exit(0.2 * radius * out, 1.5 * radius * out);
+        ASSERT_TRUE(exit);
+        EXPECT_NEAR(exit->position.norm(), radius, sagitta);
+        EXPECT_NEAR(cross2(exit->position, out), 0, 1e-9);
+        EXPECT_LT((exit->outward - out).norm(), 0.01);
+        EXPECT_NEAR(exit->steepness, tan_theta, 1e-4 * tan_theta);
+        const auto near = line.closest(0.9 * radius * out, 0.2 * radius);
+        ASSERT_TRUE(near);
+        EXPECT_NEAR((near->position - 0.9 * radius * out).norm(), 0.1 * radius, sagitta);
+        EXPECT_FALSE(line.closest(0.9 * radius * out, 0.09 * radius));
+      }
+    }
+  }
+}
+
+// Levels exactly at vertices, edges and faces: the line stays closed, so that every way out of the
+// object meets it once.
+TEST(Waterline, HasNoGapsAtVertexLevels) {
+  const shapes::Shape cone = shapes::cone(20, 1, 20, 24);  // rings of vertices at every whole level
+  Waterline line(cone.positions, cone.triangles, 1);
+  for (int level = 1; level <= 19; ++level) {
+    line.raise_to(level);
+    for (int i = 0; i < 96; ++i) {
+      const Vec2 out(std::cos(i * M_PI / 48), std::sin(i * M_PI / 48));  // through vertices, too
+      const auto exit = line.exit(Vec2(0, 0), 25 * out);
+      ASSERT_TRUE(exit) << level << " " << i;
+      EXPECT_LE(exit->position.norm(), level + 1e-9);
+      EXPECT_GE(exit->position.norm(), level * std::cos(M_PI / 24) - 1e-9);
+    }
+  }
+}
+
+TEST(Waterline, AtABoxsBottomAndTop) {
+  const shapes::Shape box = shapes::box(Vec3(-10, -10, 0), Vec3(10, 10, 6));
+  Waterline line(box.positions, box.triangles, 3);
+  line.raise_to(0);  // touches only: nothing is below the water
+  EXPECT_TRUE(line.empty());
+  line.raise_to(6);  // up to its brim
+  ASSERT_TRUE(line.exit(Vec2(0, 0.3), Vec2(30, 0.3)));
+  EXPECT_NEAR(line.exit(Vec2(0, 0.3), Vec2(30, 0.3))->position.x(), 10, 1e-12);
+}
+
+// An overhang's waterline shrinks as the water rises.
+TEST(Waterline, KnowsOverhangs) {
+  const shapes::Shape sphere = shapes::revolve(
+      [](double s) { return Vec2(10 * std::sin(M_PI * s), 10 - 10 * std::cos(M_PI * s)); }, 90,
+      180);
+  Waterline line(sphere.positions, sphere.triangles, 1);
+  line.raise_to(15);
+  const auto exit = line.exit(Vec2(0, 0), Vec2(20, 0.1));
+  ASSERT_TRUE(exit);
+  EXPECT_NEAR(exit->position.norm(), std::sqrt(75.0), 0.01);
+  EXPECT_NEAR(exit->steepness, -std::sqrt(3.0), 0.05);
+}
+
+}  // namespace
+}  // namespace hydrodip
