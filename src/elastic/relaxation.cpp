@@ -47,6 +47,16 @@ double line_search(const FilmEnergy& energy, const VertexVector& direction, doub
   return 0;
 }
 
+// From the sum of the triangles' definite parts: always downhill.
+LinearSolveResult definite_direction(const FilmEnergy& energy,
+                                     const std::vector<std::uint8_t>& is_free,
+                                     const RelaxationOptions& options, const VertexVector& u,
+                                     const VertexVector& gradient, LinearSolver& solver,
+                                     BlockMatrix& H, VertexVector& direction) {
+  energy.hessian(u, true, H);
+  return solver.solve(energy, H, is_free, gradient, options.linear_tolerance, direction);
+}
+
 // Newton's direction from the exact Hessian. With the film held at its rim that one is definite as
 // long as no triangle shrinks to about half its size (docs/model.md), although single triangles'
 // are not; where it fails, the sum of the triangles' definite parts takes its place.
@@ -59,9 +69,8 @@ long newton_direction(const FilmEnergy& energy, const std::vector<std::uint8_t>&
       solver.solve(energy, H, is_free, gradient, options.linear_tolerance, direction);
   long iterations = solved.iterations;
   if (!solved.converged || !(dot(gradient, direction) > 0)) {
-    energy.hessian(u, true, H);
-    solved = solver.solve(energy, H, is_free, gradient, options.linear_tolerance, direction);
-    iterations += solved.iterations;
+    iterations +=
+        definite_direction(energy, is_free, options, u, gradient, solver, H, direction).iterations;
   }
   return iterations;
 }
@@ -89,7 +98,14 @@ RelaxationResult relax(const FilmEnergy& energy, const std::vector<std::uint8_t>
     // So near the minimum, energy differences drown in rounding: any step that turns nothing over
     // will do.
     if (result.converged && take_step(energy, direction, 1, u)) return result;
-    const double step = line_search(energy, direction, slope, u);
+    double step = line_search(energy, direction, slope, u);
+    if (step == 0) {  // far from the minimum the exact Hessian may mislead
+      result.linear_iterations +=
+          definite_direction(energy, is_free, options, u, gradient, solver, H, direction)
+              .iterations;
+      result.last_update_mm = largest_norm(direction);
+      step = line_search(energy, direction, dot(gradient, direction), u);
+    }
     if (step == 0) return result;
     result.last_update_mm *= step;
   }

@@ -40,8 +40,10 @@ const Sample& find_sample(const std::string& name) {
   if (found != table().end()) return *found;
   std::vector<std::string> names;
   for (const Sample& sample : table()) names.push_back(sample.info.name);
-  throw InputError(fmt::format("there is no sample '{}'{}; the samples are {}", name,
-                               did_you_mean(name, names), fmt::join(names, ", ")));
+  const std::string hint = did_you_mean(name, names);
+  throw InputError(fmt::format(
+      "there is no sample '{}'{}", name,
+      hint.empty() ? fmt::format("; the samples are {}", fmt::join(names, ", ")) : hint));
 }
 
 std::string obj_text(const Object& object, const std::string& name) {

@@ -60,6 +60,9 @@ Coverage measure_coverage(const Object& object, const DippedFilm& film) {
   Coverage sum;
   add_object(sum, object, film.depth_mm);
   add_film(sum, film);
+  // Film that spans an edge of the object counts whole on either side.
+  sum.covered_mm2 = std::min(sum.covered_mm2, sum.object_mm2);
+  sum.covered_downward_mm2 = std::min(sum.covered_downward_mm2, sum.downward_mm2);
   return sum;
 }
 

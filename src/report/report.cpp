@@ -7,6 +7,9 @@
 namespace hydrodip {
 namespace {
 
+// Of the surface that faces down; film ends a cell or so short of every border.
+constexpr double kNearlyAll = 0.9;
+
 std::string percent(double share) {
   const double value = 100 * share;
   if (value > 0 && value < 0.1) return "under 0.1 %";
@@ -22,17 +25,25 @@ ReportInput describe_input(const std::string& role, const std::filesystem::path&
 
 std::string plain_verdict(const Coverage& coverage) {
   if (!(coverage.film_on_object_mm2 > 0)) {
-    return coverage.torn_mm2 > 0 ? "No film stays on the object: all that meets it tears."
-                                 : "No film lies on the object.";
+    return coverage.torn_mm2 > 0
+               ? "No film stays on the object: all that meets it tears; turn a flatter side down "
+                 "with --rotate or --down."
+               : "No film lies on the object: check --down and --depth.";
   }
   const std::string start = fmt::format(
       "The film covers {} of the surface that faces down ({} of all) and stretches up to "
       "{:.2f} times",
       percent(coverage.covered_downward_share()), percent(coverage.covered_share()),
       coverage.stretch_max);
-  if (!(coverage.torn_mm2 > 0)) return start + "; it does not tear.";
-  return start + fmt::format("; it tears: {} of what meets the object is lost.",
-                             percent(coverage.torn_share()));
+  if (coverage.torn_mm2 > 0)
+    return start + fmt::format(
+                       "; it tears: {} of what meets the object is lost. To keep it, turn steep "
+                       "sides down (--rotate, --down) or dip less (--depth) and the rest in "
+                       "another turn.",
+                       percent(coverage.torn_share()));
+  if (coverage.covered_downward_share() < kNearlyAll)
+    return start + "; it does not tear. What stays bare needs another dip, turned.";
+  return start + "; it does not tear: dip it like this.";
 }
 
 std::string verdict_of(const Report& report) {

@@ -57,7 +57,7 @@ TEST(Report, JsonHoldsEverythingAndNoNan) {
   EXPECT_EQ(json["figures"]["psnr_db"], 36.5);
   EXPECT_TRUE(json["figures"]["nothing_mm"].is_null());
   EXPECT_EQ(json["warnings"].size(), 1u);
-  EXPECT_EQ(json["verdict"], "No film lies on the object.");
+  EXPECT_EQ(json["verdict"], "No film lies on the object: check --down and --depth.");
 }
 
 TEST(Report, EmptyReportIsStillAReport) {
