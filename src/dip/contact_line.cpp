@@ -4,13 +4,13 @@
 // equilibrium of the floating film, the attached end of the edge stands where flat film would have
 // it (its ghost). docs/model.md derives it.
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "base/parallel.h"
+#include "dip/foot.h"
 #include "dip/scheme.h"
 #include "dip/waterline.h"
 #include "film/locate.h"
@@ -26,59 +26,6 @@ constexpr double kMinArea = 0.02;
 // A foot that jumps further than this in one step, in cells, has lost its contact line (the object
 // is submerged there, or a shelf begins) and goes on straight up.
 constexpr double kMaxJump = 2.5;
-// Steepness that stands for a vertical wall.
-constexpr double kWall = 1e6;
-
-// A gradient du/dX that is followed over the steps.
-struct Gradient {
-  Mat2 now = Mat2::Identity(), before = Mat2::Identity();
-  Mat2 next() const { return 2 * now - before; }  // extrapolated by one step
-  void advance(const Mat2& F) {
-    before = now;
-    now = F;
-  }
-};
-
-struct Foot {
-  std::int32_t attached = -1, floating = -1;
-  Vec3 point = Vec3::Zero();    // on the contact line, between the two
-  Vec2 outward = Vec2::Zero();  // from the object, unit, normal to the contact line
-  double steepness = 0;         // of the object there
-  Vec2 laid = Vec2::Zero();  // film between the attached vertex and the point, in film coordinates
-  Vec2 way = Vec2::Zero();   // the same on the object, unrolled into the water plane
-  Gradient element;          // du/dX of the floating triangles on both sides of the edge
-  Gradient line;             // the same on the contact line itself
-  Vec2 last_way = Vec2::Zero();     // way of the present step
-  Vec2 laid_before = Vec2::Zero();  // laid at its start
-  Vec2 ghost = Vec2::Zero();
-};
-
-bool usable_gradient(const Mat2& F) {
-  return F.allFinite() && F.determinant() > 1e-3 && F.squaredNorm() < 1e4;
-}
-
-// Length from (0, 0) to (run, rise) with the vertical scaled: along two straight pieces with the
-// given slopes if they meet on the way (a crease lies between), else along the chord.
-double scaled_length(double run, double rise, double first_slope, double last_slope,
-                     double z_stretch) {
-  const auto piece = [&](double x, double z) { return std::hypot(x, z_stretch * z); };
-  if (first_slope != last_slope) {
-    const double x = (rise - last_slope * run) / (first_slope - last_slope);
-    const double z = first_slope * x;
-    if (std::isfinite(x) && z >= 0 && z <= rise) {
-      const double bent = piece(x, z) + piece(run - x, rise - z);
-      // Never longer than over the two sides of the box: slopes of a ragged mesh mean little.
-      if (bent <= std::abs(run) + z_stretch * rise) return bent;
-    }
-  }
-  return piece(run, rise);
-}
-
-double steepness_along(const Vec3& normal, const Vec2& direction) {
-  const double n = normal.head<2>().dot(direction);
-  return std::abs(normal.z()) * kWall > std::abs(n) ? -n / normal.z() : kWall;
-}
-
 RestTriangle rest_from_lengths(double ab, double bc, double ca, double min_area) {
   const double length = std::max(ab, 1e-9);
   const double along = (ab * ab + ca * ca - bc * bc) / (2 * length);
@@ -118,17 +65,8 @@ class ContactLineScheme : public Scheme {
   bool attached(std::int32_t v) const {
     return state_.state[std::size_t(v)] == VertexState::kAttached;
   }
+  double z_stretch() const { return set_.options.material.z_stretch; }
   Vec2 plan(std::int32_t v) const { return state_.position[std::size_t(v)].head<2>(); }
-
-  // From a point on the object to the contact line at `to`, unrolled into the water plane.
-  Vec2 unrolled(const Vec3& from, double first_slope, const Waterline::Point& to,
-                double level) const {
-    const Vec2 way = to.position - from.head<2>();
-    const Vec2 tangent(-to.outward.y(), to.outward.x());
-    const double length = scaled_length(way.dot(to.outward), std::max(0.0, level - from.z()),
-                                        first_slope, to.steepness, set_.options.material.z_stretch);
-    return way.dot(tangent) * tangent + length * to.outward;
-  }
 
   // The contact line next to `near`. `outside` is a unit vector known to point away from the object
   // more or less; where faces are turned the wrong way, it decides.
@@ -156,7 +94,7 @@ class ContactLineScheme : public Scheme {
   void climb(double level) {
     for (Foot& foot : feet_) {
       const Waterline::Point to = next_on_line(foot);
-      foot.last_way = unrolled(foot.point, foot.steepness, to, level);
+      foot.last_way = unrolled(foot.point, foot.steepness, to, level, z_stretch());
       foot.laid_before = foot.laid;
       foot.laid += 0.5 * (foot.line.now + foot.line.next()) * foot.last_way;
       foot.way += foot.last_way;
@@ -165,19 +103,6 @@ class ContactLineScheme : public Scheme {
       foot.steepness = to.steepness;
       place_ghost(foot, foot.element.next());
     }
-  }
-
-  // Where the attached vertex would be if the film laid behind the foot were flat and strained like
-  // the floating film ahead of it.
-  void place_ghost(Foot& foot, const Mat2& F) const {
-    Vec2 back = foot.way;
-    if (usable_gradient(F)) {
-      const Vec2 strained = F.inverse() * foot.laid;
-      const Vec2 change = strained - foot.way;
-      const double limit = 0.5 * foot.way.norm();
-      back += change.norm() > limit ? Vec2(change * (limit / change.norm())) : change;
-    }
-    foot.ghost = foot.point.head<2>() - back;
   }
 
   Vec2 corner(std::size_t t, std::size_t k) const {
@@ -424,7 +349,8 @@ class ContactLineScheme : public Scheme {
       const Waterline::Point to = leaving ? *leaving : line_near(from, outside);
       const Mat2 F = gradient_at_edge(v, w, Mat2::Identity());
       foot.element = foot.line = {F, F};
-      foot.way = unrolled(contact.position, steepness_along(contact.normal, to.outward), to, level);
+      foot.way = unrolled(contact.position, steepness_along(contact.normal, to.outward), to, level,
+                          z_stretch());
       foot.laid = F * foot.way;
       foot.point << to.position, level;
       foot.outward = to.outward;

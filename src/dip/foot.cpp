@@ -1,0 +1,59 @@
+#include "dip/foot.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace hydrodip {
+
+namespace {
+
+// Length from (0, 0) to (run, rise) with the vertical scaled: along two straight pieces with the
+// given slopes if they meet on the way (a crease lies between), else along the chord.
+double scaled_length(double run, double rise, double first_slope, double last_slope,
+                     double z_stretch) {
+  const auto piece = [&](double x, double z) { return std::hypot(x, z_stretch * z); };
+  if (first_slope != last_slope) {
+    const double x = (rise - last_slope * run) / (first_slope - last_slope);
+    const double z = first_slope * x;
+    if (std::isfinite(x) && z >= 0 && z <= rise) {
+      const double bent = piece(x, z) + piece(run - x, rise - z);
+      // Never longer than over the two sides of the box: slopes of a ragged mesh mean little.
+      if (bent <= std::abs(run) + z_stretch * rise) return bent;
+    }
+  }
+  return piece(run, rise);
+}
+
+}  // namespace
+
+bool usable_gradient(const Mat2& F) {
+  return F.allFinite() && F.determinant() > 1e-3 && F.squaredNorm() < 1e4;
+}
+
+Vec2 unrolled(const Vec3& from, double first_slope, const Waterline::Point& to, double level,
+              double z_stretch) {
+  const Vec2 way = to.position - from.head<2>();
+  const Vec2 tangent(-to.outward.y(), to.outward.x());
+  const double length = scaled_length(way.dot(to.outward), std::max(0.0, level - from.z()),
+                                      first_slope, to.steepness, z_stretch);
+  return way.dot(tangent) * tangent + length * to.outward;
+}
+
+double steepness_along(const Vec3& normal, const Vec2& direction) {
+  const double n = normal.head<2>().dot(direction);
+  return std::abs(normal.z()) * kWall > std::abs(n) ? -n / normal.z() : kWall;
+}
+
+void place_ghost(Foot& foot, const Mat2& F) {
+  Vec2 back = foot.way;
+  if (usable_gradient(F)) {
+    const Vec2 strained = F.inverse() * foot.laid;
+    const Vec2 change = strained - foot.way;
+    const double limit = 0.5 * foot.way.norm();
+    back += change.norm() > limit ? Vec2(change * (limit / change.norm())) : change;
+  }
+  foot.ghost = foot.point.head<2>() - back;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,52 @@
+// The foot of a mesh edge that crosses the contact line, and the film laid down behind it.
+#pragma once
+
+#include "dip/waterline.h"
+
+namespace hydrodip {
+
+// Steepness that stands for a vertical wall.
+constexpr double kWall = 1e6;
+
+// A gradient du/dX that is followed over the steps.
+struct Gradient {
+  Mat2 now = Mat2::Identity(), before = Mat2::Identity();
+  Mat2 next() const { return 2 * now - before; }  // extrapolated by one step
+  void advance(const Mat2& F) {
+    before = now;
+    now = F;
+  }
+};
+
+// Of the edge from an attached vertex to a floating one (docs/model.md, section 4).
+struct Foot {
+  std::int32_t attached = -1, floating = -1;
+  Vec3 point = Vec3::Zero();    // on the contact line, between the two
+  Vec2 outward = Vec2::Zero();  // from the object, unit, normal to the contact line
+  double steepness = 0;         // of the object there
+  Vec2 laid = Vec2::Zero();  // film between the attached vertex and the point, in film coordinates
+  Vec2 way = Vec2::Zero();   // the same on the object, unrolled into the water plane
+  Gradient element;          // du/dX of the floating triangles on both sides of the edge
+  Gradient line;             // the same on the contact line itself
+  Vec2 last_way = Vec2::Zero();     // way of the present step
+  Vec2 laid_before = Vec2::Zero();  // laid at its start
+  Vec2 ghost = Vec2::Zero();
+};
+
+// Whether a gradient can be inverted and means something.
+bool usable_gradient(const Mat2& F);
+
+// The way from a point on the object, where its surface rises at first_slope across the contact
+// line, to the contact line at `to` (on the given level), unrolled into the water plane with the
+// vertical scaled by z_stretch.
+Vec2 unrolled(const Vec3& from, double first_slope, const Waterline::Point& to, double level,
+              double z_stretch);
+
+// Rise over run of a surface with this normal, in a direction of the water plane; kWall at most.
+double steepness_along(const Vec3& normal, const Vec2& direction);
+
+// Sets foot.ghost: where the attached vertex would be if the film laid behind the foot were flat
+// and strained by F like the floating film ahead of it.
+void place_ghost(Foot& foot, const Mat2& F);
+
+}  // namespace hydrodip
