@@ -96,7 +96,7 @@ const std::vector<Command>& commands() {
        "Writes film.ply, preview.png, preview.glb, report.json and report.html.", declare_simulate,
        run_simulate},
       {"inspect", "size, mesh health, dip angles, what fits the film; no simulation",
-       "With -o it writes report.json.", declare_inspect, run_inspect},
+       "With -o it writes angles.png and report.json.", declare_inspect, run_inspect},
       {"sample", "write a built-in sample model with its texture", "", declare_sample_command,
        run_sample},
       {"params", "list every parameter: name, default, range, what it does", "", declare_reporting,

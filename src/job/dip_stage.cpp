@@ -28,6 +28,7 @@ std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const FilmMesh& fil
     context.progress("mapping", 0);
     dipped->map = std::make_unique<FilmMap>(object, *dipped->surface, dipped->film());
     dipped->coverage = measure_coverage(object, dipped->film());
+    dipped->angles = dip_angles(object, dipped->film().depth_mm);
     context.progress("mapping", 1);
   });
   return dipped;

@@ -6,6 +6,7 @@
 #include "base/context.h"
 #include "job/config.h"
 #include "job/stage_times.h"
+#include "object/dip_angles.h"
 #include "object/surface.h"
 #include "report/appearance.h"
 #include "report/coverage.h"
@@ -22,6 +23,7 @@ struct DippedObject {
   DipResult dip;
   std::unique_ptr<FilmMap> map;
   Coverage coverage;
+  DipAngles angles;
 
   const Object& object() const { return loaded.object; }
   const DippedFilm& film() const { return dip.film; }

@@ -6,10 +6,14 @@
 #include "base/file.h"
 #include "base/output_folder.h"
 #include "base/parallel.h"
-#include "object/dip_angles.h"
+#include "image/files.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
 #include "job/settings.h"
+#include "object/dip_angles.h"
+#include "object/surface.h"
+#include "report/maps.h"
+#include "report/report.h"
 
 namespace hydrodip {
 namespace {
@@ -115,8 +119,9 @@ std::string describe_angles(const DipAngles& a) {
     text += fmt::format("  {:2} to {:2}   {:>7}  {}\n", 10 * bin, 10 * (bin + 1),
                         share(area, a.downward_mm2), std::string(bar, '#'));
   }
-  return text + fmt::format("  {} of the surface that faces down is beyond the limit\n",
-                            share(a.over_limit_mm2, a.downward_mm2));
+  return text +
+         fmt::format("  {:.0f} mm2 or {} of the surface that faces down is beyond the limit\n",
+                     a.over_limit_mm2, share(a.over_limit_mm2, a.downward_mm2));
 }
 
 std::string describe(const Inspection& i) {
@@ -140,16 +145,6 @@ json health_json(const MeshHealth& h) {
           {"volume_mm3", h.volume_mm3},
           {"area_mm2", h.area_mm2},
           {"findings", h.findings()}};
-}
-
-json angles_json(const DipAngles& a) {
-  return {{"limit_deg", kDipAngleLimit_deg},
-          {"bin_deg", 10},
-          {"area_mm2", a.area_mm2},
-          {"downward_mm2", a.downward_mm2},
-          {"vertical_or_upward_mm2", a.upward_mm2},
-          {"over_limit_mm2", a.over_limit_mm2},
-          {"over_limit_share", a.over_limit_share()}};
 }
 
 json fit_json(const std::vector<Fit>& list) {
@@ -185,14 +180,27 @@ std::string machine_readable(const Inspection& i) {
                     {"mesh", health_json(i.posed.health)},
                     {"fit", fit_json(i.fit)},
                     {"films", films_json(i.films)},
-                    {"dip_angles", angles_json(i.angles)},
+                    {"dip_angles", json::parse(dip_angles_json(i.angles))},
                     {"warnings", i.warnings}};
   return all.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
-void write_report(const std::filesystem::path& output, const std::string& report) {
-  OutputFolder folder(output);
+void write_angle_map(const std::filesystem::path& path, const Inspection& i, RunContext& context) {
+  const Object& object = i.posed.object;
+  MapOptions options;
+  options.width_px = i.config.preview_width_px;
+  options.caption = map_caption(i.angles, nullptr);
+  const Surface surface(object.positions, object.triangles);
+  const std::vector<std::uint8_t> png =
+      encode_png(render_angle_map(object, surface, i.depth_mm, options, context));
+  write_file(path, png.data(), png.size());
+}
+
+void write_files(const Inspection& i, const std::string& report, RunContext& context) {
+  OutputFolder folder(i.config.output);
+  write_angle_map(folder.path("angles.png"), i, context);
   write_file(folder.path("report.json"), report);
+  context.check_cancelled();
   folder.commit();
 }
 
@@ -214,10 +222,13 @@ JobResult inspect_job(const JobConfig& config, RunContext& context) {
   result.json = machine_readable(inspection);
   context.check_cancelled();
   if (config.output.empty()) return result;
-  write_report(config.output, result.json);
+  write_files(inspection, result.json, context);
   result.folder = config.output;
-  result.files = {"report.json"};
-  result.text += fmt::format("wrote {}\n", (config.output / "report.json").string());
+  result.files = {"angles.png", "report.json"};
+  result.text += fmt::format(
+      "wrote to {}:\n  angles.png   the dip angles on the object\n  report.json  all of this for "
+      "programs\n",
+      config.output.string());
   return result;
 }
 

@@ -18,16 +18,17 @@ struct JobResult {
 };
 
 // The main job: simulates the dip and writes the film image that puts every colour in its place:
-// print.pdf, print.png, print.tif, film.ply, preview.png, preview.glb, report.json, report.html in
-// config.output. All of them appear, or none. Throws InputError, DipError, Cancelled.
+// print.pdf, print.png, print.tif, film.ply, preview.png, maps.png, preview.glb, report.json,
+// report.html in config.output. All of them appear, or none. Throws InputError, DipError,
+// Cancelled.
 JobResult print_job(const JobConfig& config, RunContext& context);
 
-// Forward only: film.ply, preview.png, preview.glb, report.json, report.html; with
+// Forward only: film.ply, preview.png, maps.png, preview.glb, report.json, report.html; with
 // config.film_image (the whole sheet, as print.png) also what the object will look like.
 JobResult simulate_job(const JobConfig& config, RunContext& context);
 
-// No simulation: size, mesh health, what fits the film, dip angles. Writes report.json only if
-// config.output is given.
+// No simulation: size, mesh health, what fits the film, dip angles. Writes angles.png and
+// report.json only if config.output is given.
 JobResult inspect_job(const JobConfig& config, RunContext& context);
 
 // Writes a built-in sample model with its texture.

@@ -8,19 +8,19 @@
 #include "base/output_folder.h"
 #include "job/jobs.h"
 #include "job/record.h"
+#include "report/report.h"
 
 namespace hydrodip {
 
-// film.ply, preview.png and preview.glb for a film that carries `film_image` (as seen from above,
-// over the whole sheet). The picture's caption is a short verdict after `caption_start`. Returns
-// the bytes of preview.png.
-std::vector<std::uint8_t> write_previews(OutputFolder& folder, const JobRecord& record,
-                                         const Image& film_image, const SheetRaster& raster,
-                                         const std::string& caption_start = "");
+// film.ply, preview.png, maps.png and preview.glb for a film that carries `film_image` (as seen
+// from above, over the whole sheet). The picture's caption is a short verdict after
+// `caption_start`. Returns the bytes of both pictures.
+ReportPictures write_previews(OutputFolder& folder, const JobRecord& record,
+                              const Image& film_image, const SheetRaster& raster,
+                              const std::string& caption_start = "");
 
 // Writes report.json and report.html, then moves all files to their final names, unless the job was
 // cancelled.
-JobResult finish(OutputFolder& folder, const JobRecord& record,
-                 const std::vector<std::uint8_t>& preview_png);
+JobResult finish(OutputFolder& folder, const JobRecord& record, const ReportPictures& pictures);
 
 }  // namespace hydrodip

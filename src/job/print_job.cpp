@@ -60,10 +60,10 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
   times.measure("sheet", [&] { compose(folder, image, config, context); });
 
   const JobRecord record{"print", config, inputs, *dipped, times, context};
-  const auto preview = times.measure("preview", [&] {
+  const ReportPictures pictures = times.measure("preview", [&] {
     return write_previews(folder, record, image, sheet_raster(config, config.print.dpi));
   });
-  return finish(folder, record, preview);
+  return finish(folder, record, pictures);
 }
 
 }  // namespace hydrodip

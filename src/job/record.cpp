@@ -19,6 +19,7 @@ std::vector<ReportOutput> outputs(const std::string& command, InkSide ink_side) 
             {"print.png", "the film image, sRGB"},
             {"print.tif", "the film image, CMYK"}};
   list.insert(list.end(), {{"preview.png", "what was asked for beside what will come out"},
+                           {"maps.png", "dipping angle, stretch and tears on the object"},
                            {"preview.glb", "the dipped object in 3D"},
                            {"film.ply", "the film after the dip"},
                            {"report.html", "everything about this job, for people"},
@@ -91,6 +92,7 @@ Report make_report(const JobRecord& record) {
   report.total_seconds = record.times.total_s();
   report.rounds = {dip_round(record.dipped.dip.statistics)};
   report.coverage = record.dipped.coverage;
+  report.angles = record.dipped.angles;
   report.mesh = record.dipped.loaded.health;
   report.figures = figures(record.dipped);
   report.warnings = record.context.warnings();

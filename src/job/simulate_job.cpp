@@ -81,11 +81,11 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
   const auto dipped = dip_object(std::move(posed), film, config, times, context);
 
   const JobRecord record{"simulate", config, inputs, *dipped, times, context};
-  const auto preview = times.measure("preview", [&] {
+  const ReportPictures pictures = times.measure("preview", [&] {
     return write_previews(folder, record, printed.image, printed.raster,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");
   });
-  return finish(folder, record, preview);
+  return finish(folder, record, pictures);
 }
 
 }  // namespace hydrodip

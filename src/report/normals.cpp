@@ -103,4 +103,10 @@ std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
   return result;
 }
 
+Vec3 normal_between(const CornerNormals& corners, double u, double v) {
+  const Vec3 n = (1 - u - v) * corners[0] + u * corners[1] + v * corners[2];
+  const double length = n.norm();
+  return length < 1e-6 ? Vec3(Vec3::Zero()) : Vec3(n / length);
+}
+
 }  // namespace hydrodip

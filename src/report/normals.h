@@ -17,4 +17,7 @@ std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
                                           const std::vector<Triangle>& triangles,
                                           double crease_deg = 40);
 
+// Unit normal between the corners at barycentric (1 - u - v, u, v); zero where they cancel out.
+Vec3 normal_between(const CornerNormals& corners, double u, double v);
+
 }  // namespace hydrodip

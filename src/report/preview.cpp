@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "report/canvas.h"
 #include "report/studio.h"
 #include "report/text.h"
 #include "report/view.h"
@@ -42,39 +43,22 @@ Layout make_layout(const Object& object, const std::array<Vec3, 2>& directions,
   return layout;
 }
 
-Image blank_page(const Layout& layout) {
-  Image page(layout.width, layout.height);
-  for (std::size_t i = 0; i < page.rgba.size(); i += 4) {
-    page.rgba[i] = page.rgba[i + 1] = page.rgba[i + 2] = 252;
-    page.rgba[i + 3] = 255;
-  }
-  return page;
-}
-
-void paste(Image& page, const Image& picture, int x0, int y0) {
-  for (int y = 0; y < picture.height_px; ++y) {
-    std::copy_n(picture.pixel(0, y), 4 * std::size_t(picture.width_px), page.pixel(x0, y0 + y));
-  }
-}
-
 void write_labels(Image& page, const Layout& layout, const std::string& caption) {
   TextStyle title;
   title.size_px = 25 * layout.unit;
-  title.color = {0.012f, 0.014f, 0.02f, 1};
+  title.color = kTitleInk;
   const std::array<std::string, 2> names = {"wanted", "predicted"};
   for (std::size_t i = 0; i < 2; ++i) {
     const double center =
         layout.margin + 0.5 * layout.cell_width + double(i) * (layout.cell_width + layout.gap);
-    draw_text(page, names[i], center - 0.5 * text_width_px(names[i], title),
-              layout.header - 31 * layout.unit, title);
+    draw_centered(page, names[i], center, layout.header - 31 * layout.unit, title);
   }
   TextStyle line;
   line.size_px = 17 * layout.unit;
-  line.color = {0.06f, 0.065f, 0.08f, 1};
+  line.color = kLabelInk;
   const double room = layout.width - 2.0 * layout.margin;
   const std::string shown = fit_text(caption, line, room);
-  draw_text(page, shown, 0.5 * (layout.width - text_width_px(shown, line)),
-            layout.height - 35 * layout.unit, line);
+  draw_centered(page, shown, 0.5 * layout.width, layout.height - 35 * layout.unit, line);
 }
 
 // Fills in whatever appearance is absent.
@@ -99,7 +83,7 @@ Image render_preview(const Object& object, const Surface& surface, const DippedF
   const std::array<Vec3, 2> directions = telling_directions(object, surface, film);
   const Layout layout = make_layout(object, directions, options);
 
-  Image page = blank_page(layout);
+  Image page = blank_page(layout.width, layout.height);
   int y = layout.header;
   for (std::size_t i = 0; i < 2; ++i) {
     context.progress(stage, 0.1 + 0.45 * double(i));

@@ -56,8 +56,8 @@ void write_report_json(const std::filesystem::path& path, const Report& report) 
 }
 
 void write_report_html(const std::filesystem::path& path, const Report& report,
-                       const std::vector<std::uint8_t>& preview_png) {
-  write_file(path, report_html(report, preview_png));
+                       const ReportPictures& pictures) {
+  write_file(path, report_html(report, pictures));
 }
 
 }  // namespace hydrodip

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "object/dip_angles.h"
 #include "object/health.h"
 #include "report/coverage.h"
 
@@ -77,6 +78,7 @@ struct Report {
   double total_seconds = 0;         // 0: the sum of the stages
   std::vector<ReportRound> rounds;
   std::optional<Coverage> coverage;  // nothing was dipped: absent
+  std::optional<DipAngles> angles;
   std::optional<MeshHealth> mesh;
   std::vector<ReportFigure> figures;
   std::vector<std::string> warnings;
@@ -95,12 +97,20 @@ std::string verdict_of(const Report& report);
 // number is null. "seconds" and "peak_memory_bytes" alone depend on the machine.
 std::string report_json(const Report& report);
 
+// Dip angles as the JSON object that reports hold.
+std::string dip_angles_json(const DipAngles& angles);
+
+// The bytes of the picture files that the page shows; empty: none.
+struct ReportPictures {
+  std::vector<std::uint8_t> preview_png;
+  std::vector<std::uint8_t> maps_png;
+};
+
 // One self-contained page without scripts or links to the network; every text is escaped.
-// `preview_png` are the bytes of preview.png, or empty.
-std::string report_html(const Report& report, const std::vector<std::uint8_t>& preview_png);
+std::string report_html(const Report& report, const ReportPictures& pictures);
 
 void write_report_json(const std::filesystem::path& path, const Report& report);
 void write_report_html(const std::filesystem::path& path, const Report& report,
-                       const std::vector<std::uint8_t>& preview_png);
+                       const ReportPictures& pictures);
 
 }  // namespace hydrodip

@@ -215,11 +215,28 @@ std::string verdict(const Report& report) {
   return html + "</ul>\n";
 }
 
-std::string picture(const std::vector<std::uint8_t>& preview_png) {
-  if (preview_png.empty()) return "";
-  return "<img alt=\"The object as wanted beside the object as predicted, from two sides\" "
-         "src=\"data:image/png;base64," +
-         base64(preview_png) + "\">\n";
+std::string picture(const std::vector<std::uint8_t>& png, const std::string& alt) {
+  if (png.empty()) return "";
+  return "<img alt=\"" + alt + "\" src=\"data:image/png;base64," + base64(png) + "\">\n";
+}
+
+std::string preview(const ReportPictures& pictures) {
+  return picture(pictures.preview_png,
+                 "The object as wanted beside the object as predicted, from two sides");
+}
+
+std::string maps(const ReportPictures& pictures) {
+  if (pictures.maps_png.empty()) return "";
+  return "<section>\n<h2>Where it is difficult</h2>\n"
+         "<p>Left: how steeply the surface meets the film. Blue is easy; from orange to dark red "
+         "the surface is steeper than the limit, and the film stretches much or tears: turn the "
+         "object so that little of what matters lies there.</p>\n"
+         "<p>Right: how far the film is stretched, from violet (hardly) to yellow (nearly torn). "
+         "Red and white stripes: there the film tears, and nothing is printed; grey stays "
+         "bare.</p>\n" +
+         picture(pictures.maps_png,
+                 "Dipping angle and film stretch on the object, from two sides") +
+         "</section>\n";
 }
 
 std::string key_figure(const std::string& label, const std::string& value,
@@ -236,6 +253,10 @@ std::string key_figures(const Report& report) {
                         shown(std::round(1000 * c.covered_downward_share()) / 10), "%");
     cells += key_figure("Covered area", shown(c.covered_mm2), "mm2");
     cells += key_figure("Largest stretch", fmt::format("{:.2f}", c.stretch_max), "times");
+    if (report.angles) {
+      cells += key_figure(fmt::format("Steeper than {:.0f}\u00b0", kDipAngleLimit_deg),
+                          shown(std::round(1000 * report.angles->over_limit_share()) / 10), "%");
+    }
     cells +=
         key_figure("Torn, of the film there", shown(std::round(1000 * c.torn_share()) / 10), "%");
   }
@@ -282,6 +303,22 @@ std::string coverage(const Report& report) {
           row("Stretch, largest", with_unit(fmt::format("{:.3f}", c.stretch_max), "times")) +
           row("Area, mean", with_unit(fmt::format("{:.3f}", c.area_ratio_mean), "times")) +
           row("Area, largest", with_unit(fmt::format("{:.3f}", c.area_ratio_max), "times")));
+}
+
+std::string angles(const Report& report) {
+  if (!report.angles) return "";
+  const DipAngles& a = *report.angles;
+  std::string rows;
+  for (int bin = 0; bin < DipAngles::kBins; ++bin) {
+    const double area = a.area_mm2[std::size_t(bin)];
+    rows +=
+        row(fmt::format("{} to {}\u00b0", 10 * bin, 10 * (bin + 1)), with_unit(shown(area), "mm2"));
+  }
+  return section(
+      "Dipping angle of what faces down",
+      rows + row(fmt::format("Steeper than {:.0f}\u00b0", kDipAngleLimit_deg),
+                 fmt::format("{} ({:.1f}\u00a0%)", with_unit(shown(a.over_limit_mm2), "mm2"),
+                             100 * a.over_limit_share())));
 }
 
 std::string mesh(const Report& report) {
@@ -388,7 +425,7 @@ std::string foot(const Report& report) {
 
 }  // namespace
 
-std::string report_html(const Report& report, const std::vector<std::uint8_t>& preview_png) {
+std::string report_html(const Report& report, const ReportPictures& pictures) {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
@@ -396,10 +433,12 @@ std::string report_html(const Report& report, const std::vector<std::uint8_t>& p
       "</style>\n</head>\n<body>\n<main>\n";
   html += heading(report);
   html += verdict(report);
-  html += picture(preview_png);
+  html += preview(pictures);
   html += key_figures(report);
+  html += maps(pictures);
   html += outputs(report);
   html += coverage(report);
+  html += angles(report);
   html += mesh(report);
   html += rounds(report);
   html += parameters(report);

@@ -87,6 +87,16 @@ Json stretch_json(const Coverage& c) {
           {"area_ratio_max", number(c.area_ratio_max)}};
 }
 
+Json angles_json(const DipAngles& angles) {
+  return {{"limit_deg", kDipAngleLimit_deg},
+          {"bin_deg", 10},
+          {"area_mm2", angles.area_mm2},
+          {"downward_mm2", number(angles.downward_mm2)},
+          {"vertical_or_upward_mm2", number(angles.upward_mm2)},
+          {"over_limit_mm2", number(angles.over_limit_mm2)},
+          {"over_limit_share", number(angles.over_limit_share())}};
+}
+
 Json mesh_json(const MeshHealth& mesh) {
   return {{"vertices", mesh.vertices},
           {"triangles", mesh.triangles},
@@ -116,6 +126,8 @@ Json seconds_json(const Report& report) {
 
 }  // namespace
 
+std::string dip_angles_json(const DipAngles& angles) { return angles_json(angles).dump(); }
+
 std::string report_json(const Report& report) {
   Json json;
   json["schema_version"] = kReportSchemaVersion;
@@ -132,6 +144,7 @@ std::string report_json(const Report& report) {
     json["coverage"] = coverage_json(*report.coverage);
     json["stretch"] = stretch_json(*report.coverage);
   }
+  if (report.angles) json["dip_angles"] = angles_json(*report.angles);
   if (report.mesh) json["mesh"] = mesh_json(*report.mesh);
   json["figures"] = figures_json(report.figures);
   json["rounds"] = rounds_json(report);

@@ -154,11 +154,9 @@ class Renderer {
   }
 
   Vec3 smooth_normal(const Sample& s) const {
-    const CornerNormals& corner = studio_.normals[std::size_t(s.triangle)];
-    const Vec3 n = (1 - s.u - s.v) * corner[0] + s.u * corner[1] + s.v * corner[2];
-    const double length = n.norm();
-    if (length < 1e-6) return s.flat;
-    return n.dot(s.flat) < 0 ? Vec3(-n / length) : Vec3(n / length);
+    const Vec3 n = normal_between(studio_.normals[std::size_t(s.triangle)], s.u, s.v);
+    if (n.isZero()) return s.flat;
+    return n.dot(s.flat) < 0 ? Vec3(-n) : n;
   }
 
   // A point on the curved surface that the triangles stand for: shadow rays from there do not
@@ -338,9 +336,10 @@ class Renderer {
   Shade shade(const Sample& s, const Light& light) const {
     const Vec3 n = smooth_normal(s);
     const double sky = kSkyBelow + (kSkyAbove - kSkyBelow) * (0.5 + 0.5 * n.dot(ground_normal_));
-    const double level = sky * (0.12 + 0.88 * light.sky) +
-                         kLamp * std::max(0.0, n.dot(lamp_)) * light.lamp +
-                         kFill * std::max(0.0, n.dot(camera_.back));
+    const double lit_level = sky * (0.12 + 0.88 * light.sky) +
+                             kLamp * std::max(0.0, n.dot(lamp_)) * light.lamp +
+                             kFill * std::max(0.0, n.dot(camera_.back));
+    const double level = lit_level + studio_.flatness * (1 - lit_level);
     const Vec3 p = position(s);
     const Vec3 normal = face_normal(studio_.object, s.triangle);
     const SurfacePoint point{s.triangle, s.u, s.v};

@@ -17,6 +17,9 @@ struct Studio {
   const std::vector<CornerNormals>& normals;
   const Appearance& appearance;
   int samples_per_axis = 3;
+  // 0: lit as in the studio; 1: no light and shade at all, colours are shown as they are. Maps,
+  // whose colours are to be read off, lie between.
+  double flatness = 0;
 };
 
 struct ViewPair {

@@ -3,10 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
 #include "base/parallel.h"
+#include "object/dip_angles.h"
 
 namespace hydrodip {
 namespace {
@@ -64,6 +66,14 @@ std::vector<Patch> object_patches(const Object& object) {
     patches.push_back({sum / 3, area.normalized(), area.norm()});
   }
   return patches;
+}
+
+// Those that face down, or all if none does.
+std::vector<Patch> facing_down(const std::vector<Patch>& patches) {
+  std::vector<Patch> down;
+  std::copy_if(patches.begin(), patches.end(), std::back_inserter(down),
+               [](const Patch& patch) { return faces_down(dip_angle_deg(patch.normal)); });
+  return down.empty() ? patches : down;
 }
 
 struct Candidate {
@@ -160,7 +170,7 @@ Box3 in_camera(const Object& object, const Camera& camera) {
 std::array<Vec3, 2> telling_directions(const Object& object, const Surface& surface,
                                        const DippedFilm& film) {
   std::vector<Patch> patches = film_patches(film);
-  if (patches.empty()) patches = object_patches(object);
+  if (patches.empty()) patches = facing_down(object_patches(object));
   patches = thinned(patches);
   const std::vector<Candidate> views = candidates();
   const auto clear = clarity(patches, views, surface, extent_of(object));

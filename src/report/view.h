@@ -10,8 +10,9 @@
 namespace hydrodip {
 
 // Two unit directions from the object towards the eye: the first sees most of the area where film
-// lies on the object, the second most of what the first does not see. Without any such film the
-// whole surface counts. Looking from below (-z, the side that meets the film) is the front.
+// lies on the object, the second most of what the first does not see. Without any such film
+// what faces down counts, and without that the whole surface. Looking from below (-z, the side that
+// meets the film) is the front.
 std::array<Vec3, 2> telling_directions(const Object& object, const Surface& surface,
                                        const DippedFilm& film);
 

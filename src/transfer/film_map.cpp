@@ -21,6 +21,19 @@ std::vector<Triangle> triangles_on_object(const DippedFilm& film) {
   return lying;
 }
 
+// What would lie on the object had it not torn.
+std::vector<Triangle> torn_triangles_on_object(const DippedFilm& film) {
+  std::vector<Triangle> torn;
+  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
+    const Triangle& corners = film.mesh.triangles[t];
+    const bool attached = std::all_of(corners.begin(), corners.end(), [&](std::int32_t v) {
+      return film.state[std::size_t(v)] == VertexState::kAttached;
+    });
+    if (film.torn[t] && attached) torn.push_back(corners);
+  }
+  return torn;
+}
+
 // Barycentric coordinates of target in a flat film triangle.
 bool weights_in(const FilmMesh& mesh, std::int32_t triangle, const Vec2& target, Vec3& weight) {
   const Triangle& t = mesh.triangles[std::size_t(triangle)];
@@ -42,6 +55,7 @@ struct FilmMap::Impl {
   std::vector<std::uint8_t> lies;           // per film triangle
   std::vector<std::int32_t> film_triangle;  // of each triangle of film_surface
   Surface film_surface;
+  Surface torn_surface;      // torn film, where it met the object
   std::vector<Vec3> normal;  // per film vertex: the object's, outward; zero where not attached
   CoveredRim rim;
   double reach_mm;  // how far apart film and object may be: chords against curved surface
@@ -51,6 +65,7 @@ struct FilmMap::Impl {
         surface(s),
         film(f),
         film_surface(f.position, triangles_on_object(f)),
+        torn_surface(f.position, torn_triangles_on_object(f)),
         normal(f.position.size(), Vec3::Zero()),
         rim(f),
         reach_mm(f.mesh.cell_mm) {
@@ -100,6 +115,33 @@ struct FilmMap::Impl {
     if (behind && (!ahead || behind->t < ahead->t)) return behind;
     return ahead;
   }
+
+  // Where a surface made of film lies against the object at one of its points.
+  std::optional<SurfaceHit> lying_at(const Surface& sheet, const Vec3& position,
+                                     const Vec3& direction) const {
+    std::optional<SurfaceHit> best;
+    double nearest = reach_mm;
+    for (const double side : {1.0, -1.0}) {
+      const auto hit = sheet.first_hit(position, side * direction, 0, nearest);
+      // The film's upper side lies against the object: film on the far side of a thin wall, whose
+      // upper side looks the other way, is not the film of this point.
+      if (!hit || sheet.normal(*hit).dot(direction) >= 0) continue;
+      nearest = hit->t;
+      best = hit;
+    }
+    return best;
+  }
+
+  // A value that vertices have, at a film coordinate; 1 off the object.
+  double interpolated(const std::vector<double>& value, const Vec2& u) const {
+    Cursor cursor;
+    Vec3 weight;
+    if (!locate_on_object(u, cursor, weight)) return 1;
+    const Triangle& t = film.mesh.triangles[std::size_t(cursor.film_triangle)];
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) sum += weight[Eigen::Index(k)] * value[std::size_t(t[k])];
+    return sum;
+  }
 };
 
 FilmMap::FilmMap(const Object& object, const Surface& surface, const DippedFilm& film)
@@ -141,33 +183,24 @@ std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u) const {
 }
 
 std::optional<Vec2> FilmMap::to_film(const Vec3& position, const Vec3& normal) const {
-  std::optional<Vec2> best;
-  double nearest = impl_->reach_mm;
-  for (const double side : {1.0, -1.0}) {
-    const auto hit = impl_->film_surface.first_hit(position, side * normal, 0, nearest);
-    // The film's upper side lies against the object: film on the far side of a thin wall, whose
-    // upper side looks the other way, is not the film of this point.
-    if (!hit || impl_->film_surface.normal(*hit).dot(normal) >= 0) continue;
-    nearest = hit->t;
-    const std::int32_t film_triangle = impl_->film_triangle[std::size_t(hit->triangle)];
-    const Triangle& t = impl_->film.mesh.triangles[std::size_t(film_triangle)];
-    const auto& u = impl_->film.mesh.u;
-    best = (1 - hit->u - hit->v) * u[std::size_t(t[0])] + hit->u * u[std::size_t(t[1])] +
-           hit->v * u[std::size_t(t[2])];
-  }
-  return best;
+  const auto hit = impl_->lying_at(impl_->film_surface, position, normal);
+  if (!hit) return std::nullopt;
+  const std::int32_t film_triangle = impl_->film_triangle[std::size_t(hit->triangle)];
+  const Triangle& t = impl_->film.mesh.triangles[std::size_t(film_triangle)];
+  const auto& u = impl_->film.mesh.u;
+  return Vec2((1 - hit->u - hit->v) * u[std::size_t(t[0])] + hit->u * u[std::size_t(t[1])] +
+              hit->v * u[std::size_t(t[2])]);
+}
+
+bool FilmMap::torn_at(const Vec3& position, const Vec3& normal) const {
+  return impl_->lying_at(impl_->torn_surface, position, normal).has_value();
 }
 
 double FilmMap::area_ratio(const Vec2& u) const {
-  Cursor cursor;
-  Vec3 weight;
-  if (!impl_->locate_on_object(u, cursor, weight)) return 1;
-  const Triangle& t = impl_->film.mesh.triangles[std::size_t(cursor.film_triangle)];
-  double ratio = 0;
-  for (std::size_t k = 0; k < 3; ++k)
-    ratio += weight[Eigen::Index(k)] * impl_->film.area_ratio[std::size_t(t[k])];
-  return ratio;
+  return impl_->interpolated(impl_->film.area_ratio, u);
 }
+
+double FilmMap::stretch(const Vec2& u) const { return impl_->interpolated(impl_->film.stretch, u); }
 
 const Box2& FilmMap::covered() const { return impl_->rim.covered(); }
 

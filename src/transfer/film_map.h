@@ -32,8 +32,12 @@ class FilmMap {
   // Film coordinate (mm) that lands at a point of the object; nothing if it stays bare.
   std::optional<Vec2> to_film(const Vec3& position, const Vec3& normal) const;
 
-  // Deformed over flat area of the film at u, interpolated between vertices; 1 off the object.
-  double area_ratio(const Vec2& u) const;
+  // Whether torn film lies at a point of the object, where to_film has nothing.
+  bool torn_at(const Vec3& position, const Vec3& normal) const;
+
+  // Interpolated between the film's vertices; 1 off the object.
+  double area_ratio(const Vec2& u) const;  // deformed over flat area
+  double stretch(const Vec2& u) const;     // largest principal stretch
 
   // Bounds of the film that lies on the object, in u.
   const Box2& covered() const;

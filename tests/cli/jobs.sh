@@ -5,8 +5,8 @@
 
 write_tetrahedron tetra.obj
 write_colored colored.ply
-print_files='film.ply preview.glb preview.png print.pdf print.png print.tif report.html report.json'
-simulate_files='film.ply preview.glb preview.png report.html report.json'
+print_files='film.ply maps.png preview.glb preview.png print.pdf print.png print.tif report.html report.json'
+simulate_files='film.ply maps.png preview.glb preview.png report.html report.json'
 
 # expect_files FOLDER NAMES: these, whole, and no others.
 expect_files() {
@@ -30,7 +30,7 @@ if command -v tiffinfo > /dev/null; then
   tiffinfo out/print.tif 2>&1 | grep -q 'separated' || fail 'tiffinfo on print.tif'
 fi
 if command -v pngcheck > /dev/null; then
-  pngcheck -q out/print.png out/preview.png || fail 'pngcheck'
+  pngcheck -q out/print.png out/preview.png out/maps.png || fail 'pngcheck'
 fi
 head -c 4 out/preview.glb | grep -q glTF || fail 'preview.glb'
 head -c 40 out/film.ply | grep -q binary_little_endian || fail 'film.ply'

@@ -31,6 +31,9 @@ Report full_report() {
   report.stages = {{"load", 0.25}, {"dip", 1.5}};
   report.rounds = {{"ink", 1, {{"largest_change_mm", "largest change", 0.5, "mm"}}}};
   report.coverage = Coverage{};
+  report.angles = DipAngles{};
+  report.angles->downward_mm2 = 200;
+  report.angles->over_limit_mm2 = 50;
   report.mesh = MeshHealth{};
   report.figures = {{"psnr_db", "PSNR", 36.5, "dB"},
                     {"nothing_mm", "Nothing", std::numeric_limits<double>::quiet_NaN(), "mm"}};
@@ -56,6 +59,8 @@ TEST(Report, JsonHoldsEverythingAndNoNan) {
   EXPECT_EQ(json["rounds"][0]["largest_change_mm"], 0.5);
   EXPECT_EQ(json["figures"]["psnr_db"], 36.5);
   EXPECT_TRUE(json["figures"]["nothing_mm"].is_null());
+  EXPECT_EQ(json["dip_angles"]["over_limit_mm2"], 50);
+  EXPECT_EQ(json["dip_angles"]["over_limit_share"], 0.25);
   EXPECT_EQ(json["warnings"].size(), 1u);
   EXPECT_EQ(json["verdict"], "No film lies on the object: check --down and --depth.");
 }
@@ -76,13 +81,14 @@ TEST(Report, HtmlEscapesWhateverComesFromOutside) {
 }
 
 TEST(Report, HtmlNeedsNothingElse) {
-  const std::string html = report_html(full_report(), {1, 2, 3, 4});
+  const std::string html = report_html(full_report(), {{1, 2, 3, 4}, {5, 6, 7, 8}});
   EXPECT_EQ(html.find("http"), std::string::npos);
   EXPECT_NE(html.find("data:image/png;base64,AQIDBA=="), std::string::npos);
+  EXPECT_NE(html.find("data:image/png;base64,BQYHCA=="), std::string::npos);
 }
 
 TEST(Report, HtmlTagsAreBalanced) {
-  const std::string html = report_html(full_report(), {1, 2, 3});
+  const std::string html = report_html(full_report(), {{1, 2, 3}, {4, 5, 6}});
   const auto count = [&](const std::string& what) {
     long n = 0;
     for (std::size_t at = html.find(what); at != std::string::npos; at = html.find(what, at + 1))
