@@ -1,6 +1,8 @@
 // Dipped in one go, a baseline of the paper's figure 9: the film is draped over the object at once
 // and slides freely on it to its energy minimum; nothing is glued before that.
 
+#include <fmt/format.h>
+
 #include "dip/draped_film.h"
 
 namespace hydrodip {
@@ -8,7 +10,10 @@ namespace hydrodip {
 namespace {
 
 // The film is far from its minimum here, unlike between two steps of the full simulation.
-constexpr int kMaxNewtonIterations = 200;
+constexpr int kMaxNewtonIterations = 60;
+constexpr int kMaxRounds = 10;
+// Share of its flat area at which a triangle is about to turn over.
+constexpr double kFolding = 1e-3;
 
 class SingleStep : public Scheme {
  public:
@@ -34,16 +39,48 @@ class SingleStep : public Scheme {
     return is_free;
   }
 
-  VertexVector relaxed(const std::vector<std::uint8_t>& is_free) {
+  // On steep objects the film would rather fold over. Where it is about to, it is held, and the
+  // rest goes on to its minimum.
+  VertexVector relaxed(std::vector<std::uint8_t> is_free) {
     energy_.set_rest(
         rest_in_space(film_, state_.position, is_free, set_.options.material.z_stretch));
     VertexVector u = film_.u;
     RelaxationOptions options;
     options.max_iterations = kMaxNewtonIterations;
     options.context = &set_.context;
-    const auto solver = make_laplacian_solver();
-    relax_film(energy_, is_free, *solver, u, state_.statistics, options);
+    int held = 0;
+    for (int round = 0; round < kMaxRounds; ++round) {
+      state_.statistics.unconverged_steps = 0;
+      state_.statistics.largest_residual_mm = 0;
+      const auto solver = make_laplacian_solver();
+      relax_film(energy_, is_free, *solver, u, state_.statistics, options);
+      if (state_.statistics.unconverged_steps == 0) break;
+      const int folds = hold_folds(u, is_free);
+      if (folds == 0) break;
+      held += folds;
+    }
+    if (held > 0)
+      set_.context.warn(fmt::format(
+          "draped at once, the film folds on this object: {} of its {} vertices were held there",
+          held, film_.u.size()));
     return u;
+  }
+
+  // Returns how many vertices are held from now on.
+  int hold_folds(const VertexVector& u, std::vector<std::uint8_t>& is_free) const {
+    int held = 0;
+    for (const Triangle& t : film_.triangles) {
+      const auto area = [&](const VertexVector& x) {
+        const Vec2& a = x[std::size_t(t[0])];
+        return cross2(x[std::size_t(t[1])] - a, x[std::size_t(t[2])] - a);
+      };
+      if (area(u) >= kFolding * area(film_.u)) continue;
+      for (std::int32_t v : t) {
+        held += is_free[std::size_t(v)];
+        is_free[std::size_t(v)] = 0;
+      }
+    }
+    return held;
   }
 
   // The draped film lies straight above the flat one, first on the object and else on the water.
