@@ -174,7 +174,7 @@ LinearColor neutral(double) { return kNeutral; }
 
 // 700 wide.
 void draw_angle_legend(Legend legend, bool some_stays_dry) {
-  constexpr double kFrom = 20, kTo = 560;
+  constexpr double kFrom = 20, kTo = 540;
   const auto place = [](double angle_deg) { return kFrom + (kTo - kFrom) * angle_deg / 90; };
   legend.label("angle between surface normal and dipping direction", 350);
   legend.bar(kFrom, kTo, [](double t) { return angle_color(std::min(90 * t, 89.8)); });
@@ -185,8 +185,8 @@ void draw_angle_legend(Legend legend, bool some_stays_dry) {
   legend.note("flat to the water", place(0) + 52, 1);
   legend.note("steeper: film may tear", place(67.5), 1);
   legend.bar(600, 670, neutral);
-  legend.note("upright, up", 635, 0);
-  if (some_stays_dry) legend.note("or dry", 635, 1);
+  legend.note("upright or", 635, 0);
+  legend.note(some_stays_dry ? "up, or dry" : "facing up", 635, 1);
 }
 
 double tick_spacing(double range) {
@@ -199,7 +199,7 @@ double tick_spacing(double range) {
 // 700 wide.
 void draw_stretch_legend(Legend legend, double largest, bool tears) {
   constexpr double kFrom = 20;
-  const double to = tears ? 460 : 560;
+  const double to = tears ? 440 : 540;
   const auto place = [&](double stretch) {
     return kFrom + (to - kFrom) * (stretch - 1) / (largest - 1);
   };
@@ -212,10 +212,10 @@ void draw_stretch_legend(Legend legend, double largest, bool tears) {
   }
   legend.note("unstretched", place(1) + 45, 1);
   if (tears) {
-    legend.hatched(to, 560);
+    legend.hatched(to, 540);
     legend.limit(to, fmt::format("limit {:.2f}", largest));
-    legend.note("torn", 0.5 * (to + 560), 0);
-    legend.note("no print", 0.5 * (to + 560), 1);
+    legend.note("torn", 0.5 * (to + 540), 0);
+    legend.note("no print", 0.5 * (to + 540), 1);
   }
   legend.bar(600, 670, neutral);
   legend.note("no film", 635, 0);

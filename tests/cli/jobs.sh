@@ -63,6 +63,15 @@ cmp -s below/print.png 'ordnung müß sein/größe 1-print/print.png' && fail 't
   $quick_simulate -o below-forward > /dev/null || fail 'simulate with print.ink_side=down'
 cmp forward/preview.png below-forward/preview.png || fail 'the mirrored print dips differently'
 
+# The angle map without a simulation.
+"$hydrodip" inspect tetra.obj --set preview.width_px=200 --threads 1 -o inspected > inspected.txt ||
+  fail 'inspect -o'
+expect_files inspected angles.png report.json
+grep -q 'angles.png' inspected.txt || fail 'inspect does not name its files'
+"$hydrodip" inspect tetra.obj --set preview.width_px=200 --threads 2 -o inspected-again > /dev/null ||
+  fail 'inspect with 2 threads'
+cmp inspected/angles.png inspected-again/angles.png || fail 'angles.png depends on the threads'
+
 # A second run replaces the first.
 "$hydrodip" simulate tetra.obj $quick_simulate -o plain > /dev/null || fail 'second run'
 expect_files plain $simulate_files
@@ -83,6 +92,8 @@ assert parameters['film.width_mm']['value'] == 100, 'options win over files'
 report = json.load(open('precedence/report.json'))
 assert report['parameters'] == parameters
 assert any(entry['role'] == 'settings' for entry in report['inputs'])
+assert 0 <= report['dip_angles']['over_limit_share'] <= 1
+assert report['coverage']['torn_mm2'] >= 0 and 'torn_share' in report['coverage']
 PY
 fi
 if command -v python3 > /dev/null; then
