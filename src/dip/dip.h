@@ -46,7 +46,6 @@ struct DipStatistics {
   long factorizations = 0;
   long unconverged_steps = 0;      // steps that ended at the iteration bound
   double largest_residual_mm = 0;  // largest last Newton update over all steps
-  double seconds_contact = 0, seconds_elastic = 0, seconds_mapping = 0;
 };
 
 struct DipResult {
