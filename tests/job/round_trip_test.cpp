@@ -1,0 +1,213 @@
+// The whole way: a model is printed, the print is dipped, and the model's own colours come back.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "image/files.h"
+#include "job/dip_stage.h"
+#include "job/jobs.h"
+#include "job/prepare.h"
+#include "object/samples.h"
+
+namespace hydrodip {
+namespace {
+
+class ScratchFolder {
+ public:
+  ScratchFolder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("hydrodip_round_trip_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~ScratchFolder() { std::filesystem::remove_all(path_); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+JobConfig mask_job(const std::filesystem::path& folder) {
+  write_sample("mask", folder);
+  JobConfig config;
+  config.model = folder / "mask.obj";
+  config.output = folder / "out";
+  config.film.elements = 20000;
+  config.dip.step_mm = 0.2;
+  // The mask's texture has edges sharper than a pixel of 300 dpi, which alone keep it at 34 dB.
+  config.print.dpi = 400;
+  config.preview_width_px = 400;
+  return config;
+}
+
+std::unique_ptr<DippedObject> dipped_again(const JobConfig& config, RunContext& context) {
+  StageTimes times;
+  return dip_object(load_posed(config, context), make_film_mesh(config.film), config, times,
+                    context);
+}
+
+// Evenly over the surface and always the same: equal shares of area, and in each triangle the
+// points of a low-discrepancy sequence.
+std::vector<SurfacePoint> evenly_spread(const Object& object, int count) {
+  std::vector<double> area_up_to;
+  double total = 0;
+  for (const Triangle& t : object.triangles) {
+    const Vec3& a = object.positions[std::size_t(t[0])];
+    const Vec3 ab = object.positions[std::size_t(t[1])] - a;
+    const Vec3 ac = object.positions[std::size_t(t[2])] - a;
+    const Vec3 normal(ab.y() * ac.z() - ab.z() * ac.y(), ab.z() * ac.x() - ab.x() * ac.z(),
+                      ab.x() * ac.y() - ab.y() * ac.x());
+    area_up_to.push_back(total += 0.5 * normal.norm());
+  }
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i < count; ++i) {
+    const auto at =
+        std::upper_bound(area_up_to.begin(), area_up_to.end(), total * (i + 0.5) / count);
+    double u = std::fmod(0.5 + 0.7548776662466927 * i, 1.0);
+    double v = std::fmod(0.5 + 0.5698402909980532 * i, 1.0);
+    if (u + v > 1) {
+      u = 1 - u;
+      v = 1 - v;
+    }
+    points.push_back({int(at - area_up_to.begin()), u, v});
+  }
+  return points;
+}
+
+std::array<int, 3> srgb(const LinearColor& c) {
+  return {linear_to_srgb8(c.r), linear_to_srgb8(c.g), linear_to_srgb8(c.b)};
+}
+
+struct Likeness {
+  double psnr_db = 0;
+  int compared = 0;
+};
+
+// Wanted against predicted colours wherever film lies on the object.
+Likeness likeness(const DippedObject& dipped, const Image& film, const SheetRaster& raster) {
+  const LinearColor base{1, 1, 1, 1};
+  double squares = 0;
+  Likeness result;
+  for (const SurfacePoint& point : evenly_spread(dipped.object(), 200000)) {
+    const Vec3 position = position_at(dipped.object(), point);
+    const Vec3 normal = face_normal(dipped.object(), point.triangle);
+    if (!dipped.map->to_film(position, normal)) continue;
+    const auto wanted = srgb(color_at(dipped.object(), point, base));
+    const auto found = srgb(predicted_color(film, raster, *dipped.map, position, normal, base));
+    for (std::size_t k = 0; k < 3; ++k) squares += std::pow(wanted[k] - found[k], 2) / 3;
+    ++result.compared;
+  }
+  result.psnr_db = 10 * std::log10(255 * 255 / (squares / result.compared));
+  return result;
+}
+
+constexpr double kDotSpacing_mm = 10, kDotRadius_mm = 0.8;
+
+// Black dots on white every 10 mm as seen from below, put on with texture coordinates to match.
+Object dotted(const Object& object) {
+  constexpr int kPixels = 1600;
+  constexpr double kSize_mm = 160;
+  Image image(kPixels, kPixels);
+  for (int y = 0; y < kPixels; ++y)
+    for (int x = 0; x < kPixels; ++x) {
+      const Vec2 at((x + 0.5) * kSize_mm / kPixels - kSize_mm / 2,
+                    kSize_mm / 2 - (y + 0.5) * kSize_mm / kPixels);
+      const Vec2 dot = (at / kDotSpacing_mm).array().round() * kDotSpacing_mm;
+      const double edge = (at - dot).norm() - kDotRadius_mm;  // soft over one pixel
+      const auto value = std::uint8_t(std::lround(255 * std::clamp(edge / 0.1 + 0.5, 0.0, 1.0)));
+      std::uint8_t* pixel = image.pixel(x, y);
+      std::fill_n(pixel, 3, value);
+      pixel[3] = 255;
+    }
+  Object result = object;
+  result.materials.assign(1, Material{});
+  result.materials[0].texture = 0;
+  result.material_of.assign(result.triangles.size(), 0);
+  result.colors.clear();
+  result.textures = {std::make_shared<const Image>(std::move(image))};
+  result.uvs.clear();
+  for (const Triangle& t : result.triangles) {
+    CornerUv uv;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2 plan = result.positions[std::size_t(t[k])].head<2>();
+      uv[k] = (plan / kSize_mm + Vec2::Constant(0.5)).cast<float>();
+    }
+    result.uvs.push_back(uv);
+  }
+  return result;
+}
+
+struct Registration {
+  double largest_mm = 0;
+  int dots = 0;
+};
+
+// Where each dot's centre is on the object, wanted and predicted, in space.
+Registration registration(const DippedObject& dipped, const Object& object, const Image& film,
+                          const SheetRaster& raster) {
+  const LinearColor base{1, 1, 1, 1};
+  Registration result;
+  const Box3 box = object.bounds();
+  const int reach = int(std::ceil(box.max.head<2>().maxCoeff() / kDotSpacing_mm));
+  for (int i = -reach; i <= reach; ++i)
+    for (int j = -reach; j <= reach; ++j) {
+      Vec3 wanted = Vec3::Zero(), found = Vec3::Zero();
+      double wanted_ink = 0, found_ink = 0;
+      bool covered = true;
+      for (double dx = -1.5; dx <= 1.5 && covered; dx += 0.06)
+        for (double dy = -1.5; dy <= 1.5 && covered; dy += 0.06) {
+          const Vec3 below(i * kDotSpacing_mm + dx, j * kDotSpacing_mm + dy, -1);
+          const auto hit = dipped.surface->first_hit(below, Vec3(0, 0, 1), 0, 1e3);
+          if (!hit) {
+            covered = false;
+            break;
+          }
+          const Vec3 position = dipped.surface->position(*hit);
+          const Vec3 normal = dipped.surface->normal(*hit);
+          covered = dipped.map->to_film(position, normal).has_value();
+          const double w = 1 - double(color_at(object, {hit->triangle, hit->u, hit->v}, base).g);
+          const double f =
+              1 - double(predicted_color(film, raster, *dipped.map, position, normal, base).g);
+          wanted += w * position;
+          wanted_ink += w;
+          found += f * position;
+          found_ink += f;
+        }
+      if (!covered) continue;
+      ++result.dots;
+      EXPECT_NEAR(found_ink / wanted_ink, 1, 0.1) << i << " " << j;
+      result.largest_mm =
+          std::max(result.largest_mm, (wanted / wanted_ink - found / found_ink).norm());
+    }
+  return result;
+}
+
+TEST(RoundTripSlow, WhatIsPrintedAndDippedIsWhatWasWanted) {
+  const ScratchFolder folder;
+  const JobConfig config = mask_job(folder.path());
+  RunContext context;
+  print_job(config, context);
+  const Image film = load_image(config.output / "print.png");
+  const SheetRaster raster = sheet_raster(config, config.print.dpi);
+  ASSERT_EQ(film.width_px, raster.width_px());
+  ASSERT_EQ(film.height_px, raster.height_px());
+
+  const auto dipped = dipped_again(config, context);
+  const Likeness colors = likeness(*dipped, film, raster);
+  EXPECT_GT(colors.compared, 50000);
+  EXPECT_GE(colors.psnr_db, 35);
+  RecordProperty("psnr_db", std::to_string(colors.psnr_db));
+
+  const Object dots = dotted(dipped->object());
+  const Image dots_film = film_image(dots, *dipped->map, raster, InverseOptions{}, context);
+  const Registration features = registration(*dipped, dots, dots_film, raster);
+  EXPECT_GT(features.dots, 60);
+  EXPECT_LT(features.largest_mm, 0.05);
+  RecordProperty("largest_mm", std::to_string(features.largest_mm));
+}
+
+}  // namespace
+}  // namespace hydrodip
