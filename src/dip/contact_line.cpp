@@ -23,6 +23,9 @@ constexpr std::size_t kGrain = 1024;
 // Smallest rest area of a triangle at the contact line, as a share of its flat area: keeps the
 // energy finite where ghosts of a crumpled contact line meet.
 constexpr double kMinArea = 0.02;
+// How far the contact line should go in one part of a step, in cells, and the smallest part.
+constexpr double kLineAdvance = 0.3;
+constexpr double kSmallestPart = 1.0 / 8;
 // A foot that jumps further than this in one step, in cells, has lost its contact line (the object
 // is submerged there, or a shelf begins) and goes on straight up.
 constexpr double kMaxJump = 2.5;
@@ -46,7 +49,22 @@ class ContactLineScheme : public Scheme {
         feet_of_corner_(3 * setting.film.triangles.size(), {-1, -1}),
         last_slide_(setting.film.u.size(), Vec2::Zero()) {}
 
+  // In as many parts as the contact line needs to stay within a part of a cell in each: where the
+  // water first touches a blunt object, the line runs fast.
   void advance(double level) override {
+    while (state_.level < level) {
+      const double rise = std::max(part_, kSmallestPart) * set_.options.step_mm;
+      // No sliver of a step at the end.
+      raise(level - state_.level < 1.5 * rise ? level : state_.level + rise);
+      double fastest = 1e-9;
+      for (const Foot& foot : feet_) fastest = std::max(fastest, foot.last_way.norm());
+      part_ *= std::min(2.0, kLineAdvance * film_.cell_mm / fastest);
+      part_ = std::clamp(part_, kSmallestPart, 1.0);
+    }
+  }
+
+ private:
+  void raise(double level) {
     waterline_.raise_to(level);
     climb(level);
     set_rest();
@@ -58,7 +76,6 @@ class ContactLineScheme : public Scheme {
     state_.level = level;
   }
 
- private:
   bool floats(std::int32_t v) const {
     return state_.state[std::size_t(v)] == VertexState::kUnattached;
   }
@@ -81,6 +98,16 @@ class ContactLineScheme : public Scheme {
     return point;
   }
 
+  // Where the edge from a vertex that attaches now leaves the object; next to the vertex where it
+  // does not (on walls and overhangs), but never on the far side of it.
+  Waterline::Point first_on_line(const Vec2& from, const Vec2& to) const {
+    if (const auto leaving = waterline_.exit(from, to)) return *leaving;
+    const Vec2 outside = (to - from).normalized();
+    const Waterline::Point near = line_near(from, outside);
+    const bool behind = (near.position - from).dot(outside) < -0.1 * film_.cell_mm;
+    return behind ? line_near(to, outside) : near;
+  }
+
   // Towards the floating vertex, so that the foot stays by the edge whose strain it uses; straight
   // up where the water does not gain on it that way: on walls and overhangs, or just before
   // contact.
@@ -92,16 +119,19 @@ class ContactLineScheme : public Scheme {
   }
 
   void climb(double level) {
+    const double rise = level - state_.level;
+    const double ratio = last_rise_ > 0 ? rise / last_rise_ : 1.0;
+    last_rise_ = rise;
     for (Foot& foot : feet_) {
       const Waterline::Point to = next_on_line(foot);
       foot.last_way = unrolled(foot.point, foot.steepness, to, level, z_stretch());
       foot.laid_before = foot.laid;
-      foot.laid += 0.5 * (foot.line.now + foot.line.next()) * foot.last_way;
+      foot.laid += 0.5 * (foot.line.now + foot.line.next(ratio)) * foot.last_way;
       foot.way += foot.last_way;
       foot.point << to.position, level;
       foot.outward = to.outward;
       foot.steepness = to.steepness;
-      place_ghost(foot, foot.element.next());
+      place_ghost(foot, foot.element.next(ratio));
     }
   }
 
@@ -344,9 +374,7 @@ class ContactLineScheme : public Scheme {
       foot.attached = v;
       foot.floating = w;
       const Vec2 from = contact.position.head<2>();
-      const Vec2 outside = (slid_[std::size_t(w)] - from).normalized();
-      const auto leaving = waterline_.exit(from, slid_[std::size_t(w)]);
-      const Waterline::Point to = leaving ? *leaving : line_near(from, outside);
+      const Waterline::Point to = first_on_line(from, slid_[std::size_t(w)]);
       const Mat2 F = gradient_at_edge(v, w, Mat2::Identity());
       foot.element = foot.line = {F, F};
       foot.way = unrolled(contact.position, steepness_along(contact.normal, to.outward), to, level,
@@ -379,6 +407,8 @@ class ContactLineScheme : public Scheme {
   Waterline waterline_;
   FilmEnergy energy_;
   std::unique_ptr<LinearSolver> solver_;
+  double part_ = 0;       // of a step, to go at once next
+  double last_rise_ = 0;  // of the level
   std::vector<Foot> feet_;
   // Per triangle corner, if its vertex is attached: the feet of its edges to floating corners.
   std::vector<std::array<std::int32_t, 2>> feet_of_corner_;

@@ -35,8 +35,11 @@ Vec2 unrolled(const Vec3& from, double first_slope, const Waterline::Point& to, 
               double z_stretch) {
   const Vec2 way = to.position - from.head<2>();
   const Vec2 tangent(-to.outward.y(), to.outward.x());
-  const double length = scaled_length(way.dot(to.outward), std::max(0.0, level - from.z()),
-                                      first_slope, to.steepness, z_stretch);
+  const double run = way.dot(to.outward), rise = level - from.z();
+  // A point that touched just above the level, beyond the line, has its way back to it.
+  const double length = run < 0 && rise < 0 ? -std::hypot(run, z_stretch * rise)
+                                            : scaled_length(run, std::max(0.0, rise), first_slope,
+                                                            to.steepness, z_stretch);
   return way.dot(tangent) * tangent + length * to.outward;
 }
 

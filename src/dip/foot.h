@@ -11,7 +11,8 @@ constexpr double kWall = 1e6;
 // A gradient du/dX that is followed over the steps.
 struct Gradient {
   Mat2 now = Mat2::Identity(), before = Mat2::Identity();
-  Mat2 next() const { return 2 * now - before; }  // extrapolated by one step
+  // Extrapolated by a step that is `ratio` times the last one.
+  Mat2 next(double ratio) const { return now + ratio * (now - before); }
   void advance(const Mat2& F) {
     before = now;
     now = F;

@@ -32,7 +32,7 @@ std::array<double, 3> voronoi_shares(const std::array<double, 3>& squared_edge, 
 
 struct TriangleMeasure {
   double flat_area, area, stretch;
-  std::array<double, 3> flat_share, share;
+  std::array<double, 3> flat_share;  // of flat_area, Voronoi
 };
 
 TriangleMeasure measure_triangle(const FilmMesh& film, const DipState& state, std::size_t t) {
@@ -57,7 +57,6 @@ TriangleMeasure measure_triangle(const FilmMesh& film, const DipState& state, st
   const double half = 0.5 * G.trace();
   m.stretch = std::sqrt(half + std::sqrt(std::max(0.0, half * half - G.determinant())));
   m.flat_share = voronoi_shares(flat, m.flat_area);
-  if (m.area > 1e-12 * m.flat_area) m.share = voronoi_shares(now, m.area);
   return m;
 }
 
@@ -108,7 +107,7 @@ DippedFilm measured(const FilmMesh& film, const DipState& state, const DipOption
         const auto v = std::size_t(film.triangles[t][k]);
         if (done[v]) continue;
         flat[v] += m.flat_share[k];
-        now[v] += m.share[k];
+        now[v] += m.flat_share[k] * m.area / m.flat_area;
         stretch[v] += m.flat_area * m.stretch;
         weight[v] += m.flat_area;
       }

@@ -11,6 +11,9 @@ namespace {
 
 // Steeper than this counts as a vertical wall; keeps slopes finite.
 constexpr double kMaxSteepness = 1e6;
+// Share of its length by which a segment reaches beyond its ends, so that nothing slips out between
+// two segments.
+constexpr double kEndSlack = 1e-6;
 
 double bottom(const std::vector<Vec3>& p, const Triangle& t) {
   return std::min({p[std::size_t(t[0])].z(), p[std::size_t(t[1])].z(), p[std::size_t(t[2])].z()});
@@ -131,7 +134,8 @@ std::optional<Waterline::Point> Waterline::exit(const Vec2& from, const Vec2& to
         if (det == 0) continue;
         const double along = cross2(s.a - from, edge) / det;
         const double across = cross2(s.a - from, way) / det;
-        if (along < 0 || along > 1 || across < 0 || across > 1 || along >= best) continue;
+        if (along < 0 || along > 1 || along >= best) continue;
+        if (across < -kEndSlack || across > 1 + kEndSlack) continue;
         best = along;
         found = &s;
       }
