@@ -124,7 +124,7 @@ class ContactLineScheme : public Scheme {
     last_rise_ = rise;
     for (Foot& foot : feet_) {
       const Waterline::Point to = next_on_line(foot);
-      foot.last_way = unrolled(foot.point, foot.steepness, to, level, z_stretch());
+      foot.last_way = unrolled(foot.point, foot.outward, foot.steepness, to, level, z_stretch());
       foot.laid_before = foot.laid;
       foot.laid += 0.5 * (foot.line.now + foot.line.next(ratio)) * foot.last_way;
       foot.way += foot.last_way;
@@ -377,8 +377,8 @@ class ContactLineScheme : public Scheme {
       const Waterline::Point to = first_on_line(from, slid_[std::size_t(w)]);
       const Mat2 F = gradient_at_edge(v, w, Mat2::Identity());
       foot.element = foot.line = {F, F};
-      foot.way = unrolled(contact.position, steepness_along(contact.normal, to.outward), to, level,
-                          z_stretch());
+      foot.way = unrolled(contact.position, contact.normal.head<2>().stableNormalized(),
+                          steepness_along(contact.normal, to.outward), to, level, z_stretch());
       foot.laid = F * foot.way;
       foot.point << to.position, level;
       foot.outward = to.outward;

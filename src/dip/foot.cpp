@@ -31,16 +31,19 @@ bool usable_gradient(const Mat2& F) {
   return F.allFinite() && F.determinant() > 1e-3 && F.squaredNorm() < 1e4;
 }
 
-Vec2 unrolled(const Vec3& from, double first_slope, const Waterline::Point& to, double level,
-              double z_stretch) {
+Vec2 unrolled(const Vec3& from, const Vec2& first_outward, double first_slope,
+              const Waterline::Point& to, double level, double z_stretch) {
   const Vec2 way = to.position - from.head<2>();
-  const Vec2 tangent(-to.outward.y(), to.outward.x());
-  const double run = way.dot(to.outward), rise = level - from.z();
+  // Across the line in the middle of the way; around a corner, as at its end.
+  Vec2 across = to.outward;
+  if (first_outward.dot(to.outward) > 0.7) across = (first_outward + to.outward).normalized();
+  const Vec2 tangent(-across.y(), across.x());
+  const double run = way.dot(across), rise = level - from.z();
   // A point that touched just above the level, beyond the line, has its way back to it.
   const double length = run < 0 && rise < 0 ? -std::hypot(run, z_stretch * rise)
                                             : scaled_length(run, std::max(0.0, rise), first_slope,
                                                             to.steepness, z_stretch);
-  return way.dot(tangent) * tangent + length * to.outward;
+  return way.dot(tangent) * tangent + length * across;
 }
 
 double steepness_along(const Vec3& normal, const Vec2& direction) {

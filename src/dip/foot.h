@@ -37,11 +37,11 @@ struct Foot {
 // Whether a gradient can be inverted and means something.
 bool usable_gradient(const Mat2& F);
 
-// The way from a point on the object, where its surface rises at first_slope across the contact
-// line, to the contact line at `to` (on the given level), unrolled into the water plane with the
-// vertical scaled by z_stretch.
-Vec2 unrolled(const Vec3& from, double first_slope, const Waterline::Point& to, double level,
-              double z_stretch);
+// The way from a point on the object to the contact line at `to` (on the given level), unrolled
+// into the water plane with the vertical scaled by z_stretch. At the point the object faces
+// first_outward (unit, in the water plane; zero where it is flat) and rises at first_slope.
+Vec2 unrolled(const Vec3& from, const Vec2& first_outward, double first_slope,
+              const Waterline::Point& to, double level, double z_stretch);
 
 // Rise over run of a surface with this normal, in a direction of the water plane; kWall at most.
 double steepness_along(const Vec3& normal, const Vec2& direction);
