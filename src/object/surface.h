@@ -11,8 +11,8 @@ namespace hydrodip {
 
 struct SurfaceHit {
   int triangle = -1;
-  double u = 0, v = 0;   // barycentric: weights (1 - u - v, u, v)
-  double t = 0;          // distance along the ray in units of |direction|; or distance to the point
+  double u = 0, v = 0;  // barycentric: weights (1 - u - v, u, v)
+  double t = 0;         // distance along the ray in units of |direction|; or distance to the point
 };
 
 // Immutable once built, safe to query from many threads. Queries run in Embree's single precision

@@ -12,12 +12,12 @@ namespace hydrodip {
 struct SheetOptions {
   double width_mm = 210;
   double height_mm = 297;
-  double margin_mm = 10;     // marks stay inside it
+  double margin_mm = 10;  // marks stay inside it
   double dpi = 300;
-  bool disc = false;         // draw the disc's rim as well
-  bool ink_side_up = true;   // false: mirrored, for film laid ink side down
-  std::string job_name;      // printed in the margin; any UTF-8, shortened to fit
-  std::string date;          // ISO date recorded in the PDF, empty: none (reproducible)
+  bool disc = false;        // draw the disc's rim as well
+  bool ink_side_up = true;  // false: mirrored, for film laid ink side down
+  std::string job_name;     // printed in the margin; any UTF-8, shortened to fit
+  std::string date;         // ISO date recorded in the PDF, empty: none (reproducible)
 };
 
 // One page of the film's size with the image over the whole page (image covers the full sheet,

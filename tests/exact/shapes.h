@@ -58,9 +58,7 @@ inline Shape revolve(const std::function<Vec2(double)>& meridian, int rings, int
 inline Shape sphere_bowl(double radius, double rim_radius, int rings = 300, int segments = 360) {
   const double end = std::asin(rim_radius / radius);
   return revolve(
-      [=](double s) {
-        return Vec2(radius * std::sin(s * end), radius * (1 - std::cos(s * end)));
-      },
+      [=](double s) { return Vec2(radius * std::sin(s * end), radius * (1 - std::cos(s * end))); },
       rings, segments);
 }
 
@@ -75,7 +73,8 @@ inline Shape wedge(double half_width, double half_length, double tan_theta) {
   const double z = half_width * tan_theta;
   const auto a = shape.add(0, -half_length, 0), b = shape.add(0, half_length, 0);
   const auto c = shape.add(half_width, -half_length, z), d = shape.add(half_width, half_length, z);
-  const auto e = shape.add(-half_width, -half_length, z), f = shape.add(-half_width, half_length, z);
+  const auto e = shape.add(-half_width, -half_length, z),
+             f = shape.add(-half_width, half_length, z);
   shape.triangles = {{a, b, d}, {a, d, c}, {a, e, f}, {a, f, b}};
   return shape;
 }
