@@ -37,6 +37,8 @@ Vec2 unrolled(const Vec3& from, const Vec2& first_outward, double first_slope,
   // Across the line in the middle of the way; around a corner, as at its end.
   Vec2 across = to.outward;
   if (first_outward.dot(to.outward) > 0.7) across = (first_outward + to.outward).normalized();
+  // A way along the line must not seem to lead back.
+  if (way.dot(across) < 0 && way.dot(to.outward) > 0) across = to.outward;
   const Vec2 tangent(-across.y(), across.x());
   const double run = way.dot(across), rise = level - from.z();
   // A point that touched just above the level, beyond the line, has its way back to it.

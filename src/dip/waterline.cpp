@@ -72,9 +72,8 @@ void Waterline::cut(std::int32_t triangle) {
   segment.b = ends[1];
   segment.outward = n.head<2>() / horizontal;
   // On the surface n . (run * outward, dz) = 0.
-  segment.steepness = std::abs(n.z()) * kMaxSteepness > horizontal
-                          ? -horizontal / n.z()
-                          : std::copysign(kMaxSteepness, -n.z());
+  segment.steepness =
+      std::abs(n.z()) * kMaxSteepness > horizontal ? -horizontal / n.z() : kMaxSteepness;
   segments_.push_back(segment);
 }
 

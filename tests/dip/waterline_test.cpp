@@ -107,7 +107,8 @@ TEST(Waterline, KnowsOverhangs) {
   const auto exit = line.exit(Vec2(0, 0), Vec2(20, 0.1));
   ASSERT_TRUE(exit);
   EXPECT_NEAR(exit->position.norm(), std::sqrt(75.0), 0.01);
-  EXPECT_NEAR(exit->steepness, -std::sqrt(3.0), 0.05);
+  // Facets of 2 degrees: the slope is met within half of that, 4 / 57.3.
+  EXPECT_NEAR(exit->steepness, -std::sqrt(3.0), 0.075);
 }
 
 }  // namespace
