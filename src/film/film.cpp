@@ -33,14 +33,14 @@ int nearest_even(double value) { return std::max(2, 2 * static_cast<int>(std::lr
 
 // Lines from -half to half; the distance between them grows with the square of their number.
 // Built outwards from 0, so that mirrored lines are exact mirror images.
-std::vector<double> grid_lines(double half, int cells, double grading) {
-  std::vector<double> lines(2 * std::size_t(cells) + 1, 0.0);
+std::vector<double> grid_lines(double half, std::size_t cells, double grading) {
+  std::vector<double> lines(2 * cells + 1, 0.0);
   const double bend = (grading - 1) / 3;
-  for (int i = 1; i <= cells; ++i) {
-    const double xi = double(i) / cells;
+  for (std::size_t i = 1; i <= cells; ++i) {
+    const double xi = double(i) / double(cells);
     const double x = i == cells ? half : half * (xi + bend * xi * xi * xi) / (1 + bend);
-    lines[std::size_t(cells + i)] = x;
-    lines[std::size_t(cells - i)] = -x;
+    lines[cells + i] = x;
+    lines[cells - i] = -x;
   }
   return lines;
 }
@@ -52,8 +52,8 @@ void choose_grid(const FilmOptions& options, const Extent& free, double cells, F
   mesh.nx = cells_x + 1;
   mesh.ny = cells_y + 1;
   mesh.cell_mm = std::max(free.x / cells_x, free.y / cells_y);
-  mesh.line_x = grid_lines(free.x / 2, cells_x / 2, options.grading);
-  mesh.line_y = grid_lines(free.y / 2, cells_y / 2, options.grading);
+  mesh.line_x = grid_lines(free.x / 2, std::size_t(cells_x) / 2, options.grading);
+  mesh.line_y = grid_lines(free.y / 2, std::size_t(cells_y) / 2, options.grading);
 }
 
 // Grid vertices by number j * nx + i, before those outside a disc are left out.
