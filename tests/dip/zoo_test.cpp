@@ -58,7 +58,7 @@ void expect_sound(const shapes::Shape& shape, const FilmOptions& film_options, D
       EXPECT_GT(normal.z(), 0) << "floating film turned over";
     }
     if (!film.lies_on_object(t)) continue;
-    const auto below = surface.closest_point((a + b + c) / 3, 5);
+    const auto below = surface.closest_point((a + b + c) / 3, 1000);
     ASSERT_TRUE(below);
     EXPECT_LT(normal.dot(surface.normal(*below)), 0) << "film upside down on the object";
     const double limit = options.material.tear_stretch;
