@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -29,6 +30,9 @@ constexpr double kSmallestPart = 1.0 / 8;
 // A foot that jumps further than this in one step, in cells, has lost its contact line (the object
 // is submerged there, or a shelf begins) and goes on straight up.
 constexpr double kMaxJump = 2.5;
+// Ways that pass the part of the object between two levels further off than this do not touch it.
+constexpr double kSweptSlack_mm = 0.01;
+
 RestTriangle rest_from_lengths(double ab, double bc, double ca, double min_area) {
   const double length = std::max(ab, 1e-9);
   const double along = (ab * ab + ca * ca - bc * bc) / (2 * length);
@@ -45,9 +49,23 @@ class ContactLineScheme : public Scheme {
         state_(state),
         waterline_(setting.positions, setting.triangles, setting.film.cell_mm),
         energy_(setting.film, setting.options.modulus, setting.options.material.poisson),
-        solver_(make_laplacian_solver()),
+        solver_(setting.options.make_solver(setting.film)),
         feet_of_corner_(3 * setting.film.triangles.size(), {-1, -1}),
-        last_slide_(setting.film.u.size(), Vec2::Zero()) {}
+        usable_(setting.film.triangles.size(), 0),
+        film_left_(setting.film.triangles.size(), 0),
+        is_free_(setting.film.u.size(), 0),
+        plan_(setting.film.u),
+        last_slide_(setting.film.u.size(), Vec2::Zero()),
+        slid_in_(setting.film.u.size(), -1),
+        touches_(setting.film.u.size(), 0) {
+    for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
+      const Triangle& v = film_.triangles[t];
+      const Vec2& a = film_.u[std::size_t(v[0])];
+      smallest_area_.push_back(
+          kMinArea * 0.5 * cross2(film_.u[std::size_t(v[1])] - a, film_.u[std::size_t(v[2])] - a));
+      update_load(t);
+    }
+  }
 
   // In as many parts as the contact line needs to stay within a part of a cell in each: where the
   // water first touches a blunt object, the line runs fast.
@@ -83,7 +101,7 @@ class ContactLineScheme : public Scheme {
     return state_.state[std::size_t(v)] == VertexState::kAttached;
   }
   double z_stretch() const { return set_.options.material.z_stretch; }
-  Vec2 plan(std::int32_t v) const { return state_.position[std::size_t(v)].head<2>(); }
+  const Vec2& plan(std::int32_t v) const { return plan_[std::size_t(v)]; }
 
   // The contact line next to `near`. `outside` is a unit vector known to point away from the object
   // more or less; where faces are turned the wrong way, it decides.
@@ -149,70 +167,75 @@ class ContactLineScheme : public Scheme {
     return !state_.torn[t] && (floats(v[0]) || floats(v[1]) || floats(v[2]));
   }
 
-  double smallest_area(std::size_t t) const {
-    const Triangle& v = film_.triangles[t];
-    const Vec2& a = film_.u[std::size_t(v[0])];
-    return kMinArea * 0.5 * cross2(film_.u[std::size_t(v[1])] - a, film_.u[std::size_t(v[2])] - a);
+  // After a corner of the triangle attached or it tore. A vertex without any film left around it
+  // drifts: nothing holds or moves it.
+  void update_load(std::size_t t) {
+    usable_[t] = carries_load(t);
+    film_left_[t] = usable_[t];
+    for (std::int32_t v : film_.triangles[t]) {
+      const auto begin = film_.incident.begin() + film_.incident_begin[std::size_t(v)],
+                 end = film_.incident.begin() + film_.incident_begin[std::size_t(v) + 1];
+      is_free_[std::size_t(v)] = floats(v) && std::any_of(begin, end, [&](std::int32_t other) {
+                                   return usable_[std::size_t(other)] != 0;
+                                 });
+    }
   }
 
   RestTriangle rest_of(std::size_t t) const {
     const std::array<Vec2, 3> x = {corner(t, 0), corner(t, 1), corner(t, 2)};
-    const double min_area = smallest_area(t);
+    const double min_area = smallest_area_[t];
     const double area = 0.5 * cross2(x[1] - x[0], x[2] - x[0]);
     if (area >= min_area) return rest_triangle(x[0], x[1], x[2]);
     return rest_from_lengths((x[1] - x[0]).norm(), (x[2] - x[1]).norm(), (x[0] - x[2]).norm(),
                              min_area);
   }
 
+  // Flat where it floats, all at once; with ghosts for corners at the contact line.
   void set_rest() {
-    std::vector<RestTriangle> rest(film_.triangles.size());
-    usable_.assign(film_.triangles.size(), 0);
-    parallel_for(rest.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    energy_.set_flat_rest(plan_, film_left_);
+    for (std::size_t t : line_triangles_)
+      if (usable_[t]) energy_.set_rest(t, rest_of(t));
+    parallel_for(usable_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      const double* area = energy_.elements().area;
       for (std::size_t t = begin; t < end; ++t)
-        if (carries_load(t)) {
-          rest[t] = rest_of(t);
-          usable_[t] = 1;
-        }
+        if (area[t] < smallest_area_[t] && usable_[t]) energy_.set_rest(t, rest_of(t));
     });
-    energy_.set_rest(std::move(rest));
-  }
-
-  // A vertex without any film left around it drifts: nothing holds or moves it.
-  std::vector<std::uint8_t> free_vertices() const {
-    std::vector<std::uint8_t> is_free(film_.u.size(), 0);
-    for (std::size_t t = 0; t < film_.triangles.size(); ++t)
-      if (usable_[t])
-        for (std::int32_t v : film_.triangles[t]) is_free[std::size_t(v)] = floats(v);
-    return is_free;
   }
 
   VertexVector relaxed() {
-    const std::vector<std::uint8_t> is_free = free_vertices();
-    VertexVector u = first_guess(is_free);
-    relax_film(energy_, is_free, *solver_, u, state_.statistics);
-    for (std::size_t v = 0; v < u.size(); ++v) last_slide_[v] = u[v] - film_.u[v];
+    VertexVector u = first_guess();
+    relax_film(energy_, is_free_, *solver_, u, state_.statistics);
+    parallel_for(u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) last_slide_[v] = u[v] - film_.u[v];
+    });
     return u;
   }
 
   // The film slides on as it did in the last step, unless that would turn something over.
-  VertexVector first_guess(const std::vector<std::uint8_t>& is_free) const {
+  VertexVector first_guess() const {
     VertexVector u = film_.u;
-    for (std::size_t v = 0; v < u.size(); ++v)
-      if (is_free[v]) u[v] += last_slide_[v];
+    parallel_for(u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v)
+        if (is_free_[v]) u[v] += last_slide_[v];
+    });
     return energy_.any_inverted(u) ? film_.u : u;
   }
 
   Mat2 strain(std::size_t t, const VertexVector& u) const {
     const Triangle& v = film_.triangles[t];
-    return deformation_gradient(energy_.rest()[t], u[std::size_t(v[0])], u[std::size_t(v[1])],
+    return deformation_gradient(energy_.rest(t), u[std::size_t(v[0])], u[std::size_t(v[1])],
                                 u[std::size_t(v[2])]);
   }
 
   void tear(const VertexVector& u) {
     const double limit = set_.options.material.tear_stretch;
     if (!(limit > 0)) return;
-    for (std::size_t t = 0; t < film_.triangles.size(); ++t)
-      if (usable_[t] && largest_stretch(strain(t, u)) > limit) state_.torn[t] = 1;
+    energy_.overstretched(u, limit, tears_);
+    for (std::size_t t = 0; t < tears_.size(); ++t)
+      if (tears_[t]) {
+        state_.torn[t] = 1;
+        torn_now_.push_back(t);
+      }
   }
 
   // Every floating vertex goes where its film coordinate is found in the relaxed film.
@@ -220,9 +243,11 @@ class ContactLineScheme : public Scheme {
     slid_.resize(film_.u.size());
     parallel_for(film_.u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
-        slid_[v] = state_.position[v].head<2>();
+        slid_[v] = plan_[v];
         if (state_.state[v] != VertexState::kUnattached) continue;
-        const FilmLocation at = locate(film_, u, usable_, static_cast<std::int32_t>(v), film_.u[v]);
+        const FilmLocation at =
+            locate(film_, u, usable_, static_cast<std::int32_t>(v), film_.u[v], slid_in_[v]);
+        slid_in_[v] = at.triangle;
         if (at.triangle < 0) continue;
         Vec2 place = Vec2::Zero();
         for (std::size_t k = 0; k < 3; ++k)
@@ -236,20 +261,35 @@ class ContactLineScheme : public Scheme {
   // Where sliding that far would turn floating film over, its vertices stay where they were; there
   // it lies the right way up, so this ends.
   void hold_back_folds() {
-    for (bool folded = true; folded;) {
-      folded = false;
+    if (!any_fold()) return;
+    for (bool held = true; held;) {
+      held = false;
       for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
-        const Triangle& v = film_.triangles[t];
-        if (!usable_[t] || attached(v[0]) || attached(v[1]) || attached(v[2])) continue;
-        const Vec2& a = slid_[std::size_t(v[0])];
-        if (cross2(slid_[std::size_t(v[1])] - a, slid_[std::size_t(v[2])] - a) > 0) continue;
-        for (std::int32_t w : v)
+        if (!folds(t)) continue;
+        for (std::int32_t w : film_.triangles[t])
           if (floats(w) && slid_[std::size_t(w)] != plan(w)) {
             slid_[std::size_t(w)] = plan(w);
-            folded = true;
+            held = true;
           }
       }
     }
+  }
+
+  bool folds(std::size_t t) const {
+    const Triangle& v = film_.triangles[t];
+    const Vec2& a = slid_[std::size_t(v[0])];
+    if (!usable_[t]) return false;
+    if (cross2(slid_[std::size_t(v[1])] - a, slid_[std::size_t(v[2])] - a) > 0) return false;
+    return !attached(v[0]) && !attached(v[1]) && !attached(v[2]);
+  }
+
+  bool any_fold() const {
+    std::atomic<bool> found = false;
+    parallel_for(film_.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end && !found; ++t)
+        if (folds(t)) found = true;
+    });
+    return found;
   }
 
   // The gradient du/dX of a triangle with its floating corners where they slid to.
@@ -261,7 +301,7 @@ class ContactLineScheme : public Scheme {
     }
     const RestTriangle rest = rest_triangle(x[0], x[1], x[2]);
     const Triangle& v = film_.triangles[t];
-    if (!(rest.area > smallest_area(t))) return Mat2::Zero();
+    if (!(rest.area > smallest_area_[t])) return Mat2::Zero();
     return deformation_gradient(rest, film_.u[std::size_t(v[0])], film_.u[std::size_t(v[1])],
                                 film_.u[std::size_t(v[2])]);
   }
@@ -331,42 +371,78 @@ class ContactLineScheme : public Scheme {
     return true;
   }
 
+  struct Touch {
+    std::int32_t vertex;
+    Contact contact;
+  };
+
   void attach(double level) {
-    std::vector<std::optional<Contact>> contacts(film_.u.size());
-    parallel_for(film_.u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        if (state_.state[v] != VertexState::kUnattached) continue;
-        const Vec3 to(slid_[v].x(), slid_[v].y(), level);
-        contacts[v] = first_contact(set_.surface, state_.position[v], to);
-      }
-    });
+    const std::vector<Touch> touches = find_contacts(level);
+    for (const Touch& touch : touches) touches_[std::size_t(touch.vertex)] = 1;
     std::vector<Foot> created;
-    for (std::size_t v = 0; v < film_.u.size(); ++v)
-      if (contacts[v]) create_feet(static_cast<std::int32_t>(v), contacts, level, created);
-    for (std::size_t v = 0; v < film_.u.size(); ++v) {
-      if (state_.state[v] != VertexState::kUnattached) continue;
-      if (contacts[v]) {
-        state_.state[v] = VertexState::kAttached;
-        state_.position[v] = contacts[v]->position;
-      } else {
-        state_.position[v] << slid_[v], level;
-      }
+    for (const Touch& touch : touches) create_feet(touch, level, created);
+    move_floating(level);
+    for (const Touch& touch : touches) {
+      const auto v = std::size_t(touch.vertex);
+      touches_[v] = 0;
+      state_.state[v] = VertexState::kAttached;
+      state_.position[v] = touch.contact.position;
+      plan_[v] = touch.contact.position.head<2>();
     }
+    update_loads(touches);
     std::erase_if(feet_, [&](const Foot& foot) { return !floats(foot.floating); });
     feet_.insert(feet_.end(), created.begin(), created.end());
     for (Foot& foot : feet_) place_ghost(foot, foot.element.now);
     index_feet();
   }
 
+  // In the order of the vertices.
+  std::vector<Touch> find_contacts(double level) const {
+    const Box2& swept = waterline_.swept();
+    const auto passes = [&](const Vec2& a, const Vec2& b) {
+      return (a.cwiseMin(b) - swept.max).maxCoeff() < kSweptSlack_mm &&
+             (swept.min - a.cwiseMax(b)).maxCoeff() < kSweptSlack_mm;
+    };
+    std::vector<std::vector<Touch>> found((film_.u.size() + kGrain - 1) / kGrain);
+    parallel_for(film_.u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        if (state_.state[v] != VertexState::kUnattached || !passes(plan_[v], slid_[v])) continue;
+        const Vec3 to(slid_[v].x(), slid_[v].y(), level);
+        const auto contact = first_contact(set_.surface, state_.position[v], to);
+        if (contact) found[begin / kGrain].push_back({static_cast<std::int32_t>(v), *contact});
+      }
+    });
+    std::vector<Touch> all;
+    for (const std::vector<Touch>& part : found) all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }
+
+  void move_floating(double level) {
+    plan_.swap(slid_);
+    parallel_for(film_.u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v)
+        if (state_.state[v] == VertexState::kUnattached) state_.position[v] << plan_[v], level;
+    });
+  }
+
+  void update_loads(const std::vector<Touch>& touches) {
+    for (const Touch& touch : touches)
+      for (auto n = film_.incident_begin[std::size_t(touch.vertex)];
+           n < film_.incident_begin[std::size_t(touch.vertex) + 1]; ++n)
+        update_load(std::size_t(film_.incident[std::size_t(n)]));
+    for (std::size_t t : torn_now_) update_load(t);
+    torn_now_.clear();
+  }
+
   // One for every edge from a vertex that attaches now to one that goes on floating.
-  void create_feet(std::int32_t v, const std::vector<std::optional<Contact>>& contacts,
-                   double level, std::vector<Foot>& created) const {
-    const Contact& contact = *contacts[std::size_t(v)];
+  void create_feet(const Touch& touch, double level, std::vector<Foot>& created) const {
+    const std::int32_t v = touch.vertex;
+    const Contact& contact = touch.contact;
     std::vector<std::int32_t> around;
     for (auto n = film_.incident_begin[std::size_t(v)];
          n < film_.incident_begin[std::size_t(v) + 1]; ++n)
       for (std::int32_t w : film_.triangles[std::size_t(film_.incident[std::size_t(n)])])
-        if (w != v && floats(w) && !contacts[std::size_t(w)]) around.push_back(w);
+        if (w != v && floats(w) && !touches_[std::size_t(w)]) around.push_back(w);
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());
     for (std::int32_t w : around) {
@@ -390,6 +466,7 @@ class ContactLineScheme : public Scheme {
   void index_feet() {
     for (std::size_t c : indexed_corners_) feet_of_corner_[c] = {-1, -1};
     indexed_corners_.clear();
+    line_triangles_.clear();
     for (std::size_t f = 0; f < feet_.size(); ++f)
       for_triangles_at_edge(feet_[f].attached, feet_[f].floating, [&](std::size_t t) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -397,8 +474,12 @@ class ContactLineScheme : public Scheme {
           auto& slots = feet_of_corner_[3 * t + k];
           slots[slots[0] < 0 ? 0 : 1] = static_cast<std::int32_t>(f);
           indexed_corners_.push_back(3 * t + k);
+          line_triangles_.push_back(t);
         }
       });
+    std::sort(line_triangles_.begin(), line_triangles_.end());
+    line_triangles_.erase(std::unique(line_triangles_.begin(), line_triangles_.end()),
+                          line_triangles_.end());
   }
 
   const DipSetting set_;
@@ -413,9 +494,18 @@ class ContactLineScheme : public Scheme {
   // Per triangle corner, if its vertex is attached: the feet of its edges to floating corners.
   std::vector<std::array<std::int32_t, 2>> feet_of_corner_;
   std::vector<std::size_t> indexed_corners_;
-  std::vector<std::uint8_t> usable_;  // per triangle: carries load in this step
-  VertexVector last_slide_;           // per vertex, in film coordinates: of the last relaxation
-  VertexVector slid_;                 // per vertex, seen from above, after relaxing
+  std::vector<std::size_t> line_triangles_;  // with attached and floating corners, ascending
+  // Per triangle: carries load in this step; the same as a factor; the least rest area.
+  std::vector<std::uint8_t> usable_;
+  std::vector<double> film_left_, smallest_area_;
+  std::vector<std::int64_t> tears_;
+  std::vector<std::size_t> torn_now_;  // triangles torn in this step
+  std::vector<std::uint8_t> is_free_;  // per vertex: floats and has film around it
+  // Per vertex, seen from above: now, and after relaxing.
+  VertexVector plan_, slid_;
+  VertexVector last_slide_;            // per vertex, in film coordinates: of the last relaxation
+  std::vector<std::int32_t> slid_in_;  // per vertex: the triangle that it was last found in
+  std::vector<std::uint8_t> touches_;  // per vertex: attaches in this step
 };
 
 }  // namespace

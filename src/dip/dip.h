@@ -2,10 +2,12 @@
 // film vertex ends up.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "base/context.h"
+#include "elastic/linear_solver.h"
 #include "film/film.h"
 #include "object/surface.h"
 
@@ -36,6 +38,8 @@ struct DipOptions {
   DipScheme scheme = DipScheme::kContactLine;  // of kFull
   FilmMaterial material;
   std::vector<double> modulus;  // per film triangle, relative; empty: uniform
+  // Of the film's equilibrium; multigrid by default, others to compare with.
+  std::function<std::unique_ptr<LinearSolver>(const FilmMesh&)> make_solver = make_multigrid_solver;
 };
 
 // How the computation went; sums over all steps.

@@ -18,7 +18,7 @@ class PaperScheme : public Scheme {
         film_(setting.film),
         state_(state),
         energy_(setting.film, setting.options.modulus, setting.options.material.poisson),
-        solver_(make_laplacian_solver()) {}
+        solver_(setting.options.make_solver(setting.film)) {}
 
   void advance(double level) override {
     // Steps 1 and 2, collide and lower.

@@ -52,7 +52,7 @@ class SingleStep : public Scheme {
     for (int round = 0; round < kMaxRounds; ++round) {
       state_.statistics.unconverged_steps = 0;
       state_.statistics.largest_residual_mm = 0;
-      const auto solver = make_laplacian_solver();
+      const auto solver = set_.options.make_solver(film_);
       relax_film(energy_, is_free, *solver, u, state_.statistics, options);
       if (state_.statistics.unconverged_steps == 0) break;
       const int folds = hold_folds(u, is_free);

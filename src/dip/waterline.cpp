@@ -14,6 +14,8 @@ constexpr double kMaxSteepness = 1e6;
 // Share of its length by which a segment reaches beyond its ends, so that nothing slips out between
 // two segments.
 constexpr double kEndSlack = 1e-6;
+// What lies this little above the water counts as reached by it.
+constexpr double kLevelSlack_mm = 0.01;
 
 double bottom(const std::vector<Vec3>& p, const Triangle& t) {
   return std::min({p[std::size_t(t[0])].z(), p[std::size_t(t[1])].z(), p[std::size_t(t[2])].z()});
@@ -42,11 +44,25 @@ void Waterline::raise_to(double level) {
   while (next_ < by_bottom_.size() &&
          bottom(positions_, triangles_[std::size_t(by_bottom_[next_])]) < level)
     active_.push_back(by_bottom_[next_++]);
+  sweep();
   std::erase_if(
       active_, [&](std::int32_t t) { return top(positions_, triangles_[std::size_t(t)]) < level; });
   segments_.clear();
   for (std::int32_t t : active_) cut(t);
   build_grid();
+}
+
+void Waterline::sweep() {
+  swept_ = {};
+  const auto add = [&](std::int32_t triangle) {
+    for (std::int32_t v : triangles_[std::size_t(triangle)])
+      swept_.add(positions_[std::size_t(v)].head<2>());
+  };
+  for (std::int32_t t : active_) add(t);
+  for (std::size_t n = next_; n < by_bottom_.size(); ++n) {
+    if (bottom(positions_, triangles_[std::size_t(by_bottom_[n])]) > level_ + kLevelSlack_mm) break;
+    add(by_bottom_[n]);
+  }
 }
 
 void Waterline::cut(std::int32_t triangle) {

@@ -33,12 +33,16 @@ class Waterline {
 
   bool empty() const { return segments_.empty(); }
 
+  // Seen from above, around all of the object between the last level but one and the last.
+  const Box2& swept() const { return swept_; }
+
  private:
   struct Segment {
     Vec2 a, b;
     Vec2 outward;
     double steepness;
   };
+  void sweep();
   void cut(std::int32_t triangle);
   void build_grid();
   int cell_x(double x) const;
@@ -48,6 +52,7 @@ class Waterline {
   const std::vector<Triangle>& triangles_;
   double cell_;
   double level_ = -1e300;
+  Box2 swept_;
   std::vector<std::int32_t> by_bottom_;  // triangles by lowest corner
   std::size_t next_ = 0;                 // first of by_bottom_ that is still above the water
   std::vector<std::int32_t> active_;     // triangles that reach from below to above the level

@@ -8,21 +8,25 @@ namespace {
 
 class DirectSolver : public LinearSolver {
  public:
-  LinearSolveResult solve(const FilmEnergy&, const BlockMatrix& H,
-                          const std::vector<std::uint8_t>& is_free, const VertexVector& b, double,
-                          VertexVector& x) override {
-    assemble(H, is_free);
+  void update(const FilmEnergy& energy, const VertexVector& u,
+              const std::vector<std::uint8_t>& is_free, bool definite, double) override {
+    energy.hessian(u, definite, H_);
+    is_free_ = is_free;
+    assemble(H_, is_free);
     if (!analyzed_) {
       cholesky_.analyzePattern(matrix_);
       analyzed_ = true;
     }
     cholesky_.factorize(matrix_);
     ++factorizations_;
+  }
+
+  LinearSolveResult solve(const VertexVector& b, double, VertexVector& x) override {
     x.assign(b.size(), Vec2::Zero());
     if (cholesky_.info() != Eigen::Success) return {0, false};
     Eigen::VectorXd rhs(2 * static_cast<Eigen::Index>(b.size()));
     for (std::size_t v = 0; v < b.size(); ++v)
-      rhs.segment<2>(2 * Eigen::Index(v)) = is_free[v] ? b[v] : Vec2::Zero();
+      rhs.segment<2>(2 * Eigen::Index(v)) = is_free_[v] ? b[v] : Vec2::Zero();
     const Eigen::VectorXd solution = cholesky_.solve(rhs);
     for (std::size_t v = 0; v < b.size(); ++v) x[v] = solution.segment<2>(2 * Eigen::Index(v));
     return {0, solution.allFinite()};
@@ -51,6 +55,8 @@ class DirectSolver : public LinearSolver {
     matrix_.setFromTriplets(entries.begin(), entries.end());
   }
 
+  BlockMatrix H_;
+  std::vector<std::uint8_t> is_free_;
   Eigen::SparseMatrix<double> matrix_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> cholesky_;
   bool analyzed_ = false;

@@ -9,32 +9,36 @@
 namespace hydrodip {
 
 struct LinearSolveResult {
-  int iterations = 0;  // 0 for a direct solve
-  bool converged = false;
+  int iterations = 0;      // 0 for a direct solve
+  bool converged = false;  // false: the operator is not definite, or too many iterations
 };
 
-// Solves H x = b over the vertices whose is_free is 1; x is zero elsewhere. What is reused from
-// call to call (symbolic analysis, an older factorisation) is the solver's own business and never
-// changes the result by more than the tolerance.
+// Solves H x = b over the vertices whose is_free is 1; x is zero elsewhere. H is the Hessian or
+// close to it: what is reused from call to call (symbolic analysis, unchanged rows) is the solver's
+// own business, as Newton's method checks every step against the true gradient.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
 
-  // energy: at its present rest state; H: its definite Hessian.
-  virtual LinearSolveResult solve(const FilmEnergy& energy, const BlockMatrix& H,
-                                  const std::vector<std::uint8_t>& is_free, const VertexVector& b,
-                                  double relative_tolerance, VertexVector& x) = 0;
-
+  // Makes ready for the Hessian of the energy, at its present rest state, at u. `definite`: the sum
+  // of the triangles' definite parts (FilmEnergy::hessian). moved_mm: the furthest that a vertex
+  // has moved in u since the last call, while nothing else changed; kAnyChange: something else did.
+  static constexpr double kAnyChange = 1e300;
+  virtual void update(const FilmEnergy& energy, const VertexVector& u,
+                      const std::vector<std::uint8_t>& is_free, bool definite,
+                      double moved_mm = kAnyChange) = 0;
+  virtual LinearSolveResult solve(const VertexVector& b, double relative_tolerance,
+                                  VertexVector& x) = 0;
+  // How often everything was computed anew.
   virtual long factorizations() const = 0;
 };
 
 // Sparse Cholesky of H itself, symbolic analysis reused. Exact, slow: the reference.
 std::unique_ptr<LinearSolver> make_direct_solver();
 
-// Conjugate gradients preconditioned with a sparse Cholesky factorisation of the scalar film
-// Laplacian of an earlier step, applied to both coordinates. With the film held at its rim the two
-// operators are within a factor of two of each other (Korn's inequality, Poisson ratio 0), so a
-// handful of iterations is enough on any mesh; the factor is renewed when they grow.
-std::unique_ptr<LinearSolver> make_laplacian_solver();
+// Conjugate gradients, preconditioned by geometric multigrid on the film's grid, in single
+// precision. Only those rows of the Hessian are computed again whose triangles have changed
+// noticeably since they were computed last. Keeps a reference to the mesh.
+std::unique_ptr<LinearSolver> make_multigrid_solver(const FilmMesh& mesh);
 
 }  // namespace hydrodip

@@ -1,115 +1,169 @@
 #include "elastic/relaxation.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
 
 namespace hydrodip {
 
 namespace {
 
+constexpr std::size_t kGrain = 4096;
 constexpr int kMaxHalvings = 30;
+// Share of the slope that may be left at the end of a whole step.
+constexpr double kFlattened = 0.5;
+// What is left of an error after one iteration, until the second shows.
+constexpr double kFirstContraction = 0.2;
+
+// Sum or maximum over chunks of vertices, in their order.
+template <typename Body>
+std::vector<double> over_chunks(std::size_t count, const Body& body) {
+  std::vector<double> partial((count + kGrain - 1) / kGrain, 0.0);
+  parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    partial[begin / kGrain] = body(begin, end);
+  });
+  return partial;
+}
 
 double largest_norm(const VertexVector& x) {
-  double largest = 0;
-  for (const Vec2& v : x) largest = std::max(largest, v.squaredNorm());
-  return std::sqrt(largest);
+  const auto partial = over_chunks(x.size(), [&](std::size_t begin, std::size_t end) {
+    double largest = 0;
+    for (std::size_t v = begin; v < end; ++v) largest = std::max(largest, x[v].squaredNorm());
+    return largest;
+  });
+  return std::sqrt(*std::max_element(partial.begin(), partial.end()));
 }
 
 double dot(const VertexVector& a, const VertexVector& b) {
-  double sum = 0;
-  for (std::size_t v = 0; v < a.size(); ++v) sum += a[v].dot(b[v]);
-  return sum;
+  const auto partial = over_chunks(a.size(), [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t v = begin; v < end; ++v) sum += a[v].dot(b[v]);
+    return sum;
+  });
+  return std::accumulate(partial.begin(), partial.end(), 0.0);
 }
 
-// Moves u by -step * direction unless that turns a triangle over.
-bool take_step(const FilmEnergy& energy, const VertexVector& direction, double step,
-               VertexVector& u) {
-  VertexVector trial(u.size());
-  for (std::size_t v = 0; v < u.size(); ++v) trial[v] = u[v] - step * direction[v];
-  if (energy.any_inverted(trial)) return false;
-  u.swap(trial);
-  return true;
-}
+// Newton's method and what it carries from one iteration to the next.
+class Newton {
+ public:
+  Newton(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
+         const RelaxationOptions& options, LinearSolver& solver, VertexVector& u)
+      : energy_(energy), is_free_(is_free), options_(options), solver_(solver), u_(u) {}
 
-// Largest of 1, 1/2, 1/4 ... for which u - step * direction turns nothing over and lowers the
-// energy enough; 0 if there is none. Moves u.
-double line_search(const FilmEnergy& energy, const VertexVector& direction, double slope,
-                   VertexVector& u) {
-  const double before = energy.value(u);
-  // What rounding alone may add: near the minimum, an energy difference cannot be resolved.
-  const double noise = 1e-13 * std::abs(before);
-  const VertexVector start = u;
-  double step = 1;
-  for (int halving = 0; halving < kMaxHalvings; ++halving, step *= 0.5) {
-    if (!take_step(energy, direction, step, u)) continue;
-    if (energy.value(u) <= before - 1e-4 * step * slope + noise) return step;
-    u = start;
+  RelaxationResult run() {
+    energy_.gradient(u_, is_free_, gradient_);
+    double contraction = kFirstContraction;
+    while (result_.newton_iterations < options_.max_iterations) {
+      if (options_.context) options_.context->check_cancelled();
+      find_direction();
+      ++result_.newton_iterations;
+      const double slope = dot(gradient_, direction_);
+      if (!(slope > 0)) {  // nothing to gain: at the minimum, or no descent direction left
+        result_.converged = slope == 0;
+        return result_;
+      }
+      const double update = largest_norm(direction_);
+      if (result_.newton_iterations > 1)
+        contraction = std::min(1.0, update / result_.last_update_mm);
+      result_.last_update_mm = update;
+      // What the next iterations would still change.
+      result_.converged = update * contraction <= options_.tolerance_mm;
+      if (result_.converged && take_last_step()) return result_;
+      if (!take_whole_step(slope) && !search(slope)) return result_;
+    }
+    return result_;
   }
-  return 0;
-}
 
-// From the sum of the triangles' definite parts: always downhill.
-LinearSolveResult definite_direction(const FilmEnergy& energy,
-                                     const std::vector<std::uint8_t>& is_free,
-                                     const RelaxationOptions& options, const VertexVector& u,
-                                     const VertexVector& gradient, LinearSolver& solver,
-                                     BlockMatrix& H, VertexVector& direction) {
-  energy.hessian(u, true, H);
-  return solver.solve(energy, H, is_free, gradient, options.linear_tolerance, direction);
-}
-
-// Newton's direction from the exact Hessian. With the film held at its rim that one is definite as
-// long as no triangle shrinks to about half its size (docs/model.md), although single triangles'
-// are not; where it fails, the sum of the triangles' definite parts takes its place.
-long newton_direction(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
-                      const RelaxationOptions& options, const VertexVector& u,
-                      const VertexVector& gradient, LinearSolver& solver, BlockMatrix& H,
-                      VertexVector& direction) {
-  energy.hessian(u, false, H);
-  LinearSolveResult solved =
-      solver.solve(energy, H, is_free, gradient, options.linear_tolerance, direction);
-  long iterations = solved.iterations;
-  if (!solved.converged || !(dot(gradient, direction) > 0)) {
-    iterations +=
-        definite_direction(energy, is_free, options, u, gradient, solver, H, direction).iterations;
+ private:
+  // Newton's direction from the exact Hessian. With the film held at its rim that one is definite
+  // as long as no triangle shrinks to about half its size (docs/model.md), although single
+  // triangles' are not; where it fails, the sum of the triangles' definite parts takes its place.
+  void find_direction() {
+    solver_.update(energy_, u_, is_free_, false, moved_mm_);
+    moved_mm_ = 0;
+    const LinearSolveResult solved =
+        solver_.solve(gradient_, options_.linear_tolerance, direction_);
+    result_.linear_iterations += solved.iterations;
+    if (!solved.converged || !(dot(gradient_, direction_) > 0)) find_definite_direction();
   }
-  return iterations;
-}
+
+  void find_definite_direction() {
+    solver_.update(energy_, u_, is_free_, true);
+    moved_mm_ = LinearSolver::kAnyChange;
+    result_.linear_iterations +=
+        solver_.solve(gradient_, options_.linear_tolerance, direction_).iterations;
+  }
+
+  void move_to(double step) {
+    trial_.resize(u_.size());
+    parallel_for(u_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) trial_[v] = u_[v] - step * direction_[v];
+    });
+  }
+
+  // So near the minimum, any step that turns nothing over will do.
+  bool take_last_step() {
+    move_to(1);
+    if (energy_.any_inverted(trial_)) return false;
+    u_.swap(trial_);
+    return true;
+  }
+
+  // The energy is convex enough along the way if its slope has become small at the end: then the
+  // step is taken without asking for the energy itself.
+  bool take_whole_step(double slope) {
+    move_to(1);
+    if (energy_.gradient(trial_, is_free_, trial_gradient_) > 0) return false;
+    if (std::abs(dot(trial_gradient_, direction_)) > kFlattened * slope) return false;
+    u_.swap(trial_);
+    gradient_.swap(trial_gradient_);
+    moved_mm_ += result_.last_update_mm;
+    return true;
+  }
+
+  // Halves the step until the energy falls; far from the minimum, where the exact Hessian may
+  // mislead, once more along the definite direction.
+  bool search(double slope) {
+    if (line_search(slope)) return true;
+    find_definite_direction();
+    return line_search(dot(gradient_, direction_));
+  }
+
+  bool line_search(double slope) {
+    const double before = energy_.value(u_);
+    // What rounding alone may add: near the minimum, an energy difference cannot be resolved.
+    const double noise = 1e-13 * std::abs(before);
+    double step = 1;
+    for (int halving = 0; halving < kMaxHalvings; ++halving, step *= 0.5) {
+      move_to(step);
+      if (energy_.any_inverted(trial_)) continue;
+      if (energy_.value(trial_) > before - 1e-4 * step * slope + noise) continue;
+      u_.swap(trial_);
+      energy_.gradient(u_, is_free_, gradient_);
+      result_.last_update_mm = step * largest_norm(direction_);
+      moved_mm_ += result_.last_update_mm;
+      return true;
+    }
+    return false;
+  }
+
+  const FilmEnergy& energy_;
+  const std::vector<std::uint8_t>& is_free_;
+  const RelaxationOptions& options_;
+  LinearSolver& solver_;
+  VertexVector& u_;
+  VertexVector gradient_, direction_, trial_, trial_gradient_;
+  double moved_mm_ = LinearSolver::kAnyChange;  // since the solver was updated
+  RelaxationResult result_;
+};
 
 }  // namespace
 
 RelaxationResult relax(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
                        const RelaxationOptions& options, LinearSolver& solver, VertexVector& u) {
-  RelaxationResult result;
-  VertexVector gradient, direction;
-  BlockMatrix H;
-  while (result.newton_iterations < options.max_iterations) {
-    if (options.context) options.context->check_cancelled();
-    energy.gradient(u, is_free, gradient);
-    result.linear_iterations +=
-        newton_direction(energy, is_free, options, u, gradient, solver, H, direction);
-    ++result.newton_iterations;
-    const double slope = dot(gradient, direction);
-    if (!(slope > 0)) {  // nothing to gain: at the minimum, or no descent direction left
-      result.converged = slope == 0;
-      return result;
-    }
-    result.last_update_mm = largest_norm(direction);
-    result.converged = result.last_update_mm <= options.tolerance_mm;
-    // So near the minimum, energy differences drown in rounding: any step that turns nothing over
-    // will do.
-    if (result.converged && take_step(energy, direction, 1, u)) return result;
-    double step = line_search(energy, direction, slope, u);
-    if (step == 0) {  // far from the minimum the exact Hessian may mislead
-      result.linear_iterations +=
-          definite_direction(energy, is_free, options, u, gradient, solver, H, direction)
-              .iterations;
-      result.last_update_mm = largest_norm(direction);
-      step = line_search(energy, direction, dot(gradient, direction), u);
-    }
-    if (step == 0) return result;
-    result.last_update_mm *= step;
-  }
-  return result;
+  return Newton(energy, is_free, options, solver, u).run();
 }
 
 }  // namespace hydrodip

@@ -52,8 +52,12 @@ FilmLocation walk(const FilmMesh& mesh, const std::vector<Vec2>& u, const Usable
 }  // namespace
 
 FilmLocation locate(const FilmMesh& mesh, const std::vector<Vec2>& u,
-                    const std::vector<std::uint8_t>& usable, std::int32_t start,
-                    const Vec2& target) {
+                    const std::vector<std::uint8_t>& usable, std::int32_t start, const Vec2& target,
+                    std::int32_t hint) {
+  Vec3 weight;
+  if (hint >= 0 && usable[std::size_t(hint)] && weights_at(mesh, u, hint, target, weight) &&
+      weight.minCoeff() >= kInside)
+    return {hint, weight, true};
   return walk(
       mesh, u, [&](std::int32_t t) { return usable[std::size_t(t)] != 0; }, start, target);
 }

@@ -107,6 +107,7 @@ Parameter choice(std::string name, std::vector<std::pair<std::string, Enum>> val
 Parameter choice(std::string name, const std::vector<std::string>& values,
                  Access<std::string> access, std::string help) {
   std::vector<std::pair<std::string, std::string>> pairs;
+  pairs.reserve(values.size());
   for (const std::string& value : values) pairs.emplace_back(value, value);
   return choice<std::string>(std::move(name), std::move(pairs), access, std::move(help));
 }

@@ -634,7 +634,7 @@ CheckedFile check_stl(const std::string& path, FileBytes bytes) {
   return {std::move(bytes), "", {}, {}};
 }
 
-CheckedFile check_off(const std::string& path, FileBytes bytes) {
+CheckedFile check_off(const std::string& path, const FileBytes& bytes) {
   refuse_binary(path, text_of(bytes), "OFF");
   OffLines lines(path, text_of(bytes));
   std::string_view line = lines.next();

@@ -39,7 +39,7 @@ CheckedFile check_obj(const std::string& path, FileBytes bytes);
 FileBytes clean_mtl(const FileBytes& bytes);
 CheckedFile check_ply(const std::string& path, FileBytes bytes);
 CheckedFile check_stl(const std::string& path, FileBytes bytes);
-CheckedFile check_off(const std::string& path, FileBytes bytes);
+CheckedFile check_off(const std::string& path, const FileBytes& bytes);
 // .gltf and .glb; keeps only what describes shape and colour (no animations, skins, extensions
 // other than texture transforms).
 CheckedFile check_gltf(const std::string& path, FileBytes bytes, SideFiles& side_files);

@@ -238,7 +238,7 @@ CheckedFile check(Format format, const std::string& path, FileBytes bytes, Model
     case Format::kStl:
       return check_stl(path, std::move(bytes));
     case Format::kOff:
-      return check_off(path, std::move(bytes));
+      return check_off(path, bytes);
     case Format::k3mf:
       return check_3mf(path, std::move(bytes));
     case Format::kGltf:

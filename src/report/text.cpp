@@ -317,7 +317,7 @@ std::string fit_text(const std::string& text, const TextStyle& style, double max
   while (!codes.empty()) {
     codes.pop_back();
     while (!codes.empty() && codes.back() == ' ') codes.pop_back();
-    const std::string cut = to_utf8(codes) + "...";
+    std::string cut = to_utf8(codes) + "...";
     if (text_width_px(cut, style) <= max_width_px) return cut;
   }
   return "";

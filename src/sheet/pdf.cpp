@@ -6,8 +6,8 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <fstream>
 #include <limits>
@@ -248,11 +248,19 @@ void draw_marks(HPDF_Doc document, HPDF_Page page, const SheetOptions& options,
 }
 
 HPDF_Date parse_date(const std::string& iso) {
+  std::tm time{};
+  const char* rest = strptime(iso.c_str(), "%Y-%m-%d", &time);
+  if (rest && *rest != '\0') rest = strptime(rest, "T%H:%M:%S", &time);
+  if (rest && *rest == 'Z') ++rest;
+  if (!rest || *rest != '\0') refuse_date(iso);
   HPDF_Date date{};
   date.ind = 'Z';
-  const int count = std::sscanf(iso.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d", &date.year, &date.month,
-                                &date.day, &date.hour, &date.minutes, &date.seconds);
-  if (count < 3) refuse_date(iso);
+  date.year = time.tm_year + 1900;
+  date.month = time.tm_mon + 1;
+  date.day = time.tm_mday;
+  date.hour = time.tm_hour;
+  date.minutes = time.tm_min;
+  date.seconds = time.tm_sec;
   return date;
 }
 

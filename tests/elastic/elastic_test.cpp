@@ -181,6 +181,7 @@ TEST(FilmEnergy, ProjectedHessianIsDefiniteAndExactWhereNothingWasProjected) {
 
 TEST(LinearSolver, BothSolversSolve) {
   const RandomFilm film(10);
+
   for (double nu : kPoissonRatios) {
     const FilmEnergy energy = film.energy(nu);
     BlockMatrix H;
@@ -189,9 +190,11 @@ TEST(LinearSolver, BothSolversSolve) {
     for (std::size_t v = 0; v < b.size(); ++v)
       b[v] = Vec2(std::sin(double(v)), std::cos(2.0 * double(v)));
     const auto direct = make_direct_solver();
-    const auto laplacian = make_laplacian_solver();
-    EXPECT_TRUE(direct->solve(energy, H, film.is_free, b, 0, exact).converged);
-    EXPECT_TRUE(laplacian->solve(energy, H, film.is_free, b, 1e-10, iterative).converged);
+    const auto multigrid = make_multigrid_solver(film.mesh);
+    direct->update(energy, film.u, film.is_free, true);
+    multigrid->update(energy, film.u, film.is_free, true);
+    EXPECT_TRUE(direct->solve(b, 0, exact).converged);
+    EXPECT_TRUE(multigrid->solve(b, 1e-6, iterative).converged);
     double scale = 0, worst = 0;
     for (std::size_t v = 0; v < b.size(); ++v) {
       Vec2 residual = Vec2::Zero();
@@ -204,7 +207,7 @@ TEST(LinearSolver, BothSolversSolve) {
       scale = std::max(scale, exact[v].norm());
       worst = std::max(worst, (exact[v] - iterative[v]).norm());
     }
-    EXPECT_LT(worst, 1e-8 * scale);
+    EXPECT_LT(worst, 1e-4 * scale);
   }
 }
 
@@ -226,7 +229,7 @@ TEST(Relaxation, RecoversALinearMapFromAnyStart) {
     VertexVector u = expected;
     for (std::size_t v = 0; v < u.size(); ++v)
       if (film.is_free[v]) u[v] += 0.1 * film.mesh.cell_mm * Vec2(std::sin(7.0 * double(v)), 0.5);
-    const auto solver = make_laplacian_solver();
+    const auto solver = make_multigrid_solver(film.mesh);
     const RelaxationResult result =
         relax(energy, film.is_free, {.tolerance_mm = 1e-10}, *solver, u);
     EXPECT_TRUE(result.converged);

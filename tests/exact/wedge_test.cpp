@@ -68,7 +68,7 @@ TEST(WedgeSlow, MeetsTheClosedFormOnAnyMesh) {
     for (const double grading : {1.0, 4.0}) {
       const WedgeError error = wedge_error(45, strip(elements, grading), 0.1);
       EXPECT_LT(error.largest_mm, 2e-4) << elements << " triangles, grading " << grading;
-      EXPECT_LT(error.sideways_mm, 1e-9) << elements << " triangles, grading " << grading;
+      EXPECT_LT(error.sideways_mm, 1e-6) << elements << " triangles, grading " << grading;
       EXPECT_GT(error.reach_mm, 20) << elements << " triangles, grading " << grading;
     }
 }

@@ -313,6 +313,8 @@ TEST_F(PrintPdf, ADateIsRecordedOnlyWhenGiven) {
   EXPECT_THROW(write(blank_image(options), options), InputError);
   options.date = "2026-13-45";
   EXPECT_THROW(write(blank_image(options), options), InputError);
+  options.date = "2026-02-03 and more";
+  EXPECT_THROW(write(blank_image(options), options), InputError);
 }
 
 TEST_F(PrintPdf, TransparentPixelsAreNotStored) {

@@ -1,0 +1,100 @@
+// The inner loops of the film solver, compiled once per instruction set and picked at run time.
+// Every lane computes the same operations in the same order on all of them and nothing is fused,
+// so results are the same bit for bit.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace hydrodip::kernels {
+
+// Values of neighbouring grid nodes that are stored and computed together.
+constexpr int kLanes = 16;
+
+struct alignas(64) Lanes {
+  float value[kLanes];
+};
+
+// A symmetric operator on a grid that couples every node with its eight neighbours by 2 x 2 blocks.
+// Arrays over the grid hold node (i, j) at (j + 1) * stride + kLanes + i, and zero around it. Only
+// half of the blocks is stored, as the solver is bound by memory: a node's own (xx, xy, yy) and
+// those towards the four neighbours (1, 0), (-1, 1), (0, 1), (1, 1) (xx, xy, yx, yy); the others
+// are those neighbours' transposed. Rows of nodes where the mask is 0 count as empty.
+constexpr int kForward = 4;
+struct Stencil {
+  const float *own[3], *forward[kForward][4], *inverse_own[3];
+  const float* mask;
+  std::ptrdiff_t groups;  // of kLanes nodes, per grid row
+  std::ptrdiff_t stride;  // (groups + 1) * kLanes
+};
+struct Input {
+  const float *x, *y;
+};
+struct Output {
+  float *x, *y;
+};
+
+// Node (i, j) of the coarse grid lies on (2 i, 2 j) of the fine one. Masks: 1 on free nodes, in the
+// vectors' layout.
+struct Transfer {
+  std::ptrdiff_t fine_stride, coarse_stride;
+  int fine_nx, fine_ny, coarse_nx;
+  const float *fine_mask, *coarse_mask;
+};
+
+// Per triangle, structure of arrays. Corner 0 is where the shape functions' gradients add up to 0.
+struct Elements {
+  const std::int32_t* corner[3];
+  const double* gradient[2][2];  // of corners 1 and 2: dN/dX [corner - 1][component], 1/mm
+  const double* area;            // 0: no film
+  const double *mu, *lambda;
+};
+// What a triangle's part of the Hessian was computed with.
+struct Linearization {
+  const float *gradient[2][2], *area, *cosine, *sine, *turning;
+};
+
+struct Table {
+  // out = A x, r = b - A x and out = x + weight * D^-1 (b - A x) on grid rows [begin, end).
+  void (*multiply)(const Stencil&, std::ptrdiff_t begin, std::ptrdiff_t end, Input x, Output out);
+  void (*residual)(const Stencil&, std::ptrdiff_t begin, std::ptrdiff_t end, Input b, Input x,
+                   Output r);
+  void (*smooth)(const Stencil&, std::ptrdiff_t begin, std::ptrdiff_t end, Input b, Input x,
+                 float weight, Output out);
+  // out = weight * D^-1 b.
+  void (*precondition)(const Stencil&, std::ptrdiff_t begin, std::ptrdiff_t end, Input b,
+                       float weight, Output out);
+
+  // Between a fine grid and one with every second node, on the coarse (restrict) or fine (prolong)
+  // grid's rows [begin, end): b = P^T r and x += P e, P bilinear interpolation. Only where the mask
+  // is 1; elsewhere b = 0 and x stays.
+  void (*restrict_rows)(const Transfer&, std::ptrdiff_t begin, std::ptrdiff_t end, Input r,
+                        Output b);
+  void (*prolong_rows)(const Transfer&, std::ptrdiff_t begin, std::ptrdiff_t end, Input e,
+                       Output x);
+
+  // On vector entries [begin, end), multiples of kLanes: a . b; a = scale a + b; and, together,
+  // x += step p, r -= step Ap, returning r . r.
+  double (*dot)(std::size_t begin, std::size_t end, Input a, Input b);
+  void (*scale_and_add)(std::size_t begin, std::size_t end, Output a, float scale, Input b);
+  double (*advance)(std::size_t begin, std::size_t end, float step, Input p, Input Ap, Output x,
+                    Output r);
+
+  // Rest shapes of triangles [begin, end) whose corners lie flat at the places given (x and y of
+  // every vertex in turn); area 0 where `film` is 0 and where the corners run clockwise.
+  void (*rest_shapes)(const Elements&, std::size_t begin, std::size_t end, const double* place,
+                      const double* film, double* const (*gradient)[2], double* area);
+  // 1 where film is stretched further than the limit at u, in some direction.
+  void (*overstretched)(const Elements&, std::size_t begin, std::size_t end, const double* u,
+                        double limit, std::int64_t* out);
+
+  // force[corner - 1][component] of triangles [begin, end), for corners 1 and 2 (corner 0's is
+  // minus their sum). u: x and y of every vertex in turn. Returns how many are turned over.
+  std::int64_t (*forces)(const Elements&, std::size_t begin, std::size_t end, const double* u,
+                         double* const (*force)[2]);
+  // 1 where the Hessian at u differs from the linearization by more than the tolerance, relatively.
+  void (*changed)(const Elements&, std::size_t begin, std::size_t end, const double* u,
+                  const Linearization&, double tolerance, std::int64_t* out);
+};
+
+}  // namespace hydrodip::kernels
