@@ -11,7 +11,7 @@ namespace hydrodip {
 namespace {
 
 // The smoother damps errors with eigenvalues of D^-1 A above the largest over this.
-constexpr double kSmoothedRange = 5;
+constexpr double kSmoothedRange = 14;
 constexpr double kEigenvalueMargin = 1.1;
 constexpr int kPowerIterations = 12;
 // Grids with at most this many inner nodes are solved directly.
