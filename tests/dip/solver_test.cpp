@@ -1,0 +1,92 @@
+// The fast solver of the film's equilibrium against the direct one, to the end of a dip.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/parallel.h"
+#include "dip/dip.h"
+#include "exact/shapes.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr double kPrecision_mm = 1e-4;
+
+FilmMesh coarse_film(int elements) {
+  return make_film_mesh({.width_mm = 150, .height_mm = 180, .elements = elements});
+}
+
+DipOptions shallow_dip() {
+  DipOptions options;
+  options.step_mm = 0.25;
+  options.depth_mm = 12;
+  return options;
+}
+
+// K_max / K_min of the paper between neighbouring squares.
+std::vector<double> checkerboard(const FilmMesh& film, double square_mm) {
+  std::vector<double> modulus;
+  for (const Triangle& t : film.triangles) {
+    const Vec2 centre =
+        (film.u[std::size_t(t[0])] + film.u[std::size_t(t[1])] + film.u[std::size_t(t[2])]) / 3;
+    const Vec2 square = (centre / square_mm).array().floor();
+    modulus.push_back(std::fmod(std::abs(square.sum()), 2) == 0 ? 1 : 600);
+  }
+  return modulus;
+}
+
+DippedFilm dipped(const FilmMesh& film, const DipOptions& options, DipStatistics* statistics = {}) {
+  const shapes::Shape sphere = shapes::sphere_bowl(30, 28);
+  const Surface surface(sphere.positions, sphere.triangles);
+  RunContext context;
+  const DipResult result = dip(film, sphere.positions, sphere.triangles, surface, options, context);
+  if (statistics) *statistics = result.statistics;
+  return result.film;
+}
+
+double largest_distance(const DippedFilm& a, const DippedFilm& b) {
+  double largest = 0;
+  for (std::size_t v = 0; v < a.position.size(); ++v)
+    largest = std::max(largest, (a.position[v] - b.position[v]).norm());
+  return largest;
+}
+
+void expect_the_same_film(DipOptions options, const FilmMesh& film) {
+  const DippedFilm fast = dipped(film, options);
+  options.make_solver = [](const FilmMesh&) { return make_direct_solver(); };
+  EXPECT_LT(largest_distance(fast, dipped(film, options)), kPrecision_mm);
+}
+
+TEST(SolverSlow, MultigridGivesTheDirectSolversFilm) {
+  const FilmMesh film = coarse_film(2500);
+  DipOptions options = shallow_dip();
+  options.material.tear_stretch = 0;
+  expect_the_same_film(options, film);
+  options.material.poisson = 0.35;
+  expect_the_same_film(options, film);
+}
+
+TEST(SolverSlow, MultigridGivesTheDirectSolversFilmOnHardInk) {
+  const FilmMesh film = coarse_film(2500);
+  DipOptions options = shallow_dip();
+  options.material.tear_stretch = 0;
+  options.modulus = checkerboard(film, 8);
+  expect_the_same_film(options, film);
+}
+
+TEST(SolverSlow, WorkASolveDoesNotGrowWithTheMesh) {
+  DipOptions options = shallow_dip();
+  options.depth_mm = 3;
+  DipStatistics coarse, fine;
+  dipped(coarse_film(2000), options, &coarse);
+  dipped(coarse_film(50000), options, &fine);
+  const auto per_solve = [](const DipStatistics& s) {
+    return double(s.linear_iterations) / double(s.newton_iterations);
+  };
+  EXPECT_LT(per_solve(fine), 1.3 * per_solve(coarse));
+  EXPECT_LT(per_solve(fine), 4);
+}
+
+}  // namespace
+}  // namespace hydrodip
