@@ -1,312 +1,27 @@
-// The only place that knows libharu.
-#include <fmt/format.h>
-#include <hpdf.h>
-
-#include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-#include <ctime>
-#include <exception>
-#include <fstream>
-#include <limits>
-#include <memory>
-#include <new>
-#include <stdexcept>
-#include <string>
-#include <system_error>
-#include <type_traits>
-#include <vector>
-
-#include "base/error.h"
 #include "sheet/marks.h"
 #include "sheet/page.h"
+#include "sheet/pdf_document.h"
 #include "sheet/sheet.h"
-#include "sheet/winansi.h"
 
 namespace hydrodip {
 
 namespace {
 
-constexpr double kPtPerMm = 72 / kMmPerInch;
-constexpr double kLongestPageMm = 14400 / kPtPerMm;  // the PDF format's limit
-
-HPDF_REAL pt(double mm) { return static_cast<HPDF_REAL>(mm * kPtPerMm); }
-
-struct FreeDocument {
-  void operator()(HPDF_Doc document) const { HPDF_Free(document); }
-};
-using Document = std::unique_ptr<std::remove_pointer_t<HPDF_Doc>, FreeDocument>;
-
-// What libharu makes is null after any earlier failure, and it does not check for that itself.
-[[noreturn]] void refuse_to_compose(HPDF_Doc document) {
-  throw std::runtime_error(fmt::format("print.pdf could not be composed (libharu error {:#x}).",
-                                       HPDF_GetError(document)));
-}
-
-template <typename Handle>
-Handle made(HPDF_Doc document, Handle handle) {
-  if (handle == nullptr) refuse_to_compose(document);
-  return handle;
-}
-
-// Hands the picture to libharu while it writes the file, row by row as 8-bit RGB over white, so
-// that no second copy of a large image is ever in memory. Each row begins with a PNG filter number
-// and holds differences to the left neighbour, which compress several times better.
-class PixelStream {
- public:
-  PixelStream(const Image& image, const PixelBox& box, bool mirror, RunContext& context)
-      : image_(image),
-        box_(box),
-        mirror_(mirror),
-        context_(context),
-        row_(1 + kChannels * std::size_t(box.width())) {
-    rewind();
-  }
-
-  void rewind() {
-    next_row_ = box_.y_begin;
-    at_ = row_.size();
-  }
-
-  // Fills as much of the buffer as there are bytes left; returns how much.
-  std::size_t read(std::uint8_t* buffer, std::size_t size) {
-    std::size_t done = 0;
-    while (done < size && (at_ < row_.size() || load_next_row())) {
-      const std::size_t count = std::min(size - done, row_.size() - at_);
-      std::memcpy(buffer + done, row_.data() + at_, count);
-      done += count;
-      at_ += count;
-    }
-    return done;
-  }
-
-  // What was thrown while libharu was calling: exceptions must not pass through C code.
-  std::exception_ptr failure;
-
- private:
-  static constexpr std::size_t kChannels = 3;
-  using Rgb = std::array<std::uint8_t, kChannels>;
-
-  bool load_next_row() {
-    if (next_row_ == box_.y_end) return false;
-    if (next_row_ % 64 == 0) {
-      context_.progress("writing print.pdf", double(next_row_ - box_.y_begin) / box_.height());
-    }
-    fill_row(next_row_++);
-    at_ = 0;
-    return true;
-  }
-
-  void fill_row(int y) {
-    constexpr std::uint8_t kSubFilter = 1;
-    std::uint8_t* out = row_.data();
-    *out++ = kSubFilter;
-    Rgb left{};
-    for (int i = 0; i < box_.width(); ++i) {
-      const Rgb color =
-          over_white(image_.pixel(mirror_ ? box_.x_end - 1 - i : box_.x_begin + i, y));
-      for (std::size_t k = 0; k < kChannels; ++k) {
-        *out++ = static_cast<std::uint8_t>(color[k] - left[k]);
-      }
-      left = color;
-    }
-  }
-
-  // Ink amounts, 255 - value, scale with coverage, as in the CMYK file.
-  static Rgb over_white(const std::uint8_t* rgba) {
-    Rgb rgb;
-    for (std::size_t k = 0; k < kChannels; ++k) {
-      rgb[k] = static_cast<std::uint8_t>(255 - ((255 - rgba[k]) * rgba[3] + 127) / 255);
-    }
-    return rgb;
-  }
-
-  const Image& image_;
-  PixelBox box_;
-  bool mirror_;
-  RunContext& context_;
-  std::vector<std::uint8_t> row_;
-  std::size_t at_ = 0;
-  int next_row_ = 0;
-};
-
-PixelStream& pixels_of(HPDF_Stream stream) { return *static_cast<PixelStream*>(stream->attr); }
-
-HPDF_STATUS read_pixels(HPDF_Stream stream, HPDF_BYTE* buffer, HPDF_UINT* size) {
-  PixelStream& pixels = pixels_of(stream);
-  const HPDF_UINT wanted = *size;
-  *size = 0;
-  try {
-    *size = static_cast<HPDF_UINT>(pixels.read(buffer, wanted));
-  } catch (...) {
-    pixels.failure = std::current_exception();
-    return HPDF_FILE_IO_ERROR;
-  }
-  return *size < wanted ? HPDF_STREAM_EOF : HPDF_OK;
-}
-
-HPDF_STATUS rewind_pixels(HPDF_Stream stream, HPDF_INT, HPDF_WhenceMode) {
-  pixels_of(stream).rewind();
-  return HPDF_OK;
-}
-
-HPDF_INT32 tell_pixels(HPDF_Stream) { return 0; }
-
-// libharu only asks whether there is anything.
-HPDF_UINT32 size_of_pixels(HPDF_Stream) { return std::numeric_limits<HPDF_UINT32>::max(); }
-
-// One entry for the one filter, that is deflate. (image->filterParams would do the same, but is
-// leaked when the file cannot be opened.)
-void announce_row_filters(HPDF_Doc document, HPDF_Image image, int width) {
-  const HPDF_Array filters = made(document, HPDF_Array_New(image->mmgr));
-  HPDF_Dict_Add(image, "DecodeParms", filters);
-  const HPDF_Dict deflate = made(document, HPDF_Dict_New(image->mmgr));
-  HPDF_Array_Add(filters, deflate);
-  HPDF_Dict_AddNumber(deflate, "Predictor", 15);  // PNG filters
-  HPDF_Dict_AddNumber(deflate, "Colors", 3);
-  HPDF_Dict_AddNumber(deflate, "Columns", width);
-}
-
-// A one-pixel image whose size and source are then exchanged: libharu's own loaders all copy.
-HPDF_Image add_image(HPDF_Doc document, const PixelBox& box, PixelStream& pixels) {
-  const std::array<HPDF_BYTE, 3> white = {255, 255, 255};
-  HPDF_Image image = HPDF_LoadRawImageFromMem(document, white.data(), 1, 1, HPDF_CS_DEVICE_RGB, 8);
-  if (image == nullptr) return nullptr;
-  HPDF_Dict_AddNumber(image, "Width", box.width());
-  HPDF_Dict_AddNumber(image, "Height", box.height());
-  announce_row_filters(document, image, box.width());
-  HPDF_Stream_Free(image->stream);
-  image->stream = nullptr;
-  image->stream = made(document, HPDF_CallbackReader_New(image->mmgr, read_pixels, rewind_pixels,
-                                                         tell_pixels, size_of_pixels, &pixels));
-  return image;
-}
-
-void draw_lines(HPDF_Page page, const Marks& marks) {
-  HPDF_Page_SetGrayStroke(page, 0);
-  HPDF_Page_SetLineWidth(page, pt(marks.line_mm));
-  HPDF_Page_SetLineCap(page, HPDF_PROJECTING_SCUARE_END);
-  for (const MarkLine& line : marks.lines) {
-    HPDF_Page_MoveTo(page, pt(line.from.x()), pt(line.from.y()));
-    HPDF_Page_LineTo(page, pt(line.to.x()), pt(line.to.y()));
-  }
-  if (!marks.lines.empty()) HPDF_Page_Stroke(page);
-}
-
-void draw_dashed(HPDF_Page page, const Marks& marks) {
-  const std::array<HPDF_UINT16, 2> dash = {4, 6};
-  HPDF_Page_SetLineCap(page, HPDF_BUTT_END);
-  HPDF_Page_SetDash(page, dash.data(), dash.size(), 0);
-  for (const MarkCircle& circle : marks.dashed) {
-    HPDF_Page_Circle(page, pt(circle.center.x()), pt(circle.center.y()), pt(circle.radius_mm));
-    HPDF_Page_Stroke(page);
-  }
-}
-
-void draw_filled(HPDF_Page page, const Marks& marks) {
-  HPDF_Page_SetGrayFill(page, 0);
-  for (const auto& corners : marks.filled) {
-    HPDF_Page_MoveTo(page, pt(corners[0].x()), pt(corners[0].y()));
-    HPDF_Page_LineTo(page, pt(corners[1].x()), pt(corners[1].y()));
-    HPDF_Page_LineTo(page, pt(corners[2].x()), pt(corners[2].y()));
-    HPDF_Page_Fill(page);
-  }
-}
-
-void draw_texts(HPDF_Page page, HPDF_Font font, const Marks& marks) {
-  HPDF_Page_BeginText(page);
-  for (const MarkText& text : marks.texts) {
-    const auto cosine = static_cast<HPDF_REAL>(text.quarter_turns == 0 ? 1 : 0);
-    const auto sine = static_cast<HPDF_REAL>(text.quarter_turns);
-    HPDF_Page_SetFontAndSize(page, font, static_cast<HPDF_REAL>(text.size_pt));
-    HPDF_Page_SetTextMatrix(page, cosine, sine, -sine, cosine, pt(text.start.x()),
-                            pt(text.start.y()));
-    HPDF_Page_ShowText(page, text.text.c_str());
-  }
-  HPDF_Page_EndText(page);
-}
-
-void draw_marks(HPDF_Doc document, HPDF_Page page, const SheetOptions& options,
-                RunContext& context) {
-  const HPDF_Font font = made(document, HPDF_GetFont(document, "Helvetica", "WinAnsiEncoding"));
-  const auto text_width = [&](const std::string& text) {
-    const auto* bytes = reinterpret_cast<const HPDF_BYTE*>(text.data());
-    return HPDF_Font_TextWidth(font, bytes, static_cast<HPDF_UINT>(text.size())).width / 1000.0;
-  };
-  const Marks marks = make_marks(options, text_width);
-  draw_lines(page, marks);
-  draw_dashed(page, marks);
-  draw_filled(page, marks);
-  draw_texts(page, font, marks);
+void draw_marks(PdfDocument& document, const SheetOptions& options, RunContext& context) {
+  const Marks marks =
+      make_marks(options, [&](const std::string& text) { return document.text_width(text); });
+  document.set_stroke(marks.line_mm, 0, true);
+  std::vector<PdfLine> lines;
+  for (const MarkLine& line : marks.lines) lines.push_back({line.from, line.to});
+  document.draw_lines(lines);
+  document.set_stroke(marks.line_mm);
+  for (const MarkCircle& circle : marks.dashed)
+    document.draw_dashed_circle(circle.center, circle.radius_mm);
+  for (const auto& corners : marks.filled) document.fill_triangle(corners, 0);
+  for (const MarkText& text : marks.texts)
+    document.draw_text(
+        {text.text, text.start, text.size_pt, PdfFont::kRegular, text.quarter_turns, 0});
   for (const std::string& warning : marks.warnings) context.warn(warning);
-}
-
-[[noreturn]] void refuse_date(const std::string& iso) {
-  throw InputError(fmt::format("'{}' is not a date; write it as 2026-01-31.", iso));
-}
-
-HPDF_Date parse_date(const std::string& iso) {
-  std::tm time{};
-  const char* rest = strptime(iso.c_str(), "%Y-%m-%d", &time);
-  if (rest && *rest != '\0') rest = strptime(rest, "T%H:%M:%S", &time);
-  if (rest && *rest == 'Z') ++rest;
-  if (!rest || *rest != '\0') refuse_date(iso);
-  HPDF_Date date{};
-  date.ind = 'Z';
-  date.year = time.tm_year + 1900;
-  date.month = time.tm_mon + 1;
-  date.day = time.tm_mday;
-  date.hour = time.tm_hour;
-  date.minutes = time.tm_min;
-  date.seconds = time.tm_sec;
-  return date;
-}
-
-void describe(HPDF_Doc document, const SheetOptions& options) {
-  HPDF_SetInfoAttr(document, HPDF_INFO_CREATOR, "hydrodip");
-  std::string title = to_winansi(options.job_name);
-  // PDF's encoding of titles agrees with Windows-1252 except here.
-  std::replace_if(
-      title.begin(), title.end(), [](char c) { return (c & 0xE0) == 0x80; }, '?');
-  if (!title.empty()) HPDF_SetInfoAttr(document, HPDF_INFO_TITLE, title.c_str());
-  if (options.date.empty()) return;
-  const HPDF_Date date = parse_date(options.date);
-  if (HPDF_SetInfoDateAttr(document, HPDF_INFO_CREATION_DATE, date) != HPDF_OK) {
-    refuse_date(options.date);
-  }
-}
-
-void check_page(const SheetOptions& options) {
-  if (std::max(options.width_mm, options.height_mm) > kLongestPageMm) {
-    throw InputError(
-        fmt::format("A sheet of {:g} x {:g} mm is more than a PDF page can be ({:g} "
-                    "mm); choose a smaller film.",
-                    options.width_mm, options.height_mm, std::floor(kLongestPageMm)));
-  }
-}
-
-// libharu does not notice when the very last bytes do not reach the disk.
-bool is_whole(const std::filesystem::path& path) {
-  constexpr std::streamoff kTailSize = 16;
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file || file.tellg() < kTailSize) return false;
-  std::string tail(kTailSize, ' ');
-  file.seekg(-kTailSize, std::ios::end);
-  file.read(tail.data(), kTailSize);
-  return file && tail.find("%%EOF") != std::string::npos;
-}
-
-void save(HPDF_Doc document, const std::filesystem::path& path) {
-  errno = 0;
-  const HPDF_STATUS status = HPDF_SaveToFile(document, path.c_str());
-  const int reason = errno;
-  if (status == HPDF_OK && is_whole(path)) return;
-  const bool known = status != HPDF_OK && reason != 0;
-  throw InputError(fmt::format("{}: cannot be written ({}); choose another folder or free space.",
-                               path.string(),
-                               known ? std::generic_category().message(reason) : "is it full?"));
 }
 
 }  // namespace
@@ -314,37 +29,21 @@ void save(HPDF_Doc document, const std::filesystem::path& path) {
 void write_print_pdf(const std::filesystem::path& path, const Image& image,
                      const SheetOptions& options, RunContext& context) {
   check_sheet(image, options);
-  check_page(options);
-  const Document document(HPDF_New(nullptr, nullptr));
-  if (!document) throw std::bad_alloc();
-  HPDF_SetCompressionMode(document.get(), HPDF_COMP_ALL);
-  HPDF_SetViewerPreference(document.get(), HPDF_PRINT_SCALING_NONE);
-  describe(document.get(), options);
-
-  const HPDF_Page page = made(document.get(), HPDF_AddPage(document.get()));
-  HPDF_Page_SetWidth(page, pt(options.width_mm));
-  HPDF_Page_SetHeight(page, pt(options.height_mm));
+  PdfDocument document;
+  document.forbid_scaling();
+  document.set_title(options.job_name);
+  if (!options.date.empty()) document.set_date(options.date);
+  document.add_page(options.width_mm, options.height_mm);
 
   const bool mirror = !options.ink_side_up;
   const PixelBox box = inked_box(image);
-  PixelStream pixels(image, box, mirror, context);
   if (!box.empty()) {
     const PixelBox printed = mirror ? mirrored(box, image.width_px) : box;
-    const Box2 place = place_on_page(printed, image, options);
-    HPDF_Page_DrawImage(page, add_image(document.get(), box, pixels), pt(place.min.x()),
-                        pt(place.min.y()), pt(place.max.x() - place.min.x()),
-                        pt(place.max.y() - place.min.y()));
+    document.draw_image(image, box, mirror, place_on_page(printed, image, options), context);
   }
-  draw_marks(document.get(), page, options, context);
-
-  if (HPDF_GetError(document.get()) != HPDF_OK) refuse_to_compose(document.get());
-  try {
-    save(document.get(), path);
-  } catch (const InputError&) {
-    if (pixels.failure) std::rethrow_exception(pixels.failure);
-    throw;
-  }
-  context.progress("writing print.pdf", 1);
+  draw_marks(document, options, context);
+  document.save(path);
+  context.progress("writing the PDF", 1);
 }
 
 }  // namespace hydrodip

@@ -1,0 +1,354 @@
+// The only place that knows libharu.
+#include "sheet/pdf_document.h"
+
+#include <fmt/format.h>
+#include <hpdf.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <exception>
+#include <fstream>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <system_error>
+#include <type_traits>
+
+#include "base/error.h"
+#include "sheet/winansi.h"
+
+namespace hydrodip {
+
+namespace {
+
+constexpr double kPtPerMm = 72 / kMmPerInch;
+constexpr double kLongestPageMm = 14400 / kPtPerMm;  // the PDF format's limit
+
+HPDF_REAL pt(double mm) { return static_cast<HPDF_REAL>(mm * kPtPerMm); }
+
+struct FreeDocument {
+  void operator()(HPDF_Doc document) const { HPDF_Free(document); }
+};
+using Document = std::unique_ptr<std::remove_pointer_t<HPDF_Doc>, FreeDocument>;
+
+// What libharu makes is null after any earlier failure, and it does not check for that itself.
+[[noreturn]] void refuse_to_compose(HPDF_Doc document) {
+  throw std::runtime_error(
+      fmt::format("the PDF could not be composed (libharu error {:#x}).", HPDF_GetError(document)));
+}
+
+template <typename Handle>
+Handle made(HPDF_Doc document, Handle handle) {
+  if (handle == nullptr) refuse_to_compose(document);
+  return handle;
+}
+
+// Hands the picture to libharu while it writes the file, row by row as 8-bit RGB over white, so
+// that no second copy of a large image is ever in memory. Each row begins with a PNG filter number
+// and holds differences to the left neighbour, which compress several times better.
+class PixelStream {
+ public:
+  PixelStream(const Image& image, const PixelBox& box, bool mirror, RunContext& context)
+      : image_(image),
+        box_(box),
+        mirror_(mirror),
+        context_(context),
+        row_(1 + kChannels * std::size_t(box.width())) {
+    rewind();
+  }
+
+  void rewind() {
+    next_row_ = box_.y_begin;
+    at_ = row_.size();
+  }
+
+  // Fills as much of the buffer as there are bytes left; returns how much.
+  std::size_t read(std::uint8_t* buffer, std::size_t size) {
+    std::size_t done = 0;
+    while (done < size && (at_ < row_.size() || load_next_row())) {
+      const std::size_t count = std::min(size - done, row_.size() - at_);
+      std::memcpy(buffer + done, row_.data() + at_, count);
+      done += count;
+      at_ += count;
+    }
+    return done;
+  }
+
+  // What was thrown while libharu was calling: exceptions must not pass through C code.
+  std::exception_ptr failure;
+
+ private:
+  static constexpr std::size_t kChannels = 3;
+  using Rgb = std::array<std::uint8_t, kChannels>;
+
+  bool load_next_row() {
+    if (next_row_ == box_.y_end) return false;
+    if (next_row_ % 64 == 0) {
+      context_.progress("writing the PDF", double(next_row_ - box_.y_begin) / box_.height());
+    }
+    fill_row(next_row_++);
+    at_ = 0;
+    return true;
+  }
+
+  void fill_row(int y) {
+    constexpr std::uint8_t kSubFilter = 1;
+    std::uint8_t* out = row_.data();
+    *out++ = kSubFilter;
+    Rgb left{};
+    for (int i = 0; i < box_.width(); ++i) {
+      const Rgb color =
+          over_white(image_.pixel(mirror_ ? box_.x_end - 1 - i : box_.x_begin + i, y));
+      for (std::size_t k = 0; k < kChannels; ++k) {
+        *out++ = static_cast<std::uint8_t>(color[k] - left[k]);
+      }
+      left = color;
+    }
+  }
+
+  // Ink amounts, 255 - value, scale with coverage, as in the CMYK file.
+  static Rgb over_white(const std::uint8_t* rgba) {
+    Rgb rgb;
+    for (std::size_t k = 0; k < kChannels; ++k) {
+      rgb[k] = static_cast<std::uint8_t>(255 - ((255 - rgba[k]) * rgba[3] + 127) / 255);
+    }
+    return rgb;
+  }
+
+  const Image& image_;
+  PixelBox box_;
+  bool mirror_;
+  RunContext& context_;
+  std::vector<std::uint8_t> row_;
+  std::size_t at_ = 0;
+  int next_row_ = 0;
+};
+
+PixelStream& pixels_of(HPDF_Stream stream) { return *static_cast<PixelStream*>(stream->attr); }
+
+HPDF_STATUS read_pixels(HPDF_Stream stream, HPDF_BYTE* buffer, HPDF_UINT* size) {
+  PixelStream& pixels = pixels_of(stream);
+  const HPDF_UINT wanted = *size;
+  *size = 0;
+  try {
+    *size = static_cast<HPDF_UINT>(pixels.read(buffer, wanted));
+  } catch (...) {
+    pixels.failure = std::current_exception();
+    return HPDF_FILE_IO_ERROR;
+  }
+  return *size < wanted ? HPDF_STREAM_EOF : HPDF_OK;
+}
+
+HPDF_STATUS rewind_pixels(HPDF_Stream stream, HPDF_INT, HPDF_WhenceMode) {
+  pixels_of(stream).rewind();
+  return HPDF_OK;
+}
+
+HPDF_INT32 tell_pixels(HPDF_Stream) { return 0; }
+
+// libharu only asks whether there is anything.
+HPDF_UINT32 size_of_pixels(HPDF_Stream) { return std::numeric_limits<HPDF_UINT32>::max(); }
+
+// One entry for the one filter, that is deflate. (image->filterParams would do the same, but is
+// leaked when the file cannot be opened.)
+void announce_row_filters(HPDF_Doc document, HPDF_Image image, int width) {
+  const HPDF_Array filters = made(document, HPDF_Array_New(image->mmgr));
+  HPDF_Dict_Add(image, "DecodeParms", filters);
+  const HPDF_Dict deflate = made(document, HPDF_Dict_New(image->mmgr));
+  HPDF_Array_Add(filters, deflate);
+  HPDF_Dict_AddNumber(deflate, "Predictor", 15);  // PNG filters
+  HPDF_Dict_AddNumber(deflate, "Colors", 3);
+  HPDF_Dict_AddNumber(deflate, "Columns", width);
+}
+
+// A one-pixel image whose size and source are then exchanged: libharu's own loaders all copy.
+HPDF_Image add_image(HPDF_Doc document, const PixelBox& box, PixelStream& pixels) {
+  const std::array<HPDF_BYTE, 3> white = {255, 255, 255};
+  HPDF_Image image = HPDF_LoadRawImageFromMem(document, white.data(), 1, 1, HPDF_CS_DEVICE_RGB, 8);
+  if (image == nullptr) return nullptr;
+  HPDF_Dict_AddNumber(image, "Width", box.width());
+  HPDF_Dict_AddNumber(image, "Height", box.height());
+  announce_row_filters(document, image, box.width());
+  HPDF_Stream_Free(image->stream);
+  image->stream = nullptr;
+  image->stream = made(document, HPDF_CallbackReader_New(image->mmgr, read_pixels, rewind_pixels,
+                                                         tell_pixels, size_of_pixels, &pixels));
+  return image;
+}
+
+[[noreturn]] void refuse_date(const std::string& iso) {
+  throw InputError(fmt::format("'{}' is not a date; write it as 2026-01-31.", iso));
+}
+
+HPDF_Date parse_date(const std::string& iso) {
+  std::tm time{};
+  const char* rest = strptime(iso.c_str(), "%Y-%m-%d", &time);
+  if (rest && *rest != '\0') rest = strptime(rest, "T%H:%M:%S", &time);
+  if (rest && *rest == 'Z') ++rest;
+  if (!rest || *rest != '\0') refuse_date(iso);
+  HPDF_Date date{};
+  date.ind = 'Z';
+  date.year = time.tm_year + 1900;
+  date.month = time.tm_mon + 1;
+  date.day = time.tm_mday;
+  date.hour = time.tm_hour;
+  date.minutes = time.tm_min;
+  date.seconds = time.tm_sec;
+  return date;
+}
+
+// libharu does not notice when the very last bytes do not reach the disk.
+bool is_whole(const std::filesystem::path& path) {
+  constexpr std::streamoff kTailSize = 16;
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (!file || file.tellg() < kTailSize) return false;
+  std::string tail(kTailSize, ' ');
+  file.seekg(-kTailSize, std::ios::end);
+  file.read(tail.data(), kTailSize);
+  return file && tail.find("%%EOF") != std::string::npos;
+}
+
+}  // namespace
+
+struct PdfDocument::Impl {
+  Document document{HPDF_New(nullptr, nullptr)};
+  HPDF_Page page = nullptr;
+  HPDF_Font regular = nullptr, bold = nullptr;
+  // libharu reads pictures while it saves.
+  std::vector<std::unique_ptr<PixelStream>> pictures;
+
+  HPDF_Font font(PdfFont which) const { return which == PdfFont::kBold ? bold : regular; }
+};
+
+PdfDocument::PdfDocument() : impl_(std::make_unique<Impl>()) {
+  HPDF_Doc document = impl_->document.get();
+  if (document == nullptr) throw std::bad_alloc();
+  HPDF_SetCompressionMode(document, HPDF_COMP_ALL);
+  HPDF_SetInfoAttr(document, HPDF_INFO_CREATOR, "hydrodip");
+  impl_->regular = made(document, HPDF_GetFont(document, "Helvetica", "WinAnsiEncoding"));
+  impl_->bold = made(document, HPDF_GetFont(document, "Helvetica-Bold", "WinAnsiEncoding"));
+}
+
+PdfDocument::~PdfDocument() = default;
+
+void PdfDocument::forbid_scaling() {
+  HPDF_SetViewerPreference(impl_->document.get(), HPDF_PRINT_SCALING_NONE);
+}
+
+void PdfDocument::set_title(const std::string& utf8) {
+  std::string title = to_winansi(utf8);
+  // PDF's encoding of titles agrees with Windows-1252 except here.
+  std::replace_if(
+      title.begin(), title.end(), [](char c) { return (c & 0xE0) == 0x80; }, '?');
+  if (!title.empty()) HPDF_SetInfoAttr(impl_->document.get(), HPDF_INFO_TITLE, title.c_str());
+}
+
+void PdfDocument::set_date(const std::string& iso) {
+  if (HPDF_SetInfoDateAttr(impl_->document.get(), HPDF_INFO_CREATION_DATE, parse_date(iso)) !=
+      HPDF_OK)
+    refuse_date(iso);
+}
+
+void PdfDocument::add_page(double width_mm, double height_mm) {
+  if (std::max(width_mm, height_mm) > kLongestPageMm) {
+    throw InputError(
+        fmt::format("A sheet of {:g} x {:g} mm is more than a PDF page can be ({:g} "
+                    "mm); choose a smaller film.",
+                    width_mm, height_mm, std::floor(kLongestPageMm)));
+  }
+  impl_->page = made(impl_->document.get(), HPDF_AddPage(impl_->document.get()));
+  HPDF_Page_SetWidth(impl_->page, pt(width_mm));
+  HPDF_Page_SetHeight(impl_->page, pt(height_mm));
+}
+
+void PdfDocument::draw_image(const Image& image, const PixelBox& box, bool mirror,
+                             const Box2& place, RunContext& context) {
+  impl_->pictures.push_back(std::make_unique<PixelStream>(image, box, mirror, context));
+  HPDF_Page_DrawImage(impl_->page, add_image(impl_->document.get(), box, *impl_->pictures.back()),
+                      pt(place.min.x()), pt(place.min.y()), pt(place.max.x() - place.min.x()),
+                      pt(place.max.y() - place.min.y()));
+}
+
+void PdfDocument::set_stroke(double width_mm, double gray, bool square_ends) {
+  HPDF_Page_SetGrayStroke(impl_->page, static_cast<HPDF_REAL>(gray));
+  HPDF_Page_SetLineWidth(impl_->page, pt(width_mm));
+  HPDF_Page_SetLineCap(impl_->page, square_ends ? HPDF_PROJECTING_SCUARE_END : HPDF_BUTT_END);
+}
+
+void PdfDocument::draw_lines(const std::vector<PdfLine>& lines) {
+  for (const PdfLine& line : lines) {
+    HPDF_Page_MoveTo(impl_->page, pt(line[0].x()), pt(line[0].y()));
+    HPDF_Page_LineTo(impl_->page, pt(line[1].x()), pt(line[1].y()));
+  }
+  if (!lines.empty()) HPDF_Page_Stroke(impl_->page);
+}
+
+void PdfDocument::draw_dashed_circle(const Vec2& center, double radius_mm) {
+  const std::array<HPDF_UINT16, 2> dash = {4, 6};
+  HPDF_Page_SetDash(impl_->page, dash.data(), dash.size(), 0);
+  HPDF_Page_Circle(impl_->page, pt(center.x()), pt(center.y()), pt(radius_mm));
+  HPDF_Page_Stroke(impl_->page);
+  HPDF_Page_SetDash(impl_->page, nullptr, 0, 0);
+}
+
+void PdfDocument::draw_rectangle(const Box2& box) {
+  HPDF_Page_Rectangle(impl_->page, pt(box.min.x()), pt(box.min.y()), pt(box.max.x() - box.min.x()),
+                      pt(box.max.y() - box.min.y()));
+  HPDF_Page_Stroke(impl_->page);
+}
+
+void PdfDocument::fill_rectangle(const Box2& box, double gray) {
+  HPDF_Page_SetGrayFill(impl_->page, static_cast<HPDF_REAL>(gray));
+  HPDF_Page_Rectangle(impl_->page, pt(box.min.x()), pt(box.min.y()), pt(box.max.x() - box.min.x()),
+                      pt(box.max.y() - box.min.y()));
+  HPDF_Page_Fill(impl_->page);
+}
+
+void PdfDocument::fill_triangle(const std::array<Vec2, 3>& corners, double gray) {
+  HPDF_Page_SetGrayFill(impl_->page, static_cast<HPDF_REAL>(gray));
+  HPDF_Page_MoveTo(impl_->page, pt(corners[0].x()), pt(corners[0].y()));
+  HPDF_Page_LineTo(impl_->page, pt(corners[1].x()), pt(corners[1].y()));
+  HPDF_Page_LineTo(impl_->page, pt(corners[2].x()), pt(corners[2].y()));
+  HPDF_Page_Fill(impl_->page);
+}
+
+void PdfDocument::draw_text(const PdfText& text) {
+  const auto cosine = static_cast<HPDF_REAL>(text.quarter_turns == 0 ? 1 : 0);
+  const auto sine = static_cast<HPDF_REAL>(text.quarter_turns);
+  HPDF_Page_SetGrayFill(impl_->page, static_cast<HPDF_REAL>(text.gray));
+  HPDF_Page_BeginText(impl_->page);
+  HPDF_Page_SetFontAndSize(impl_->page, impl_->font(text.font),
+                           static_cast<HPDF_REAL>(text.size_pt));
+  HPDF_Page_SetTextMatrix(impl_->page, cosine, sine, -sine, cosine, pt(text.start.x()),
+                          pt(text.start.y()));
+  HPDF_Page_ShowText(impl_->page, text.text.c_str());
+  HPDF_Page_EndText(impl_->page);
+}
+
+double PdfDocument::text_width(const std::string& winansi, PdfFont font) const {
+  const auto* bytes = reinterpret_cast<const HPDF_BYTE*>(winansi.data());
+  return HPDF_Font_TextWidth(impl_->font(font), bytes, static_cast<HPDF_UINT>(winansi.size()))
+             .width /
+         1000.0;
+}
+
+void PdfDocument::save(const std::filesystem::path& path) {
+  HPDF_Doc document = impl_->document.get();
+  if (HPDF_GetError(document) != HPDF_OK) refuse_to_compose(document);
+  errno = 0;
+  const HPDF_STATUS status = HPDF_SaveToFile(document, path.c_str());
+  const int reason = errno;
+  for (const auto& picture : impl_->pictures)
+    if (picture->failure) std::rethrow_exception(picture->failure);
+  if (status == HPDF_OK && is_whole(path)) return;
+  const bool known = status != HPDF_OK && reason != 0;
+  throw InputError(fmt::format("{}: cannot be written ({}); choose another folder or free space.",
+                               path.string(),
+                               known ? std::generic_category().message(reason) : "is it full?"));
+}
+
+}  // namespace hydrodip
