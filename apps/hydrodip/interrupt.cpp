@@ -13,7 +13,9 @@ std::atomic<RunContext*> interrupted_context{nullptr};
 
 void handle(int) {
   RunContext* const context = interrupted_context.load();
-  if (!context || context->cancelled()) ::_exit(kExitCancelled);
+  if (!context) ::_exit(kExitCancelled);
+  const int bearable = context->expects_second_cancel() ? 2 : 1;
+  if (context->cancel_requests() >= bearable) ::_exit(kExitCancelled);
   context->cancel();
 }
 

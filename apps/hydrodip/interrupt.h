@@ -1,4 +1,5 @@
-// Ctrl-C: the first cancels the job in good order, the second ends the program at once.
+// Ctrl-C: the first cancels the job in good order, the second ends the program at once (the third,
+// where the job has to stop a machine on the second).
 #pragma once
 
 #include "base/context.h"

@@ -52,8 +52,8 @@ int run_safely(const std::vector<std::string>& arguments) {
     return fail(kExitInput, error.what());
   } catch (const DipError& error) {
     return fail(kExitFailed, error.what());
-  } catch (const Cancelled&) {
-    print_notice("cancelled; nothing was written");
+  } catch (const Cancelled& cancelled) {
+    print_notice(cancelled.what());
     return kExitCancelled;
   } catch (const std::bad_alloc&) {
     return fail(kExitFailed, "not enough memory; a lower print.dpi or film.elements needs less");

@@ -31,8 +31,14 @@ class RunContext {
   void check_cancelled() const;
 
   // Async-signal-safe: may be called from a signal handler.
-  void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+  void cancel() { cancel_requests_.fetch_add(1, std::memory_order_relaxed); }
+  bool cancelled() const { return cancel_requests() > 0; }
+  // More than one: the user is in a hurry. A job that drives a machine stops it at once then.
+  int cancel_requests() const { return cancel_requests_.load(std::memory_order_relaxed); }
+
+  // A job that has to act on the second request as well says so; else the program ends there.
+  void expect_second_cancel() { expects_second_.store(true, std::memory_order_relaxed); }
+  bool expects_second_cancel() const { return expects_second_.load(std::memory_order_relaxed); }
 
   void log(const std::string& line);
 
@@ -42,8 +48,9 @@ class RunContext {
   std::vector<std::string> warnings() const;
 
  private:
-  static_assert(std::atomic<bool>::is_always_lock_free);
-  std::atomic<bool> cancelled_{false};
+  static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+  std::atomic<int> cancel_requests_{0};
+  std::atomic<bool> expects_second_{false};
   ProgressSink progress_sink_;
   LogSink log_sink_;
   mutable std::mutex mutex_;

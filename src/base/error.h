@@ -22,7 +22,8 @@ class DipError : public std::runtime_error {
 // The user cancelled: exit code 130.
 class Cancelled : public std::runtime_error {
  public:
-  Cancelled() : std::runtime_error("cancelled") {}
+  Cancelled() : std::runtime_error("cancelled; nothing was written") {}
+  explicit Cancelled(const std::string& outcome) : std::runtime_error(outcome) {}
 };
 
 }  // namespace hydrodip

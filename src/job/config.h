@@ -42,6 +42,40 @@ struct PrintOptions {
   std::string job_name;  // in the sheet's margin; empty: the model's file name
 };
 
+// What the operator keeps to at the bath; the paper's section 2 and appendix A.
+struct ProcessOptions {
+  double water_min_c = 27, water_max_c = 30;
+  double soak_min_s = 60, soak_max_s = 80;  // from laying the film until it lies flat again
+  double activator_g = 3.5;                 // per letter sheet
+  double activator_tolerance_g = 0.5;       // per letter sheet
+  double activator_wait_s = 30;
+  double speed_mm_per_min = 100;  // of the dip
+  double dwell_s = 10;            // at depth, at least
+  double lift_mm_per_min = 300;
+  double dry_min_h = 2, dry_max_h = 3;
+};
+
+enum class StageDriver { kZaber, kMarlin };
+enum class StageDown { kPlus, kMinus };
+
+// The linear stage that carries the object. Positions count as the stage counts them, from home.
+// The defaults are the paper's: Zaber A-LST0750B-E01, 750 mm, 6.35 mm of travel per turn of 12800
+// microsteps.
+struct StageOptions {
+  StageDriver driver = StageDriver::kZaber;
+  std::string port;  // "/dev/ttyUSB0"
+  int baud = 115200;
+  int address = 1;  // in a chain of Zaber devices
+  double microstep_um = 0.49609375;
+  double travel_mm = 750;             // 0: not checked
+  StageDown down = StageDown::kPlus;  // which way the object goes down
+  double lowest_mm = 0;      // position beyond which it never goes down; 0: the stage's own limit
+  double water_mm = 0;       // position where the object's lowest point meets the water; 0: unknown
+  double clearance_mm = 40;  // between object and water while people work
+  double approach_mm = 5;    // above the water, where the dip's constant speed begins
+  double travel_mm_per_min = 600;  // where no water is near
+};
+
 struct JobConfig {
   std::filesystem::path model;
   std::filesystem::path film_image;  // simulate: the image that was printed; may be empty
@@ -56,6 +90,8 @@ struct JobConfig {
   DipOptions dip;  // with the film's material
   InkOptions ink;
   PrintOptions print;
+  ProcessOptions process;
+  StageOptions stage;
   int preview_width_px = 1600;
   int threads = 0;  // 0: all cores
 };

@@ -251,6 +251,96 @@ std::vector<Parameter> print_records() {
   };
 }
 
+std::vector<Parameter> process_records() {
+  return {
+      number(
+          "process.water_min_c", "C", 0, 100, [](C& c) -> double& { return c.process.water_min_c; },
+          "coolest the water may be, through the whole process"),
+      number(
+          "process.water_max_c", "C", 0, 100, [](C& c) -> double& { return c.process.water_max_c; },
+          "warmest the water may be"),
+      number(
+          "process.soak_min_s", "s", 0, 3600, [](C& c) -> double& { return c.process.soak_min_s; },
+          "from laying the film on the water until it lies flat again, at least"),
+      number(
+          "process.soak_max_s", "s", 0, 3600, [](C& c) -> double& { return c.process.soak_max_s; },
+          "the same, at most"),
+      number(
+          "process.activator_g", "g", 0, 1000,
+          [](C& c) -> double& { return c.process.activator_g; },
+          "activator per letter sheet of film; scaled to the job's film"),
+      number(
+          "process.activator_tolerance_g", "g", 0, 1000,
+          [](C& c) -> double& { return c.process.activator_tolerance_g; },
+          "how far that may be off, per letter sheet"),
+      number(
+          "process.activator_wait_s", "s", 0, 3600,
+          [](C& c) -> double& { return c.process.activator_wait_s; },
+          "from spraying the activator to the dip"),
+      number(
+          "process.speed_mm_per_min", "mm/min", 1, 6000,
+          [](C& c) -> double& { return c.process.speed_mm_per_min; }, "speed of the dip"),
+      number(
+          "process.dwell_s", "s", 0, 3600, [](C& c) -> double& { return c.process.dwell_s; },
+          "how long the object stays down, at least"),
+      number(
+          "process.lift_mm_per_min", "mm/min", 1, 6000,
+          [](C& c) -> double& { return c.process.lift_mm_per_min; },
+          "speed of lifting the object out"),
+      number(
+          "process.dry_min_h", "h", 0, 1000, [](C& c) -> double& { return c.process.dry_min_h; },
+          "drying, at least"),
+      number(
+          "process.dry_max_h", "h", 0, 1000, [](C& c) -> double& { return c.process.dry_max_h; },
+          "drying, at most"),
+  };
+}
+
+std::vector<Parameter> stage_records() {
+  return {
+      choice<StageDriver>(
+          "stage.driver", {{"zaber", StageDriver::kZaber}, {"marlin", StageDriver::kMarlin}},
+          [](C& c) -> StageDriver& { return c.stage.driver; },
+          "what moves the object: a Zaber stage, or the Z axis of a printer with Marlin"),
+      text(
+          "stage.port", ParameterType::kText, [](C& c) -> std::string& { return c.stage.port; },
+          "serial port, as in /dev/ttyUSB0"),
+      integer(
+          "stage.baud", "", 1200, 1000000, [](C& c) -> int& { return c.stage.baud; },
+          "serial speed"),
+      integer(
+          "stage.address", "", 1, 99, [](C& c) -> int& { return c.stage.address; },
+          "number of the device in a chain of Zaber devices"),
+      number(
+          "stage.microstep_um", "um", 0.0001, 1000,
+          [](C& c) -> double& { return c.stage.microstep_um; },
+          "Zaber: travel per microstep, from the stage's data sheet"),
+      number(
+          "stage.travel_mm", "mm", 1, 5000, [](C& c) -> double& { return c.stage.travel_mm; },
+          "Zaber: length of travel from the data sheet, to check the stage by", "not checked"),
+      choice<StageDown>(
+          "stage.down", {{"plus", StageDown::kPlus}, {"minus", StageDown::kMinus}},
+          [](C& c) -> StageDown& { return c.stage.down; },
+          "the way the object goes down: plus is away from home on a Zaber stage"),
+      number(
+          "stage.lowest_mm", "mm", 0.001, 5000, [](C& c) -> double& { return c.stage.lowest_mm; },
+          "position beyond which it never goes down", "the stage's own limit"),
+      number(
+          "stage.water_mm", "mm", 0.001, 5000, [](C& c) -> double& { return c.stage.water_mm; },
+          "position at which the object's lowest point meets the water", "unknown"),
+      number(
+          "stage.clearance_mm", "mm", 1, 2000, [](C& c) -> double& { return c.stage.clearance_mm; },
+          "between object and water while people work"),
+      number(
+          "stage.approach_mm", "mm", 1, 500, [](C& c) -> double& { return c.stage.approach_mm; },
+          "above the water, where the dip's constant speed begins"),
+      number(
+          "stage.travel_mm_per_min", "mm/min", 1, 6000,
+          [](C& c) -> double& { return c.stage.travel_mm_per_min; },
+          "speed where no water is near"),
+  };
+}
+
 std::vector<Parameter> run_records() {
   return {
       integer(
@@ -268,7 +358,7 @@ const std::vector<Parameter>& parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list;
     for (auto table : {object_records, film_records, bath_records, dip_records, material_records,
-                       ink_records, print_records, run_records})
+                       ink_records, print_records, process_records, stage_records, run_records})
       for (Parameter& p : table()) list.push_back(std::move(p));
     return list;
   }();

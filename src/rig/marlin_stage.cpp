@@ -1,0 +1,253 @@
+// A printer's Z axis under Marlin. Source: https://marlinfw.org/docs/gcode/ (G1, G28, M92, M110,
+// M112, M114, M115, M211, M410) and "Host requirements": one command, one `ok`; lines carry a
+// number and the XOR of their bytes, so that a garbled one is asked for again.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "rig/stage.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr int kAttempts = 2;
+// Boards restart when their port is opened.
+constexpr double kStartTimeout_s = 10;
+// While it homes, Marlin says "busy" every two seconds.
+constexpr double kBusyTimeout_s = 5;
+
+std::string numbered(int number, const std::string& text) {
+  const std::string body = fmt::format("N{} {}", number, text);
+  unsigned sum = 0;
+  for (const char c : body) sum ^= static_cast<unsigned char>(c);
+  return fmt::format("{}*{}\n", body, sum);
+}
+
+// The number after `label` in `line`, from `begin` on.
+std::optional<double> number_after(const std::string& line, const std::string& label,
+                                   std::size_t begin = 0) {
+  const std::size_t at = line.find(label, begin);
+  if (at == std::string::npos) return {};
+  const char* first = line.data() + at + label.size();
+  while (first < line.data() + line.size() && *first == ' ') ++first;
+  double value = 0;
+  const auto [end, error] = std::from_chars(first, line.data() + line.size(), value);
+  if (error != std::errc()) return {};
+  return value;
+}
+
+class MarlinStage : public Stage {
+ public:
+  MarlinStage(Link& link, Clock& clock) : link_(link), clock_(clock), lines_(link, clock) {}
+
+  StageIdentity connect() override {
+    wait_for_start();
+    StageIdentity identity;
+    identity.name = firmware_name(exchange("M115"));
+    steps_per_mm_ = find_number("M92", "M92", " Z");
+    identity.step_mm = 1 / steps_per_mm_;
+    identity.min_mm = find_number("M211", "Min:", " Z");
+    identity.max_mm = find_number("M211", "Max:", " Z");
+    exchange("G21");
+    exchange("G90");
+    return identity;
+  }
+
+  StageState state() override {
+    if (halted_) return halted_state();
+    if (homing_) return homing_state();
+    const auto position = read_position();
+    StageState state;
+    state.homed = homed_;
+    const bool changed = position && std::abs(*position - position_mm_) > 0.5 / steps_per_mm_;
+    if (position) position_mm_ = *position;
+    state.position_mm = position_mm_;
+    const bool under_way = aimed_ && std::abs(*aimed_ - position_mm_) > 0.5 / steps_per_mm_;
+    state.moving = changed || under_way || !position;
+    return state;
+  }
+
+  void start_homing() override {
+    link_.send(numbered(next_line_++, "G28 Z"));
+    homing_ = true;
+    aimed_.reset();
+    heard_s_ = clock_.now_s();
+  }
+
+  void set_speed(double mm_per_min) override { speed_mm_per_min_ = mm_per_min; }
+
+  StageState aim(double position_mm) override {
+    if (halted_) return halted_state();
+    if (!aimed_ || *aimed_ != position_mm)
+      exchange(fmt::format("G1 Z{:.4f} F{:.2f}", position_mm, speed_mm_per_min_));
+    aimed_ = position_mm;
+    return state();
+  }
+
+  // Homing listens to nothing but the emergency stop.
+  void stop() override {
+    if (homing_) return halt();
+    if (halted_) return;
+    exchange("M410");
+    aimed_.reset();
+  }
+
+  void halt() override {
+    if (halted_) return;
+    link_.send("M112\n");
+    const double deadline_s = clock_.now_s() + kReplyTimeout_s;
+    while (const auto line = lines_.line(deadline_s))
+      if (is_halt(*line)) return set_halted();
+    throw LinkError("the printer did not confirm its emergency stop");
+  }
+
+ private:
+  // The lines before the `ok`. A repeated line is executed once: Marlin counts them.
+  std::vector<std::string> exchange(const std::string& text) {
+    int number = next_line_++;
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      link_.send(numbered(number, text));
+      const double deadline_s = clock_.now_s() + kReplyTimeout_s / kAttempts;
+      std::vector<std::string> answer;
+      bool repeat = false, executed = false;
+      while (const auto line = lines_.line(deadline_s)) {
+        if (line->starts_with("ok")) {
+          if (!repeat) return answer;
+          break;
+        }
+        if (const auto wanted = number_after(*line, "Resend:")) {
+          executed = *wanted == number + 1;
+          repeat = !executed;
+          if (repeat) renumber(number, static_cast<int>(*wanted));
+          continue;
+        }
+        refuse_errors(*line);
+        answer.push_back(*line);
+      }
+      if (executed) return answer;
+    }
+    throw LinkError(fmt::format(
+        "the printer did not answer '{}' within {:g} s: check cable, power and stage.baud", text,
+        kReplyTimeout_s));
+  }
+
+  // An earlier line was lost for good: the printer still waits for its number.
+  void renumber(int& number, int wanted) {
+    number = wanted;
+    next_line_ = wanted + 1;
+  }
+
+  static bool is_halt(const std::string& line) {
+    return line.find("halted") != std::string::npos || line.find("kill()") != std::string::npos;
+  }
+
+  void set_halted() {
+    halted_ = true;
+    homed_ = homing_ = false;
+  }
+
+  void refuse_errors(const std::string& line) {
+    if (is_halt(line)) {
+      set_halted();
+      throw StageError("the printer has halted itself (" + line + "): reset it");
+    }
+    const bool asks_again =
+        line.find("checksum") != std::string::npos || line.find("Line Number") != std::string::npos;
+    if (line.starts_with("Error:") && !asks_again) throw StageError("the printer reports: " + line);
+  }
+
+  void wait_for_start() {
+    const double deadline_s = clock_.now_s() + kStartTimeout_s;
+    for (;;) {
+      lines_.clear();
+      next_line_ = 0;
+      try {
+        exchange("M110 N0");
+        return;
+      } catch (const LinkError&) {
+        if (clock_.now_s() >= deadline_s) throw;
+        clock_.sleep(1);
+      }
+    }
+  }
+
+  static std::string firmware_name(const std::vector<std::string>& answer) {
+    const std::string label = "FIRMWARE_NAME:";
+    for (const std::string& line : answer) {
+      const std::size_t at = line.find(label);
+      if (at == std::string::npos) continue;
+      const std::string name = line.substr(at + label.size());
+      return name.substr(0, name.find(" SOURCE_CODE"));
+    }
+    return "printer of unknown make";
+  }
+
+  // Of the answer's line with `mark`, the number that follows `label` after it.
+  double find_number(const std::string& command, const std::string& mark,
+                     const std::string& label) {
+    for (int attempt = 0; attempt < 3; ++attempt)
+      for (const std::string& line : exchange(command)) {
+        const std::size_t at = line.find(mark);
+        if (at == std::string::npos) continue;
+        if (const auto value = number_after(line, label, at)) return *value;
+      }
+    throw StageError(fmt::format(
+        "the printer's answer to {} does not say its Z axis' values: is its firmware Marlin 2?",
+        command));
+  }
+
+  // The steppers' own count: the other figures of M114 tell where the last command leads.
+  std::optional<double> read_position() {
+    for (const std::string& line : exchange("M114")) {
+      const std::size_t count = line.find("Count");
+      if (count == std::string::npos) continue;
+      if (const auto steps = number_after(line, "Z:", count)) return *steps / steps_per_mm_;
+    }
+    return {};
+  }
+
+  StageState homing_state() {
+    while (const auto line = lines_.line(clock_.now_s() + 0.05)) {
+      refuse_errors(*line);
+      heard_s_ = clock_.now_s();
+      if (!line->starts_with("ok")) continue;
+      homing_ = false;
+      homed_ = true;
+      return state();
+    }
+    if (clock_.now_s() - heard_s_ > kBusyTimeout_s)
+      throw LinkError("the printer fell silent while homing");
+    StageState state;
+    state.position_mm = position_mm_;
+    state.moving = true;
+    return state;
+  }
+
+  StageState halted_state() const {
+    StageState state;
+    state.position_mm = position_mm_;
+    state.fault = "the printer is halted: reset it";
+    return state;
+  }
+
+  Link& link_;
+  Clock& clock_;
+  LineReader lines_;
+  int next_line_ = 0;
+  double steps_per_mm_ = 1;
+  double speed_mm_per_min_ = 60;
+  double position_mm_ = 0;
+  std::optional<double> aimed_;  // where the commands lead; unknown after a stop
+  bool homing_ = false, homed_ = false, halted_ = false;
+  double heard_s_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> marlin_stage(Link& link, Clock& clock) {
+  return std::make_unique<MarlinStage>(link, clock);
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,231 @@
+#include "rig/mover.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace hydrodip {
+namespace {
+
+constexpr double kCycle_s = 0.08;
+constexpr double kRestPoll_s = 0.05;
+// How long stopping is tried before it counts as not confirmed.
+constexpr double kRestTimeout_s = 3;
+constexpr double kHomingTimeout_s = 300;
+// Short leashes still span a few steps.
+constexpr double kLeashSteps = 8;
+// A stage that is this far behind has lost steps, or is not the stage that it says it is.
+constexpr double kLag_mm = 1, kLag_s = 0.6;
+
+// The stop of a movement that was under way: why, and how it ended.
+std::string with_rest(const std::string& phase, const std::string& why, const Rest& rest) {
+  return fmt::format("{}: {}. {}", phase, why, rest.sentence());
+}
+
+}  // namespace
+
+std::string Rest::sentence() const {
+  if (confirmed) return fmt::format("The stage stands still at {:.3f} mm.", position_mm);
+  if (homing)
+    return "Whether the stage stands still is not known: it may still be homing. Keep clear, or "
+           "take its power away.";
+  return fmt::format(
+      "The stage could not be asked; it was last seen at {:.3f} mm and ends by itself at {:.3f} mm "
+      "at the latest. Look before you touch it.",
+      position_mm, farthest_mm);
+}
+
+// One movement from the place where the stage stands.
+struct Mover::Way {
+  std::string phase;
+  double start_mm = 0, end_mm = 0;
+  double mm_per_s = 0;
+  double step_mm = 0;
+  bool steady = false;
+
+  double direction() const { return end_mm >= start_mm ? 1 : -1; }
+  double leash_mm() const { return std::max(mm_per_s * kLeash_s, kLeashSteps * step_mm); }
+  double leash_end_mm(double position_mm) const {
+    const double ahead = position_mm + direction() * leash_mm();
+    return direction() > 0 ? std::min(ahead, end_mm) : std::max(ahead, end_mm);
+  }
+  double commanded_mm(double elapsed_s) const {
+    return start_mm + direction() * std::min(mm_per_s * elapsed_s, std::abs(end_mm - start_mm));
+  }
+};
+
+Mover::Mover(Stage& stage, Clock& clock, RunContext& context)
+    : stage_(stage), clock_(clock), context_(context), identity_(stage.connect()) {
+  context.expect_second_cancel();
+}
+
+StageState Mover::state() { return stage_.state(); }
+
+void Mover::home() {
+  require_permission();
+  guarded("homing", true, [&] {
+    const StageState before = stage_.state();
+    if (!before.fault.empty()) throw StageError(before.fault);
+    stage_.start_homing();
+    const double deadline_s = clock_.now_s() + kHomingTimeout_s;
+    for (;;) {
+      clock_.sleep(kCycle_s);
+      cancel_point();
+      const StageState state = stage_.state();
+      last_position_mm_ = state.position_mm;
+      record("homing", state.position_mm, state.position_mm);
+      if (!state.fault.empty()) throw StageError(state.fault);
+      if (!state.moving && state.homed) return;
+      if (!state.moving) throw StageError("the stage stopped before it reached its home");
+      if (clock_.now_s() > deadline_s) throw StageError("the stage does not find its home");
+    }
+  });
+}
+
+void Mover::move_to(const std::string& phase, double position_mm, double mm_per_min, bool steady) {
+  require_permission();
+  require_within_limits(position_mm);
+  guarded(phase, false, [&] {
+    cancel_point();
+    const StageState state = stage_.state();
+    if (!state.fault.empty()) throw StageError(state.fault);
+    if (!state.homed) throw StageError("the stage is not homed, so it does not know where it is");
+    if (state.moving) throw StageError("the stage is moving already");
+    stage_.set_speed(mm_per_min);
+    follow({phase, state.position_mm, position_mm, mm_per_min / 60, identity_.step_mm, steady});
+  });
+}
+
+void Mover::follow(const Way& way) {
+  double position_mm = way.start_mm;
+  last_position_mm_ = leash_end_mm_ = position_mm;
+  const double start_s = clock_.now_s();
+  record(way.phase, way.start_mm, position_mm);
+  for (;;) {
+    cancel_point();
+    const double leash_end_mm = way.leash_end_mm(position_mm);
+    leash_end_mm_ = leash_end_mm;
+    const StageState state = stage_.aim(leash_end_mm);
+    position_mm = last_position_mm_ = state.position_mm;
+    const double elapsed_s = clock_.now_s() - start_s;
+    record(way.phase, way.commanded_mm(elapsed_s), position_mm);
+    check(state, way, elapsed_s, leash_end_mm);
+    if (!state.moving && leash_end_mm == way.end_mm) return;
+    clock_.sleep(kCycle_s);
+  }
+}
+
+void Mover::check(const StageState& state, const Way& way, double elapsed_s,
+                  double leash_end_mm) const {
+  if (!state.fault.empty()) throw StageError(state.fault);
+  if (!state.homed) throw StageError("the stage has forgotten its home: was its power cut?");
+  const double lag_mm = way.direction() * (way.commanded_mm(elapsed_s) - state.position_mm);
+  if (lag_mm > kLag_mm + kLag_s * way.mm_per_s || lag_mm < -kLag_mm - kLag_s * way.mm_per_s) {
+    if (way.steady || !state.moving)
+      throw StageError(
+          fmt::format("the stage is {:.2f} mm {} its place: it slipped, or its answers "
+                      "come too slowly",
+                      std::abs(lag_mm), lag_mm > 0 ? "behind" : "ahead of"));
+  }
+  if (state.moving || leash_end_mm == way.end_mm) {
+    const bool arrived = !state.moving;
+    if (arrived && std::abs(state.position_mm - way.end_mm) > way.step_mm)
+      throw StageError(fmt::format("the stage stopped {:.3f} mm before its goal",
+                                   std::abs(state.position_mm - way.end_mm)));
+    return;
+  }
+  if (way.steady && elapsed_s > kLeash_s)
+    throw StageError(
+        "the stage had to wait, for the computer or the link was too slow to keep the speed");
+}
+
+void Mover::dwell(const std::string& phase, double seconds) {
+  guarded(phase, false, [&] {
+    const double end_s = clock_.now_s() + seconds;
+    const double place_mm = last_position_mm_;
+    leash_end_mm_ = place_mm;
+    for (;;) {
+      cancel_point();
+      const StageState state = stage_.state();
+      record(phase, place_mm, state.position_mm);
+      if (!state.fault.empty()) throw StageError(state.fault);
+      const double left_s = end_s - clock_.now_s();
+      if (left_s <= 0) return;
+      clock_.sleep(std::min(left_s, 0.5));
+    }
+  });
+}
+
+void Mover::require_permission() const {
+  if (!allowed_) throw std::logic_error("a stage was to move without permission");
+}
+
+void Mover::require_within_limits(double position_mm) const {
+  const double slack_mm = identity_.step_mm;
+  if (position_mm >= identity_.min_mm - slack_mm && position_mm <= identity_.max_mm + slack_mm)
+    return;
+  throw StageError(fmt::format(
+      "{:.2f} mm is beyond the stage's travel of {:.2f} to {:.2f} mm: hang the object higher or "
+      "lower, or dip less of it",
+      position_mm, identity_.min_mm, identity_.max_mm));
+}
+
+void Mover::cancel_point() const {
+  if (context_.cancelled()) throw Cancelled();
+}
+
+void Mover::guarded(const std::string& phase, bool homing, const std::function<void()>& movement) {
+  last_rest_.reset();
+  try {
+    movement();
+  } catch (const Cancelled&) {
+    last_rest_ = bring_to_rest(homing);
+    throw Cancelled(with_rest(phase, "stopped by you", *last_rest_));
+  } catch (const LinkError& error) {
+    last_rest_ = bring_to_rest(homing);
+    throw LinkError(with_rest(phase, error.what(), *last_rest_));
+  } catch (const StageError& error) {
+    last_rest_ = bring_to_rest(homing);
+    throw StageError(with_rest(phase, error.what(), *last_rest_));
+  }
+}
+
+// Nothing here may throw or give up early: it is the way out of everything else.
+Rest Mover::bring_to_rest(bool homing) {
+  Rest rest{false, last_position_mm_, leash_end_mm_, homing};
+  const double deadline_s = clock_.now_s() + kRestTimeout_s;
+  bool stopped = false, halted = false;
+  while (clock_.now_s() < deadline_s) {
+    try {
+      const bool urgent = context_.cancel_requests() > 1;
+      if (urgent && !halted) {
+        stage_.halt();
+        stopped = halted = true;
+      } else if (!stopped) {
+        stage_.stop();
+        stopped = true;
+      }
+      const StageState state = stage_.state();
+      rest.position_mm = last_position_mm_ = state.position_mm;
+      if (!state.moving) {
+        rest.confirmed = true;
+        return rest;
+      }
+    } catch (const StageError&) {
+      stopped = halted = false;  // again
+    }
+    clock_.sleep(kRestPoll_s);
+  }
+  return rest;
+}
+
+void Mover::record(const std::string& phase, double commanded_mm, double reported_mm) {
+  const double now_s = clock_.now_s();
+  if (!trace_start_s_) trace_start_s_ = now_s;
+  trace_.push_back({phase, now_s - *trace_start_s_, commanded_mm, reported_mm});
+  if (sink_) sink_(trace_.back());
+}
+
+}  // namespace hydrodip

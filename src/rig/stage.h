@@ -1,0 +1,51 @@
+// A linear stage, whoever built it. Positions are mm as the stage counts them.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "job/config.h"
+#include "rig/link.h"
+
+namespace hydrodip {
+
+struct StageIdentity {
+  std::string name;  // "Zaber device 50081, firmware 6.14"
+  double min_mm = 0, max_mm = 0;
+  double step_mm = 0;  // smallest movement
+};
+
+struct StageState {
+  double position_mm = 0;
+  bool moving = false;
+  bool homed = false;
+  std::string flag;   // as the stage says it: "WR"; "" for none
+  std::string fault;  // why the stage must not go on, in words; "" for none
+};
+
+// Every call throws LinkError when the stage does not answer in time and StageError when it
+// refuses. Nothing waits for a movement to end.
+class Stage {
+ public:
+  virtual ~Stage() = default;
+  // Finds the stage and learns what it is. Call it first.
+  virtual StageIdentity connect() = 0;
+  virtual StageState state() = 0;
+  virtual void start_homing() = 0;
+  // Of the movements that are started from here on.
+  virtual void set_speed(double mm_per_min) = 0;
+  // Goes there and stops. On the way it may be called again with a place further on: the stage
+  // then passes the old one without slowing down. Returns the state at that moment.
+  virtual StageState aim(double position_mm) = 0;
+  virtual void stop() = 0;  // slowing down
+  virtual void halt() = 0;  // at once, whatever it costs
+};
+
+// The longest that a command may go unanswered, all repetitions included.
+inline constexpr double kReplyTimeout_s = 0.3;
+
+std::unique_ptr<Stage> zaber_stage(Link& link, Clock& clock, const StageOptions& options);
+std::unique_ptr<Stage> marlin_stage(Link& link, Clock& clock);
+std::unique_ptr<Stage> make_stage(Link& link, Clock& clock, const StageOptions& options);
+
+}  // namespace hydrodip

@@ -1,0 +1,157 @@
+#include "emulator.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <pty.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <stdexcept>
+
+namespace hydrodip {
+namespace {
+
+constexpr double kTick_s = 1e-3;
+
+}  // namespace
+
+Emulator::Emulator(unsigned seed) : random_(seed) {
+  std::array<char, 128> name;
+  termios raw{};
+  ::cfmakeraw(&raw);
+  raw.c_cflag |= CS8 | CREAD;
+  if (::openpty(&master_, &slave_, name.data(), &raw, nullptr) != 0)
+    throw std::runtime_error("no pseudo-terminal");
+  ::fcntl(master_, F_SETFL, O_NONBLOCK);
+  port_ = name.data();
+}
+
+Emulator::~Emulator() { unplug(); }
+
+void Emulator::advance(double now_s) {
+  read_wire();
+  while (now_s_ + kTick_s / 2 < now_s) {
+    now_s_ += kTick_s;
+    strike();
+    axis_.step(kTick_s);
+    if (homing_ && !axis_.moving()) {
+      homing_ = false;
+      homed_ = true;
+    }
+    tick();
+    watch();
+  }
+  deliver();
+}
+
+void Emulator::read_wire() {
+  std::array<char, 512> buffer;
+  while (master_ >= 0) {
+    const ssize_t got = ::read(master_, buffer.data(), buffer.size());
+    if (got <= 0) return;
+    bytes_read_ += static_cast<std::size_t>(got);
+    if (strength(FaultKind::kSilence) > 0) continue;
+    for (ssize_t i = 0; i < got; ++i) {
+      const char c = buffer[static_cast<std::size_t>(i)];
+      if (!ends_line(c)) {
+        line_ += c;
+        continue;
+      }
+      if (line_.empty()) continue;
+      if (chance(strength(FaultKind::kGarbleCommands))) garble(line_);
+      const std::string line = line_;
+      line_.clear();
+      handle(line);
+    }
+  }
+}
+
+void Emulator::reply(const std::string& line) {
+  std::string bytes = line;
+  if (chance(strength(FaultKind::kGarbleReplies))) garble(bytes);
+  outgoing_.push_back({now_s_ + 0.002 + strength(FaultKind::kSlowReplies), bytes + "\r\n"});
+}
+
+double Emulator::strength(FaultKind kind) const {
+  double strongest = 0;
+  for (const Fault& fault : faults_)
+    if (fault.kind == kind && active(fault)) strongest = std::max(strongest, fault.value);
+  return strongest;
+}
+
+bool Emulator::chance(double probability) {
+  return probability > 0 && std::uniform_real_distribution<double>(0, 1)(random_) < probability;
+}
+
+void Emulator::garble(std::string& bytes) {
+  std::uniform_int_distribution<std::size_t> place(0, bytes.size() - 1);
+  std::uniform_int_distribution<int> bit(0, 6);
+  for (int i = 0; i < 2; ++i) {
+    char& c = bytes[place(random_)];
+    c = static_cast<char>(c ^ (1 << bit(random_)));
+  }
+}
+
+void Emulator::strike() {
+  struck_.resize(faults_.size(), false);
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    if (struck_[i] || !active(faults_[i])) continue;
+    struck_[i] = true;
+    if (faults_[i].kind == FaultKind::kStall) on_stall();
+    if (faults_[i].kind == FaultKind::kOverheat) on_overheat();
+    if (faults_[i].kind == FaultKind::kPowerCut) on_power_cut();
+    if (faults_[i].kind == FaultKind::kUnplug) unplug();
+  }
+}
+
+void Emulator::on_power_cut() {
+  axis_.halt();
+  homed_ = homing_ = false;
+}
+
+void Emulator::unplug() {
+  for (int* descriptor : {&master_, &slave_}) {
+    if (*descriptor >= 0) ::close(*descriptor);
+    *descriptor = -1;
+  }
+}
+
+void Emulator::deliver() {
+  while (!outgoing_.empty() && outgoing_.front().due_s <= now_s_) {
+    const std::string& bytes = outgoing_.front().bytes;
+    if (master_ >= 0 && !(strength(FaultKind::kSilence) > 0)) {
+      const ssize_t sent = ::write(master_, bytes.data(), bytes.size());
+      if (sent > 0) bytes_written_ += static_cast<std::size_t>(sent);
+    }
+    outgoing_.pop_front();
+  }
+}
+
+void Emulator::begin_homing() {
+  homing_ = true;
+  axis_.target = 0;
+}
+
+void Emulator::stop_due(double at_s) {
+  if (!due_s_ || at_s < *due_s_) due_s_ = at_s;
+}
+
+void Emulator::watch() {
+  if (due_s_ && now_s_ > *due_s_ && moving() && !disobeyed_s_) disobeyed_s_ = now_s_;
+  if (moving()) history_.push_back({now_s_, position_mm()});
+}
+
+double Emulator::measured_speed_mm_per_min(double from_mm, double to_mm) const {
+  std::optional<double> begin_s;
+  double speed = 0;
+  for (std::size_t i = 1; i < history_.size(); ++i) {
+    const double before = history_[i - 1].mm, after = history_[i].mm;
+    if (before < from_mm && after >= from_mm) begin_s = history_[i].time_s;
+    if (begin_s && before < to_mm && after >= to_mm)
+      speed = 60 * (to_mm - from_mm) / (history_[i].time_s - *begin_s);
+  }
+  return speed;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,125 @@
+// A machine at the other end of a pseudo-terminal, with faults on demand. It lives in the time that
+// it is told (advance), so that a test runs a dip in a moment and a person in real time.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "axis.h"
+
+namespace hydrodip {
+
+enum class FaultKind {
+  kGarbleReplies,   // value: probability per reply
+  kGarbleCommands,  // value: probability per command
+  kSlowReplies,     // value: delay in s
+  kSilence,         // the cable carries nothing any more
+  kUnplug,          // the port vanishes
+  kStall,           // the motor is blocked, and the machine notices
+  kOverheat,        // a warning flag, though the motor runs on
+  kPowerCut,        // off and on again: home is forgotten
+};
+
+struct Fault {
+  FaultKind kind;
+  double at_s = 0;
+  double value = 0;
+  double lasts_s = 1e9;
+};
+
+class Emulator {
+ public:
+  explicit Emulator(unsigned seed);
+  virtual ~Emulator();
+  Emulator(const Emulator&) = delete;
+  Emulator& operator=(const Emulator&) = delete;
+
+  const std::string& port() const { return port_; }
+  int descriptor() const { return master_; }
+  void add(const Fault& fault) { faults_.push_back(fault); }
+
+  // Lets the machine live until then, in steps of a millisecond.
+  void advance(double now_s);
+  double now_s() const { return now_s_; }
+
+  // Bytes taken from and put on the wire, so far.
+  std::size_t bytes_read() const { return bytes_read_; }
+  std::size_t bytes_written() const { return bytes_written_; }
+  void read_wire();
+
+  // The machine must stand still from then on; the first such time counts.
+  void stop_due(double at_s);
+  // When it moved although it should not have; nothing: never.
+  std::optional<double> disobeyed_s() const { return disobeyed_s_; }
+  // A movement other than homing was begun without a home.
+  bool moved_unhomed() const { return moved_unhomed_; }
+
+  bool moving() const { return axis_.moving(); }
+  bool homing() const { return homing_; }
+  bool homed() const { return homed_; }
+  double position_mm() const { return axis_.position * step_mm_; }
+  // Mean speed between two places during the last passage down, mm/min; for the test of constancy.
+  double measured_speed_mm_per_min(double from_mm, double to_mm) const;
+  bool unplugged() const { return master_ < 0; }
+
+ protected:
+  virtual void handle(const std::string& line) = 0;
+  virtual void tick() {}
+  virtual void on_stall() = 0;
+  virtual void on_overheat() = 0;
+  virtual void on_power_cut();
+  virtual bool ends_line(char c) const { return c == '\r' || c == '\n'; }
+
+  void reply(const std::string& line);
+  void begin_homing();
+
+  Axis axis_;  // in steps
+  double step_mm_ = 1;
+  bool homed_ = false, homing_ = false;
+  double now_s_ = 0;
+  bool moved_unhomed_ = false;
+  std::mt19937 random_;
+
+ private:
+  struct Outgoing {
+    double due_s;
+    std::string bytes;
+  };
+
+  bool active(const Fault& fault) const {
+    return now_s_ >= fault.at_s && now_s_ < fault.at_s + fault.lasts_s;
+  }
+  double strength(FaultKind kind) const;
+  bool chance(double probability);
+  void garble(std::string& bytes);
+  void strike();
+  void unplug();
+  void deliver();
+  void watch();
+
+  int master_ = -1;
+  int slave_ = -1;  // kept open, so that the port outlives those who open it
+  std::string port_;
+  std::string line_;
+  std::vector<Fault> faults_;
+  std::vector<bool> struck_;
+  std::deque<Outgoing> outgoing_;
+  std::size_t bytes_read_ = 0, bytes_written_ = 0;
+  std::optional<double> due_s_, disobeyed_s_;
+  struct Place {
+    double time_s, mm;
+  };
+  std::vector<Place> history_;
+};
+
+// Zaber A-LST0750B-E01 as the ASCII protocol manual describes it.
+std::unique_ptr<Emulator> zaber_emulator(unsigned seed = 1, bool homed = false);
+// A printer under Marlin 2 with 200 mm of Z.
+std::unique_ptr<Emulator> marlin_emulator(unsigned seed = 1);
+
+}  // namespace hydrodip

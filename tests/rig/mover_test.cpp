@@ -1,0 +1,147 @@
+#include "rig/mover.h"
+
+#include <gtest/gtest.h>
+
+#include "session.h"
+
+namespace hydrodip {
+namespace {
+
+class BothMachines : public ::testing::TestWithParam<Machine> {
+ protected:
+  double step_mm() const { return GetParam() == Machine::kZaber ? 0.00049609375 : 0.0025; }
+};
+
+INSTANTIATE_TEST_SUITE_P(Mover, BothMachines, ::testing::Values(Machine::kZaber, Machine::kMarlin),
+                         [](const auto& info) {
+                           return info.param == Machine::kZaber ? "Zaber" : "Marlin";
+                         });
+
+TEST_P(BothMachines, DipIsExactInSpeedAndDepth) {
+  VirtualBench bench(GetParam());
+  Mover mover(*bench.stage, bench.clock, bench.context);
+  mover.allow_motion();
+  mover.home();
+  mover.move_to("approach", 15, 600, false);
+  mover.move_to("dip", 47.3, 100, true);
+  EXPECT_NEAR(bench.emulator->position_mm(), 47.3, step_mm());
+  EXPECT_FALSE(bench.emulator->moving());
+  // As the machine itself moved, whatever it reported.
+  EXPECT_NEAR(bench.emulator->measured_speed_mm_per_min(16, 46), 100, 1);
+  for (double from = 16; from < 45; from += 2)
+    EXPECT_NEAR(bench.emulator->measured_speed_mm_per_min(from, from + 2), 100, 1);
+  const auto speed = check_speed(mover.trace(), "dip", 100);
+  ASSERT_TRUE(speed);
+  EXPECT_LT(std::abs(speed->error_percent()), 1);
+}
+
+TEST_P(BothMachines, NothingMovesWithoutPermissionOrHome) {
+  VirtualBench bench(GetParam());
+  const double place_mm = bench.emulator->position_mm();
+  Mover mover(*bench.stage, bench.clock, bench.context);
+  EXPECT_THROW(mover.home(), std::logic_error);
+  EXPECT_THROW(mover.move_to("dip", 10, 100, true), std::logic_error);
+  mover.allow_motion();
+  EXPECT_THROW(mover.move_to("dip", 10, 100, true), StageError);
+  EXPECT_EQ(bench.emulator->position_mm(), place_mm);
+  EXPECT_FALSE(bench.emulator->moved_unhomed());
+}
+
+TEST_P(BothMachines, StaysWithinItsTravel) {
+  VirtualBench bench(GetParam());
+  Mover mover(*bench.stage, bench.clock, bench.context);
+  mover.allow_motion();
+  mover.home();
+  EXPECT_THROW(mover.move_to("dip", mover.identity().max_mm + 1, 100, true), StageError);
+  EXPECT_THROW(mover.move_to("dip", -1, 100, true), StageError);
+  EXPECT_EQ(bench.emulator->position_mm(), 0);
+}
+
+// Ctrl-C in mid-dip: stands within the promised time, and far before the goal.
+TEST_P(BothMachines, CtrlCStops) {
+  for (const int presses : {1, 2}) {
+    VirtualBench bench(GetParam());
+    for (int i = 0; i < presses; ++i)
+      bench.clock.at(22 + 0.01 * i, [&] {
+        bench.context.cancel();
+        bench.emulator->stop_due(bench.clock.now_s() + 0.4);
+      });
+    const ShortDip dip{20, 180, 60};
+    const Outcome outcome = run_dip(bench, dip);
+    EXPECT_FALSE(outcome.finished);
+    ASSERT_TRUE(outcome.rest);
+    EXPECT_TRUE(outcome.rest->confirmed);
+    EXPECT_EQ(broken_promise(bench, outcome, dip), "");
+    EXPECT_LT(bench.emulator->position_mm(), 60);
+  }
+}
+
+struct Case {
+  FaultKind kind;
+  double value;
+  bool confirmed;  // the stage can still be asked after
+};
+
+TEST_P(BothMachines, EveryFaultInMidDipEndsInAStoppedStageAndAClearMessage) {
+  const std::vector<Case> cases = {
+      {FaultKind::kGarbleReplies, 1, false}, {FaultKind::kGarbleCommands, 1, false},
+      {FaultKind::kSlowReplies, 1.0, false}, {FaultKind::kSilence, 1, false},
+      {FaultKind::kUnplug, 1, false},        {FaultKind::kStall, 1, true},
+      {FaultKind::kOverheat, 1, true}};
+  for (const Case& fault : cases) {
+    SCOPED_TRACE(static_cast<int>(fault.kind));
+    VirtualBench bench(GetParam());
+    const ShortDip dip{20, 180, 60};
+    bench.emulator->add({fault.kind, 40, fault.value});
+    bench.clock.at(40, [&] { bench.emulator->stop_due(40 + kLongestStop_s); });
+    const Outcome outcome = run_dip(bench, dip);
+    EXPECT_FALSE(outcome.finished);
+    EXPECT_EQ(broken_promise(bench, outcome, dip), "") << outcome.message;
+    ASSERT_TRUE(outcome.rest);
+    EXPECT_EQ(outcome.rest->confirmed, fault.confirmed) << outcome.message;
+    EXPECT_EQ(outcome.message.substr(0, 5), "dip: ") << outcome.message;
+    EXPECT_LT(bench.emulator->position_mm(), 60);
+  }
+}
+
+TEST_P(BothMachines, AFewGarbledBytesDoNoHarm) {
+  VirtualBench bench(GetParam(), 7);
+  bench.emulator->add({FaultKind::kGarbleReplies, 0, 0.01});
+  bench.emulator->add({FaultKind::kGarbleCommands, 0, 0.01});
+  const ShortDip dip;
+  const Outcome outcome = run_dip(bench, dip);
+  EXPECT_TRUE(outcome.finished) << outcome.message;
+  EXPECT_EQ(broken_promise(bench, outcome, dip), "");
+}
+
+TEST(ZaberStage, RefusesAStageWithAnotherScrew) {
+  VirtualBench bench(Machine::kZaber);
+  bench.options.microstep_um = 0.1984375;
+  const auto stage = make_stage(bench.link, bench.clock, bench.options);
+  EXPECT_THROW(stage->connect(), StageError);
+}
+
+TEST(ZaberStage, OverheatedBeforeTheStartMovesNothing) {
+  VirtualBench bench(Machine::kZaber);
+  bench.emulator->add({FaultKind::kOverheat, 0, 1});
+  bench.clock.sleep(0.1);
+  const double place_mm = bench.emulator->position_mm();
+  const Outcome outcome = run_dip(bench, {});
+  EXPECT_NE(outcome.message.find("too hot"), std::string::npos) << outcome.message;
+  EXPECT_EQ(bench.emulator->position_mm(), place_mm);
+}
+
+TEST_P(BothMachines, FiftyRandomFaultSequencesLeaveNothingMoving) {
+  int finished = 0;
+  for (unsigned seed = 1; seed <= 25; ++seed) {
+    std::string story;
+    EXPECT_EQ(random_faults(GetParam(), seed, story), "") << story;
+    finished += story.ends_with("finished") ? 1 : 0;
+  }
+  // Some faults must come too late or too weak to matter, or the draw tests only one thing.
+  EXPECT_GT(finished, 0);
+  EXPECT_LT(finished, 25);
+}
+
+}  // namespace
+}  // namespace hydrodip
