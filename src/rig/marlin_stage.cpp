@@ -12,7 +12,8 @@
 namespace hydrodip {
 namespace {
 
-constexpr int kAttempts = 2;
+constexpr int kAttempts = 3;
+constexpr int kMostLinesLost = 2;
 // Boards restart when their port is opened.
 constexpr double kStartTimeout_s = 10;
 // While it homes, Marlin says "busy" every two seconds.
@@ -52,6 +53,7 @@ class MarlinStage : public Stage {
     identity.max_mm = find_number("M211", "Max:", " Z");
     exchange("G21");
     exchange("G90");
+    connected_ = true;
     return identity;
   }
 
@@ -78,13 +80,14 @@ class MarlinStage : public Stage {
 
   void set_speed(double mm_per_min) override { speed_mm_per_min_ = mm_per_min; }
 
-  StageState aim(double position_mm) override {
-    if (halted_) return halted_state();
+  void aim(double position_mm) override {
+    if (halted_) throw StageError(halted_state().fault);
     if (!aimed_ || *aimed_ != position_mm)
       exchange(fmt::format("G1 Z{:.4f} F{:.2f}", position_mm, speed_mm_per_min_));
     aimed_ = position_mm;
-    return state();
   }
+
+  void acknowledge() override {}
 
   // Homing listens to nothing but the emergency stop.
   void stop() override {
@@ -135,6 +138,7 @@ class MarlinStage : public Stage {
 
   // An earlier line was lost for good: the printer still waits for its number.
   void renumber(int& number, int wanted) {
+    if (number - wanted > kMostLinesLost || number < wanted) set_restarted();
     number = wanted;
     next_line_ = wanted + 1;
   }
@@ -148,13 +152,19 @@ class MarlinStage : public Stage {
     homed_ = homing_ = false;
   }
 
+  [[noreturn]] void set_restarted() {
+    homed_ = homing_ = false;
+    throw StageError("the printer has started anew and forgotten its home: was its power cut?");
+  }
+
   void refuse_errors(const std::string& line) {
+    if (line == "start" && connected_) set_restarted();
     if (is_halt(line)) {
       set_halted();
       throw StageError("the printer has halted itself (" + line + "): reset it");
     }
     const bool asks_again =
-        line.find("checksum") != std::string::npos || line.find("Line Number") != std::string::npos;
+        line.find("hecksum") != std::string::npos || line.find("Line Number") != std::string::npos;
     if (line.starts_with("Error:") && !asks_again) throw StageError("the printer reports: " + line);
   }
 
@@ -228,6 +238,7 @@ class MarlinStage : public Stage {
   StageState halted_state() const {
     StageState state;
     state.position_mm = position_mm_;
+    state.position_known = false;
     state.fault = "the printer is halted: reset it";
     return state;
   }
@@ -240,7 +251,7 @@ class MarlinStage : public Stage {
   double speed_mm_per_min_ = 60;
   double position_mm_ = 0;
   std::optional<double> aimed_;  // where the commands lead; unknown after a stop
-  bool homing_ = false, homed_ = false, halted_ = false;
+  bool connected_ = false, homing_ = false, homed_ = false, halted_ = false;
   double heard_s_ = 0;
 };
 

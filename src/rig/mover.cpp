@@ -12,7 +12,8 @@ namespace {
 constexpr double kCycle_s = 0.08;
 constexpr double kRestPoll_s = 0.05;
 // How long stopping is tried before it counts as not confirmed.
-constexpr double kRestTimeout_s = 3;
+constexpr double kRestTimeout_s = 4;
+constexpr double kOldAnswers_s = 3;
 constexpr double kHomingTimeout_s = 300;
 // Short leashes still span a few steps.
 constexpr double kLeashSteps = 8;
@@ -27,6 +28,10 @@ std::string with_rest(const std::string& phase, const std::string& why, const Re
 }  // namespace
 
 std::string Rest::sentence() const {
+  if (confirmed && !place_known)
+    return fmt::format(
+        "The stage stands still, somewhere near {:.1f} mm: home it before anything else.",
+        position_mm);
   if (confirmed) return fmt::format("The stage stands still at {:.3f} mm.", position_mm);
   if (homing)
     return "Whether the stage stands still is not known: it may still be homing. Keep clear, or "
@@ -66,6 +71,7 @@ StageState Mover::state() { return stage_.state(); }
 void Mover::home() {
   require_permission();
   guarded("homing", true, [&] {
+    stage_.acknowledge();
     const StageState before = stage_.state();
     if (!before.fault.empty()) throw StageError(before.fault);
     stage_.start_homing();
@@ -99,46 +105,45 @@ void Mover::move_to(const std::string& phase, double position_mm, double mm_per_
 }
 
 void Mover::follow(const Way& way) {
-  double position_mm = way.start_mm;
-  last_position_mm_ = leash_end_mm_ = position_mm;
   const double start_s = clock_.now_s();
-  record(way.phase, way.start_mm, position_mm);
+  last_position_mm_ = leash_end_mm_ = way.start_mm;
+  record(way.phase, way.start_mm, way.start_mm);
   for (;;) {
     cancel_point();
-    const double leash_end_mm = way.leash_end_mm(position_mm);
-    leash_end_mm_ = leash_end_mm;
-    const StageState state = stage_.aim(leash_end_mm);
-    position_mm = last_position_mm_ = state.position_mm;
-    const double elapsed_s = clock_.now_s() - start_s;
-    record(way.phase, way.commanded_mm(elapsed_s), position_mm);
-    check(state, way, elapsed_s, leash_end_mm);
-    if (!state.moving && leash_end_mm == way.end_mm) return;
+    leash_end_mm_ = way.leash_end_mm(last_position_mm_);
+    stage_.aim(leash_end_mm_);
     clock_.sleep(kCycle_s);
+    cancel_point();
+    const StageState state = stage_.state();
+    const double elapsed_s = clock_.now_s() - start_s;
+    last_position_mm_ = state.position_mm;
+    record(way.phase, way.commanded_mm(elapsed_s), state.position_mm);
+    check(state, way, elapsed_s);
+    if (!state.moving && leash_end_mm_ == way.end_mm) return;
   }
 }
 
-void Mover::check(const StageState& state, const Way& way, double elapsed_s,
-                  double leash_end_mm) const {
+void Mover::check(const StageState& state, const Way& way, double elapsed_s) const {
   if (!state.fault.empty()) throw StageError(state.fault);
   if (!state.homed) throw StageError("the stage has forgotten its home: was its power cut?");
-  const double lag_mm = way.direction() * (way.commanded_mm(elapsed_s) - state.position_mm);
-  if (lag_mm > kLag_mm + kLag_s * way.mm_per_s || lag_mm < -kLag_mm - kLag_s * way.mm_per_s) {
-    if (way.steady || !state.moving)
-      throw StageError(
-          fmt::format("the stage is {:.2f} mm {} its place: it slipped, or its answers "
-                      "come too slowly",
-                      std::abs(lag_mm), lag_mm > 0 ? "behind" : "ahead of"));
-  }
-  if (state.moving || leash_end_mm == way.end_mm) {
-    const bool arrived = !state.moving;
-    if (arrived && std::abs(state.position_mm - way.end_mm) > way.step_mm)
-      throw StageError(fmt::format("the stage stopped {:.3f} mm before its goal",
-                                   std::abs(state.position_mm - way.end_mm)));
-    return;
-  }
-  if (way.steady && elapsed_s > kLeash_s)
+  if (way.steady) check_lag(state, way, elapsed_s);
+  if (state.moving) return;
+  if (leash_end_mm_ == way.end_mm) {
+    const double missing_mm = std::abs(state.position_mm - way.end_mm);
+    if (missing_mm > way.step_mm)
+      throw StageError(fmt::format("the stage stopped {:.3f} mm before its goal", missing_mm));
+  } else if (way.steady) {
     throw StageError(
         "the stage had to wait, for the computer or the link was too slow to keep the speed");
+  }
+}
+
+void Mover::check_lag(const StageState& state, const Way& way, double elapsed_s) const {
+  const double lag_mm = way.direction() * (way.commanded_mm(elapsed_s) - state.position_mm);
+  if (std::abs(lag_mm) <= kLag_mm + kLag_s * way.mm_per_s) return;
+  throw StageError(
+      fmt::format("the stage is {:.2f} mm {} its place: it slipped, or its answers come too slowly",
+                  std::abs(lag_mm), lag_mm > 0 ? "behind" : "ahead of"));
 }
 
 void Mover::dwell(const std::string& phase, double seconds) {
@@ -194,10 +199,14 @@ void Mover::guarded(const std::string& phase, bool homing, const std::function<v
 
 // Nothing here may throw or give up early: it is the way out of everything else.
 Rest Mover::bring_to_rest(bool homing) {
-  Rest rest{false, last_position_mm_, leash_end_mm_, homing};
-  const double deadline_s = clock_.now_s() + kRestTimeout_s;
-  bool stopped = false, halted = false;
-  while (clock_.now_s() < deadline_s) {
+  Rest rest;
+  rest.position_mm = last_position_mm_;
+  rest.farthest_mm = leash_end_mm_;
+  rest.homing = homing;
+  const double start_s = clock_.now_s();
+  // Over a bad link, what arrives may be an answer of long ago.
+  bool link_bad = false, stopped = false, halted = false;
+  while (clock_.now_s() < start_s + kRestTimeout_s) {
     try {
       const bool urgent = context_.cancel_requests() > 1;
       if (urgent && !halted) {
@@ -209,12 +218,12 @@ Rest Mover::bring_to_rest(bool homing) {
       }
       const StageState state = stage_.state();
       rest.position_mm = last_position_mm_ = state.position_mm;
-      if (!state.moving) {
-        rest.confirmed = true;
-        return rest;
-      }
+      rest.place_known = state.position_known;
+      rest.confirmed = !state.moving;
+      if (rest.confirmed && (!link_bad || clock_.now_s() > start_s + kOldAnswers_s)) return rest;
     } catch (const StageError&) {
-      stopped = halted = false;  // again
+      link_bad = true;
+      rest.confirmed = stopped = halted = false;  // again
     }
     clock_.sleep(kRestPoll_s);
   }

@@ -22,10 +22,11 @@ inline constexpr double kLongestStop_s = 1.5;
 
 // How a movement that was broken off ended.
 struct Rest {
-  bool confirmed = false;  // the stage itself said that it stands still
-  double position_mm = 0;  // then; else where it last said it was
-  double farthest_mm = 0;  // not confirmed: it cannot have got further than this
-  bool homing = false;     // it was homing; farthest_mm means nothing
+  bool place_known = true;  // false: it stands still, but has forgotten where
+  bool confirmed = false;   // the stage itself said that it stands still
+  double position_mm = 0;   // then; else where it last said it was
+  double farthest_mm = 0;   // not confirmed: it cannot have got further than this
+  bool homing = false;      // it was homing; farthest_mm means nothing
   std::string sentence() const;
 };
 
@@ -60,7 +61,8 @@ class Mover {
   void require_within_limits(double position_mm) const;
   void guarded(const std::string& phase, bool homing, const std::function<void()>& movement);
   void follow(const Way& way);
-  void check(const StageState& state, const Way& way, double elapsed_s, double leash_end_mm) const;
+  void check(const StageState& state, const Way& way, double elapsed_s) const;
+  void check_lag(const StageState& state, const Way& way, double elapsed_s) const;
   void record(const std::string& phase, double commanded_mm, double reported_mm);
   Rest bring_to_rest(bool homing);
   void cancel_point() const;

@@ -17,6 +17,7 @@ struct StageIdentity {
 
 struct StageState {
   double position_mm = 0;
+  bool position_known = true;  // false: a machine that was halted no longer says where it is
   bool moving = false;
   bool homed = false;
   std::string flag;   // as the stage says it: "WR"; "" for none
@@ -31,12 +32,14 @@ class Stage {
   // Finds the stage and learns what it is. Call it first.
   virtual StageIdentity connect() = 0;
   virtual StageState state() = 0;
+  // The operator has seen to whatever the stage warned of: it may forget it.
+  virtual void acknowledge() = 0;
   virtual void start_homing() = 0;
   // Of the movements that are started from here on.
   virtual void set_speed(double mm_per_min) = 0;
   // Goes there and stops. On the way it may be called again with a place further on: the stage
-  // then passes the old one without slowing down. Returns the state at that moment.
-  virtual StageState aim(double position_mm) = 0;
+  // then passes the old one without slowing down.
+  virtual void aim(double position_mm) = 0;
   virtual void stop() = 0;  // slowing down
   virtual void halt() = 0;  // at once, whatever it costs
 };

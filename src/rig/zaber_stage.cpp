@@ -41,20 +41,22 @@ class ZaberStage : public Stage {
     state.moving = reply.busy;
     state.homed = !zaber_flag_means_not_homed(reply.flag);
     state.flag = reply.flag;
-    const std::string words = zaber_fault(reply.flag);
-    if (!words.empty()) state.fault = fmt::format("{} (warning flag {})", words, reply.flag);
+    state.fault = describe_fault(reply.flag);
     return state;
   }
 
+  void acknowledge() override { command("warnings clear"); }
   void start_homing() override { command("home"); }
 
   void set_speed(double mm_per_min) override {
     command(fmt::format("set maxspeed {}", std::lround(mm_per_min / 60 / step_mm() * kSpeedUnit)));
   }
 
-  StageState aim(double position_mm) override {
-    command(fmt::format("move abs {}", std::lround(position_mm / step_mm())));
-    return state();
+  void aim(double position_mm) override {
+    const ZaberReply reply =
+        command(fmt::format("move abs {}", std::lround(position_mm / step_mm())));
+    const std::string fault = describe_fault(reply.flag);
+    if (!fault.empty()) throw StageError(fault);
   }
 
   void stop() override { command("stop"); }
@@ -63,6 +65,11 @@ class ZaberStage : public Stage {
  private:
   double step_mm() const { return 1e-3 * options_.microstep_um; }
   double to_mm(double microsteps) const { return microsteps * step_mm(); }
+
+  static std::string describe_fault(const std::string& flag) {
+    const std::string words = zaber_fault(flag);
+    return words.empty() ? "" : fmt::format("{} (warning flag {})", words, flag);
+  }
 
   // Commands may be repeated without harm: places are absolute.
   ZaberReply exchange(const std::string& text) {
@@ -90,6 +97,8 @@ class ZaberStage : public Stage {
 
   ZaberReply command(const std::string& text) {
     ZaberReply reply = exchange(text);
+    // What was garbled on the way may look like a command that nobody knows.
+    if (!reply.accepted && reply.data.starts_with("BAD")) reply = exchange(text);
     if (!reply.accepted)
       throw StageError(fmt::format("the stage refused '{}': {}", text, zaber_refusal(reply.data)));
     return reply;

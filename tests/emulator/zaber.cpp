@@ -60,9 +60,9 @@ class ZaberEmulator : public Emulator {
     if (!moving()) return;
     axis_.halt();
     homing_ = false;
-    fault_ = "FS";
+    fault_ = std::string("FS");
   }
-  void on_overheat() override { fault_ = "WT"; }
+  void on_overheat() override { fault_ = std::string("WT"); }
   void on_power_cut() override {
     Emulator::on_power_cut();
     fault_.clear();
@@ -77,7 +77,10 @@ class ZaberEmulator : public Emulator {
     text.erase(0, static_cast<std::size_t>(end - text.c_str()));
   }
 
-  std::string flag() const { return !fault_.empty() ? fault_ : homed_ ? "--" : "WR"; }
+  std::string flag() const {
+    if (!fault_.empty()) return fault_;
+    return homed_ ? "--" : "WR";
+  }
 
   void send(const std::string& message) {
     reply(checksums_ ? fmt::format("{}:{:02X}", message, lrc(message.substr(1))) : message);
@@ -85,7 +88,7 @@ class ZaberEmulator : public Emulator {
 
   void answer(int axis, int id, const std::string& text) {
     std::string refusal;
-    std::string data = "0";
+    std::string data = std::string("0");
     execute(text, data, refusal);
     const std::string number = id >= 0 ? fmt::format("{:02} ", id) : "";
     send(fmt::format("@01 {} {}{} {} {} {}", axis, number, refusal.empty() ? "OK" : "RJ",
@@ -103,9 +106,10 @@ class ZaberEmulator : public Emulator {
     if (verb == "move" && what == "rel")
       return move(std::lround(axis_.position) + std::atol(value.c_str()), refusal);
     if (verb == "home") {
-      if (fault_ != "WT") fault_.clear();
       axis_.top_speed = 30000;
       begin_homing();
+    } else if (verb == "warnings") {
+      if (what == "clear" && fault_ == "FS") fault_.clear();
     } else if (verb == "stop") {
       homing_ = false;
       axis_.stop();
@@ -113,7 +117,7 @@ class ZaberEmulator : public Emulator {
       homing_ = false;
       axis_.halt();
     } else {
-      refusal = "BADCOMMAND";
+      refusal = std::string("BADCOMMAND");
     }
   }
 
@@ -123,15 +127,15 @@ class ZaberEmulator : public Emulator {
     } else if (what == "limit.max") {
       data = fmt::format("{}", kLimitMax);
     } else if (what == "limit.min") {
-      data = "0";
+      data = std::string("0");
     } else if (what == "deviceid") {
-      data = "30111";
+      data = std::string("30111");
     } else if (what == "version") {
-      data = "6.14";
+      data = std::string("6.14");
     } else if (what == "maxspeed") {
       data = fmt::format("{}", std::lround(set_speed_ * kSpeedUnit));
     } else {
-      refusal = "BADCOMMAND";
+      refusal = std::string("BADCOMMAND");
     }
   }
 
@@ -141,21 +145,20 @@ class ZaberEmulator : public Emulator {
       checksums_ = number != 0;
     } else if (what == "maxspeed") {
       if (number < 1)
-        refusal = "BADDATA";
+        refusal = std::string("BADDATA");
       else
         set_speed_ = double(number) / kSpeedUnit;
     } else {
-      refusal = "BADCOMMAND";
+      refusal = std::string("BADCOMMAND");
     }
   }
 
   void move(long target, std::string& refusal) {
     if (!homed_) moved_unhomed_ = true;
     if (target < 0 || target > kLimitMax) {
-      refusal = "BADDATA";
+      refusal = std::string("BADDATA");
       return;
     }
-    if (fault_ == "FS") fault_.clear();
     axis_.target = double(target);
   }
 

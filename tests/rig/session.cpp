@@ -46,13 +46,14 @@ std::string broken_promise(VirtualBench& bench, const Outcome& outcome, const Sh
     return "";
   }
   if (outcome.message.size() < 20) return "no clear message: '" + outcome.message + "'";
-  if (confirmed && std::abs(outcome.rest->position_mm - place_mm) > kStep_mm)
+  if (confirmed && outcome.rest->place_known &&
+      std::abs(outcome.rest->position_mm - place_mm) > kStep_mm)
     return fmt::format("it says it stands at {:.4f}, and stands at {:.4f}",
                        outcome.rest->position_mm, place_mm);
   if (outcome.rest && !confirmed && !outcome.rest->homing &&
-      (place_mm - outcome.rest->farthest_mm) *
-              (outcome.rest->farthest_mm - outcome.rest->position_mm) >
-          kStep_mm * kStep_mm)
+      std::copysign(place_mm - outcome.rest->farthest_mm,
+                    (place_mm - outcome.rest->farthest_mm) *
+                        (outcome.rest->farthest_mm - outcome.rest->position_mm)) > kStep_mm)
     return fmt::format("it went to {:.4f}, beyond the promised {:.4f}", place_mm,
                        outcome.rest->farthest_mm);
   return "";
