@@ -57,6 +57,8 @@ class ZaberStage : public Stage {
         command(fmt::format("move abs {}", std::lround(position_mm / step_mm())));
     const std::string fault = describe_fault(reply.flag);
     if (!fault.empty()) throw StageError(fault);
+    if (zaber_flag_means_not_homed(reply.flag))
+      throw StageError("the stage has forgotten its home: was its power cut?");
   }
 
   void stop() override { command("stop"); }

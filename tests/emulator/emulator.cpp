@@ -13,6 +13,7 @@ namespace hydrodip {
 namespace {
 
 constexpr double kTick_s = 1e-3;
+constexpr double kStart_s = 1;
 
 }  // namespace
 
@@ -51,7 +52,7 @@ void Emulator::read_wire() {
     const ssize_t got = ::read(master_, buffer.data(), buffer.size());
     if (got <= 0) return;
     bytes_read_ += static_cast<std::size_t>(got);
-    if (strength(FaultKind::kSilence) > 0) continue;
+    if (mute()) continue;
     for (ssize_t i = 0; i < got; ++i) {
       const char c = buffer[static_cast<std::size_t>(i)];
       if (!ends_line(c)) {
@@ -108,6 +109,7 @@ void Emulator::strike() {
 void Emulator::on_power_cut() {
   axis_.halt();
   homed_ = homing_ = false;
+  awake_s_ = now_s_ + kStart_s;
 }
 
 void Emulator::unplug() {
@@ -120,7 +122,7 @@ void Emulator::unplug() {
 void Emulator::deliver() {
   while (!outgoing_.empty() && outgoing_.front().due_s <= now_s_) {
     const std::string& bytes = outgoing_.front().bytes;
-    if (master_ >= 0 && !(strength(FaultKind::kSilence) > 0)) {
+    if (master_ >= 0 && !mute()) {
       const ssize_t sent = ::write(master_, bytes.data(), bytes.size());
       if (sent > 0) bytes_written_ += static_cast<std::size_t>(sent);
     }

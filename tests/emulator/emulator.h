@@ -98,6 +98,7 @@ class Emulator {
   bool chance(double probability);
   void garble(std::string& bytes);
   void strike();
+  bool mute() const { return strength(FaultKind::kSilence) > 0 || now_s_ < awake_s_; }
   void unplug();
   void deliver();
   void watch();
@@ -108,6 +109,7 @@ class Emulator {
   std::string line_;
   std::vector<Fault> faults_;
   std::vector<bool> struck_;
+  double awake_s_ = 0;  // after a power cut the machine first has to start
   std::deque<Outgoing> outgoing_;
   std::size_t bytes_read_ = 0, bytes_written_ = 0;
   std::optional<double> due_s_, disobeyed_s_;

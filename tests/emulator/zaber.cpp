@@ -57,7 +57,6 @@ class ZaberEmulator : public Emulator {
   }
 
   void on_stall() override {
-    if (!moving()) return;
     axis_.halt();
     homing_ = false;
     fault_ = std::string("FS");
