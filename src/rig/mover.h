@@ -37,6 +37,8 @@ class Mover {
 
   const StageIdentity& identity() const { return identity_; }
   StageState state();
+  // Throws StageError for a place beyond the stage's travel.
+  void require_within_limits(double position_mm) const;
   // The operator has said yes.
   void allow_motion() { allowed_ = true; }
 
@@ -58,7 +60,6 @@ class Mover {
  private:
   struct Way;
   void require_permission() const;
-  void require_within_limits(double position_mm) const;
   void guarded(const std::string& phase, bool homing, const std::function<void()>& movement);
   void follow(const Way& way);
   void check(const StageState& state, const Way& way, double elapsed_s) const;

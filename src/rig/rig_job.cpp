@@ -1,0 +1,175 @@
+#include "rig/rig_job.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "job/params.h"
+
+namespace hydrodip {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kLevelFile = "rig-water-level.json";
+
+Json read_json(const std::filesystem::path& file) {
+  const std::vector<std::uint8_t> bytes = read_file(file);
+  return Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+}
+
+Json read_report(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "report.json";
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    throw InputError(
+        fmt::format("{}: there is no report.json; name the folder that 'hydrodip print' wrote",
+                    folder.string()));
+  Json report = read_json(file);
+  const bool usable = report.is_object() && report.contains("parameters") &&
+                      report["parameters"].is_object() && report.contains("figures") &&
+                      report["figures"].is_object() && report["figures"].contains("depth_mm");
+  if (!usable)
+    throw InputError(fmt::format(
+        "{}: this is not the report of a dip; print the model again with 'hydrodip print'",
+        file.string()));
+  return report;
+}
+
+// Values of parameters that this version does not know any more are left out.
+std::vector<Setting> settings_of(const Json& parameters, const std::string& origin) {
+  std::vector<Setting> settings;
+  for (const Parameter& parameter : hydrodip::parameters()) {
+    if (!parameters.contains(parameter.name) || !parameters[parameter.name].is_object()) continue;
+    const Json value = parameters[parameter.name].value("value", Json());
+    Setting setting{parameter.name, 0.0, true, value.dump(), origin};
+    if (value.is_number())
+      setting.value = value.get<double>();
+    else if (value.is_string())
+      setting.value = value.get<std::string>();
+    else if (value.is_array() && value.size() == 3 && value[0].is_number() &&
+             value[1].is_number() && value[2].is_number())
+      setting.value = std::vector<double>{value[0], value[1], value[2]};
+    else
+      continue;
+    settings.push_back(setting);
+  }
+  return settings;
+}
+
+std::string text_of(const Json& object, const char* key) {
+  return object.contains(key) && object[key].is_string() ? object[key].get<std::string>() : "";
+}
+
+std::string title_of(const Json& report) {
+  const std::string title = text_of(report, "title");
+  if (!title.empty()) return title;
+  if (report.contains("inputs") && report["inputs"].is_array() && !report["inputs"].empty() &&
+      report["inputs"][0].is_object())
+    return std::filesystem::path(text_of(report["inputs"][0], "path")).filename().string();
+  return "";
+}
+
+double film_area_mm2(const FilmOptions& film) {
+  if (film.shape == FilmShape::kRectangle) return film.width_mm * film.height_mm;
+  const double radius = 0.5 * std::min(film.width_mm, film.height_mm);
+  return std::numbers::pi * radius * radius;
+}
+
+double letter_area_mm2() {
+  for (const FilmFormat& format : film_formats())
+    if (format.name == "letter") return format.width_mm * format.height_mm;
+  return 0;
+}
+
+PlannedMove travel(const std::string& phase, double from_mm, double to_mm, double mm_per_min) {
+  return {phase, from_mm, to_mm, mm_per_min, 60 * std::abs(to_mm - from_mm) / mm_per_min};
+}
+
+}  // namespace
+
+RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& sources) {
+  const Json report = read_report(folder);
+  RigJob job;
+  job.folder = folder;
+  job.title = title_of(report);
+  job.verdict = text_of(report, "verdict");
+  apply_settings(job.config, settings_of(report["parameters"], (folder / "report.json").string()));
+  apply_sources(job.config, sources);
+  const Json& figures = report["figures"];
+  if (!figures["depth_mm"].is_number() || !(figures["depth_mm"].get<double>() > 0))
+    throw InputError(
+        fmt::format("{}: figures.depth_mm is not a depth", (folder / "report.json").string()));
+  job.depth_mm = figures["depth_mm"];
+  const Json size = figures.value("object_size_mm", Json());
+  for (int k = 0; k < 3; ++k)
+    if (size.is_array() && size.size() == 3 && size[std::size_t(k)].is_number())
+      job.object_size_mm[k] = size[std::size_t(k)];
+  if (report.contains("warnings") && report["warnings"].is_array())
+    for (const Json& warning : report["warnings"])
+      if (warning.is_string()) job.warnings.push_back(warning);
+  return job;
+}
+
+Activator activator_for(const JobConfig& config) {
+  const double share = film_area_mm2(config.film) / letter_area_mm2();
+  return {share * config.process.activator_g, share * config.process.activator_tolerance_g};
+}
+
+double bath_litres(const BathOptions& bath) {
+  return 1e-6 * bath.width_mm * bath.height_mm * bath.depth_mm;
+}
+
+std::optional<double> known_water_level_mm(const RigJob& job) {
+  if (job.config.stage.water_mm > 0) return job.config.stage.water_mm;
+  const std::filesystem::path file = job.folder / kLevelFile;
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return {};
+  const Json level = read_json(file);
+  if (!level.is_object() || !level.contains("water_mm") || !level["water_mm"].is_number())
+    return {};
+  return level["water_mm"].get<double>();
+}
+
+void save_water_level(const RigJob& job, double position_mm) {
+  write_file(job.folder / kLevelFile, Json{{"water_mm", position_mm}}.dump() + "\n");
+}
+
+std::vector<PlannedMove> plan_dip(const RigJob& job) {
+  const ProcessOptions& process = job.config.process;
+  const StageOptions& stage = job.config.stage;
+  const double approach_mm = std::min(stage.approach_mm, stage.clearance_mm);
+  return {travel("approach", stage.clearance_mm, approach_mm, stage.travel_mm_per_min),
+          travel("dip", approach_mm, -job.depth_mm, process.speed_mm_per_min),
+          {"dwell", -job.depth_mm, -job.depth_mm, 0, process.dwell_s},
+          travel("retract", -job.depth_mm, stage.clearance_mm, process.lift_mm_per_min)};
+}
+
+double stage_position_mm(const StageOptions& stage, double water_mm, double height_mm) {
+  return stage.down == StageDown::kPlus ? water_mm - height_mm : water_mm + height_mm;
+}
+
+std::string describe_plan(const RigJob& job, std::optional<double> water_mm) {
+  std::string text = fmt::format("{:<10} {:>10} {:>10} {:>10} {:>8}", "movement", "from, mm",
+                                 "to, mm", "mm/min", "s");
+  if (water_mm) text += fmt::format("   {:>22}", "stage positions, mm");
+  text += "\n";
+  for (const PlannedMove& move : plan_dip(job)) {
+    text +=
+        fmt::format("{:<10} {:>10.2f} {:>10.2f} {:>10} {:>8.1f}", move.phase, move.from_height_mm,
+                    move.to_height_mm,
+                    move.mm_per_min > 0 ? fmt::format("{:g}", move.mm_per_min) : "-", move.seconds);
+    if (water_mm)
+      text += fmt::format("   {:>10.3f} {:>11.3f}",
+                          stage_position_mm(job.config.stage, *water_mm, move.from_height_mm),
+                          stage_position_mm(job.config.stage, *water_mm, move.to_height_mm));
+    text += "\n";
+  }
+  return text + "Heights are those of the object's lowest point over the water.\n";
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,55 @@
+// A finished job, read back from its folder, as far as the bench needs it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "job/config.h"
+#include "job/settings.h"
+
+namespace hydrodip {
+
+struct RigJob {
+  std::filesystem::path folder;
+  std::string title;
+  JobConfig config;  // the job's own parameters, then profile, configuration and --set of today
+  double depth_mm = 0;
+  Vec3 object_size_mm = Vec3::Zero();  // as posed
+  std::string verdict;
+  std::vector<std::string> warnings;
+};
+
+// Reads FOLDER/report.json of a print or simulate job. Throws InputError if it is none.
+RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& sources);
+
+// What the process facts mean for this job's film.
+struct Activator {
+  double mass_g = 0, tolerance_g = 0;
+};
+Activator activator_for(const JobConfig& config);  // scaled by area from a letter sheet
+double bath_litres(const BathOptions& bath);
+
+// The stage position at which the object's lowest point meets the water: stage.water_mm, else what
+// was found last and saved in the folder.
+std::optional<double> known_water_level_mm(const RigJob& job);
+void save_water_level(const RigJob& job, double position_mm);
+
+// One movement of the dip. Heights: of the object's lowest point over the water, mm.
+struct PlannedMove {
+  std::string phase;
+  double from_height_mm = 0, to_height_mm = 0;
+  double mm_per_min = 0;  // 0: it stands still
+  double seconds = 0;
+};
+// Approach, dip, dwell, retract.
+std::vector<PlannedMove> plan_dip(const RigJob& job);
+// The stage position of a height.
+double stage_position_mm(const StageOptions& stage, double water_mm, double height_mm);
+
+// The plan as a table; with stage positions where the water level is known.
+std::string describe_plan(const RigJob& job, std::optional<double> water_mm);
+
+}  // namespace hydrodip

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/nearest_name.h"
+#include "rig/finish_run.h"
+#include "rig/rig.h"
+#include "rig/stage_session.h"
+
+namespace hydrodip {
+namespace {
+
+const std::vector<std::string>& action_names() {
+  static const std::vector<std::string> names = {"find",     "status", "home",   "jog",
+                                                 "approach", "dip",    "retract"};
+  return names;
+}
+
+JobResult words(const std::string& text) {
+  return {{},
+          {},
+          text,
+          nlohmann::ordered_json{{"text", text}}.dump(2, ' ', false,
+                                                      nlohmann::json::error_handler_t::replace) +
+              "\n"};
+}
+
+bool needs_job(const std::string& action) {
+  return action == "approach" || action == "dip" || action == "retract";
+}
+
+void check_action(const StageAction& action, const RigJob* job) {
+  const auto& names = action_names();
+  if (std::find(names.begin(), names.end(), action.action) == names.end())
+    throw InputError(
+        fmt::format("rig stage: '{}' is none of find, status, home, jog, approach, dip, retract{}",
+                    action.action, did_you_mean(action.action, names)));
+  if (needs_job(action.action) && !job)
+    throw InputError(
+        fmt::format("rig stage {}: name the job's folder as well, as in 'hydrodip rig "
+                    "stage {} mask-print'",
+                    action.action, action.action));
+}
+
+// What the stage did last is asked of the session even when it never came to be.
+RunEnd end_of(const std::optional<StageSession>& session, const std::string& action) {
+  if (!session) return {action, {}, {}, false};
+  return {action, session->trace(), session->last_rest(), false};
+}
+
+double require_level(const RigJob& job) {
+  if (const auto level = known_water_level_mm(job)) return *level;
+  throw InputError(fmt::format(
+      "the water level is not known yet: find it with 'hydrodip rig stage approach {}', or give "
+      "--set stage.water_mm=...",
+      job.folder.string()));
+}
+
+void perform(StageSession& session, const StageAction& action, const RigJob* job) {
+  if (action.action == "home") return session.ensure_home(true);
+  session.ensure_home();
+  if (action.action == "jog") {
+    session.require_yes(fmt::format("The stage will move by {:g} mm.", action.jog_mm));
+    return session.jog(action.jog_mm);
+  }
+  if (action.action == "approach") {
+    session.require_yes("The stage will move as you tell it.");
+    const double water_mm = session.find_water_level();
+    save_water_level(*job, water_mm);
+    return session.lift_clear(water_mm);
+  }
+  const double water_mm = require_level(*job);
+  if (action.action == "retract") {
+    session.require_yes("The stage will lift the object.");
+    return session.perform(*job, water_mm, "retract");
+  }
+  session.require_yes("The stage will dip the object.");
+  for (const char* phase : {"approach", "dip", "dwell"}) session.perform(*job, water_mm, phase);
+}
+
+JobResult status(const StageOptions& stage, Bench& bench, RunContext& context) {
+  StageSession session(stage, bench, nullptr, context);
+  return words(session.describe() + "\n" + session.describe_state() + "\n");
+}
+
+std::vector<std::string> ports() {
+  std::vector<std::string> list;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev", ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("ttyUSB") || name.starts_with("ttyACM")) list.push_back(entry.path());
+  }
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
+}  // namespace
+
+JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOptions& stage,
+                    Bench& bench, RunContext& context) {
+  check_action(action, job);
+  if (action.action == "find") return rig_find(stage, bench, context);
+  if (action.dry_run) {
+    if (!job) return words(fmt::format("{}: nothing was moved\n", action.action));
+    return words(describe_plan(*job, known_water_level_mm(*job)) + "Nothing was moved.\n");
+  }
+  if (action.action == "status") return status(stage, bench, context);
+  if (action.action == "dip" || action.action == "retract") require_level(*job);
+
+  std::optional<StageSession> session;
+  if (!job) {
+    session.emplace(stage, bench, nullptr, context);
+    perform(*session, action, nullptr);
+    return words(session->describe_state() + "\n");
+  }
+  RunRecord record(*job, bench.clock);
+  record.note("start", {{"job", job->title}, {"action", action.action}});
+  JobResult result = finish_run(
+      record,
+      [&] {
+        session.emplace(stage, bench, &record, context);
+        perform(*session, action, job);
+      },
+      [&] { return end_of(session, action.action); });
+  result.text = session->describe_state() + "\n" + result.text;
+  return result;
+}
+
+JobResult rig_find(const StageOptions& stage, Bench& bench, RunContext& context) {
+  const std::vector<std::string> list =
+      stage.port.empty() ? ports() : std::vector<std::string>{stage.port};
+  std::string text;
+  for (const std::string& port : list) {
+    StageOptions options = stage;
+    options.port = port;
+    options.travel_mm = 0;  // whatever it is
+    std::string found;
+    try {
+      found = StageSession(options, bench, nullptr, context).describe();
+    } catch (const InputError& error) {
+      found = error.what();
+    } catch (const StageError&) {
+      found = "no answer as a stage of this kind (stage.driver, stage.baud, stage.address)";
+    }
+    text += port + "  " + found + "\n";
+  }
+  if (list.empty()) text = "no serial port (/dev/ttyUSB*, /dev/ttyACM*) on this computer\n";
+  return words(text);
+}
+
+}  // namespace hydrodip
