@@ -62,6 +62,26 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
+// Names such as "rig sheet" begin with the name of their group.
+std::string group_help(const std::string& group) {
+  std::string help;
+  for (const Command& command : commands())
+    if (command.name.starts_with(group + " "))
+      help += fmt::format("  {:<10} {}\n", command.name, command.summary);
+  return help;
+}
+
+// How many of the arguments name the command: 2 in a group.
+std::size_t count_name_words(const std::vector<std::string>& arguments) {
+  if (group_help(arguments[0]).empty()) return 1;
+  if (arguments.size() < 2)
+    throw InputError(
+        fmt::format("name what to do, as in 'hydrodip {} sheet'; 'hydrodip {} --help' "
+                    "lists all",
+                    arguments[0], arguments[0]));
+  return 2;
+}
+
 const Command& find_command(const std::string& name) {
   std::vector<std::string> names;
   for (const Command& command : commands()) {
@@ -128,8 +148,14 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
   if (first.empty())
     throw InputError("name a command, as in 'hydrodip print MODEL'; see 'hydrodip --help'");
   if (first == "--help" || first == "-h" || first == "help") return {nullptr, {}, general_help()};
+  const bool asks = arguments.size() == 2 && (arguments[1] == "--help" || arguments[1] == "-h");
+  if (asks && !group_help(first).empty())
+    return {nullptr, {}, "Usage: hydrodip COMMAND [OPTIONS]\n\n" + group_help(first)};
   if (first == "--version") return {nullptr, {}, "hydrodip " HYDRODIP_VERSION "\n"};
-  return parse_command(find_command(first), {arguments.begin() + 1, arguments.end()});
+  const std::size_t words = count_name_words(arguments);
+  const std::string name = words == 2 ? first + " " + arguments[1] : first;
+  return parse_command(find_command(name),
+                       {arguments.begin() + static_cast<std::ptrdiff_t>(words), arguments.end()});
 }
 
 }  // namespace hydrodip

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "job/params.h"
+#include "rig_commands.h"
 
 namespace hydrodip {
 namespace {
@@ -84,10 +85,8 @@ JobResult run_params(const Request&, RunContext&) {
   return result;
 }
 
-}  // namespace
-
-const std::vector<Command>& commands() {
-  static const std::vector<Command> table = {
+std::vector<Command> own_commands() {
+  return {
       {"print", "from a textured model to a film image, ready to print and dip",
        "Writes print.pdf (print it at 100 %, no scaling), print.png, print.tif, film.ply,\n"
        "preview.png, preview.glb, report.json and report.html.",
@@ -102,6 +101,17 @@ const std::vector<Command>& commands() {
       {"params", "list every parameter: name, default, range, what it does", "", declare_reporting,
        run_params},
   };
+}
+
+}  // namespace
+
+const std::vector<Command>& commands() {
+  static const std::vector<Command> table = [] {
+    std::vector<Command> all = own_commands();
+    const std::vector<Command> rig = rig_commands();
+    all.insert(all.end() - 1, rig.begin(), rig.end());  // params stays last
+    return all;
+  }();
   return table;
 }
 

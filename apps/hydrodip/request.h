@@ -18,6 +18,11 @@ struct Request {
   std::string sample;
   std::string output;
   std::string film_image;
+  std::string paper;   // of the run sheet
+  std::string action;  // of the stage
+  double jog_mm = 0;
+  bool dry_run = false;
+  bool yes = false;
   SettingSources sources;
   bool quiet = false;
   bool json = false;

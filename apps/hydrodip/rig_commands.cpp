@@ -1,0 +1,131 @@
+#include "rig_commands.h"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "base/error.h"
+#include "rig/rig.h"
+#include "terminal_operator.h"
+
+namespace hydrodip {
+namespace {
+
+void declare_job(CLI::App& app, Request& request) {
+  app.add_option("JOB_DIR", request.model, "folder that 'hydrodip print' wrote")->type_name("");
+}
+
+void declare_port(CLI::App& app, Request& request) {
+  app.add_option_function<std::string>(
+         "--port",
+         [&request](const std::string& port) {
+           request.sources.options.push_back(
+               {"stage.port", port, false, "'" + port + "'", "--port"});
+         },
+         "serial port of the stage, as in /dev/ttyUSB0")
+      ->group("Stage")
+      ->type_name("PORT");
+}
+
+RigJob load_job(const Request& request, const std::string& command) {
+  if (request.model.empty())
+    throw InputError("name the job's folder, as in 'hydrodip " + command + " mask-print'");
+  return load_rig_job(request.model, request.sources);
+}
+
+void declare_sheet(CLI::App& app, Request& request) {
+  declare_job(app, request);
+  app.add_option("-o,--output", request.output, "PDF to write (default: JOB_DIR/run-sheet.pdf)")
+      ->group("Output")
+      ->type_name("FILE.pdf");
+  app.add_option("--paper", request.paper, "default: letter for letter film, else a4")
+      ->group("Output")
+      ->type_name("a4|letter");
+  declare_reporting(app, request);
+  declare_configuration(app, request);
+}
+
+JobResult run_sheet(const Request& request, RunContext& context) {
+  return rig_sheet(load_job(request, "rig sheet"), request.paper, request.output, context);
+}
+
+// The real bench: this computer's clock, ports and terminal.
+struct RealBench {
+  explicit RealBench(const Request& request, RunContext& context)
+      : clock(system_clock()), person(*clock, context) {
+    bench.yes_given = request.yes;
+  }
+
+  std::unique_ptr<Clock> clock;
+  TerminalOperator person;
+  Bench bench{person, *clock, [this](const StageOptions& stage) {
+                return open_serial(stage.port, stage.baud, *clock);
+              }};
+};
+
+void declare_guide(CLI::App& app, Request& request) {
+  declare_job(app, request);
+  declare_port(app, request);
+  declare_reporting(app, request);
+  declare_configuration(app, request);
+}
+
+JobResult run_guide(const Request& request, RunContext& context) {
+  const RigJob job = load_job(request, "rig guide");
+  RealBench real(request, context);
+  return rig_guide(job, real.bench, context);
+}
+
+void declare_stage(CLI::App& app, Request& request) {
+  app.add_option("ACTION", request.action, "find, status, home, jog, approach, dip or retract")
+      ->type_name("");
+  declare_job(app, request);
+  declare_port(app, request);
+  app.add_option("--by", request.jog_mm, "of jog: how far down; negative lifts")
+      ->group("Stage")
+      ->type_name("MM");
+  app.add_flag("--dry-run", request.dry_run, "print the plan of movements and move nothing")
+      ->group("Stage");
+  app.add_flag("--yes", request.yes, "do not ask before moving: nobody is near")->group("Stage");
+  declare_reporting(app, request);
+  declare_configuration(app, request);
+}
+
+JobResult run_stage(const Request& request, RunContext& context) {
+  if (request.action.empty())
+    throw InputError(
+        "name what the stage is to do: find, status, home, jog, approach, dip or retract");
+  std::optional<RigJob> job;
+  if (!request.model.empty()) job = load_rig_job(request.model, request.sources);
+  const StageOptions stage = job ? job->config.stage : configure(request).stage;
+  if (request.action == "jog" && request.jog_mm == 0)
+    throw InputError("rig stage jog: say how far with --by, as in --by 10 (down) or --by -10 (up)");
+  RealBench real(request, context);
+  return rig_stage({request.action, request.jog_mm, request.dry_run}, job ? &*job : nullptr, stage,
+                   real.bench, context);
+}
+
+}  // namespace
+
+std::vector<Command> rig_commands() {
+  return {
+      {"rig sheet", "a run sheet for the wet bench: pose, film, figures, boxes to tick",
+       "Figures come from the job's report.json; --profile and --set change process.* values.",
+       declare_sheet, run_sheet},
+      {"rig guide", "lead through a dip step by step, with countdowns, log and stage",
+       "Without --port the object is dipped by hand. Writes JOB_DIR/rig-N. Ctrl-C stops the stage\n"
+       "softly, a second one at once.",
+       declare_guide, run_guide},
+      {"rig stage", "drive a Zaber stage or a Marlin printer's Z axis",
+       "find      what answers on the serial ports\n"
+       "status    where the stage is\n"
+       "home      move to its home\n"
+       "jog       move by --by MM\n"
+       "approach  find the water level by hand and keep it for the job\n"
+       "dip       approach, dip by the job's depth, dwell\n"
+       "retract   lift the object out\n"
+       "Nothing moves before a yes. Ctrl-C stops softly, a second one at once. See docs/rig.md.",
+       declare_stage, run_stage},
+  };
+}
+
+}  // namespace hydrodip

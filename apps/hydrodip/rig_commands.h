@@ -1,0 +1,10 @@
+// `hydrodip rig sheet|guide|stage`.
+#pragma once
+
+#include "commands.h"
+
+namespace hydrodip {
+
+std::vector<Command> rig_commands();
+
+}  // namespace hydrodip

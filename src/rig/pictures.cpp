@@ -1,0 +1,62 @@
+#include "rig/pictures.h"
+
+#include "object/load.h"
+#include "object/surface.h"
+#include "report/studio.h"
+
+namespace hydrodip {
+namespace {
+
+// How the camera's frame (+y up) sees the posed-object frame (z up): as it is, or lying on its back
+// so that up is up.
+enum class Turn { kNone, kUpright };
+
+struct View {
+  std::string caption;
+  Turn turn;
+  Vec3 direction;  // towards the eye, after the turn
+};
+
+// preview.glb shows the object with its front towards glTF's +z, and the loader turns glTF's y up.
+Vec3 posed(const Vec3& loaded) { return {-loaded.x(), loaded.z(), loaded.y()}; }
+
+Vec3 turned(const Vec3& p, Turn turn) {
+  return turn == Turn::kNone ? p : Vec3(p.x(), p.z(), -p.y());
+}
+
+Image render(const Object& object, const View& view, int width_px, int height_px,
+             RunContext& context) {
+  const Surface surface(object.positions, object.triangles);
+  const std::vector<CornerNormals> normals = corner_normals(object.positions, object.triangles);
+  Appearance appearance;
+  appearance.wanted = [&](const SurfacePoint& point, const Vec3&, const Vec3&) {
+    return color_at(object, point, {1, 1, 1, 1});
+  };
+  appearance.predicted = appearance.wanted;
+  const Studio studio{object, surface, normals, appearance, 3};
+  const Camera camera = frame_object(object, view.direction, double(width_px) / height_px, 0.85);
+  return render_view(studio, camera, width_px, height_px, context).wanted;
+}
+
+}  // namespace
+
+std::vector<PosePicture> pose_pictures(const std::filesystem::path& preview_glb, int width_px,
+                                       int height_px, RunContext& context) {
+  // What there is to say about the model was said when it was printed.
+  RunContext unheard;
+  const Object loaded = load_object(preview_glb, {}, unheard).object;
+  const std::vector<View> views = {
+      {"from the front (-y)", Turn::kUpright, Vec3::UnitZ()},
+      {"from the right (+x)", Turn::kUpright, Vec3::UnitX()},
+      {"from below (what meets the film)", Turn::kNone, -Vec3::UnitZ()}};
+  std::vector<PosePicture> pictures;
+  for (const View& view : views) {
+    context.progress("drawing the object", double(pictures.size()) / double(views.size()));
+    Object object = loaded;
+    for (Vec3& p : object.positions) p = turned(posed(p), view.turn);
+    pictures.push_back({view.caption, render(object, view, width_px, height_px, context)});
+  }
+  return pictures;
+}
+
+}  // namespace hydrodip

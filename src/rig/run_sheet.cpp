@@ -1,0 +1,382 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/output_folder.h"
+#include "rig/pictures.h"
+#include "rig/rig.h"
+#include "sheet/pdf_document.h"
+#include "sheet/winansi.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr double kMargin_mm = 16;
+constexpr double kGap_mm = 4;
+constexpr double kMmPerPt = kMmPerInch / 72;
+constexpr int kPictureWidth_px = 720;
+constexpr double kPictureAspect = 1.15;
+constexpr double kBody_pt = 10, kSmall_pt = 8, kHead_pt = 12, kTitle_pt = 20;
+
+// The paper that lies on the bench.
+struct Paper {
+  double width_mm, height_mm;
+};
+
+Paper choose_paper(const std::string& name, const FilmOptions& film) {
+  const auto& formats = film_formats();
+  const auto find = [&](const std::string& wanted) {
+    return std::find_if(formats.begin(), formats.end(),
+                        [&](const FilmFormat& format) { return format.name == wanted; });
+  };
+  const auto letter = find("letter");
+  const bool letter_film = std::min(film.width_mm, film.height_mm) == letter->width_mm &&
+                           std::max(film.width_mm, film.height_mm) == letter->height_mm;
+  const std::string wanted = !name.empty() ? name : letter_film ? "letter" : "a4";
+  if (wanted != "a4" && wanted != "letter")
+    throw InputError(fmt::format("--paper: '{}' is neither a4 nor letter", name));
+  return {find(wanted)->width_mm, find(wanted)->height_mm};
+}
+
+std::string side_name(const std::string& down) { return "the model's " + down + " side"; }
+
+// Draws from the top of the page down; y is where the next thing goes.
+class Writer {
+ public:
+  Writer(PdfDocument& pdf, const Paper& paper) : pdf_(pdf), paper_(paper) { new_page(); }
+
+  double left() const { return kMargin_mm; }
+  double right() const { return paper_.width_mm - kMargin_mm; }
+  double width() const { return right() - left(); }
+  double y = 0;
+
+  void new_page() {
+    pdf_.add_page(paper_.width_mm, paper_.height_mm);
+    y = paper_.height_mm - kMargin_mm;
+  }
+
+  void text(double x, double base, const std::string& words, double size_pt,
+            PdfFont font = PdfFont::kRegular, double gray = 0) {
+    pdf_.draw_text({to_winansi(words), {x, base}, size_pt, font, 0, gray});
+  }
+
+  double width_of(const std::string& words, double size_pt, PdfFont font) const {
+    return pdf_.text_width(to_winansi(words), font) * size_pt * kMmPerPt;
+  }
+
+  // Words in lines of at most that width, from y down; moves y.
+  void paragraph(double x, double width_mm, const std::string& words, double size_pt,
+                 PdfFont font = PdfFont::kRegular, double gray = 0) {
+    const double line_mm = 1.3 * size_pt * kMmPerPt;
+    for (const std::string& line : wrapped(words, width_mm, size_pt, font)) {
+      y -= line_mm;
+      text(x, y + 0.3 * line_mm, line, size_pt, font, gray);
+    }
+  }
+
+  void heading(const std::string& words) {
+    y -= 8;
+    text(left(), y, words, kHead_pt, PdfFont::kBold);
+    y -= 1.6;
+    rule(left(), right(), y, 0.3, 0.6);
+    y -= 1;
+  }
+
+  void rule(double from, double to, double base, double width_mm, double gray) {
+    pdf_.set_stroke(width_mm, gray);
+    pdf_.draw_lines({{Vec2(from, base), Vec2(to, base)}});
+  }
+
+  // A box to tick, what to do, and blanks to fill in below it.
+  void task(const std::string& words, const std::vector<std::string>& blanks = {}) {
+    constexpr double kBox_mm = 4, kIndent_mm = 7.5;
+    const double top = y - 1.6;
+    pdf_.set_stroke(0.35);
+    pdf_.draw_rectangle({Vec2(left(), top - kBox_mm), Vec2(left() + kBox_mm, top)});
+    y -= 0.9;
+    paragraph(left() + kIndent_mm, width() - kIndent_mm, words, kBody_pt);
+    if (!blanks.empty()) fill_in(left() + kIndent_mm, blanks);
+    y -= 1.7;
+  }
+
+  // "label ______" side by side.
+  void fill_in(double x, const std::vector<std::string>& labels) {
+    constexpr double kFewest = 3;
+    y -= 7;
+    const double each = (right() - x) / std::max(kFewest, double(labels.size()));
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      const double at = x + double(i) * each;
+      text(at, y, labels[i], kBody_pt, PdfFont::kRegular, 0.25);
+      rule(at + width_of(labels[i], kBody_pt, PdfFont::kRegular) + 1.5, at + each - kGap_mm,
+           y - 0.6, 0.25, 0.3);
+    }
+  }
+
+  PdfDocument& pdf() { return pdf_; }
+  const Paper& paper() const { return paper_; }
+
+ private:
+  std::vector<std::string> wrapped(const std::string& words, double width_mm, double size_pt,
+                                   PdfFont font) const {
+    std::vector<std::string> lines;
+    std::string line;
+    for (std::size_t begin = 0; begin < words.size();) {
+      const std::size_t end = std::min(words.find(' ', begin), words.size());
+      const std::string word = words.substr(begin, end - begin);
+      const std::string longer = line.empty() ? word : line + " " + word;
+      if (!line.empty() && width_of(longer, size_pt, font) > width_mm) {
+        lines.push_back(line);
+        line = word;
+      } else {
+        line = longer;
+      }
+      begin = end + 1;
+    }
+    if (!line.empty()) lines.push_back(line);
+    return lines;
+  }
+
+  PdfDocument& pdf_;
+  Paper paper_;
+};
+
+class RunSheet {
+ public:
+  RunSheet(PdfDocument& pdf, const Paper& paper, const RigJob& job,
+           const std::vector<PosePicture>& pictures, RunContext& context)
+      : page_(pdf, paper),
+        job_(job),
+        process_(job.config.process),
+        pictures_(pictures),
+        context_(context) {}
+
+  void draw() {
+    draw_title();
+    draw_pictures();
+    draw_film_and_figures();
+    page_.new_page();
+    draw_tasks();
+    draw_notes();
+  }
+
+ private:
+  void draw_title() {
+    page_.y -= 6;
+    page_.text(page_.left(), page_.y, "Run sheet", kTitle_pt, PdfFont::kBold);
+    page_.text(page_.left() + 46, page_.y, fitted(job_.title, page_.width() - 46, kHead_pt),
+               kHead_pt);
+    page_.y -= 1;
+    page_.fill_in(page_.left(), {"Date", "Operator", "Run no."});
+    page_.y -= 3;
+  }
+
+  std::string fitted(std::string words, double width_mm, double size_pt) const {
+    if (page_.width_of(words, size_pt, PdfFont::kRegular) <= width_mm) return words;
+    while (!words.empty() && page_.width_of(words + "...", size_pt, PdfFont::kRegular) > width_mm)
+      words.pop_back();
+    return words + "...";
+  }
+
+  void draw_pictures() {
+    page_.heading("How the object hangs");
+    page_.y -= 1;
+    const double count = double(pictures_.size());
+    const double width = (page_.width() - (count - 1) * kGap_mm) / count;
+    const double height = width / kPictureAspect;
+    for (std::size_t i = 0; i < pictures_.size(); ++i) {
+      const double x = page_.left() + double(i) * (width + kGap_mm);
+      const Image& image = pictures_[i].image;
+      page_.pdf().draw_image(image, {0, 0, image.width_px, image.height_px}, false,
+                             {Vec2(x, page_.y - height), Vec2(x + width, page_.y)}, context_);
+      page_.text(x, page_.y - height - 4, pictures_[i].caption, kSmall_pt, PdfFont::kRegular, 0.25);
+    }
+    page_.y -= height + 5;
+    const Vec3& size = job_.object_size_mm;
+    const PoseOptions& pose = job_.config.object.pose;
+    std::string words = fmt::format(
+        "{:.1f} mm wide (x), {:.1f} mm deep (y), {:.1f} mm high (z); {} enters the water first",
+        size.x(), size.y(), size.z(), side_name(pose.down));
+    if (pose.rotate_deg.norm() > 0)
+      words += fmt::format(", turned by {:g}, {:g}, {:g} degrees about x, y, z",
+                           pose.rotate_deg.x(), pose.rotate_deg.y(), pose.rotate_deg.z());
+    page_.paragraph(page_.left(), page_.width(),
+                    words + ". Hang it over the middle of the film, x along the film's width.",
+                    kBody_pt);
+  }
+
+  void draw_film_and_figures() {
+    page_.heading("Film and figures");
+    const double top = page_.y;
+    const double half = 0.42 * page_.width();
+    draw_film(page_.left(), top - 3, half - 2 * kGap_mm, top - 3 - kMargin_mm - 14);
+    draw_figures(page_.left() + half, page_.right(), top);
+  }
+
+  // The sheet as it floats, from above.
+  void draw_film(double x, double top, double width, double height) {
+    const FilmOptions& film = job_.config.film;
+    PdfDocument& pdf = page_.pdf();
+    const double scale = std::min(width / film.width_mm, std::min(height, 98.0) / film.height_mm);
+    const Vec2 size(scale * film.width_mm, scale * film.height_mm);
+    const Vec2 corner(x + 0.5 * (width - size.x()), top - size.y());
+    const Box2 sheet{corner, corner + size};
+    const Vec2 margin = Vec2::Constant(scale * film.margin_mm);
+    pdf.fill_rectangle(sheet, 0.88);
+    pdf.fill_rectangle({sheet.min + margin, sheet.max - margin}, 1);
+    pdf.set_stroke(0.3);
+    pdf.draw_rectangle(sheet);
+    pdf.set_stroke(0.15, 0.5);
+    pdf.draw_rectangle({sheet.min + margin, sheet.max - margin});
+
+    const Vec2 center = 0.5 * (sheet.min + sheet.max);
+    const Vec2 object = 0.5 * scale * job_.object_size_mm.head<2>();
+    pdf.set_stroke(0.5, 0.35);
+    if (film.shape == FilmShape::kDisc) pdf.draw_dashed_circle(center, 0.5 * size.minCoeff());
+    pdf.draw_rectangle({center - object, center + object});
+    pdf.draw_lines(
+        {{center - Vec2(3, 0), center + Vec2(3, 0)}, {center - Vec2(0, 3), center + Vec2(0, 3)}});
+    centered(center.x(), center.y() - 6, "object", kSmall_pt);
+    centered(center.x(), sheet.min.y() + margin.y() + 2, "front (-y)", kSmall_pt);
+    centered(center.x(), sheet.max.y() - margin.y() - 4, "back (+y)", kSmall_pt);
+    page_.y = corner.y() - 0.5;
+    page_.paragraph(
+        x, width,
+        fmt::format("Seen from above; grey: {:g} mm of tape. The edge marked 'this edge "
+                    "left' lies to the left.",
+                    film.margin_mm),
+        kSmall_pt, PdfFont::kRegular, 0.25);
+  }
+
+  void centered(double x, double base, const std::string& words, double size_pt) {
+    page_.text(x - 0.5 * page_.width_of(words, size_pt, PdfFont::kRegular), base, words, size_pt,
+               PdfFont::kRegular, 0.3);
+  }
+
+  void draw_figures(double x, double right, double top) {
+    constexpr double kRow_mm = 7.4, kValue_mm = 34;
+    const double lowest = page_.y;
+    page_.y = top;
+    for (const auto& [name, value] : figures()) {
+      page_.y -= kRow_mm;
+      page_.text(x, page_.y, name, kBody_pt, PdfFont::kRegular, 0.3);
+      page_.text(x + kValue_mm, page_.y, value, kBody_pt, PdfFont::kBold);
+      page_.rule(x, right, page_.y - 2.1, 0.15, 0.75);
+    }
+    page_.y = std::min(page_.y, lowest) - 4;
+  }
+
+  std::vector<std::pair<std::string, std::string>> figures() const {
+    const JobConfig& config = job_.config;
+    const Activator activator = activator_for(config);
+    const std::vector<PlannedMove> plan = plan_dip(job_);
+    return {
+        {"Film", fmt::format("{:g} x {:g} mm, ink side {}", config.film.width_mm,
+                             config.film.height_mm, ink_side())},
+        {"Tape", fmt::format("{:g} mm all around, no slits", config.film.margin_mm)},
+        {"Water", fmt::format("{:g} to {:g} °C, {:.1f} l", process_.water_min_c,
+                              process_.water_max_c, bath_litres(config.bath))},
+        {"Soak", fmt::format("{:g} to {:g} s", process_.soak_min_s, process_.soak_max_s)},
+        {"Activator", fmt::format("{:.2f} ± {:.2f} g", activator.mass_g, activator.tolerance_g)},
+        {"Then wait", fmt::format("{:g} s", process_.activator_wait_s)},
+        {"Depth", fmt::format("{:.2f} mm from the water", job_.depth_mm)},
+        {"Speed", fmt::format("{:g} mm/min", process_.speed_mm_per_min)},
+        {"Dip takes",
+         fmt::format("{:.1f} s in the water", 60 * job_.depth_mm / process_.speed_mm_per_min)},
+        {"Then hold", fmt::format("{:g} s at least", process_.dwell_s)},
+        {"Lift",
+         fmt::format("{:g} mm/min, {:.1f} s", process_.lift_mm_per_min, plan.back().seconds)},
+        {"Dry", fmt::format("{:g} to {:g} h", process_.dry_min_h, process_.dry_max_h)}};
+  }
+
+  std::string ink_side() const {
+    return job_.config.print.ink_side == InkSide::kUp ? "up" : "down";
+  }
+
+  void draw_tasks() {
+    const JobConfig& config = job_.config;
+    const Activator activator = activator_for(config);
+    page_.heading("Before");
+    page_.task("Print print.pdf at 100 %, no scaling; measure the 100 mm ruler in its margin.",
+               {"Ruler, mm"});
+    page_.task(
+        fmt::format("Tape {:g} mm around all four edges, flat and without gaps; no slits. "
+                    "Take the protective layer off the film.",
+                    config.film.margin_mm));
+    page_.task("Object clean, dry and free of grease; hung as on page 1, over the film's middle.");
+    page_.task("Stage homed; water level found without film on the water; object lifted clear.",
+               {"Level, mm"});
+    page_.task(fmt::format("Water {:g} to {:g} °C, {:.1f} l.", process_.water_min_c,
+                           process_.water_max_c, bath_litres(config.bath)),
+               {"Measured, °C"});
+    page_.heading("Film");
+    page_.task(
+        fmt::format("Lay it ink side {}, beginning at one side; no bubbles below, no water on "
+                    "top. Start the clock.",
+                    ink_side()),
+        {"Time"});
+    page_.task(fmt::format("Wait {:g} to {:g} s until it lies flat again.", process_.soak_min_s,
+                           process_.soak_max_s),
+               {"Flat after, s"});
+    page_.task(fmt::format("Mask on. Spray {:.2f} g of activator, {:.2f} to {:.2f} g, evenly.",
+                           activator.mass_g, activator.mass_g - activator.tolerance_g,
+                           activator.mass_g + activator.tolerance_g),
+               {"Gun before, g", "Gun after, g", "Used, g"});
+    page_.task(fmt::format("Wait {:g} s.", process_.activator_wait_s));
+    page_.heading("Dip");
+    page_.task(fmt::format(
+        "Straight down at {:g} mm/min, {:.2f} mm deep: {:.1f} s from the first touch.",
+        process_.speed_mm_per_min, job_.depth_mm, 60 * job_.depth_mm / process_.speed_mm_per_min));
+    page_.task(fmt::format("Hold for {:g} s at least. Clear the film that is left off the water.",
+                           process_.dwell_s));
+    page_.task(fmt::format("Lift at {:g} mm/min.", process_.lift_mm_per_min),
+               {"Time", "Water, °C"});
+    page_.task(fmt::format("Dry for {:g} to {:g} h; clear coat if wanted.", process_.dry_min_h,
+                           process_.dry_max_h),
+               {"Dry at"});
+  }
+
+  void draw_notes() {
+    page_.heading("Notes");
+    constexpr double kLine_mm = 8;
+    while (page_.y - kLine_mm > kMargin_mm) {
+      page_.y -= kLine_mm;
+      page_.rule(page_.left(), page_.right(), page_.y, 0.15, 0.7);
+    }
+  }
+
+  Writer page_;
+  const RigJob& job_;
+  const ProcessOptions& process_;
+  const std::vector<PosePicture>& pictures_;
+  RunContext& context_;
+};
+
+}  // namespace
+
+JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
+                    const std::filesystem::path& file, RunContext& context) {
+  const Paper paper = choose_paper(paper_name, job.config.film);
+  const std::filesystem::path path = file.empty() ? job.folder / "run-sheet.pdf" : file;
+  const std::vector<PosePicture> pictures =
+      pose_pictures(job.folder / "preview.glb", kPictureWidth_px,
+                    static_cast<int>(kPictureWidth_px / kPictureAspect), context);
+  OutputFolder output(path.has_parent_path() ? path.parent_path() : ".");
+  PdfDocument pdf;
+  pdf.set_title("Run sheet, " + job.title);
+  RunSheet(pdf, paper, job, pictures, context).draw();
+  pdf.save(output.path(path.filename().string()));
+  context.check_cancelled();
+  output.commit();
+  JobResult result;
+  result.folder = output.folder();
+  result.files = {path.filename().string()};
+  result.text = fmt::format("wrote {}\n", path.string());
+  result.json = nlohmann::ordered_json{{"command", "rig sheet"}, {"file", path.string()}}.dump(
+                    2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                "\n";
+  return result;
+}
+
+}  // namespace hydrodip
