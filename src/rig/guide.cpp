@@ -26,8 +26,8 @@ class Guide {
         record_(record),
         context_(context) {}
 
-  void run() {
-    take_up_broken_run();
+  void run(const BrokenRun& broken) {
+    take_up(broken);
     introduce();
     step("film prepared", [&] { prepare_film(); });
     step("object mounted", [&] { mount_object(); });
@@ -47,8 +47,7 @@ class Guide {
 
  private:
   // Film and object of a broken run are still there; everything later is under way or spoilt.
-  void take_up_broken_run() {
-    const BrokenRun broken = last_broken_run(job_);
+  void take_up(const BrokenRun& broken) {
     std::vector<std::string> kept;
     for (const std::string& step : broken.steps)
       if (step == "film prepared" || step == "object mounted") kept.push_back(step);
@@ -219,8 +218,7 @@ class Guide {
     const double start_s = bench_.clock.now_s();
     for (;;) {
       const double past_s = bench_.clock.now_s() - start_s;
-      if (person_.pressed_enter()) return past_s;
-      if (hint.empty() && past_s >= least_s) return past_s;
+      if (hint.empty() ? past_s >= least_s : person_.pressed_enter()) return past_s;
       person_.show(countdown(what, past_s, least_s, most_s, hint));
       tick();
     }
@@ -269,6 +267,7 @@ class Guide {
 }  // namespace
 
 JobResult rig_guide(const RigJob& job, Bench& bench, RunContext& context) {
+  const BrokenRun broken = last_broken_run(job);  // before this run has a folder
   RunRecord record(job, bench.clock);
   Guide guide(job, bench, record, context);
   record.note("start", {{"job", job.title},
@@ -276,7 +275,7 @@ JobResult rig_guide(const RigJob& job, Bench& bench, RunContext& context) {
                         {"speed_mm_per_min", job.config.process.speed_mm_per_min},
                         {"stage", job.config.stage.port}});
   return finish_run(
-      record, [&] { guide.run(); },
+      record, [&] { guide.run(broken); },
       [&] {
         return RunEnd{guide.at_step(), guide.trace(), guide.rest(), true};
       });

@@ -1,7 +1,10 @@
 #include "rig/pictures.h"
 
+#include "base/error.h"
+#include "job/prepare.h"
 #include "object/load.h"
 #include "object/surface.h"
+#include "report/report.h"
 #include "report/studio.h"
 
 namespace hydrodip {
@@ -24,6 +27,25 @@ Vec3 turned(const Vec3& p, Turn turn) {
   return turn == Turn::kNone ? p : Vec3(p.x(), p.z(), -p.y());
 }
 
+bool is_as_printed(const RigJob& job) {
+  try {
+    return !job.model_sha256.empty() &&
+           describe_input("model", job.config.model).sha256 == job.model_sha256;
+  } catch (const InputError&) {
+    return false;  // moved or deleted
+  }
+}
+
+// In the posed-object frame.
+Object hanging_object(const RigJob& job) {
+  // What there is to say about the model was said when it was printed.
+  RunContext unheard;
+  if (is_as_printed(job)) return load_posed(job.config, unheard).object;
+  Object object = load_object(job.folder / "preview.glb", {}, unheard).object;
+  for (Vec3& p : object.positions) p = posed(p);
+  return object;
+}
+
 Image render(const Object& object, const View& view, int width_px, int height_px,
              RunContext& context) {
   const Surface surface(object.positions, object.triangles);
@@ -40,11 +62,9 @@ Image render(const Object& object, const View& view, int width_px, int height_px
 
 }  // namespace
 
-std::vector<PosePicture> pose_pictures(const std::filesystem::path& preview_glb, int width_px,
-                                       int height_px, RunContext& context) {
-  // What there is to say about the model was said when it was printed.
-  RunContext unheard;
-  const Object loaded = load_object(preview_glb, {}, unheard).object;
+std::vector<PosePicture> pose_pictures(const RigJob& job, int width_px, int height_px,
+                                       RunContext& context) {
+  const Object hanging = hanging_object(job);
   const std::vector<View> views = {
       {"from the front (-y)", Turn::kUpright, Vec3::UnitZ()},
       {"from the right (+x)", Turn::kUpright, Vec3::UnitX()},
@@ -52,8 +72,8 @@ std::vector<PosePicture> pose_pictures(const std::filesystem::path& preview_glb,
   std::vector<PosePicture> pictures;
   for (const View& view : views) {
     context.progress("drawing the object", double(pictures.size()) / double(views.size()));
-    Object object = loaded;
-    for (Vec3& p : object.positions) p = turned(posed(p), view.turn);
+    Object object = hanging;
+    for (Vec3& p : object.positions) p = turned(p, view.turn);
     pictures.push_back({view.caption, render(object, view, width_px, height_px, context)});
   }
   return pictures;

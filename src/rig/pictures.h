@@ -1,12 +1,12 @@
 // Pictures of the object as it hangs at the stage, for the run sheet.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/context.h"
 #include "image/image.h"
+#include "rig/rig_job.h"
 
 namespace hydrodip {
 
@@ -15,9 +15,10 @@ struct PosePicture {
   Image image;
 };
 
-// The dipped object of the job's preview.glb from the front (-y), from the right (+x) and from
-// below, up as it hangs. Throws InputError if the file is missing or is no model.
-std::vector<PosePicture> pose_pictures(const std::filesystem::path& preview_glb, int width_px,
-                                       int height_px, RunContext& context);
+// The object from the front (-y), from the right (+x) and from below, up as it hangs: the model, if
+// it is still what was printed, else the job's preview.glb. Throws InputError if that is missing or
+// is no model.
+std::vector<PosePicture> pose_pictures(const RigJob& job, int width_px, int height_px,
+                                       RunContext& context);
 
 }  // namespace hydrodip

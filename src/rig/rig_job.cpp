@@ -74,6 +74,15 @@ std::string title_of(const Json& report) {
   return "";
 }
 
+void find_model(const Json& report, RigJob& job) {
+  if (!report.contains("inputs") || !report["inputs"].is_array()) return;
+  for (const Json& input : report["inputs"]) {
+    if (!input.is_object() || text_of(input, "role") != "model") continue;
+    job.config.model = text_of(input, "path");
+    job.model_sha256 = text_of(input, "sha256");
+  }
+}
+
 double film_area_mm2(const FilmOptions& film) {
   if (film.shape == FilmShape::kRectangle) return film.width_mm * film.height_mm;
   const double radius = 0.5 * std::min(film.width_mm, film.height_mm);
@@ -97,9 +106,9 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
   RigJob job;
   job.folder = folder;
   job.title = title_of(report);
-  job.verdict = text_of(report, "verdict");
   apply_settings(job.config, settings_of(report["parameters"], (folder / "report.json").string()));
   apply_sources(job.config, sources);
+  find_model(report, job);
   const Json& figures = report["figures"];
   if (!figures["depth_mm"].is_number() || !(figures["depth_mm"].get<double>() > 0))
     throw InputError(

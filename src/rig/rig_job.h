@@ -18,7 +18,7 @@ struct RigJob {
   JobConfig config;  // the job's own parameters, then profile, configuration and --set of today
   double depth_mm = 0;
   Vec3 object_size_mm = Vec3::Zero();  // as posed
-  std::string verdict;
+  std::string model_sha256;            // of config.model, when it was printed
   std::vector<std::string> warnings;
 };
 

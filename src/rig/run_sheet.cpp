@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -98,13 +99,13 @@ class Writer {
     y -= 0.9;
     paragraph(left() + kIndent_mm, width() - kIndent_mm, words, kBody_pt);
     if (!blanks.empty()) fill_in(left() + kIndent_mm, blanks);
-    y -= 1.7;
+    y -= blanks.empty() ? 1.7 : 2.8;
   }
 
   // "label ______" side by side.
   void fill_in(double x, const std::vector<std::string>& labels) {
     constexpr double kFewest = 3;
-    y -= 7;
+    y -= 6.4;
     const double each = (right() - x) / std::max(kFewest, double(labels.size()));
     for (std::size_t i = 0; i < labels.size(); ++i) {
       const double at = x + double(i) * each;
@@ -156,6 +157,7 @@ class RunSheet {
     draw_title();
     draw_pictures();
     draw_film_and_figures();
+    draw_movements();
     page_.new_page();
     draw_tasks();
     draw_notes();
@@ -192,7 +194,7 @@ class RunSheet {
                              {Vec2(x, page_.y - height), Vec2(x + width, page_.y)}, context_);
       page_.text(x, page_.y - height - 4, pictures_[i].caption, kSmall_pt, PdfFont::kRegular, 0.25);
     }
-    page_.y -= height + 5;
+    page_.y -= height + 6.5;
     const Vec3& size = job_.object_size_mm;
     const PoseOptions& pose = job_.config.object.pose;
     std::string words = fmt::format(
@@ -218,7 +220,7 @@ class RunSheet {
   void draw_film(double x, double top, double width, double height) {
     const FilmOptions& film = job_.config.film;
     PdfDocument& pdf = page_.pdf();
-    const double scale = std::min(width / film.width_mm, std::min(height, 98.0) / film.height_mm);
+    const double scale = std::min(width / film.width_mm, std::min(height, 86.0) / film.height_mm);
     const Vec2 size(scale * film.width_mm, scale * film.height_mm);
     const Vec2 corner(x + 0.5 * (width - size.x()), top - size.y());
     const Box2 sheet{corner, corner + size};
@@ -290,6 +292,24 @@ class RunSheet {
         {"Dry", fmt::format("{:g} to {:g} h", process_.dry_min_h, process_.dry_max_h)}};
   }
 
+  // For whoever sets up the stage, or dips by hand.
+  void draw_movements() {
+    constexpr std::array<double, 5> kColumns = {0, 42, 74, 106, 138};
+    const auto row = [&](const std::array<std::string, 5>& cells, PdfFont font) {
+      page_.y -= 5.6;
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        page_.text(page_.left() + kColumns[i], page_.y, cells[i], kBody_pt, font);
+    };
+    page_.heading("Movements (heights of the object's lowest point over the water)");
+    row({"", "from, mm", "to, mm", "mm/min", "seconds"}, PdfFont::kRegular);
+    for (const PlannedMove& move : plan_dip(job_))
+      row({move.phase, fmt::format("{:.2f}", move.from_height_mm),
+           fmt::format("{:.2f}", move.to_height_mm),
+           move.mm_per_min > 0 ? fmt::format("{:g}", move.mm_per_min) : "-",
+           fmt::format("{:.1f}", move.seconds)},
+          move.phase == "dip" ? PdfFont::kBold : PdfFont::kRegular);
+  }
+
   std::string ink_side() const {
     return job_.config.print.ink_side == InkSide::kUp ? "up" : "down";
   }
@@ -359,9 +379,8 @@ JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
                     const std::filesystem::path& file, RunContext& context) {
   const Paper paper = choose_paper(paper_name, job.config.film);
   const std::filesystem::path path = file.empty() ? job.folder / "run-sheet.pdf" : file;
-  const std::vector<PosePicture> pictures =
-      pose_pictures(job.folder / "preview.glb", kPictureWidth_px,
-                    static_cast<int>(kPictureWidth_px / kPictureAspect), context);
+  const std::vector<PosePicture> pictures = pose_pictures(
+      job, kPictureWidth_px, static_cast<int>(kPictureWidth_px / kPictureAspect), context);
   OutputFolder output(path.has_parent_path() ? path.parent_path() : ".");
   PdfDocument pdf;
   pdf.set_title("Run sheet, " + job.title);

@@ -60,19 +60,19 @@ std::string StageSession::describe_state() {
 double StageSession::position_mm() { return mover_.state().position_mm; }
 
 void StageSession::require_yes(const std::string& question) {
-  if (bench_.yes_given) return;
-  const std::string answer = bench_.person.ask(question + " Type yes: ");
-  note("asked before moving", {{"question", question}, {"answer", answer}});
-  if (answer != "yes") throw Cancelled("not moved: the answer was not 'yes'");
+  if (bench_.yes_given) return mover_.allow_motion();
+  for (;;) {
+    const std::string answer = bench_.person.ask(question + " Type yes: ");
+    note("asked before moving", {{"question", question}, {"answer", answer}});
+    if (answer == "yes") return mover_.allow_motion();
+    if (answer == "no") throw Cancelled("not moved: you said no");
+    bench_.person.say("yes or no, in full.");
+  }
 }
 
 void StageSession::ensure_home(bool always) {
-  if (!always && mover_.state().homed) {
-    mover_.allow_motion();
-    return;
-  }
+  if (!always && mover_.state().homed) return;
   require_yes("The stage will now move to its home. Is its way free, and are your hands off?");
-  mover_.allow_motion();
   note("homing", {});
   mover_.home();
   note("homed", {{"position_mm", position_mm()}});

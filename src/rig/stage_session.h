@@ -32,7 +32,7 @@ class StageSession {
   void perform(const RigJob& job, double water_mm, const std::string& phase);
   // Throws StageError if the stage cannot get where the movement leads.
   void require_reach(double water_mm, const PlannedMove& move) const;
-  // Asks for a yes in full; throws Cancelled without it.
+  // Asks until the answer is yes or no, in full; throws Cancelled for a no.
   void require_yes(const std::string& question);
 
   const Trace& trace() const { return mover_.trace(); }

@@ -1,0 +1,99 @@
+// The run sheet as another program reads it.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "rig/rig.h"
+
+namespace hydrodip {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string output_of(const std::string& command) {
+  std::string text;
+  FILE* pipe = ::popen(command.c_str(), "r");
+  std::array<char, 512> buffer;
+  while (pipe && std::fgets(buffer.data(), buffer.size(), pipe)) text += buffer.data();
+  if (pipe) ::pclose(pipe);
+  return text;
+}
+
+class RunSheetTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) /
+              ("run_sheet_" +
+               std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    // A pyramid, point down.
+    std::ofstream(folder_ / "model.obj")
+        << "v -40 -30 25\nv 40 -30 25\nv 40 30 25\nv -40 30 25\nv 0 0 0\n"
+           "f 1 2 3\nf 1 3 4\nf 2 1 5\nf 3 2 5\nf 4 3 5\nf 1 4 5\n";
+    const auto input = read_file(folder_ / "model.obj");
+    const nlohmann::json report = {
+        {"title", "pyramid"},
+        {"inputs",
+         {{{"role", "model"},
+           {"path", (folder_ / "model.obj").string()},
+           {"sha256", sha256_hex(input)}}}},
+        {"parameters",
+         {{"process.soak_min_s", {{"value", 63}}},
+          {"process.soak_max_s", {{"value", 77}}},
+          {"process.speed_mm_per_min", {{"value", 90}}},
+          {"film.width_mm", {{"value", 215.9}}},
+          {"film.height_mm", {{"value", 279.4}}}}},
+        {"figures", {{"depth_mm", 24.25}, {"object_size_mm", {80, 60, 25}}}}};
+    write_file(folder_ / "report.json", report.dump());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string read_back(const std::string& tool) const {
+    return output_of(tool + " '" + (folder_ / "run-sheet.pdf").string() + "'" +
+                     (tool == "pdfinfo" ? "" : " -"));
+  }
+
+  fs::path folder_;
+  RunContext context_;
+};
+
+TEST_F(RunSheetTest, SaysTheJobsFigures) {
+  rig_sheet(load_rig_job(folder_, {}), "", "", context_);
+  const std::string text = read_back("pdftotext -layout");
+  for (const char* figure :
+       {"pyramid", "63 to 77 s", "90 mm/min", "24.25 mm", "3.50 ± 0.50 g", "27 to 30 °C", "15.0 l",
+        "80.0 mm wide", "16.2 s", "ink side up", "10 mm all around", "Gun before, g", "Notes"})
+    EXPECT_NE(text.find(figure), std::string::npos) << figure << "\n" << text;
+}
+
+TEST_F(RunSheetTest, FitsBothPapersOnTwoPages) {
+  for (const auto& [paper, size] : {std::pair("a4", "595.2"), std::pair("letter", "612 x 792")}) {
+    rig_sheet(load_rig_job(folder_, {}), paper, "", context_);
+    const std::string info = read_back("pdfinfo");
+    EXPECT_NE(info.find(size), std::string::npos) << info;
+    EXPECT_NE(info.find("Pages:           2"), std::string::npos) << info;
+  }
+  EXPECT_THROW(rig_sheet(load_rig_job(folder_, {}), "a5", "", context_), InputError);
+}
+
+TEST_F(RunSheetTest, TheSameJobGivesTheSameBytes) {
+  rig_sheet(load_rig_job(folder_, {}), "", folder_ / "a.pdf", context_);
+  rig_sheet(load_rig_job(folder_, {}), "", folder_ / "b.pdf", context_);
+  EXPECT_EQ(read_file(folder_ / "a.pdf"), read_file(folder_ / "b.pdf"));
+}
+
+TEST_F(RunSheetTest, WithoutModelAndPreviewItSaysWhatIsMissing) {
+  fs::remove(folder_ / "model.obj");
+  EXPECT_THROW(rig_sheet(load_rig_job(folder_, {}), "", "", context_), InputError);
+  EXPECT_FALSE(fs::exists(folder_ / "run-sheet.pdf"));
+}
+
+}  // namespace
+}  // namespace hydrodip
