@@ -38,7 +38,7 @@ std::string escaped(const std::string& text) {
 std::string speed_row(const std::optional<SpeedCheck>& speed) {
   if (!speed) return "";
   return fmt::format(
-      "<p>Speed of the dip: {:.2f} mm/min of {:g}, an error of {:+.2f} %. Largest distance between "
+      "<p>Speed of the dip: {:.2f} mm/min of {:g}, an error of {:+.3f} %. Largest distance between "
       "commanded and reported position: {:.3f} mm.</p>\n",
       speed->measured_mm_per_min, speed->commanded_mm_per_min, speed->error_percent(),
       speed->largest_deviation_mm);

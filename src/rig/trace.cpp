@@ -82,12 +82,12 @@ class Plot {
     const double time_step = tick_step(time_.span()), place_step = tick_step(place_.span());
     for (double t = std::ceil(time_.min / time_step) * time_step; t <= time_.max; t += time_step) {
       line(x(t), kTop, x(t), kHeight - kBottom, "#eee");
-      text(x(t), kHeight - kBottom + 16, "middle", fmt::format("{:g}", t));
+      text(x(t), kHeight - kBottom + 16, "middle", fmt::format("{:g}", t + 0.0));
     }
     for (double p = std::ceil(place_.min / place_step) * place_step; p <= place_.max;
          p += place_step) {
       line(kLeft, y(p), kWidth - kRight, y(p), "#eee");
-      text(kLeft - 6, y(p) + 4, "end", fmt::format("{:g}", p));
+      text(kLeft - 6, y(p) + 4, "end", fmt::format("{:g}", p + 0.0));
     }
     text(kWidth - kRight, kHeight - 8, "end", "time, s");
     text(8, kTop - 12, "start", "position, mm");
