@@ -111,7 +111,7 @@ ZaberLine read_zaber_line(const std::string& line, bool checksum_expected, Zaber
 }
 
 std::string zaber_fault(const std::string& flag) {
-  const std::string known = look_up(kFaults, flag);
+  std::string known = look_up(kFaults, flag);
   if (known.empty() && !flag.empty() && flag[0] == 'F') return "the stage reports a fault";
   return known;
 }
@@ -119,7 +119,7 @@ std::string zaber_fault(const std::string& flag) {
 bool zaber_flag_means_not_homed(const std::string& flag) { return flag == "WR" || flag == "WH"; }
 
 std::string zaber_refusal(const std::string& reason) {
-  const std::string known = look_up(kRefusals, reason);
+  std::string known = look_up(kRefusals, reason);
   return known.empty() ? reason : known;
 }
 
