@@ -66,7 +66,7 @@ std::string text_of(const Json& object, const char* key) {
 }
 
 std::string title_of(const Json& report) {
-  const std::string title = text_of(report, "title");
+  std::string title = text_of(report, "title");
   if (!title.empty()) return title;
   if (report.contains("inputs") && report["inputs"].is_array() && !report["inputs"].empty() &&
       report["inputs"][0].is_object())
