@@ -189,12 +189,7 @@ void FilmEnergy::hessian(const VertexVector& u, bool definite, BlockMatrix& out)
 bool FilmEnergy::any_inverted(const VertexVector& u) const {
   std::atomic<bool> found = false;
   parallel_for(mesh_.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end && !found; ++t) {
-      if (!(area_[t] > 0)) continue;
-      const Triangle& v = mesh_.triangles[t];
-      const Vec2& a = u[std::size_t(v[0])];
-      if (!(cross2(u[std::size_t(v[1])] - a, u[std::size_t(v[2])] - a) > 0)) found = true;
-    }
+    if (kernels::best().turned_over(elements(), begin, end, u.data()->data()) > 0) found = true;
   });
   return found;
 }

@@ -92,6 +92,8 @@ struct Table {
   // minus their sum). u: x and y of every vertex in turn. Returns how many are turned over.
   std::int64_t (*forces)(const Elements&, std::size_t begin, std::size_t end, const double* u,
                          double* const (*force)[2]);
+  // How many triangles with film are turned over at u.
+  std::int64_t (*turned_over)(const Elements&, std::size_t begin, std::size_t end, const double* u);
   // 1 where the Hessian at u differs from the linearization by more than the tolerance, relatively.
   void (*changed)(const Elements&, std::size_t begin, std::size_t end, const double* u,
                   const Linearization&, double tolerance, std::int64_t* out);

@@ -256,6 +256,18 @@ std::int64_t forces(const Elements& e, std::size_t begin, std::size_t end, const
   return turned_over;
 }
 
+std::int64_t turned_over(const Elements& e, std::size_t begin, std::size_t end, const double* u) {
+  std::int64_t count = 0;
+  for (std::size_t t = begin; t < end; ++t) {
+    const std::size_t a = 2 * std::size_t(e.corner[0][t]), b = 2 * std::size_t(e.corner[1][t]),
+                      c = 2 * std::size_t(e.corner[2][t]);
+    const double twice =
+        (u[b] - u[a]) * (u[c + 1] - u[a + 1]) - (u[b + 1] - u[a + 1]) * (u[c] - u[a]);
+    count += (e.area[t] > 0) & !(twice > 0) ? 1 : 0;
+  }
+  return count;
+}
+
 void changed(const Elements& e, std::size_t begin, std::size_t end, const double* u,
              const Linearization& old, double tolerance, std::int64_t* out) {
   const double limit = tolerance * tolerance;
@@ -302,6 +314,6 @@ void overstretched(const Elements& e, std::size_t begin, std::size_t end, const 
 extern const Table KERNELS_VARIANT;
 const Table KERNELS_VARIANT = {multiply,      residual, smooth,        precondition, restrict_rows,
                                prolong_rows,  dot,      scale_and_add, advance,      rest_shapes,
-                               overstretched, forces,   changed};
+                               overstretched, forces,   turned_over,   changed};
 
 }  // namespace hydrodip::kernels

@@ -48,6 +48,7 @@ std::vector<double> results_of(const kernels::Table& table) {
                              {force[2].data(), force[3].data()}};
   results.push_back(double(table.forces(film.energy.elements(), 0, n, film.u.data()->data(), out)));
   for (const auto& f : force) results.insert(results.end(), f.begin(), f.end());
+  results.push_back(double(table.turned_over(film.energy.elements(), 0, n, film.u.data()->data())));
   std::vector<std::int64_t> flags(n);
   table.overstretched(film.energy.elements(), 0, n, film.u.data()->data(), 1.2, flags.data());
   results.insert(results.end(), flags.begin(), flags.end());
