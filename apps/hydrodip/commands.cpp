@@ -25,6 +25,7 @@ void declare_print(CLI::App& app, Request& request) {
   declare_reporting(app, request);
   declare_object(app, request);
   declare_film_and_dip(app, request);
+  declare_ink(app, request);
   declare_resolution(app, request);
   declare_configuration(app, request);
 }
@@ -43,6 +44,7 @@ void declare_simulate(CLI::App& app, Request& request) {
   declare_object(app, request);
   declare_film_image(app, request);
   declare_film_and_dip(app, request);
+  declare_ink(app, request);
   declare_configuration(app, request);
 }
 

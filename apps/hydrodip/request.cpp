@@ -81,6 +81,11 @@ void declare_film_and_dip(CLI::App& app, Request& request) {
                        "compare with (default: full)");
 }
 
+void declare_ink(CLI::App& app, Request& request) {
+  add_parameter_option(app, request, "--printer-profile", "ink.profile", "FILE.icc", kFilmGroup,
+                       "the printer's CMYK ICC profile (default: a plain formula)");
+}
+
 void declare_resolution(CLI::App& app, Request& request) {
   add_parameter_option(app, request, "--dpi", "print.dpi", "DPI", kFilmGroup,
                        "resolution of the film image, 36 to 1200 (default: 300)");

@@ -34,6 +34,7 @@ void declare_output(CLI::App& app, Request& request, const std::string& default_
 void declare_reporting(CLI::App& app, Request& request);  // --json, --quiet
 void declare_object(CLI::App& app, Request& request);
 void declare_film_and_dip(CLI::App& app, Request& request);
+void declare_ink(CLI::App& app, Request& request);
 void declare_resolution(CLI::App& app, Request& request);
 void declare_configuration(CLI::App& app, Request& request);
 void declare_film_image(CLI::App& app, Request& request);

@@ -9,9 +9,11 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "dip/foot.h"
+#include "dip/measure.h"
 #include "dip/scheme.h"
 #include "dip/waterline.h"
 #include "film/locate.h"
@@ -96,7 +98,7 @@ class ContactLineScheme : public Scheme {
     climb(level);
     set_rest();
     const VertexVector u = relaxed();
-    tear(u);
+    tear(u, level);
     slide(u);
     correct_feet();
     attach(level);
@@ -211,9 +213,50 @@ class ContactLineScheme : public Scheme {
     });
   }
 
+  // Calls work(v, w) for every floating corner v of usable film and every other corner w.
+  template <class Work>
+  void for_each_link(const Work& work) const {
+    for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
+      if (!usable_[t]) continue;
+      for (std::int32_t v : film_.triangles[t])
+        for (std::int32_t w : film_.triangles[t])
+          if (v != w && floats(v)) work(v, w);
+    }
+  }
+
+  // The free vertices, without islands: film torn off all around or hanging by one point drifts,
+  // because nothing says where it should be.
+  std::vector<std::uint8_t> held_vertices() const {
+    if (!any_torn_) return is_free_;
+    std::vector<std::int32_t> island(film_.u.size());
+    std::iota(island.begin(), island.end(), 0);
+    const auto root = [&](std::int32_t v) {
+      while (island[std::size_t(v)] != v)
+        v = island[std::size_t(v)] = island[std::size_t(island[std::size_t(v)])];
+      return v;
+    };
+    for_each_link([&](std::int32_t v, std::int32_t w) {
+      if (floats(w)) island[std::size_t(root(v))] = root(w);
+    });
+    // The first vertex that holds each island, and whether there is another.
+    std::vector<std::int32_t> holder(film_.u.size(), -1);
+    std::vector<std::uint8_t> held(film_.u.size(), 0);
+    for_each_link([&](std::int32_t v, std::int32_t w) {
+      if (floats(w)) return;
+      const auto i = std::size_t(root(v));
+      if (holder[i] < 0) holder[i] = w;
+      held[i] |= std::uint8_t(holder[i] != w);
+    });
+    std::vector<std::uint8_t> result = is_free_;
+    for (std::size_t v = 0; v < result.size(); ++v)
+      result[v] &= held[std::size_t(root(std::int32_t(v)))];
+    return result;
+  }
+
   VertexVector relaxed() {
-    VertexVector u = first_guess();
-    relax_film(energy_, is_free_, *solver_, u, state_.statistics);
+    const std::vector<std::uint8_t> is_free = held_vertices();
+    VertexVector u = first_guess(is_free);
+    relax_film(energy_, is_free, *solver_, u, state_.statistics);
     parallel_for(u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) last_slide_[v] = u[v] - film_.u[v];
     });
@@ -221,11 +264,11 @@ class ContactLineScheme : public Scheme {
   }
 
   // The film slides on as it did in the last step, unless that would turn something over.
-  VertexVector first_guess() const {
+  VertexVector first_guess(const std::vector<std::uint8_t>& is_free) const {
     VertexVector u = film_.u;
     parallel_for(u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
-        if (is_free_[v]) u[v] += last_slide_[v];
+        if (is_free[v]) u[v] += last_slide_[v];
     });
     return energy_.any_inverted(u) ? film_.u : u;
   }
@@ -236,15 +279,20 @@ class ContactLineScheme : public Scheme {
                                 u[std::size_t(v[2])]);
   }
 
-  void tear(const VertexVector& u) {
-    const double limit = set_.options.material.tear_stretch;
-    if (!(limit > 0)) return;
-    energy_.overstretched(u, limit, tears_);
-    for (std::size_t t = 0; t < tears_.size(); ++t)
-      if (tears_[t]) {
-        state_.torn[t] = 1;
-        torn_now_.push_back(t);
-      }
+  void tear(const VertexVector& u, double level) {
+    const std::vector<double>& told = set_.options.tear_levels;
+    const double limit = tear_limit(set_.options);
+    if (!(limit > 0) && told.empty()) return;
+    tears_.assign(film_.triangles.size(), 0);
+    if (limit > 0) energy_.overstretched(u, limit, tears_);
+    for (std::size_t t = 0; t < tears_.size(); ++t) {
+      if (!told.empty() && usable_[t] && level >= told[t]) tears_[t] = 1;
+      if (!tears_[t]) continue;
+      state_.torn[t] = 1;
+      state_.tear_level[t] = level;
+      torn_now_.push_back(t);
+      any_torn_ = true;
+    }
   }
 
   // Every floating vertex goes where its film coordinate is found in the relaxed film.
@@ -509,6 +557,7 @@ class ContactLineScheme : public Scheme {
   std::vector<double> film_left_, smallest_area_;
   std::vector<std::int64_t> tears_;
   std::vector<std::size_t> torn_now_;  // triangles torn in this step
+  bool any_torn_ = false;
   std::vector<std::uint8_t> is_free_;  // per vertex: floats and has film around it
   // Per vertex, seen from above: now, and after relaxing.
   VertexVector plan_, slid_;

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "dip/measure.h"
@@ -27,6 +28,8 @@ void check(const DipOptions& options, const FilmMesh& film) {
   if (!(options.material.z_stretch >= 0)) refuse("material.z_stretch must not be negative");
   if (!options.modulus.empty() && options.modulus.size() != film.triangles.size())
     refuse("the stiffness field does not fit the film's mesh");
+  if (!options.tear_levels.empty() && options.tear_levels.size() != film.triangles.size())
+    refuse("the given tears do not fit the film's mesh");
 }
 
 DipState floating_film(const FilmMesh& film) {
@@ -36,6 +39,7 @@ DipState floating_film(const FilmMesh& film) {
     state.state.push_back(film.on_rim[v] ? VertexState::kClamped : VertexState::kUnattached);
   }
   state.torn.assign(film.triangles.size(), 0);
+  state.tear_level.assign(film.triangles.size(), std::numeric_limits<double>::infinity());
   return state;
 }
 
@@ -93,7 +97,7 @@ void relax_film(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_fr
 std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, const Vec3& to) {
   const Vec3 way = to - from;
   const double length = way.norm();
-  if (!(length > 0)) return std::nullopt;
+  if (!(length > 0 && std::isfinite(length))) return std::nullopt;
   const double slack = kContactSlack_mm / length;
   const auto hit = surface.first_hit(from, way, -slack, 1 + slack);
   if (!hit) return std::nullopt;

@@ -70,7 +70,14 @@ bool folded(const FilmMesh& film, const DipState& state, const Surface& surface,
   return below && (b - a).cross(c - a).dot(surface.normal(*below)) >= 0;
 }
 
+// Film that was told when to tear bears so much more, so that nothing is decided by a hair.
+constexpr double kToldMargin = 1.25;
+
 }  // namespace
+
+double tear_limit(const DipOptions& options) {
+  return options.material.tear_stretch * (options.tear_levels.empty() ? 1 : kToldMargin);
+}
 
 DippedFilm measured(const FilmMesh& film, const DipState& state, const DipOptions& options,
                     const Surface& surface) {
@@ -79,6 +86,7 @@ DippedFilm measured(const FilmMesh& film, const DipState& state, const DipOption
   result.position = state.position;
   result.state = state.state;
   result.torn = state.torn;
+  result.tear_level = state.tear_level;
   result.depth_mm = state.level;
 
   const std::size_t vertices = film.u.size();
@@ -89,14 +97,19 @@ DippedFilm measured(const FilmMesh& film, const DipState& state, const DipOption
   measures.reserve(film.triangles.size());
   for (std::size_t t = 0; t < film.triangles.size(); ++t) {
     measures.push_back(measure_triangle(film, state, t));
-    const double limit = options.material.tear_stretch;
+    const double limit = tear_limit(options);
     const Triangle& v = film.triangles[t];
     const bool on_object = std::all_of(v.begin(), v.end(), [&](std::int32_t i) {
       return state.state[std::size_t(i)] == VertexState::kAttached;
     });
     if (!on_object) continue;
-    if ((limit > 0 && measures.back().stretch > limit) || folded(film, state, surface, t))
-      result.torn[t] = 1;
+    const bool told = !options.tear_levels.empty();
+    const bool tears = (limit > 0 && measures.back().stretch > limit) ||
+                       (told && state.level >= options.tear_levels[t]) ||
+                       (!told && folded(film, state, surface, t));
+    if (!tears || result.torn[t]) continue;
+    result.torn[t] = 1;
+    result.tear_level[t] = state.level;
   }
   std::vector<std::uint8_t> done(vertices, 0);
   const auto gather = [&](auto counts) {

@@ -11,4 +11,7 @@ namespace hydrodip {
 DippedFilm measured(const FilmMesh& film, const DipState& state, const DipOptions& options,
                     const Surface& surface);
 
+// The principal stretch at which film tears without being told to; 0: never.
+double tear_limit(const DipOptions& options);
+
 }  // namespace hydrodip

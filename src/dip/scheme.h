@@ -27,6 +27,7 @@ struct DipState {
   std::vector<Vec3> position;
   std::vector<VertexState> state;
   std::vector<std::uint8_t> torn;  // per triangle
+  std::vector<double> tear_level;  // per triangle: when it tore; infinity: not yet
   DipStatistics statistics;
 };
 

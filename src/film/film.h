@@ -58,6 +58,7 @@ struct DippedFilm {
   std::vector<double> area_ratio;  // per vertex: deformed area over flat area (Voronoi areas)
   std::vector<double> stretch;     // per vertex: largest principal stretch around it
   std::vector<std::uint8_t> torn;  // per triangle: torn, or on the object upside down
+  std::vector<double> tear_level;  // per triangle: the depth at which it tore; infinity: it did not
   double depth_mm = 0;             // immersion reached
 
   // A triangle whose corners are all attached and that is not torn: film that lies on the object.

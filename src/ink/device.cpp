@@ -1,25 +1,53 @@
-#include "ink/device.h"
-
 #include <algorithm>
+#include <cmath>
+
+#include "ink/color_model.h"
+#include "ink/profiles.h"
 
 namespace hydrodip {
 
 namespace {
 
-// amount * coverage / 255, rounded to nearest.
-std::uint8_t scaled(int amount, int coverage) {
-  return static_cast<std::uint8_t>((amount * coverage + 127) / 255);
-}
+class DeviceModel : public ColorModel {
+ public:
+  void separate(const SrgbColor* colors, Inks* inks, std::size_t count) const override {
+    for (std::size_t i = 0; i < count; ++i) inks[i] = device_inks(colors[i]);
+  }
+  void look(const Inks* inks, SrgbColor* colors, std::size_t count) const override {
+    for (std::size_t i = 0; i < count; ++i) colors[i] = device_look(inks[i]);
+  }
+  std::string name() const override { return "device formula"; }
+  const std::vector<std::uint8_t>& profile() const override {
+    static const std::vector<std::uint8_t> bytes = make_device_profile();
+    return bytes;
+  }
+};
 
 }  // namespace
 
-std::array<std::uint8_t, 4> device_cmyk(std::uint8_t r, std::uint8_t g, std::uint8_t b,
-                                        std::uint8_t a) {
-  const int c = 255 - r;
-  const int m = 255 - g;
-  const int y = 255 - b;
-  const int k = std::min({c, m, y});
-  return {scaled(c - k, a), scaled(m - k, a), scaled(y - k, a), scaled(k, a)};
+std::array<std::uint8_t, 4> to_bytes(const Inks& inks) {
+  const auto byte = [](float amount) {
+    return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(amount, 0.0f, 1.0f)));
+  };
+  return {byte(inks.c), byte(inks.m), byte(inks.y), byte(inks.k)};
 }
+
+Inks from_bytes(const std::uint8_t* cmyk) {
+  const auto amount = [](std::uint8_t byte) { return static_cast<float>(byte) / 255.0f; };
+  return {amount(cmyk[0]), amount(cmyk[1]), amount(cmyk[2]), amount(cmyk[3])};
+}
+
+Inks device_inks(const SrgbColor& color) {
+  const float c = 1 - color.r, m = 1 - color.g, y = 1 - color.b;
+  const float k = std::min({c, m, y});
+  return {c - k, m - k, y - k, k};
+}
+
+SrgbColor device_look(const Inks& inks) {
+  const auto left = [&](float amount) { return std::max(0.0f, 1 - amount - inks.k); };
+  return {left(inks.c), left(inks.m), left(inks.y)};
+}
+
+std::unique_ptr<ColorModel> make_device_model() { return std::make_unique<DeviceModel>(); }
 
 }  // namespace hydrodip

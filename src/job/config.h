@@ -8,6 +8,7 @@
 
 #include "dip/dip.h"
 #include "film/film.h"
+#include "ink/discoloration.h"
 #include "object/load.h"
 #include "object/pose.h"
 
@@ -26,19 +27,29 @@ struct BathOptions {
   double depth_mm = 150;
 };
 
-// Recorded for the ink model; the simulation does not read them yet.
+enum class InkModel { kDevice, kProfile };
+
 struct InkOptions {
   double stiffness_ratio = 600;  // modulus of fully inked over blank film
+  double filter_mm = 1.016;      // the ink's stiffness is smeared over a square of this side
   int rounds_max = 10;           // simulate, invert, stiffen, repeat: at most this often
+  InkModel model = InkModel::kDevice;
+  std::filesystem::path profile;  // the printer's; not empty: kProfile. Empty with kProfile: the
+                                  // installed one
+  RenderingIntent intent = RenderingIntent::kRelative;
+  double limit = 3;  // largest sum of inks
+  bool compensate = true;
 };
 
 enum class InkSide { kUp, kDown };
+enum class PrintColor { kRgb, kCmyk };
 
 struct PrintOptions {
   double dpi = 300;
   double bleed_mm = 1;
   int samples = 3;  // per axis and pixel
   InkSide ink_side = InkSide::kUp;
+  PrintColor color = PrintColor::kRgb;  // of print.pdf
   std::string job_name;  // in the sheet's margin; empty: the model's file name
 };
 
@@ -89,6 +100,7 @@ struct JobConfig {
   BathOptions bath;
   DipOptions dip;  // with the film's material
   InkOptions ink;
+  GamutPolicy gamut_policy = GamutPolicy::kClip;
   PrintOptions print;
   ProcessOptions process;
   StageOptions stage;

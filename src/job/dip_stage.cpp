@@ -13,24 +13,36 @@ constexpr double kCheckerCell_mm = 10;
 
 }  // namespace
 
-std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const FilmMesh& film,
-                                         const JobConfig& config, StageTimes& times,
-                                         RunContext& context) {
-  auto dipped = std::make_unique<DippedObject>();
-  dipped->loaded = std::move(posed);
-  const Object& object = dipped->object();
+std::unique_ptr<DippedObject> undipped(LoadedObject posed) {
+  auto object = std::make_unique<DippedObject>();
+  object->loaded = std::move(posed);
+  object->surface =
+      std::make_unique<Surface>(object->object().positions, object->object().triangles);
+  return object;
+}
+
+void dip_again(DippedObject& dipped, const FilmMesh& film, const DipOptions& options,
+               StageTimes& times, RunContext& context) {
+  const Object& object = dipped.object();
   times.measure("dip", [&] {
-    dipped->surface = std::make_unique<Surface>(object.positions, object.triangles);
-    dipped->dip =
-        dip(film, object.positions, object.triangles, *dipped->surface, config.dip, context);
+    dipped.map.reset();  // refers to the film that goes
+    dipped.dip =
+        dip(film, object.positions, object.triangles, *dipped.surface, options, context);
   });
   times.measure("map", [&] {
     context.progress("mapping", 0);
-    dipped->map = std::make_unique<FilmMap>(object, *dipped->surface, dipped->film());
-    dipped->coverage = measure_coverage(object, dipped->film());
-    dipped->angles = dip_angles(object, dipped->film().depth_mm);
+    dipped.map = std::make_unique<FilmMap>(object, *dipped.surface, dipped.film());
+    dipped.coverage = measure_coverage(object, dipped.film());
+    dipped.angles = dip_angles(object, dipped.film().depth_mm);
     context.progress("mapping", 1);
   });
+}
+
+std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const FilmMesh& film,
+                                         const JobConfig& config, StageTimes& times,
+                                         RunContext& context) {
+  auto dipped = undipped(std::move(posed));
+  dip_again(*dipped, film, config.dip, times, context);
   return dipped;
 }
 
@@ -54,13 +66,22 @@ Appearance appearance(const DippedObject& dipped, const Image& film_image,
   return result;
 }
 
-Image mirrored(const Image& image) {
-  Image result(image.width_px, image.height_px);
+namespace {
+
+// Both kinds of image have 4 bytes a pixel.
+template <class Pixels>
+Pixels mirror_image(const Pixels& image) {
+  Pixels result(image.width_px, image.height_px);
   for (int y = 0; y < image.height_px; ++y)
     for (int x = 0; x < image.width_px; ++x)
       std::copy_n(image.pixel(image.width_px - 1 - x, y), 4, result.pixel(x, y));
   return result;
 }
+
+}  // namespace
+
+Image mirrored(const Image& image) { return mirror_image(image); }
+InkImage mirrored(const InkImage& image) { return mirror_image(image); }
 
 Image checkerboard(const SheetRaster& raster) {
   constexpr std::uint8_t kDark[4] = {38, 84, 124, 255};

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/context.h"
+#include "ink/inks.h"
 #include "job/config.h"
 #include "job/stage_times.h"
 #include "object/dip_angles.h"
@@ -34,16 +35,25 @@ std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const FilmMesh& fil
                                          const JobConfig& config, StageTimes& times,
                                          RunContext& context);
 
+// The object alone, before any dip.
+std::unique_ptr<DippedObject> undipped(LoadedObject posed);
+
+// Dips it once more, with other options; everything but the object is made anew.
+void dip_again(DippedObject& dipped, const FilmMesh& film, const DipOptions& options,
+               StageTimes& times, RunContext& context);
+
 // Where the sheet's pixels lie at `dpi`.
 SheetRaster sheet_raster(const JobConfig& config, double dpi);
 
-// Wanted: the model's own colours; predicted: what `film_image` leaves. Keeps references to all
+// Wanted: the model's own colours; predicted: `film_image`, which shows every pixel of the film as
+// it looks on the object. Keeps references to all
 // three.
 Appearance appearance(const DippedObject& dipped, const Image& film_image,
                       const SheetRaster& raster, const LinearColor& base);
 
 // Mirrors left and right: the film as seen from above, when the ink lies on its underside.
 Image mirrored(const Image& image);
+InkImage mirrored(const InkImage& image);
 
 // A 10 mm checkerboard over the whole sheet: makes the film's stretch visible.
 Image checkerboard(const SheetRaster& raster);

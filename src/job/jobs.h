@@ -18,9 +18,9 @@ struct JobResult {
 };
 
 // The main job: simulates the dip and writes the film image that puts every colour in its place:
-// print.pdf, print.png, print.tif, film.ply, preview.png, maps.png, preview.glb, report.json,
-// report.html in config.output. All of them appear, or none. Throws InputError, DipError,
-// Cancelled.
+// print.pdf, print.png, print.tif, film.ply, preview.png, maps.png, gamut.png, preview.glb,
+// report.json, report.html in config.output. All of them appear, or none. Throws InputError,
+// DipError, Cancelled.
 JobResult print_job(const JobConfig& config, RunContext& context);
 
 // Forward only: film.ply, preview.png, maps.png, preview.glb, report.json, report.html; with

@@ -1,5 +1,9 @@
 #include "job/output.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "base/file.h"
 #include "image/files.h"
 #include "job/prepare.h"
@@ -30,6 +34,40 @@ Image draw_preview(const JobRecord& record, const Appearance& shown, const std::
                         record.context);
 }
 
+// Grey where a colour comes out as wanted, from yellow to dark red where it cannot.
+LinearColor reach_color(float difference) {
+  constexpr float kMost = 20;
+  if (difference <= float(kVisible)) return {0.6F, 0.6F, 0.6F, 1};
+  const float t = std::min(1.0F, difference / kMost);
+  return {1 - 0.65F * t * t, 0.75F * (1 - t) * (1 - t), 0.05F * (1 - t), 1};
+}
+
+// What comes out beside how far it is from what was wanted.
+Image draw_reach(const JobRecord& record, const Appearance& shown, const SheetRaster& raster) {
+  const DippedObject& dipped = record.dipped;
+  const Reach& reach = record.ink->reach;
+  Appearance pair;
+  pair.wanted = shown.predicted;
+  pair.predicted = [&](const SurfacePoint&, const Vec3& position, const Vec3& normal) {
+    const auto u = dipped.map->to_film(position, normal);
+    if (!u) return base_color(record.config);
+    const Vec2 pixel = raster.to_pixel(*u);
+    const int x = std::clamp(int(pixel.x()), 0, raster.width_px() - 1);
+    const int y = std::clamp(int(pixel.y()), 0, raster.height_px() - 1);
+    return reach_color(
+        reach.difference[std::size_t(y) * std::size_t(raster.width_px()) + std::size_t(x)]);
+  };
+  PreviewOptions options;
+  options.width_px = record.config.preview_width_px;
+  options.titles = {"predicted", "out of reach: yellow, red"};
+  options.base = base_color(record.config);
+  options.caption = fmt::format(
+      "{:.1f} % of the covered surface cannot have its colour; there it is off by {:.1f} (CIEDE2000)",
+      100 * reach.out_of_reach_share(), reach.mean_beyond);
+  return render_preview(dipped.object(), *dipped.surface, dipped.film(), pair, options,
+                        record.context);
+}
+
 Image draw_maps(const JobRecord& record) {
   const DippedObject& dipped = record.dipped;
   MapOptions options;
@@ -50,9 +88,12 @@ ReportPictures write_previews(OutputFolder& folder, const JobRecord& record,
   write_film_ply(folder.path("film.ply"), dipped.film());
 
   ReportPictures pictures;
+  const Appearance shown = appearance(dipped, film_image, raster, base);
   pictures.preview_png = write_picture(
-      folder.path("preview.png"), draw_preview(record, appearance(dipped, film_image, raster, base),
-                                               caption_start + short_verdict(dipped.coverage)));
+      folder.path("preview.png"),
+      draw_preview(record, shown, caption_start + short_verdict(dipped.coverage)));
+  if (record.ink != nullptr)
+    write_picture(folder.path("gamut.png"), draw_reach(record, shown, raster));
   pictures.maps_png = write_picture(folder.path("maps.png"), draw_maps(record));
 
   write_preview_glb(folder.path("preview.glb"), dipped.object(), dipped.film(),

@@ -1,6 +1,7 @@
 #include "base/output_folder.h"
 #include "base/parallel.h"
 #include "job/dip_stage.h"
+#include "job/ink_stage.h"
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
@@ -23,23 +24,19 @@ SheetOptions sheet_options(const JobConfig& config) {
   return sheet;
 }
 
-Image invert(const DippedObject& dipped, const JobConfig& config, RunContext& context) {
-  InverseOptions options;
-  options.bleed_mm = config.print.bleed_mm;
-  options.samples_per_axis = config.print.samples;
-  options.base = base_color(config);
-  return film_image(dipped.object(), *dipped.map, sheet_raster(config, config.print.dpi), options,
-                    context);
-}
-
-void compose(OutputFolder& folder, const Image& image, const JobConfig& config,
-             RunContext& context) {
+void compose(OutputFolder& folder, const FilmInk& ink, const ColorModel& model,
+             const JobConfig& config, RunContext& context) {
   const SheetOptions sheet = sheet_options(config);
+  const InkImage& inks = ink.inking.inks;
+  const Image look = look_on_film(inks, ink.wanted, model);
   context.progress("writing print.png", 0);
-  write_print_png(folder.path("print.png"), image, sheet);
+  write_print_png(folder.path("print.png"), look, sheet);
   context.progress("writing print.tif", 0);
-  write_print_tiff(folder.path("print.tif"), image, sheet);
-  write_print_pdf(folder.path("print.pdf"), image, sheet, context);
+  write_print_tiff(folder.path("print.tif"), inks, model.profile(), sheet);
+  if (config.print.color == PrintColor::kCmyk)
+    write_print_pdf(folder.path("print.pdf"), inks, model.profile(), sheet, context);
+  else
+    write_print_pdf(folder.path("print.pdf"), look, srgb_profile(), sheet, context);
 }
 
 }  // namespace
@@ -55,13 +52,16 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
   require_appearance(posed.object, config.model);
   require_fit(posed.object, config, context);
 
-  const auto dipped = dip_object(std::move(posed), film, config, times, context);
-  const Image image = times.measure("invert", [&] { return invert(*dipped, config, context); });
-  times.measure("sheet", [&] { compose(folder, image, config, context); });
+  const auto model = color_model(config);
 
-  const JobRecord record{"print", config, inputs, *dipped, times, context};
+  const auto dipped = undipped(std::move(posed));
+  const InkResult result = settle_ink(*dipped, film, *model, config, times, context);
+  times.measure("sheet", [&] { compose(folder, result.ink, *model, config, context); });
+
+  const JobRecord record{"print", config, inputs, *dipped, times, context, &result, model->name()};
   const ReportPictures pictures = times.measure("preview", [&] {
-    return write_previews(folder, record, image, sheet_raster(config, config.print.dpi));
+    return write_previews(folder, record, result.ink.on_object,
+                          sheet_raster(config, config.print.dpi));
   });
   return finish(folder, record, pictures);
 }

@@ -16,8 +16,10 @@ std::vector<ReportOutput> outputs(const std::string& command, InkSide ink_side) 
   if (command == "print")
     list = {{"print.pdf", fmt::format("the sheet: print it at 100 % (no scaling), ink side {}",
                                       ink_side == InkSide::kUp ? "up" : "down")},
-            {"print.png", "the film image, sRGB"},
-            {"print.tif", "the film image, CMYK"}};
+            {"print.png", "what the sheet will look like, sRGB"},
+            {"print.tif", "the inks of the film image, CMYK with their ICC profile"}};
+  if (command == "print")
+    list.push_back({"gamut.png", "which colours cannot be reached, and by how much"});
   list.insert(list.end(), {{"preview.png", "what was asked for beside what will come out"},
                            {"maps.png", "dipping angle, stretch and tears on the object"},
                            {"preview.glb", "the dipped object in 3D"},
@@ -37,16 +39,58 @@ ReportParameter describe_parameter(const Parameter& parameter, const JobConfig& 
   return described;
 }
 
-ReportRound dip_round(const DipStatistics& s) {
+std::vector<ReportFigure> dip_figures(const DipStatistics& s) {
   return {
-      "dip",
-      1,
-      {{"steps", "Steps", std::int64_t(s.steps), ""},
-       {"newton_iterations", "Newton iterations", std::int64_t(s.newton_iterations), ""},
-       {"linear_iterations", "Linear iterations", std::int64_t(s.linear_iterations), ""},
-       {"factorizations", "Factorizations", std::int64_t(s.factorizations), ""},
-       {"unconverged_steps", "Steps at the iteration bound", std::int64_t(s.unconverged_steps), ""},
-       {"largest_residual_mm", "Largest last update", s.largest_residual_mm, "mm"}}};
+      {"steps", "Steps", std::int64_t(s.steps), ""},
+      {"newton_iterations", "Newton iterations", std::int64_t(s.newton_iterations), ""},
+      {"linear_iterations", "Linear iterations", std::int64_t(s.linear_iterations), ""},
+      {"factorizations", "Factorizations", std::int64_t(s.factorizations), ""},
+      {"unconverged_steps", "Steps at the iteration bound", std::int64_t(s.unconverged_steps), ""},
+      {"largest_residual_mm", "Largest last update", s.largest_residual_mm, "mm"}};
+}
+
+std::vector<ReportFigure> ink_figures(const InkRound& round, bool first) {
+  std::vector<ReportFigure> figures = {
+      {"printed_area_mm2", "Printed area", round.printed_mm2, "mm2"},
+      {"mean_modulus", "Mean stiffness over blank film", round.mean_modulus, ""},
+      {"tears_kept", "Tears kept from before", round.tears_kept, ""}};
+  if (!first)
+    figures.insert(figures.begin(), {"change_mm", "Mean change of the film", round.change_mm, "mm"});
+  return figures;
+}
+
+std::vector<ReportRound> rounds(const JobRecord& record) {
+  if (record.ink == nullptr) return {{"dip", 1, dip_figures(record.dipped.dip.statistics)}};
+  std::vector<ReportRound> list;
+  for (const InkRound& round : record.ink->rounds)
+    list.push_back({"dip", int(list.size()) + 1, dip_figures(round.dip)});
+  int number = 0;
+  for (const InkRound& round : record.ink->rounds) {
+    ++number;
+    list.push_back({"ink", number, ink_figures(round, number == 1)});
+  }
+  return list;
+}
+
+void add_ink(const JobRecord& record, std::vector<ReportFigure>& figures) {
+  figures.push_back({"ink_model", "Inks by", record.ink_model, ""});
+  if (record.ink == nullptr) return;
+  const Reach& reach = record.ink->reach;
+  figures.insert(
+      figures.end(),
+      {{"ink_rounds", "Rounds until the ink settled", std::int64_t(record.ink->rounds.size()), ""},
+       {"ink_settled", "Ink settled", record.ink->settled, ""},
+       {"ink_last_change_mm", "Last mean change of the film", record.ink->rounds.back().change_mm,
+        "mm"},
+       {"lightened", "Factor on all inks (gamut.policy=scale)", record.ink->ink.inking.lightened,
+        ""},
+       {"out_of_gamut_mm2", "Colours that cannot be reached", reach.out_of_reach_mm2, "mm2"},
+       {"out_of_gamut_share", "Share of the covered surface", reach.out_of_reach_share(), ""},
+       {"out_of_gamut_difference", "Their mean difference (CIEDE2000)", reach.mean_beyond, ""},
+       {"color_difference", "Mean difference everywhere (CIEDE2000)", reach.mean, ""},
+       {"color_difference_in_gamut", "Mean difference of the others (CIEDE2000)",
+        reach.mean_within, ""},
+       {"color_difference_max", "Largest difference (CIEDE2000)", reach.largest, ""}});
 }
 
 std::vector<ReportFigure> figures(const DippedObject& dipped) {
@@ -73,6 +117,8 @@ std::vector<ReportInput> describe_inputs(const JobConfig& config, const LoadedOb
   for (const auto& file : loaded.files)
     inputs.push_back(describe_input(role_of(file, config), file));
   if (!config.film_image.empty()) inputs.push_back(describe_input("film image", config.film_image));
+  if (!config.ink.profile.empty())
+    inputs.push_back(describe_input("printer profile", config.ink.profile));
   for (const auto& file : config.settings_files) inputs.push_back(describe_input("settings", file));
   return inputs;
 }
@@ -90,11 +136,12 @@ Report make_report(const JobRecord& record) {
   for (const StageTime& time : record.times.list())
     report.stages.push_back({time.stage, time.seconds});
   report.total_seconds = record.times.total_s();
-  report.rounds = {dip_round(record.dipped.dip.statistics)};
+  report.rounds = rounds(record);
   report.coverage = record.dipped.coverage;
   report.angles = record.dipped.angles;
   report.mesh = record.dipped.loaded.health;
   report.figures = figures(record.dipped);
+  add_ink(record, report.figures);
   report.warnings = record.context.warnings();
   report.outputs = outputs(record.command, record.config.print.ink_side);
   report.peak_memory_bytes = peak_memory_bytes();

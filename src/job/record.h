@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "job/config.h"
 #include "job/dip_stage.h"
+#include "job/ink_stage.h"
 #include "job/jobs.h"
 #include "job/stage_times.h"
 #include "report/report.h"
@@ -22,6 +23,8 @@ struct JobRecord {
   const DippedObject& dipped;
   const StageTimes& times;
   RunContext& context;
+  const InkResult* ink = nullptr;  // of print
+  std::string ink_model;           // how colours became inks
 };
 
 // Every file that the job reads, with its hash as it was read. Call it next to reading them.

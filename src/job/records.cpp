@@ -217,7 +217,7 @@ std::vector<Parameter> material_records() {
       number(
           "material.ink_stiffness_ratio", "", 1, 1e6,
           [](C& c) -> double& { return c.ink.stiffness_ratio; },
-          "modulus of fully inked over blank film (recorded, not used yet)"),
+          "modulus of film at ink density 1 over that of blank film; 1: ink does not stiffen"),
   };
 }
 
@@ -225,7 +225,40 @@ std::vector<Parameter> ink_records() {
   return {
       integer(
           "ink.rounds_max", "", 1, 100, [](C& c) -> int& { return c.ink.rounds_max; },
-          "most rounds of simulating with the ink's stiffness (recorded, not used yet)"),
+          "most rounds of simulating with the ink's stiffness; 1: even stiffness"),
+      number(
+          "ink.filter_mm", "mm", 0.01, 20, [](C& c) -> double& { return c.ink.filter_mm; },
+          "ink stiffens the film evenly over a square of this side"),
+      choice<InkModel>(
+          "ink.model", {{"device", InkModel::kDevice}, {"profile", InkModel::kProfile}},
+          [](C& c) -> InkModel& { return c.ink.model; },
+          "colours to inks: plain formula, or ICC profile (ink.profile or an installed one)"),
+      path(
+          "ink.profile", [](C& c) -> std::filesystem::path& { return c.ink.profile; },
+          "the printer's CMYK ICC profile; in a file: relative to that file"),
+      choice<RenderingIntent>(
+          "ink.intent",
+          {{"relative", RenderingIntent::kRelative},
+           {"perceptual", RenderingIntent::kPerceptual},
+           {"saturation", RenderingIntent::kSaturation},
+           {"absolute", RenderingIntent::kAbsolute}},
+          [](C& c) -> RenderingIntent& { return c.ink.intent; },
+          "how the profile brings colours into the printer's range"),
+      number(
+          "ink.limit", "", 0.1, 4, [](C& c) -> double& { return c.ink.limit; },
+          "largest sum of inks at a point that film and printer bear; 4: no limit"),
+      choice<bool>(
+          "ink.compensation", {{"on", true}, {"off", false}},
+          [](C& c) -> bool& { return c.ink.compensate; },
+          "print more ink where the film will stretch"),
+      choice<GamutPolicy>(
+          "gamut.policy",
+          {{"clip", GamutPolicy::kClip},
+           {"scale", GamutPolicy::kScale},
+           {"soft", GamutPolicy::kSoft}},
+          [](C& c) -> GamutPolicy& { return c.gamut_policy; },
+          "where more ink is needed than fits: cut, lighten the whole image, or hold back "
+          "smoothly"),
   };
 }
 
@@ -244,6 +277,10 @@ std::vector<Parameter> print_records() {
           "print.ink_side", {{"up", InkSide::kUp}, {"down", InkSide::kDown}},
           [](C& c) -> InkSide& { return c.print.ink_side; },
           "which side of the film carries the ink on the water; down: mirrored"),
+      choice<PrintColor>(
+          "print.color", {{"rgb", PrintColor::kRgb}, {"cmyk", PrintColor::kCmyk}},
+          [](C& c) -> PrintColor& { return c.print.color; },
+          "colours of print.pdf: rgb for desktop printers, cmyk for print shops"),
       text(
           "print.job_name", ParameterType::kText,
           [](C& c) -> std::string& { return c.print.job_name; },

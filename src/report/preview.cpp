@@ -43,21 +43,20 @@ Layout make_layout(const Object& object, const std::array<Vec3, 2>& directions,
   return layout;
 }
 
-void write_labels(Image& page, const Layout& layout, const std::string& caption) {
+void write_labels(Image& page, const Layout& layout, const PreviewOptions& options) {
   TextStyle title;
   title.size_px = 25 * layout.unit;
   title.color = kTitleInk;
-  const std::array<std::string, 2> names = {"wanted", "predicted"};
   for (std::size_t i = 0; i < 2; ++i) {
     const double center =
         layout.margin + 0.5 * layout.cell_width + double(i) * (layout.cell_width + layout.gap);
-    draw_centered(page, names[i], center, layout.header - 31 * layout.unit, title);
+    draw_centered(page, options.titles[i], center, layout.header - 31 * layout.unit, title);
   }
   TextStyle line;
   line.size_px = 17 * layout.unit;
   line.color = kLabelInk;
   const double room = layout.width - 2.0 * layout.margin;
-  const std::string shown = fit_text(caption, line, room);
+  const std::string shown = fit_text(options.caption, line, room);
   draw_centered(page, shown, 0.5 * layout.width, layout.height - 35 * layout.unit, line);
 }
 
@@ -95,7 +94,7 @@ Image render_preview(const Object& object, const Surface& surface, const DippedF
     paste(page, pair.predicted, layout.margin + layout.cell_width + layout.gap, y);
     y += height + layout.gap;
   }
-  write_labels(page, layout, options.caption);
+  write_labels(page, layout, options);
   context.progress(stage, 1);
   return page;
 }

@@ -1,6 +1,7 @@
 // preview.png and preview.glb: what the dipped object will look like beside what was asked for.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -15,6 +16,7 @@ struct PreviewOptions {
   int samples_per_axis = 3;  // squared per pixel, where neighbouring pixels differ
   std::string caption;       // one line under the picture, e.g. the verdict
   LinearColor base{1, 1, 1, 1};
+  std::array<std::string, 2> titles = {"wanted", "predicted"};
 };
 
 // A ray-cast picture: wanted beside predicted, from the two most telling directions (those that see

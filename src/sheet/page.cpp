@@ -11,18 +11,16 @@ namespace hydrodip {
 
 namespace {
 
-bool has_ink(const std::uint8_t* pixel) { return pixel[3] != 0; }
-
-bool row_has_ink(const Image& image, int y, int x_begin, int x_end) {
-  for (int x = x_begin; x < x_end; ++x) {
-    if (has_ink(image.pixel(x, y))) return true;
+bool row_is_printed(const Picture& picture, int y) {
+  for (int x = 0; x < picture.width_px; ++x) {
+    if (picture.is_printed(x, y)) return true;
   }
   return false;
 }
 
 }  // namespace
 
-void check_sheet(const Image& image, const SheetOptions& options) {
+void check_sheet(const Picture& picture, const SheetOptions& options) {
   const auto usable = [](double value) { return std::isfinite(value) && value > 0; };
   if (!usable(options.width_mm) || !usable(options.height_mm) || !usable(options.dpi)) {
     throw InputError(
@@ -38,34 +36,34 @@ void check_sheet(const Image& image, const SheetOptions& options) {
   }
   const double expected_width = options.width_mm * options.dpi / kMmPerInch;
   const double expected_height = options.height_mm * options.dpi / kMmPerInch;
-  if (std::abs(image.width_px - expected_width) > 1 ||
-      std::abs(image.height_px - expected_height) > 1) {
+  if (std::abs(picture.width_px - expected_width) > 1 ||
+      std::abs(picture.height_px - expected_height) > 1) {
     throw InputError(fmt::format(
         "An image of {} x {} pixels does not cover a sheet of {:g} x {:g} mm at {:g} dpi; it needs "
         "{:.0f} x {:.0f} pixels.",
-        image.width_px, image.height_px, options.width_mm, options.height_mm, options.dpi,
+        picture.width_px, picture.height_px, options.width_mm, options.height_mm, options.dpi,
         expected_width, expected_height));
   }
 }
 
-PixelBox inked_box(const Image& image) {
-  PixelBox box{0, 0, image.width_px, image.height_px};
-  while (box.y_begin < box.y_end && !row_has_ink(image, box.y_begin, 0, image.width_px)) {
+PixelBox printed_box(const Picture& picture) {
+  PixelBox box{0, 0, picture.width_px, picture.height_px};
+  while (box.y_begin < box.y_end && !row_is_printed(picture, box.y_begin)) {
     ++box.y_begin;
   }
-  while (box.y_end > box.y_begin && !row_has_ink(image, box.y_end - 1, 0, image.width_px)) {
+  while (box.y_end > box.y_begin && !row_is_printed(picture, box.y_end - 1)) {
     --box.y_end;
   }
   if (box.empty()) return {};
-  box.x_begin = image.width_px;
+  box.x_begin = picture.width_px;
   box.x_end = 0;
   for (int y = box.y_begin; y < box.y_end; ++y) {
     // Only columns outside what is known already can widen the box.
     for (int x = 0; x < box.x_begin; ++x) {
-      if (has_ink(image.pixel(x, y))) box.x_begin = x;
+      if (picture.is_printed(x, y)) box.x_begin = x;
     }
-    for (int x = image.width_px - 1; x >= box.x_end; --x) {
-      if (has_ink(image.pixel(x, y))) box.x_end = x + 1;
+    for (int x = picture.width_px - 1; x >= box.x_end; --x) {
+      if (picture.is_printed(x, y)) box.x_end = x + 1;
     }
   }
   return box;
@@ -75,11 +73,11 @@ PixelBox mirrored(const PixelBox& box, int width_px) {
   return {width_px - box.x_end, box.y_begin, width_px - box.x_begin, box.y_end};
 }
 
-Box2 place_on_page(const PixelBox& box, const Image& image, const SheetOptions& options) {
+Box2 place_on_page(const PixelBox& box, const Picture& picture, const SheetOptions& options) {
   const double pixel_mm = kMmPerInch / options.dpi;
   const auto to_page = [&](int x, int y) {
-    return Vec2(0.5 * options.width_mm + (x - 0.5 * image.width_px) * pixel_mm,
-                0.5 * options.height_mm + (0.5 * image.height_px - y) * pixel_mm);
+    return Vec2(0.5 * options.width_mm + (x - 0.5 * picture.width_px) * pixel_mm,
+                0.5 * options.height_mm + (0.5 * picture.height_px - y) * pixel_mm);
   };
   Box2 page;
   page.add(to_page(box.x_begin, box.y_end));

@@ -2,14 +2,14 @@
 #pragma once
 
 #include "base/math.h"
-#include "image/image.h"
+#include "sheet/picture.h"
 #include "sheet/sheet.h"
 
 namespace hydrodip {
 
 // Throws InputError unless sizes and dpi are usable numbers and the image has the sheet's pixels
 // (to within one in each direction).
-void check_sheet(const Image& image, const SheetOptions& options);
+void check_sheet(const Picture& picture, const SheetOptions& options);
 
 // A block of pixels: columns [x_begin, x_end), rows [y_begin, y_end).
 struct PixelBox {
@@ -19,8 +19,8 @@ struct PixelBox {
   bool empty() const { return x_end <= x_begin || y_end <= y_begin; }
 };
 
-// The smallest block that holds every pixel that is not fully transparent; empty if there is none.
-PixelBox inked_box(const Image& image);
+// The smallest block that holds every pixel that is printed; empty if there is none.
+PixelBox printed_box(const Picture& picture);
 
 // The image flipped left-right.
 PixelBox mirrored(const PixelBox& box, int width_px);
@@ -28,6 +28,6 @@ PixelBox mirrored(const PixelBox& box, int width_px);
 // The block on the page, in mm from the page's lower left corner. The image's centre is the page's
 // centre and a pixel measures exactly 1 / dpi inches, so that rounding the sheet to whole pixels
 // never scales the print.
-Box2 place_on_page(const PixelBox& box, const Image& image, const SheetOptions& options);
+Box2 place_on_page(const PixelBox& box, const Picture& picture, const SheetOptions& options);
 
 }  // namespace hydrodip

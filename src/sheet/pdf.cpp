@@ -26,9 +26,10 @@ void draw_marks(PdfDocument& document, const SheetOptions& options, RunContext& 
 
 }  // namespace
 
-void write_print_pdf(const std::filesystem::path& path, const Image& image,
-                     const SheetOptions& options, RunContext& context) {
-  check_sheet(image, options);
+void write_print_pdf(const std::filesystem::path& path, const Picture& picture,
+                     const std::vector<std::uint8_t>& profile, const SheetOptions& options,
+                     RunContext& context) {
+  check_sheet(picture, options);
   PdfDocument document;
   document.forbid_scaling();
   document.set_title(options.job_name);
@@ -36,10 +37,11 @@ void write_print_pdf(const std::filesystem::path& path, const Image& image,
   document.add_page(options.width_mm, options.height_mm);
 
   const bool mirror = !options.ink_side_up;
-  const PixelBox box = inked_box(image);
+  const PixelBox box = printed_box(picture);
   if (!box.empty()) {
-    const PixelBox printed = mirror ? mirrored(box, image.width_px) : box;
-    document.draw_image(image, box, mirror, place_on_page(printed, image, options), context);
+    const PixelBox printed = mirror ? mirrored(box, picture.width_px) : box;
+    document.draw_image(picture, profile, box, mirror, place_on_page(printed, picture, options),
+                        context);
   }
   draw_marks(document, options, context);
   document.save(path);

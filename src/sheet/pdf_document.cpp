@@ -52,12 +52,12 @@ Handle made(HPDF_Doc document, Handle handle) {
 // and holds differences to the left neighbour, which compress several times better.
 class PixelStream {
  public:
-  PixelStream(const Image& image, const PixelBox& box, bool mirror, RunContext& context)
-      : image_(image),
+  PixelStream(const Picture& picture, const PixelBox& box, bool mirror, RunContext& context)
+      : picture_(picture),
         box_(box),
         mirror_(mirror),
         context_(context),
-        row_(1 + kChannels * std::size_t(box.width())) {
+        row_(1 + std::size_t(picture.channels) * std::size_t(box.width())) {
     rewind();
   }
 
@@ -82,9 +82,6 @@ class PixelStream {
   std::exception_ptr failure;
 
  private:
-  static constexpr std::size_t kChannels = 3;
-  using Rgb = std::array<std::uint8_t, kChannels>;
-
   bool load_next_row() {
     if (next_row_ == box_.y_end) return false;
     if (next_row_ % 64 == 0) {
@@ -99,27 +96,17 @@ class PixelStream {
     constexpr std::uint8_t kSubFilter = 1;
     std::uint8_t* out = row_.data();
     *out++ = kSubFilter;
-    Rgb left{};
+    std::array<std::uint8_t, 4> left{};
     for (int i = 0; i < box_.width(); ++i) {
-      const Rgb color =
-          over_white(image_.pixel(mirror_ ? box_.x_end - 1 - i : box_.x_begin + i, y));
-      for (std::size_t k = 0; k < kChannels; ++k) {
+      const auto color = picture_.read(mirror_ ? box_.x_end - 1 - i : box_.x_begin + i, y);
+      for (std::size_t k = 0; k < std::size_t(picture_.channels); ++k) {
         *out++ = static_cast<std::uint8_t>(color[k] - left[k]);
       }
       left = color;
     }
   }
 
-  // Ink amounts, 255 - value, scale with coverage, as in the CMYK file.
-  static Rgb over_white(const std::uint8_t* rgba) {
-    Rgb rgb;
-    for (std::size_t k = 0; k < kChannels; ++k) {
-      rgb[k] = static_cast<std::uint8_t>(255 - ((255 - rgba[k]) * rgba[3] + 127) / 255);
-    }
-    return rgb;
-  }
-
-  const Image& image_;
+  Picture picture_;
   PixelBox box_;
   bool mirror_;
   RunContext& context_;
@@ -155,24 +142,59 @@ HPDF_UINT32 size_of_pixels(HPDF_Stream) { return std::numeric_limits<HPDF_UINT32
 
 // One entry for the one filter, that is deflate. (image->filterParams would do the same, but is
 // leaked when the file cannot be opened.)
-void announce_row_filters(HPDF_Doc document, HPDF_Image image, int width) {
+void announce_row_filters(HPDF_Doc document, HPDF_Image image, int channels, int width) {
   const HPDF_Array filters = made(document, HPDF_Array_New(image->mmgr));
   HPDF_Dict_Add(image, "DecodeParms", filters);
   const HPDF_Dict deflate = made(document, HPDF_Dict_New(image->mmgr));
   HPDF_Array_Add(filters, deflate);
   HPDF_Dict_AddNumber(deflate, "Predictor", 15);  // PNG filters
-  HPDF_Dict_AddNumber(deflate, "Colors", 3);
+  HPDF_Dict_AddNumber(deflate, "Colors", channels);
   HPDF_Dict_AddNumber(deflate, "Columns", width);
 }
 
+// The profile as a stream of the file.
+HPDF_Dict add_profile(HPDF_Doc document, const std::vector<std::uint8_t>& profile, int channels) {
+  const HPDF_Dict stream = made(document, HPDF_DictStream_New(document->mmgr, document->xref));
+  stream->filter = HPDF_STREAM_FILTER_FLATE_DECODE;
+  HPDF_Dict_AddNumber(stream, "N", channels);
+  HPDF_Stream_Write(stream->stream, profile.data(), static_cast<HPDF_UINT>(profile.size()));
+  return stream;
+}
+
+HPDF_Array based_on(HPDF_Doc document, HPDF_Dict profile) {
+  const HPDF_Array space = made(document, HPDF_Array_New(document->mmgr));
+  HPDF_Array_AddName(space, "ICCBased");
+  HPDF_Array_Add(space, profile);
+  return space;
+}
+
+// What the page's inks were made for.
+void add_output_intent(HPDF_Doc document, HPDF_Dict profile) {
+  const HPDF_Array intents = made(document, HPDF_Array_New(document->mmgr));
+  HPDF_Dict_Add(document->catalog, "OutputIntents", intents);
+  const HPDF_Dict intent = made(document, HPDF_Dict_New(document->mmgr));
+  HPDF_Xref_Add(document->xref, intent);
+  HPDF_Array_Add(intents, intent);
+  HPDF_Dict_AddName(intent, "Type", "OutputIntent");
+  HPDF_Dict_AddName(intent, "S", "GTS_PDFX");
+  HPDF_Dict_Add(intent, "OutputConditionIdentifier",
+                made(document, HPDF_String_New(document->mmgr, "Custom", nullptr)));
+  HPDF_Dict_Add(intent, "Info", made(document, HPDF_String_New(document->mmgr,
+                                                               "the printer's profile", nullptr)));
+  HPDF_Dict_Add(intent, "DestOutputProfile", profile);
+}
+
 // A one-pixel image whose size and source are then exchanged: libharu's own loaders all copy.
-HPDF_Image add_image(HPDF_Doc document, const PixelBox& box, PixelStream& pixels) {
-  const std::array<HPDF_BYTE, 3> white = {255, 255, 255};
-  HPDF_Image image = HPDF_LoadRawImageFromMem(document, white.data(), 1, 1, HPDF_CS_DEVICE_RGB, 8);
+HPDF_Image add_image(HPDF_Doc document, const PixelBox& box, const Picture& picture,
+                     PixelStream& pixels) {
+  const std::array<HPDF_BYTE, 4> blank{};
+  HPDF_Image image = HPDF_LoadRawImageFromMem(
+      document, blank.data(), 1, 1,
+      picture.channels == 3 ? HPDF_CS_DEVICE_RGB : HPDF_CS_DEVICE_CMYK, 8);
   if (image == nullptr) return nullptr;
   HPDF_Dict_AddNumber(image, "Width", box.width());
   HPDF_Dict_AddNumber(image, "Height", box.height());
-  announce_row_filters(document, image, box.width());
+  announce_row_filters(document, image, picture.channels, box.width());
   HPDF_Stream_Free(image->stream);
   image->stream = nullptr;
   image->stream = made(document, HPDF_CallbackReader_New(image->mmgr, read_pixels, rewind_pixels,
@@ -265,12 +287,22 @@ void PdfDocument::add_page(double width_mm, double height_mm) {
   HPDF_Page_SetHeight(impl_->page, pt(height_mm));
 }
 
-void PdfDocument::draw_image(const Image& image, const PixelBox& box, bool mirror,
-                             const Box2& place, RunContext& context) {
-  impl_->pictures.push_back(std::make_unique<PixelStream>(image, box, mirror, context));
-  HPDF_Page_DrawImage(impl_->page, add_image(impl_->document.get(), box, *impl_->pictures.back()),
-                      pt(place.min.x()), pt(place.min.y()), pt(place.max.x() - place.min.x()),
-                      pt(place.max.y() - place.min.y()));
+void PdfDocument::draw_image(const Picture& picture, const std::vector<std::uint8_t>& profile,
+                             const PixelBox& box, bool mirror, const Box2& place,
+                             RunContext& context) {
+  const HPDF_Doc document = impl_->document.get();
+  impl_->pictures.push_back(std::make_unique<PixelStream>(picture, box, mirror, context));
+  const HPDF_Image image =
+      made(document, add_image(document, box, picture, *impl_->pictures.back()));
+  if (!profile.empty()) {
+    const HPDF_Dict stream = add_profile(document, profile, picture.channels);
+    if (picture.channels == 4)
+      add_output_intent(document, stream);
+    else
+      HPDF_Dict_Add(image, "ColorSpace", based_on(document, stream));
+  }
+  HPDF_Page_DrawImage(impl_->page, image, pt(place.min.x()), pt(place.min.y()),
+                      pt(place.max.x() - place.min.x()), pt(place.max.y() - place.min.y()));
 }
 
 void PdfDocument::set_stroke(double width_mm, double gray, bool square_ends) {

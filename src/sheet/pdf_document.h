@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -11,8 +12,8 @@
 
 #include "base/context.h"
 #include "base/math.h"
-#include "image/image.h"
 #include "sheet/page.h"
+#include "sheet/picture.h"
 
 namespace hydrodip {
 
@@ -43,9 +44,10 @@ class PdfDocument {
   // Throws InputError if the PDF format has no such page.
   void add_page(double width_mm, double height_mm);
 
-  // The block of the image, over white, filling `place`. The image must live until save().
-  void draw_image(const Image& image, const PixelBox& box, bool mirror, const Box2& place,
-                  RunContext& context);
+  // The block of the picture, over white, filling `place`. Its pixels must live until save(). An
+  // sRGB picture carries the profile itself; for inks it becomes the output intent. Empty: none.
+  void draw_image(const Picture& picture, const std::vector<std::uint8_t>& profile,
+                  const PixelBox& box, bool mirror, const Box2& place, RunContext& context);
   // For lines, circles and outlines from here on, on this page.
   void set_stroke(double width_mm, double gray = 0, bool square_ends = false);
   void draw_lines(const std::vector<PdfLine>& lines);

@@ -3,9 +3,12 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "base/context.h"
 #include "image/image.h"
+#include "ink/inks.h"
+#include "sheet/picture.h"
 
 namespace hydrodip {
 
@@ -20,20 +23,31 @@ struct SheetOptions {
   std::string date;         // ISO date recorded in the PDF, empty: none (reproducible)
 };
 
-// One page of the film's size with the image over the whole page (image covers the full sheet,
-// margin included; its margin is transparent), centre ticks on all four sides, orientation text
-// ("this side up", "this edge left" ...), and a 100 mm ruler (shorter, and saying so, on sheets
-// under 125 mm). All marks in the margin, pure black. Throws InputError if it cannot be written.
-void write_print_pdf(const std::filesystem::path& path, const Image& image,
-                     const SheetOptions& options, RunContext& context);
-
-// sRGB with dpi recorded, marks not included: the film image as seen from above, mirrored only if
-// ink_side_up is false.
+// What the sheet will look like, sRGB with dpi recorded, marks not included: the film as seen from
+// above, mirrored only if ink_side_up is false.
 void write_print_png(const std::filesystem::path& path, const Image& image,
                      const SheetOptions& options);
 
-// CMYK, 8 bit, dpi recorded, by ink/device.h; transparent means no ink.
-void write_print_tiff(const std::filesystem::path& path, const Image& image,
-                      const SheetOptions& options);
+// CMYK, 8 bit, dpi recorded, with the ICC profile that the inks were made for.
+void write_print_tiff(const std::filesystem::path& path, const InkImage& inks,
+                      const std::vector<std::uint8_t>& profile, const SheetOptions& options);
+
+// A CMYK TIFF with 8 bits, in rows, of any compression, and its dpi (0: not recorded).
+// Throws InputError if it cannot be read or is of another kind.
+struct CmykFile {
+  InkImage inks;
+  double dpi = 0;
+};
+CmykFile read_cmyk_tiff(const std::filesystem::path& path);
+
+// One page of the film's size with the picture over the whole page (it covers the full sheet,
+// margin included; its margin is blank), centre ticks on all four sides, orientation text
+// ("this side up", "this edge left" ...), and a 100 mm ruler (shorter, and saying so, on sheets
+// under 125 mm). All marks in the margin, pure black. An sRGB picture carries `profile` itself;
+// inks go to the printer as they are, and the profile says what they were made for (the output
+// intent). Throws InputError if it cannot be written.
+void write_print_pdf(const std::filesystem::path& path, const Picture& picture,
+                     const std::vector<std::uint8_t>& profile, const SheetOptions& options,
+                     RunContext& context);
 
 }  // namespace hydrodip

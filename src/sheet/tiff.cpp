@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <tiffio.h>
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdint>
 #include <cstdio>
@@ -10,7 +11,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "ink/device.h"
 #include "sheet/page.h"
 #include "sheet/sheet.h"
 
@@ -19,6 +19,7 @@ namespace hydrodip {
 namespace {
 
 constexpr int kRowsPerStrip = 64;
+constexpr std::uint32_t kLargestSide_px = 1 << 15;
 constexpr double kClassicTiffBytes = 4e9;  // offsets have 32 bits; beyond, BigTIFF
 
 // Keeps libtiff's first complaint instead of letting it print.
@@ -37,17 +38,18 @@ struct CloseTiff {
 };
 using Tiff = std::unique_ptr<TIFF, CloseTiff>;
 
-Tiff open_tiff(const std::filesystem::path& path, bool big, std::string& message) {
+Tiff open_tiff(const std::filesystem::path& path, const char* mode, std::string& message) {
   TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
   TIFFOpenOptionsSetErrorHandlerExtR(options, keep_message, &message);
   TIFFOpenOptionsSetWarningHandlerExtR(options, ignore_message, nullptr);
-  Tiff tiff(TIFFOpenExt(path.c_str(), big ? "w8" : "w", options));
+  Tiff tiff(TIFFOpenExt(path.c_str(), mode, options));
   TIFFOpenOptionsFree(options);
   return tiff;
 }
 
 // LZW because every raster image processor of the last thirty years reads it.
-void describe(TIFF* tiff, const Image& image, double dpi) {
+void describe(TIFF* tiff, const InkImage& image, const std::vector<std::uint8_t>& profile,
+              double dpi) {
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(image.width_px));
   TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(image.height_px));
   TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 4);
@@ -63,17 +65,18 @@ void describe(TIFF* tiff, const Image& image, double dpi) {
   TIFFSetField(tiff, TIFFTAG_XRESOLUTION, dpi);
   TIFFSetField(tiff, TIFFTAG_YRESOLUTION, dpi);
   TIFFSetField(tiff, TIFFTAG_SOFTWARE, "hydrodip");
+  if (!profile.empty())
+    TIFFSetField(tiff, TIFFTAG_ICCPROFILE, static_cast<std::uint32_t>(profile.size()),
+                 profile.data());
 }
 
-void fill_row(const Image& image, int y, bool mirror, std::vector<std::uint8_t>& row) {
-  for (int x = 0; x < image.width_px; ++x) {
-    const std::uint8_t* pixel = image.pixel(mirror ? image.width_px - 1 - x : x, y);
-    const auto ink = device_cmyk(pixel[0], pixel[1], pixel[2], pixel[3]);
-    std::copy(ink.begin(), ink.end(), row.begin() + 4 * std::ptrdiff_t(x));
-  }
+void fill_row(const InkImage& image, int y, bool mirror, std::vector<std::uint8_t>& row) {
+  for (int x = 0; x < image.width_px; ++x)
+    std::copy_n(image.pixel(mirror ? image.width_px - 1 - x : x, y), 4,
+                row.begin() + 4 * std::ptrdiff_t(x));
 }
 
-bool write_rows(TIFF* tiff, const Image& image, bool mirror) {
+bool write_rows(TIFF* tiff, const InkImage& image, bool mirror) {
   std::vector<std::uint8_t> row(std::size_t(4) * std::size_t(image.width_px));
   for (int y = 0; y < image.height_px; ++y) {
     fill_row(image, y, mirror, row);
@@ -82,18 +85,68 @@ bool write_rows(TIFF* tiff, const Image& image, bool mirror) {
   return TIFFFlush(tiff) == 1;
 }
 
+// libtiff's complaint, if it has one.
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& message) {
+  throw InputError(fmt::format("{}: is no CMYK TIFF with 8 bits per ink{}", path.string(),
+                               message.empty() ? "" : " (" + message + ")"));
+}
+
+void check_cmyk(TIFF* tiff, const std::filesystem::path& path) {
+  std::uint16_t samples = 0, bits = 0, photometric = 0, planes = 0;
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &samples);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &bits);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &planes);
+  if (samples != 4 || bits != 8 || photometric != PHOTOMETRIC_SEPARATED ||
+      planes != PLANARCONFIG_CONTIG || TIFFIsTiled(tiff))
+    refuse(path, "");
+}
+
+double recorded_tiff_dpi(TIFF* tiff) {
+  float dpi = 0;
+  std::uint16_t unit = RESUNIT_INCH;
+  TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &dpi);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_RESOLUTIONUNIT, &unit);
+  return unit == RESUNIT_CENTIMETER ? 2.54 * double(dpi) : double(dpi);
+}
+
 }  // namespace
 
-void write_print_tiff(const std::filesystem::path& path, const Image& image,
-                      const SheetOptions& options) {
-  check_sheet(image, options);
+CmykFile read_cmyk_tiff(const std::filesystem::path& path) {
   std::string message;
-  const bool big = 4.0 * image.width_px * image.height_px > kClassicTiffBytes;
-  Tiff tiff = open_tiff(path, big, message);
+  const Tiff tiff = open_tiff(path, "r", message);
+  if (!tiff) refuse(path, message);
+  check_cmyk(tiff.get(), path);
+  std::uint32_t width = 0, height = 0;
+  TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &width);
+  TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &height);
+  if (width == 0 || height == 0 || width > kLargestSide_px || height > kLargestSide_px)
+    refuse(path, fmt::format("{} x {} px", width, height));
+  CmykFile file;
+  file.dpi = recorded_tiff_dpi(tiff.get());
+  file.inks.width_px = int(width);
+  file.inks.height_px = int(height);
+  std::vector<std::uint8_t> row(std::size_t(TIFFScanlineSize64(tiff.get())));
+  if (row.size() < std::size_t(4) * width) refuse(path, message);
+  for (std::uint32_t y = 0; y < height; ++y) {
+    if (TIFFReadScanline(tiff.get(), row.data(), y, 0) != 1) refuse(path, message);
+    // Row by row, so that a header alone makes nobody reserve much memory.
+    file.inks.cmyk.insert(file.inks.cmyk.end(), row.begin(),
+                          row.begin() + std::ptrdiff_t(4) * std::ptrdiff_t(width));
+  }
+  return file;
+}
+
+void write_print_tiff(const std::filesystem::path& path, const InkImage& inks,
+                      const std::vector<std::uint8_t>& profile, const SheetOptions& options) {
+  check_sheet(inks, options);
+  std::string message;
+  const bool big = 4.0 * inks.width_px * inks.height_px > kClassicTiffBytes;
+  Tiff tiff = open_tiff(path, big ? "w8" : "w", message);
   bool written = tiff != nullptr;
   if (written) {
-    describe(tiff.get(), image, options.dpi);
-    written = write_rows(tiff.get(), image, !options.ink_side_up);
+    describe(tiff.get(), inks, profile, options.dpi);
+    written = write_rows(tiff.get(), inks, !options.ink_side_up);
     tiff.reset();  // may still write, and complain
   }
   if (!written || !message.empty()) {

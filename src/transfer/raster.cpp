@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "base/parallel.h"
 
@@ -90,32 +91,64 @@ Vec2 SheetRaster::to_pixel(const Vec2& u) const {
   return {u.x() / pixel_mm + 0.5 * width_px(), 0.5 * height_px() - u.y() / pixel_mm};
 }
 
-Image film_image(const Object& object, const FilmMap& map, const SheetRaster& raster,
-                 const InverseOptions& options, RunContext& context) {
-  Image image(raster.width_px(), raster.height_px());
-  Box2 inked = map.covered();
-  inked.min -= Vec2::Constant(options.bleed_mm);
-  inked.max += Vec2::Constant(options.bleed_mm);
-  std::vector<Tile> tiles = tiles_of(image.width_px, image.height_px);
-  std::erase_if(tiles, [&](const Tile& t) { return !may_hold_ink(t, raster, inked); });
+namespace {
 
-  const auto paint = [&](const Tile& tile) {
+// paint(x, y, cursor) for every pixel that may carry ink, on any thread; progress as `stage`.
+template <class Paint>
+void for_each_inked(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
+                    const std::string& stage, RunContext& context, const Paint& paint) {
+  Box2 inked = map.covered();
+  inked.min -= Vec2::Constant(bleed_mm);
+  inked.max += Vec2::Constant(bleed_mm);
+  std::vector<Tile> tiles = tiles_of(raster.width_px(), raster.height_px());
+  std::erase_if(tiles, [&](const Tile& t) { return !may_hold_ink(t, raster, inked); });
+  const auto paint_tile = [&](const Tile& tile) {
     FilmMap::Cursor cursor;
     for (int y = tile.y0; y < tile.y1; ++y)
-      for (int x = tile.x0; x < tile.x1; ++x)
-        store(pixel_color(object, map, raster, options, x, y, cursor), image.pixel(x, y));
+      for (int x = tile.x0; x < tile.x1; ++x) paint(x, y, cursor);
   };
   // In rounds, so that progress comes from this thread.
   for (std::size_t first = 0; first < tiles.size(); first += kTilesPerRound) {
-    context.progress("rastering", double(first) / double(tiles.size()));
+    context.progress(stage, double(first) / double(tiles.size()));
     const std::size_t count = std::min(kTilesPerRound, tiles.size() - first);
     parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        if (!context.cancelled()) paint(tiles[first + i]);
+        if (!context.cancelled()) paint_tile(tiles[first + i]);
     });
   }
-  context.progress("rastering", 1);
+  context.progress(stage, 1);
+}
+
+}  // namespace
+
+Image film_image(const Object& object, const FilmMap& map, const SheetRaster& raster,
+                 const InverseOptions& options, RunContext& context) {
+  Image image(raster.width_px(), raster.height_px());
+  for_each_inked(map, raster, options.bleed_mm, "rastering", context,
+                 [&](int x, int y, FilmMap::Cursor& cursor) {
+                   store(pixel_color(object, map, raster, options, x, y, cursor),
+                         image.pixel(x, y));
+                 });
   return image;
+}
+
+FilmStretch film_stretch(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
+                         RunContext& context) {
+  const auto width = std::size_t(raster.width_px());
+  FilmStretch result;
+  result.area_ratio.assign(width * std::size_t(raster.height_px()), 1.0F);
+  result.on_object.assign(result.area_ratio.size(), 0);
+  for_each_inked(map, raster, bleed_mm, "measuring the stretch", context,
+                 [&](int x, int y, FilmMap::Cursor&) {
+                   const Vec2 u = raster.to_film(x + 0.5, y + 0.5);
+                   // Not less than the outline's hair.
+                   const auto near = map.nearest_covered(u, std::max(bleed_mm, 1e-3));
+                   if (!near) return;
+                   const std::size_t i = std::size_t(y) * width + std::size_t(x);
+                   result.area_ratio[i] = static_cast<float>(map.area_ratio(*near));
+                   result.on_object[i] = *near == u;
+                 });
+  return result;
 }
 
 LinearColor sample_film_image(const Image& image, const SheetRaster& raster, const Vec2& u) {

@@ -2,6 +2,9 @@
 // object (forward).
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "base/context.h"
 #include "image/image.h"
 #include "transfer/film_map.h"
@@ -32,6 +35,15 @@ struct InverseOptions {
 // The image to print: opaque where ink goes, transparent elsewhere (partial alpha along edges).
 Image film_image(const Object& object, const FilmMap& map, const SheetRaster& raster,
                  const InverseOptions& options, RunContext& context);
+
+// How far the film of every pixel ends up stretched.
+struct FilmStretch {
+  std::vector<float> area_ratio;  // deformed over flat; within the bleed that of the nearest film on
+                                  // the object, elsewhere 1
+  std::vector<std::uint8_t> on_object;  // per pixel: its centre lies on the object
+};
+FilmStretch film_stretch(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
+                         RunContext& context);
 
 // The colour (linear) that a film image leaves at a film coordinate: bilinear, transparent outside.
 // The image is centred on the sheet and has raster.dpi.

@@ -5,7 +5,7 @@
 
 write_tetrahedron tetra.obj
 write_colored colored.ply
-print_files='film.ply maps.png preview.glb preview.png print.pdf print.png print.tif report.html report.json'
+print_files='film.ply gamut.png maps.png preview.glb preview.png print.pdf print.png print.tif report.html report.json'
 simulate_files='film.ply maps.png preview.glb preview.png report.html report.json'
 
 # expect_files FOLDER NAMES: these, whole, and no others.

@@ -1,15 +1,23 @@
-#include "ink/device.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 
+#include "ink/color_model.h"
+#include "ink/discoloration.h"
+
 namespace hydrodip {
 namespace {
 
 using Cmyk = std::array<std::uint8_t, 4>;
+
+Cmyk device_cmyk(std::uint8_t r, std::uint8_t g, std::uint8_t b, std::uint8_t a) {
+  Image image(1, 1);
+  image.rgba = {r, g, b, a};
+  const InkImage inks = inks_of_film(image, *make_device_model());
+  return {inks.cmyk[0], inks.cmyk[1], inks.cmyk[2], inks.cmyk[3]};
+}
 
 TEST(DeviceCmyk, PrimariesNeedTheInksOfTheTextbook) {
   EXPECT_EQ(device_cmyk(255, 255, 255, 255), (Cmyk{0, 0, 0, 0}));
@@ -44,6 +52,16 @@ TEST(DeviceCmyk, OpaqueColoursCanBeRecoveredExactly) {
       }
     }
   }
+}
+
+TEST(DeviceCmyk, MorePigmentThanBlackNeedsIsBlack) {
+  const auto model = make_device_model();
+  const Inks inks{0.5F, 0, 0.25F, 0.75F};
+  SrgbColor color;
+  model->look(&inks, &color, 1);
+  EXPECT_EQ(color.r, 0);
+  EXPECT_EQ(color.g, 0.25F);
+  EXPECT_EQ(color.b, 0);
 }
 
 TEST(DeviceCmyk, TransparentMeansNoInkWhateverTheColour) {

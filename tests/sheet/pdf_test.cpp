@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <sstream>
+#include <tuple>
 #include <vector>
 
 #include "base/error.h"
@@ -15,8 +17,10 @@ namespace hydrodip {
 namespace {
 
 using testing::blank_image;
+using testing::device_profile;
 using testing::has_tool;
 using testing::patterned_image;
+using testing::patterned_inks;
 using testing::rasterised;
 using testing::run_tool;
 using testing::sheet;
@@ -25,7 +29,7 @@ class PrintPdf : public testing::ScratchFolder {
  protected:
   std::filesystem::path write(const Image& image, const SheetOptions& options) {
     const std::filesystem::path path = folder_ / "print.pdf";
-    write_print_pdf(path, image, options, context_);
+    write_print_pdf(path, image, srgb_profile(), options, context_);
     return path;
   }
   std::string info(const std::filesystem::path& path) {
@@ -294,6 +298,47 @@ TEST_F(PrintPdf, TheTextsCanBeReadByAnotherProgram) {
   }
 }
 
+TEST_F(PrintPdf, TheProfileIsAttached) {
+  if (!has_tool("pdfimages")) GTEST_SKIP() << "needs pdfimages";
+  const SheetOptions options = sheet(101.6, 81.3, 5, 50);
+  const auto rgb = write(patterned_image(options), options);
+  auto [status, said] = run_tool("pdfimages -list " + rgb.string());
+  EXPECT_EQ(status, 0);
+  EXPECT_NE(said.find(" icc "), std::string::npos) << said;
+
+  const auto cmyk = folder_ / "cmyk.pdf";
+  write_print_pdf(cmyk, patterned_inks(options), device_profile(), options, context_);
+  std::tie(status, said) = run_tool("pdfimages -list " + cmyk.string());
+  EXPECT_EQ(status, 0);
+  EXPECT_NE(said.find(" cmyk "), std::string::npos) << said;
+  // Ours draws every pixel 1/50 inch wide.
+  EXPECT_NE(said.find(" 50    50 "), std::string::npos) << said;
+  const auto bytes = read_file(cmyk);
+  EXPECT_NE(std::string(bytes.begin(), bytes.end()).find("/OutputIntents"), std::string::npos);
+}
+
+// Ghostscript adds up the inks of the page as a printer would get them.
+TEST_F(PrintPdf, InksReachThePrinterAsTheyAre) {
+  if (!has_tool("gs")) GTEST_SKIP() << "needs gs";
+  SheetOptions options = sheet(101.6, 101.6, 0, 50);  // 200 x 200 pixels, no margin: no marks
+  options.job_name.clear();
+  InkImage inks(200, 200);
+  const std::array<std::uint8_t, 4> amount = {51, 102, 153, 204};
+  for (int y = 50; y < 150; ++y)
+    for (int x = 50; x < 150; ++x) std::copy(amount.begin(), amount.end(), inks.pixel(x, y));
+  const auto path = folder_ / "inks.pdf";
+  write_print_pdf(path, inks, device_profile(), options, context_);
+  const auto [status, said] =
+      run_tool("gs -q -dBATCH -dNOPAUSE -r200 -sDEVICE=ink_cov -o - " + path.string());
+  EXPECT_EQ(status, 0) << said;
+  std::istringstream words(said);
+  for (const double expected : {5.0, 10.0, 15.0, 20.0}) {  // % of the page
+    double found = -1;
+    words >> found;
+    EXPECT_NEAR(found, expected, 0.15) << said;
+  }
+}
+
 TEST_F(PrintPdf, TheSameInputGivesTheSameBytes) {
   const SheetOptions options = sheet(80, 90, 10, 100);
   const Image image = patterned_image(options);
@@ -322,7 +367,7 @@ TEST_F(PrintPdf, TransparentPixelsAreNotStored) {
   Image image = blank_image(options);
   image.pixel(1000, 2000)[3] = 255;
   write(image, options);
-  EXPECT_LT(std::filesystem::file_size(folder_ / "print.pdf"), 6000u);
+  EXPECT_LT(std::filesystem::file_size(folder_ / "print.pdf"), 16000u);
 }
 
 TEST_F(PrintPdf, FilesThatCannotBeWrittenAreNamed) {
@@ -332,7 +377,7 @@ TEST_F(PrintPdf, FilesThatCannotBeWrittenAreNamed) {
   for (const std::filesystem::path& path :
        {folder_ / "missing" / "print.pdf", folder_ / "file" / "print.pdf", folder_}) {
     try {
-      write_print_pdf(path, image, options, context_);
+      write_print_pdf(path, image, srgb_profile(), options, context_);
       FAIL() << path;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
@@ -344,7 +389,8 @@ TEST_F(PrintPdf, AFullDiskIsNoticed) {
   if (!std::filesystem::is_character_file("/dev/full")) GTEST_SKIP() << "needs /dev/full";
   for (const double size : {40.0, 300.0}) {
     const SheetOptions options = sheet(size, size, 10, 72);
-    EXPECT_THROW(write_print_pdf("/dev/full", patterned_image(options), options, context_),
+    EXPECT_THROW(write_print_pdf("/dev/full", patterned_image(options), srgb_profile(), options,
+                                 context_),
                  InputError);
   }
 }

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 
 #include "base/error.h"
 #include "base/file.h"
-#include "ink/device.h"
 #include "sheet/sheet.h"
 #include "sheet/sheet_testing.h"
 
@@ -14,15 +14,17 @@ namespace hydrodip {
 namespace {
 
 using testing::blank_image;
+using testing::device_profile;
 using testing::has_tool;
 using testing::patterned_image;
+using testing::patterned_inks;
 using testing::run_tool;
 using testing::sheet;
 
 class PrintRaster : public testing::ScratchFolder {};
 
 // Every byte of a CMYK file, rows from the top.
-std::vector<std::uint8_t> read_tiff(const std::filesystem::path& path, const Image& image,
+std::vector<std::uint8_t> read_tiff(const std::filesystem::path& path, const InkImage& image,
                                     double dpi) {
   TIFF* tiff = TIFFOpen(path.c_str(), "r");
   EXPECT_NE(tiff, nullptr);
@@ -55,41 +57,76 @@ std::vector<std::uint8_t> read_tiff(const std::filesystem::path& path, const Ima
   return bytes;
 }
 
-TEST_F(PrintRaster, TheTiffHoldsTheDeviceFormulaOfEveryPixel) {
+TEST_F(PrintRaster, TheTiffHoldsEveryInkAndItsProfile) {
   for (const bool up : {true, false}) {
     SheetOptions options = sheet(52, 61, 5, 150);
     options.ink_side_up = up;
-    const Image image = patterned_image(options);
-    write_print_tiff(folder_ / "print.tif", image, options);
-    const auto bytes = read_tiff(folder_ / "print.tif", image, 150);
+    const InkImage inks = patterned_inks(options);
+    write_print_tiff(folder_ / "print.tif", inks, device_profile(), options);
+    const auto bytes = read_tiff(folder_ / "print.tif", inks, 150);
     std::size_t at = 0;
     std::size_t wrong = 0;
-    for (int y = 0; y < image.height_px; ++y) {
-      for (int x = 0; x < image.width_px; ++x) {
-        const std::uint8_t* pixel = image.pixel(up ? x : image.width_px - 1 - x, y);
-        const auto ink = device_cmyk(pixel[0], pixel[1], pixel[2], pixel[3]);
-        for (const std::uint8_t amount : ink) wrong += bytes[at++] != amount;
+    for (int y = 0; y < inks.height_px; ++y) {
+      for (int x = 0; x < inks.width_px; ++x) {
+        const std::uint8_t* pixel = inks.pixel(up ? x : inks.width_px - 1 - x, y);
+        for (int k = 0; k < 4; ++k) wrong += bytes[at++] != pixel[k];
       }
     }
     EXPECT_EQ(wrong, 0u) << "up " << up;
   }
 }
 
+TEST_F(PrintRaster, TheTiffIsReadBack) {
+  const SheetOptions options = sheet(52, 61, 5, 150);
+  const InkImage inks = patterned_inks(options);
+  write_print_tiff(folder_ / "print.tif", inks, device_profile(), options);
+  const CmykFile file = read_cmyk_tiff(folder_ / "print.tif");
+  EXPECT_EQ(file.dpi, 150);
+  EXPECT_EQ(file.inks.width_px, inks.width_px);
+  EXPECT_EQ(file.inks.height_px, inks.height_px);
+  EXPECT_EQ(file.inks.cmyk, inks.cmyk);
+}
+
+TEST_F(PrintRaster, OtherFilesAreNoInks) {
+  const SheetOptions options = sheet(52, 61, 5, 150);
+  std::ofstream(folder_ / "text.tif") << "II*";
+  write_print_tiff(folder_ / "print.tif", patterned_inks(options), {}, options);
+  auto bytes = read_file(folder_ / "print.tif");
+  bytes.resize(bytes.size() / 2);
+  std::ofstream(folder_ / "half.tif", std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+  for (const char* name : {"text.tif", "half.tif", "missing.tif"})
+    EXPECT_THROW(read_cmyk_tiff(folder_ / name), InputError) << name;
+}
+
 TEST_F(PrintRaster, TiffinfoAcceptsTheTiff) {
   if (!has_tool("tiffinfo")) GTEST_SKIP() << "needs tiffinfo";
   const SheetOptions options = sheet(210, 297, 10, 72);
-  write_print_tiff(folder_ / "print.tif", patterned_image(options), options);
+  write_print_tiff(folder_ / "print.tif", patterned_inks(options), device_profile(), options);
   const auto [status, said] = run_tool("tiffinfo -D " + (folder_ / "print.tif").string());
   EXPECT_EQ(status, 0) << said;
   EXPECT_EQ(said.find("Warning"), std::string::npos) << said;
   EXPECT_NE(said.find("Resolution: 72, 72 pixels/inch"), std::string::npos) << said;
   EXPECT_NE(said.find("separated"), std::string::npos) << said;
+  EXPECT_NE(said.find("ICC Profile: <present>"), std::string::npos) << said;
+}
+
+TEST_F(PrintRaster, ImageMagickFindsTheProfileInTheTiff) {
+  if (!has_tool("identify")) GTEST_SKIP() << "needs identify";
+  const SheetOptions options = sheet(52, 61, 5, 150);
+  write_print_tiff(folder_ / "print.tif", patterned_inks(options), device_profile(), options);
+  const auto [status, said] =
+      run_tool("identify -format '%[colorspace] %x %[profile:icc]' " +
+               (folder_ / "print.tif").string());
+  EXPECT_EQ(status, 0) << said;
+  EXPECT_NE(said.find("CMYK 150"), std::string::npos) << said;
+  EXPECT_NE(said.find("hydrodip device formula"), std::string::npos) << said;
 }
 
 TEST_F(PrintRaster, TheSameInputGivesTheSameTiff) {
   const SheetOptions options = sheet(52, 61, 5, 150);
-  write_print_tiff(folder_ / "a.tif", patterned_image(options), options);
-  write_print_tiff(folder_ / "b.tif", patterned_image(options), options);
+  write_print_tiff(folder_ / "a.tif", patterned_inks(options), device_profile(), options);
+  write_print_tiff(folder_ / "b.tif", patterned_inks(options), device_profile(), options);
   EXPECT_EQ(read_file(folder_ / "a.tif"), read_file(folder_ / "b.tif"));
 }
 
@@ -115,13 +152,20 @@ TEST_F(PrintRaster, ThePngIsTheImageWithItsDpi) {
 
 TEST_F(PrintRaster, FilesThatCannotBeWrittenAreNamed) {
   const SheetOptions options = sheet(80, 90, 10, 72);
-  const Image image = patterned_image(options);
+  const auto tiff = [&](const std::filesystem::path& path) {
+    write_print_tiff(path, patterned_inks(options), {}, options);
+  };
+  const auto png = [&](const std::filesystem::path& path) {
+    write_print_png(path, patterned_image(options), options);
+  };
   std::ofstream(folder_ / "file") << "x";
   for (const std::filesystem::path& path :
        {folder_ / "missing" / "print", folder_ / "file" / "print", folder_}) {
-    for (const auto writer : {write_print_tiff, write_print_png}) {
+    for (const std::function<void(const std::filesystem::path&)>& writer :
+         {std::function<void(const std::filesystem::path&)>(tiff),
+          std::function<void(const std::filesystem::path&)>(png)}) {
       try {
-        writer(path, image, options);
+        writer(path);
         FAIL() << path;
       } catch (const InputError& error) {
         EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos);
@@ -136,7 +180,7 @@ TEST_F(PrintRaster, AFullDiskIsNoticed) {
   for (const double size : {40.0, 300.0}) {
     const SheetOptions options = sheet(size, size, 10, 72);
     const Image image = patterned_image(options);
-    EXPECT_THROW(write_print_tiff("/dev/full", image, options), InputError);
+    EXPECT_THROW(write_print_tiff("/dev/full", patterned_inks(options), {}, options), InputError);
     EXPECT_THROW(write_print_png("/dev/full", image, options), InputError);
   }
 }
@@ -144,7 +188,9 @@ TEST_F(PrintRaster, AFullDiskIsNoticed) {
 TEST_F(PrintRaster, ImagesOfAnotherSheetAreRefused) {
   const SheetOptions options = sheet(80, 90, 10, 72);
   const Image image = blank_image(sheet(80, 100, 10, 72));
-  EXPECT_THROW(write_print_tiff(folder_ / "x.tif", image, options), InputError);
+  EXPECT_THROW(
+      write_print_tiff(folder_ / "x.tif", InkImage(image.width_px, image.height_px), {}, options),
+      InputError);
   EXPECT_THROW(write_print_png(folder_ / "x.png", image, options), InputError);
 }
 

@@ -10,8 +10,10 @@
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "image/files.h"
+#include "ink/color_model.h"
 #include "sheet/sheet.h"
 
 namespace hydrodip::testing {
@@ -85,5 +87,19 @@ inline Image patterned_image(const SheetOptions& options) {
   }
   return image;
 }
+
+// The same for inks; blank where the picture is transparent.
+inline InkImage patterned_inks(const SheetOptions& options) {
+  const Image image = patterned_image(options);
+  InkImage inks(image.width_px, image.height_px);
+  for (std::size_t i = 0; i < inks.cmyk.size(); i += 4) {
+    if (image.rgba[i + 3] == 0) continue;
+    for (std::size_t k = 0; k < 4; ++k) inks.cmyk[i + k] = image.rgba[i + k];
+  }
+  return inks;
+}
+
+// The profile that an ICC reader finds in an sRGB picture or in inks.
+inline std::vector<std::uint8_t> device_profile() { return make_device_model()->profile(); }
 
 }  // namespace hydrodip::testing

@@ -1,0 +1,251 @@
+#include "ink/discoloration.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "ink/difference.h"
+
+namespace hydrodip {
+
+namespace {
+
+constexpr std::size_t kGrain = 16;  // rows
+constexpr std::size_t kPixelGrain = 65536;
+constexpr float kKnee = 0.8F;       // of kSoft: up to here nothing is held back
+
+// Identity up to the knee, then ever flatter towards 1, without a kink.
+float soft(float amount) {
+  if (amount <= kKnee) return amount;
+  const float beyond = (amount - kKnee) / (1 - kKnee);
+  return kKnee + (1 - kKnee) * beyond / (1 + beyond);
+}
+
+float largest(const Inks& inks) { return std::max({inks.c, inks.m, inks.y, inks.k}); }
+
+// Black beyond the black ink, printed with the three colours.
+Inks with_full_black(Inks inks) {
+  const float beyond = inks.k - 1;
+  if (beyond <= 0) return inks;
+  return {inks.c + beyond, inks.m + beyond, inks.y + beyond, 1};
+}
+
+Inks clipped(const Inks& inks) {
+  return {std::min(inks.c, 1.0F), std::min(inks.m, 1.0F), std::min(inks.y, 1.0F),
+          std::min(inks.k, 1.0F)};
+}
+
+Inks limited(const Inks& inks, double limit) {
+  const float sum = inks.density();
+  return sum > limit ? inks.times(static_cast<float>(limit) / sum) : inks;
+}
+
+SrgbColor srgb(const std::uint8_t* pixel) {
+  return {static_cast<float>(pixel[0]) / 255.0F, static_cast<float>(pixel[1]) / 255.0F,
+          static_cast<float>(pixel[2]) / 255.0F};
+}
+
+bool is_white(const LinearColor& color) { return color.r >= 1 && color.g >= 1 && color.b >= 1; }
+
+// What white film must show so that `color` comes out over the base.
+SrgbColor on_white(const SrgbColor& color, const LinearColor& base) {
+  const auto channel = [](float encoded, float under) {
+    const float light = srgb_to_linear(encoded);
+    return under > light ? linear_to_srgb(light / under) : 1.0F;
+  };
+  return {channel(color.r, base.r), channel(color.g, base.g), channel(color.b, base.b)};
+}
+
+SrgbColor over_base(const SrgbColor& color, const LinearColor& base) {
+  const auto channel = [](float encoded, float under) {
+    return linear_to_srgb(srgb_to_linear(encoded) * under);
+  };
+  return {channel(color.r, base.r), channel(color.g, base.g), channel(color.b, base.b)};
+}
+
+void store(const SrgbColor& color, std::uint8_t* pixel) {
+  const auto byte = [](float value) {
+    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
+  };
+  pixel[0] = byte(color.r);
+  pixel[1] = byte(color.g);
+  pixel[2] = byte(color.b);
+  pixel[3] = 255;
+}
+
+// work(row) for every row, on any thread.
+template <class Work>
+void for_each_row(int height, const Work& work) {
+  parallel_for(std::size_t(height), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) work(static_cast<int>(y));
+  });
+}
+
+// Inks of a row before any compensation; blank where the image is transparent.
+void separate_row(const Image& image, int y, const ColorModel& model, const LinearColor& base,
+                  std::vector<Inks>& inks) {
+  std::vector<SrgbColor> colors;
+  std::vector<int> columns;
+  const bool white = is_white(base);
+  for (int x = 0; x < image.width_px; ++x) {
+    const std::uint8_t* pixel = image.pixel(x, y);
+    if (pixel[3] == 0) continue;
+    colors.push_back(white ? srgb(pixel) : on_white(srgb(pixel), base));
+    columns.push_back(x);
+  }
+  std::vector<Inks> found(colors.size());
+  model.separate(colors.data(), found.data(), colors.size());
+  inks.assign(std::size_t(image.width_px), Inks{});
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const float coverage = static_cast<float>(image.pixel(columns[i], y)[3]) / 255.0F;
+    inks[std::size_t(columns[i])] = found[i].times(coverage);
+  }
+}
+
+// How much too much the neediest point asks for: 1 if everything fits.
+float overshoot(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
+                const InkingOptions& options) {
+  std::vector<float> of_row(std::size_t(wanted.height_px), 1.0F);
+  for_each_row(wanted.height_px, [&](int y) {
+    std::vector<Inks> inks;
+    separate_row(wanted, y, model, options.base, inks);
+    float& most = of_row[std::size_t(y)];
+    for (int x = 0; x < wanted.width_px; ++x) {
+      const std::size_t i = std::size_t(y) * std::size_t(wanted.width_px) + std::size_t(x);
+      const Inks needed = inks[std::size_t(x)].times(area_ratio[i]);
+      most = std::max({most, needed.c, needed.m, needed.y, needed.k,
+                       needed.density() / static_cast<float>(options.limit)});
+    }
+  });
+  return *std::max_element(of_row.begin(), of_row.end());
+}
+
+}  // namespace
+
+Inks paled(const Inks& inks, double area_ratio) {
+  return inks.times(static_cast<float>(1 / area_ratio));
+}
+
+Inks compensated(const Inks& wanted, double area_ratio, GamutPolicy policy, double limit) {
+  Inks needed = with_full_black(wanted.times(static_cast<float>(area_ratio)));
+  if (policy == GamutPolicy::kSoft) {
+    const float most = largest(needed);
+    if (most > kKnee) needed = needed.times(soft(most) / most);
+  }
+  return limited(clipped(needed), limit);
+}
+
+Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
+                const InkingOptions& options, RunContext& context) {
+  context.check_cancelled();
+  Inking result;
+  result.inks = InkImage(wanted.width_px, wanted.height_px);
+  const std::vector<float> unstretched(options.compensate ? 0 : area_ratio.size(), 1.0F);
+  const std::vector<float>& ratio = options.compensate ? area_ratio : unstretched;
+  if (options.policy == GamutPolicy::kScale)
+    result.lightened = 1 / double(overshoot(wanted, ratio, model, options));
+  for_each_row(wanted.height_px, [&](int y) {
+    std::vector<Inks> inks;
+    separate_row(wanted, y, model, options.base, inks);
+    for (int x = 0; x < wanted.width_px; ++x) {
+      if (wanted.pixel(x, y)[3] == 0) continue;
+      const std::size_t i = std::size_t(y) * std::size_t(wanted.width_px) + std::size_t(x);
+      const Inks laid = compensated(inks[std::size_t(x)].times(float(result.lightened)),
+                                    double(ratio[i]), options.policy, options.limit);
+      const auto bytes = to_bytes(laid);
+      std::copy(bytes.begin(), bytes.end(), result.inks.pixel(x, y));
+    }
+  });
+  return result;
+}
+
+Image look_on_film(const InkImage& inks, const Image& wanted, const ColorModel& model) {
+  Image image(inks.width_px, inks.height_px);
+  for_each_row(inks.height_px, [&](int y) {
+    for (int x = 0; x < inks.width_px; ++x) {
+      if (wanted.pixel(x, y)[3] == 0) continue;
+      const Inks laid = from_bytes(inks.pixel(x, y));
+      SrgbColor color;
+      model.look(&laid, &color, 1);
+      store(color, image.pixel(x, y));
+    }
+  });
+  return image;
+}
+
+Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
+                     const ColorModel& model, const LinearColor& base) {
+  Image image(inks.width_px, inks.height_px);
+  const bool white = is_white(base);
+  const Inks none;
+  SrgbColor bare;
+  model.look(&none, &bare, 1);
+  bare = over_base(bare, base);
+  for_each_row(inks.height_px, [&](int y) {
+    for (int x = 0; x < inks.width_px; ++x) {
+      const std::size_t i = std::size_t(y) * std::size_t(inks.width_px) + std::size_t(x);
+      const Inks laid = from_bytes(inks.pixel(x, y));
+      SrgbColor color = bare;
+      if (laid.density() > 0) {
+        const Inks left = paled(laid, double(area_ratio[i]));
+        model.look(&left, &color, 1);
+        if (!white) color = over_base(color, base);
+      }
+      store(color, image.pixel(x, y));
+    }
+  });
+  return image;
+}
+
+InkImage inks_of_film(const Image& image, const ColorModel& model) {
+  InkImage result(image.width_px, image.height_px);
+  for_each_row(image.height_px, [&](int y) {
+    std::vector<Inks> inks;
+    separate_row(image, y, model, LinearColor{1, 1, 1, 1}, inks);
+    for (int x = 0; x < image.width_px; ++x) {
+      const auto bytes = to_bytes(inks[std::size_t(x)]);
+      std::copy(bytes.begin(), bytes.end(), result.pixel(x, y));
+    }
+  });
+  return result;
+}
+
+Reach measure_reach(const Image& wanted, const Image& on_object, const FilmStretch& stretch,
+                    const SheetRaster& raster) {
+  Reach reach;
+  const std::size_t pixels = stretch.area_ratio.size();
+  const auto counts = [&](std::size_t i) {
+    return stretch.on_object[i] != 0 && wanted.rgba[4 * i + 3] == 255;
+  };
+  reach.difference.assign(pixels, 0.0F);
+  parallel_for(pixels, kPixelGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint8_t *asked = &wanted.rgba[4 * i], *got = &on_object.rgba[4 * i];
+      if (!counts(i) || std::equal(asked, asked + 3, got)) continue;
+      reach.difference[i] = static_cast<float>(color_difference(srgb(asked), srgb(got)));
+    }
+  });
+  double within = 0, beyond = 0;
+  const double pixel_mm = kMmPerInch / raster.dpi;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (!counts(i)) continue;
+    const double area = pixel_mm * pixel_mm * double(stretch.area_ratio[i]);
+    const double difference = double(reach.difference[i]);
+    reach.compared_mm2 += area;
+    reach.largest = std::max(reach.largest, difference);
+    if (difference > kVisible) {
+      reach.out_of_reach_mm2 += area;
+      beyond += area * difference;
+    } else {
+      within += area * difference;
+    }
+  }
+  const auto mean = [](double sum, double area) { return area > 0 ? sum / area : 0; };
+  reach.mean = mean(within + beyond, reach.compared_mm2);
+  reach.mean_within = mean(within, reach.compared_mm2 - reach.out_of_reach_mm2);
+  reach.mean_beyond = mean(beyond, reach.out_of_reach_mm2);
+  return reach;
+}
+
+}  // namespace hydrodip

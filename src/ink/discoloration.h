@@ -1,0 +1,81 @@
+// Ink pales as the film stretches, and more of it makes up for that, as far as a printer can give
+// more (paper section 3.4, and what it leaves open: the gamut).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/context.h"
+#include "image/image.h"
+#include "ink/color_model.h"
+#include "transfer/raster.h"
+
+namespace hydrodip {
+
+// Where more ink is needed than the printer lays down.
+enum class GamutPolicy {
+  kClip,   // each ink as far as it goes (the paper)
+  kScale,  // the whole image lightened until everything fits
+  kSoft,   // all inks of a point held back alike, smoothly from 80 % of the limit on: hue is kept
+};
+
+struct InkingOptions {
+  bool compensate = true;  // false: printed as wanted, and it will be pale
+  GamutPolicy policy = GamutPolicy::kClip;
+  double limit = 3;              // largest sum of inks, in (0, 4]
+  LinearColor base{1, 1, 1, 1};  // of the bare object
+};
+
+// What is left of inks on film stretched to `area_ratio` times its area: (a0 / a) c.
+Inks paled(const Inks& inks, double area_ratio);
+
+// Inks that leave `wanted` after stretching, (a / a0) c, within what a printer gives: each ink up
+// to 1, their sum up to the limit, by kClip or kSoft. Black that the black ink alone cannot give is
+// made up of the colours.
+Inks compensated(const Inks& wanted, double area_ratio, GamutPolicy policy, double limit);
+
+struct Inking {
+  InkImage inks;         // to print
+  double lightened = 1;  // kScale: factor on all inks, 1 if everything fits
+};
+
+// The inks to print so that `wanted` (straight alpha: 0 where nothing is to be printed) appears on
+// the object. area_ratio: per pixel. Ink lies on the base colour as a filter: the light that comes
+// back is that from white film times the base.
+Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
+                const InkingOptions& options, RunContext& context);
+
+// What a film with these inks looks like before the dip: over white; transparent where `wanted`
+// is, so that the rest of the sheet stays empty.
+Image look_on_film(const InkImage& inks, const Image& wanted, const ColorModel& model);
+
+// The same film pixel by pixel as it will look on the object, paled and over the base colour.
+// Opaque everywhere.
+Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
+                     const ColorModel& model, const LinearColor& base);
+
+// The inks behind an image of a film as `print.png` shows it: transparent means none.
+InkImage inks_of_film(const Image& image, const ColorModel& model);
+
+// How far what comes out is from what was wanted, where film lies on the object.
+struct Reach {
+  double compared_mm2 = 0;     // on the object
+  double out_of_reach_mm2 = 0;  // of that, where the CIEDE2000 is above kVisible
+  double mean = 0;             // CIEDE2000, over all that was compared
+  double mean_within = 0;      // over what is within reach
+  double mean_beyond = 0;      // over what is out of reach
+  double largest = 0;
+  std::vector<float> difference;  // per pixel of the film image; 0 where nothing was compared
+
+  double out_of_reach_share() const {
+    return compared_mm2 > 0 ? out_of_reach_mm2 / compared_mm2 : 0;
+  }
+};
+inline constexpr double kVisible = 1;  // CIEDE2000
+
+// Compares the pixels that lie on the object (and are opaque in `wanted`), each weighing its area
+// there.
+Reach measure_reach(const Image& wanted, const Image& on_object, const FilmStretch& stretch,
+                    const SheetRaster& raster);
+
+}  // namespace hydrodip

@@ -1,0 +1,166 @@
+// ICC profiles: ours, and others' through ours, against Little CMS's own command, transicc.
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "ink/color_model.h"
+#include "ink/difference.h"
+
+namespace hydrodip {
+namespace {
+
+bool has_tool(const std::string& name) {
+  return std::system(("command -v " + name + " > /dev/null 2>&1").c_str()) == 0;
+}
+
+std::string said_by(const std::string& command) {
+  std::FILE* pipe = popen((command + " 2>/dev/null").c_str(), "r");
+  std::string text;
+  char chunk[4096];
+  while (const std::size_t count = std::fread(chunk, 1, sizeof chunk, pipe))
+    text.append(chunk, count);
+  pclose(pipe);
+  return text;
+}
+
+class Profiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (std::filesystem::temp_directory_path() / "hydrodip_icc_XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path save(const std::string& name, const std::vector<std::uint8_t>& bytes) {
+    write_file(folder_ / name, bytes.data(), bytes.size());
+    return folder_ / name;
+  }
+
+  // transicc on lines of numbers; floating point, one line back for each.
+  std::vector<std::vector<double>> transicc(const std::string& options,
+                                            const std::vector<std::vector<double>>& rows) {
+    std::ofstream in(folder_ / "in.txt");
+    for (const auto& row : rows) {
+      for (const double v : row) in << v << "\n";
+    }
+    in << "q\n";
+    in.close();
+    std::istringstream out(said_by("transicc -n -v0 " + options + " < " +
+                                   (folder_ / "in.txt").string()));
+    std::vector<std::vector<double>> result;
+    for (std::string line; std::getline(out, line);) {
+      std::istringstream words(line);
+      std::vector<double> row;
+      for (double v; words >> v;) row.push_back(v);
+      if (!row.empty()) result.push_back(row);
+    }
+    return result;
+  }
+
+  std::filesystem::path folder_;
+};
+
+std::vector<SrgbColor> color_cube(int nodes) {
+  std::vector<SrgbColor> colors;
+  const float step = 1.0F / float(nodes - 1);
+  for (int r = 0; r < nodes; ++r)
+    for (int g = 0; g < nodes; ++g)
+      for (int b = 0; b < nodes; ++b)
+        colors.push_back({float(r) * step, float(g) * step, float(b) * step});
+  return colors;
+}
+
+// There and back with the same model.
+double largest_return_error(const ColorModel& model, const std::vector<SrgbColor>& colors) {
+  std::vector<Inks> inks(colors.size());
+  std::vector<SrgbColor> back(colors.size());
+  model.separate(colors.data(), inks.data(), colors.size());
+  model.look(inks.data(), back.data(), inks.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < colors.size(); ++i)
+    largest = std::max(largest, color_difference(colors[i], back[i]));
+  return largest;
+}
+
+TEST_F(Profiles, TheDeviceFormulaReturnsEveryColour) {
+  EXPECT_LT(largest_return_error(*make_device_model(), color_cube(9)), 1e-3);
+}
+
+// The profile in print.tif says what the formula says.
+TEST_F(Profiles, OurProfileIsTheDeviceFormula) {
+  const auto device = make_device_model();
+  const auto profile =
+      make_profile_model(device->profile(), "device", RenderingIntent::kRelative);
+  EXPECT_EQ(profile->name(), "hydrodip device formula");
+  double sum = 0, largest = 0;
+  const auto colors = color_cube(9);
+  for (const SrgbColor& color : colors) {
+    Inks inks;
+    device->separate(&color, &inks, 1);
+    SrgbColor seen;
+    profile->look(&inks, &seen, 1);
+    const double difference = color_difference(color, seen);
+    sum += difference;
+    largest = std::max(largest, difference);
+  }
+  EXPECT_LT(sum / double(colors.size()), 0.5);
+  EXPECT_LT(largest, 5);  // between the nodes of its tables, where an ink just runs out
+}
+
+TEST_F(Profiles, TheSameBytesEveryTime) {
+  EXPECT_EQ(make_device_model()->profile(), make_device_model()->profile());
+  EXPECT_GT(srgb_profile().size(), 300u);
+}
+
+TEST_F(Profiles, TransiccGivesTheSameInks) {
+  if (!has_tool("transicc")) GTEST_SKIP() << "needs transicc";
+  const std::filesystem::path installed = installed_cmyk_profile();
+  if (installed.empty()) GTEST_SKIP() << "no CMYK profile is installed";
+  const auto model =
+      make_profile_model(read_file(installed), "installed", RenderingIntent::kRelative);
+  const std::vector<SrgbColor> colors = color_cube(4);
+  std::vector<std::vector<double>> rows;
+  for (const SrgbColor& c : colors)
+    rows.push_back({255.0 * double(c.r), 255.0 * double(c.g), 255.0 * double(c.b)});
+  const auto inks = transicc("-i*sRGB -o" + installed.string() + " -t1 -b", rows);
+  ASSERT_EQ(inks.size(), colors.size());
+  std::vector<Inks> ours(colors.size());
+  model->separate(colors.data(), ours.data(), colors.size());
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    ASSERT_EQ(inks[i].size(), 4u);
+    EXPECT_NEAR(100 * double(ours[i].c), inks[i][0], 0.5) << i;
+    EXPECT_NEAR(100 * double(ours[i].m), inks[i][1], 0.5) << i;
+    EXPECT_NEAR(100 * double(ours[i].y), inks[i][2], 0.5) << i;
+    EXPECT_NEAR(100 * double(ours[i].k), inks[i][3], 0.5) << i;
+  }
+
+  const auto back = transicc("-i" + installed.string() + " -o*sRGB -t1 -b", inks);
+  ASSERT_EQ(back.size(), colors.size());
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    SrgbColor seen;
+    model->look(&ours[i], &seen, 1);
+    const SrgbColor theirs{float(back[i][0] / 255), float(back[i][1] / 255),
+                           float(back[i][2] / 255)};
+    EXPECT_LT(color_difference(seen, theirs), 1) << i;
+  }
+}
+
+TEST_F(Profiles, WhatIsNoCmykProfileIsRefused) {
+  const std::vector<std::uint8_t> rubbish(500, 7);
+  for (const auto& bytes : {rubbish, std::vector<std::uint8_t>{}, srgb_profile()})
+    EXPECT_THROW(make_profile_model(bytes, "some.icc", RenderingIntent::kRelative), InputError);
+  auto cut = make_device_model()->profile();
+  cut.resize(cut.size() / 2);
+  EXPECT_THROW(make_profile_model(cut, "some.icc", RenderingIntent::kRelative), InputError);
+}
+
+}  // namespace
+}  // namespace hydrodip
