@@ -34,6 +34,8 @@ constexpr double kFasterShare = 0.1;
 // A foot that jumps further than this in one step, in cells, has lost its contact line (the object
 // is submerged there, or a shelf begins) and goes on straight up.
 constexpr double kMaxJump = 2.5;
+// In one step a floating vertex slides by less than the step and this, in cells.
+constexpr double kLongestSlide = 10;
 // Ways that pass the part of the object between two levels further off than this do not touch it.
 constexpr double kSweptSlack_mm = 0.01;
 
@@ -309,7 +311,9 @@ class ContactLineScheme : public Scheme {
         Vec2 place = Vec2::Zero();
         for (std::size_t k = 0; k < 3; ++k)
           place += at.weight[Eigen::Index(k)] * corner(std::size_t(at.triangle), k);
-        if (place.allFinite()) slid_[v] = place;
+        // Scraps of torn film may have no place that means anything.
+        if ((place - plan_[v]).norm() < kLongestSlide * film_.cell_mm + set_.options.step_mm)
+          slid_[v] = place;
       }
     });
     hold_back_folds();

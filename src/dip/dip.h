@@ -41,8 +41,8 @@ struct DipOptions {
   // Of the film's equilibrium; multigrid by default, others to compare with.
   std::function<std::unique_ptr<LinearSolver>(const FilmMesh&)> make_solver = make_multigrid_solver;
   // Per film triangle: the depth at which it tears, whatever its stretch; infinity: only when it is
-  // stretched well beyond tear_stretch. Empty: tear_stretch alone decides. What another dip found, so
-  // that two dips can be compared smoothly.
+  // stretched well beyond tear_stretch. Empty: tear_stretch alone decides. What another dip found,
+  // so that two dips can be compared smoothly.
   std::vector<double> tear_levels;
 };
 

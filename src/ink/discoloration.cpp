@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kGrain = 16;  // rows
 constexpr std::size_t kPixelGrain = 65536;
-constexpr float kKnee = 0.8F;       // of kSoft: up to here nothing is held back
+constexpr float kKnee = 0.8F;  // of kSoft: up to here nothing is held back
 
 // Identity up to the knee, then ever flatter towards 1, without a kink.
 float soft(float amount) {

@@ -59,11 +59,11 @@ InkImage inks_of_film(const Image& image, const ColorModel& model);
 
 // How far what comes out is from what was wanted, where film lies on the object.
 struct Reach {
-  double compared_mm2 = 0;     // on the object
+  double compared_mm2 = 0;      // on the object
   double out_of_reach_mm2 = 0;  // of that, where the CIEDE2000 is above kVisible
-  double mean = 0;             // CIEDE2000, over all that was compared
-  double mean_within = 0;      // over what is within reach
-  double mean_beyond = 0;      // over what is out of reach
+  double mean = 0;              // CIEDE2000, over all that was compared
+  double mean_within = 0;       // over what is within reach
+  double mean_beyond = 0;       // over what is out of reach
   double largest = 0;
   std::vector<float> difference;  // per pixel of the film image; 0 where nothing was compared
 

@@ -194,9 +194,9 @@ void write_table(cmsContext context, cmsHPROFILE profile, const std::vector<cmsT
                  int nodes, int inputs, int outputs, cmsSAMPLER16 sampler) {
   const Pipeline pipeline(cmsPipelineAlloc(context, static_cast<cmsUInt32Number>(inputs),
                                            static_cast<cmsUInt32Number>(outputs)));
-  cmsStage* table = cmsStageAllocCLut16bit(
-      context, static_cast<cmsUInt32Number>(nodes), static_cast<cmsUInt32Number>(inputs),
-      static_cast<cmsUInt32Number>(outputs), nullptr);
+  cmsStage* table = cmsStageAllocCLut16bit(context, static_cast<cmsUInt32Number>(nodes),
+                                           static_cast<cmsUInt32Number>(inputs),
+                                           static_cast<cmsUInt32Number>(outputs), nullptr);
   cmsStageSampleCLut16bit(table, sampler, nullptr, 0);
   cmsPipelineInsertStage(pipeline.get(), cmsAT_END, table);
   cmsWriteTag(profile, tags.front(), pipeline.get());
@@ -214,10 +214,10 @@ std::vector<std::uint8_t> make_device_profile() {
   cmsSetPCS(profile.get(), cmsSigLabData);
   describe(context.get(), profile.get(), "hydrodip device formula");
   cmsWriteTag(profile.get(), cmsSigMediaWhitePointTag, cmsD50_XYZ());
-  write_table(context.get(), profile.get(),
-              {cmsSigAToB0Tag, cmsSigAToB1Tag, cmsSigAToB2Tag}, kInkNodes, 4, 3, sample_look);
-  write_table(context.get(), profile.get(),
-              {cmsSigBToA0Tag, cmsSigBToA1Tag, cmsSigBToA2Tag}, kLabNodes, 3, 4, sample_inks);
+  write_table(context.get(), profile.get(), {cmsSigAToB0Tag, cmsSigAToB1Tag, cmsSigAToB2Tag},
+              kInkNodes, 4, 3, sample_look);
+  write_table(context.get(), profile.get(), {cmsSigBToA0Tag, cmsSigBToA1Tag, cmsSigBToA2Tag},
+              kLabNodes, 3, 4, sample_inks);
   return profile_bytes(profile.get());
 }
 

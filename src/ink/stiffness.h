@@ -15,8 +15,8 @@ struct StiffnessOptions {
   double filter_mm = 1.016;  // side of the box filter: 12 pixels at 300 dpi
 };
 
-// The mean over a triangle of the ink density, after a square box filter. Every pixel is a square of
-// constant density, there is no ink off the image, and the integrals are exact.
+// The mean over a triangle of the ink density, after a square box filter. Every pixel is a square
+// of constant density, there is no ink off the image, and the integrals are exact.
 double mean_density(const InkImage& image, const SheetRaster& raster,
                     const std::array<Vec2, 3>& triangle, double filter_mm);
 

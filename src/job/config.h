@@ -50,7 +50,7 @@ struct PrintOptions {
   int samples = 3;  // per axis and pixel
   InkSide ink_side = InkSide::kUp;
   PrintColor color = PrintColor::kRgb;  // of print.pdf
-  std::string job_name;  // in the sheet's margin; empty: the model's file name
+  std::string job_name;                 // in the sheet's margin; empty: the model's file name
 };
 
 // What the operator keeps to at the bath; the paper's section 2 and appendix A.

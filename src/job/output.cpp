@@ -62,7 +62,8 @@ Image draw_reach(const JobRecord& record, const Appearance& shown, const SheetRa
   options.titles = {"predicted", "out of reach: yellow, red"};
   options.base = base_color(record.config);
   options.caption = fmt::format(
-      "{:.1f} % of the covered surface cannot have its colour; there it is off by {:.1f} (CIEDE2000)",
+      "{:.1f} % of the covered surface cannot have its colour; there it is off by {:.1f} "
+      "(CIEDE2000)",
       100 * reach.out_of_reach_share(), reach.mean_beyond);
   return render_preview(dipped.object(), *dipped.surface, dipped.film(), pair, options,
                         record.context);
@@ -89,9 +90,9 @@ ReportPictures write_previews(OutputFolder& folder, const JobRecord& record,
 
   ReportPictures pictures;
   const Appearance shown = appearance(dipped, film_image, raster, base);
-  pictures.preview_png = write_picture(
-      folder.path("preview.png"),
-      draw_preview(record, shown, caption_start + short_verdict(dipped.coverage)));
+  pictures.preview_png =
+      write_picture(folder.path("preview.png"),
+                    draw_preview(record, shown, caption_start + short_verdict(dipped.coverage)));
   if (record.ink != nullptr)
     write_picture(folder.path("gamut.png"), draw_reach(record, shown, raster));
   pictures.maps_png = write_picture(folder.path("maps.png"), draw_maps(record));

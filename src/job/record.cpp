@@ -55,7 +55,8 @@ std::vector<ReportFigure> ink_figures(const InkRound& round, bool first) {
       {"mean_modulus", "Mean stiffness over blank film", round.mean_modulus, ""},
       {"tears_kept", "Tears kept from before", round.tears_kept, ""}};
   if (!first)
-    figures.insert(figures.begin(), {"change_mm", "Mean change of the film", round.change_mm, "mm"});
+    figures.insert(figures.begin(),
+                   {"change_mm", "Mean change of the film", round.change_mm, "mm"});
   return figures;
 }
 
@@ -88,8 +89,8 @@ void add_ink(const JobRecord& record, std::vector<ReportFigure>& figures) {
        {"out_of_gamut_share", "Share of the covered surface", reach.out_of_reach_share(), ""},
        {"out_of_gamut_difference", "Their mean difference (CIEDE2000)", reach.mean_beyond, ""},
        {"color_difference", "Mean difference everywhere (CIEDE2000)", reach.mean, ""},
-       {"color_difference_in_gamut", "Mean difference of the others (CIEDE2000)",
-        reach.mean_within, ""},
+       {"color_difference_in_gamut", "Mean difference of the others (CIEDE2000)", reach.mean_within,
+        ""},
        {"color_difference_max", "Largest difference (CIEDE2000)", reach.largest, ""}});
 }
 

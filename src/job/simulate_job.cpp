@@ -50,8 +50,8 @@ double image_dpi(int width_px, double recorded, const JobConfig& config) {
 }
 
 bool is_tiff(const std::vector<std::uint8_t>& bytes) {
-  return bytes.size() > 4 && ((bytes[0] == 'I' && bytes[1] == 'I') ||
-                              (bytes[0] == 'M' && bytes[1] == 'M'));
+  return bytes.size() > 4 &&
+         ((bytes[0] == 'I' && bytes[1] == 'I') || (bytes[0] == 'M' && bytes[1] == 'M'));
 }
 
 // Cut or filled up with blank rows: rounding may cost or give one.
@@ -128,11 +128,10 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
   const auto dipped = undipped(std::move(posed));
   dip_with_ink(*dipped, film, printed, config, times, context);
 
-  const JobRecord record{"simulate",  config, inputs,  *dipped,
-                         times, context, nullptr, model->name()};
+  const JobRecord record{"simulate", config,  inputs,  *dipped,
+                         times,      context, nullptr, model->name()};
   const ReportPictures pictures = times.measure("preview", [&] {
-    return write_previews(folder, record,
-                          seen_on_object(*dipped, printed, *model, config, context),
+    return write_previews(folder, record, seen_on_object(*dipped, printed, *model, config, context),
                           printed.raster,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");
   });

@@ -190,7 +190,7 @@ class RunSheet {
     for (std::size_t i = 0; i < pictures_.size(); ++i) {
       const double x = page_.left() + double(i) * (width + kGap_mm);
       const Image& image = pictures_[i].image;
-      page_.pdf().draw_image(image, {0, 0, image.width_px, image.height_px}, false,
+      page_.pdf().draw_image(image, {}, {0, 0, image.width_px, image.height_px}, false,
                              {Vec2(x, page_.y - height), Vec2(x + width, page_.y)}, context_);
       page_.text(x, page_.y - height - 4, pictures_[i].caption, kSmall_pt, PdfFont::kRegular, 0.25);
     }

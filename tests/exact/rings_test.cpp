@@ -18,16 +18,14 @@ constexpr double kRatio = 600;
 double sphere_slope(double a) { return a / std::sqrt(kRadius * kRadius - a * a); }
 
 // From 0.1 to 1 and back.
-double ink_density(double u) {
-  return 0.55 - 0.45 * std::cos(2 * std::numbers::pi * u / kRing_mm);
-}
+double ink_density(double u) { return 0.55 - 0.45 * std::cos(2 * std::numbers::pi * u / kRing_mm); }
 
 InkImage rings(const SheetRaster& raster) {
   InkImage image(raster.width_px(), raster.height_px());
   for (int y = 0; y < image.height_px; ++y)
     for (int x = 0; x < image.width_px; ++x)
-      image.pixel(x, y)[2] = std::uint8_t(
-          std::lround(255 * ink_density(raster.to_film(x + 0.5, y + 0.5).norm())));
+      image.pixel(x, y)[2] =
+          std::uint8_t(std::lround(255 * ink_density(raster.to_film(x + 0.5, y + 0.5).norm())));
   return image;
 }
 
@@ -36,8 +34,8 @@ TEST(Rings, WithoutRingsTheSolutionIsTheKnownOne) {
   const auto even = exact::ringed_revolution(radii, exact::kClampRadius, kZStretch, sphere_slope,
                                              [](double) { return 7.0; });
   for (std::size_t i = 0; i < radii.size(); ++i)
-    EXPECT_NEAR(even[i],
-                exact::revolution(radii[i], exact::kClampRadius, kZStretch, sphere_slope), 1e-3);
+    EXPECT_NEAR(even[i], exact::revolution(radii[i], exact::kClampRadius, kZStretch, sphere_slope),
+                1e-3);
 }
 
 TEST(RingsSlow, InkRingsOnASphereLandWhereTheContinuumHasThem) {
@@ -49,14 +47,13 @@ TEST(RingsSlow, InkRingsOnASphereLandWhereTheContinuumHasThem) {
 
   const std::vector<double> radii = {3, 5, 8, 11, 14, 17, 20, 22, 24, 26, 27, 28};
   const auto modulus = [](double u) { return 1 + ink_density(u) * (kRatio - 1); };
-  const auto ringed = exact::ringed_revolution(radii, exact::kClampRadius, kZStretch, sphere_slope,
-                                               modulus);
+  const auto ringed =
+      exact::ringed_revolution(radii, exact::kClampRadius, kZStretch, sphere_slope, modulus);
   double furthest_from_even = 0, largest = 0;
   for (std::size_t i = 0; i < radii.size(); ++i) {
     furthest_from_even = std::max(
-        furthest_from_even,
-        std::abs(ringed[i] -
-                 exact::revolution(radii[i], exact::kClampRadius, kZStretch, sphere_slope)));
+        furthest_from_even, std::abs(ringed[i] - exact::revolution(radii[i], exact::kClampRadius,
+                                                                   kZStretch, sphere_slope)));
     // The film around that radius, brought there along the solution's own slope.
     double sum = 0;
     int count = 0;

@@ -114,8 +114,8 @@ TEST_F(OnFilm, AreaIsCountedOnTheObject) {
   stretch(1.5F);
   const Reach found = reach({});
   EXPECT_NEAR(found.compared_mm2, 1.5 * 36 * 6 * 0.01, 1e-6);
-  // Out of reach: the colours of which a single ink is over 2/3 (a little more, or more in the dark, is not visible);
-  // black is not among them.
+  // Out of reach: the colours of which a single ink is over 2/3 (a little more, or more in the
+  // dark, is not visible); black is not among them.
   int beyond = 0, visible = 0;
   for (int y = 0; y < 6; ++y)
     for (int x = 0; x < 36; ++x) {

@@ -53,8 +53,8 @@ class Profiles : public ::testing::Test {
     }
     in << "q\n";
     in.close();
-    std::istringstream out(said_by("transicc -n -v0 " + options + " < " +
-                                   (folder_ / "in.txt").string()));
+    std::istringstream out(
+        said_by("transicc -n -v0 " + options + " < " + (folder_ / "in.txt").string()));
     std::vector<std::vector<double>> result;
     for (std::string line; std::getline(out, line);) {
       std::istringstream words(line);
@@ -97,8 +97,7 @@ TEST_F(Profiles, TheDeviceFormulaReturnsEveryColour) {
 // The profile in print.tif says what the formula says.
 TEST_F(Profiles, OurProfileIsTheDeviceFormula) {
   const auto device = make_device_model();
-  const auto profile =
-      make_profile_model(device->profile(), "device", RenderingIntent::kRelative);
+  const auto profile = make_profile_model(device->profile(), "device", RenderingIntent::kRelative);
   EXPECT_EQ(profile->name(), "hydrodip device formula");
   double sum = 0, largest = 0;
   const auto colors = color_cube(9);

@@ -100,8 +100,8 @@ TEST(Stiffness, PartsAddUpToTheWhole) {
 }
 
 TEST(Stiffness, ModulusGrowsFromBlankToInked) {
-  const FilmMesh film = make_film_mesh({.width_mm = 20, .height_mm = 16, .margin_mm = 2,
-                                        .elements = 100, .grading = 1});
+  const FilmMesh film = make_film_mesh(
+      {.width_mm = 20, .height_mm = 16, .margin_mm = 2, .elements = 100, .grading = 1});
   const SheetRaster& raster = kRaster;
   const auto modulus = film_modulus(film, half_inked(), raster, {.ratio = 600, .filter_mm = 1});
   ASSERT_EQ(modulus.size(), film.triangles.size());

@@ -207,8 +207,7 @@ TEST(RoundTripSlow, WhatIsPrintedAndDippedIsWhatWasWanted) {
 
   // Stiffened by its ink and paled by its stretch.
   const auto dipped = dipped_again(config, inks, context);
-  const FilmStretch stretch =
-      film_stretch(*dipped->map, raster, config.print.bleed_mm, context);
+  const FilmStretch stretch = film_stretch(*dipped->map, raster, config.print.bleed_mm, context);
   const auto model = make_device_model();
   const Image seen = look_on_object(inks, stretch.area_ratio, *model, {1, 1, 1, 1});
   const Likeness colors = likeness(*dipped, seen, raster);

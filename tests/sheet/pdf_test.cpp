@@ -389,9 +389,9 @@ TEST_F(PrintPdf, AFullDiskIsNoticed) {
   if (!std::filesystem::is_character_file("/dev/full")) GTEST_SKIP() << "needs /dev/full";
   for (const double size : {40.0, 300.0}) {
     const SheetOptions options = sheet(size, size, 10, 72);
-    EXPECT_THROW(write_print_pdf("/dev/full", patterned_image(options), srgb_profile(), options,
-                                 context_),
-                 InputError);
+    EXPECT_THROW(
+        write_print_pdf("/dev/full", patterned_image(options), srgb_profile(), options, context_),
+        InputError);
   }
 }
 

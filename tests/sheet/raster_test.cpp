@@ -115,9 +115,8 @@ TEST_F(PrintRaster, ImageMagickFindsTheProfileInTheTiff) {
   if (!has_tool("identify")) GTEST_SKIP() << "needs identify";
   const SheetOptions options = sheet(52, 61, 5, 150);
   write_print_tiff(folder_ / "print.tif", patterned_inks(options), device_profile(), options);
-  const auto [status, said] =
-      run_tool("identify -format '%[colorspace] %x %[profile:icc]' " +
-               (folder_ / "print.tif").string());
+  const auto [status, said] = run_tool("identify -format '%[colorspace] %x %[profile:icc]' " +
+                                       (folder_ / "print.tif").string());
   EXPECT_EQ(status, 0) << said;
   EXPECT_NE(said.find("CMYK 150"), std::string::npos) << said;
   EXPECT_NE(said.find("hydrodip device formula"), std::string::npos) << said;
