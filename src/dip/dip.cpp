@@ -106,7 +106,7 @@ std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, c
 
 DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
               const std::vector<Triangle>& triangles, const Surface& surface,
-              const DipOptions& options, RunContext& context) {
+              const DipOptions& options, RunContext& context, const DipObserver& observe) {
   check(options, film);
   const double depth = depth_of(positions, options);
   check_rim(film, surface, depth, context);
@@ -115,9 +115,11 @@ DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
   const auto scheme = make_scheme(setting, state);
 
   const int steps = number_of_steps(depth, options);
+  if (observe) observe(0, steps, 0, state.position, state.state);
   for (int step = 1; step <= steps; ++step) {
     context.progress("dipping", double(step - 1) / steps);
     scheme->advance(depth * step / steps);
+    if (observe) observe(step, steps, state.level, state.position, state.state);
   }
   context.progress("dipping", 1);
   state.statistics.steps = steps;

@@ -61,11 +61,16 @@ struct DipResult {
   DipStatistics statistics;
 };
 
+// Sees the film after each of `steps` steps, and before the first one as step 0.
+using DipObserver =
+    std::function<void(int step, int steps, double level_mm, const std::vector<Vec3>& position,
+                       const std::vector<VertexState>& state)>;
+
 // `positions` and `triangles` are the object's, in the posed-object frame, and `surface` queries
 // the same triangles. Throws DipError (exit code 3) if a step cannot be computed, InputError for
 // options out of range, Cancelled.
 DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
               const std::vector<Triangle>& triangles, const Surface& surface,
-              const DipOptions& options, RunContext& context);
+              const DipOptions& options, RunContext& context, const DipObserver& observe = {});
 
 }  // namespace hydrodip

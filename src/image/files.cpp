@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csetjmp>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -323,6 +324,45 @@ Image decode_jpeg(const Bytes& bytes, const std::string& name) {
   return image;
 }
 
+struct JpegWriter {
+  jpeg_compress_struct info{};
+  JpegErrors errors{};
+  unsigned char* data = nullptr;  // grown by libjpeg with malloc
+  unsigned long size = 0;
+  JpegWriter() {
+    info.err = jpeg_std_error(&errors.manager);
+    errors.manager.error_exit = jpeg_keep_error;
+    errors.manager.emit_message = jpeg_note_warning;
+    jpeg_create_compress(&info);
+    jpeg_mem_dest(&info, &data, &size);
+  }
+  ~JpegWriter() {
+    jpeg_destroy_compress(&info);
+    std::free(data);
+  }
+  JpegWriter(const JpegWriter&) = delete;
+  JpegWriter& operator=(const JpegWriter&) = delete;
+
+  // row: scratch space for one row of three channels.
+  bool write(const Image& image, int quality, std::uint8_t* row) {
+    if (setjmp(errors.jump)) return false;
+    info.image_width = JDIMENSION(image.width_px);
+    info.image_height = JDIMENSION(image.height_px);
+    info.input_components = 3;
+    info.in_color_space = JCS_RGB;
+    jpeg_set_defaults(&info);
+    jpeg_set_quality(&info, quality, TRUE);
+    jpeg_start_compress(&info, TRUE);
+    while (info.next_scanline < info.image_height) {
+      const std::uint8_t* in = image.pixel(0, int(info.next_scanline));
+      for (int x = 0; x < image.width_px; ++x) std::copy_n(in + 4 * x, 3, row + 3 * x);
+      jpeg_write_scanlines(&info, &row, 1);
+    }
+    jpeg_finish_compress(&info);
+    return true;
+  }
+};
+
 double jpeg_dpi(const Bytes& bytes) {
   if (bytes.size() < 18 || bytes[3] != 0xe0 || std::memcmp(&bytes[6], "JFIF", 5) != 0) return 0;
   const double density = bytes[14] * 256.0 + bytes[15];
@@ -363,6 +403,19 @@ Bytes encode_png(const Image& image, double dpi) {
     throw InputError(fmt::format("The image could not be written as PNG: {}.", message));
   }
   return out;
+}
+
+Bytes encode_jpeg(const Image& image, int quality) {
+  if (image.width_px <= 0 || image.height_px <= 0) {
+    throw InputError("An image without pixels cannot be written as JPEG.");
+  }
+  JpegWriter writer;
+  std::vector<std::uint8_t> row(std::size_t(3) * std::size_t(image.width_px));
+  if (!writer.write(image, quality, row.data())) {
+    throw InputError(
+        fmt::format("The image could not be written as JPEG: {}.", writer.errors.message));
+  }
+  return {writer.data, writer.data + writer.size};
 }
 
 void save_png(const std::filesystem::path& path, const Image& image, double dpi) {

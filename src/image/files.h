@@ -28,4 +28,7 @@ void save_png(const std::filesystem::path& path, const Image& image, double dpi 
 // The same into memory (for GLB and HTML).
 std::vector<std::uint8_t> encode_png(const Image& image, double dpi = 0);
 
+// JPEG for pictures inside other files, where size counts; quality 1 to 100. Alpha is dropped.
+std::vector<std::uint8_t> encode_jpeg(const Image& image, int quality);
+
 }  // namespace hydrodip

@@ -26,7 +26,8 @@ void dip_again(DippedObject& dipped, const FilmMesh& film, const DipOptions& opt
   const Object& object = dipped.object();
   times.measure("dip", [&] {
     dipped.map.reset();  // refers to the film that goes
-    dipped.dip = dip(film, object.positions, object.triangles, *dipped.surface, options, context);
+    dipped.dip = dip(film, object.positions, object.triangles, *dipped.surface, options, context,
+                     [&](auto&&... state) { dipped.history.record(state...); });
   });
   times.measure("map", [&] {
     context.progress("mapping", 0);

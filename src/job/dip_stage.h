@@ -11,6 +11,7 @@
 #include "object/surface.h"
 #include "report/appearance.h"
 #include "report/coverage.h"
+#include "report/dip_history.h"
 #include "transfer/film_map.h"
 #include "transfer/raster.h"
 
@@ -22,6 +23,7 @@ struct DippedObject {
   LoadedObject loaded;  // posed
   std::unique_ptr<Surface> surface;
   DipResult dip;
+  DipHistory history;
   std::unique_ptr<FilmMap> map;
   Coverage coverage;
   DipAngles angles;

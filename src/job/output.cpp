@@ -3,25 +3,41 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/file.h"
 #include "image/files.h"
+#include "image/resize.h"
 #include "job/prepare.h"
-#include "job/resize.h"
 #include "report/maps.h"
 #include "report/preview.h"
 #include "report/report.h"
+#include "report/scene.h"
 
 namespace hydrodip {
 namespace {
 
 // Large enough to look at closely, small enough for viewers on a phone.
 constexpr int kTextureSide_px = 4096;
+constexpr int kPageTextureSide_px = 2048;
 
 std::vector<std::uint8_t> write_picture(const std::filesystem::path& path, const Image& image) {
   std::vector<std::uint8_t> png = encode_png(image);
   write_file(path, png.data(), png.size());
   return png;
+}
+
+ReportColors colors_of(const FilmLayer& error) {
+  const LayerSummary summary = summarize(error);
+  return {summary.mean, summary.most_of};
+}
+
+// The largest sum of the inks over the sheet.
+double heaviest_ink(const InkImage& inks) {
+  float most = 0;
+  for (std::size_t i = 0; i < inks.cmyk.size(); i += 4)
+    most = std::max(most, from_bytes(inks.cmyk.data() + i).density());
+  return double(most);
 }
 
 Image draw_preview(const JobRecord& record, const Appearance& shown, const std::string& caption) {
@@ -103,8 +119,37 @@ ReportPictures write_previews(OutputFolder& folder, const JobRecord& record,
   return pictures;
 }
 
-JobResult finish(OutputFolder& folder, const JobRecord& record, const ReportPictures& pictures) {
-  const Report report = make_report(record);
+PageParts page_parts(const JobRecord& record, const Image& film_image, const SheetRaster& raster) {
+  const DippedObject& dipped = record.dipped;
+  const LinearColor base = base_color(record.config);
+  const Image sheet = shrink_to(film_image, kPageTextureSide_px);
+  SceneSource scene{dipped.object(), dipped.film(), dipped.history, sheet};
+  scene.sheet_width_mm = raster.width_mm;
+  scene.sheet_height_mm = raster.height_mm;
+  scene.bath_width_mm = record.config.bath.width_mm;
+  scene.bath_height_mm = record.config.bath.height_mm;
+  scene.tear_stretch = record.config.dip.material.tear_stretch;
+  scene.base = base;
+
+  PageParts page;
+  if (dipped.object().has_appearance()) {
+    scene.layers.push_back(color_error_layer(dipped.object(), *dipped.map,
+                                             appearance(dipped, film_image, raster, base),
+                                             record.context));
+    page.colors = colors_of(scene.layers.back());
+  }
+  if (record.ink != nullptr)
+    page.ink = ReportInk{heaviest_ink(record.ink->ink.inking.inks), record.config.ink.limit};
+  page.scene = scene_json(scene, record.context);
+  return page;
+}
+
+JobResult finish(OutputFolder& folder, const JobRecord& record, ReportPictures pictures,
+                 PageParts page) {
+  Report report = make_report(record);
+  report.colors = page.colors;
+  report.ink = page.ink;
+  pictures.scene = std::move(page.scene);
   write_report_json(folder.path("report.json"), report);
   write_report_html(folder.path("report.html"), report, pictures);
   record.context.check_cancelled();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,17 @@ ReportPictures write_previews(OutputFolder& folder, const JobRecord& record,
                               const Image& film_image, const SheetRaster& raster,
                               const std::string& caption_start = "");
 
+// What the report page's 3D view shows, and what is learnt on the way. Time it apart.
+struct PageParts {
+  std::string scene;
+  std::optional<ReportColors> colors;
+  std::optional<ReportInk> ink;
+};
+PageParts page_parts(const JobRecord& record, const Image& film_image, const SheetRaster& raster);
+
 // Writes report.json and report.html, then moves all files to their final names, unless the job was
 // cancelled.
-JobResult finish(OutputFolder& folder, const JobRecord& record, const ReportPictures& pictures);
+JobResult finish(OutputFolder& folder, const JobRecord& record, ReportPictures pictures,
+                 PageParts page);
 
 }  // namespace hydrodip

@@ -59,11 +59,12 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
   times.measure("sheet", [&] { compose(folder, result.ink, *model, config, context); });
 
   const JobRecord record{"print", config, inputs, *dipped, times, context, &result, model->name()};
-  const ReportPictures pictures = times.measure("preview", [&] {
-    return write_previews(folder, record, result.ink.on_object,
-                          sheet_raster(config, config.print.dpi));
-  });
-  return finish(folder, record, pictures);
+  const SheetRaster raster = sheet_raster(config, config.print.dpi);
+  const Image& image = result.ink.on_object;
+  const ReportPictures pictures =
+      times.measure("preview", [&] { return write_previews(folder, record, image, raster); });
+  PageParts page = times.measure("page", [&] { return page_parts(record, image, raster); });
+  return finish(folder, record, pictures, std::move(page));
 }
 
 }  // namespace hydrodip

@@ -141,6 +141,8 @@ Report make_report(const JobRecord& record) {
   report.coverage = record.dipped.coverage;
   report.angles = record.dipped.angles;
   report.mesh = record.dipped.loaded.health;
+  report.tear_stretch = record.config.dip.material.tear_stretch;
+  if (record.command == "print") report.bleed_mm = record.config.print.bleed_mm;
   report.figures = figures(record.dipped);
   add_ink(record, report.figures);
   report.warnings = record.context.warnings();

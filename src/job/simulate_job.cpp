@@ -9,6 +9,7 @@
 #include "base/output_folder.h"
 #include "base/parallel.h"
 #include "image/files.h"
+#include "image/resize.h"
 #include "ink/stiffness.h"
 #include "job/dip_stage.h"
 #include "job/ink_stage.h"
@@ -16,7 +17,6 @@
 #include "job/output.h"
 #include "job/prepare.h"
 #include "job/record.h"
-#include "job/resize.h"
 #include "sheet/sheet.h"
 
 namespace hydrodip {
@@ -130,12 +130,15 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
 
   const JobRecord record{"simulate", config,  inputs,  *dipped,
                          times,      context, nullptr, model->name()};
+  const Image seen = times.measure(
+      "look", [&] { return seen_on_object(*dipped, printed, *model, config, context); });
   const ReportPictures pictures = times.measure("preview", [&] {
-    return write_previews(folder, record, seen_on_object(*dipped, printed, *model, config, context),
-                          printed.raster,
+    return write_previews(folder, record, seen, printed.raster,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");
   });
-  return finish(folder, record, pictures);
+  PageParts page =
+      times.measure("page", [&] { return page_parts(record, seen, printed.raster); });
+  return finish(folder, record, pictures, std::move(page));
 }
 
 }  // namespace hydrodip

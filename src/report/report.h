@@ -65,6 +65,19 @@ struct ReportOutput {
   std::string description;  // "the sheet: print it at 100 %, ink side up"
 };
 
+// Ink densities: sums of c, m, y, k, each up to 1.
+struct ReportInk {
+  double density_max = 0;
+  double density_limit = 0;  // 0: none is set
+};
+
+// Of the covered surface.
+struct ReportColors {
+  double error_mean = 0;         // CIEDE2000 between wanted and predicted colour
+  double error_most_of = 0;      // 95 % of the surface has no more
+  double out_of_gamut_mm2 = -1;  // negative: unknown
+};
+
 struct Report {
   std::string tool_version;
   std::string command;                    // "print"
@@ -80,6 +93,10 @@ struct Report {
   std::optional<Coverage> coverage;  // nothing was dipped: absent
   std::optional<DipAngles> angles;
   std::optional<MeshHealth> mesh;
+  std::optional<ReportInk> ink;
+  std::optional<ReportColors> colors;
+  double tear_stretch = 0;  // the film's limit; 0: it never tears
+  double bleed_mm = 0;
   std::vector<ReportFigure> figures;
   std::vector<std::string> warnings;
   std::vector<ReportOutput> outputs;
@@ -100,13 +117,16 @@ std::string report_json(const Report& report);
 // Dip angles as the JSON object that reports hold.
 std::string dip_angles_json(const DipAngles& angles);
 
-// The bytes of the picture files that the page shows; empty: none.
+// What the page shows besides words.
 struct ReportPictures {
-  std::vector<std::uint8_t> preview_png;
+  std::vector<std::uint8_t> preview_png;  // the files' bytes; empty: none
   std::vector<std::uint8_t> maps_png;
+  std::string scene;  // scene_json() for the 3D view; empty: none
 };
 
-// One self-contained page without scripts or links to the network; every text is escaped.
+// One self-contained page that needs no network; every text is escaped. Words and pictures come
+// without scripts, so that they can be read anywhere and printed; where scripts and WebGL work, the
+// 3D view takes the place of the preview picture.
 std::string report_html(const Report& report, const ReportPictures& pictures);
 
 void write_report_json(const std::filesystem::path& path, const Report& report);

@@ -3,86 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/findings.h"
+#include "report/packer.h"
 #include "report/report.h"
+#include "report/viewer_assets.h"
 
 namespace hydrodip {
 namespace {
-
-constexpr const char* kStyle = R"css(
-:root {
-  color-scheme: light dark;
-  --page: #f6f7f8; --card: #ffffff; --ink: #1a1d21; --soft: #5d6570; --line: #e1e4e8;
-  --accent: #1f6f78; --good: #1d7a46; --good-back: #e6f4ec; --care: #8a5a00; --care-back: #fdf3dc;
-}
-@media (prefers-color-scheme: dark) {
-  :root {
-    --page: #14171a; --card: #1d2125; --ink: #e8eaed; --soft: #9aa3ad; --line: #32383e;
-    --accent: #5cc0c9; --good: #6fd09a; --good-back: #16301f; --care: #f0c46a;
-    --care-back: #352a12;
-  }
-}
-* { box-sizing: border-box; }
-body {
-  margin: 0; background: var(--page); color: var(--ink);
-  font: 16px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif;
-}
-main { max-width: 60rem; margin: 0 auto; padding: 1.5rem 1rem 3rem; }
-header p { margin: 0; color: var(--soft); }
-h1 { margin: 0 0 1rem; font-size: 1.7rem; line-height: 1.25; overflow-wrap: anywhere; }
-h2 { margin: 2.2rem 0 0.6rem; font-size: 1.1rem; }
-.verdict {
-  padding: 0.9rem 1.1rem; border-radius: 0.6rem; font-size: 1.1rem;
-  background: var(--good-back); border-left: 0.3rem solid var(--good);
-}
-.verdict.care { background: var(--care-back); border-left-color: var(--care); }
-.warnings { margin: 0.8rem 0 0; padding: 0; list-style: none; }
-.warnings li {
-  margin-top: 0.4rem; padding: 0.55rem 0.9rem; border-radius: 0.5rem;
-  background: var(--care-back); overflow-wrap: anywhere;
-}
-.warnings li::before { content: "Note: "; font-weight: 600; color: var(--care); }
-img {
-  display: block; width: 100%; height: auto; margin-top: 1.2rem;
-  border: 1px solid var(--line); border-radius: 0.6rem;
-}
-.key { display: grid; grid-template-columns: repeat(auto-fit, minmax(9.5rem, 1fr)); gap: 0.7rem;
-  margin: 1.2rem 0 0; }
-.key div { padding: 0.8rem 1rem; border: 1px solid var(--line); border-radius: 0.6rem;
-  background: var(--card); }
-.key dt { color: var(--soft); font-size: 0.85rem; }
-.key dd { margin: 0; font-size: 1.45rem; font-variant-numeric: tabular-nums; }
-.key dd small { font-size: 0.9rem; color: var(--soft); }
-.card { border: 1px solid var(--line); border-radius: 0.6rem; background: var(--card);
-  overflow-x: auto; }
-table { width: 100%; border-collapse: collapse; font-size: 0.93rem; }
-th, td { padding: 0.4rem 0.9rem; text-align: left; vertical-align: top; font-weight: inherit; }
-tr + tr > * { border-top: 1px solid var(--line); }
-thead th { color: var(--soft); font-size: 0.85rem; }
-td { overflow-wrap: anywhere; }
-td.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
-td.unit, td.soft { color: var(--soft); }
-code { font: 0.86em/1.4 ui-monospace, SFMono-Regular, Menlo, Consolas, monospace;
-  overflow-wrap: anywhere; }
-th code { white-space: nowrap; }
-tr.changed th { font-weight: 600; }
-.bar { display: block; height: 0.5rem; margin-top: 0.45rem; min-width: 2px; border-radius: 0.25rem;
-  background: var(--accent); }
-footer { margin-top: 2.5rem; color: var(--soft); font-size: 0.85rem; overflow-wrap: anywhere; }
-@media (max-width: 34rem) {
-  main { padding: 1rem 0.7rem 2rem; }
-  th, td { padding: 0.35rem 0.55rem; }
-  h1 { font-size: 1.35rem; }
-}
-@media print {
-  :root { --page: #fff; --card: #fff; --ink: #000; --soft: #444; --line: #bbb; }
-  body { font-size: 10.5pt; }
-  main { max-width: none; padding: 0; }
-  h2 { break-after: avoid; }
-  img, tr, .verdict, .key div { break-inside: avoid; }
-  img { max-height: 17cm; width: auto; max-width: 100%; }
-  .verdict, .warnings li, .bar { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-}
-)css";
 
 // Text for element content and quoted attributes alike. Bytes below the space (but line ends and
 // tabs) may not stand in HTML.
@@ -109,22 +36,6 @@ std::string escaped(const std::string& text) {
         const auto byte = static_cast<unsigned char>(c);
         const bool control = (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
         out += control ? ' ' : c;
-    }
-  }
-  return out;
-}
-
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  constexpr const char* kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) {
-      out += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
     }
   }
   return out;
@@ -189,29 +100,31 @@ std::string title_of(const Report& report) {
   return report.inputs.empty() ? "hydrodip" : file_name(report.inputs.front().path);
 }
 
-bool needs_care(const Report& report) {
-  if (!report.warnings.empty()) return true;
-  return report.coverage &&
-         (report.coverage->torn_mm2 > 0 || !(report.coverage->film_on_object_mm2 > 0));
-}
-
 std::string heading(const Report& report) {
   return fmt::format("<header>\n<p>hydrodip {}</p>\n<h1>{}</h1>\n</header>\n",
                      escaped(report.command), escaped(title_of(report)));
 }
 
+std::string finding_row(const Finding& finding) {
+  std::string html = fmt::format("<li class=\"{}\"><strong>{}</strong>",
+                                 concern_name(finding.concern), escaped(finding.title));
+  if (!finding.figure.empty()) html += fmt::format(" <b>{}</b>", escaped(finding.figure));
+  html += fmt::format(" <span>{}</span>", escaped(finding.text));
+  if (!finding.advice.empty()) html += fmt::format(" <em>{}</em>", escaped(finding.advice));
+  return html + "</li>\n";
+}
+
 std::string verdict(const Report& report) {
   const std::string sentence = verdict_of(report);
-  std::string html;
-  if (!sentence.empty()) {
-    html += fmt::format("<p class=\"verdict{}\">{}</p>\n", needs_care(report) ? " care" : "",
-                        escaped(sentence));
-  }
-  if (report.warnings.empty()) return html;
-  html += "<ul class=\"warnings\">\n";
-  for (const std::string& warning : report.warnings) {
-    html += fmt::format("<li>{}</li>\n", escaped(warning));
-  }
+  const std::vector<Finding> list = findings(report);
+  if (sentence.empty() && list.empty()) return "";
+  const Concern concern = concern_of(list);
+  std::string html = fmt::format(
+      "<section class=\"verdict {}\" id=\"verdict\">\n<h2>{}</h2>\n<p>{}</p>\n</section>\n",
+      concern_name(concern), headline(concern), escaped(sentence));
+  if (list.empty()) return html;
+  html += "<ul class=\"findings\">\n";
+  for (const Finding& finding : list) html += finding_row(finding);
   return html + "</ul>\n";
 }
 
@@ -220,9 +133,18 @@ std::string picture(const std::vector<std::uint8_t>& png, const std::string& alt
   return "<img alt=\"" + alt + "\" src=\"data:image/png;base64," + base64(png) + "\">\n";
 }
 
+// The viewer (viewer/main.js) builds itself in here and takes the still picture's place.
 std::string preview(const ReportPictures& pictures) {
-  return picture(pictures.preview_png,
-                 "The object as wanted beside the object as predicted, from two sides");
+  return "<section id=\"viewer\" hidden></section>\n<div id=\"still\">\n" +
+         picture(pictures.preview_png,
+                 "The object as wanted beside the object as predicted, from two sides") +
+         "</div>\n";
+}
+
+std::string scripts(const ReportPictures& pictures) {
+  if (pictures.scene.empty() || viewer_script().empty()) return "";
+  return "<script type=\"application/json\" id=\"scene\">" + pictures.scene +
+         "</script>\n<script>" + viewer_script() + "</script>\n";
 }
 
 std::string maps(const ReportPictures& pictures) {
@@ -429,7 +351,7 @@ std::string report_html(const Report& report, const ReportPictures& pictures) {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-      escaped(title_of(report)) + " - hydrodip</title>\n<style>" + kStyle +
+      escaped(title_of(report)) + " - hydrodip</title>\n<style>" + page_style() +
       "</style>\n</head>\n<body>\n<main>\n";
   html += heading(report);
   html += verdict(report);
@@ -445,7 +367,8 @@ std::string report_html(const Report& report, const ReportPictures& pictures) {
   html += times(report);
   html += inputs(report);
   html += foot(report);
-  return html + "</main>\n</body>\n</html>\n";
+  html += "</main>\n" + scripts(pictures);
+  return html + "</body>\n</html>\n";
 }
 
 }  // namespace hydrodip

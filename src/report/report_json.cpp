@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "report/findings.h"
 #include "report/report.h"
 
 namespace hydrodip {
@@ -113,6 +114,32 @@ Json mesh_json(const MeshHealth& mesh) {
           {"findings", mesh.findings()}};
 }
 
+Json findings_json(const Report& report) {
+  Json list = Json::array();
+  for (const Finding& finding : findings(report)) {
+    list.push_back({{"key", finding.key},
+                    {"concern", concern_name(finding.concern)},
+                    {"title", finding.title},
+                    {"figure", finding.figure},
+                    {"text", finding.text},
+                    {"advice", finding.advice}});
+  }
+  return list;
+}
+
+Json ink_json(const ReportInk& ink) {
+  Json json = {{"density_max", number(ink.density_max)}};
+  if (ink.density_limit > 0) json["density_limit"] = number(ink.density_limit);
+  return json;
+}
+
+Json colors_json(const ReportColors& colors) {
+  Json json = {{"error_mean_ciede2000", number(colors.error_mean)},
+               {"error_95_percent_ciede2000", number(colors.error_most_of)}};
+  if (colors.out_of_gamut_mm2 >= 0) json["out_of_gamut_mm2"] = number(colors.out_of_gamut_mm2);
+  return json;
+}
+
 Json seconds_json(const Report& report) {
   double total = 0;
   Json stages = Json::array();
@@ -136,6 +163,8 @@ std::string report_json(const Report& report) {
   json["command_line"] = report.command_line;
   json["title"] = report.title;
   json["verdict"] = verdict_of(report);
+  json["concern"] = concern_name(concern_of(findings(report)));
+  json["findings"] = findings_json(report);
   json["warnings"] = report.warnings;
   json["inputs"] = inputs_json(report);
   json["outputs"] = outputs_json(report);
@@ -146,6 +175,8 @@ std::string report_json(const Report& report) {
   }
   if (report.angles) json["dip_angles"] = angles_json(*report.angles);
   if (report.mesh) json["mesh"] = mesh_json(*report.mesh);
+  if (report.ink) json["ink"] = ink_json(*report.ink);
+  if (report.colors) json["colors"] = colors_json(*report.colors);
   json["figures"] = figures_json(report.figures);
   json["rounds"] = rounds_json(report);
   json["seconds"] = seconds_json(report);

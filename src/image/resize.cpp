@@ -1,4 +1,4 @@
-#include "job/resize.h"
+#include "image/resize.h"
 
 #include <algorithm>
 #include <array>

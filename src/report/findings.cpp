@@ -1,0 +1,223 @@
+#include "report/findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hydrodip {
+namespace {
+
+constexpr double kNearlyAll = 0.9;      // of what faces down; film ends a cell short of borders
+constexpr double kMuchTorn = 0.1;       // of the film that meets the object
+constexpr double kNearLimit = 0.9;      // of the tear stretch
+constexpr double kPale = 1.3;           // area ratio from which paling shows
+constexpr double kMuchSteep = 0.1;      // of what faces down
+constexpr double kPlainDifference = 5;  // CIEDE2000: plain to see
+constexpr double kUsualMiss_mm = 1;     // how far off a dip usually lands
+
+std::string percent(double share) {
+  const double value = 100 * share;
+  if (value > 0 && value < 0.1) return "under 0.1 %";
+  return value < 10 ? fmt::format("{:.1f} %", value) : fmt::format("{:.0f} %", value);
+}
+
+Finding no_film(const Coverage& c) {
+  Finding finding{"coverage", Concern::kStop, "Coverage", "0 %", "", ""};
+  if (c.torn_mm2 > 0) {
+    finding.text = "All film that meets the object tears.";
+    finding.advice =
+        "Turn a flatter side down with --rotate or --down, or use a film that bears "
+        "more (material.tear_stretch).";
+  } else {
+    finding.text = "No film lies on the object.";
+    finding.advice = "Check which side goes down (--down) and how deep (--depth).";
+  }
+  return finding;
+}
+
+Finding coverage(const Coverage& c) {
+  if (!(c.film_on_object_mm2 > 0)) return no_film(c);
+  const bool nearly_all = c.covered_downward_share() >= kNearlyAll;
+  Finding finding{"coverage", nearly_all ? Concern::kNone : Concern::kCare,
+                  "Coverage", percent(c.covered_downward_share()),
+                  "",         ""};
+  finding.text = fmt::format("of the surface that faces down gets film, {} of the whole object.",
+                             percent(c.covered_share()));
+  if (!nearly_all)
+    finding.advice =
+        "What stays bare shows the object's own colour: paint the object to match "
+        "(object.base_color), or give it another dip, turned.";
+  return finding;
+}
+
+Finding tears(const Coverage& c) {
+  if (!(c.torn_mm2 > 0))
+    return {"tears", Concern::kNone, "Tears", "none", "The film holds everywhere.", ""};
+  const bool much = c.torn_share() > kMuchTorn;
+  return {"tears",
+          much ? Concern::kStop : Concern::kCare,
+          "Tears",
+          percent(c.torn_share()),
+          "of the film that meets the object tears; nothing is printed there.",
+          "Turn steep sides down (--rotate, --down), dip less deep (--depth) and the rest in "
+          "another turn, or use a film that bears more. The overlay \"tears\" shows where."};
+}
+
+Finding stretch(const Coverage& c, double tear_stretch) {
+  Finding finding{
+      "stretch", Concern::kNone, "Largest stretch", fmt::format("{:.2f} times", c.stretch_max), "",
+      ""};
+  finding.text = fmt::format("The area grows up to {:.2f} times, {:.2f} on average.",
+                             c.area_ratio_max, c.area_ratio_mean);
+  if (tear_stretch > 0) finding.text += fmt::format(" This film bears {:.2f}.", tear_stretch);
+  const bool near_limit = tear_stretch > 0 && c.stretch_max > kNearLimit * tear_stretch;
+  if (near_limit) {
+    finding.concern = Concern::kCare;
+    finding.advice =
+        "Near its limit the film may tear: spray a little less activator, and lower "
+        "slowly and steadily.";
+  }
+  if (c.area_ratio_max > kPale) {
+    finding.concern = Concern::kCare;
+    finding.advice += std::string(finding.advice.empty() ? "" : " ") +
+                      "Colours thin out where it stretches: expect them paler there.";
+  }
+  return finding;
+}
+
+Finding steepness(const DipAngles& angles) {
+  const double share = angles.over_limit_share();
+  Finding finding{"steepness",
+                  share > kMuchSteep ? Concern::kCare : Concern::kNone,
+                  "Steep sides",
+                  percent(share),
+                  "",
+                  ""};
+  finding.text = fmt::format("of the surface that faces down is steeper than {:.0f} degrees.",
+                             kDipAngleLimit_deg);
+  if (share > kMuchSteep)
+    finding.advice =
+        "Film stretches most and comes off most easily there: turn the object so that little of "
+        "what matters is steep. The overlay \"dip angle\" shows where.";
+  return finding;
+}
+
+Finding registration(const Coverage& c, double bleed_mm) {
+  Finding finding{"registration",
+                  Concern::kNone,
+                  "Registration",
+                  fmt::format("{:.1f} mm", kUsualMiss_mm * std::max(1.0, c.stretch_max)),
+                  "",
+                  ""};
+  finding.text = fmt::format(
+      "is how far colours land off, at worst, when the object meets the film {:.0f} mm off its "
+      "place, which is usual by hand.",
+      kUsualMiss_mm);
+  finding.advice =
+      "Hang the object over the centre ticks of the sheet, turned as the marks say, and come "
+      "straight down.";
+  if (bleed_mm > 0)
+    finding.advice +=
+        fmt::format(" The bleed of {:.1f} mm keeps edges from showing bare.", bleed_mm);
+  return finding;
+}
+
+Finding ink(const ReportInk& ink) {
+  Finding finding{
+      "ink", Concern::kNone, "Heaviest ink", fmt::format("{:.0f} %", 100 * ink.density_max), "",
+      ""};
+  finding.text = "is the largest sum of cyan, magenta, yellow and black.";
+  if (!(ink.density_limit > 0)) {
+    finding.advice = "Compare it with what your printer and film bear.";
+  } else if (ink.density_max > ink.density_limit + 1e-6) {
+    finding.concern = Concern::kCare;
+    finding.advice =
+        fmt::format("The limit is {:.0f} %: more ink than that runs. Print with an ink limit.",
+                    100 * ink.density_limit);
+  } else {
+    finding.text += fmt::format(" The limit is {:.0f} %.", 100 * ink.density_limit);
+  }
+  return finding;
+}
+
+Finding colors(const ReportColors& colors) {
+  const bool plain = colors.error_most_of > kPlainDifference;
+  Finding finding{"colors",
+                  plain ? Concern::kCare : Concern::kNone,
+                  "Colour error",
+                  fmt::format("{:.1f}", colors.error_mean),
+                  "",
+                  ""};
+  finding.text = fmt::format(
+      "on average where film lies (CIEDE2000; 1 is just visible); 95 % of it is within {:.1f}.",
+      colors.error_most_of);
+  if (plain)
+    finding.advice =
+        "Where it is above 5 the difference is plain to see. The overlay \"colour error\" shows "
+        "where.";
+  return finding;
+}
+
+Finding gamut(double area_mm2, double covered_mm2) {
+  Finding finding{"gamut",
+                  area_mm2 > 0 ? Concern::kCare : Concern::kNone,
+                  "Out of gamut",
+                  percent(Coverage::share(area_mm2, covered_mm2)),
+                  "of the covered surface has colours that the printer cannot lay down.",
+                  ""};
+  if (area_mm2 > 0)
+    finding.advice =
+        "The nearest printable colours are used there. The overlay \"out of gamut\" "
+        "shows where.";
+  return finding;
+}
+
+Finding warning(const std::string& sentence) {
+  return {"warning", Concern::kCare, "Note", "", sentence, ""};
+}
+
+}  // namespace
+
+std::vector<Finding> findings(const Report& report) {
+  std::vector<Finding> list;
+  if (report.coverage) {
+    const Coverage& c = *report.coverage;
+    list.push_back(coverage(c));
+    if (c.film_on_object_mm2 > 0) {
+      list.push_back(tears(c));
+      list.push_back(stretch(c, report.tear_stretch));
+      if (report.angles) list.push_back(steepness(*report.angles));
+      list.push_back(registration(c, report.bleed_mm));
+    }
+  }
+  if (report.ink) list.push_back(ink(*report.ink));
+  if (report.colors) {
+    list.push_back(colors(*report.colors));
+    if (report.colors->out_of_gamut_mm2 >= 0)
+      list.push_back(gamut(report.colors->out_of_gamut_mm2,
+                           report.coverage ? report.coverage->covered_mm2 : 0));
+  }
+  for (const std::string& sentence : report.warnings) {
+    if (!sentence.empty()) list.push_back(warning(sentence));
+  }
+  return list;
+}
+
+Concern concern_of(const std::vector<Finding>& findings) {
+  Concern gravest = Concern::kNone;
+  for (const Finding& finding : findings) gravest = std::max(gravest, finding.concern);
+  return gravest;
+}
+
+std::string headline(Concern concern) {
+  if (concern == Concern::kNone) return "Good to dip";
+  return concern == Concern::kCare ? "Can be dipped, with flaws" : "Do not dip it like this";
+}
+
+std::string concern_name(Concern concern) {
+  if (concern == Concern::kNone) return "none";
+  return concern == Concern::kCare ? "care" : "stop";
+}
+
+}  // namespace hydrodip

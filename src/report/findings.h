@@ -1,0 +1,35 @@
+// The verdict in parts: what is fine, what is not, and what to do about it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/report.h"
+
+namespace hydrodip {
+
+enum class Concern { kNone, kCare, kStop };
+
+struct Finding {
+  std::string key;  // "tears"; in report.json
+  Concern concern = Concern::kNone;
+  std::string title;   // "Tears"
+  std::string figure;  // "2.1 %"; may be empty
+  std::string text;    // what it means, one sentence
+  std::string advice;  // what to do; empty when nothing needs doing
+};
+
+// Coverage, tears, stretch, steep sides, registration, ink, colours, then the job's warnings, as
+// far as the report knows about them.
+std::vector<Finding> findings(const Report& report);
+
+// The gravest of all; kStop when the dip should not be done like this.
+Concern concern_of(const std::vector<Finding>& findings);
+
+// "Good to dip", "Can be dipped, with flaws", "Do not dip it like this".
+std::string headline(Concern concern);
+
+// "none", "care", "stop"
+std::string concern_name(Concern concern);
+
+}  // namespace hydrodip
