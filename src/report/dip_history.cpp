@@ -34,8 +34,11 @@ void DipHistory::record(int step, int steps, double level_mm, const std::vector<
   DipFrame frame;
   frame.level_mm = level_mm;
   frame.position.reserve(position.size());
-  for (const Vec3& p : position)
-    frame.position.push_back({float(p.x()), float(p.y()), float(p.z())});
+  for (std::size_t v = 0; v < position.size(); ++v) {
+    const Vec3& p = position[v];
+    const double z = state[v] == VertexState::kClamped ? level_mm : p.z();
+    frame.position.push_back({float(p.x()), float(p.y()), float(z)});
+  }
   kept_.push_back(std::move(frame));
   for (std::size_t v = 0; v < state.size(); ++v) {
     if (state[v] != VertexState::kAttached) attached_from_[v] = std::uint8_t(kept_.size());

@@ -21,7 +21,8 @@ class DipHistory {
   // they would take more than a report can hold.
   explicit DipHistory(int frames = 32) : frames_(frames) {}
 
-  // The film after `step` of `steps`; step 0 is the flat film. Steps must ascend.
+  // The film after `step` of `steps`; step 0 is the flat film. Steps must ascend. The clamped rim
+  // is kept at the water's level, where the bath holds it.
   void record(int step, int steps, double level_mm, const std::vector<Vec3>& position,
               const std::vector<VertexState>& state);
 

@@ -28,7 +28,9 @@ Image render_preview(const Object& object, const Surface& surface, const DippedF
 
 // Binary glTF 2.0, y up, metres, the side that met the film (-z) facing the viewer (+z in glTF):
 // the object in its base colour, and over it the film that lies on it, textured with `film_image`
-// (whole sheet, row 0 at +y) by the film's own coordinates.
+// (whole sheet, row 0 at +y) by the film's own coordinates. That is the material variant
+// "predicted" (KHR_materials_variants), shown by viewers that know no variants; "wanted" is the
+// object in the model's own colours.
 void write_preview_glb(const std::filesystem::path& path, const Object& object,
                        const DippedFilm& film, const Image& film_image, double sheet_width_mm,
                        double sheet_height_mm, const LinearColor& base);

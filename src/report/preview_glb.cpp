@@ -1,17 +1,20 @@
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "base/file.h"
 #include "base/parallel.h"
 #include "image/files.h"
+#include "image/resize.h"
 #include "report/bytes.h"
-#include "report/normals.h"
 #include "report/preview.h"
+#include "report/scene_object.h"
 
 namespace hydrodip {
 namespace {
@@ -23,35 +26,37 @@ constexpr double kFilmOffsetMm = 0.05;  // so that film and object do not flicke
 constexpr int kLongestSidePx = 2048;
 
 constexpr int kFloat = 5126, kUint32 = 5125;
+constexpr int kClampToEdge = 33071;
+constexpr int kJpegQuality = 92;
+constexpr const char* kVariants = "KHR_materials_variants";
 constexpr int kVertexBuffer = 34962, kIndexBuffer = 34963;
 
 struct GlbMesh {
   std::vector<Vec3f> positions;
   std::vector<Vec3f> normals;
-  std::vector<std::array<float, 2>> uvs;  // empty: none
-  std::vector<std::uint32_t> indices;
+  std::vector<std::array<float, 2>> uvs;     // empty: none
+  std::vector<std::array<float, 4>> colors;  // linear; empty: none
+  std::vector<std::uint32_t> indices;        // of all parts
+};
+
+// A range of a mesh's indices and what it is made of: what the dip leaves, and what is wanted.
+struct GlbPart {
+  std::size_t begin = 0, count = 0;
+  int predicted = 0, wanted = 0;  // materials
 };
 
 // Posed-object frame (mm) to glTF (y up, facing +z): the side that met the film is the front.
 Vec3f to_gltf(const Vec3& v) { return {float(-v.x()), float(v.y()), float(-v.z())}; }
 Vec3f to_gltf_metres(const Vec3& mm) { return to_gltf(1e-3 * mm); }
 
-// The object with smooth normals; corners with the same position and normal share a vertex.
-GlbMesh object_mesh(const Object& object) {
-  const std::vector<CornerNormals> normals = corner_normals(object.positions, object.triangles);
-  std::map<std::pair<Vec3f, Vec3f>, std::uint32_t> known;
+// The vertices of the object, with texture coordinates and colours only if it has any.
+GlbMesh object_vertices(const ShownObject& shown, const Object& object) {
   GlbMesh mesh;
-  for (std::size_t t = 0; t < object.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& p = object.positions[std::size_t(object.triangles[t][k])];
-      const std::pair<Vec3f, Vec3f> corner = {to_gltf_metres(p), to_gltf(normals[t][k])};
-      const auto [where, is_new] = known.try_emplace(corner, std::uint32_t(known.size()));
-      if (is_new) {
-        mesh.positions.push_back(corner.first);
-        mesh.normals.push_back(corner.second);
-      }
-      mesh.indices.push_back(where->second);
-    }
+  for (const ShownVertex& v : shown.vertices) {
+    const Vec3 position(double(v.position[0]), double(v.position[1]), double(v.position[2]));
+    mesh.positions.push_back(to_gltf_metres(position));
+    mesh.normals.push_back({-v.normal[0], v.normal[1], -v.normal[2]});
+    if (!object.uvs.empty()) mesh.uvs.push_back({v.uv[0], 1 - v.uv[1]});
   }
   return mesh;
 }
@@ -185,27 +190,44 @@ class GlbWriter {
 
   int add_material(const Json& material) { return append("materials", material); }
 
-  // An embedded PNG as a texture that neither repeats nor wraps.
-  int add_texture(const std::vector<std::uint8_t>& png) {
-    const int image = append(
-        "images",
-        {{"bufferView", add_view(png, 0)}, {"mimeType", "image/png"}, {"name", "film image"}});
-    constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071;
+  int add_texture(const std::vector<std::uint8_t>& file, const std::string& type,
+                  const std::string& name, int wrap_u = kClampToEdge, int wrap_v = kClampToEdge) {
+    const int image =
+        append("images", {{"bufferView", add_view(file, 0)}, {"mimeType", type}, {"name", name}});
+    constexpr int kLinear = 9729, kLinearMipmapLinear = 9987;
     const int sampler = append("samplers", {{"magFilter", kLinear},
                                             {"minFilter", kLinearMipmapLinear},
-                                            {"wrapS", kClampToEdge},
-                                            {"wrapT", kClampToEdge}});
+                                            {"wrapS", wrap_u},
+                                            {"wrapT", wrap_v}});
     return append("textures", {{"sampler", sampler}, {"source", image}});
   }
 
-  void add_mesh(const std::string& name, const GlbMesh& mesh, int material) {
+  void add_variants() {
+    json_["extensionsUsed"] = Json::array({kVariants});
+    json_["extensions"][kVariants]["variants"] =
+        Json::array({{{"name", "predicted"}}, {{"name", "wanted"}}});
+    has_variants_ = true;
+  }
+
+  void add_mesh(const std::string& name, const GlbMesh& mesh, const std::vector<GlbPart>& parts) {
     Json attributes;
     attributes["POSITION"] = add_floats(mesh.positions, true);
     attributes["NORMAL"] = add_floats(mesh.normals, false);
     if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = add_floats(mesh.uvs, false);
-    const Json primitive = {
-        {"attributes", attributes}, {"indices", add_indices(mesh.indices)}, {"material", material}};
-    const int number = append("meshes", {{"name", name}, {"primitives", Json::array({primitive})}});
+    if (!mesh.colors.empty()) attributes["COLOR_0"] = add_floats(mesh.colors, false);
+    Json primitives = Json::array();
+    for (const GlbPart& part : parts) {
+      Json primitive = {{"attributes", attributes},
+                        {"indices", add_indices(mesh.indices, part)},
+                        {"material", part.predicted}};
+      if (has_variants_) {
+        primitive["extensions"][kVariants]["mappings"] =
+            Json::array({{{"material", part.predicted}, {"variants", {0}}},
+                         {{"material", part.wanted}, {"variants", {1}}}});
+      }
+      primitives.push_back(primitive);
+    }
+    const int number = append("meshes", {{"name", name}, {"primitives", primitives}});
     const int node = append("nodes", {{"name", name}, {"mesh", number}});
     json_["scenes"][0]["nodes"].push_back(node);
   }
@@ -257,7 +279,7 @@ class GlbWriter {
     Json accessor = {{"bufferView", add_view(bytes.data(), kVertexBuffer)},
                      {"componentType", kFloat},
                      {"count", values.size()},
-                     {"type", N == 3 ? "VEC3" : "VEC2"}};
+                     {"type", fmt::format("VEC{}", N)}};
     if (with_limits) {
       accessor["min"] = low;
       accessor["max"] = high;
@@ -265,17 +287,18 @@ class GlbWriter {
     return append("accessors", accessor);
   }
 
-  int add_indices(const std::vector<std::uint32_t>& indices) {
+  int add_indices(const std::vector<std::uint32_t>& indices, const GlbPart& part) {
     Bytes bytes;
-    for (const std::uint32_t index : indices) bytes.add_u32(index);
+    for (std::size_t i = 0; i < part.count; ++i) bytes.add_u32(indices[part.begin + i]);
     return append("accessors", {{"bufferView", add_view(bytes.data(), kIndexBuffer)},
                                 {"componentType", kUint32},
-                                {"count", indices.size()},
+                                {"count", part.count},
                                 {"type", "SCALAR"}});
   }
 
   Json json_;
   Bytes binary_;
+  bool has_variants_ = false;
 };
 
 Json matte(const std::string& name) {
@@ -286,26 +309,145 @@ Json matte(const std::string& name) {
   return material;
 }
 
+Json plain(const std::string& name, const LinearColor& color) {
+  const auto channel = [](float value) { return std::clamp(value, 0.0f, 1.0f); };
+  Json material = matte(name);
+  material["pbrMetallicRoughness"]["baseColorFactor"] = {channel(color.r), channel(color.g),
+                                                         channel(color.b), 1.0};
+  return material;
+}
+
+// Draws nothing: what is not there in one of the variants.
+Json hidden() {
+  Json material = matte("hidden");
+  material["pbrMetallicRoughness"]["baseColorFactor"] = {1.0, 1.0, 1.0, 0.0};
+  material["alphaMode"] = "MASK";
+  material["alphaCutoff"] = 0.5;
+  return material;
+}
+
+LinearColor tinted_over(const LinearColor& color, const LinearColor& tint,
+                        const LinearColor& base) {
+  const float alpha = std::clamp(color.a * tint.a, 0.0f, 1.0f);
+  const auto mix = [&](float c, float t, float b) { return b + alpha * (c * t - b); };
+  return {mix(color.r, tint.r, base.r), mix(color.g, tint.g, base.g), mix(color.b, tint.b, base.b),
+          1};
+}
+
+// A texture as it looks on the bare object, with the material's colour.
+Image painted(const Image& texture, const LinearColor& tint, const LinearColor& base) {
+  Image result = texture;
+  for (std::size_t i = 0; i < result.rgba.size(); i += 4) {
+    std::uint8_t* p = result.rgba.data() + i;
+    const LinearColor color{srgb8_to_linear(p[0]), srgb8_to_linear(p[1]), srgb8_to_linear(p[2]),
+                            float(p[3]) / 255};
+    const LinearColor c = tinted_over(color, tint, base);
+    p[0] = linear_to_srgb8(c.r);
+    p[1] = linear_to_srgb8(c.g);
+    p[2] = linear_to_srgb8(c.b);
+    p[3] = 255;
+  }
+  return result;
+}
+
+int gltf_wrap(Wrap wrap) {
+  if (wrap == Wrap::kRepeat) return 10497;
+  return wrap == Wrap::kMirror ? 33648 : kClampToEdge;
+}
+
+// The model's own materials; the object's vertex colours, if any, multiply them.
+std::vector<int> add_wanted_materials(GlbWriter& glb, const Object& object,
+                                      const LinearColor& base) {
+  std::vector<int> numbers;
+  for (const Material& m : object.materials) {
+    const std::string name = "wanted " + m.name;
+    if (m.texture < 0 || object.uvs.empty()) {
+      const LinearColor white{1, 1, 1, 1};
+      numbers.push_back(glb.add_material(
+          plain(name, object.colors.empty() ? tinted_over(m.base_color, white, base) : white)));
+      continue;
+    }
+    const Image picture = painted(
+        shrink_to(*object.textures[std::size_t(m.texture)], kLongestSidePx), m.base_color, base);
+    Json material = matte(name);
+    const int texture = glb.add_texture(encode_jpeg(picture, kJpegQuality), "image/jpeg", name,
+                                        gltf_wrap(m.wrap_u), gltf_wrap(m.wrap_v));
+    material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
+    numbers.push_back(glb.add_material(material));
+  }
+  return numbers;
+}
+
+// Vertex colours as they look on the bare object.
+void add_colors(GlbMesh& mesh, const ShownObject& shown, const Object& object,
+                const LinearColor& base) {
+  mesh.colors.resize(shown.vertices.size());
+  for (const ShownGroup& group : shown.groups) {
+    const Material& material = object.materials[std::size_t(group.material)];
+    const bool textured = material.texture >= 0 && !object.uvs.empty();
+    for (std::size_t i = group.begin; i < group.begin + group.count; ++i) {
+      const auto v = std::size_t(shown.indices[i]);
+      const auto& c = shown.vertices[v].color;
+      const LinearColor tint = textured ? LinearColor{1, 1, 1, 1} : material.base_color;
+      const LinearColor seen = tinted_over({c[0], c[1], c[2], c[3]}, tint, base);
+      mesh.colors[v] = {seen.r, seen.g, seen.b, 1};
+    }
+  }
+}
+
+// The object: bare as predicted, in its own colours as wanted. Vertex colours cannot be switched
+// off, so that an object that has them comes twice.
+void add_object(GlbWriter& glb, const Object& object, const LinearColor& base, int bare,
+                int nothing) {
+  const ShownObject shown = shown_object(object, std::numeric_limits<std::size_t>::max());
+  GlbMesh mesh = object_vertices(shown, object);
+  mesh.indices = shown.indices;
+  if (mesh.indices.empty()) return;
+  if (!object.has_appearance()) {
+    mesh.uvs.clear();
+    glb.add_mesh("object", mesh, {{0, mesh.indices.size(), bare, bare}});
+    return;
+  }
+  const std::vector<int> wanted = add_wanted_materials(glb, object, base);
+  const bool twice = !object.colors.empty();
+  std::vector<GlbPart> parts, colored;
+  for (const ShownGroup& group : shown.groups) {
+    const int own = wanted[std::size_t(group.material)];
+    parts.push_back({group.begin, group.count, bare, twice ? nothing : own});
+    colored.push_back({group.begin, group.count, nothing, own});
+  }
+  glb.add_mesh("object", mesh, parts);
+  if (!twice) return;
+  add_colors(mesh, shown, object, base);
+  glb.add_mesh("wanted", mesh, colored);
+}
+
+void add_film(GlbWriter& glb, const DippedFilm& film, const Image& image, double width_mm,
+              double height_mm, const LinearColor& base, int nothing) {
+  const Crop crop = crop_to_film(film, image, width_mm, height_mm);
+  if (crop.width == 0) return;
+  Json printed = matte("film");
+  const int texture =
+      glb.add_texture(encode_png(film_texture(image, crop, base)), "image/png", "film image");
+  printed["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
+  const GlbMesh mesh = film_mesh(film, image, crop, width_mm, height_mm);
+  glb.add_mesh("film", mesh, {{0, mesh.indices.size(), glb.add_material(printed), nothing}});
+}
+
 }  // namespace
 
 void write_preview_glb(const std::filesystem::path& path, const Object& object,
                        const DippedFilm& film, const Image& film_image, double sheet_width_mm,
                        double sheet_height_mm, const LinearColor& base) {
   GlbWriter glb;
-  const auto channel = [](float value) { return std::clamp(value, 0.0f, 1.0f); };
-  Json bare = matte("object");
-  bare["pbrMetallicRoughness"]["baseColorFactor"] = {channel(base.r), channel(base.g),
-                                                     channel(base.b), 1.0};
-  glb.add_mesh("object", object_mesh(object), glb.add_material(bare));
-
-  const Crop crop = crop_to_film(film, film_image, sheet_width_mm, sheet_height_mm);
-  if (crop.width > 0) {
-    Json printed = matte("film");
-    const int texture = glb.add_texture(encode_png(film_texture(film_image, crop, base)));
-    printed["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
-    glb.add_mesh("film", film_mesh(film, film_image, crop, sheet_width_mm, sheet_height_mm),
-                 glb.add_material(printed));
+  const int bare = glb.add_material(plain("object", base));
+  int nothing = bare;
+  if (object.has_appearance()) {
+    glb.add_variants();
+    nothing = glb.add_material(hidden());
   }
+  add_object(glb, object, base, bare, nothing);
+  add_film(glb, film, film_image, sheet_width_mm, sheet_height_mm, base, nothing);
   const std::vector<std::uint8_t> bytes = glb.finish();
   write_file(path, bytes.data(), bytes.size());
 }

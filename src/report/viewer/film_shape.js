@@ -30,14 +30,20 @@ export class FilmShape {
     return this.film.attachedFrom[vertex] <= this.frame;
   }
 
-  attachedCount() {
-    let count = 0;
-    for (let v = 0; v < this.film.attachedFrom.length; ++v) count += this.attached(v) ? 1 : 0;
-    return count;
+  // Flat area (mm2) of the film whose corners are all attached.
+  attachedArea() {
+    const { index, u } = this.film;
+    let area = 0;
+    for (let t = 0; t < index.length; t += 3) {
+      const [a, b, c] = [2 * index[t], 2 * index[t + 1], 2 * index[t + 2]];
+      if (![0, 1, 2].every((k) => this.attached(index[t + k]))) continue;
+      area += 0.5 * ((u[b] - u[a]) * (u[c + 1] - u[a + 1]) - (u[b + 1] - u[a + 1]) * (u[c] - u[a]));
+    }
+    return area;
   }
 
-  // Line segments between film that is attached and film that floats, through the middle of the
-  // edges that bridge the two.
+  // Line segments between film that is attached and film that floats: across the edges that bridge
+  // the two, near their attached ends.
   contactLine() {
     const { index } = this.film;
     const points = [];
@@ -47,29 +53,15 @@ export class FilmShape {
       for (let k = 0; k < 3; ++k) {
         const next = (k + 1) % 3;
         if (on[k] === on[next]) continue;
+        const near = 3 * index[t + (on[k] ? k : next)];
+        const far = 3 * index[t + (on[k] ? next : k)];
         for (let c = 0; c < 3; ++c) {
-          points.push(0.5 * (this.position[3 * index[t + k] + c] + this.position[3 * index[t + next] + c]));
+          points.push(0.75 * this.position[near + c] + 0.25 * this.position[far + c]);
         }
       }
     }
     return points;
   }
-}
-
-export function gridEdges(index, triangles) {
-  const edges = [];
-  const seen = new Set();
-  for (const t of triangles) {
-    for (let k = 0; k < 3; ++k) {
-      const a = index[3 * t + k];
-      const b = index[3 * t + ((k + 1) % 3)];
-      const key = Math.min(a, b) * 4294967296 + Math.max(a, b);
-      if (seen.has(key)) continue;
-      seen.add(key);
-      edges.push(a, b);
-    }
-  }
-  return edges;
 }
 
 // Edges that belong to one of the triangles only: the outline of what they cover.

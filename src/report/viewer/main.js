@@ -50,7 +50,7 @@ class Viewer {
       'select',
       { id: 'overlay', onchange: (event) => this.setOverlay(event.target.value) },
       ...OVERLAYS.map(({ key, label, available }) =>
-        make('option', { value: key, disabled: !available(this.scene) }, available(this.scene) ? label : `${label} (not computed)`),
+        make('option', { value: key, disabled: !available(this.scene) }, available(this.scene) ? label : `${label} (n/a)`),
       ),
     );
     this.gridBox = make('input', { type: 'checkbox', id: 'grid', onchange: (event) => this.stage.setGrid(event.target.checked) });
@@ -66,7 +66,7 @@ class Viewer {
         { class: 'tools' },
         make('div', { class: 'group', role: 'group', 'aria-label': 'View' }, ...this.viewButtons),
         make('label', {}, 'Show ', this.overlaySelect),
-        make('label', {}, this.gridBox, ' film grid'),
+        make('label', {}, this.gridBox, ' 5 mm film grid'),
         this.sideButtons,
       ),
       make(
@@ -157,10 +157,8 @@ class Viewer {
     this.slider.value = String(depth);
     this.depth = depth;
     this.stage.setDepth(depth);
-    const shape = this.stage.shape;
-    const share = shape.attachedCount() / Math.max(1, this.scene.film.state.length);
-    this.depthText.textContent = `${depth.toFixed(1)} mm deep, ${(100 * share).toFixed(0)} % of the film attached`;
-    this.dipRow.dataset.attached = String(shape.attachedCount());
+    const area = this.stage.shape.attachedArea();
+    this.depthText.textContent = `${depth.toFixed(1)} mm deep, ${(area / 100).toFixed(1)} cm\u00b2 of film attached`;
     if (this.spot) this.show(this.spot);
   }
 

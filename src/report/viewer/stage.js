@@ -4,7 +4,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
-import { FilmShape, gridEdges } from './film_shape.js';
+import { FilmShape } from './film_shape.js';
 import { OVERLAYS } from './overlays.js';
 import { MODE, dress, pictureTexture, sharedTextures, surfaceMaterial } from './surface.js';
 import { castRay } from './pick.js';
@@ -70,10 +70,15 @@ export class Stage {
     if (object.color) geometry.setAttribute('tint', attribute(object.color, 4));
     geometry.setIndex(attribute(object.index, 1));
     for (const g of object.groups) geometry.addGroup(g.start, g.count, g.material);
-    const maps = object.textures.map((url) => pictureTexture(url, this.invalidate));
+    const maps = new Map(); // one for each picture and way of wrapping
     this.objectMaterials = object.materials.map((m) => {
-      const map = m.texture >= 0 && object.uv ? maps[m.texture].clone() : null;
-      if (map) [map.wrapS, map.wrapT] = m.wrap.map((name) => WRAPS[name]);
+      const key = `${m.texture} ${m.wrap}`;
+      if (m.texture >= 0 && !maps.has(key)) {
+        const texture = pictureTexture(object.textures[m.texture], this.invalidate);
+        [texture.wrapS, texture.wrapT] = m.wrap.map((name) => WRAPS[name]);
+        maps.set(key, texture);
+      }
+      const map = maps.get(key);
       return surfaceMaterial(this.scene, this.shared, { ...m, map, tinted: Boolean(object.color) });
     });
     this.object = new THREE.Mesh(geometry, this.objectMaterials);
@@ -100,6 +105,7 @@ export class Stage {
       geometry.setIndex(turned(film.index, triangles));
       const material = surfaceMaterial(this.scene, this.shared, {
         map: this.picture,
+        film: true,
         side: THREE.FrontSide, // film on the far side must not show through
         lift,
       });
@@ -110,9 +116,8 @@ export class Stage {
     // Between its vertices the film lies a little inside the object.
     this.lying = part(film.lying, cell);
     this.torn = part(film.torn, cell);
-    this.resultGrid = this.grid(film.position, [...film.lying, ...film.torn]);
     this.result = new THREE.Group();
-    this.result.add(this.lying, this.torn, this.resultGrid);
+    this.result.add(this.lying, this.torn);
     // The side that met the film (-z) to the front, +y up.
     this.result.rotation.y = Math.PI;
     this.result.position.set(0, -this.center().y, this.center().z);
@@ -120,18 +125,6 @@ export class Stage {
 
   center() {
     return this.bounds.getCenter(new THREE.Vector3());
-  }
-
-  grid(position, triangles) {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', attribute(position, 3));
-    geometry.setIndex(gridEdges(this.scene.film.index, triangles));
-    const material = new THREE.LineBasicMaterial({ color: 0x10202c, transparent: true, opacity: 0.45 });
-    material.polygonOffset = true;
-    const lines = new THREE.LineSegments(geometry, material);
-    lines.frustumCulled = false;
-    lines.visible = false;
-    return lines;
   }
 
   makeDip() {
@@ -146,10 +139,9 @@ export class Stage {
     geometry.setAttribute('uv', this.filmUv);
     geometry.setAttribute('amount', attribute(film.stretch, 1));
     geometry.setIndex(attribute(new Uint32Array(film.index), 1));
-    const material = surfaceMaterial(this.scene, this.shared, { map: this.picture, lift: 0.5 });
+    const material = surfaceMaterial(this.scene, this.shared, { map: this.picture, film: true, lift: 0.5 });
     this.sheetFilm = new THREE.Mesh(geometry, material);
     this.sheetFilm.frustumCulled = false;
-    this.dipGrid = this.grid(this.shape.position, all);
     this.contact = new LineSegments2(
       new LineSegmentsGeometry(),
       new LineMaterial({ color: 0xd4330a, linewidth: 3, depthTest: false, transparent: true, opacity: 0.9 }),
@@ -158,7 +150,7 @@ export class Stage {
     this.contact.renderOrder = 3;
     this.water = this.makeWater(bath);
     this.lowered = new THREE.Group(); // object and film, as deep as they are
-    this.lowered.add(this.sheetFilm, this.dipGrid, this.contact);
+    this.lowered.add(this.sheetFilm, this.contact);
     this.dip = new THREE.Group();
     this.dip.add(this.lowered, this.water);
     this.dip.rotation.x = -Math.PI / 2;
@@ -175,7 +167,7 @@ export class Stage {
       plane,
       new THREE.MeshBasicMaterial({ color: 0x3f8fc0, transparent: true, opacity: 0.3, side: THREE.DoubleSide, depthWrite: false }),
     );
-    surface.position.z = -0.3;
+    surface.position.z = -1.2; // film is drawn half a millimetre nearer than it is
     surface.renderOrder = 2;
     const rim = new THREE.LineSegments(new THREE.EdgesGeometry(plane), new THREE.LineBasicMaterial({ color: 0x3f8fc0 }));
     water.add(surface, rim);
@@ -235,12 +227,8 @@ export class Stage {
       below: [0.3, -0.75, 0.8],
     };
     const direction = new THREE.Vector3(...directions[side]).normalize();
-    const size = this.bounds.getSize(new THREE.Vector3());
-    let radius = 0.5 * size.length();
     this.controls.target.set(0, 0, 0);
-    if (this.kind === 'dip') radius = Math.max(radius, 0.5 * Math.hypot(this.scene.sheet.width_mm, this.scene.sheet.height_mm));
-    const aspect = Math.min(1, this.paneAspect());
-    const distance = (this.kind === 'dip' ? 0.92 : 0.86) * radius / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / aspect;
+    const distance = this.kind === 'dip' ? this.dipDistance() : this.objectDistance(direction);
     this.camera.position.copy(direction.multiplyScalar(distance));
     this.camera.near = distance / 50;
     this.camera.far = distance * 20;
@@ -250,6 +238,30 @@ export class Stage {
     this.invalidate();
   }
 
+  // Free film and object as large as the pane allows.
+  dipDistance() {
+    const { width_mm: width, height_mm: height } = this.scene.sheet;
+    const object = this.bounds.getSize(new THREE.Vector3()).length();
+    const radius = Math.max(0.6 * object, 0.36 * Math.hypot(width, height));
+    return radius / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / Math.min(1, this.paneAspect());
+  }
+
+  objectDistance(direction) {
+    const half = 0.9 * Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+    const right = new THREE.Vector3(0, 1, 0).cross(direction).normalize();
+    const up = direction.clone().cross(right);
+    this.result.updateMatrixWorld();
+    const { position } = this.scene.object;
+    const p = new THREE.Vector3();
+    let distance = 1;
+    for (let i = 0; i < position.length; i += 3) {
+      p.fromArray(position, i).applyMatrix4(this.result.matrixWorld);
+      const depth = p.dot(direction);
+      distance = Math.max(distance, Math.abs(p.dot(right)) / (half * this.paneAspect()) + depth, Math.abs(p.dot(up)) / half + depth);
+    }
+    return distance;
+  }
+
   setDepth(depth) {
     const { film } = this.scene;
     this.depth = depth;
@@ -257,7 +269,6 @@ export class Stage {
     const { position, normal } = this.sheetFilm.geometry.attributes;
     normal.array.set(vertexNormals(this.shape.position, film.index, this.allTriangles, 1));
     position.needsUpdate = normal.needsUpdate = true;
-    this.dipGrid.geometry.attributes.position.needsUpdate = true;
     this.lowered.position.z = -depth;
     const points = this.shape.contactLine();
     this.contact.visible = points.length > 0;
@@ -269,7 +280,7 @@ export class Stage {
   }
 
   setGrid(on) {
-    this.resultGrid.visible = this.dipGrid.visible = on;
+    this.shared.grid.value = on;
     this.invalidate();
   }
 
@@ -336,7 +347,6 @@ export class Stage {
     renderer.setScissorTest(false);
     renderer.clear();
     renderer.setScissorTest(true);
-    const grid = this.resultGrid.visible;
     for (const { what, from, to } of this.panes()) {
       const x = Math.round(from * width);
       const w = Math.round(to * width) - x;
@@ -345,9 +355,7 @@ export class Stage {
       this.camera.aspect = w / height;
       this.camera.updateProjectionMatrix();
       this.dressFor(what, overlay);
-      if (what === 'wanted') this.resultGrid.visible = false;
       renderer.render(this.root, this.camera);
-      this.resultGrid.visible = grid;
     }
   }
 

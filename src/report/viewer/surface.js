@@ -34,7 +34,7 @@ const FRAGMENT = `
 uniform int mode;
 uniform vec3 base, color;
 uniform vec4 material;
-uniform bool textured, decalU, decalV;
+uniform bool textured, decalU, decalV, film, grid;
 uniform sampler2D map, ramp, gentle, steep, layer;
 uniform vec2 sheet;
 uniform vec4 extent;
@@ -96,16 +96,26 @@ vec3 shown() {
   return color;
 }
 
+// A line every 5 mm of the flat film.
+vec3 ruled(vec3 c) {
+  vec2 u = (vUv - 0.5) * sheet / 5.0;
+  vec2 apart = abs(u - round(u)) / max(fwidth(u), vec2(1e-6));
+  float line = 1.0 - smoothstep(0.5, 1.2, min(apart.x, apart.y));
+  return mix(c, vec3(0.01, 0.04, 0.07), 0.6 * line);
+}
+
 float light() {
   vec3 n = normalize(vNormal);
   if (!gl_FrontFacing) n = -n;
   float lamp = max(0.0, dot(n, normalize(vec3(-0.5, 0.8, 0.75))));
   float front = max(0.0, n.z);
-  return 0.34 + 0.16 * (0.5 + 0.5 * n.y) + 0.38 * lamp + 0.16 * front;
+  return 0.40 + 0.14 * (0.5 + 0.5 * n.y) + 0.34 * lamp + 0.18 * front;
 }
 
 void main() {
-  vec3 c = clamp(shown() * mix(light(), 1.0, flatness), 0.0, 1.0);
+  vec3 c = shown();
+  if (film && grid && mode != 6) c = ruled(c);
+  c = clamp(c * mix(light(), 1.0, flatness), 0.0, 1.0);
   vec3 encoded = mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, vec3(lessThanEqual(c, vec3(0.0031308))));
   gl_FragColor = vec4(encoded, 1.0);
 }`;
@@ -132,7 +142,7 @@ export function sharedTextures(scene) {
   for (const [key, layer] of Object.entries(scene.layers)) {
     layers[key] = dataTexture(layer.cells, layer.width, layer.height, THREE.RedFormat);
   }
-  return { ramps, layers };
+  return { ramps, layers, grid: { value: false } };
 }
 
 export function pictureTexture(url, whenLoaded) {
@@ -170,6 +180,8 @@ export function surfaceMaterial(scene, shared, options = {}) {
       largest: uniform(1),
       depth: uniform(scene.depth_mm),
       flatness: uniform(0),
+      film: uniform(Boolean(options.film)),
+      grid: shared.grid,
     },
   });
 }
