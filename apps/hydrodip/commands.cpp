@@ -69,6 +69,17 @@ JobResult run_inspect(const Request& request, RunContext& context) {
   return inspect_job(configure(request), context);
 }
 
+void declare_view(CLI::App& app, Request& request) {
+  declare_folder(app, request);
+  declare_reporting(app, request);
+}
+
+JobResult run_view(const Request& request, RunContext&) {
+  if (request.folder.empty())
+    throw InputError("name the folder to view, as in 'hydrodip view mask-print'");
+  return view_job(request.folder);
+}
+
 void declare_sample_command(CLI::App& app, Request& request) {
   declare_sample(app, request);
   declare_output(app, request, "the current folder");
@@ -91,13 +102,17 @@ std::vector<Command> own_commands() {
   return {
       {"print", "from a textured model to a film image, ready to print and dip",
        "Writes print.pdf (print it at 100 %, no scaling), print.png, print.tif, film.ply,\n"
-       "preview.png, preview.glb, report.json and report.html.",
+       "preview.png, maps.png, preview.glb, report.json and report.html.\n"
+       "'hydrodip view DIR' opens the report.",
        declare_print, run_print},
       {"simulate", "where the film goes, and what an image on it would look like",
-       "Writes film.ply, preview.png, preview.glb, report.json and report.html.", declare_simulate,
-       run_simulate},
+       "Writes film.ply, preview.png, maps.png, preview.glb, report.json and report.html.\n"
+       "'hydrodip view DIR' opens the report.",
+       declare_simulate, run_simulate},
       {"inspect", "size, mesh health, dip angles, what fits the film; no simulation",
        "With -o it writes angles.png and report.json.", declare_inspect, run_inspect},
+      {"view", "open a job's report in the browser",
+       "Where there is no browser, the report's path is printed.", declare_view, run_view},
       {"sample", "write a built-in sample model with its texture", "", declare_sample_command,
        run_sample},
       {"params", "list every parameter: name, default, range, what it does", "", declare_reporting,

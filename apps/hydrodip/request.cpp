@@ -130,6 +130,11 @@ void declare_sample(CLI::App& app, Request& request) {
   app.add_option("NAME", request.sample, "which sample; without it: lists them")->type_name("");
 }
 
+void declare_folder(CLI::App& app, Request& request) {
+  app.add_option("DIR", request.folder, "output folder of a job, or its report.html")
+      ->type_name("");
+}
+
 JobConfig configure(const Request& request) {
   JobConfig config;
   config.model = request.model;

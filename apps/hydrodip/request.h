@@ -16,6 +16,7 @@ struct Request {
   std::vector<std::string> command_line;  // as typed
   std::string model;
   std::string sample;
+  std::string folder;
   std::string output;
   std::string film_image;
   std::string paper;   // of the run sheet
@@ -39,6 +40,7 @@ void declare_resolution(CLI::App& app, Request& request);
 void declare_configuration(CLI::App& app, Request& request);
 void declare_film_image(CLI::App& app, Request& request);
 void declare_sample(CLI::App& app, Request& request);
+void declare_folder(CLI::App& app, Request& request);
 
 // The options as a job's configuration. Throws InputError.
 JobConfig configure(const Request& request);

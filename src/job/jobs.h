@@ -31,6 +31,10 @@ JobResult simulate_job(const JobConfig& config, RunContext& context);
 // report.json only if config.output is given.
 JobResult inspect_job(const JobConfig& config, RunContext& context);
 
+// Opens a job's report.html (`where`: it, or its folder) in the default browser; where there is
+// none, the result says its path. Throws InputError if there is no report.
+JobResult view_job(const std::filesystem::path& where);
+
 // Writes a built-in sample model with its texture.
 JobResult sample_job(const std::string& name, const std::filesystem::path& folder,
                      RunContext& context);

@@ -108,7 +108,7 @@ assert "mask" in [s["name"] for s in json.load(sys.stdin)["samples"]]' || fail '
 fi
 
 # Help, version, lists; readers that go away; closed streams.
-for command in print simulate inspect sample params; do
+for command in print simulate inspect view sample params; do
   "$hydrodip" "$command" --help | grep -q "^Usage: hydrodip $command" || fail "$command --help"
 done
 "$hydrodip" --help | grep -q inspect || fail '--help'

@@ -86,7 +86,7 @@ class Viewer {
   makeDipRow(button) {
     const depth = this.scene.depth_mm;
     this.slider = make('input', {
-      type: 'range', id: 'depth', min: '0', max: String(depth), step: String(depth / 400 || 1), value: String(depth),
+      type: 'range', id: 'depth', min: '0', max: String(depth), step: 'any', value: String(depth),
       'aria-label': 'Immersion depth in mm',
       oninput: (event) => {
         this.stopPlaying();

@@ -1,0 +1,21 @@
+#!/bin/sh
+# preview.glb of jobs of every kind, in Khronos' glTF validator. Usage: sh glb.sh HYDRODIP NODE
+# NODE_MODULES
+here=$(cd "$(dirname "$0")" && pwd)
+node=$2
+modules=$3
+. "$here/../cli/common.sh"
+
+"$hydrodip" sample mask > /dev/null || fail 'sample mask'
+"$hydrodip" sample sphere > /dev/null || fail 'sample sphere'
+write_colored colored.ply
+write_tetrahedron tetra.obj
+# shellcheck disable=SC2086
+{
+  "$hydrodip" print mask.obj $quick --film a4 -o textured > /dev/null || fail textured
+  "$hydrodip" print sphere.obj --size 30 $quick -o torn > /dev/null || fail torn
+  "$hydrodip" print colored.ply $quick -o colored > /dev/null || fail colored
+  "$hydrodip" simulate tetra.obj $quick_simulate -o plain > /dev/null || fail plain
+}
+NODE_PATH=$modules "$node" "$here/validate_glb.cjs" */preview.glb || fail 'errors or warnings'
+finish
