@@ -9,6 +9,7 @@
 #include "image/files.h"
 #include "image/resize.h"
 #include "job/prepare.h"
+#include "report/findings.h"
 #include "report/maps.h"
 #include "report/preview.h"
 #include "report/report.h"
@@ -38,6 +39,13 @@ double heaviest_ink(const InkImage& inks) {
   for (std::size_t i = 0; i < inks.cmyk.size(); i += 4)
     most = std::max(most, from_bytes(inks.cmyk.data() + i).density());
   return double(most);
+}
+
+// The verdict in one line.
+std::string picture_caption(const JobRecord& record) {
+  const Coverage& coverage = record.dipped.coverage;
+  if (!(coverage.film_on_object_mm2 > 0)) return short_verdict(coverage);
+  return headline(concern_of(findings(make_report(record)))) + ": " + short_verdict(coverage);
 }
 
 Image draw_preview(const JobRecord& record, const Appearance& shown, const std::string& caption) {
@@ -108,7 +116,7 @@ ReportPictures write_previews(OutputFolder& folder, const JobRecord& record,
   const Appearance shown = appearance(dipped, film_image, raster, base);
   pictures.preview_png =
       write_picture(folder.path("preview.png"),
-                    draw_preview(record, shown, caption_start + short_verdict(dipped.coverage)));
+                    draw_preview(record, shown, caption_start + picture_caption(record)));
   if (record.ink != nullptr)
     write_picture(folder.path("gamut.png"), draw_reach(record, shown, raster));
   pictures.maps_png = write_picture(folder.path("maps.png"), draw_maps(record));

@@ -212,7 +212,7 @@ Concern concern_of(const std::vector<Finding>& findings) {
 
 std::string headline(Concern concern) {
   if (concern == Concern::kNone) return "Good to dip";
-  return concern == Concern::kCare ? "Can be dipped, with flaws" : "Do not dip it like this";
+  return concern == Concern::kCare ? "Can be dipped; mind a few things" : "Do not dip it like this";
 }
 
 std::string concern_name(Concern concern) {

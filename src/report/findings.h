@@ -26,7 +26,7 @@ std::vector<Finding> findings(const Report& report);
 // The gravest of all; kStop when the dip should not be done like this.
 Concern concern_of(const std::vector<Finding>& findings);
 
-// "Good to dip", "Can be dipped, with flaws", "Do not dip it like this".
+// "Good to dip", "Can be dipped; mind a few things", "Do not dip it like this".
 std::string headline(Concern concern);
 
 // "none", "care", "stop"

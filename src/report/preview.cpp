@@ -53,7 +53,7 @@ void write_labels(Image& page, const Layout& layout, const PreviewOptions& optio
     draw_centered(page, options.titles[i], center, layout.header - 31 * layout.unit, title);
   }
   TextStyle line;
-  line.size_px = 17 * layout.unit;
+  line.size_px = 19 * layout.unit;
   line.color = kLabelInk;
   const double room = layout.width - 2.0 * layout.margin;
   const std::string shown = fit_text(options.caption, line, room);

@@ -121,7 +121,7 @@ std::string dip_angles_json(const DipAngles& angles);
 struct ReportPictures {
   std::vector<std::uint8_t> preview_png;  // the files' bytes; empty: none
   std::vector<std::uint8_t> maps_png;
-  std::string scene;  // scene_json() for the 3D view; empty: none
+  std::string scene = {};  // scene_json() for the 3D view; empty: none
 };
 
 // One self-contained page that needs no network; every text is escaped. Words and pictures come

@@ -169,19 +169,6 @@ std::string key_figure(const std::string& label, const std::string& value,
 
 std::string key_figures(const Report& report) {
   std::string cells;
-  if (report.coverage) {
-    const Coverage& c = *report.coverage;
-    cells += key_figure("Covered, facing down",
-                        shown(std::round(1000 * c.covered_downward_share()) / 10), "%");
-    cells += key_figure("Covered area", shown(c.covered_mm2), "mm2");
-    cells += key_figure("Largest stretch", fmt::format("{:.2f}", c.stretch_max), "times");
-    if (report.angles) {
-      cells += key_figure(fmt::format("Steeper than {:.0f}\u00b0", kDipAngleLimit_deg),
-                          shown(std::round(1000 * report.angles->over_limit_share()) / 10), "%");
-    }
-    cells +=
-        key_figure("Torn, of the film there", shown(std::round(1000 * c.torn_share()) / 10), "%");
-  }
   for (const ReportFigure& figure : report.figures) {
     cells += key_figure(figure.label, value_text(figure.value, shown), figure.unit);
   }

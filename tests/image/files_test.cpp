@@ -257,5 +257,21 @@ TEST(Decode, RefusesForgedSizes) {
   EXPECT_THROW(decode_image(bytes, "forged"), InputError);
 }
 
+TEST(Jpeg, WrittenAndReadAgainLooksTheSame) {
+  Image image(37, 21);
+  for (int y = 0; y < image.height_px; ++y) {
+    for (int x = 0; x < image.width_px; ++x) {
+      std::uint8_t* p = image.pixel(x, y);
+      p[0] = std::uint8_t(6 * x), p[1] = std::uint8_t(10 * y), p[2] = 90, p[3] = 255;
+    }
+  }
+  const Image again = decode_image(encode_jpeg(image, 95), "again.jpg");
+  ASSERT_EQ(again.width_px, 37);
+  ASSERT_EQ(again.height_px, 21);
+  for (std::size_t i = 0; i < image.rgba.size(); ++i) ASSERT_NEAR(again.rgba[i], image.rgba[i], 12);
+  EXPECT_LT(encode_jpeg(image, 40).size(), encode_jpeg(image, 95).size());
+  EXPECT_THROW(encode_jpeg(Image(), 90), InputError);
+}
+
 }  // namespace
 }  // namespace hydrodip

@@ -62,7 +62,7 @@ Glb parse(const std::vector<std::uint8_t>& bytes) {
 
 std::size_t components(const Json& accessor) {
   const std::string type = accessor["type"];
-  return type == "VEC3" ? 3 : type == "VEC2" ? 2 : 1;
+  return type == "SCALAR" ? 1 : std::size_t(type.back() - '0');
 }
 
 // All values of an accessor, after checking that they lie within view and buffer.
@@ -176,6 +176,65 @@ TEST(PreviewGlb, TextureCarriesEachFilmPointsColour) {
     ASSERT_NEAR(texture.pixel(x, y)[0], 80 + 2 * x_mm, 1.2);
     ASSERT_NEAR(texture.pixel(x, y)[1], 100 + 2 * y_mm, 1.2);
   }
+}
+
+// The materials of every primitive in a variant, by name.
+std::vector<std::string> shown_in(const Glb& glb, int variant) {
+  std::vector<std::string> names;
+  for (const Json& mesh : glb.json["meshes"]) {
+    for (const Json& part : mesh["primitives"]) {
+      for (const Json& mapping : part["extensions"]["KHR_materials_variants"]["mappings"]) {
+        const auto variants = mapping["variants"].get<std::vector<int>>();
+        if (std::find(variants.begin(), variants.end(), variant) == variants.end()) continue;
+        names.push_back(glb.json["materials"][mapping["material"].get<std::size_t>()]["name"]);
+      }
+    }
+  }
+  return names;
+}
+
+TEST(PreviewGlb, TheWantedColoursAreAVariant) {
+  const Glb glb = write_and_parse(film_under_ball(), gradient_sheet());
+  const Json& variants = glb.json["extensions"]["KHR_materials_variants"]["variants"];
+  EXPECT_EQ(variants[0]["name"], "predicted");
+  EXPECT_EQ(variants[1]["name"], "wanted");
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(shown_in(glb, 0), (Names{"object", "object", "film"}));
+  EXPECT_EQ(shown_in(glb, 1), (Names{"wanted ", "wanted ", "hidden"}));
+  // Without variants, the predicted ones are shown.
+  EXPECT_EQ(glb.json["materials"][primitive(glb, 0)["material"].get<std::size_t>()]["name"],
+            "object");
+  const Json& red = glb.json["materials"][2]["pbrMetallicRoughness"]["baseColorFactor"];
+  EXPECT_EQ(red, Json({1.0, 0.0, 0.0, 1.0}));
+}
+
+TEST(PreviewGlb, VertexColoursComeOnAMeshOfTheirOwn) {
+  Object ball = two_coloured_ball(4);
+  ball.colors.assign(ball.triangles.size(), CornerColor{});
+  for (CornerColor& corners : ball.colors) corners.fill({0, 1, 0, 0.5f});
+  for (Material& material : ball.materials) material.base_color = {1, 1, 1, 1};
+  const ScratchFolder folder;
+  write_preview_glb(folder / "c.glb", ball, film_under_ball(), gradient_sheet(), 80, 100,
+                    {1, 1, 1, 1});
+  const Glb glb = parse(read_file(folder / "c.glb"));
+  ASSERT_EQ(glb.json["meshes"].size(), 3u);
+  EXPECT_FALSE(primitive(glb, 0)["attributes"].contains("COLOR_0"));
+  const Json& wanted = primitive(glb, 1);
+  const std::vector<float> colors = floats(glb, wanted["attributes"]["COLOR_0"]);
+  for (std::size_t i = 0; i < colors.size(); i += 4) {  // half green over white
+    EXPECT_NEAR(colors[i], 0.5f, 1e-6);
+    EXPECT_NEAR(colors[i + 1], 1, 1e-6);
+  }
+}
+
+TEST(PreviewGlb, APlainModelHasNoVariants) {
+  Object ball = two_coloured_ball(4);
+  ball.materials.resize(1);
+  ball.material_of.assign(ball.triangles.size(), 0);
+  const ScratchFolder folder;
+  write_preview_glb(folder / "p.glb", ball, film_under_ball(), gradient_sheet(), 80, 100,
+                    {1, 1, 1, 1});
+  EXPECT_FALSE(parse(read_file(folder / "p.glb")).json.contains("extensionsUsed"));
 }
 
 TEST(PreviewGlb, WithoutFilmOnlyTheObject) {

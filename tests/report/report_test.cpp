@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "fixtures.h"
+#include "report/viewer_assets.h"
 
 namespace hydrodip {
 namespace {
@@ -85,6 +86,14 @@ TEST(Report, HtmlNeedsNothingElse) {
   EXPECT_EQ(html.find("http"), std::string::npos);
   EXPECT_NE(html.find("data:image/png;base64,AQIDBA=="), std::string::npos);
   EXPECT_NE(html.find("data:image/png;base64,BQYHCA=="), std::string::npos);
+}
+
+TEST(Report, TheViewComesWithItsScene) {
+  const std::string html = report_html(full_report(), {{1}, {2}, R"({"mark":1})"});
+  const std::size_t scene =
+      html.find(R"(<script type="application/json" id="scene">{"mark":1}</script>)");
+  EXPECT_EQ(scene != std::string::npos, !viewer_script().empty());
+  EXPECT_LT(html.find("id=\"verdict\""), html.find("id=\"viewer\""));
 }
 
 TEST(Report, HtmlTagsAreBalanced) {

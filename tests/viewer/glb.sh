@@ -6,13 +6,12 @@ node=$2
 modules=$3
 . "$here/../cli/common.sh"
 
-"$hydrodip" sample mask > /dev/null || fail 'sample mask'
 "$hydrodip" sample sphere > /dev/null || fail 'sample sphere'
 write_colored colored.ply
 write_tetrahedron tetra.obj
 # shellcheck disable=SC2086
 {
-  "$hydrodip" print mask.obj $quick --film a4 -o textured > /dev/null || fail textured
+  "$hydrodip" print sphere.obj --size 30 --depth 6 $quick -o textured > /dev/null || fail textured
   "$hydrodip" print sphere.obj --size 30 $quick -o torn > /dev/null || fail torn
   "$hydrodip" print colored.ply $quick -o colored > /dev/null || fail colored
   "$hydrodip" simulate tetra.obj $quick_simulate -o plain > /dev/null || fail plain

@@ -1,0 +1,101 @@
+#include "report/findings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace hydrodip {
+namespace {
+
+Report good_report() {
+  Report report;
+  Coverage c;
+  c.object_mm2 = 2000;
+  c.downward_mm2 = 1000;
+  c.covered_mm2 = c.covered_downward_mm2 = 960;
+  c.film_on_object_mm2 = 900;
+  c.stretch_max = 1.2;
+  c.area_ratio_max = 1.15;
+  report.coverage = c;
+  report.angles = DipAngles{};
+  report.angles->downward_mm2 = 1000;
+  report.tear_stretch = 1.4;
+  report.bleed_mm = 1;
+  return report;
+}
+
+const Finding* find(const std::vector<Finding>& list, const std::string& key) {
+  const auto at =
+      std::find_if(list.begin(), list.end(), [&](const Finding& f) { return f.key == key; });
+  return at == list.end() ? nullptr : &*at;
+}
+
+Concern concern(const Report& report, const std::string& key) {
+  const std::vector<Finding> list = findings(report);
+  const Finding* finding = find(list, key);
+  EXPECT_TRUE(finding) << key;
+  return finding ? finding->concern : Concern::kNone;
+}
+
+TEST(Findings, NothingToSayAgainstAGoodDip) {
+  const std::vector<Finding> list = findings(good_report());
+  EXPECT_EQ(concern_of(list), Concern::kNone);
+  EXPECT_EQ(headline(concern_of(list)), "Good to dip");
+  for (const char* key : {"coverage", "tears", "stretch", "steepness", "registration"})
+    EXPECT_TRUE(find(list, key)) << key;
+}
+
+TEST(Findings, WhateverIsWrongSaysWhatToDo) {
+  Report report = good_report();
+  report.coverage->covered_downward_mm2 = 400;
+  report.coverage->torn_mm2 = 500;
+  report.coverage->stretch_max = 1.39;
+  report.coverage->area_ratio_max = 1.5;
+  report.angles->over_limit_mm2 = 700;
+  report.ink = ReportInk{3.2, 2.4};
+  report.colors = ReportColors{6, 12, 100};
+  report.warnings = {"The bath is small: take a larger one."};
+  const std::vector<Finding> list = findings(report);
+  for (const Finding& finding : list) {
+    if (finding.key == "registration") continue;
+    EXPECT_NE(finding.concern, Concern::kNone) << finding.key;
+    if (finding.key == "warning") continue;  // a sentence that says both
+    EXPECT_FALSE(finding.advice.empty()) << finding.key;
+  }
+  EXPECT_EQ(list.size(), 9u);
+  EXPECT_EQ(concern_of(list), Concern::kStop);
+}
+
+TEST(Findings, FewTearsAreAFlawAndManyAStop) {
+  Report report = good_report();
+  report.coverage->torn_mm2 = 20;
+  EXPECT_EQ(concern(report, "tears"), Concern::kCare);
+  report.coverage->torn_mm2 = 200;
+  EXPECT_EQ(concern(report, "tears"), Concern::kStop);
+}
+
+TEST(Findings, WithoutFilmOnTheObjectNothingElseMatters) {
+  Report report = good_report();
+  report.coverage->film_on_object_mm2 = 0;
+  const std::vector<Finding> list = findings(report);
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].concern, Concern::kStop);
+  EXPECT_NE(list[0].advice.find("--down"), std::string::npos);
+}
+
+// The map's slope is the stretch: a millimetre beside on the film is that much on the object.
+TEST(Findings, RegistrationErrorGrowsWithStretch) {
+  const std::vector<Finding> list = findings(good_report());
+  EXPECT_EQ(find(list, "registration")->figure, "1.2 mm");
+}
+
+TEST(Findings, AreInTheJson) {
+  const auto json = nlohmann::json::parse(report_json(good_report()));
+  EXPECT_EQ(json["concern"], "none");
+  EXPECT_EQ(json["findings"].size(), 5u);
+  EXPECT_EQ(json["findings"][1]["figure"], "none");
+}
+
+}  // namespace
+}  // namespace hydrodip
