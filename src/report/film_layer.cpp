@@ -89,6 +89,32 @@ FilmLayer color_error_layer(const Object& object, const FilmMap& map, const Appe
   return layer;
 }
 
+FilmLayer pixel_layer(const std::string& key, const std::vector<float>& values, int width_px,
+                      int height_px, const Vec2& sheet_mm, const Box2& extent) {
+  FilmLayer layer = empty_layer(key, extent);
+  std::vector<double> sum(layer.values.size(), 0);
+  std::vector<int> count(layer.values.size(), 0);
+  const Vec2 size = layer.extent.max - layer.extent.min;
+  for (int y = 0; y < height_px && !layer.values.empty(); ++y) {
+    for (int x = 0; x < width_px; ++x) {
+      const float value = values[std::size_t(y) * std::size_t(width_px) + std::size_t(x)];
+      if (std::isnan(value)) continue;
+      const Vec2 u((x + 0.5) / width_px * sheet_mm.x() - 0.5 * sheet_mm.x(),
+                   0.5 * sheet_mm.y() - (y + 0.5) / height_px * sheet_mm.y());
+      const double column = (u.x() - layer.extent.min.x()) / size.x() * layer.width;
+      const double row = (layer.extent.max.y() - u.y()) / size.y() * layer.height;
+      if (!(column >= 0 && row >= 0 && column < layer.width && row < layer.height)) continue;
+      const auto cell = std::size_t(int(row)) * std::size_t(layer.width) + std::size_t(int(column));
+      sum[cell] += double(value);
+      ++count[cell];
+    }
+  }
+  for (std::size_t i = 0; i < layer.values.size(); ++i) {
+    if (count[i] > 0) layer.values[i] = float(sum[i] / count[i]);
+  }
+  return layer;
+}
+
 LayerSummary summarize(const FilmLayer& layer) {
   std::vector<float> there;
   std::copy_if(layer.values.begin(), layer.values.end(), std::back_inserter(there),

@@ -21,6 +21,11 @@ struct FilmLayer {
 FilmLayer color_error_layer(const Object& object, const FilmMap& map, const Appearance& appearance,
                             RunContext& context);
 
+// From a value per pixel of the film image (`width_px` x `height_px` over the whole sheet; NaN:
+// nothing there): means over cells, within the film coordinates `extent`.
+FilmLayer pixel_layer(const std::string& key, const std::vector<float>& values, int width_px,
+                      int height_px, const Vec2& sheet_mm, const Box2& extent);
+
 // Of the values that are there; all 0 if there are none.
 struct LayerSummary {
   double mean = 0;

@@ -4,17 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <variant>
 
 namespace hydrodip {
 namespace {
 
-constexpr double kNearlyAll = 0.9;      // of what faces down; film ends a cell short of borders
-constexpr double kMuchTorn = 0.1;       // of the film that meets the object
-constexpr double kNearLimit = 0.9;      // of the tear stretch
-constexpr double kPale = 1.3;           // area ratio from which paling shows
-constexpr double kMuchSteep = 0.1;      // of what faces down
-constexpr double kPlainDifference = 5;  // CIEDE2000: plain to see
-constexpr double kUsualMiss_mm = 1;     // how far off a dip usually lands
+constexpr double kNearlyAll = 0.9;        // of what faces down; film ends a cell short of borders
+constexpr double kMuchTorn = 0.1;         // of the film that meets the object
+constexpr double kNearLimit = 0.9;        // of the tear stretch
+constexpr double kPale = 1.3;             // area ratio from which paling shows
+constexpr double kMuchSteep = 0.1;        // of what faces down
+constexpr double kPlainDifference = 5;    // CIEDE2000: plain to see
+constexpr double kMuchOutOfGamut = 0.02;  // of the covered surface
+constexpr double kUsualMiss_mm = 1;       // how far off a dip usually lands
 
 std::string percent(double share) {
   const double value = 100 * share;
@@ -159,17 +162,23 @@ Finding colors(const ReportColors& colors) {
   return finding;
 }
 
-Finding gamut(double area_mm2, double covered_mm2) {
+// A number among the report's figures.
+std::optional<double> figure(const Report& report, const std::string& key) {
+  for (const ReportFigure& f : report.figures) {
+    if (f.key == key && std::holds_alternative<double>(f.value)) return std::get<double>(f.value);
+  }
+  return std::nullopt;
+}
+
+Finding gamut(double share) {
   Finding finding{"gamut",
-                  area_mm2 > 0 ? Concern::kCare : Concern::kNone,
+                  share > kMuchOutOfGamut ? Concern::kCare : Concern::kNone,
                   "Out of gamut",
-                  percent(Coverage::share(area_mm2, covered_mm2)),
-                  "of the covered surface has colours that the printer cannot lay down.",
+                  percent(share),
+                  "of the covered surface has colours that the inks cannot give there.",
                   ""};
-  if (area_mm2 > 0)
-    finding.advice =
-        "The nearest printable colours are used there. The overlay \"out of gamut\" "
-        "shows where.";
+  if (share > kMuchOutOfGamut)
+    finding.advice = "The nearest ones are printed; gamut.policy chooses how.";
   return finding;
 }
 
@@ -192,12 +201,8 @@ std::vector<Finding> findings(const Report& report) {
     }
   }
   if (report.ink) list.push_back(ink(*report.ink));
-  if (report.colors) {
-    list.push_back(colors(*report.colors));
-    if (report.colors->out_of_gamut_mm2 >= 0)
-      list.push_back(gamut(report.colors->out_of_gamut_mm2,
-                           report.coverage ? report.coverage->covered_mm2 : 0));
-  }
+  if (report.colors) list.push_back(colors(*report.colors));
+  if (const auto share = figure(report, "out_of_gamut_share")) list.push_back(gamut(*share));
   for (const std::string& sentence : report.warnings) {
     if (!sentence.empty()) list.push_back(warning(sentence));
   }

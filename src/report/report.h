@@ -71,11 +71,10 @@ struct ReportInk {
   double density_limit = 0;  // 0: none is set
 };
 
-// Of the covered surface.
+// CIEDE2000 between wanted and predicted colour, over the covered surface.
 struct ReportColors {
-  double error_mean = 0;         // CIEDE2000 between wanted and predicted colour
-  double error_most_of = 0;      // 95 % of the surface has no more
-  double out_of_gamut_mm2 = -1;  // negative: unknown
+  double error_mean = 0;
+  double error_most_of = 0;  // 95 % of the surface has no more
 };
 
 struct Report {

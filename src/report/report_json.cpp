@@ -134,10 +134,8 @@ Json ink_json(const ReportInk& ink) {
 }
 
 Json colors_json(const ReportColors& colors) {
-  Json json = {{"error_mean_ciede2000", number(colors.error_mean)},
-               {"error_95_percent_ciede2000", number(colors.error_most_of)}};
-  if (colors.out_of_gamut_mm2 >= 0) json["out_of_gamut_mm2"] = number(colors.out_of_gamut_mm2);
-  return json;
+  return {{"error_mean_ciede2000", number(colors.error_mean)},
+          {"error_95_percent_ciede2000", number(colors.error_most_of)}};
 }
 
 Json seconds_json(const Report& report) {

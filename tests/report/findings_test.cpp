@@ -54,7 +54,8 @@ TEST(Findings, WhateverIsWrongSaysWhatToDo) {
   report.coverage->area_ratio_max = 1.5;
   report.angles->over_limit_mm2 = 700;
   report.ink = ReportInk{3.2, 2.4};
-  report.colors = ReportColors{6, 12, 100};
+  report.colors = ReportColors{6, 12};
+  report.figures = {{"out_of_gamut_share", "Share", 0.3, ""}};
   report.warnings = {"The bath is small: take a larger one."};
   const std::vector<Finding> list = findings(report);
   for (const Finding& finding : list) {
