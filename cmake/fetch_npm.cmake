@@ -7,7 +7,8 @@ if(NOT "${fetched}" STREQUAL "${lock}")
   file(REMOVE ${FOLDER}/fetched)
   file(COPY ${SOURCE}/package.json ${SOURCE}/package-lock.json DESTINATION ${FOLDER})
   execute_process(
-    COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --loglevel=error
+    COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --loglevel=error --fetch-retries=1
+            --fetch-retry-mintimeout=1000
     WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT code EQUAL 0)
     message("${output}")

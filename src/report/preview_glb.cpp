@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -12,7 +10,8 @@
 #include "base/parallel.h"
 #include "image/files.h"
 #include "image/resize.h"
-#include "report/bytes.h"
+#include "object/surface.h"
+#include "report/glb_writer.h"
 #include "report/preview.h"
 #include "report/scene_object.h"
 
@@ -22,28 +21,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Vec3f = std::array<float, 3>;
 
-constexpr double kFilmOffsetMm = 0.05;  // so that film and object do not flicker through each other
+// So that film and object do not flicker through each other.
+constexpr double kFilmOffsetMm = 0.05;
+constexpr double kMostOffsetMm = 1;
 constexpr int kLongestSidePx = 2048;
 
-constexpr int kFloat = 5126, kUint32 = 5125;
-constexpr int kClampToEdge = 33071;
 constexpr int kJpegQuality = 92;
-constexpr const char* kVariants = "KHR_materials_variants";
-constexpr int kVertexBuffer = 34962, kIndexBuffer = 34963;
-
-struct GlbMesh {
-  std::vector<Vec3f> positions;
-  std::vector<Vec3f> normals;
-  std::vector<std::array<float, 2>> uvs;     // empty: none
-  std::vector<std::array<float, 4>> colors;  // linear; empty: none
-  std::vector<std::uint32_t> indices;        // of all parts
-};
-
-// A range of a mesh's indices and what it is made of: what the dip leaves, and what is wanted.
-struct GlbPart {
-  std::size_t begin = 0, count = 0;
-  int predicted = 0, wanted = 0;  // materials
-};
 
 // Posed-object frame (mm) to glTF (y up, facing +z): the side that met the film is the front.
 Vec3f to_gltf(const Vec3& v) { return {float(-v.x()), float(v.y()), float(-v.z())}; }
@@ -78,6 +61,33 @@ std::vector<Vec3> outward_normals(const DippedFilm& film) {
     if (length > 0) n /= length;
   }
   return normals;
+}
+
+// How far each film vertex has to be lifted so that the object, which bulges between the film's
+// vertices, stays below.
+std::vector<double> lifts(const Object& object, const DippedFilm& film,
+                          const std::vector<Vec3>& normals) {
+  constexpr std::array<std::array<double, 3>, 4> kPlaces = {
+      {{0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {1.0 / 3, 1.0 / 3, 1.0 / 3}}};
+  const Surface surface(object.positions, object.triangles);
+  std::vector<double> lift(film.position.size(), kFilmOffsetMm);
+  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
+    if (!film.lies_on_object(t)) continue;
+    const Triangle& corners = film.mesh.triangles[t];
+    double bulge = 0;
+    for (const auto& weights : kPlaces) {
+      Vec3 place = Vec3::Zero(), outward = Vec3::Zero();
+      for (std::size_t k = 0; k < 3; ++k) {
+        place += weights[k] * film.position[std::size_t(corners[k])];
+        outward += weights[k] * normals[std::size_t(corners[k])];
+      }
+      const auto hit = surface.first_hit(place, outward, 0, kMostOffsetMm);
+      if (hit) bulge = std::max(bulge, hit->t * outward.norm());
+    }
+    for (const std::int32_t v : corners)
+      lift[std::size_t(v)] = std::max(lift[std::size_t(v)], bulge + kFilmOffsetMm);
+  }
+  return lift;
 }
 
 // The part of the sheet that is shown, reduced by a whole factor.
@@ -150,9 +160,10 @@ Image film_texture(const Image& image, const Crop& crop, const LinearColor& base
   return texture;
 }
 
-GlbMesh film_mesh(const DippedFilm& film, const Image& image, const Crop& crop, double width_mm,
-                  double height_mm) {
+GlbMesh film_mesh(const Object& object, const DippedFilm& film, const Image& image,
+                  const Crop& crop, double width_mm, double height_mm) {
   const std::vector<Vec3> normals = outward_normals(film);
+  const std::vector<double> lift = lifts(object, film, normals);
   std::vector<std::int64_t> number(film.position.size(), -1);
   GlbMesh mesh;
   const auto vertex = [&](std::size_t v) {
@@ -162,7 +173,7 @@ GlbMesh film_mesh(const DippedFilm& film, const Image& image, const Crop& crop, 
       const Vec2& u = film.mesh.u[v];
       const double x = (u.x() / width_mm + 0.5) * image.width_px;
       const double y = (0.5 - u.y() / height_mm) * image.height_px;
-      mesh.positions.push_back(to_gltf_metres(film.position[v] + kFilmOffsetMm * normal));
+      mesh.positions.push_back(to_gltf_metres(film.position[v] + lift[v] * normal));
       mesh.normals.push_back(to_gltf(normal));
       mesh.uvs.push_back({float((x - crop.x0) / (crop.width * crop.factor)),
                           float((y - crop.y0) / (crop.height * crop.factor))});
@@ -177,129 +188,6 @@ GlbMesh film_mesh(const DippedFilm& film, const Image& image, const Crop& crop, 
   }
   return mesh;
 }
-
-// The JSON and the binary chunk of a GLB file as they grow.
-class GlbWriter {
- public:
-  GlbWriter() {
-    json_["asset"] = {{"version", "2.0"}, {"generator", "hydrodip"}};
-    json_["scene"] = 0;
-    json_["scenes"] = Json::array({{{"name", "Preview"}, {"nodes", Json::array()}}});
-    for (const char* part : {"nodes", "meshes", "materials"}) json_[part] = Json::array();
-  }
-
-  int add_material(const Json& material) { return append("materials", material); }
-
-  int add_texture(const std::vector<std::uint8_t>& file, const std::string& type,
-                  const std::string& name, int wrap_u = kClampToEdge, int wrap_v = kClampToEdge) {
-    const int image =
-        append("images", {{"bufferView", add_view(file, 0)}, {"mimeType", type}, {"name", name}});
-    constexpr int kLinear = 9729, kLinearMipmapLinear = 9987;
-    const int sampler = append("samplers", {{"magFilter", kLinear},
-                                            {"minFilter", kLinearMipmapLinear},
-                                            {"wrapS", wrap_u},
-                                            {"wrapT", wrap_v}});
-    return append("textures", {{"sampler", sampler}, {"source", image}});
-  }
-
-  void add_variants() {
-    json_["extensionsUsed"] = Json::array({kVariants});
-    json_["extensions"][kVariants]["variants"] =
-        Json::array({{{"name", "predicted"}}, {{"name", "wanted"}}});
-    has_variants_ = true;
-  }
-
-  void add_mesh(const std::string& name, const GlbMesh& mesh, const std::vector<GlbPart>& parts) {
-    Json attributes;
-    attributes["POSITION"] = add_floats(mesh.positions, true);
-    attributes["NORMAL"] = add_floats(mesh.normals, false);
-    if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = add_floats(mesh.uvs, false);
-    if (!mesh.colors.empty()) attributes["COLOR_0"] = add_floats(mesh.colors, false);
-    Json primitives = Json::array();
-    for (const GlbPart& part : parts) {
-      Json primitive = {{"attributes", attributes},
-                        {"indices", add_indices(mesh.indices, part)},
-                        {"material", part.predicted}};
-      if (has_variants_) {
-        primitive["extensions"][kVariants]["mappings"] =
-            Json::array({{{"material", part.predicted}, {"variants", {0}}},
-                         {{"material", part.wanted}, {"variants", {1}}}});
-      }
-      primitives.push_back(primitive);
-    }
-    const int number = append("meshes", {{"name", name}, {"primitives", primitives}});
-    const int node = append("nodes", {{"name", name}, {"mesh", number}});
-    json_["scenes"][0]["nodes"].push_back(node);
-  }
-
-  std::vector<std::uint8_t> finish() {
-    json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
-    Bytes text;
-    text.add(json_.dump());
-    text.pad(' ');
-    Bytes file;
-    file.add("glTF");
-    file.add_u32(2);
-    file.add_u32(std::uint32_t(12 + 8 + text.size() + 8 + binary_.size()));
-    file.add_u32(std::uint32_t(text.size()));
-    file.add("JSON");
-    file.add(text.data());
-    file.add_u32(std::uint32_t(binary_.size()));
-    file.add(std::string("BIN\0", 4));
-    file.add(binary_.data());
-    return file.data();
-  }
-
- private:
-  int append(const char* list, const Json& entry) {
-    json_[list].push_back(entry);
-    return int(json_[list].size()) - 1;
-  }
-
-  int add_view(const std::vector<std::uint8_t>& bytes, int target) {
-    Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes.size()}};
-    if (target != 0) view["target"] = target;
-    binary_.add(bytes);
-    binary_.pad(0);
-    return append("bufferViews", view);
-  }
-
-  template <std::size_t N>
-  int add_floats(const std::vector<std::array<float, N>>& values, bool with_limits) {
-    Bytes bytes;
-    std::array<float, N> low = values.front();
-    std::array<float, N> high = low;
-    for (const auto& value : values) {
-      for (std::size_t k = 0; k < N; ++k) {
-        bytes.add_f32(value[k]);
-        low[k] = std::min(low[k], value[k]);
-        high[k] = std::max(high[k], value[k]);
-      }
-    }
-    Json accessor = {{"bufferView", add_view(bytes.data(), kVertexBuffer)},
-                     {"componentType", kFloat},
-                     {"count", values.size()},
-                     {"type", fmt::format("VEC{}", N)}};
-    if (with_limits) {
-      accessor["min"] = low;
-      accessor["max"] = high;
-    }
-    return append("accessors", accessor);
-  }
-
-  int add_indices(const std::vector<std::uint32_t>& indices, const GlbPart& part) {
-    Bytes bytes;
-    for (std::size_t i = 0; i < part.count; ++i) bytes.add_u32(indices[part.begin + i]);
-    return append("accessors", {{"bufferView", add_view(bytes.data(), kIndexBuffer)},
-                                {"componentType", kUint32},
-                                {"count", part.count},
-                                {"type", "SCALAR"}});
-  }
-
-  Json json_;
-  Bytes binary_;
-  bool has_variants_ = false;
-};
 
 Json matte(const std::string& name) {
   Json material;
@@ -352,7 +240,7 @@ Image painted(const Image& texture, const LinearColor& tint, const LinearColor& 
 
 int gltf_wrap(Wrap wrap) {
   if (wrap == Wrap::kRepeat) return 10497;
-  return wrap == Wrap::kMirror ? 33648 : kClampToEdge;
+  return wrap == Wrap::kMirror ? 33648 : kGlbClampToEdge;
 }
 
 // The model's own materials; the object's vertex colours, if any, multiply them.
@@ -422,15 +310,15 @@ void add_object(GlbWriter& glb, const Object& object, const LinearColor& base, i
   glb.add_mesh("wanted", mesh, colored);
 }
 
-void add_film(GlbWriter& glb, const DippedFilm& film, const Image& image, double width_mm,
-              double height_mm, const LinearColor& base, int nothing) {
+void add_film(GlbWriter& glb, const Object& object, const DippedFilm& film, const Image& image,
+              double width_mm, double height_mm, const LinearColor& base, int nothing) {
   const Crop crop = crop_to_film(film, image, width_mm, height_mm);
   if (crop.width == 0) return;
   Json printed = matte("film");
   const int texture =
       glb.add_texture(encode_png(film_texture(image, crop, base)), "image/png", "film image");
   printed["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
-  const GlbMesh mesh = film_mesh(film, image, crop, width_mm, height_mm);
+  const GlbMesh mesh = film_mesh(object, film, image, crop, width_mm, height_mm);
   glb.add_mesh("film", mesh, {{0, mesh.indices.size(), glb.add_material(printed), nothing}});
 }
 
@@ -447,7 +335,7 @@ void write_preview_glb(const std::filesystem::path& path, const Object& object,
     nothing = glb.add_material(hidden());
   }
   add_object(glb, object, base, bare, nothing);
-  add_film(glb, film, film_image, sheet_width_mm, sheet_height_mm, base, nothing);
+  add_film(glb, object, film, film_image, sheet_width_mm, sheet_height_mm, base, nothing);
   const std::vector<std::uint8_t> bytes = glb.finish();
   write_file(path, bytes.data(), bytes.size());
 }

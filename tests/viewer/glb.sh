@@ -1,9 +1,10 @@
 #!/bin/sh
-# preview.glb of jobs of every kind, in Khronos' glTF validator. Usage: sh glb.sh HYDRODIP NODE
-# NODE_MODULES
+# preview.glb of jobs of every kind, in Khronos' glTF validator and, where there is one, Blender.
+# Usage: sh glb.sh HYDRODIP NODE NODE_MODULES [BLENDER]
 here=$(cd "$(dirname "$0")" && pwd)
 node=$2
 modules=$3
+blender=${4:-}
 . "$here/../cli/common.sh"
 
 "$hydrodip" sample sphere > /dev/null || fail 'sample sphere'
@@ -17,4 +18,8 @@ write_tetrahedron tetra.obj
   "$hydrodip" simulate tetra.obj $quick_simulate -o plain > /dev/null || fail plain
 }
 NODE_PATH=$modules "$node" "$here/validate_glb.cjs" */preview.glb || fail 'errors or warnings'
+if [ -n "$blender" ]; then
+  "$blender" -b --factory-startup -noaudio --python-exit-code 1 -P "$here/blender_import.py" -- \
+    textured/preview.glb > blender.txt 2>&1 || fail "blender: $(cat blender.txt)"
+fi
 finish
