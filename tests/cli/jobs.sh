@@ -44,6 +44,9 @@ for name in $print_files; do
   cmp "one/$name" "out/$name" || fail "$name depends on the run"
 done
 
+for run in one two; do grep -o 'id="scene">[^<]*' "$run/report.html" > "$run.scene"; done
+cmp one.scene two.scene || fail "the page's 3D view depends on the number of threads"
+
 # Forward, with and without an image, of a model with and without appearance; odd names.
 "$hydrodip" simulate tetra.obj $quick_simulate -o plain > /dev/null || fail 'simulate'
 expect_files plain $simulate_files

@@ -139,8 +139,10 @@ export class Browser {
   }
 
   async close() {
+    const patience = setTimeout(() => this.process.kill('SIGKILL'), 5000);
     await this.send('Browser.close').catch(() => {});
     await this.gone;
+    clearTimeout(patience);
     rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
   }
 }

@@ -18,7 +18,7 @@ if (spawnSync(chromium, ['--version']).status !== 0) {
 
 const QUICK = ['film.elements=3000', 'dip.step_mm=2', 'preview.width_px=300', 'print.samples=1', 'print.dpi=72'];
 const work = mkdtempSync(join(tmpdir(), 'hydrodip-viewer-'));
-const browser = await Browser.start(chromium);
+process.on('exit', () => rmSync(work, { recursive: true, force: true }));
 const tests = [];
 const test = (name, body) => tests.push({ name, body });
 
@@ -33,6 +33,8 @@ for (const name of ['mask', 'sphere']) execFileSync(hydrodip, ['sample', name], 
 const mask = job('mask', 'mask.obj');
 const partial = job('partial', 'sphere.obj', '--depth', '12');
 const failed = job('failed', 'sphere.obj'); // past its equator: torn all around
+
+const browser = await Browser.start(chromium);
 
 // --- Helpers in the page ---
 
@@ -223,6 +225,5 @@ try {
   }
 } finally {
   await browser.close();
-  rmSync(work, { recursive: true, force: true });
 }
 process.exit(failures ? 1 : 0);

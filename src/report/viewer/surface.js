@@ -12,7 +12,7 @@ attribute vec4 tint;
 uniform float lift;
 varying vec2 vUv;
 varying vec4 vTint;
-varying vec3 vModelNormal, vNormal;
+varying vec3 vModelNormal, vNormal, vPlace;
 varying float vAmount, vHeight;
 void main() {
   vUv = uv;
@@ -26,6 +26,7 @@ void main() {
   vTint = vec4(1.0);
 #endif
   vec4 place = modelViewMatrix * vec4(position, 1.0);
+  vPlace = place.xyz;
   place.xyz -= lift * normalize(place.xyz);  // nearer to the eye, at the same place on the screen
   gl_Position = projectionMatrix * place;
 }`;
@@ -41,7 +42,7 @@ uniform vec4 extent;
 uniform float low, high, largest, depth, flatness;
 varying vec2 vUv;
 varying vec4 vTint;
-varying vec3 vModelNormal, vNormal;
+varying vec3 vModelNormal, vNormal, vPlace;
 varying float vAmount, vHeight;
 
 const vec3 kNeutral = vec3(0.36);
@@ -106,7 +107,7 @@ vec3 ruled(vec3 c) {
 
 float light() {
   vec3 n = normalize(vNormal);
-  if (!gl_FrontFacing) n = -n;
+  if (dot(n, normalize(vPlace)) > 0.15) n = -n;  // seen from inside
   float lamp = max(0.0, dot(n, normalize(vec3(-0.5, 0.8, 0.75))));
   float front = max(0.0, n.z);
   return 0.40 + 0.14 * (0.5 + 0.5 * n.y) + 0.34 * lamp + 0.18 * front;
