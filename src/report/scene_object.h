@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "object/object.h"
@@ -14,7 +16,10 @@ struct ShownVertex {
   std::array<float, 2> uv{};        // 0 without UVs
   std::array<float, 4> color{};     // linear, white without vertex colours
 
-  auto operator<=>(const ShownVertex&) const = default;
+  bool operator<(const ShownVertex& other) const {
+    return std::tie(position, normal, uv, color) <
+           std::tie(other.position, other.normal, other.uv, other.color);
+  }
 };
 
 // Triangles of one material, as indices[begin .. begin + count).
