@@ -73,6 +73,15 @@ void declare_film_and_dip(CLI::App& app, Request& request) {
       ->group(kFilmGroup)
       ->type_name("letter|a4|a3|WxH")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  app.add_option_function<std::string>(
+         "--quality",
+         [&request](const std::string& quality) {
+           request.sources.quality = quality_settings(quality);
+         },
+         "draft: coarse and quick, without pictures; fine: 160,000 triangles, half the step")
+      ->group(kFilmGroup)
+      ->type_name("draft|normal|fine")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   add_parameter_option(app, request, "--depth", "dip.depth_mm", "MM", kFilmGroup,
                        "how deep to dip (default: the whole object)");
   add_parameter_option(app, request, "--method", "dip.method", "full|single-step|projection",

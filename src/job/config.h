@@ -105,7 +105,8 @@ struct JobConfig {
   ProcessOptions process;
   StageOptions stage;
   int preview_width_px = 1600;
-  int threads = 0;  // 0: all cores
+  bool pictures = true;  // preview.png, maps.png, gamut.png and the 3D view of report.html
+  int threads = 0;       // 0: all cores
 };
 
 }  // namespace hydrodip

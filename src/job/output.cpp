@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "base/file.h"
@@ -93,6 +94,17 @@ Image draw_reach(const JobRecord& record, const Appearance& shown, const SheetRa
                         record.context);
 }
 
+// How far each colour is from what was wanted, where there is film with ink.
+FilmLayer reach_layer(const JobRecord& record, const SheetRaster& raster) {
+  const InkResult& ink = *record.ink;
+  std::vector<float> difference = ink.reach.difference;
+  for (std::size_t i = 0; i < difference.size(); ++i)
+    if (ink.ink.wanted.rgba[4 * i + 3] == 0)
+      difference[i] = std::numeric_limits<float>::quiet_NaN();
+  return pixel_layer("out_of_gamut", difference, raster.width_px(), raster.height_px(),
+                     Vec2(raster.width_mm, raster.height_mm), record.dipped.map->covered());
+}
+
 Image draw_maps(const JobRecord& record) {
   const DippedObject& dipped = record.dipped;
   MapOptions options;
@@ -112,7 +124,11 @@ ReportPictures write_previews(OutputFolder& folder, const JobRecord& record,
   const LinearColor base = base_color(record.config);
   write_film_ply(folder.path("film.ply"), dipped.film());
 
+  write_preview_glb(folder.path("preview.glb"), dipped.object(), dipped.film(),
+                    shrink_to(film_image, kTextureSide_px), raster.width_mm, raster.height_mm,
+                    base);
   ReportPictures pictures;
+  if (!record.config.pictures) return pictures;
   const Appearance shown = appearance(dipped, film_image, raster, base);
   pictures.preview_png =
       write_picture(folder.path("preview.png"),
@@ -120,15 +136,12 @@ ReportPictures write_previews(OutputFolder& folder, const JobRecord& record,
   if (record.ink != nullptr)
     write_picture(folder.path("gamut.png"), draw_reach(record, shown, raster));
   pictures.maps_png = write_picture(folder.path("maps.png"), draw_maps(record));
-
-  write_preview_glb(folder.path("preview.glb"), dipped.object(), dipped.film(),
-                    shrink_to(film_image, kTextureSide_px), raster.width_mm, raster.height_mm,
-                    base);
   return pictures;
 }
 
 PageParts page_parts(const JobRecord& record, const Image& film_image, const SheetRaster& raster) {
   const DippedObject& dipped = record.dipped;
+  if (!record.config.pictures) return {};
   const LinearColor base = base_color(record.config);
   const Image sheet = shrink_to(film_image, kPageTextureSide_px);
   SceneSource scene{dipped.object(), dipped.film(), dipped.history, sheet};
@@ -146,8 +159,10 @@ PageParts page_parts(const JobRecord& record, const Image& film_image, const She
                                              record.context));
     page.colors = colors_of(scene.layers.back());
   }
-  if (record.ink != nullptr)
+  if (record.ink != nullptr) {
+    scene.layers.push_back(reach_layer(record, raster));
     page.ink = ReportInk{heaviest_ink(record.ink->ink.inking.inks), record.config.ink.limit};
+  }
   page.scene = scene_json(scene, record.context);
   return page;
 }

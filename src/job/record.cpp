@@ -11,18 +11,20 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-std::vector<ReportOutput> outputs(const std::string& command, InkSide ink_side) {
+std::vector<ReportOutput> outputs(const std::string& command, const JobConfig& config) {
+  const InkSide ink_side = config.print.ink_side;
   std::vector<ReportOutput> list;
   if (command == "print")
     list = {{"print.pdf", fmt::format("the sheet: print it at 100 % (no scaling), ink side {}",
                                       ink_side == InkSide::kUp ? "up" : "down")},
             {"print.png", "what the sheet will look like, sRGB"},
             {"print.tif", "the inks of the film image, CMYK with their ICC profile"}};
-  if (command == "print")
+  if (command == "print" && config.pictures)
     list.push_back({"gamut.png", "which colours cannot be reached, and by how much"});
-  list.insert(list.end(), {{"preview.png", "what was asked for beside what will come out"},
-                           {"maps.png", "dipping angle, stretch and tears on the object"},
-                           {"preview.glb", "the dipped object in 3D"},
+  if (config.pictures)
+    list.insert(list.end(), {{"preview.png", "what was asked for beside what will come out"},
+                             {"maps.png", "dipping angle, stretch and tears on the object"}});
+  list.insert(list.end(), {{"preview.glb", "the dipped object in 3D"},
                            {"film.ply", "the film after the dip"},
                            {"report.html", "everything about this job, for people"},
                            {"report.json", "the same for programs"}});
@@ -146,7 +148,7 @@ Report make_report(const JobRecord& record) {
   report.figures = figures(record.dipped);
   add_ink(record, report.figures);
   report.warnings = record.context.warnings();
-  report.outputs = outputs(record.command, record.config.print.ink_side);
+  report.outputs = outputs(record.command, record.config);
   report.peak_memory_bytes = peak_memory_bytes();
   return report;
 }

@@ -383,6 +383,10 @@ std::vector<Parameter> run_records() {
       integer(
           "preview.width_px", "px", 64, 8192, [](C& c) -> int& { return c.preview_width_px; },
           "width of preview.png"),
+      choice<bool>(
+          "preview.pictures", {{"on", true}, {"off", false}},
+          [](C& c) -> bool& { return c.pictures; },
+          "preview.png, maps.png, gamut.png and the 3D view of report.html, which take seconds"),
       integer(
           "run.threads", "", 1, 1024, [](C& c) -> int& { return c.threads; },
           "processor threads; the result does not depend on it", "all cores"),

@@ -76,12 +76,31 @@ std::vector<Setting> film_settings(const std::string& film) {
           option_setting("film.height_mm", height, "'" + height + "'")};
 }
 
+std::vector<Setting> quality_settings(const std::string& quality) {
+  const auto settings = [](std::initializer_list<std::pair<const char*, const char*>> values) {
+    std::vector<Setting> list;
+    for (const auto& [name, value] : values)
+      list.push_back({name, value, false, value, "--quality"});
+    return list;
+  };
+  if (quality == "draft")
+    return settings({{"film.elements", "10000"},
+                     {"dip.step_mm", "0.5"},
+                     {"ink.rounds_max", "1"},
+                     {"preview.pictures", "off"}});
+  if (quality == "normal") return {};
+  if (quality == "fine") return settings({{"film.elements", "160000"}, {"dip.step_mm", "0.05"}});
+  throw InputError(fmt::format("--quality: '{}' is none of draft, normal, fine{}", quality,
+                               did_you_mean(quality, {"draft", "normal", "fine"})));
+}
+
 void apply_sources(JobConfig& config, const SettingSources& sources) {
   std::vector<Setting> all;
   const auto add = [&](const std::vector<Setting>& settings) {
     apply_settings(config, settings);
     all.insert(all.end(), settings.begin(), settings.end());
   };
+  add(sources.quality);
   for (const auto* files : {&sources.profiles, &sources.configs})
     for (const auto& file : *files) {
       add(read_settings(file));

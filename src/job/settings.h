@@ -30,16 +30,21 @@ struct FilmFormat {
 };
 const std::vector<FilmFormat>& film_formats();
 
+// What --quality stands for: draft (to look at while turning the object), normal (the defaults) or
+// fine. docs/performance.md has the errors and times of each.
+std::vector<Setting> quality_settings(const std::string& quality);
+
 // What the command line said about parameters, in rising precedence.
 struct SettingSources {
+  std::vector<Setting> quality;                 // --quality
   std::vector<std::filesystem::path> profiles;  // --profile, in order
   std::vector<std::filesystem::path> configs;   // --config, in order
   std::vector<Setting> options;                 // --size, --film, ...
   std::vector<Setting> sets;                    // --set
 };
 
-// Defaults < profiles < configs < options < sets. With dip.scheme=paper, film.grading defaults
-// to 1.
+// Defaults < quality < profiles < configs < options < sets. With dip.scheme=paper, film.grading
+// defaults to 1.
 void apply_sources(JobConfig& config, const SettingSources& sources);
 
 }  // namespace hydrodip

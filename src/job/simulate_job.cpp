@@ -136,8 +136,7 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
     return write_previews(folder, record, seen, printed.raster,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");
   });
-  PageParts page =
-      times.measure("page", [&] { return page_parts(record, seen, printed.raster); });
+  PageParts page = times.measure("page", [&] { return page_parts(record, seen, printed.raster); });
   return finish(folder, record, pictures, std::move(page));
 }
 

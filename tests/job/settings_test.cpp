@@ -102,6 +102,22 @@ TEST_F(Settings, TheContractsNamesAndDefaultsExist) {
     EXPECT_NO_THROW(find_parameter(name, "test")) << name;
 }
 
+TEST_F(Settings, QualityGivesWayToEverythingElse) {
+  SettingSources sources;
+  sources.quality = quality_settings("draft");
+  JobConfig draft;
+  apply_sources(draft, sources);
+  EXPECT_EQ(draft.film.elements, 10000);
+  EXPECT_FALSE(draft.pictures);
+  sources.sets = {parse_set("film.elements=2000")};
+  JobConfig own;
+  apply_sources(own, sources);
+  EXPECT_EQ(own.film.elements, 2000);
+  EXPECT_EQ(own.dip.step_mm, draft.dip.step_mm);
+  EXPECT_TRUE(quality_settings("normal").empty());
+  EXPECT_THROW(quality_settings("finer"), InputError);
+}
+
 TEST_F(Settings, UnknownNamesSayTheNearestOneAndWhereTheyStand) {
   EXPECT_EQ(set_error("film.elemnts=5"),
             "--set: unknown parameter 'film.elemnts'; did you mean 'film.elements'?");
