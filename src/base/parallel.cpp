@@ -25,6 +25,11 @@ void parallel_for(std::size_t count, std::size_t grain,
       tbb::simple_partitioner());
 }
 
+int available_threads() {
+  return static_cast<int>(
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
 ThreadLimit::ThreadLimit(int threads) {
   if (threads > 0)
     control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism,

@@ -13,6 +13,9 @@ namespace hydrodip {
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+// How many threads parallel_for may use now.
+int available_threads();
+
 // While it lives, parallel_for uses at most this many threads (0: all cores).
 class ThreadLimit {
  public:

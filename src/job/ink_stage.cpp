@@ -18,6 +18,10 @@ namespace {
 // undecided, two rounds can disagree forever. After so many rounds, when the ink has all but found
 // its place, tears and the outline of what stiffens the film stay as they are.
 constexpr int kFreeRounds = 3;
+// While ink and film settle, the film image need only be as fine as stiffness can tell: several
+// pixels to a millimetre.
+constexpr double kRoundsDpi = 150;
+
 // Of the film that lies on the object in both. What floats on or has torn off leaves no trace.
 double mean_way(const DippedFilm& from, const DippedFilm& to) {
   std::vector<std::uint8_t> counts(from.position.size(), 0);
@@ -127,7 +131,9 @@ FilmInk ink_for(const DippedObject& dipped, const ColorModel& model, const JobCo
 
 InkResult settle_ink(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
                      const JobConfig& config, StageTimes& times, RunContext& context) {
-  const SheetRaster raster = sheet_raster(config, config.print.dpi);
+  JobConfig rounds_config = config;
+  rounds_config.print.dpi = std::min(config.print.dpi, kRoundsDpi);
+  const SheetRaster raster = sheet_raster(rounds_config, rounds_config.print.dpi);
   const bool iterate = ink_matters(config) && config.ink.rounds_max > 1;
   DipOptions options = config.dip;
   InkResult result;
@@ -137,10 +143,11 @@ InkResult settle_ink(DippedObject& dipped, const FilmMesh& film, const ColorMode
     InkRound round;
     round.tears_kept = !options.tear_levels.empty();
     dip_again(dipped, film, options, times, context);
-    result.ink = times.measure("invert", [&] { return ink_for(dipped, model, config, context); });
+    result.ink =
+        times.measure("ink", [&] { return ink_for(dipped, model, rounds_config, context); });
 
     if (before) round.change_mm = mean_way(*before, dipped.film());
-    round.printed_mm2 = printed_area_mm2(result.ink.wanted, config.print.dpi);
+    round.printed_mm2 = printed_area_mm2(result.ink.wanted, rounds_config.print.dpi);
     round.mean_modulus = mean_of(options.modulus);
     round.dip = dipped.dip.statistics;
     const double last_change = result.rounds.empty() ? 0 : result.rounds.back().change_mm;
@@ -162,9 +169,11 @@ InkResult settle_ink(DippedObject& dipped, const FilmMesh& film, const ColorMode
     before = dipped.film();
   }
   warn_unsettled(result, context);
+  result.ink = times.measure("invert", [&] { return ink_for(dipped, model, config, context); });
   result.ink.on_object = look_on_object(result.ink.inking.inks, result.ink.stretch.area_ratio,
                                         model, base_color(config));
-  result.reach = measure_reach(result.ink.wanted, result.ink.on_object, result.ink.stretch, raster);
+  result.reach = measure_reach(result.ink.wanted, result.ink.on_object, result.ink.stretch,
+                               sheet_raster(config, config.print.dpi));
   return result;
 }
 

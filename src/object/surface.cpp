@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/parallel.h"
+
 namespace hydrodip {
 
 namespace {
@@ -66,9 +68,7 @@ struct Surface::Impl {
 
 namespace {
 
-// One builder thread: Embree's parallel build may order triangles differently from run to run, and
-// with it the choice among triangles hit exactly on their common edge.
-constexpr const char* kDeviceOptions = "threads=1,set_affinity=0";
+constexpr const char* kDeviceOptions = "set_affinity=0";
 
 void build(RTCDevice device, RTCScene scene, const std::vector<Vec3>& positions,
            const std::vector<Triangle>& triangles) {
@@ -99,6 +99,10 @@ Surface::Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>
   impl_->device = rtcNewDevice(kDeviceOptions);
   if (!impl_->device) throw std::runtime_error("Embree could not be started");
   impl_->scene = rtcNewScene(impl_->device);
+  // Embree's parallel build may order triangles differently from run to run, and with it the choice
+  // among triangles hit exactly on their common edge. (Its own option "threads=1" would hold back
+  // the whole process for as long as the device lives.)
+  const ThreadLimit one_thread(1);
   if (!triangles.empty())
     build(impl_->device, impl_->scene, positions, triangles);
   else

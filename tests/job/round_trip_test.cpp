@@ -41,8 +41,8 @@ JobConfig mask_job(const std::filesystem::path& folder) {
   config.film.elements = 20000;
   config.dip.step_mm = 0.2;
   // The mask's texture has edges sharper than a pixel of 300 dpi, which alone keep it at 34 dB.
-  config.print.dpi = 400;
-  config.preview_width_px = 400;
+  config.print.dpi = 600;
+  config.pictures = false;
   return config;
 }
 
