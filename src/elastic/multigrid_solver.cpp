@@ -11,7 +11,7 @@ namespace hydrodip {
 
 namespace {
 
-constexpr int kMaxIterations = 200;
+constexpr int kMaxIterations = 60;
 constexpr std::size_t kGrain = 4096;
 constexpr std::size_t kRowsPerTask = 512;
 // A triangle's part of the operator is kept until it has changed by this much, relatively.

@@ -13,7 +13,7 @@ namespace hydrodip {
 
 struct RelaxationOptions {
   double tolerance_mm = 1e-5;  // stop once no vertex would move further in the next iteration
-  int max_iterations = 30;
+  int max_iterations = 15;
   double linear_tolerance = 0.03;
   const RunContext* context = nullptr;  // if given: asked between iterations, Cancelled is thrown
 };

@@ -18,6 +18,11 @@ namespace {
 // undecided, two rounds can disagree forever. After so many rounds, when the ink has all but found
 // its place, tears and the outline of what stiffens the film stay as they are.
 constexpr int kFreeRounds = 3;
+// From then on a round has to bring the change below this share of the last one's.
+constexpr double kLeastProgress = 0.7;
+// Where more of the film tears than this share of what meets the object, the dip is to be planned
+// anew, and what the ink does to it is not worth a round of minutes.
+constexpr double kHopelessShare = 0.2;
 // While ink and film settle, the film image need only be as fine as stiffness can tell: several
 // pixels to a millimetre.
 constexpr double kRoundsDpi = 150;
@@ -158,6 +163,16 @@ InkResult settle_ink(DippedObject& dipped, const FilmMesh& film, const ColorMode
 
     result.settled = !iterate || (before && round.change_mm < kSettled_mm);
     if (result.settled || int(result.rounds.size()) >= config.ink.rounds_max) break;
+    if (dipped.coverage.torn_share() > kHopelessShare) {
+      context.warn(
+          "so much film tears that the dip was not computed again with its ink; turn steep sides "
+          "down or dip less, then print anew");
+      break;
+    }
+    // Film that tears differently every time does not settle, and each round costs a dip.
+    if (int(result.rounds.size()) > kFreeRounds && last_change > 0 &&
+        round.change_mm > kLeastProgress * last_change)
+      break;
     const bool settle = int(result.rounds.size()) >= kFreeRounds;
     if (settle && options.tear_levels.empty()) options.tear_levels = dipped.film().tear_level;
     const InkImage& inks = stiffening.now(result.ink, int(result.rounds.size()) > kFreeRounds);

@@ -179,8 +179,8 @@ void add_output_intent(HPDF_Doc document, HPDF_Dict profile) {
   HPDF_Dict_AddName(intent, "S", "GTS_PDFX");
   HPDF_Dict_Add(intent, "OutputConditionIdentifier",
                 made(document, HPDF_String_New(document->mmgr, "Custom", nullptr)));
-  HPDF_Dict_Add(intent, "Info", made(document, HPDF_String_New(document->mmgr,
-                                                               "the printer's profile", nullptr)));
+  HPDF_Dict_Add(intent, "Info",
+                made(document, HPDF_String_New(document->mmgr, "the printer's profile", nullptr)));
   HPDF_Dict_Add(intent, "DestOutputProfile", profile);
 }
 
@@ -188,9 +188,9 @@ void add_output_intent(HPDF_Doc document, HPDF_Dict profile) {
 HPDF_Image add_image(HPDF_Doc document, const PixelBox& box, const Picture& picture,
                      PixelStream& pixels) {
   const std::array<HPDF_BYTE, 4> blank{};
-  HPDF_Image image = HPDF_LoadRawImageFromMem(
-      document, blank.data(), 1, 1,
-      picture.channels == 3 ? HPDF_CS_DEVICE_RGB : HPDF_CS_DEVICE_CMYK, 8);
+  HPDF_Image image =
+      HPDF_LoadRawImageFromMem(document, blank.data(), 1, 1,
+                               picture.channels == 3 ? HPDF_CS_DEVICE_RGB : HPDF_CS_DEVICE_CMYK, 8);
   if (image == nullptr) return nullptr;
   HPDF_Dict_AddNumber(image, "Width", box.width());
   HPDF_Dict_AddNumber(image, "Height", box.height());
