@@ -25,8 +25,9 @@ class GridVector {
   float* y() { return &y_[0].value[0]; }
   const float* x() const { return &x_[0].value[0]; }
   const float* y() const { return &y_[0].value[0]; }
-  operator kernels::Input() const { return {x(), y()}; }
-  operator kernels::Output() { return {x(), y()}; }
+  // As the kernels take it. Implicit: a view, and nothing else is meant.
+  operator kernels::Input() const { return {x(), y()}; }  // NOLINT(google-explicit-constructor)
+  operator kernels::Output() { return {x(), y()}; }       // NOLINT(google-explicit-constructor)
   void set_zero() {
     x_.assign(x_.size(), {});
     y_.assign(y_.size(), {});
