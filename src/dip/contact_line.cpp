@@ -58,7 +58,6 @@ class ContactLineScheme : public Scheme {
         solver_(setting.options.make_solver(setting.film)),
         feet_of_corner_(3 * setting.film.triangles.size(), {-1, -1}),
         usable_(setting.film.triangles.size(), 0),
-        film_left_(setting.film.triangles.size(), 0),
         is_free_(setting.film.u.size(), 0),
         plan_(setting.film.u),
         last_slide_(setting.film.u.size(), Vec2::Zero()),
@@ -184,7 +183,6 @@ class ContactLineScheme : public Scheme {
   // drifts: nothing holds or moves it.
   void update_load(std::size_t t) {
     usable_[t] = carries_load(t);
-    film_left_[t] = usable_[t];
     for (std::int32_t v : film_.triangles[t]) {
       const auto begin = film_.incident.begin() + film_.incident_begin[std::size_t(v)],
                  end = film_.incident.begin() + film_.incident_begin[std::size_t(v) + 1];
@@ -205,7 +203,7 @@ class ContactLineScheme : public Scheme {
 
   // Flat where it floats, all at once; with ghosts for corners at the contact line.
   void set_rest() {
-    energy_.set_flat_rest(plan_, film_left_);
+    energy_.set_flat_rest(plan_, usable_);
     for (std::size_t t : line_triangles_)
       if (usable_[t]) energy_.set_rest(t, rest_of(t));
     parallel_for(usable_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -273,12 +271,6 @@ class ContactLineScheme : public Scheme {
         if (is_free[v]) u[v] += last_slide_[v];
     });
     return energy_.any_inverted(u) ? film_.u : u;
-  }
-
-  Mat2 strain(std::size_t t, const VertexVector& u) const {
-    const Triangle& v = film_.triangles[t];
-    return deformation_gradient(energy_.rest(t), u[std::size_t(v[0])], u[std::size_t(v[1])],
-                                u[std::size_t(v[2])]);
   }
 
   void tear(const VertexVector& u, double level) {
@@ -556,9 +548,9 @@ class ContactLineScheme : public Scheme {
   std::vector<std::array<std::int32_t, 2>> feet_of_corner_;
   std::vector<std::size_t> indexed_corners_;
   std::vector<std::size_t> line_triangles_;  // with attached and floating corners, ascending
-  // Per triangle: carries load in this step; the same as a factor; the least rest area.
+  // Per triangle: carries load in this step; the least rest area.
   std::vector<std::uint8_t> usable_;
-  std::vector<double> film_left_, smallest_area_;
+  std::vector<double> smallest_area_;
   std::vector<std::int64_t> tears_;
   std::vector<std::size_t> torn_now_;  // triangles torn in this step
   bool any_torn_ = false;

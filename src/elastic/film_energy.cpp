@@ -53,7 +53,7 @@ kernels::Elements FilmEnergy::elements() const {
           lambda_.data()};
 }
 
-void FilmEnergy::set_flat_rest(const VertexVector& place, const std::vector<double>& film) {
+void FilmEnergy::set_flat_rest(const VertexVector& place, const std::vector<std::uint8_t>& film) {
   double* const gradient[2][2] = {{gradient_[0][0].data(), gradient_[0][1].data()},
                                   {gradient_[1][0].data(), gradient_[1][1].data()}};
   parallel_for(film.size(), kGrain, [&](std::size_t begin, std::size_t end) {

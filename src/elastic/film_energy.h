@@ -38,7 +38,7 @@ class FilmEnergy {
     for (std::size_t t = 0; t < rest.size(); ++t) set_rest(t, rest[t]);
   }
   // Of all triangles at once: where the vertices lie in the plane, and 1 for triangles with film.
-  void set_flat_rest(const VertexVector& place, const std::vector<double>& film);
+  void set_flat_rest(const VertexVector& place, const std::vector<std::uint8_t>& film);
   RestTriangle rest(std::size_t t) const {
     RestTriangle rest;
     for (std::size_t c = 0; c < 2; ++c) {

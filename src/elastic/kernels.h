@@ -83,7 +83,7 @@ struct Table {
   // Rest shapes of triangles [begin, end) whose corners lie flat at the places given (x and y of
   // every vertex in turn); area 0 where `film` is 0 and where the corners run clockwise.
   void (*rest_shapes)(const Elements&, std::size_t begin, std::size_t end, const double* place,
-                      const double* film, double* const (*gradient)[2], double* area);
+                      const std::uint8_t* film, double* const (*gradient)[2], double* area);
   // 1 where film is stretched further than the limit at u, in some direction.
   void (*overstretched)(const Elements&, std::size_t begin, std::size_t end, const double* u,
                         double limit, std::int64_t* out);

@@ -181,7 +181,7 @@ double advance(std::size_t begin, std::size_t end, float step, Input p, Input Ap
 }
 
 void rest_shapes(const Elements& e, std::size_t begin, std::size_t end, const double* place,
-                 const double* film, double* const (*gradient)[2], double* area) {
+                 const std::uint8_t* film, double* const (*gradient)[2], double* area) {
   double* __restrict g1x = gradient[0][0];
   double* __restrict g1y = gradient[0][1];
   double* __restrict g2x = gradient[1][0];
@@ -194,12 +194,13 @@ void rest_shapes(const Elements& e, std::size_t begin, std::size_t end, const do
     const double cx = place[c] - place[a], cy = place[c + 1] - place[a + 1];
     const double twice = bx * cy - by * cx;
     const bool usable = twice > 0;
-    const double inverse = film[t] / (usable ? twice : 1.0) * (usable ? 1.0 : 0.0);
+    const double present = film[t];
+    const double inverse = present / (usable ? twice : 1.0) * (usable ? 1.0 : 0.0);
     g1x[t] = cy * inverse;
     g1y[t] = -cx * inverse;
     g2x[t] = -by * inverse;
     g2y[t] = bx * inverse;
-    area[t] = usable ? 0.5 * twice * film[t] : 0.0;
+    area[t] = usable ? 0.5 * twice * present : 0.0;
   }
 }
 

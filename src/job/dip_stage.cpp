@@ -38,14 +38,6 @@ void dip_again(DippedObject& dipped, const FilmMesh& film, const DipOptions& opt
   });
 }
 
-std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const FilmMesh& film,
-                                         const JobConfig& config, StageTimes& times,
-                                         RunContext& context) {
-  auto dipped = undipped(std::move(posed));
-  dip_again(*dipped, film, config.dip, times, context);
-  return dipped;
-}
-
 SheetRaster sheet_raster(const JobConfig& config, double dpi) {
   return {config.film.width_mm, config.film.height_mm, dpi};
 }

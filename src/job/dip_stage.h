@@ -32,15 +32,10 @@ struct DippedObject {
   const DippedFilm& film() const { return dip.film; }
 };
 
-// Simulates the dip of a posed object that fits the film.
-std::unique_ptr<DippedObject> dip_object(LoadedObject posed, const FilmMesh& film,
-                                         const JobConfig& config, StageTimes& times,
-                                         RunContext& context);
-
 // The object alone, before any dip.
 std::unique_ptr<DippedObject> undipped(LoadedObject posed);
 
-// Dips it once more, with other options; everything but the object is made anew.
+// Simulates its dip on film that it fits; everything but the object is made anew.
 void dip_again(DippedObject& dipped, const FilmMesh& film, const DipOptions& options,
                StageTimes& times, RunContext& context);
 

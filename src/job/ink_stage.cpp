@@ -184,7 +184,8 @@ InkResult settle_ink(DippedObject& dipped, const FilmMesh& film, const ColorMode
     before = dipped.film();
   }
   warn_unsettled(result, context);
-  result.ink = times.measure("invert", [&] { return ink_for(dipped, model, config, context); });
+  if (rounds_config.print.dpi < config.print.dpi)
+    result.ink = times.measure("invert", [&] { return ink_for(dipped, model, config, context); });
   result.ink.on_object = look_on_object(result.ink.inking.inks, result.ink.stretch.area_ratio,
                                         model, base_color(config));
   result.reach = measure_reach(result.ink.wanted, result.ink.on_object, result.ink.stretch,

@@ -31,7 +31,7 @@ struct StrainedFilm {
     for (Vec2& p : u) p += 0.2 * mesh.cell_mm * Vec2(unit(generator), unit(generator));
     VertexVector place = mesh.u;
     for (Vec2& p : place) p += 0.1 * mesh.cell_mm * Vec2(unit(generator), unit(generator));
-    std::vector<double> film(mesh.triangles.size(), 1);
+    std::vector<std::uint8_t> film(mesh.triangles.size(), 1);
     for (std::size_t t = 0; t < film.size(); t += 17) film[t] = 0;
     energy.set_flat_rest(place, film);
     for (std::uint8_t rim : mesh.on_rim) is_free.push_back(!rim);
@@ -53,7 +53,7 @@ std::vector<double> results_of(const kernels::Table& table) {
   table.overstretched(film.energy.elements(), 0, n, film.u.data()->data(), 1.2, flags.data());
   results.insert(results.end(), flags.begin(), flags.end());
   std::vector<double> area(n);
-  const std::vector<double> present(n, 1);
+  const std::vector<std::uint8_t> present(n, 1);
   table.rest_shapes(film.energy.elements(), 0, n, film.u.data()->data(), present.data(), out,
                     area.data());
   for (const auto& g : force) results.insert(results.end(), g.begin(), g.end());
