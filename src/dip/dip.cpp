@@ -85,9 +85,7 @@ void relax_film(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_fr
                 LinearSolver& solver, VertexVector& u, DipStatistics& statistics,
                 const RelaxationOptions& options) {
   const RelaxationResult result = relax(energy, is_free, options, solver, u);
-  statistics.newton_iterations += result.newton_iterations;
-  statistics.linear_iterations += result.linear_iterations;
-  statistics.factorizations = solver.factorizations();
+  statistics.iterations += result.iterations;
   if (!result.converged) ++statistics.unconverged_steps;
   statistics.largest_residual_mm = std::max(statistics.largest_residual_mm, result.last_update_mm);
   for (const Vec2& p : u)

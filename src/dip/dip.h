@@ -49,11 +49,9 @@ struct DipOptions {
 // How the computation went; sums over all steps.
 struct DipStatistics {
   int steps = 0;
-  long newton_iterations = 0;
-  long linear_iterations = 0;
-  long factorizations = 0;
+  long iterations = 0;             // of all relaxations
   long unconverged_steps = 0;      // steps that ended at the iteration bound
-  double largest_residual_mm = 0;  // largest last Newton update over all steps
+  double largest_residual_mm = 0;  // largest last update over all steps
 };
 
 struct DipResult {

@@ -10,7 +10,7 @@ namespace hydrodip {
 namespace {
 
 // The film is far from its minimum here, unlike between two steps of the full simulation.
-constexpr int kMaxNewtonIterations = 60;
+constexpr int kMaxIterations = 250;
 constexpr int kMaxRounds = 10;
 // Share of its flat area at which a triangle is about to turn over.
 constexpr double kFolding = 1e-3;
@@ -46,7 +46,7 @@ class SingleStep : public Scheme {
         rest_in_space(film_, state_.position, is_free, set_.options.material.z_stretch));
     VertexVector u = film_.u;
     RelaxationOptions options;
-    options.max_iterations = kMaxNewtonIterations;
+    options.max_iterations = kMaxIterations;
     options.context = &set_.context;
     int held = 0;
     for (int round = 0; round < kMaxRounds; ++round) {

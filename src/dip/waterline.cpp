@@ -14,6 +14,9 @@ constexpr double kMaxSteepness = 1e6;
 // Share of its length by which a segment reaches beyond its ends, so that nothing slips out between
 // two segments.
 constexpr double kEndSlack = 1e-6;
+// So near its end, as a share of its length, a segment's direction gives way to the mean with the
+// next one's: rounding must not decide between them where an object and a film are symmetric.
+constexpr double kJoint = 1e-3;
 // What lies this little above the water counts as reached by it.
 constexpr double kLevelSlack_mm = 0.01;
 
@@ -136,6 +139,7 @@ std::optional<Waterline::Point> Waterline::exit(const Vec2& from, const Vec2& to
   const Vec2 way = to - from;
   double best = 2;
   const Segment* found = nullptr;
+  const Vec2* end = nullptr;  // of the segment found, if that is where it was crossed
   const int x0 = cell_x(std::min(from.x(), to.x())), x1 = cell_x(std::max(from.x(), to.x()));
   const int y0 = cell_y(std::min(from.y(), to.y())), y1 = cell_y(std::max(from.y(), to.y()));
   for (int y = y0; y <= y1; ++y)
@@ -152,11 +156,33 @@ std::optional<Waterline::Point> Waterline::exit(const Vec2& from, const Vec2& to
         if (along < 0 || along > 1 || along >= best) continue;
         if (across < -kEndSlack || across > 1 + kEndSlack) continue;
         best = along;
+        end = across < kJoint ? &s.a : across > 1 - kJoint ? &s.b : nullptr;
         found = &s;
       }
     }
   if (!found) return std::nullopt;
-  return Point{from + best * way, found->outward, found->steepness};
+  const Point point{from + best * way, found->outward, found->steepness};
+  return end ? at_joint(point, *found, *end, way) : point;
+}
+
+// The mean over the segments that meet there and are left in this direction.
+Waterline::Point Waterline::at_joint(const Point& point, const Segment& segment, const Vec2& end,
+                                     const Vec2& way) const {
+  Vec2 outward = Vec2::Zero();
+  double steepness = 0, count = 0;
+  const std::size_t c =
+      std::size_t(cell_y(end.y())) * std::size_t(grid_nx_) + std::size_t(cell_x(end.x()));
+  for (auto n = grid_begin_[c]; n < grid_begin_[c + 1]; ++n) {
+    const Segment& s = segments_[std::size_t(grid_items_[std::size_t(n)])];
+    const double length = (segment.b - segment.a).norm();
+    if (std::min((s.a - end).norm(), (s.b - end).norm()) > kEndSlack * length) continue;
+    if (way.dot(s.outward) <= 0) continue;
+    outward += s.outward;
+    steepness += s.steepness;
+    ++count;
+  }
+  if (!(outward.norm() > 0)) return point;
+  return {point.position, outward.normalized(), steepness / count};
 }
 
 std::optional<Waterline::Point> Waterline::closest(const Vec2& point, double max_distance) const {

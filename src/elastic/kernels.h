@@ -73,12 +73,9 @@ struct Table {
   void (*prolong_rows)(const Transfer&, std::ptrdiff_t begin, std::ptrdiff_t end, Input e,
                        Output x);
 
-  // On vector entries [begin, end), multiples of kLanes: a . b; a = scale a + b; and, together,
-  // x += step p, r -= step Ap, returning r . r.
+  // On vector entries [begin, end), multiples of kLanes: a . b and a = scale a + b.
   double (*dot)(std::size_t begin, std::size_t end, Input a, Input b);
   void (*scale_and_add)(std::size_t begin, std::size_t end, Output a, float scale, Input b);
-  double (*advance)(std::size_t begin, std::size_t end, float step, Input p, Input Ap, Output x,
-                    Output r);
 
   // Rest shapes of triangles [begin, end) whose corners lie flat at the places given (x and y of
   // every vertex in turn); area 0 where `film` is 0 and where the corners run clockwise.

@@ -164,22 +164,6 @@ void scale_and_add(std::size_t begin, std::size_t end, Output a, float scale, In
   }
 }
 
-double advance(std::size_t begin, std::size_t end, float step, Input p, Input Ap, Output x,
-               Output r) {
-  alignas(64) float lanes[kLanes] = {};
-  for (std::size_t n = begin; n < end; n += kLanes)
-#pragma GCC ivdep
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      x.x[n + k] += step * p.x[n + k];
-      x.y[n + k] += step * p.y[n + k];
-      const float rx = r.x[n + k] - step * Ap.x[n + k], ry = r.y[n + k] - step * Ap.y[n + k];
-      r.x[n + k] = rx;
-      r.y[n + k] = ry;
-      lanes[k] += rx * rx + ry * ry;
-    }
-  return sum_of(lanes);
-}
-
 void rest_shapes(const Elements& e, std::size_t begin, std::size_t end, const double* place,
                  const std::uint8_t* film, double* const (*gradient)[2], double* area) {
   double* __restrict g1x = gradient[0][0];
@@ -313,8 +297,8 @@ void overstretched(const Elements& e, std::size_t begin, std::size_t end, const 
 }  // namespace
 
 extern const Table KERNELS_VARIANT;
-const Table KERNELS_VARIANT = {multiply,      residual, smooth,        precondition, restrict_rows,
-                               prolong_rows,  dot,      scale_and_add, advance,      rest_shapes,
-                               overstretched, forces,   turned_over,   changed};
+const Table KERNELS_VARIANT = {
+    multiply,      residual,    smooth,        precondition, restrict_rows, prolong_rows, dot,
+    scale_and_add, rest_shapes, overstretched, forces,       turned_over,   changed};
 
 }  // namespace hydrodip::kernels

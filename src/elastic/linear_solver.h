@@ -1,4 +1,4 @@
-// Solvers for one Newton step of the film, behind one interface.
+// Directions in which the film's energy is minimised, behind one interface.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,10 @@
 
 namespace hydrodip {
 
-struct LinearSolveResult {
-  int iterations = 0;      // 0 for a direct solve
-  bool converged = false;  // false: the operator is not definite, or too many iterations
-};
-
-// Solves H x = b over the vertices whose is_free is 1; x is zero elsewhere. H is the Hessian or
-// close to it: what is reused from call to call (symbolic analysis, unchanged rows) is the solver's
-// own business, as Newton's method checks every step against the true gradient.
+// Turns gradients g of the energy into steps d (u becomes u - d), zero where a vertex is held.
+// Solves with the Hessian or something close to it: what is reused from call to call (symbolic
+// analysis, unchanged rows) is the solver's own business, as every step is checked against the true
+// energy or its gradient.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
@@ -27,18 +23,19 @@ class LinearSolver {
   virtual void update(const FilmEnergy& energy, const VertexVector& u,
                       const std::vector<std::uint8_t>& is_free, bool definite,
                       double moved_mm = kAnyChange) = 0;
-  virtual LinearSolveResult solve(const VertexVector& b, double relative_tolerance,
-                                  VertexVector& x) = 0;
-  // How often everything was computed anew.
-  virtual long factorizations() const = 0;
+
+  // The next step from the gradient where the last one has led. False if there is none because the
+  // operator turned out not to be definite.
+  virtual bool direction(const VertexVector& gradient, VertexVector& step) = 0;
 };
 
-// Sparse Cholesky of H itself, symbolic analysis reused. Exact, slow: the reference.
+// Newton's steps, by sparse Cholesky of H itself, symbolic analysis reused. Slow: the reference.
 std::unique_ptr<LinearSolver> make_direct_solver();
 
-// Conjugate gradients, preconditioned by geometric multigrid on the film's grid, in single
-// precision. Only those rows of the Hessian are computed again whose triangles have changed
-// noticeably since they were computed last. Keeps a reference to the mesh.
+// Conjugate directions (Polak and Ribiere's), preconditioned by one cycle of geometric multigrid
+// on the film's grid in single precision, as long as the best step along them. Only those rows of
+// the Hessian are computed again whose triangles have changed noticeably since they were computed
+// last. Keeps a reference to the mesh.
 std::unique_ptr<LinearSolver> make_multigrid_solver(const FilmMesh& mesh);
 
 }  // namespace hydrodip

@@ -32,6 +32,10 @@ class GridVector {
     x_.assign(x_.size(), {});
     y_.assign(y_.size(), {});
   }
+  void swap(GridVector& other) {
+    x_.swap(other.x_);
+    y_.swap(other.y_);
+  }
 
  private:
   std::vector<kernels::Lanes> x_, y_;

@@ -11,7 +11,6 @@ namespace hydrodip {
 
 namespace {
 
-constexpr int kMaxIterations = 60;
 constexpr std::size_t kGrain = 4096;
 constexpr std::size_t kRowsPerTask = 512;
 // A triangle's part of the operator is kept until it has changed by this much, relatively.
@@ -29,10 +28,10 @@ class MultigridSolver : public LinearSolver {
         line_(mesh.u.size()),
         place_(mesh.u.size()),
         r_(grid_.finest().vector()),
+        r_before_(r_),
         z_(r_),
         p_(r_),
-        Ap_(r_),
-        x_(r_) {
+        Ap_(r_) {
     for (int j = 0; j < mesh.ny; ++j)
       for (int i = 0; i < mesh.nx; ++i) {
         const std::int32_t v = mesh.vertex_at[grid_.finest().node(i, j)];
@@ -45,35 +44,33 @@ class MultigridSolver : public LinearSolver {
 
   void update(const FilmEnergy& energy, const VertexVector& u,
               const std::vector<std::uint8_t>& is_free, bool definite, double moved_mm) override {
-    const bool all = is_free_.empty() || definite != definite_ || renew_;
-    if (!all && moved_mm < kStillShare * mesh_.cell_mm) return;
-    definite_ = definite;
-    renew_ = false;
-    if (is_free_.empty()) kept_.resize(mesh_.triangles.size());
+    const bool all = is_free_.empty();
+    if (definite == definite_ && moved_mm < kStillShare * mesh_.cell_mm) return;
+    if (all) kept_.resize(mesh_.triangles.size());
     find_changes(energy, u, all);
+    if (definite != definite_) find_indefinite(energy);
+    definite_ = definite;
     linearize(energy, u);
     touch_masked(is_free, all);
     compute_rows(energy);
     grid_.update(all);
-    if (all) ++renewals_;
+    restart_ = true;
   }
 
-  LinearSolveResult solve(const VertexVector& b, double relative_tolerance,
-                          VertexVector& x) override {
-    set_right_side(b);
-    const LinearSolveResult result = conjugate_gradients(relative_tolerance);
-    renew_ = !result.converged;
-    x.resize(b.size());
-    parallel_for(x.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  bool direction(const VertexVector& gradient, VertexVector& step) override {
+    r_.swap(r_before_);
+    set_right_side(gradient);
+    const float length = turn();
+    if (!(length >= 0)) return false;
+    step.resize(gradient.size());
+    parallel_for(step.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         const auto place = std::size_t(place_[v]);
-        x[v] = Vec2(x_.x()[place], x_.y()[place]);
+        step[v] = double(length) * Vec2(p_.x()[place], p_.y()[place]);
       }
     });
-    return result;
+    return true;
   }
-
-  long factorizations() const override { return renewals_; }
 
  private:
   // What the operator was computed from, per triangle.
@@ -102,6 +99,12 @@ class MultigridSolver : public LinearSolver {
       kernels_.changed(energy.elements(), begin, end, u.data()->data(), kept_.view(),
                        kOperatorTolerance, differs_.data());
     });
+  }
+
+  // Triangles whose parts depend on definite_.
+  void find_indefinite(const FilmEnergy& energy) {
+    for (std::size_t t = 0; t < differs_.size(); ++t)
+      differs_[t] |= std::int64_t(double(kept_.turning[t]) < -energy.material(t).mu);
   }
 
   void linearize(const FilmEnergy& energy, const VertexVector& u) {
@@ -220,43 +223,32 @@ class MultigridSolver : public LinearSolver {
         [&](std::size_t first, std::size_t last) { return kernels_.dot(first, last, a, b); });
   }
 
-  // x_ += step p_, r_ -= step Ap_. Returns r_ . r_.
-  double advance(float step) {
-    return sum_over_rows([&](std::size_t first, std::size_t last) {
-      return kernels_.advance(first, last, step, p_, Ap_, x_, r_);
-    });
+  // Turns p_ into the next conjugate direction, from the gradients r_ and r_before_. Returns how
+  // far to go along it; below 0 if the operator is not definite.
+  float turn() {
+    grid_.cycle(r_, z_);
+    const double rz = dot(r_, z_);
+    if (rz < 0) return -1;
+    const double bend = restart_ ? 0 : std::max(0.0, (rz - dot(r_before_, z_)) / rz_before_);
+    rz_before_ = rz;
+    restart_ = !(rz > 0);
+    if (bend > 0)
+      add_to_direction(float(bend));
+    else
+      p_ = z_;
+    grid_.finest().multiply(p_, Ap_);
+    const double curvature = dot(p_, Ap_);
+    if (!(curvature > 0)) return rz > 0 ? -1.0F : 0.0F;
+    return float(dot(r_, p_) / curvature);
   }
 
-  // p_ = z_ + scale p_.
-  void turn(float scale) {
+  // p_ = z_ + bend p_.
+  void add_to_direction(float bend) {
     const GridOperator& A = grid_.finest();
     A.for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       kernels_.scale_and_add(A.place(0, int(begin)), A.place(0, int(end)) - kernels::kLanes, p_,
-                             scale, z_);
+                             bend, z_);
     });
-  }
-
-  // Of r_, into x_.
-  LinearSolveResult conjugate_gradients(double relative_tolerance) {
-    x_.set_zero();
-    const double start = dot(r_, r_);
-    const double target = start * relative_tolerance * relative_tolerance;
-    double rz_before = 0;
-    for (int iteration = 1; iteration <= kMaxIterations; ++iteration) {
-      grid_.cycle(r_, z_);
-      const double rz = dot(r_, z_);
-      if (!(rz > 0)) return {iteration, start == 0};
-      if (iteration == 1)
-        p_ = z_;
-      else
-        turn(float(rz / rz_before));
-      rz_before = rz;
-      grid_.finest().multiply(p_, Ap_);
-      const double curvature = dot(p_, Ap_);
-      if (!(curvature > 0)) return {iteration, false};
-      if (advance(float(rz / curvature)) <= target) return {iteration, true};
-    }
-    return {kMaxIterations, false};
   }
 
   const FilmMesh& mesh_;
@@ -268,9 +260,10 @@ class MultigridSolver : public LinearSolver {
   std::vector<std::uint8_t> is_free_;
   std::vector<std::int64_t> differs_;
   Kept kept_;
-  bool definite_ = false, renew_ = false;
-  long renewals_ = 0;
-  GridVector r_, z_, p_, Ap_, x_;
+  bool definite_ = false, restart_ = true;
+  // Gradient and the one before, preconditioned gradient, direction, operator times direction.
+  GridVector r_, r_before_, z_, p_, Ap_;
+  double rz_before_ = 0;
 };
 
 }  // namespace

@@ -45,28 +45,27 @@ double dot(const VertexVector& a, const VertexVector& b) {
   return std::accumulate(partial.begin(), partial.end(), 0.0);
 }
 
-// Newton's method and what it carries from one iteration to the next.
-class Newton {
+// The descent and what it carries from one iteration to the next.
+class Descent {
  public:
-  Newton(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
-         const RelaxationOptions& options, LinearSolver& solver, VertexVector& u)
+  Descent(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
+          const RelaxationOptions& options, LinearSolver& solver, VertexVector& u)
       : energy_(energy), is_free_(is_free), options_(options), solver_(solver), u_(u) {}
 
   RelaxationResult run() {
     energy_.gradient(u_, is_free_, gradient_);
     double contraction = kFirstContraction;
-    while (result_.newton_iterations < options_.max_iterations) {
+    while (result_.iterations < options_.max_iterations) {
       if (options_.context) options_.context->check_cancelled();
-      find_direction();
-      ++result_.newton_iterations;
+      if (!find_direction()) return result_;
+      ++result_.iterations;
       const double slope = dot(gradient_, direction_);
-      if (!(slope > 0)) {  // nothing to gain: at the minimum, or no descent direction left
+      if (!(slope > 0)) {  // nothing to gain: at the minimum, or no way down
         result_.converged = slope == 0;
         return result_;
       }
       const double update = largest_norm(direction_);
-      if (result_.newton_iterations > 1)
-        contraction = std::min(1.0, update / result_.last_update_mm);
+      if (result_.iterations > 1) contraction = std::min(1.0, update / result_.last_update_mm);
       result_.last_update_mm = update;
       // What the next iterations would still change.
       result_.converged = update * contraction <= options_.tolerance_mm;
@@ -77,23 +76,20 @@ class Newton {
   }
 
  private:
-  // Newton's direction from the exact Hessian. With the film held at its rim that one is definite
-  // as long as no triangle shrinks to about half its size (docs/model.md), although single
-  // triangles' are not; where it fails, the sum of the triangles' definite parts takes its place.
-  void find_direction() {
-    solver_.update(energy_, u_, is_free_, false, moved_mm_);
+  // With the exact Hessian. With the film held at its rim that one is definite as long as no
+  // triangle shrinks to about half its size (docs/model.md), although single triangles' are not;
+  // where it fails, the sum of the triangles' definite parts takes its place from there on.
+  bool find_direction() {
+    solver_.update(energy_, u_, is_free_, definite_, moved_mm_);
     moved_mm_ = 0;
-    const LinearSolveResult solved =
-        solver_.solve(gradient_, options_.linear_tolerance, direction_);
-    result_.linear_iterations += solved.iterations;
-    if (!solved.converged || !(dot(gradient_, direction_) > 0)) find_definite_direction();
+    const bool found = solver_.direction(gradient_, direction_) && dot(gradient_, direction_) >= 0;
+    return found || (!definite_ && find_definite_direction());
   }
 
-  void find_definite_direction() {
+  bool find_definite_direction() {
+    definite_ = true;
     solver_.update(energy_, u_, is_free_, true);
-    moved_mm_ = LinearSolver::kAnyChange;
-    result_.linear_iterations +=
-        solver_.solve(gradient_, options_.linear_tolerance, direction_).iterations;
+    return solver_.direction(gradient_, direction_);
   }
 
   void move_to(double step) {
@@ -127,8 +123,7 @@ class Newton {
   // mislead, once more along the definite direction.
   bool search(double slope) {
     if (line_search(slope)) return true;
-    find_definite_direction();
-    return line_search(dot(gradient_, direction_));
+    return !definite_ && find_definite_direction() && line_search(dot(gradient_, direction_));
   }
 
   bool line_search(double slope) {
@@ -155,6 +150,7 @@ class Newton {
   LinearSolver& solver_;
   VertexVector& u_;
   VertexVector gradient_, direction_, trial_, trial_gradient_;
+  bool definite_ = false;
   double moved_mm_ = LinearSolver::kAnyChange;  // since the solver was updated
   RelaxationResult result_;
 };
@@ -163,7 +159,7 @@ class Newton {
 
 RelaxationResult relax(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
                        const RelaxationOptions& options, LinearSolver& solver, VertexVector& u) {
-  return Newton(energy, is_free, options, solver, u).run();
+  return Descent(energy, is_free, options, solver, u).run();
 }
 
 }  // namespace hydrodip

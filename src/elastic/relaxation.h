@@ -1,5 +1,5 @@
 // Quasi-static elasticity (paper section 3.2, step 3): the film coordinates that minimise the
-// energy, by Newton's method with line search.
+// energy, along the directions of a LinearSolver, with line search where it needs one.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,13 @@
 namespace hydrodip {
 
 struct RelaxationOptions {
-  double tolerance_mm = 1e-5;  // stop once no vertex would move further in the next iteration
-  int max_iterations = 15;
-  double linear_tolerance = 0.03;
+  double tolerance_mm = 5e-6;  // stop once no vertex would move further in the next iteration
+  int max_iterations = 60;
   const RunContext* context = nullptr;  // if given: asked between iterations, Cancelled is thrown
 };
 
 struct RelaxationResult {
-  int newton_iterations = 0;
-  long linear_iterations = 0;
+  int iterations = 0;
   double last_update_mm = 0;  // largest move in the last iteration
   bool converged = false;
 };

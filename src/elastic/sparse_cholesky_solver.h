@@ -23,21 +23,19 @@ class SparseCholeskySolver : public LinearSolver {
     set_values();
     if (first) cholesky_.analyzePattern(matrix_);
     cholesky_.factorize(matrix_);
-    ++factorizations_;
   }
 
-  LinearSolveResult solve(const VertexVector& b, double, VertexVector& x) override {
-    x.assign(b.size(), Vec2::Zero());
-    if (cholesky_.info() != Eigen::Success) return {0, false};
-    Eigen::VectorXd right(2 * Eigen::Index(b.size()));
-    for (std::size_t v = 0; v < b.size(); ++v)
-      right.segment<2>(2 * Eigen::Index(v)) = is_free_[v] ? b[v] : Vec2::Zero();
+  bool direction(const VertexVector& gradient, VertexVector& step) override {
+    step.assign(gradient.size(), Vec2::Zero());
+    if (cholesky_.info() != Eigen::Success) return false;
+    Eigen::VectorXd right(2 * Eigen::Index(gradient.size()));
+    for (std::size_t v = 0; v < gradient.size(); ++v)
+      right.segment<2>(2 * Eigen::Index(v)) = is_free_[v] ? gradient[v] : Vec2::Zero();
     const Eigen::VectorXd solution = cholesky_.solve(right);
-    for (std::size_t v = 0; v < b.size(); ++v) x[v] = solution.segment<2>(2 * Eigen::Index(v));
-    return {0, solution.allFinite()};
+    for (std::size_t v = 0; v < step.size(); ++v)
+      step[v] = solution.segment<2>(2 * Eigen::Index(v));
+    return solution.allFinite();
   }
-
-  long factorizations() const override { return factorizations_; }
 
  private:
   // Where an entry of the matrix comes from: block (v, w) of H_, and inside it.
@@ -85,7 +83,6 @@ class SparseCholeskySolver : public LinearSolver {
   std::vector<Entry> entries_;
   Eigen::SparseMatrix<double> matrix_;
   Cholesky cholesky_;
-  long factorizations_ = 0;
 };
 
 }  // namespace hydrodip

@@ -44,9 +44,7 @@ ReportParameter describe_parameter(const Parameter& parameter, const JobConfig& 
 std::vector<ReportFigure> dip_figures(const DipStatistics& s) {
   return {
       {"steps", "Steps", std::int64_t(s.steps), ""},
-      {"newton_iterations", "Newton iterations", std::int64_t(s.newton_iterations), ""},
-      {"linear_iterations", "Linear iterations", std::int64_t(s.linear_iterations), ""},
-      {"factorizations", "Factorizations", std::int64_t(s.factorizations), ""},
+      {"iterations", "Iterations", std::int64_t(s.iterations), ""},
       {"unconverged_steps", "Steps at the iteration bound", std::int64_t(s.unconverged_steps), ""},
       {"largest_residual_mm", "Largest last update", s.largest_residual_mm, "mm"}};
 }

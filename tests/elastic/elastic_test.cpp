@@ -158,6 +158,19 @@ Eigen::MatrixXd dense(const BlockMatrix& H) {
   return M;
 }
 
+Vec2 times(const BlockMatrix& H, const VertexVector& x, std::size_t v) {
+  Vec2 sum = Vec2::Zero();
+  for (auto s = H.row_begin[v]; s < H.row_begin[v + 1]; ++s)
+    sum += H.block[std::size_t(s)] * x[std::size_t(H.column[std::size_t(s)])];
+  return sum;
+}
+
+double norm(const VertexVector& x, const std::vector<std::uint8_t>& is_free) {
+  double sum = 0;
+  for (std::size_t v = 0; v < x.size(); ++v) sum += is_free[v] ? x[v].squaredNorm() : 0;
+  return std::sqrt(sum);
+}
+
 TEST(FilmEnergy, ProjectedHessianIsDefiniteAndExactWhereNothingWasProjected) {
   const RandomFilm film(9);
   for (double nu : kPoissonRatios) {
@@ -179,7 +192,9 @@ TEST(FilmEnergy, ProjectedHessianIsDefiniteAndExactWhereNothingWasProjected) {
   }
 }
 
-TEST(LinearSolver, BothSolversSolve) {
+// Of a quadratic energy: the direct solver's step ends at its minimum, conjugate directions get
+// there step by step.
+TEST(LinearSolver, BothSolversFindTheMinimum) {
   const RandomFilm film(10);
 
   for (double nu : kPoissonRatios) {
@@ -193,21 +208,26 @@ TEST(LinearSolver, BothSolversSolve) {
     const auto multigrid = make_multigrid_solver(film.mesh);
     direct->update(energy, film.u, film.is_free, true);
     multigrid->update(energy, film.u, film.is_free, true);
-    EXPECT_TRUE(direct->solve(b, 0, exact).converged);
-    EXPECT_TRUE(multigrid->solve(b, 1e-6, iterative).converged);
+    EXPECT_TRUE(direct->direction(b, exact));
+    iterative.assign(b.size(), Vec2::Zero());
+    VertexVector residual = b, step;
+    int iterations = 0;
+    while (norm(residual, film.is_free) > 1e-5 * norm(b, film.is_free)) {
+      ASSERT_TRUE(multigrid->direction(residual, step));
+      ASSERT_LT(++iterations, 25);
+      for (std::size_t v = 0; v < b.size(); ++v) iterative[v] += step[v];
+      for (std::size_t v = 0; v < b.size(); ++v) residual[v] = b[v] - times(H, iterative, v);
+    }
     double scale = 0, worst = 0;
     for (std::size_t v = 0; v < b.size(); ++v) {
-      Vec2 residual = Vec2::Zero();
-      for (auto s = H.row_begin[v]; s < H.row_begin[v + 1]; ++s)
-        residual += H.block[std::size_t(s)] * exact[std::size_t(H.column[std::size_t(s)])];
       if (film.is_free[v])
-        EXPECT_LT((residual - b[v]).norm(), 1e-9);
+        EXPECT_LT((times(H, exact, v) - b[v]).norm(), 1e-9);
       else
         EXPECT_EQ(exact[v].norm() + iterative[v].norm(), 0);
       scale = std::max(scale, exact[v].norm());
       worst = std::max(worst, (exact[v] - iterative[v]).norm());
     }
-    EXPECT_LT(worst, 1e-4 * scale);
+    EXPECT_LT(worst, 1e-3 * scale);
   }
 }
 
