@@ -35,13 +35,14 @@ std::vector<Span> spans(int source, int target) {
 }
 
 void average_into(const Image& image, const Span& columns, const Span& rows, std::uint8_t* out) {
+  const std::array<float, 256>& decode = srgb8_table();
   std::array<float, 3> sum{};
   float alpha = 0;
   for (std::size_t j = 0; j < rows.weights.size(); ++j)
     for (std::size_t i = 0; i < columns.weights.size(); ++i) {
       const std::uint8_t* p = image.pixel(columns.first + int(i), rows.first + int(j));
       const float weight = rows.weights[j] * columns.weights[i] * float(p[3]) / 255.0f;
-      for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * srgb8_to_linear(p[k]);
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * decode[p[k]];
       alpha += weight;
     }
   for (std::size_t k = 0; k < 3; ++k) out[k] = alpha > 0 ? linear_to_srgb8(sum[k] / alpha) : 0;

@@ -105,6 +105,7 @@ struct JobConfig {
   ProcessOptions process;
   StageOptions stage;
   int preview_width_px = 1600;
+  int preview_texture_px = 2048;
   bool pictures = true;  // preview.png, maps.png, gamut.png and the 3D view of report.html
   int threads = 0;       // 0: all cores
 };

@@ -20,7 +20,6 @@ namespace hydrodip {
 namespace {
 
 // Large enough to look at closely, small enough for viewers on a phone.
-constexpr int kTextureSide_px = 4096;
 constexpr int kPageTextureSide_px = 2048;
 
 std::vector<std::uint8_t> write_picture(const std::filesystem::path& path, const Image& image) {
@@ -125,8 +124,8 @@ ReportPictures write_previews(OutputFolder& folder, const JobRecord& record,
   write_film_ply(folder.path("film.ply"), dipped.film());
 
   write_preview_glb(folder.path("preview.glb"), dipped.object(), dipped.film(),
-                    shrink_to(film_image, kTextureSide_px), raster.width_mm, raster.height_mm,
-                    base);
+                    shrink_to(film_image, 2 * record.config.preview_texture_px), raster.width_mm,
+                    raster.height_mm, base, record.config.preview_texture_px);
   ReportPictures pictures;
   if (!record.config.pictures) return pictures;
   const Appearance shown = appearance(dipped, film_image, raster, base);

@@ -383,6 +383,9 @@ std::vector<Parameter> run_records() {
       integer(
           "preview.width_px", "px", 64, 8192, [](C& c) -> int& { return c.preview_width_px; },
           "width of preview.png"),
+      integer(
+          "preview.texture_px", "px", 64, 8192, [](C& c) -> int& { return c.preview_texture_px; },
+          "longest side of the textures in preview.glb"),
       choice<bool>(
           "preview.pictures", {{"on", true}, {"off", false}},
           [](C& c) -> bool& { return c.pictures; },

@@ -87,6 +87,7 @@ std::vector<Setting> quality_settings(const std::string& quality) {
     return settings({{"film.elements", "10000"},
                      {"dip.step_mm", "0.5"},
                      {"ink.rounds_max", "1"},
+                     {"preview.texture_px", "512"},
                      {"preview.pictures", "off"}});
   if (quality == "normal") return {};
   if (quality == "fine") return settings({{"film.elements", "160000"}, {"dip.step_mm", "0.05"}});

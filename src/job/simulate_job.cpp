@@ -24,7 +24,7 @@ namespace {
 
 // Image and sheet may differ this much in shape: rounding to whole pixels, a cut edge.
 constexpr double kAspectTolerance = 0.01;
-constexpr double kCheckerboardDpi = 100;
+constexpr double kCheckerboardDpi = 100, kDraftDpi = 50;
 
 struct PrintedFilm {
   InkImage inks;  // as seen from above, exactly raster's size
@@ -88,7 +88,7 @@ PrintedFilm read_film_image(const JobConfig& config, const ColorModel& model) {
 
 PrintedFilm printed_film(const JobConfig& config, const ColorModel& model) {
   if (!config.film_image.empty()) return read_film_image(config, model);
-  const SheetRaster raster = sheet_raster(config, kCheckerboardDpi);
+  const SheetRaster raster = sheet_raster(config, config.pictures ? kCheckerboardDpi : kDraftDpi);
   return {inks_of_film(checkerboard(raster), model), raster};
 }
 

@@ -24,7 +24,6 @@ using Vec3f = std::array<float, 3>;
 // So that film and object do not flicker through each other.
 constexpr double kFilmOffsetMm = 0.05;
 constexpr double kMostOffsetMm = 1;
-constexpr int kLongestSidePx = 2048;
 
 constexpr int kJpegQuality = 92;
 
@@ -97,7 +96,8 @@ struct Crop {
   int width = 0, height = 0;  // px after reduction; empty: no film lies on the object
 };
 
-Crop crop_to_film(const DippedFilm& film, const Image& image, double width_mm, double height_mm) {
+Crop crop_to_film(const DippedFilm& film, const Image& image, double width_mm, double height_mm,
+                  int texture_px) {
   constexpr double kRimMm = 1;
   Box2 box;
   for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
@@ -118,7 +118,7 @@ Crop crop_to_film(const DippedFilm& film, const Image& image, double width_mm, d
   crop.y0 = row(box.max.y() + kRimMm);
   const int width = column(box.max.x() + kRimMm) + 1 - crop.x0;
   const int height = row(box.min.y() - kRimMm) + 1 - crop.y0;
-  crop.factor = (std::max(width, height) + kLongestSidePx - 1) / kLongestSidePx;
+  crop.factor = (std::max(width, height) + texture_px - 1) / texture_px;
   crop.width = (width + crop.factor - 1) / crop.factor;
   crop.height = (height + crop.factor - 1) / crop.factor;
   return crop;
@@ -244,8 +244,8 @@ int gltf_wrap(Wrap wrap) {
 }
 
 // The model's own materials; the object's vertex colours, if any, multiply them.
-std::vector<int> add_wanted_materials(GlbWriter& glb, const Object& object,
-                                      const LinearColor& base) {
+std::vector<int> add_wanted_materials(GlbWriter& glb, const Object& object, const LinearColor& base,
+                                      int texture_px) {
   std::vector<int> numbers;
   for (const Material& m : object.materials) {
     const std::string name = "wanted " + m.name;
@@ -255,8 +255,8 @@ std::vector<int> add_wanted_materials(GlbWriter& glb, const Object& object,
           plain(name, object.colors.empty() ? tinted_over(m.base_color, white, base) : white)));
       continue;
     }
-    const Image picture = painted(
-        shrink_to(*object.textures[std::size_t(m.texture)], kLongestSidePx), m.base_color, base);
+    const Image picture = painted(shrink_to(*object.textures[std::size_t(m.texture)], texture_px),
+                                  m.base_color, base);
     Json material = matte(name);
     const int texture = glb.add_texture(encode_jpeg(picture, kJpegQuality), "image/jpeg", name,
                                         gltf_wrap(m.wrap_u), gltf_wrap(m.wrap_v));
@@ -286,7 +286,7 @@ void add_colors(GlbMesh& mesh, const ShownObject& shown, const Object& object,
 // The object: bare as predicted, in its own colours as wanted. Vertex colours cannot be switched
 // off, so that an object that has them comes twice.
 void add_object(GlbWriter& glb, const Object& object, const LinearColor& base, int bare,
-                int nothing) {
+                int nothing, int texture_px) {
   const ShownObject shown = shown_object(object, std::numeric_limits<std::size_t>::max());
   GlbMesh mesh = object_vertices(shown, object);
   mesh.indices = shown.indices;
@@ -296,7 +296,7 @@ void add_object(GlbWriter& glb, const Object& object, const LinearColor& base, i
     glb.add_mesh("object", mesh, {{0, mesh.indices.size(), bare, bare}});
     return;
   }
-  const std::vector<int> wanted = add_wanted_materials(glb, object, base);
+  const std::vector<int> wanted = add_wanted_materials(glb, object, base, texture_px);
   const bool twice = !object.colors.empty();
   std::vector<GlbPart> parts, colored;
   for (const ShownGroup& group : shown.groups) {
@@ -311,8 +311,9 @@ void add_object(GlbWriter& glb, const Object& object, const LinearColor& base, i
 }
 
 void add_film(GlbWriter& glb, const Object& object, const DippedFilm& film, const Image& image,
-              double width_mm, double height_mm, const LinearColor& base, int nothing) {
-  const Crop crop = crop_to_film(film, image, width_mm, height_mm);
+              double width_mm, double height_mm, const LinearColor& base, int nothing,
+              int texture_px) {
+  const Crop crop = crop_to_film(film, image, width_mm, height_mm, texture_px);
   if (crop.width == 0) return;
   Json printed = matte("film");
   const int texture =
@@ -326,7 +327,7 @@ void add_film(GlbWriter& glb, const Object& object, const DippedFilm& film, cons
 
 void write_preview_glb(const std::filesystem::path& path, const Object& object,
                        const DippedFilm& film, const Image& film_image, double sheet_width_mm,
-                       double sheet_height_mm, const LinearColor& base) {
+                       double sheet_height_mm, const LinearColor& base, int texture_px) {
   GlbWriter glb;
   const int bare = glb.add_material(plain("object", base));
   int nothing = bare;
@@ -334,8 +335,9 @@ void write_preview_glb(const std::filesystem::path& path, const Object& object,
     glb.add_variants();
     nothing = glb.add_material(hidden());
   }
-  add_object(glb, object, base, bare, nothing);
-  add_film(glb, object, film, film_image, sheet_width_mm, sheet_height_mm, base, nothing);
+  add_object(glb, object, base, bare, nothing, texture_px);
+  add_film(glb, object, film, film_image, sheet_width_mm, sheet_height_mm, base, nothing,
+           texture_px);
   const std::vector<std::uint8_t> bytes = glb.finish();
   write_file(path, bytes.data(), bytes.size());
 }
