@@ -256,21 +256,23 @@ class ContactLineScheme : public Scheme {
   VertexVector relaxed() {
     const std::vector<std::uint8_t> is_free = held_vertices();
     VertexVector u = first_guess(is_free);
-    relax_film(energy_, is_free, *solver_, u, state_.statistics);
+    RelaxationOptions options;
+    options.otherwise = &film_.u;
+    relax_film(energy_, is_free, *solver_, u, state_.statistics, options);
     parallel_for(u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) last_slide_[v] = u[v] - film_.u[v];
     });
     return u;
   }
 
-  // The film slides on as it did in the last step, unless that would turn something over.
+  // The film slides on as it did in the last step.
   VertexVector first_guess(const std::vector<std::uint8_t>& is_free) const {
     VertexVector u = film_.u;
     parallel_for(u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
         if (is_free[v]) u[v] += last_slide_[v];
     });
-    return energy_.any_inverted(u) ? film_.u : u;
+    return u;
   }
 
   void tear(const VertexVector& u, double level) {
@@ -300,9 +302,9 @@ class ContactLineScheme : public Scheme {
             locate(film_, u, usable_, static_cast<std::int32_t>(v), film_.u[v], slid_in_[v]);
         slid_in_[v] = at.triangle;
         if (at.triangle < 0) continue;
-        Vec2 place = Vec2::Zero();
-        for (std::size_t k = 0; k < 3; ++k)
-          place += at.weight[Eigen::Index(k)] * corner(std::size_t(at.triangle), k);
+        const auto t = std::size_t(at.triangle);
+        const Vec2 place =
+            at.weight[0] * corner(t, 0) + at.weight[1] * corner(t, 1) + at.weight[2] * corner(t, 2);
         // Scraps of torn film may have no place that means anything.
         if ((place - plan_[v]).norm() < kLongestSlide * film_.cell_mm + set_.options.step_mm)
           slid_[v] = place;

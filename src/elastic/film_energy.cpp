@@ -11,7 +11,7 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kGrain = 2048;
 
 Mat2 gradient_at(const FilmMesh& mesh, const RestTriangle& rest, std::size_t t,
                  const VertexVector& u) {

@@ -11,10 +11,10 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kGrain = 2048;
 constexpr std::size_t kRowsPerTask = 512;
 // A triangle's part of the operator is kept until it has changed by this much, relatively.
-constexpr double kOperatorTolerance = 0.03;
+constexpr double kOperatorTolerance = 0.05;
 // Vertices that have moved by less than this share of a cell have changed it by less than that.
 constexpr double kStillShare = kOperatorTolerance / 4;
 

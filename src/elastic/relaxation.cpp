@@ -10,7 +10,7 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kGrain = 2048;
 constexpr int kMaxHalvings = 30;
 // Share of the slope that may be left at the end of a whole step.
 constexpr double kFlattened = 0.5;
@@ -38,9 +38,13 @@ double largest_norm(const VertexVector& x) {
 
 double dot(const VertexVector& a, const VertexVector& b) {
   const auto partial = over_chunks(a.size(), [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t v = begin; v < end; ++v) sum += a[v].dot(b[v]);
-    return sum;
+    // Several sums at once: one alone would wait for itself.
+    Vec2 sum[4] = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+    std::size_t v = begin;
+    for (; v + 4 <= end; v += 4)
+      for (std::size_t k = 0; k < 4; ++k) sum[k] += a[v + k].cwiseProduct(b[v + k]);
+    for (; v < end; ++v) sum[0] += a[v].cwiseProduct(b[v]);
+    return Vec2((sum[0] + sum[1]) + (sum[2] + sum[3])).sum();
   });
   return std::accumulate(partial.begin(), partial.end(), 0.0);
 }
@@ -53,15 +57,18 @@ class Descent {
       : energy_(energy), is_free_(is_free), options_(options), solver_(solver), u_(u) {}
 
   RelaxationResult run() {
-    energy_.gradient(u_, is_free_, gradient_);
+    const bool turned_over = energy_.gradient(u_, is_free_, gradient_) > 0;
+    if (turned_over && options_.otherwise) {
+      u_ = *options_.otherwise;
+      energy_.gradient(u_, is_free_, gradient_);
+    }
     double contraction = kFirstContraction;
     while (result_.iterations < options_.max_iterations) {
       if (options_.context) options_.context->check_cancelled();
       if (!find_direction()) return result_;
       ++result_.iterations;
-      const double slope = dot(gradient_, direction_);
-      if (!(slope > 0)) {  // nothing to gain: at the minimum, or no way down
-        result_.converged = slope == 0;
+      if (slope_ == 0) {  // at the minimum
+        result_.converged = true;
         return result_;
       }
       const double update = largest_norm(direction_);
@@ -70,7 +77,7 @@ class Descent {
       // What the next iterations would still change.
       result_.converged = update * contraction <= options_.tolerance_mm;
       if (result_.converged && take_last_step()) return result_;
-      if (!take_whole_step(slope) && !search(slope)) return result_;
+      if (!take_whole_step() && !search()) return result_;
     }
     return result_;
   }
@@ -82,14 +89,19 @@ class Descent {
   bool find_direction() {
     solver_.update(energy_, u_, is_free_, definite_, moved_mm_);
     moved_mm_ = 0;
-    const bool found = solver_.direction(gradient_, direction_) && dot(gradient_, direction_) >= 0;
-    return found || (!definite_ && find_definite_direction());
+    return goes_down() || (!definite_ && find_definite_direction());
   }
 
   bool find_definite_direction() {
     definite_ = true;
     solver_.update(energy_, u_, is_free_, true);
-    return solver_.direction(gradient_, direction_);
+    return goes_down();
+  }
+
+  bool goes_down() {
+    if (!solver_.direction(gradient_, direction_)) return false;
+    slope_ = dot(gradient_, direction_);
+    return slope_ >= 0;
   }
 
   void move_to(double step) {
@@ -109,10 +121,10 @@ class Descent {
 
   // The energy is convex enough along the way if its slope has become small at the end: then the
   // step is taken without asking for the energy itself.
-  bool take_whole_step(double slope) {
+  bool take_whole_step() {
     move_to(1);
     if (energy_.gradient(trial_, is_free_, trial_gradient_) > 0) return false;
-    if (std::abs(dot(trial_gradient_, direction_)) > kFlattened * slope) return false;
+    if (std::abs(dot(trial_gradient_, direction_)) > kFlattened * slope_) return false;
     u_.swap(trial_);
     gradient_.swap(trial_gradient_);
     moved_mm_ += result_.last_update_mm;
@@ -121,12 +133,12 @@ class Descent {
 
   // Halves the step until the energy falls; far from the minimum, where the exact Hessian may
   // mislead, once more along the definite direction.
-  bool search(double slope) {
-    if (line_search(slope)) return true;
-    return !definite_ && find_definite_direction() && line_search(dot(gradient_, direction_));
+  bool search() {
+    if (line_search()) return true;
+    return !definite_ && find_definite_direction() && line_search();
   }
 
-  bool line_search(double slope) {
+  bool line_search() {
     const double before = energy_.value(u_);
     // What rounding alone may add: near the minimum, an energy difference cannot be resolved.
     const double noise = 1e-13 * std::abs(before);
@@ -134,7 +146,7 @@ class Descent {
     for (int halving = 0; halving < kMaxHalvings; ++halving, step *= 0.5) {
       move_to(step);
       if (energy_.any_inverted(trial_)) continue;
-      if (energy_.value(trial_) > before - 1e-4 * step * slope + noise) continue;
+      if (energy_.value(trial_) > before - 1e-4 * step * slope_ + noise) continue;
       u_.swap(trial_);
       energy_.gradient(u_, is_free_, gradient_);
       result_.last_update_mm = step * largest_norm(direction_);
@@ -151,6 +163,7 @@ class Descent {
   VertexVector& u_;
   VertexVector gradient_, direction_, trial_, trial_gradient_;
   bool definite_ = false;
+  double slope_ = 0;                            // of the energy against the direction
   double moved_mm_ = LinearSolver::kAnyChange;  // since the solver was updated
   RelaxationResult result_;
 };

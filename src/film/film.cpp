@@ -131,7 +131,12 @@ void number_vertices(Grid& grid, FilmMesh& mesh) {
     mesh.u.push_back(grid.u[v]);
     mesh.on_rim.push_back(grid.on_rim[v]);
   }
+  mesh.first_in_cell.assign(std::size_t(mesh.nx - 1) * std::size_t(mesh.ny - 1), -1);
   for (Triangle t : grid.triangles) {
+    const std::int32_t i = std::min({t[0] % mesh.nx, t[1] % mesh.nx, t[2] % mesh.nx});
+    const std::int32_t j = std::min({t[0] / mesh.nx, t[1] / mesh.nx, t[2] / mesh.nx});
+    std::int32_t& first = mesh.first_in_cell[std::size_t(j * (mesh.nx - 1) + i)];
+    if (first < 0) first = static_cast<std::int32_t>(mesh.triangles.size());
     for (std::int32_t& v : t) v = mesh.vertex_at[std::size_t(v)];
     mesh.triangles.push_back(t);
   }

@@ -36,6 +36,7 @@ struct FilmMesh {
   int nx = 0, ny = 0;                  // vertices along x, y
   std::vector<double> line_x, line_y;  // mm, coordinates of the grid's lines, ascending
   std::vector<std::int32_t> vertex_at;
+  std::vector<std::int32_t> first_in_cell;  // [j * (nx - 1) + i]: lowest triangle there, or -1
 
   // neighbor[t][k]: triangle across the edge opposite corner k, or -1.
   std::vector<std::array<std::int32_t, 3>> neighbor;

@@ -22,6 +22,23 @@ bool weights_at(const FilmMesh& mesh, const std::vector<Vec2>& u, std::int32_t t
   return true;
 }
 
+// In the two triangles of the grid's cell; on a disc, the rim's have been moved.
+FilmLocation locate_in_cell(const FilmMesh& mesh, const Vec2& target) {
+  const auto line_before = [](const std::vector<double>& lines, double x) {
+    return std::upper_bound(lines.begin(), lines.end(), x) - lines.begin() - 1;
+  };
+  const auto i = line_before(mesh.line_x, target.x()), j = line_before(mesh.line_y, target.y());
+  if (i < 0 || j < 0 || i >= mesh.nx - 1 || j >= mesh.ny - 1) return {};
+  const std::int32_t first = mesh.first_in_cell[std::size_t(j * (mesh.nx - 1) + i)];
+  if (first < 0) return {};
+  for (std::int32_t t = first; t < first + 2 && t < std::int32_t(mesh.triangles.size()); ++t) {
+    Vec3 weight;
+    if (weights_at(mesh, mesh.u, t, target, weight) && weight.minCoeff() >= kInside)
+      return {t, weight, true};
+  }
+  return {};
+}
+
 template <typename Usable>
 FilmLocation walk(const FilmMesh& mesh, const std::vector<Vec2>& u, const Usable& usable,
                   std::int32_t start, const Vec2& target) {
@@ -64,6 +81,7 @@ FilmLocation locate(const FilmMesh& mesh, const std::vector<Vec2>& u,
 
 FilmLocation locate_flat(const FilmMesh& mesh, const Vec2& target) {
   if (!target.allFinite()) return {};
+  if (const FilmLocation found = locate_in_cell(mesh, target); found.inside) return found;
   const auto nearest_line = [](const std::vector<double>& lines, double x) {
     const auto above = std::lower_bound(lines.begin(), lines.end(), x);
     if (above == lines.begin()) return std::ptrdiff_t(0);

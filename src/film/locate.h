@@ -19,7 +19,7 @@ FilmLocation locate(const FilmMesh& mesh, const std::vector<Vec2>& u,
                     const std::vector<std::uint8_t>& usable, std::int32_t start, const Vec2& target,
                     std::int32_t hint = -1);
 
-// The same in the flat film, starting from the nearest vertex of its grid.
+// The same in the flat film.
 FilmLocation locate_flat(const FilmMesh& mesh, const Vec2& target);
 
 }  // namespace hydrodip

@@ -83,13 +83,13 @@ struct FilmMap::Impl {
   }
 
   bool locate_on_object(const Vec2& u, Cursor& cursor, Vec3& weight) const {
-    if (cursor.film_triangle >= 0 && weights_in(film.mesh, cursor.film_triangle, u, weight))
-      return true;
-    const FilmLocation at = locate_flat(film.mesh, u);
-    if (!at.inside || !lies[std::size_t(at.triangle)]) return false;
-    cursor.film_triangle = at.triangle;
-    weight = at.weight;
-    return true;
+    if (cursor.film_triangle < 0 || !weights_in(film.mesh, cursor.film_triangle, u, weight)) {
+      const FilmLocation at = locate_flat(film.mesh, u);
+      if (!at.inside) return false;
+      cursor.film_triangle = at.triangle;
+      weight = at.weight;
+    }
+    return lies[std::size_t(cursor.film_triangle)] != 0;
   }
 
   // The line through the film point along the normal, against one triangle of the object.
@@ -133,8 +133,7 @@ struct FilmMap::Impl {
   }
 
   // A value that vertices have, at a film coordinate; 1 off the object.
-  double interpolated(const std::vector<double>& value, const Vec2& u) const {
-    Cursor cursor;
+  double interpolated(const std::vector<double>& value, const Vec2& u, Cursor& cursor) const {
     Vec3 weight;
     if (!locate_on_object(u, cursor, weight)) return 1;
     const Triangle& t = film.mesh.triangles[std::size_t(cursor.film_triangle)];
@@ -197,15 +196,28 @@ bool FilmMap::torn_at(const Vec3& position, const Vec3& normal) const {
 }
 
 double FilmMap::area_ratio(const Vec2& u) const {
-  return impl_->interpolated(impl_->film.area_ratio, u);
+  Cursor cursor;
+  return area_ratio(u, cursor);
 }
 
-double FilmMap::stretch(const Vec2& u) const { return impl_->interpolated(impl_->film.stretch, u); }
+double FilmMap::area_ratio(const Vec2& u, Cursor& cursor) const {
+  return impl_->interpolated(impl_->film.area_ratio, u, cursor);
+}
+
+double FilmMap::stretch(const Vec2& u) const {
+  Cursor cursor;
+  return impl_->interpolated(impl_->film.stretch, u, cursor);
+}
 
 const Box2& FilmMap::covered() const { return impl_->rim.covered(); }
 
 std::optional<Vec2> FilmMap::nearest_covered(const Vec2& u, double max_distance) const {
   Cursor cursor;
+  return nearest_covered(u, max_distance, cursor);
+}
+
+std::optional<Vec2> FilmMap::nearest_covered(const Vec2& u, double max_distance,
+                                             Cursor& cursor) const {
   Vec3 weight;
   if (impl_->locate_on_object(u, cursor, weight)) return u;
   return impl_->rim.nearest(u, max_distance);

@@ -37,12 +37,14 @@ class FilmMap {
 
   // Interpolated between the film's vertices; 1 off the object.
   double area_ratio(const Vec2& u) const;  // deformed over flat area
-  double stretch(const Vec2& u) const;     // largest principal stretch
+  double area_ratio(const Vec2& u, Cursor& cursor) const;
+  double stretch(const Vec2& u) const;  // largest principal stretch
 
   // Bounds of the film that lies on the object, in u.
   const Box2& covered() const;
   // Nearest film point that lies on the object, if within max_distance of u.
   std::optional<Vec2> nearest_covered(const Vec2& u, double max_distance) const;
+  std::optional<Vec2> nearest_covered(const Vec2& u, double max_distance, Cursor& cursor) const;
 
  private:
   struct Impl;

@@ -40,12 +40,22 @@ std::vector<Tile> tiles_of(int width_px, int height_px) {
   return tiles;
 }
 
-bool may_hold_ink(const Tile& tile, const SheetRaster& raster, const Box2& inked) {
-  if (inked.empty()) return false;
-  const Vec2 top_left = raster.to_film(tile.x0, tile.y0);
-  const Vec2 bottom_right = raster.to_film(tile.x1, tile.y1);
-  return top_left.x() <= inked.max.x() && bottom_right.x() >= inked.min.x() &&
-         bottom_right.y() <= inked.max.y() && top_left.y() >= inked.min.y();
+// A little more than what rounding leaves out.
+constexpr double kTileSlack_mm = 1e-6;
+
+bool may_hold_ink(const Tile& tile, const SheetRaster& raster, const FilmMap& map,
+                  double bleed_mm) {
+  const Vec2 corner = raster.to_film(tile.x0, tile.y0);
+  const Vec2 centre = raster.to_film(0.5 * (tile.x0 + tile.x1), 0.5 * (tile.y0 + tile.y1));
+  const double reach = (corner - centre).norm() + bleed_mm + kTileSlack_mm;
+  return map.nearest_covered(centre, reach).has_value();
+}
+
+// Whether all of the pixel is out of reach of film on the object. One look for many samples.
+bool is_bare(const FilmMap& map, const SheetRaster& raster, double bleed_mm, int x, int y,
+             FilmMap::Cursor& cursor) {
+  const double radius = 0.71 * kMmPerInch / raster.dpi;
+  return !map.nearest_covered(raster.to_film(x + 0.5, y + 0.5), bleed_mm + radius, cursor);
 }
 
 // One pixel of the film image: samples on a regular grid inside it.
@@ -53,13 +63,14 @@ LinearColor pixel_color(const Object& object, const FilmMap& map, const SheetRas
                         const InverseOptions& options, int x, int y, FilmMap::Cursor& cursor) {
   const int n = options.samples_per_axis;
   const float weight = 1.0f / static_cast<float>(n * n);
+  if (is_bare(map, raster, options.bleed_mm, x, y, cursor)) return {0, 0, 0, 0};
   ColorSum sum;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const Vec2 u = raster.to_film(x + (i + 0.5) / n, y + (j + 0.5) / n);
       auto point = map.to_object(u, cursor);
       if (!point && options.bleed_mm > 0)
-        if (const auto near = map.nearest_covered(u, options.bleed_mm))
+        if (const auto near = map.nearest_covered(u, options.bleed_mm, cursor))
           point = map.to_object(*near, cursor);
       if (point) sum.add(color_at(object, *point, options.base), weight);
     }
@@ -97,11 +108,8 @@ namespace {
 template <class Paint>
 void for_each_inked(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
                     const std::string& stage, RunContext& context, const Paint& paint) {
-  Box2 inked = map.covered();
-  inked.min -= Vec2::Constant(bleed_mm);
-  inked.max += Vec2::Constant(bleed_mm);
   std::vector<Tile> tiles = tiles_of(raster.width_px(), raster.height_px());
-  std::erase_if(tiles, [&](const Tile& t) { return !may_hold_ink(t, raster, inked); });
+  std::erase_if(tiles, [&](const Tile& t) { return !may_hold_ink(t, raster, map, bleed_mm); });
   const auto paint_tile = [&](const Tile& tile) {
     FilmMap::Cursor cursor;
     for (int y = tile.y0; y < tile.y1; ++y)
@@ -139,13 +147,13 @@ FilmStretch film_stretch(const FilmMap& map, const SheetRaster& raster, double b
   result.area_ratio.assign(width * std::size_t(raster.height_px()), 1.0F);
   result.on_object.assign(result.area_ratio.size(), 0);
   for_each_inked(map, raster, bleed_mm, "measuring the stretch", context,
-                 [&](int x, int y, FilmMap::Cursor&) {
+                 [&](int x, int y, FilmMap::Cursor& cursor) {
                    const Vec2 u = raster.to_film(x + 0.5, y + 0.5);
                    // Not less than the outline's hair.
-                   const auto near = map.nearest_covered(u, std::max(bleed_mm, 1e-3));
+                   const auto near = map.nearest_covered(u, std::max(bleed_mm, 1e-3), cursor);
                    if (!near) return;
                    const std::size_t i = std::size_t(y) * width + std::size_t(x);
-                   result.area_ratio[i] = static_cast<float>(map.area_ratio(*near));
+                   result.area_ratio[i] = static_cast<float>(map.area_ratio(*near, cursor));
                    result.on_object[i] = *near == u;
                  });
   return result;
