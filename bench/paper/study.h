@@ -1,0 +1,64 @@
+// What the figures share: the paper's setup, dips of printed film, and pictures side by side.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ink/color_model.h"
+#include "job/config.h"
+#include "job/dip_stage.h"
+#include "job/ink_stage.h"
+
+namespace hydrodip::paper {
+
+// Letter film, and as in the paper it never tears; everything else as hydrodip has it by default.
+JobConfig paper_config();
+
+// An object in its pose, centred over the film.
+std::unique_ptr<DippedObject> to_dip(Object object);
+
+// Dips a film with these inks on it; they stiffen it.
+void dip_printed(DippedObject& dipped, const FilmMesh& film, const InkImage& inks,
+                 const JobConfig& config, RunContext& context);
+// Dips blank film, or what is the same, film that ink does not stiffen.
+void dip_blank(DippedObject& dipped, const FilmMesh& film, const JobConfig& config,
+               RunContext& context);
+
+// The print that the job makes of an object, with `rounds` rounds at most.
+InkResult designed(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
+                   JobConfig config, int rounds, RunContext& context);
+
+// ---- pictures ----
+
+struct Panel {
+  std::string title;
+  Image picture;
+};
+// In rows of `columns`, each with its title above; all pictures have the same size.
+Image panels(const std::vector<Panel>& list, int columns);
+
+// A film image laid on white, cut to the square around the film's centre.
+Image film_square(const Image& film_image, const SheetRaster& raster, double side_mm, int size_px);
+
+// The object with that film on it, from below, as lit in the studio. `film_image` shows every
+// pixel as it looks on the object.
+Image dipped_picture(const DippedObject& dipped, const Image& film_image, const SheetRaster& raster,
+                     int size_px, RunContext& context);
+// The object with its own colours.
+Image wanted_picture(const DippedObject& dipped, int size_px, RunContext& context);
+
+// ---- tables ----
+
+// A row of a Markdown table; the first row is followed by the ruler.
+class Table {
+ public:
+  explicit Table(const std::vector<std::string>& header);
+  void add(const std::vector<std::string>& cells);
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace hydrodip::paper
