@@ -92,7 +92,7 @@ void declare_film_and_dip(CLI::App& app, Request& request) {
 
 void declare_ink(CLI::App& app, Request& request) {
   add_parameter_option(app, request, "--printer-profile", "ink.profile", "FILE.icc", kFilmGroup,
-                       "the printer's CMYK ICC profile (default: a plain formula)");
+                       "the printer's ICC profile, CMYK or RGB (default: a plain formula)");
 }
 
 void declare_resolution(CLI::App& app, Request& request) {

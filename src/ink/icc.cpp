@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "ink/color_model.h"
-#include "ink/difference.h"
 #include "ink/profiles.h"
+#include "ink/rgb_profile.h"
 
 namespace hydrodip {
 
@@ -72,6 +72,17 @@ cmsUInt32Number intent_code(RenderingIntent intent) {
   return INTENT_RELATIVE_COLORIMETRIC;
 }
 
+Profile open_profile(cmsContext context, const std::vector<std::uint8_t>& bytes) {
+  return Profile(
+      cmsOpenProfileFromMemTHR(context, bytes.data(), static_cast<cmsUInt32Number>(bytes.size())));
+}
+
+// Of the way from colours to a printer.
+cmsUInt32Number flags_for(cmsUInt32Number intent) {
+  return cmsFLAGS_NOCACHE |
+         (intent == INTENT_RELATIVE_COLORIMETRIC ? cmsFLAGS_BLACKPOINTCOMPENSATION : 0U);
+}
+
 std::string description_of(cmsHPROFILE profile) {
   std::array<char, 256> text{};
   cmsGetProfileInfoASCII(profile, cmsInfoDescription, "en", "US", text.data(), text.size());
@@ -85,20 +96,17 @@ class ProfileModel : public ColorModel {
       : bytes_(std::move(bytes)), context_(quiet_context()) {
     const auto refuse = [&](const std::string& why) {
       throw InputError(fmt::format(
-          "{}: {}; give the ICC profile of a CMYK printer, or leave --printer-profile out", name,
-          why));
+          "{}: {}; give the ICC profile of a CMYK or RGB printer, or leave --printer-profile out",
+          name, why));
     };
-    const Profile printer(cmsOpenProfileFromMemTHR(context_.get(), bytes_.data(),
-                                                   static_cast<cmsUInt32Number>(bytes_.size())));
+    const Profile printer = open_profile(context_.get(), bytes_);
     if (!printer) refuse("is not an ICC profile");
-    if (cmsGetColorSpace(printer.get()) != cmsSigCmykData) refuse("is not a profile of CMYK inks");
+    if (cmsGetColorSpace(printer.get()) != cmsSigCmykData)
+      refuse("is a profile of neither CMYK inks nor RGB");
     const Profile srgb(cmsCreate_sRGBProfileTHR(context_.get()));
     const cmsUInt32Number code = intent_code(intent);
-    const cmsUInt32Number flags =
-        cmsFLAGS_NOCACHE |
-        (code == INTENT_RELATIVE_COLORIMETRIC ? cmsFLAGS_BLACKPOINTCOMPENSATION : 0U);
     separate_.reset(cmsCreateTransformTHR(context_.get(), srgb.get(), TYPE_RGB_FLT, printer.get(),
-                                          TYPE_CMYK_FLT, code, flags));
+                                          TYPE_CMYK_FLT, code, flags_for(code)));
     // What it looks like does not depend on how the inks were chosen.
     const cmsUInt32Number seen = code == INTENT_ABSOLUTE_COLORIMETRIC
                                      ? INTENT_ABSOLUTE_COLORIMETRIC
@@ -226,6 +234,33 @@ std::unique_ptr<ColorModel> make_profile_model(std::vector<std::uint8_t> profile
   return std::make_unique<ProfileModel>(std::move(profile), name, intent);
 }
 
+bool is_rgb_profile(const std::vector<std::uint8_t>& bytes) {
+  const Context context = quiet_context();
+  const Profile profile = open_profile(context.get(), bytes);
+  return profile && cmsGetColorSpace(profile.get()) == cmsSigRgbData;
+}
+
+Image in_printer_rgb(const Image& image, const std::vector<std::uint8_t>& profile,
+                     const std::string& name, RenderingIntent intent) {
+  const Context context = quiet_context();
+  const Profile printer = open_profile(context.get(), profile);
+  const Profile srgb(cmsCreate_sRGBProfileTHR(context.get()));
+  const cmsUInt32Number code = intent_code(intent);
+  const Transform transform(printer ? cmsCreateTransformTHR(context.get(), srgb.get(), TYPE_RGBA_8,
+                                                            printer.get(), TYPE_RGBA_8, code,
+                                                            flags_for(code) | cmsFLAGS_COPY_ALPHA)
+                                    : nullptr);
+  if (!transform)
+    throw InputError(fmt::format(
+        "{}: cannot be used to print; give the ICC profile of a CMYK or RGB printer, or leave "
+        "--printer-profile out",
+        name));
+  Image result(image.width_px, image.height_px);
+  cmsDoTransform(transform.get(), image.rgba.data(), result.rgba.data(),
+                 static_cast<cmsUInt32Number>(image.rgba.size() / 4));
+  return result;
+}
+
 std::filesystem::path installed_cmyk_profile() {
   for (const char* file : {"/usr/share/color/icc/colord/FOGRA39L_coated.icc",
                            "/usr/share/color/icc/ghostscript/default_cmyk.icc"}) {
@@ -243,11 +278,6 @@ const std::vector<std::uint8_t>& srgb_profile() {
     return profile_bytes(profile.get());
   }();
   return bytes;
-}
-
-double color_difference(const SrgbColor& a, const SrgbColor& b) {
-  const cmsCIELab lab_a = lab_of(a), lab_b = lab_of(b);
-  return cmsCIE2000DeltaE(&lab_a, &lab_b, 1, 1, 1);
 }
 
 }  // namespace hydrodip

@@ -8,21 +8,23 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "ink/rgb_profile.h"
 #include "ink/stiffness.h"
+#include "job/fixed_point.h"
 #include "job/prepare.h"
 
 namespace hydrodip {
 namespace {
 
 // Whether film tears, and whether the last triangle at the rim touches, is yes or no: where that is
-// undecided, two rounds can disagree forever. After so many rounds, when the ink has all but found
-// its place, tears and the outline of what stiffens the film stay as they are.
-constexpr int kFreeRounds = 3;
-// From then on a round has to bring the change below this share of the last one's.
-constexpr double kLeastProgress = 0.7;
-// Where more of the film tears than this share of what meets the object, the dip is to be planned
-// anew, and what the ink does to it is not worth a round of minutes.
-constexpr double kHopelessShare = 0.2;
+// undecided, two rounds can disagree forever. After so many rounds, of which the last knew the ink
+// all but in its place, film tears where and when it did, and what is printed keeps its outline.
+// Then a dip changes smoothly with its ink.
+constexpr int kFreeRounds = 2;
+// And then the next ink can be guessed from so many rounds and the last one.
+constexpr int kMixed = 2;
+// From there on two rounds have to bring the change below this share.
+constexpr double kLeastProgress = 0.5;
 // While ink and film settle, the film image need only be as fine as stiffness can tell: several
 // pixels to a millimetre.
 constexpr double kRoundsDpi = 150;
@@ -55,31 +57,35 @@ double mean_of(const std::vector<double>& values) {
   return sum / double(values.size());
 }
 
-// Half way, in the measure in which stiffness matters.
-void damp(const std::vector<double>& before, std::vector<double>& modulus) {
-  for (std::size_t t = 0; t < before.size(); ++t) modulus[t] = std::sqrt(before[t] * modulus[t]);
-}
-
-// The ink that stiffens the film: what is printed, later within a fixed outline.
-class StiffeningInk {
+// The film that is printed on: what lies on the object, and from some round on the same triangles
+// every time.
+class PrintedOutline {
  public:
-  const InkImage& now(const FilmInk& ink, bool keep_outline) {
-    if (!keep_outline) {
-      inks_ = ink.inking.inks;
-      outline_ = ink.wanted;
-      return inks_;
+  bool is_kept() const { return !kept_.empty(); }
+
+  void keep(const DippedFilm& film) {
+    for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t)
+      kept_.push_back(film.lies_on_object(t));
+  }
+
+  // The film as if just the kept triangles lay on the object; `and_others`: besides those that do.
+  // A corner that just misses the object counts as touching it.
+  DippedFilm applied(const DippedFilm& film, const Surface& surface, bool and_others) const {
+    DippedFilm result = film;
+    for (std::size_t t = 0; t < kept_.size(); ++t) {
+      if (!kept_[t] || film.torn[t]) continue;
+      for (const std::int32_t v : film.mesh.triangles[t])
+        if (film.state[std::size_t(v)] == VertexState::kUnattached &&
+            surface.closest_point(film.position[std::size_t(v)], film.mesh.cell_mm))
+          result.state[std::size_t(v)] = VertexState::kAttached;
     }
-    for (std::size_t i = 0; i < inks_.cmyk.size(); i += 4) {
-      if (outline_.rgba[i + 3] == 0 || ink.wanted.rgba[i + 3] == 0) continue;
-      std::copy_n(ink.inking.inks.cmyk.begin() + std::ptrdiff_t(i), 4,
-                  inks_.cmyk.begin() + std::ptrdiff_t(i));
-    }
-    return inks_;
+    for (std::size_t t = 0; t < kept_.size(); ++t)
+      if (!kept_[t] && !(and_others && film.lies_on_object(t))) result.torn[t] = 1;
+    return result;
   }
 
  private:
-  InkImage inks_;
-  Image outline_;
+  std::vector<std::uint8_t> kept_;
 };
 
 bool ink_matters(const JobConfig& config) {
@@ -103,6 +109,16 @@ InkingOptions inking_options(const JobConfig& config) {
   return options;
 }
 
+FilmInk ink_for(const DippedObject& dipped, const FilmMap& map, const ColorModel& model,
+                const JobConfig& config, RunContext& context) {
+  const SheetRaster raster = sheet_raster(config, config.print.dpi);
+  FilmInk ink;
+  ink.wanted = film_image(dipped.object(), map, raster, inverse_options(config), context);
+  ink.stretch = film_stretch(map, raster, config.print.bleed_mm, context);
+  ink.inking = ink_film(ink.wanted, ink.stretch.area_ratio, model, inking_options(config), context);
+  return ink;
+}
+
 void warn_unsettled(const InkResult& result, RunContext& context) {
   if (result.settled || result.rounds.size() < 2) return;
   context.warn(fmt::format(
@@ -110,6 +126,128 @@ void warn_unsettled(const InkResult& result, RunContext& context) {
       "raise ink.rounds_max, or film.elements if it does not help",
       result.rounds.size(), result.rounds.back().change_mm, kSettled_mm));
 }
+
+// Dip, print, stiffen, and again.
+class InkRounds {
+ public:
+  InkRounds(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
+            const JobConfig& config, StageTimes& times, RunContext& context)
+      : dipped_(dipped),
+        film_(film),
+        model_(model),
+        config_(config),
+        rounds_config_(config),
+        times_(times),
+        context_(context),
+        options_(config.dip) {
+    rounds_config_.print.dpi = std::min(config.print.dpi, kRoundsDpi);
+  }
+
+  InkResult run() {
+    while (true) {
+      dip();
+      result_.ink = times_.measure("ink", [&] { return print(rounds_config_, false); });
+      judge();
+      if (ended()) break;
+      stiffen();
+    }
+    warn_unsettled(result_, context_);
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  int rounds() const { return int(result_.rounds.size()); }
+
+  void dip() {
+    if (rounds() > 0) before_ = dipped_.film();
+    dip_again(dipped_, film_, options_, times_, context_);
+  }
+
+  // What to print on the film as it was dipped last; `all`: wherever it lies on the object.
+  FilmInk print(const JobConfig& config, bool all) {
+    if (!outline_.is_kept()) return ink_for(dipped_, *dipped_.map, model_, config, context_);
+    const DippedFilm kept = outline_.applied(dipped_.film(), *dipped_.surface, all);
+    const FilmMap map(dipped_.object(), *dipped_.surface, kept);
+    return ink_for(dipped_, map, model_, config, context_);
+  }
+
+  // Records the round.
+  void judge() {
+    InkRound round;
+    round.tears_kept = !options_.tear_levels.empty();
+    if (before_) round.change_mm = mean_way(*before_, dipped_.film());
+    round.printed_mm2 = printed_area_mm2(result_.ink.wanted, rounds_config_.print.dpi);
+    round.mean_modulus = mean_of(options_.modulus);
+    round.dip = dipped_.dip.statistics;
+    result_.rounds.push_back(round);
+    if (before_)
+      context_.log(fmt::format("ink, round {}: the film moved by {:.2g} mm on average", rounds(),
+                               round.change_mm));
+  }
+
+  double change(int rounds_ago) const {
+    return rounds() > rounds_ago ? result_.rounds.rbegin()[rounds_ago].change_mm : 0;
+  }
+
+  bool ended() {
+    const bool iterate = ink_matters(config_) && config_.ink.rounds_max > 1;
+    result_.settled = !iterate || (before_ && change(0) < kSettled_mm);
+    if (result_.settled || rounds() >= config_.ink.rounds_max) return true;
+    // What does not settle costs a dip each round.
+    return rounds() > kFreeRounds + 2 && change(0) > kLeastProgress * change(2);
+  }
+
+  // The film to dip next.
+  void stiffen() {
+    if (rounds() == kFreeRounds) {
+      options_.tear_levels = dipped_.film().tear_level;
+      outline_.keep(dipped_.film());
+      mixer_.forget();
+    }
+    const SheetRaster raster = sheet_raster(rounds_config_, rounds_config_.print.dpi);
+    std::vector<double> modulus = times_.measure("stiffness", [&] {
+      return film_modulus(film_, result_.ink.inking.inks, raster,
+                          {config_.ink.stiffness_ratio, config_.ink.filter_mm});
+    });
+    options_.modulus = options_.modulus.empty() ? modulus : mixed(modulus);
+  }
+
+  // In the measure in which stiffness matters.
+  std::vector<double> mixed(const std::vector<double>& modulus) {
+    const auto logs = [](const std::vector<double>& values) {
+      return Eigen::VectorXd(
+          Eigen::Map<const Eigen::VectorXd>(values.data(), Eigen::Index(values.size()))
+              .array()
+              .log());
+    };
+    const Eigen::VectorXd next =
+        mixer_.next(logs(options_.modulus), logs(modulus)).array().exp().max(1.0);
+    return {next.begin(), next.end()};
+  }
+
+  void finish() {
+    result_.ink = times_.measure("invert", [&] { return print(config_, true); });
+    FilmInk& ink = result_.ink;
+    const SheetRaster raster = sheet_raster(config_, config_.print.dpi);
+    ink.on_object =
+        look_on_object(ink.inking.inks, ink.stretch.area_ratio, model_, base_color(config_));
+    result_.reach = measure_reach(ink.wanted, ink.on_object, ink.stretch, raster);
+  }
+
+  DippedObject& dipped_;
+  const FilmMesh& film_;
+  const ColorModel& model_;
+  const JobConfig& config_;
+  JobConfig rounds_config_;
+  StageTimes& times_;
+  RunContext& context_;
+  DipOptions options_;  // of the next dip
+  std::optional<DippedFilm> before_;
+  PrintedOutline outline_;
+  FixedPoint mixer_{kMixed};
+  InkResult result_;
+};
 
 }  // namespace
 
@@ -121,76 +259,20 @@ std::unique_ptr<ColorModel> color_model(const JobConfig& config) {
     throw InputError(
         "ink.model: no CMYK profile is installed on this machine; name one with --printer-profile, "
         "install Debian's libgs-common, or set ink.model=device");
-  return make_profile_model(read_file(file), file.string(), config.ink.intent);
-}
-
-FilmInk ink_for(const DippedObject& dipped, const ColorModel& model, const JobConfig& config,
-                RunContext& context) {
-  const SheetRaster raster = sheet_raster(config, config.print.dpi);
-  FilmInk ink;
-  ink.wanted = film_image(dipped.object(), *dipped.map, raster, inverse_options(config), context);
-  ink.stretch = film_stretch(*dipped.map, raster, config.print.bleed_mm, context);
-  ink.inking = ink_film(ink.wanted, ink.stretch.area_ratio, model, inking_options(config), context);
-  return ink;
+  std::vector<std::uint8_t> profile = read_file(file);
+  if (!is_rgb_profile(profile))
+    return make_profile_model(std::move(profile), file.string(), config.ink.intent);
+  // Which inks its printer makes of a colour, an RGB profile does not say.
+  if (config.print.color == PrintColor::kCmyk)
+    throw InputError(fmt::format(
+        "{}: is the profile of an RGB printer; set print.color=rgb, or name a CMYK profile",
+        file.string()));
+  return make_device_model();
 }
 
 InkResult settle_ink(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
                      const JobConfig& config, StageTimes& times, RunContext& context) {
-  JobConfig rounds_config = config;
-  rounds_config.print.dpi = std::min(config.print.dpi, kRoundsDpi);
-  const SheetRaster raster = sheet_raster(rounds_config, rounds_config.print.dpi);
-  const bool iterate = ink_matters(config) && config.ink.rounds_max > 1;
-  DipOptions options = config.dip;
-  InkResult result;
-  std::optional<DippedFilm> before;
-  StiffeningInk stiffening;
-  while (true) {
-    InkRound round;
-    round.tears_kept = !options.tear_levels.empty();
-    dip_again(dipped, film, options, times, context);
-    result.ink =
-        times.measure("ink", [&] { return ink_for(dipped, model, rounds_config, context); });
-
-    if (before) round.change_mm = mean_way(*before, dipped.film());
-    round.printed_mm2 = printed_area_mm2(result.ink.wanted, rounds_config.print.dpi);
-    round.mean_modulus = mean_of(options.modulus);
-    round.dip = dipped.dip.statistics;
-    const double last_change = result.rounds.empty() ? 0 : result.rounds.back().change_mm;
-    result.rounds.push_back(round);
-    if (before)
-      context.log(fmt::format("ink, round {}: the film moved by {:.2g} mm on average",
-                              result.rounds.size(), round.change_mm));
-
-    result.settled = !iterate || (before && round.change_mm < kSettled_mm);
-    if (result.settled || int(result.rounds.size()) >= config.ink.rounds_max) break;
-    if (dipped.coverage.torn_share() > kHopelessShare) {
-      context.warn(
-          "so much film tears that the dip was not computed again with its ink; turn steep sides "
-          "down or dip less, then print anew");
-      break;
-    }
-    // Film that tears differently every time does not settle, and each round costs a dip.
-    if (int(result.rounds.size()) > kFreeRounds && last_change > 0 &&
-        round.change_mm > kLeastProgress * last_change)
-      break;
-    const bool settle = int(result.rounds.size()) >= kFreeRounds;
-    if (settle && options.tear_levels.empty()) options.tear_levels = dipped.film().tear_level;
-    const InkImage& inks = stiffening.now(result.ink, int(result.rounds.size()) > kFreeRounds);
-    std::vector<double> modulus = times.measure("stiffness", [&] {
-      return film_modulus(film, inks, raster, {config.ink.stiffness_ratio, config.ink.filter_mm});
-    });
-    if (last_change > 0 && round.change_mm > last_change) damp(options.modulus, modulus);
-    options.modulus = std::move(modulus);
-    before = dipped.film();
-  }
-  warn_unsettled(result, context);
-  if (rounds_config.print.dpi < config.print.dpi)
-    result.ink = times.measure("invert", [&] { return ink_for(dipped, model, config, context); });
-  result.ink.on_object = look_on_object(result.ink.inking.inks, result.ink.stretch.area_ratio,
-                                        model, base_color(config));
-  result.reach = measure_reach(result.ink.wanted, result.ink.on_object, result.ink.stretch,
-                               sheet_raster(config, config.print.dpi));
-  return result;
+  return InkRounds(dipped, film, model, config, times, context).run();
 }
 
 }  // namespace hydrodip

@@ -10,8 +10,8 @@
 
 namespace hydrodip {
 
-// By the printer's profile, or by the device formula. Throws InputError if the profile is unusable
-// or none is installed.
+// By the printer's profile, or by the device formula; that too if the profile is an RGB printer's.
+// Throws InputError if the profile is unusable or none is installed.
 std::unique_ptr<ColorModel> color_model(const JobConfig& config);
 
 // What lies on the film, and what comes of it on the object.
@@ -21,10 +21,6 @@ struct FilmInk {
   Inking inking;
   Image on_object;  // what will appear
 };
-
-// The inks to print on a film that was dipped so.
-FilmInk ink_for(const DippedObject& dipped, const ColorModel& model, const JobConfig& config,
-                RunContext& context);
 
 // One round of the iteration.
 struct InkRound {

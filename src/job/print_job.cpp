@@ -1,5 +1,7 @@
+#include "base/file.h"
 #include "base/output_folder.h"
 #include "base/parallel.h"
+#include "ink/rgb_profile.h"
 #include "job/dip_stage.h"
 #include "job/ink_stage.h"
 #include "job/jobs.h"
@@ -24,6 +26,18 @@ SheetOptions sheet_options(const JobConfig& config) {
   return sheet;
 }
 
+// For the printer's own RGB where its profile is given, else in sRGB.
+void write_rgb_pdf(const std::filesystem::path& path, const Image& look, const JobConfig& config,
+                   RunContext& context) {
+  const std::filesystem::path& file = config.ink.profile;
+  const std::vector<std::uint8_t> profile =
+      file.empty() ? std::vector<std::uint8_t>() : read_file(file);
+  if (!is_rgb_profile(profile))
+    return write_print_pdf(path, look, srgb_profile(), sheet_options(config), context);
+  write_print_pdf(path, in_printer_rgb(look, profile, file.string(), config.ink.intent), profile,
+                  sheet_options(config), context);
+}
+
 void compose(OutputFolder& folder, const FilmInk& ink, const ColorModel& model,
              const JobConfig& config, RunContext& context) {
   const SheetOptions sheet = sheet_options(config);
@@ -36,7 +50,7 @@ void compose(OutputFolder& folder, const FilmInk& ink, const ColorModel& model,
   if (config.print.color == PrintColor::kCmyk)
     write_print_pdf(folder.path("print.pdf"), inks, model.profile(), sheet, context);
   else
-    write_print_pdf(folder.path("print.pdf"), look, srgb_profile(), sheet, context);
+    write_rgb_pdf(folder.path("print.pdf"), look, config, context);
 }
 
 }  // namespace

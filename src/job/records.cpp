@@ -235,7 +235,7 @@ std::vector<Parameter> ink_records() {
           "colours to inks: plain formula, or ICC profile (ink.profile or an installed one)"),
       path(
           "ink.profile", [](C& c) -> std::filesystem::path& { return c.ink.profile; },
-          "the printer's CMYK ICC profile; in a file: relative to that file"),
+          "the printer's ICC profile, CMYK or RGB; in a file: relative to that file"),
       choice<RenderingIntent>(
           "ink.intent",
           {{"relative", RenderingIntent::kRelative},

@@ -29,7 +29,23 @@ grep -q 'film-printer' out/report.json || fail 'the report does not name the pro
 cmp -s first/print.tif out/print.tif && fail 'the profile changes nothing'
 grep -q OutputIntent out/print.pdf || fail 'print.pdf has no output intent'
 
-# What is no profile of CMYK inks is refused in one sentence.
+# An RGB printer's profile: print.pdf carries it, and there are no inks to send to a RIP.
+targen -d3 -e4 -s9 -g9 -m3 -f0 rgb > rgb-targen.txt || fail 'targen -d3'
+printtarg -t150 -pA4 -ii1 rgb > rgb-printtarg.txt || fail 'printtarg of RGB'
+fakeread /usr/share/color/argyll/ref/sRGB.icm rgb > rgb-fakeread.txt || fail 'fakeread of RGB'
+colprof -ql -D rgb-printer rgb > rgb-colprof.txt || fail 'colprof of RGB'
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $quick --set ink.rounds_max=1 --printer-profile rgb.icc -o rgb-out \
+  > /dev/null || fail 'print with an RGB profile'
+pdfimages -list rgb-out/print.pdf | awk 'NR == 3' | grep -q ' icc  *3 ' ||
+  fail "print.pdf's image has no RGB profile: $(pdfimages -list rgb-out/print.pdf)"
+cmp -s first/print.pdf rgb-out/print.pdf && fail 'the RGB profile changes nothing'
+"$hydrodip" print colored.ply --printer-profile rgb.icc --set print.color=cmyk -o refused \
+  2> rgb-refused.txt
+[ $? -eq 2 ] || fail 'an RGB profile for CMYK'
+[ "$(wc -l < rgb-refused.txt)" -eq 1 ] || fail "not one sentence: $(cat rgb-refused.txt)"
+
+# What is no printer's profile is refused in one sentence.
 "$hydrodip" print colored.ply --printer-profile colored.ply -o refused 2> refused.txt
 [ $? -eq 2 ] || fail 'a model as profile'
 [ "$(wc -l < refused.txt)" -eq 1 ] || fail "not one sentence: $(cat refused.txt)"

@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "ink/color_model.h"
 #include "ink/difference.h"
+#include "ink/rgb_profile.h"
 
 namespace hydrodip {
 namespace {
@@ -150,6 +151,56 @@ TEST_F(Profiles, TransiccGivesTheSameInks) {
                            float(back[i][2] / 255)};
     EXPECT_LT(color_difference(seen, theirs), 1) << i;
   }
+}
+
+// An image with these colours side by side.
+Image row_of(const std::vector<SrgbColor>& colors) {
+  Image image(int(colors.size()), 1);
+  const auto byte = [](float v) { return std::uint8_t(std::lround(255 * v)); };
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const SrgbColor& c = colors[i];
+    const std::uint8_t pixel[4] = {byte(c.r), byte(c.g), byte(c.b), std::uint8_t(i)};
+    std::copy_n(pixel, 4, image.pixel(int(i), 0));
+  }
+  return image;
+}
+
+TEST_F(Profiles, TransiccGivesTheSameColoursToAnRgbPrinter) {
+  if (!has_tool("transicc")) GTEST_SKIP() << "needs transicc";
+  const std::string printer = "/usr/share/color/icc/ghostscript/a98.icc";
+  if (!std::filesystem::exists(printer)) GTEST_SKIP() << "needs Debian's libgs-common";
+  ASSERT_TRUE(is_rgb_profile(read_file(printer)));
+  const Image image = row_of(color_cube(6));
+  std::vector<std::vector<double>> rows;
+  for (int x = 0; x < image.width_px; ++x) {
+    const std::uint8_t* p = image.pixel(x, 0);
+    rows.push_back({double(p[0]), double(p[1]), double(p[2])});
+  }
+  const auto expected = transicc("-i*sRGB -o" + printer + " -t1 -b", rows);
+  ASSERT_EQ(expected.size(), rows.size());
+  const Image found =
+      in_printer_rgb(image, read_file(printer), printer, RenderingIntent::kRelative);
+  int changed = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::uint8_t* p = found.pixel(int(i), 0);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(p[k], expected[i][k], 1.5) << i;
+    EXPECT_EQ(p[3], image.pixel(int(i), 0)[3]);
+    changed += std::abs(p[0] - rows[i][0]) > 2;
+  }
+  EXPECT_GT(changed, 50);  // it is another space
+}
+
+TEST_F(Profiles, AnSrgbPrinterGetsTheImageAsItIs) {
+  const Image image = row_of(color_cube(6));
+  const Image found = in_printer_rgb(image, srgb_profile(), "sRGB", RenderingIntent::kRelative);
+  for (std::size_t i = 0; i < image.rgba.size(); ++i) EXPECT_NEAR(found.rgba[i], image.rgba[i], 1);
+}
+
+TEST_F(Profiles, OnlyRgbProfilesAreRgb) {
+  EXPECT_TRUE(is_rgb_profile(srgb_profile()));
+  EXPECT_FALSE(is_rgb_profile(make_device_model()->profile()));
+  EXPECT_FALSE(is_rgb_profile(std::vector<std::uint8_t>(500, 7)));
+  EXPECT_FALSE(is_rgb_profile({}));
 }
 
 TEST_F(Profiles, WhatIsNoCmykProfileIsRefused) {
