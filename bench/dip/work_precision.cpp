@@ -139,9 +139,9 @@ std::string plot(const std::vector<Result>& results) {
   }
   const Axis x = axis_over(seconds, 80, 600), y = axis_over(errors, 340, 30);
   std::string svg =
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"760\" height=\"400\" "
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"830\" height=\"400\" "
       "font-family=\"sans-serif\" font-size=\"13\">\n"
-      "<rect width=\"760\" height=\"400\" fill=\"#ffffff\"/>\n";
+      "<rect width=\"830\" height=\"400\" fill=\"#ffffff\"/>\n";
   const auto grid_line = [&](double x1, double y1, double x2, double y2) {
     svg += fmt::format(
         "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#d8d8d8\"/>\n", x1,
