@@ -8,8 +8,6 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "dip/measure.h"
-#include "dip/scheme.h"
 #include "ink/rgb_profile.h"
 #include "ink/stiffness.h"
 #include "job/fixed_point.h"
@@ -73,24 +71,17 @@ class PrintedOutline {
   // The film as if just the kept triangles lay on the object; `and_others`: besides those that do.
   // A corner that just misses the object counts as touching it.
   DippedFilm applied(const DippedFilm& film, const Surface& surface, bool and_others) const {
-    DipState state{.level = film.depth_mm,
-                   .position = film.position,
-                   .state = film.state,
-                   .torn = film.torn,
-                   .tear_level = film.tear_level,
-                   .statistics = {}};
+    DippedFilm result = film;
     for (std::size_t t = 0; t < kept_.size(); ++t) {
       if (!kept_[t] || film.torn[t]) continue;
       for (const std::int32_t v : film.mesh.triangles[t])
         if (film.state[std::size_t(v)] == VertexState::kUnattached &&
             surface.closest_point(film.position[std::size_t(v)], film.mesh.cell_mm))
-          state.state[std::size_t(v)] = VertexState::kAttached;
+          result.state[std::size_t(v)] = VertexState::kAttached;
     }
     for (std::size_t t = 0; t < kept_.size(); ++t)
-      if (!kept_[t] && !(and_others && film.lies_on_object(t))) state.torn[t] = 1;
-    DipOptions no_more_tears;
-    no_more_tears.material.tear_stretch = 0;
-    return measured(film.mesh, state, no_more_tears, surface);
+      if (!kept_[t] && !(and_others && film.lies_on_object(t))) result.torn[t] = 1;
+    return result;
   }
 
  private:
