@@ -1,0 +1,136 @@
+#include "calibrate/checkerboard_dip.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "ink/stiffness.h"
+#include "job/prepare.h"
+#include "object/samples.h"
+
+namespace hydrodip {
+namespace {
+
+// Finer than the stiffness filter by far; squares are whole pixels.
+constexpr double kPixel_mm = 0.1;
+
+bool is_kit_shape(const std::string& name) {
+  return std::any_of(kit_shapes().begin(), kit_shapes().end(),
+                     [&](const KitShape& shape) { return name == shape.name; });
+}
+
+double kit_depth_mm(const std::string& name) {
+  for (const KitShape& shape : kit_shapes())
+    if (name == shape.name) return shape.depth_mm;
+  return 0;
+}
+
+// "sphere@12" into "sphere" and 12; 0: no depth given. A '@' in a file's name is left alone.
+std::pair<std::string, double> split_depth(const std::string& text) {
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos) return {text, 0};
+  double depth = 0;
+  const char* begin = text.data() + at + 1;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(begin, end, depth);
+  if (error != std::errc() || stop != end) return {text, 0};
+  if (!(depth > 0 && depth < 5000))
+    throw InputError(fmt::format("{}: the depth after '@' must be above 0 mm", text));
+  return {text.substr(0, at), depth};
+}
+
+}  // namespace
+
+FilmParameters film_parameters(const JobConfig& config) {
+  return {config.dip.material.z_stretch, config.ink.stiffness_ratio, config.dip.material.poisson};
+}
+
+Checkerboard checkerboard_to_print(const FilmOptions& film, double square_mm) {
+  const double pixels = std::max(4.0, std::round(square_mm / kPixel_mm));
+  Checkerboard board;
+  board.raster = {film.width_mm, film.height_mm, pixels * kMmPerInch / square_mm};
+  board.inks = InkImage(board.raster.width_px(), board.raster.height_px());
+  const Vec2 edge(0.5 * film.width_mm - film.margin_mm, 0.5 * film.height_mm - film.margin_mm);
+  for (int y = 0; y < board.inks.height_px; ++y)
+    for (int x = 0; x < board.inks.width_px; ++x) {
+      const Vec2 u = board.raster.to_film(x + 0.5, y + 0.5);
+      if (std::abs(u.x()) > edge.x() || std::abs(u.y()) > edge.y()) continue;
+      const long column = long(std::floor(u.x() / square_mm));
+      const long row = long(std::floor(u.y() / square_mm));
+      if ((column + row) % 2 == 0) board.inks.pixel(x, y)[3] = 255;
+    }
+  return board;
+}
+
+const std::vector<KitShape>& kit_shapes() {
+  static const std::vector<KitShape> shapes = {{"sphere", 12}, {"pyramid", 22}, {"ellipsoid", 11}};
+  return shapes;
+}
+
+CalibrationObject calibration_object(const std::string& text, const JobConfig& config,
+                                     RunContext& context) {
+  const auto [name, depth] = split_depth(text);
+  CalibrationObject result;
+  result.name = name;
+  if (is_kit_shape(name)) {
+    result.object = make_sample(name);
+    result.depth_mm = depth > 0 ? depth : kit_depth_mm(name);
+  } else {
+    JobConfig loading = config;
+    loading.model = name;
+    result.object = load_posed(loading, context).object;
+    result.name = std::filesystem::path(name).stem().string();
+    result.depth_mm = depth > 0 ? depth : dip_depth_mm(result.object, config);
+  }
+  JobConfig fitting = config;
+  fitting.dip.depth_mm = result.depth_mm;
+  require_fit(result.object, fitting, context);
+  return result;
+}
+
+CheckeredFilm checkered_film(const JobConfig& config, double square_mm) {
+  CheckeredFilm film;
+  film.square_mm = square_mm;
+  film.mesh = make_film_mesh(config.film);
+  const Checkerboard board = checkerboard_to_print(config.film, square_mm);
+  // A ratio of 2 makes the modulus 1 more than the density.
+  film.ink_density =
+      film_modulus(film.mesh, board.inks, board.raster, {2, config.ink.filter_mm});
+  for (double& density : film.ink_density) density -= 1;
+  return film;
+}
+
+GridLanding CheckerboardDip::landing(const CalibrationObject& object) const {
+  return [this, &object](const GridPlace& place) -> std::optional<Vec3> {
+    const auto point = map->to_object(square_mm * Vec2(place[0], place[1]));
+    if (!point) return std::nullopt;
+    return position_at(object.object, *point);
+  };
+}
+
+CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObject& object,
+                                 const Surface& surface, const FilmParameters& parameters,
+                                 const DipOptions& options, RunContext& context) {
+  DipOptions dip_options = options;
+  dip_options.depth_mm = object.depth_mm;
+  dip_options.material.z_stretch = parameters.z_stretch;
+  dip_options.material.poisson = parameters.poisson;
+  dip_options.material.tear_stretch = 0;
+  if (options.method != DipMethod::kProjection) {
+    dip_options.modulus = film.ink_density;
+    for (double& value : dip_options.modulus)
+      value = 1 + value * (parameters.stiffness_ratio - 1);
+  }
+  CheckerboardDip result;
+  result.square_mm = film.square_mm;
+  result.film = dip(film.mesh, object.object.positions, object.object.triangles, surface,
+                    dip_options, context)
+                    .film;
+  result.map = std::make_unique<FilmMap>(object.object, surface, result.film);
+  return result;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,75 @@
+// A calibration dip: film with a printed checkerboard, an object of known shape, and the film's
+// parameters to be found (paper section 4).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ink/inks.h"
+#include "job/config.h"
+#include "object/surface.h"
+#include "scan/registration.h"
+#include "transfer/film_map.h"
+#include "transfer/raster.h"
+
+namespace hydrodip {
+
+// What a calibration finds out about a film.
+struct FilmParameters {
+  double z_stretch = 0.65;
+  double stiffness_ratio = 600;
+  double poisson = 0;
+};
+FilmParameters film_parameters(const JobConfig& config);
+
+// Printed black over the whole sheet inside the taped margin, in squares of square_mm; one corner
+// is at the film's centre, and the square between +x and +y is black.
+struct Checkerboard {
+  InkImage inks;
+  SheetRaster raster;
+};
+Checkerboard checkerboard_to_print(const FilmOptions& film, double square_mm);
+
+// What is dipped, in the posed-object frame, and how deep.
+struct CalibrationObject {
+  std::string name;
+  Object object;
+  double depth_mm = 0;
+};
+
+// The shapes of the kit.
+struct KitShape {
+  const char* name;  // of the sample
+  double depth_mm;   // where its slope gets to what films bear
+};
+const std::vector<KitShape>& kit_shapes();
+
+// "sphere", "ellipsoid@11" (depth in mm) or a model file with its depth. Throws InputError.
+CalibrationObject calibration_object(const std::string& text, const JobConfig& config,
+                                     RunContext& context);
+
+// Everything about a film that its parameters leave alone. Immutable.
+struct CheckeredFilm {
+  FilmMesh mesh;
+  std::vector<double> ink_density;  // per triangle, after the stiffness filter
+  double square_mm = 5;
+};
+CheckeredFilm checkered_film(const JobConfig& config, double square_mm);
+
+// One simulated dip with what is asked of it. Refers to the object and its surface.
+struct CheckerboardDip {
+  DippedFilm film;
+  std::unique_ptr<FilmMap> map;
+  double square_mm = 5;
+  // Where a corner of the checkerboard ends up.
+  GridLanding landing(const CalibrationObject& object) const;
+};
+
+// The film never tears here: scans show what came out, and a corner that tore away is missing from
+// them. Same bytes for any number of threads. Throws DipError, InputError, Cancelled.
+CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObject& object,
+                                 const Surface& surface, const FilmParameters& parameters,
+                                 const DipOptions& options, RunContext& context);
+
+}  // namespace hydrodip

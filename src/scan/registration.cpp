@@ -1,0 +1,268 @@
+#include "scan/registration.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr std::size_t kFewestCorners = 6;
+// So many of the patch's corners have to land for a shift to count.
+constexpr double kLeastOverlap = 0.9;
+// A fit worse than this share of a square is none.
+constexpr double kLargestMisfit = 0.5;
+// A mirrored reading is believed when it fits this much better.
+constexpr double kClearlyBetter = 0.6;
+// How much where a corner lands counts beside its distance from the surface.
+constexpr double kLandingWeight = 0.03;
+constexpr int kMostRounds = 60;
+constexpr double kSettled_mm = 1e-9;
+constexpr double kReach_mm = 1000;
+
+GridPlace turned(const GridPlace& place, int quarter_turns) {
+  GridPlace result = place;
+  for (int i = 0; i < quarter_turns; ++i) result = {-result[1], result[0]};
+  return result;
+}
+
+// The corners of the largest patch, as indices; the first patch of that size.
+std::vector<std::size_t> largest_patch(const CornerGrid& grid) {
+  std::map<int, std::vector<std::size_t>> patches;
+  for (std::size_t c = 0; c < grid.patch.size(); ++c) patches[grid.patch[c]].push_back(c);
+  std::vector<std::size_t> largest;
+  for (const auto& [number, corners] : patches)
+    if (corners.size() > largest.size()) largest = corners;
+  return largest;
+}
+
+// Places of simulated corners, looked up once.
+class Landings {
+ public:
+  Landings(const GridLanding& landing, const GridPlace& reach) {
+    for (int row = -reach[1]; row <= reach[1]; ++row)
+      for (int column = -reach[0]; column <= reach[0]; ++column)
+        if (const auto at = landing({column, row})) {
+          position_[{column, row}] = *at;
+          low_ = {std::min(low_[0], column), std::min(low_[1], row)};
+          high_ = {std::max(high_[0], column), std::max(high_[1], row)};
+        }
+  }
+  const Vec3* find(const GridPlace& place) const {
+    const auto found = position_.find(place);
+    return found == position_.end() ? nullptr : &found->second;
+  }
+  bool empty() const { return position_.empty(); }
+  const GridPlace& low() const { return low_; }
+  const GridPlace& high() const { return high_; }
+
+ private:
+  std::map<GridPlace, Vec3> position_;
+  GridPlace low_{1 << 20, 1 << 20}, high_{-(1 << 20), -(1 << 20)};
+};
+
+// One way to read the scan: mirrored positions or not, mirrored places or not, and where they lie.
+struct Reading {
+  bool mirror_positions = false, mirror_places = false;
+  std::vector<GridPlace> place;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  double rms_mm = 1e300;
+};
+
+// The rigid motion that takes `from` to `to` with the least squares, and what is left.
+void fit_rigidly(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to, Reading& reading) {
+  const Eigen::Matrix4d pose = Eigen::umeyama(from, to, false);
+  reading.pose.matrix() = pose;
+  const Eigen::Matrix3Xd left = (reading.pose.linear() * from).colwise() +
+                                reading.pose.translation() - to;
+  reading.rms_mm = std::sqrt(left.squaredNorm() / double(from.cols()));
+}
+
+Vec3 mirrored(const Vec3& p, bool mirror) { return mirror ? Vec3(-p.x(), p.y(), p.z()) : p; }
+
+// The best reading of one kind.
+class Matcher {
+ public:
+  Matcher(const CornerGrid& grid, const std::vector<std::size_t>& corners, const Landings& landings)
+      : grid_(grid), corners_(corners), landings_(landings) {}
+
+  Reading best(bool mirror_positions, bool mirror_places) const {
+    Reading best;
+    best.mirror_positions = mirror_positions;
+    best.mirror_places = mirror_places;
+    for (int turns = 0; turns < 4; ++turns) {
+      std::vector<GridPlace> places;
+      GridPlace low{1 << 20, 1 << 20}, high{-(1 << 20), -(1 << 20)};
+      for (const std::size_t c : corners_) {
+        GridPlace place = grid_.place[c];
+        if (mirror_places) place[0] = -place[0];
+        places.push_back(turned(place, turns));
+        for (std::size_t k = 0; k < 2; ++k) {
+          low[k] = std::min(low[k], places.back()[k]);
+          high[k] = std::max(high[k], places.back()[k]);
+        }
+      }
+      // Shifts that leave at most a tenth of a side outside.
+      const GridPlace slack = {(high[0] - low[0]) / 8 + 1, (high[1] - low[1]) / 8 + 1};
+      for (int dy = landings_.low()[1] - low[1] - slack[1];
+           dy <= landings_.high()[1] - high[1] + slack[1]; ++dy)
+        for (int dx = landings_.low()[0] - low[0] - slack[0];
+             dx <= landings_.high()[0] - high[0] + slack[0]; ++dx)
+          consider(places, {dx, dy}, best);
+    }
+    return best;
+  }
+
+ private:
+  void consider(const std::vector<GridPlace>& places, const GridPlace& shift, Reading& best) const {
+    Reading reading = {best.mirror_positions, best.mirror_places, places, {}, 0};
+    Eigen::Matrix3Xd from(3, Eigen::Index(places.size())), to(3, Eigen::Index(places.size()));
+    Eigen::Index count = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      reading.place[i] = {places[i][0] + shift[0], places[i][1] + shift[1]};
+      const Vec3* lands = landings_.find(reading.place[i]);
+      if (lands == nullptr) continue;
+      from.col(count) = mirrored(grid_.position[corners_[i]], best.mirror_positions);
+      to.col(count) = *lands;
+      ++count;
+    }
+    if (double(count) < kLeastOverlap * double(places.size()) || count < 3) return;
+    fit_rigidly(from.leftCols(count), to.leftCols(count), reading);
+    // Readings that differ by rounding alone are the same to us: the first one counts.
+    if (reading.rms_mm < best.rms_mm * (1 - 1e-6)) best = reading;
+  }
+
+  const CornerGrid& grid_;
+  const std::vector<std::size_t>& corners_;
+  const Landings& landings_;
+};
+
+void refuse_mismatch(const Reading& best, double square_mm, const std::string& name) {
+  if (best.rms_mm > 1e299)
+    throw InputError(fmt::format(
+        "{}: the scan shows more squares than can come to lie on this object at this depth; check "
+        "which object was scanned, --square and the depth",
+        name));
+  if (best.rms_mm > kLargestMisfit * square_mm)
+    throw InputError(fmt::format(
+        "{}: the scan does not have the object's shape: at best its corners lie {:.1f} mm from "
+        "where the film lays them; check which object was scanned, its depth and --square",
+        name, best.rms_mm));
+}
+
+// Rows of the linear system for one corner: the motion is a turn w about the origin and a shift t.
+struct NormalEquations {
+  Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+
+  // Wants direction . (motion of p) to be `wanted`.
+  void add(const Vec3& p, const Vec3& direction, double wanted, double weight) {
+    Eigen::Matrix<double, 6, 1> row;
+    row << p.cross(direction), direction;
+    matrix += weight * weight * row * row.transpose();
+    right += weight * weight * wanted * row;
+  }
+};
+
+std::array<Vec3, 2> tangents(const Vec3& normal) {
+  const Vec3 first = normal.unitOrthogonal();
+  return {first, normal.cross(first)};
+}
+
+Eigen::Isometry3d small_motion(const Eigen::Matrix<double, 6, 1>& step) {
+  const Vec3 turn = step.head<3>();
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  const double angle = turn.norm();
+  if (angle > 0) motion.rotate(Eigen::AngleAxisd(angle, turn / angle));
+  motion.pretranslate(step.tail<3>());
+  return motion;
+}
+
+}  // namespace
+
+CornerGrid moved(const CornerGrid& grid, const Eigen::Isometry3d& pose) {
+  CornerGrid result = grid;
+  for (Vec3& p : result.position) p = pose * p;
+  return result;
+}
+
+GridMatch match_grid(const CornerGrid& grid, const GridLanding& landing, const GridPlace& reach,
+                     double square_mm, const std::string& name) {
+  const std::vector<std::size_t> corners = largest_patch(grid);
+  if (corners.size() < kFewestCorners)
+    throw InputError(fmt::format(
+        "{}: no more than {} corners hang together, too few to find out where they lie on the "
+        "object; give a table of corners, or a scan in the object's frame with --aligned",
+        name, corners.size()));
+  const Landings landings(landing, reach);
+  const Matcher matcher(grid, corners, landings);
+  Reading best = matcher.best(false, false);
+  const Reading turned = matcher.best(false, true);
+  const Reading mirror = std::min(
+      matcher.best(true, true), matcher.best(true, false),
+      [](const Reading& a, const Reading& b) { return a.rms_mm < b.rms_mm; });
+
+  GridMatch match;
+  if (turned.rms_mm < kClearlyBetter * best.rms_mm) {
+    best = turned;
+    match.turned = true;
+  }
+  match.mirrored = mirror.rms_mm < kClearlyBetter * best.rms_mm;
+  if (!match.mirrored) refuse_mismatch(best, square_mm, name);
+  match.place.resize(grid.position.size());
+  for (std::size_t i = 0; i < corners.size() && i < best.place.size(); ++i)
+    match.place[corners[i]] = best.place[i];
+  match.pose = best.pose;
+  match.rms_mm = best.rms_mm;
+  return match;
+}
+
+Alignment align(const CornerGrid& grid, const GridMatch& match, const Surface& surface,
+                const GridLanding& landing) {
+  std::vector<std::optional<Vec3>> lands(grid.position.size());
+  for (std::size_t c = 0; c < lands.size(); ++c)
+    if (match.place[c]) lands[c] = landing(*match.place[c]);
+  Eigen::Isometry3d pose = match.pose;
+  for (int round = 0; round < kMostRounds; ++round) {
+    NormalEquations equations;
+    for (std::size_t c = 0; c < grid.position.size(); ++c) {
+      const Vec3 p = pose * grid.position[c];
+      const auto hit = surface.closest_point(p, kReach_mm);
+      if (!hit) continue;
+      const Vec3 normal = surface.normal(*hit);
+      equations.add(p, normal, normal.dot(surface.position(*hit) - p), 1);
+      if (!lands[c]) continue;
+      for (const Vec3& tangent : tangents(normal))
+        equations.add(p, tangent, tangent.dot(*lands[c] - p), kLandingWeight);
+    }
+    // A trace of damping: a motion that nothing determines is none.
+    for (int k = 0; k < 6; ++k) equations.matrix(k, k) *= 1 + 1e-12;
+    const Eigen::Matrix<double, 6, 1> step = equations.matrix.ldlt().solve(equations.right);
+    if (!step.allFinite()) break;
+    pose = small_motion(step) * pose;
+    if (step.norm() < kSettled_mm) break;
+  }
+  Alignment alignment = as_it_lies(moved(grid, pose), surface);
+  alignment.pose = pose;
+  return alignment;
+}
+
+Alignment as_it_lies(const CornerGrid& grid, const Surface& surface) {
+  Alignment alignment;
+  double sum = 0;
+  for (const Vec3& p : grid.position) {
+    const auto hit = surface.closest_point(p, kReach_mm);
+    const double distance = hit ? hit->t : kReach_mm;
+    sum += distance * distance;
+    alignment.worst_mm = std::max(alignment.worst_mm, distance);
+  }
+  if (!grid.position.empty()) alignment.rms_mm = std::sqrt(sum / double(grid.position.size()));
+  return alignment;
+}
+
+}  // namespace hydrodip
