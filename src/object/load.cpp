@@ -769,7 +769,51 @@ void replace_textures(Object& object, const std::vector<int>& bare, const fs::pa
   }
 }
 
+// ---- polygons -----------------------------------------------------------------------------------
+
+// Gathers faces; assimp gives every face vertices of its own.
+class PolygonCollector {
+ public:
+  void add(const aiMesh& mesh) {
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices < 3) continue;  // points and lines
+      std::vector<std::int32_t> corners;
+      for (unsigned i = 0; i < face.mNumIndices; ++i)
+        corners.push_back(vertex(mesh.mVertices[face.mIndices[i]]));
+      mesh_.faces.push_back(std::move(corners));
+    }
+  }
+  PolygonMesh take() { return std::move(mesh_); }
+
+ private:
+  std::int32_t vertex(const aiVector3D& p) {
+    const auto [known, is_new] = index_.try_emplace({p.x, p.y, p.z}, int(mesh_.positions.size()));
+    if (is_new) mesh_.positions.push_back(Vec3(p.x, p.y, p.z));
+    return known->second;
+  }
+  PolygonMesh mesh_;
+  std::map<std::array<float, 3>, std::int32_t> index_;
+};
+
 }  // namespace
+
+PolygonMesh load_polygons(const fs::path& path) {
+  const Format format = format_of(path);
+  if (format != Format::kObj && format != Format::kPly)
+    throw InputError(fmt::format("{}: quads are read from OBJ and PLY files; export the mesh as "
+                                 "one of them",
+                                 path.string()));
+  ModelFolder folder(path);
+  const CheckedFile checked = check(format, path.string(), folder.read(path), folder);
+  const std::string name = path.stem().string() + lower_extension(path);
+  Assimp::Importer importer;
+  importer.SetIOHandler(new CheckedFiles(name, checked.bytes, folder));  // takes it over
+  const aiScene& scene = import(path.string(), name, importer);
+  PolygonCollector collector;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) collector.add(*scene.mMeshes[m]);
+  return collector.take();
+}
 
 LoadedObject load_object(const fs::path& path, const LoadOptions& options, RunContext& context) {
   const Format format = format_of(path);

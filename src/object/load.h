@@ -44,4 +44,13 @@ struct LoadedObject {
 LoadedObject load_object(const std::filesystem::path& path, const LoadOptions& options,
                          RunContext& context);
 
+// Faces as the file has them, not cut into triangles. Equal positions are one vertex.
+struct PolygonMesh {
+  std::vector<Vec3> positions;                   // in the file's unit
+  std::vector<std::vector<std::int32_t>> faces;  // three corners or more
+};
+
+// Reads OBJ and PLY; nothing but positions and faces. Throws InputError as load_object.
+PolygonMesh load_polygons(const std::filesystem::path& path);
+
 }  // namespace hydrodip

@@ -1,0 +1,57 @@
+// The local refinement: parameters that make the warped grids as regular as they get, and how well
+// the scans determine them.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "calibrate/checkerboard_dip.h"
+
+namespace hydrodip {
+
+// The parameters as the fit sees them: z_stretch, 1 / sqrt(ratio), poisson. A film's answer to its
+// ink saturates as the ink gets stiffer; in 1 / sqrt(ratio) it is nearly straight, and a ratio
+// without an upper bound is an interval that reaches 0.
+using FitPoint = Eigen::Vector3d;
+FitPoint to_fit(const FilmParameters& parameters);
+FilmParameters from_fit(const FitPoint& point);
+
+// Length errors (mm) at each of the points, one matrix column per point and the same rows in all;
+// NaN where a length is not known there.
+using LengthErrors = std::function<Eigen::MatrixXd(const std::vector<FitPoint>& points)>;
+
+struct FitOptions {
+  FitPoint low, high;  // where the answer is looked for; equal: fixed
+  FitPoint step;       // first half size of the stencil
+  int rounds_max = 12;
+};
+
+struct Fit {
+  FitPoint point = FitPoint::Zero();
+  std::array<bool, 3> free{};      // not fixed
+  std::array<bool, 3> at_bound{};  // the answer lies at the edge of where it was looked for
+  Eigen::VectorXd residual;        // mm, at the answer; NaN where not known
+  Eigen::MatrixX3d jacobian;       // of the residual, by FitPoint
+  int rounds = 0;
+  bool settled = false;
+  double rms_mm = 0;
+};
+
+// Least squares by Levenberg and Marquardt on a quadratic model of every length, made from
+// simulations on a stencil around the last answer, until the answer stays.
+Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitOptions& options);
+
+// How the scan's noise shows in the lengths: covariance of `residual` up to the noise's variance, as
+// a product G G^T (rows as residual's, a column for each coordinate of each corner).
+struct Certainty {
+  double noise_mm = 0;           // of a corner's coordinate, judged by what the fit leaves
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of FitPoint; 0 where fixed
+  // 95 % intervals in film parameters. A ratio without upper bound: infinity.
+  FilmParameters low, high;
+};
+Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient);
+
+}  // namespace hydrodip

@@ -1,0 +1,308 @@
+#include "calibrate/search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+// A dip that misses more than this share of the corners that others have is no candidate.
+constexpr double kLeastShare = 0.8;
+// The correction is found anew where the answer moved further than this, in stencils.
+constexpr double kMovedFar = 1.0;
+constexpr int kMostCorrections = 3;
+// Widest stencil of the refinement.
+const FitPoint kWidestStep(0.03, 0.1, 0.06);
+
+JobConfig search_config(const JobConfig& config, const SearchOptions& options) {
+  JobConfig result = config;
+  result.film.elements = std::max(8, int(config.film.elements * options.elements_factor));
+  result.dip.step_mm = std::min(10.0, config.dip.step_mm * options.step_factor);
+  return result;
+}
+
+// Of one subject: per length its error; NaN where the dip has none.
+std::vector<double> errors_of(const Subject& subject, const SimulationResult& result,
+                              double square_mm) {
+  std::vector<double> errors(subject.lengths.size(), kNaN);
+  if (!result || result->size() != subject.scan.grid.position.size()) return errors;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const std::vector<LengthError> one = length_errors({subject.lengths[i]}, *result, square_mm);
+    if (!one.empty()) errors[i] = one.front().error_mm;
+  }
+  return errors;
+}
+
+std::size_t known(const std::vector<double>& errors) {
+  return std::size_t(
+      std::count_if(errors.begin(), errors.end(), [](double e) { return std::isfinite(e); }));
+}
+
+// Lengths that all candidates know, so that every point is judged by the same ones. Candidates are
+// the rows with enough of them.
+std::vector<std::size_t> common_lengths(const std::vector<std::vector<double>>& rows) {
+  std::size_t most = 0;
+  for (const auto& row : rows) most = std::max(most, known(row));
+  std::vector<std::size_t> common;
+  if (most == 0) return common;
+  for (std::size_t i = 0; i < rows.front().size(); ++i) {
+    const bool everywhere = std::all_of(rows.begin(), rows.end(), [&](const auto& row) {
+      return double(known(row)) < kLeastShare * double(most) || std::isfinite(row[i]);
+    });
+    if (everywhere) common.push_back(i);
+  }
+  return common;
+}
+
+double sum_of_squares(const std::vector<double>& errors, const std::vector<std::size_t>& which) {
+  double sum = 0;
+  for (const std::size_t i : which) sum += errors[i] * errors[i];
+  return sum;  // NaN if one is missing
+}
+
+std::vector<std::size_t> all_indices(std::size_t count) {
+  std::vector<std::size_t> list(count);
+  std::iota(list.begin(), list.end(), 0);
+  return list;
+}
+
+Eigen::MatrixXd with(const Eigen::MatrixXd& errors, const Eigen::VectorXd& correction) {
+  return correction.size() == errors.rows() ? (errors.colwise() + correction).eval() : errors;
+}
+
+// The part of a correction for all subjects that belongs to one of them.
+Eigen::VectorXd part(const Eigen::VectorXd& whole,
+                     const std::vector<std::vector<std::size_t>>& compared, std::size_t subject) {
+  Eigen::Index begin = 0;
+  for (std::size_t s = 0; s < subject; ++s) begin += Eigen::Index(compared[s].size());
+  return whole.segment(begin, Eigen::Index(compared[subject].size()));
+}
+
+}  // namespace
+
+std::vector<FilmParameters> grid_points(const SearchOptions& options) {
+  std::vector<FilmParameters> points;
+  for (const double z : options.z_stretch)
+    for (const double ratio : options.stiffness_ratio)
+      for (const double poisson : options.poisson) points.push_back({z, ratio, poisson});
+  return points;
+}
+
+Search::Search(const std::vector<Subject>& subjects, const JobConfig& config, double square_mm,
+               const SearchOptions& options, SimulationStore& store)
+    : subjects_(subjects),
+      options_(options),
+      square_mm_(square_mm),
+      store_(store),
+      search_film_(subjects, search_config(config, options), square_mm,
+                   fmt::format("search-{:g}-{:g}", options.elements_factor, options.step_factor),
+                   store),
+      fine_film_(subjects, config, square_mm, "fine", store) {}
+
+namespace {
+
+std::vector<SimulationRequest> grid_requests(const SearchOptions& options, std::size_t subjects) {
+  std::vector<SimulationRequest> requests;
+  for (const FilmParameters& parameters : grid_points(options))
+    for (std::size_t s = 0; s < subjects; ++s) requests.push_back({s, parameters});
+  return requests;
+}
+
+}  // namespace
+
+void Search::simulate_grid(const Shard& shard, RunContext& context) {
+  const std::vector<SimulationRequest> all = grid_requests(options_, subjects_.size());
+  std::vector<SimulationRequest> mine;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (int(i % std::size_t(shard.shards)) == shard.number - 1) mine.push_back(all[i]);
+  search_film_.get(mine, "searching", context);
+}
+
+std::size_t Search::missing() const {
+  return search_film_.missing(grid_requests(options_, subjects_.size()));
+}
+
+std::vector<GridPointError> Search::grid_errors(RunContext& context) {
+  const std::vector<FilmParameters> points = grid_points(options_);
+  const std::vector<SimulationResult> results =
+      search_film_.get(grid_requests(options_, subjects_.size()), "searching", context);
+  std::vector<GridPointError> grid;
+  for (const FilmParameters& parameters : points)
+    grid.push_back({parameters, std::vector<double>(subjects_.size(), kNaN), 0});
+  std::vector<double> sums(points.size(), 0);
+  double count = 0;
+  compared_.clear();
+  for (std::size_t s = 0; s < subjects_.size(); ++s) {
+    std::vector<std::vector<double>> rows;
+    for (std::size_t p = 0; p < points.size(); ++p)
+      rows.push_back(errors_of(subjects_[s], results[p * subjects_.size() + s], square_mm_));
+    compared_.push_back(common_lengths(rows));
+    const auto number = double(compared_.back().size());
+    if (number < 4)
+      throw InputError(fmt::format(
+          "{}: no simulated dip lays film on enough of the scanned corners; check the depth ('{}@"
+          "DEPTH=...') and --square",
+          subjects_[s].file.string(), subjects_[s].object.name));
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const double sum = sum_of_squares(rows[p], compared_.back());
+      grid[p].rms_mm[s] = std::sqrt(sum / number);
+      sums[p] += sum;
+    }
+    count += number;
+  }
+  for (std::size_t p = 0; p < points.size(); ++p) grid[p].all_mm = std::sqrt(sums[p] / count);
+  return grid;
+}
+
+FitOptions Search::fit_options() const {
+  const auto& o = options_;
+  FitOptions options;
+  options.low = to_fit({o.z_stretch.front(), o.stiffness_ratio.back(), o.poisson.front()});
+  options.high = to_fit({o.z_stretch.back(), o.stiffness_ratio.front(), o.poisson.back()});
+  options.step = kWidestStep;
+  return options;
+}
+
+Eigen::MatrixXd Search::errors_at(Simulations& simulations,
+                                  const std::vector<std::size_t>& subjects,
+                                  const std::vector<FitPoint>& points, const std::string& stage,
+                                  RunContext& context) {
+  std::vector<SimulationRequest> requests;
+  for (const FitPoint& point : points)
+    for (const std::size_t s : subjects) requests.push_back({s, from_fit(point)});
+  const std::vector<SimulationResult> results = simulations.get(requests, stage, context);
+  Eigen::Index rows = 0;
+  for (const std::size_t s : subjects) rows += Eigen::Index(compared_[s].size());
+  Eigen::MatrixXd errors(rows, Eigen::Index(points.size()));
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    Eigen::Index row = 0;
+    for (std::size_t i = 0; i < subjects.size(); ++i) {
+      const std::vector<double> all =
+          errors_of(subjects_[subjects[i]], results[p * subjects.size() + i], square_mm_);
+      for (const std::size_t length : compared_[subjects[i]])
+        errors(row++, Eigen::Index(p)) = all[length];
+    }
+  }
+  return errors;
+}
+
+Eigen::VectorXd Search::correction_at(const std::vector<std::size_t>& subjects,
+                                      const FitPoint& point, RunContext& context) {
+  const Eigen::MatrixXd fine = errors_at(fine_film_, subjects, {point}, "correcting", context);
+  return fine.col(0) - errors_at(search_film_, subjects, {point}, "correcting", context).col(0);
+}
+
+Eigen::MatrixXd Search::noise_gradient(const std::vector<std::size_t>& subjects,
+                                       const FitPoint& point, RunContext& context) {
+  Eigen::Index rows = 0, columns = 0;
+  for (const std::size_t s : subjects) {
+    rows += Eigen::Index(compared_[s].size());
+    columns += 3 * Eigen::Index(subjects_[s].scan.grid.position.size());
+  }
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(rows, columns);
+  Eigen::Index row = 0, column = 0;
+  for (const std::size_t s : subjects) {
+    const Subject& subject = subjects_[s];
+    RunContext quiet;
+    const CheckerboardDip dip = search_film_.dip({s, from_fit(point)}, quiet);
+    context.check_cancelled();
+    const Comparison comparison = compare(subject, dip);
+    const auto corners = warp_gradients(subject, dip, comparison.alignment.pose);
+    for (const std::size_t i : compared_[s]) {
+      const auto from = std::size_t(subject.lengths[i].from);
+      const auto to = std::size_t(subject.lengths[i].to);
+      const auto &a = comparison.warped[from], &b = comparison.warped[to];
+      if (a && b) {
+        const Vec2 along = (*b - *a).normalized();
+        if (corners[from])
+          gradient.block<1, 3>(row, column + 3 * Eigen::Index(from)) =
+              -along.transpose() * *corners[from];
+        if (corners[to])
+          gradient.block<1, 3>(row, column + 3 * Eigen::Index(to)) =
+              along.transpose() * *corners[to];
+      }
+      ++row;
+    }
+    column += 3 * Eigen::Index(subject.scan.grid.position.size());
+  }
+  return gradient;
+}
+
+Answer Search::answer(const std::string& name, const std::vector<std::size_t>& subjects,
+                      const FitPoint& start, const Eigen::VectorXd& correction,
+                      RunContext& context) {
+  const LengthErrors errors = [&](const std::vector<FitPoint>& points) {
+    return with(errors_at(search_film_, subjects, points, "refining", context), correction);
+  };
+  Answer result;
+  result.name = name;
+  result.fit = fit_parameters(start, errors, fit_options());
+  result.parameters = from_fit(result.fit.point);
+  return result;
+}
+
+Calibration Search::run(RunContext& context) {
+  Calibration result;
+  result.grid = grid_errors(context);
+  const auto best = std::min_element(
+      result.grid.begin(), result.grid.end(), [](const auto& a, const auto& b) {
+        return !std::isnan(a.all_mm) && (std::isnan(b.all_mm) || a.all_mm < b.all_mm);
+      });
+  if (std::isnan(best->all_mm))
+    throw InputError(
+        "at no point of the grid do all objects' dips reach the scanned corners; check the objects' "
+        "depths and the ranges");
+
+  const std::vector<std::size_t> everyone = all_indices(subjects_.size());
+  result.all = answer("all", everyone, to_fit(best->parameters), {}, context);
+  Eigen::VectorXd correction;
+  for (int i = 0; i < kMostCorrections; ++i) {
+    const FitPoint before = result.all.fit.point;
+    correction = correction_at(everyone, before, context);
+    if (!correction.allFinite())
+      throw InputError(
+          "the finer film does not reach all corners that the search compared; dip the objects "
+          "deeper, or leave out the scans' outermost corners");
+    result.all = answer("all", everyone, before, correction, context);
+    const FitPoint moved = (result.all.fit.point - before).cwiseQuotient(kWidestStep);
+    if (moved.cwiseAbs().maxCoeff() < kMovedFar) break;
+  }
+  result.correction_mm = std::sqrt(correction.squaredNorm() / double(correction.size()));
+  const FitPoint end = result.all.fit.point;
+  const Eigen::MatrixXd noise = noise_gradient(everyone, end, context);
+  result.all.certainty = certainty(result.all.fit, noise);
+
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const std::size_t s : everyone) {
+    result.each.push_back(
+        answer(subjects_[s].name, {s}, end, part(correction, compared_, s), context));
+    Answer& one = result.each.back();
+    one.certainty = certainty(one.fit, noise_gradient({s}, one.fit.point, context));
+    sum += Eigen::Vector3d(one.parameters.z_stretch, one.parameters.stiffness_ratio,
+                           one.parameters.poisson);
+  }
+  sum /= double(subjects_.size());
+  result.average = {sum[0], sum[1], sum[2]};
+
+  std::vector<SimulationRequest> last;
+  for (const std::size_t s : everyone) last.push_back({s, result.all.parameters});
+  const std::vector<SimulationResult> ends = fine_film_.get(last, "measuring", context);
+  for (const std::size_t s : everyone)
+    result.error.push_back(grid_error(
+        length_errors(subjects_[s].lengths, ends[s].value_or(WarpedGrid(
+                                                subjects_[s].scan.grid.position.size())),
+                      square_mm_),
+        square_mm_));
+  result.simulations = store_.size();
+  return result;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,156 @@
+#include "calibrate/simulations.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr std::chrono::milliseconds kLookEvery{100};
+
+// Runs tasks 0 .. count - 1 on threads of their own, each with a quiet context that the job's
+// cancellation reaches. `done` is called for each on the calling thread.
+class Crew {
+ public:
+  using Task = std::function<void(std::size_t index, RunContext& context)>;
+  using Done = std::function<void(std::size_t index)>;
+
+  void run(std::size_t count, int threads, const Task& task, const Done& done,
+           RunContext& context) {
+    std::vector<std::thread> workers;
+    const auto size = std::min(count, std::size_t(std::max(1, threads)));
+    for (std::size_t i = 0; i < size; ++i)
+      workers.emplace_back([&] { work(count, task); });
+    std::exception_ptr failure;
+    try {
+      collect(count, done, context);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    stop();
+    for (std::thread& worker : workers) worker.join();
+    if (!failure) failure = failure_;
+    if (failure) std::rethrow_exception(failure);
+  }
+
+ private:
+  void work(std::size_t count, const Task& task) {
+    for (std::size_t i = next_++; i < count; i = next_++) {
+      try {
+        task(i, workers_context_);
+        const std::lock_guard lock(mutex_);
+        finished_.push_back(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        if (!failure_) failure_ = std::current_exception();
+        next_ = count;
+      }
+      changed_.notify_one();
+    }
+  }
+
+  void collect(std::size_t count, const Done& done, RunContext& context) {
+    std::size_t seen = 0;
+    while (seen < count) {
+      std::vector<std::size_t> batch;
+      {
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, kLookEvery);
+        if (failure_) return;
+        batch.swap(finished_);
+      }
+      for (const std::size_t i : batch) done(i);
+      seen += batch.size();
+      context.check_cancelled();
+    }
+  }
+
+  void stop() {
+    next_ = std::size_t(1) << 62;
+    workers_context_.cancel();
+  }
+
+  std::atomic<std::size_t> next_{0};
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::size_t> finished_;
+  std::exception_ptr failure_;
+  RunContext workers_context_;
+};
+
+}  // namespace
+
+Simulations::Simulations(const std::vector<Subject>& subjects, const JobConfig& config,
+                         double square_mm, const std::string& level, SimulationStore& store)
+    : subjects_(subjects),
+      options_(config.dip),
+      film_(checkered_film(config, square_mm)),
+      level_(level),
+      store_(store) {}
+
+SimulationKey Simulations::key_of(const SimulationRequest& request) const {
+  return {subjects_[request.subject].fingerprint + "-" + level_, request.parameters};
+}
+
+CheckerboardDip Simulations::dip(const SimulationRequest& request, RunContext& context) const {
+  const Subject& subject = subjects_[request.subject];
+  return dip_checkerboard(film_, subject.object, *subject.surface, request.parameters, options_,
+                          context);
+}
+
+SimulationResult Simulations::compute(const SimulationRequest& request,
+                                      RunContext& context) const {
+  try {
+    return compare(subjects_[request.subject], dip(request, context)).warped;
+  } catch (const DipError&) {
+    return std::nullopt;
+  }
+}
+
+std::size_t Simulations::missing(const std::vector<SimulationRequest>& requests) const {
+  std::set<SimulationKey> keys;
+  for (const SimulationRequest& request : requests)
+    if (store_.find(key_of(request)) == nullptr) keys.insert(key_of(request));
+  return keys.size();
+}
+
+std::vector<SimulationResult> Simulations::get(const std::vector<SimulationRequest>& requests,
+                                               const std::string& stage, RunContext& context) {
+  std::vector<SimulationRequest> todo;
+  std::set<SimulationKey> listed;
+  for (const SimulationRequest& request : requests)
+    if (store_.find(key_of(request)) == nullptr && listed.insert(key_of(request)).second)
+      todo.push_back(request);
+
+  if (!todo.empty()) {
+    const int threads = available_threads();
+    const ThreadLimit one_each(1);
+    std::vector<SimulationResult> computed(todo.size());
+    std::size_t done = 0;
+    context.progress(stage, 0);
+    Crew().run(
+        todo.size(), threads,
+        [&](std::size_t i, RunContext& quiet) { computed[i] = compute(todo[i], quiet); },
+        [&](std::size_t i) {
+          store_.add(key_of(todo[i]), computed[i]);
+          computed[i].reset();
+          context.progress(stage, double(++done) / double(todo.size()));
+        },
+        context);
+  }
+  std::vector<SimulationResult> results;
+  for (const SimulationRequest& request : requests)
+    results.push_back(*store_.find(key_of(request)));
+  return results;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,49 @@
+// Many simulated dips at once: one thread each, results kept in a store.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "calibrate/store.h"
+#include "calibrate/subject.h"
+
+namespace hydrodip {
+
+// One dip of one subject.
+struct SimulationRequest {
+  std::size_t subject = 0;
+  FilmParameters parameters;
+};
+
+// Dips subjects on one film, or looks up what is known already.
+class Simulations {
+ public:
+  // Refers to all. `level` tells films apart in the store ("search", "fine").
+  Simulations(const std::vector<Subject>& subjects, const JobConfig& config, double square_mm,
+              const std::string& level, SimulationStore& store);
+
+  // In the order of the requests. Computes what the store does not have, as many at once as there
+  // are threads, and keeps each as it is done. Progress under the name `stage`. Throws Cancelled:
+  // what was finished by then is kept.
+  std::vector<SimulationResult> get(const std::vector<SimulationRequest>& requests,
+                                    const std::string& stage, RunContext& context);
+
+  // How many of the requests the store lacks.
+  std::size_t missing(const std::vector<SimulationRequest>& requests) const;
+
+  // One dip with its map, for what the store does not keep.
+  CheckerboardDip dip(const SimulationRequest& request, RunContext& context) const;
+
+ private:
+  SimulationKey key_of(const SimulationRequest& request) const;
+  SimulationResult compute(const SimulationRequest& request, RunContext& context) const;
+
+  const std::vector<Subject>& subjects_;
+  DipOptions options_;
+  CheckeredFilm film_;
+  std::string level_;
+  SimulationStore& store_;
+};
+
+}  // namespace hydrodip

@@ -1,0 +1,216 @@
+#include "calibrate/subject.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/file.h"
+
+namespace hydrodip {
+namespace {
+
+// A corner this far off the surface is no corner on it.
+constexpr double kReach_mm = 2;
+// Scanners are good to tenths of a millimetre.
+constexpr double kSuspiciousDistance_mm = 0.3;
+constexpr double kLargestDistance_mm = 1.5;
+// To find out how a scan lies, this is good enough.
+constexpr int kCoarseElements = 6000;
+constexpr double kCoarseStep_mm = 0.5;
+
+struct SubjectText {
+  std::string object;
+  std::string file;
+};
+
+SubjectText split(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals != std::string::npos && equals > 0 && equals + 1 < text.size())
+    return {text.substr(0, equals), text.substr(equals + 1)};
+  const std::string stem = std::filesystem::path(text).stem().string();
+  for (const KitShape& shape : kit_shapes())
+    if (stem.find(shape.name) != std::string::npos) return {shape.name, text};
+  throw InputError(fmt::format(
+      "{}: say which object was scanned, as in 'sphere={}', 'ellipsoid@11=...' (dipped 11 mm deep) "
+      "or 'model.stl@20=...'",
+      text, text));
+}
+
+GridPlace reach_of(const FilmOptions& film, double square_mm) {
+  return {int(0.5 * film.width_mm / square_mm), int(0.5 * film.height_mm / square_mm)};
+}
+
+// Warns, or refuses what cannot be a scan of this object.
+void judge(const Subject& subject, const Alignment& alignment, bool aligned, RunContext& context) {
+  const std::string file = subject.file.string();
+  if (alignment.rms_mm > kLargestDistance_mm)
+    throw InputError(fmt::format(
+        "{}: the corners lie {:.1f} mm off the {}'s surface (root mean square); {}", file,
+        alignment.rms_mm, subject.object.name,
+        aligned ? "leave out --aligned to have the scan registered"
+                : "check which object was scanned and its unit"));
+  if (alignment.rms_mm > kSuspiciousDistance_mm || alignment.worst_mm > kReach_mm)
+    context.warn(fmt::format(
+        "{}: corners lie {:.2f} mm off the {}'s surface (root mean square, worst {:.2f} mm): check "
+        "the scan, and that the object was made to size.",
+        file, alignment.rms_mm, subject.object.name, alignment.worst_mm));
+}
+
+void judge_match(const Subject& subject, const GridMatch& match, bool told_mirrored,
+                 RunContext& context) {
+  const std::string file = subject.file.string();
+  if (match.mirrored)
+    throw InputError(fmt::format(
+        "{}: the scan is a mirror image of the {}; {}", file, subject.object.name,
+        told_mirrored ? "leave out --mirrored" : "export it anew, or give --mirrored"));
+  if (match.turned)
+    context.warn(fmt::format(
+        "{}: rows and columns run the wrong way round: its faces look into the object, or it is a "
+        "mirror image. The {} is its own mirror image, so the result does not depend on it.",
+        file, subject.object.name));
+}
+
+void find_how_it_lies(Subject& subject, const ScanSettings& settings, const JobConfig& config,
+                      RunContext& context) {
+  const Object& object = subject.object.object;
+  subject.surface = std::make_unique<Surface>(object.positions, object.triangles);
+  if (settings.aligned) {
+    judge(subject, as_it_lies(subject.scan.grid, *subject.surface), true, context);
+    return;
+  }
+  JobConfig coarse = config;
+  coarse.film.elements = std::min(config.film.elements, kCoarseElements);
+  coarse.dip.step_mm = std::max(config.dip.step_mm, kCoarseStep_mm);
+  coarse.dip.method = DipMethod::kFull;
+  const double square_mm = settings.file.square_mm;
+  RunContext quiet;
+  const CheckerboardDip dip =
+      dip_checkerboard(checkered_film(coarse, square_mm), subject.object, *subject.surface,
+                       film_parameters(config), coarse.dip, quiet);
+  const GridLanding landing = dip.landing(subject.object);
+  GridMatch match = match_grid(subject.scan.grid, landing, reach_of(config.film, square_mm),
+                               square_mm, subject.file.string());
+  judge_match(subject, match, settings.file.mirrored, context);
+  const Alignment alignment = align(subject.scan.grid, match, *subject.surface, landing);
+  judge(subject, alignment, false, context);
+  match.pose = alignment.pose;
+  subject.match = match;
+}
+
+// Bytes that identify numbers.
+class Fingerprint {
+ public:
+  void add(double value) {
+    std::uint8_t bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    bytes_.insert(bytes_.end(), bytes, bytes + sizeof value);
+  }
+  std::string text() const { return sha256_hex(bytes_).substr(0, 16); }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+};
+
+std::string fingerprint_of(const Subject& subject, const ScanSettings& settings,
+                           const JobConfig& config) {
+  Fingerprint print;
+  for (const Vec3& p : subject.scan.grid.position)
+    for (int k = 0; k < 3; ++k) print.add(p[k]);
+  for (std::size_t c = 0; c < subject.scan.grid.place.size(); ++c)
+    for (const int value : {subject.scan.grid.place[c][0], subject.scan.grid.place[c][1],
+                            subject.scan.grid.patch[c]})
+      print.add(value);
+  for (const Vec3& p : subject.object.object.positions)
+    for (int k = 0; k < 3; ++k) print.add(p[k]);
+  for (const double value :
+       {subject.object.depth_mm, settings.file.square_mm, double(settings.aligned),
+        config.film.width_mm, config.film.height_mm, config.film.margin_mm,
+        double(config.film.elements), config.film.grading, double(config.film.shape),
+        config.dip.step_mm, double(config.dip.scheme), config.ink.filter_mm})
+    print.add(value);
+  // The search begins to look for the pose where the given parameters laid it.
+  if (subject.match)
+    for (int i = 0; i < 12; ++i) print.add(subject.match->pose.matrix()(i % 3, i / 3));
+  return print.text();
+}
+
+void number_namesakes(std::vector<Subject>& subjects) {
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    const std::string name = subjects[i].object.name;
+    const auto same = [&](const Subject& other) { return other.object.name == name; };
+    subjects[i].name = name;
+    if (std::count_if(subjects.begin(), subjects.end(), same) < 2) continue;
+    const auto before =
+        std::count_if(subjects.begin(), subjects.begin() + std::ptrdiff_t(i), same);
+    subjects[i].name = fmt::format("{}-{}", name, before + 1);
+  }
+}
+
+}  // namespace
+
+Comparison compare(const Subject& subject, const CheckerboardDip& dip) {
+  Comparison result;
+  CornerGrid grid = subject.scan.grid;
+  if (subject.match) {
+    result.alignment = align(grid, *subject.match, *subject.surface, dip.landing(subject.object));
+    grid = moved(grid, result.alignment.pose);
+  } else {
+    result.alignment = as_it_lies(grid, *subject.surface);
+  }
+  result.warped = warp(grid, *subject.surface, *dip.map, kReach_mm);
+  return result;
+}
+
+std::vector<std::optional<WarpGradient>> warp_gradients(const Subject& subject,
+                                                        const CheckerboardDip& dip,
+                                                        const Eigen::Isometry3d& pose) {
+  constexpr double kShift_mm = 0.25;  // about as far as a cell of the film
+  std::vector<std::optional<WarpGradient>> gradients(
+      subject.scan.grid.position.size(), WarpGradient(WarpGradient::Zero()));
+  for (int axis = 0; axis < 3; ++axis) {
+    std::array<WarpedGrid, 2> sides;
+    for (const int side : {0, 1}) {
+      Eigen::Isometry3d shifted = pose;
+      shifted.pretranslate((side == 0 ? -kShift_mm : kShift_mm) * Vec3::Unit(axis));
+      sides[std::size_t(side)] =
+          warp(moved(subject.scan.grid, shifted), *subject.surface, *dip.map, kReach_mm);
+    }
+    for (std::size_t c = 0; c < gradients.size(); ++c) {
+      if (!sides[0][c] || !sides[1][c]) gradients[c].reset();
+      if (gradients[c])
+        gradients[c]->col(axis) = (*sides[1][c] - *sides[0][c]) / (2 * kShift_mm);
+    }
+  }
+  return gradients;
+}
+
+std::vector<Subject> load_subjects(const std::vector<std::string>& texts,
+                                   const ScanSettings& settings, const JobConfig& config,
+                                   RunContext& context) {
+  std::vector<Subject> subjects;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    context.progress("reading scans", double(i) / double(texts.size()));
+    const SubjectText text = split(texts[i]);
+    Subject subject;
+    subject.file = text.file;
+    subject.scan = read_scan(text.file, settings.file);
+    subject.object = calibration_object(text.object, config, context);
+    subject.lengths = grid_lengths(subject.scan.grid);
+    find_how_it_lies(subject, settings, config, context);
+    subject.fingerprint = fingerprint_of(subject, settings, config);
+    subjects.push_back(std::move(subject));
+  }
+  number_namesakes(subjects);
+  context.progress("reading scans", 1);
+  return subjects;
+}
+
+bool any_synthetic(const std::vector<Subject>& subjects) {
+  return std::any_of(subjects.begin(), subjects.end(),
+                     [](const Subject& subject) { return subject.scan.synthetic; });
+}
+
+}  // namespace hydrodip

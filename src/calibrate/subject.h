@@ -1,0 +1,58 @@
+// One scan with the object that was scanned: what simulations are compared with.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrate/checkerboard_dip.h"
+#include "scan/grid_error.h"
+#include "scan/read_scan.h"
+#include "scan/registration.h"
+
+namespace hydrodip {
+
+// How scans are to be read and compared.
+struct ScanSettings {
+  ScanOptions file;      // unit, square, mirrored
+  bool aligned = false;  // the scan is in the posed-object frame already
+};
+
+struct Subject {
+  std::string name;  // of the object; numbered where two scans show the same
+  std::filesystem::path file;
+  CalibrationObject object;
+  std::unique_ptr<Surface> surface;
+  Scan scan;
+  std::vector<GridLength> lengths;
+  std::optional<GridMatch> match;  // of a scan that is not aligned
+  std::string fingerprint;         // of all that a simulated comparison depends on but parameters
+};
+
+// A scan compared with one simulated dip.
+struct Comparison {
+  WarpedGrid warped;
+  Alignment alignment;
+};
+Comparison compare(const Subject& subject, const CheckerboardDip& dip);
+
+// Film coordinates by scan coordinates, per corner: how an error of the scan shows on the film.
+// `pose` as the comparison has it.
+using WarpGradient = Eigen::Matrix<double, 2, 3>;
+std::vector<std::optional<WarpGradient>> warp_gradients(const Subject& subject,
+                                                        const CheckerboardDip& dip,
+                                                        const Eigen::Isometry3d& pose);
+
+// "sphere=scan.obj", "ellipsoid@11=scan.csv", "part.stl@20=scan.ply", or a scan's name that holds a
+// kit shape's name. Reads the scans and finds how they lie, with one coarse simulated dip each.
+// Throws InputError; warns about scans that fit badly.
+std::vector<Subject> load_subjects(const std::vector<std::string>& texts,
+                                   const ScanSettings& settings, const JobConfig& config,
+                                   RunContext& context);
+
+// Whether any of them was computed, not scanned.
+bool any_synthetic(const std::vector<Subject>& subjects);
+
+}  // namespace hydrodip

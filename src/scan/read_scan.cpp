@@ -1,0 +1,237 @@
+#include "scan/read_scan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <string_view>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "object/load.h"
+#include "object/text_checks.h"
+
+namespace hydrodip {
+
+const char* const kSyntheticMark = "synthetic scan by hydrodip";
+
+namespace {
+
+// A film stretches on an object, and a square is looked at along its edges: their median length is
+// between these times the printed length, or the unit is wrong.
+constexpr double kLeastEdge = 0.7, kLargestEdge = 2.0;
+constexpr std::size_t kFewestCorners = 4;
+constexpr std::size_t kMostCorners = 1000000;
+
+struct Unit {
+  const char* name;
+  const char* plural;
+  double mm;
+};
+constexpr Unit kUnits[] = {
+    {"mm", "millimetres", 1}, {"cm", "centimetres", 10}, {"in", "inches", kMmPerInch},
+    {"m", "metres", 1000}};
+
+const Unit& find_unit(const std::string& name) {
+  for (const Unit& unit : kUnits)
+    if (name == unit.name) return unit;
+  throw InputError(fmt::format("--scan-units {}: not a known unit; use mm, cm, m or in", name));
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  return extension;
+}
+
+// ---- quads ----
+
+CornerGrid read_quads(const std::filesystem::path& file) {
+  const PolygonMesh mesh = load_polygons(file);
+  std::vector<std::array<std::int32_t, 4>> quads;
+  std::size_t triangles = 0, others = 0;
+  for (const auto& face : mesh.faces) {
+    if (face.size() == 4)
+      quads.push_back({face[0], face[1], face[2], face[3]});
+    else
+      ++(face.size() == 3 ? triangles : others);
+  }
+  if (quads.empty() && triangles > 0)
+    throw InputError(fmt::format(
+        "{}: all {} faces are triangles, but one face is needed for each square of the "
+        "checkerboard, with its four corners; draw a quad mesh over the scan (docs/calibration.md), "
+        "or join triangles into quads before the export",
+        file.string(), triangles));
+  if (triangles + others > 0)
+    throw InputError(fmt::format(
+        "{}: {} of {} faces do not have four corners; every face must be one square of the "
+        "checkerboard: delete the others",
+        file.string(), triangles + others, mesh.faces.size()));
+  return grid_of_quads(mesh.positions, quads, file.string());
+}
+
+// ---- tables ----
+
+// Blank-separated, whatever separated them.
+std::string with_blanks(std::string_view line) {
+  std::string text(line);
+  for (char& c : text)
+    if (c == ',' || c == ';') c = ' ';
+  return text;
+}
+
+bool is_heading(std::string_view line) {
+  return std::any_of(line.begin(), line.end(), [](char c) {
+    return (c >= 'a' && c <= 'z' && c != 'e') || (c >= 'A' && c <= 'Z' && c != 'E');
+  });
+}
+
+CornerGrid read_table(const std::filesystem::path& file, std::string_view rest) {
+  CornerGrid grid;
+  std::map<GridPlace, std::size_t> line_of;
+  std::size_t number = 0;
+  bool heading_allowed = true;
+  while (!rest.empty()) {
+    std::string line = with_blanks(take_line(rest));
+    ++number;
+    std::string_view words = line;
+    std::string_view probe = words;
+    const std::string_view first = take_word(probe);
+    if (first.empty() || first.front() == '#') continue;
+    if (heading_allowed && is_heading(line)) {
+      heading_allowed = false;
+      continue;
+    }
+    heading_allowed = false;
+    long long column = 0, row = 0;
+    Vec3 p;
+    bool good = parse_integer(take_word(words), column) && parse_integer(take_word(words), row);
+    for (int k = 0; k < 3; ++k) good = good && parse_number(take_word(words), p[k]);
+    good = good && take_word(words).empty() && std::abs(column) < 100000 && std::abs(row) < 100000;
+    if (!good)
+      throw InputError(fmt::format(
+          "{}, line {}: a corner is given as column,row,x,y,z: two whole numbers and three lengths",
+          file.string(), number));
+    const GridPlace place = {int(column), int(row)};
+    const auto [entry, is_new] = line_of.try_emplace(place, number);
+    if (!is_new)
+      throw InputError(fmt::format("{}: lines {} and {} give the same corner (column {}, row {})",
+                                   file.string(), entry->second, number, column, row));
+    grid.position.push_back(p);
+    grid.place.push_back(place);
+    grid.patch.push_back(0);
+    if (grid.place.size() > kMostCorners)
+      throw InputError(fmt::format("{}: more than {} corners", file.string(), kMostCorners));
+  }
+  return grid;
+}
+
+// ---- checks ----
+
+double median_edge(const CornerGrid& grid) {
+  std::vector<double> edges;
+  for (const GridLength& length : grid_lengths(grid))
+    if (!length.diagonal)
+      edges.push_back((grid.position[std::size_t(length.from)] -
+                       grid.position[std::size_t(length.to)])
+                          .norm());
+  if (edges.empty()) return 0;
+  std::nth_element(edges.begin(), edges.begin() + std::ptrdiff_t(edges.size() / 2), edges.end());
+  return edges[edges.size() / 2];
+}
+
+bool plausible(double edge_mm, double square_mm) {
+  return edge_mm > kLeastEdge * square_mm && edge_mm < kLargestEdge * square_mm;
+}
+
+void check_size(const CornerGrid& grid, const Unit& unit, double square_mm,
+                const std::string& name) {
+  if (grid.position.size() < kFewestCorners)
+    throw InputError(fmt::format("{}: {} corners are too few for a grid; at least {} are needed",
+                                 name, grid.position.size(), kFewestCorners));
+  const double edge_mm = median_edge(grid);
+  if (!(edge_mm > 0))
+    throw InputError(fmt::format(
+        "{}: no two corners are neighbours at different places; check columns and rows", name));
+  if (plausible(edge_mm, square_mm)) return;
+  for (const Unit& other : kUnits)
+    if (plausible(edge_mm / unit.mm * other.mm, square_mm))
+      throw InputError(fmt::format(
+          "{}: squares of {:.3g} mm were printed {:g} mm wide, so the scan's unit seems to be {}, "
+          "not {}; give --scan-units {}",
+          name, edge_mm, square_mm, other.plural, unit.plural, other.name));
+  throw InputError(fmt::format(
+      "{}: its squares are {:.3g} mm wide, but {:g} mm were printed; check --scan-units and "
+      "--square",
+      name, edge_mm, square_mm));
+}
+
+bool says_synthetic(std::string_view text) {
+  return text.substr(0, 400).find(kSyntheticMark) != std::string_view::npos;
+}
+
+}  // namespace
+
+Scan read_scan(const std::filesystem::path& file, const ScanOptions& options) {
+  const Unit& unit = find_unit(options.units);
+  const std::string extension = lower_extension(file);
+  const bool is_table = extension == ".csv" || extension == ".txt" || extension == ".tsv";
+  if (!is_table && extension != ".obj" && extension != ".ply")
+    throw InputError(fmt::format(
+        "{}: a scan is a quad mesh (OBJ, PLY) or a table of corners (CSV, TXT)", file.string()));
+  const std::vector<std::uint8_t> bytes = read_file(file);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  Scan scan;
+  scan.synthetic = says_synthetic(text);
+  scan.grid = is_table ? read_table(file, text) : read_quads(file);
+  for (Vec3& p : scan.grid.position) p *= unit.mm;
+  check_size(scan.grid, unit, options.square_mm, file.string());
+  if (options.mirrored) {
+    for (Vec3& p : scan.grid.position) p.x() = -p.x();
+    // A mesh's faces turn round with it.
+    if (!is_table)
+      for (GridPlace& place : scan.grid.place) place[0] = -place[0];
+  }
+  return scan;
+}
+
+void write_scan_table(const std::filesystem::path& file, const CornerGrid& grid,
+                      const std::string& comment) {
+  GridPlace low = {1 << 30, 1 << 30};
+  for (const GridPlace& place : grid.place)
+    low = {std::min(low[0], place[0]), std::min(low[1], place[1])};
+  std::string text = fmt::format("# {}\ncolumn,row,x,y,z\n", comment);
+  for (std::size_t c = 0; c < grid.position.size(); ++c)
+    fmt::format_to(std::back_inserter(text), "{},{},{:.6f},{:.6f},{:.6f}\n",
+                   grid.place[c][0] - low[0], grid.place[c][1] - low[1], grid.position[c].x(),
+                   grid.position[c].y(), grid.position[c].z());
+  write_file(file, text);
+}
+
+void write_scan_quads(const std::filesystem::path& file, const CornerGrid& grid,
+                      const std::string& comment) {
+  std::map<GridPlace, std::size_t> corner_at;
+  for (std::size_t c = 0; c < grid.place.size(); ++c) corner_at[grid.place[c]] = c;
+  std::string text = fmt::format("# {}\n", comment);
+  auto out = std::back_inserter(text);
+  for (const Vec3& p : grid.position)
+    fmt::format_to(out, "v {:.6f} {:.6f} {:.6f}\n", p.x(), p.y(), p.z());
+  for (const auto& [place, corner] : corner_at) {
+    // Clockwise on the film, which is counter-clockwise from outside the object.
+    std::array<std::size_t, 4> quad{};
+    bool whole = true;
+    constexpr GridPlace kAround[] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto found = corner_at.find({place[0] + kAround[k][0], place[1] + kAround[k][1]});
+      whole = whole && found != corner_at.end();
+      if (whole) quad[k] = found->second + 1;
+    }
+    if (whole) fmt::format_to(out, "f {} {} {} {}\n", quad[0], quad[1], quad[2], quad[3]);
+  }
+  write_file(file, text);
+}
+
+}  // namespace hydrodip

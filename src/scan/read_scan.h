@@ -1,0 +1,39 @@
+// Scan in: the checkerboard's corners on the object, from a quad mesh or a table.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "scan/corner_grid.h"
+
+namespace hydrodip {
+
+struct ScanOptions {
+  std::string units = "mm";  // of the file: mm, cm, m or in
+  double square_mm = 5;      // as printed, to check the unit by
+  bool mirrored = false;     // the file is a mirror image: turn it back
+};
+
+struct Scan {
+  CornerGrid grid;  // mm, in the scan's own frame
+  // The file says that it was computed, not scanned.
+  bool synthetic = false;
+};
+
+// OBJ or PLY: faces with four corners each. CSV or TXT: a line per corner "column,row,x,y,z", with
+// commas, semicolons, blanks or tabs between; other lines must begin with '#' or name the columns.
+// Throws InputError for what is no grid of at least 4 corners, and where the corners' distances say
+// that the unit is wrong.
+Scan read_scan(const std::filesystem::path& file, const ScanOptions& options);
+
+// The first line of a computed scan, after its '#'.
+extern const char* const kSyntheticMark;
+
+// The forms that read_scan takes, for scans that are computed. Places are written from 0 on.
+void write_scan_table(const std::filesystem::path& file, const CornerGrid& grid,
+                      const std::string& comment);
+// Only corners of whole squares.
+void write_scan_quads(const std::filesystem::path& file, const CornerGrid& grid,
+                      const std::string& comment);
+
+}  // namespace hydrodip
