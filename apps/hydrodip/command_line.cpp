@@ -71,9 +71,17 @@ std::string group_help(const std::string& group) {
   return help;
 }
 
-// How many of the arguments name the command: 2 in a group.
+bool is_command(const std::string& name) {
+  return std::any_of(commands().begin(), commands().end(),
+                     [&](const Command& command) { return command.name == name; });
+}
+
+// How many of the arguments name the command: 2 in a group, unless the group's name alone is a
+// command as well.
 std::size_t count_name_words(const std::vector<std::string>& arguments) {
   if (group_help(arguments[0]).empty()) return 1;
+  if (is_command(arguments[0]))
+    return arguments.size() > 1 && is_command(arguments[0] + " " + arguments[1]) ? 2 : 1;
   if (arguments.size() < 2)
     throw InputError(
         fmt::format("name what to do, as in 'hydrodip {} sheet'; 'hydrodip {} --help' "
@@ -149,7 +157,7 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
     throw InputError("name a command, as in 'hydrodip print MODEL'; see 'hydrodip --help'");
   if (first == "--help" || first == "-h" || first == "help") return {nullptr, {}, general_help()};
   const bool asks = arguments.size() == 2 && (arguments[1] == "--help" || arguments[1] == "-h");
-  if (asks && !group_help(first).empty())
+  if (asks && !group_help(first).empty() && !is_command(first))
     return {nullptr, {}, "Usage: hydrodip COMMAND [OPTIONS]\n\n" + group_help(first)};
   if (first == "--version") return {nullptr, {}, "hydrodip " HYDRODIP_VERSION "\n"};
   const std::size_t words = count_name_words(arguments);

@@ -1,6 +1,7 @@
 #include "commands.h"
 
 #include "base/error.h"
+#include "calibrate_commands.h"
 #include "job/params.h"
 #include "rig_commands.h"
 
@@ -125,8 +126,8 @@ std::vector<Command> own_commands() {
 const std::vector<Command>& commands() {
   static const std::vector<Command> table = [] {
     std::vector<Command> all = own_commands();
-    const std::vector<Command> rig = rig_commands();
-    all.insert(all.end() - 1, rig.begin(), rig.end());  // params stays last
+    for (const auto& more : {calibrate_commands(), rig_commands()})
+      all.insert(all.end() - 1, more.begin(), more.end());  // params stays last
     return all;
   }();
   return table;

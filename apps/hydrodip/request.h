@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/calibrate.h"
 #include "job/settings.h"
 
 namespace CLI {
@@ -24,6 +25,7 @@ struct Request {
   double jog_mm = 0;
   bool dry_run = false;
   bool yes = false;
+  CalibrationRequest calibration;
   SettingSources sources;
   bool quiet = false;
   bool json = false;

@@ -78,6 +78,17 @@ Eigen::MatrixXd with(const Eigen::MatrixXd& errors, const Eigen::VectorXd& corre
   return correction.size() == errors.rows() ? (errors.colwise() + correction).eval() : errors;
 }
 
+// Of what is known.
+double root_mean_square(const Eigen::VectorXd& values) {
+  double sum = 0, count = 0;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    sum += v * v;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
 // The part of a correction for all subjects that belongs to one of them.
 Eigen::VectorXd part(const Eigen::VectorXd& whole,
                      const std::vector<std::vector<std::size_t>>& compared, std::size_t subject) {
@@ -267,30 +278,24 @@ Calibration Search::run(RunContext& context) {
   for (int i = 0; i < kMostCorrections; ++i) {
     const FitPoint before = result.all.fit.point;
     correction = correction_at(everyone, before, context);
-    if (!correction.allFinite())
-      throw InputError(
-          "the finer film does not reach all corners that the search compared; dip the objects "
-          "deeper, or leave out the scans' outermost corners");
     result.all = answer("all", everyone, before, correction, context);
     const FitPoint moved = (result.all.fit.point - before).cwiseQuotient(kWidestStep);
     if (moved.cwiseAbs().maxCoeff() < kMovedFar) break;
   }
-  result.correction_mm = std::sqrt(correction.squaredNorm() / double(correction.size()));
+  result.correction_mm = root_mean_square(correction);
   const FitPoint end = result.all.fit.point;
   const Eigen::MatrixXd noise = noise_gradient(everyone, end, context);
   result.all.certainty = certainty(result.all.fit, noise);
 
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  FitPoint sum = FitPoint::Zero();
   for (const std::size_t s : everyone) {
     result.each.push_back(
         answer(subjects_[s].name, {s}, end, part(correction, compared_, s), context));
     Answer& one = result.each.back();
     one.certainty = certainty(one.fit, noise_gradient({s}, one.fit.point, context));
-    sum += Eigen::Vector3d(one.parameters.z_stretch, one.parameters.stiffness_ratio,
-                           one.parameters.poisson);
+    sum += one.fit.point;
   }
-  sum /= double(subjects_.size());
-  result.average = {sum[0], sum[1], sum[2]};
+  result.average = from_fit(sum / double(subjects_.size()));
 
   std::vector<SimulationRequest> last;
   for (const std::size_t s : everyone) last.push_back({s, result.all.parameters});

@@ -46,7 +46,7 @@ struct Calibration {
   std::vector<GridPointError> grid;
   Answer all;
   std::vector<Answer> each;
-  FilmParameters average;  // of each; the paper's protocol
+  FilmParameters average;  // of each, in FitPoint; the paper's protocol
   // At the answer of all, on the configuration's own film: per subject.
   std::vector<GridError> error;
   // What the search's coarser film would have changed: root mean square over all lengths, mm.

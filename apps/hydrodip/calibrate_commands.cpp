@@ -1,0 +1,157 @@
+#include "calibrate_commands.h"
+
+#include <CLI/CLI.hpp>
+
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr const char* kScanGroup = "Scans";
+constexpr const char* kSearchGroup = "Search";
+
+void declare_scans(CLI::App& app, Request& request) {
+  app.add_option("OBJECT=SCAN", request.calibration.scans,
+                 "sphere, pyramid, ellipsoid or a model file, with @DEPTH in mm if it was dipped "
+                 "deeper or less than the kit says; quad mesh (OBJ, PLY) or table (CSV)")
+      ->type_name("");
+}
+
+void declare_objects(CLI::App& app, Request& request) {
+  app.add_option("OBJECT", request.calibration.scans,
+                 "sphere, pyramid, ellipsoid or a model file, with @DEPTH in mm (default: the "
+                 "kit's three)")
+      ->type_name("");
+}
+
+void declare_square(CLI::App& app, Request& request) {
+  app.add_option("--square", request.calibration.square_mm,
+                 "side of the checkerboard's squares (default: 5)")
+      ->group(kScanGroup)
+      ->type_name("MM");
+}
+
+void declare_scan_reading(CLI::App& app, Request& request) {
+  declare_square(app, request);
+  app.add_option("--scan-units", request.calibration.scan_units, "unit of the scans (default: mm)")
+      ->group(kScanGroup)
+      ->type_name("mm|cm|m|in");
+  app.add_flag("--aligned", request.calibration.aligned,
+               "the scans are in the posed object's frame: do not register them")
+      ->group(kScanGroup);
+  app.add_flag("--mirrored", request.calibration.mirrored,
+               "the scans are mirror images: turn them back")
+      ->group(kScanGroup);
+}
+
+// --aligned is the user's word for what the scan is; the rest is the film's.
+void declare_film(CLI::App& app, Request& request) {
+  declare_film_and_dip(app, request);
+  declare_configuration(app, request);
+}
+
+void declare_calibrate(CLI::App& app, Request& request) {
+  declare_scans(app, request);
+  declare_output(app, request, "calibration");
+  declare_reporting(app, request);
+  declare_scan_reading(app, request);
+  CalibrationRequest& wanted = request.calibration;
+  const auto add_range = [&](const char* option, std::string& range, const char* help) {
+    app.add_option(option, range, help)->group(kSearchGroup)->type_name("RANGE");
+  };
+  add_range("--z-stretch", wanted.z_stretch, "values to try (default: 0.4:0.9:0.1)");
+  add_range("--ratio", wanted.stiffness_ratio,
+            "of material.ink_stiffness_ratio (default: 10:2560:x4)");
+  add_range("--poisson", wanted.poisson, "values to try (default: 0:0.4:0.1)");
+  app.add_option("--shard", wanted.shard, "only this part of the grid, as in 2/4, and no result")
+      ->group(kSearchGroup)
+      ->type_name("I/N");
+  app.add_option("--merge", wanted.merged, "folder of a shard whose simulations to use; repeatable")
+      ->group(kSearchGroup)
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  declare_film(app, request);
+}
+
+void require_scans(const Request& request, const std::string& command) {
+  if (request.calibration.scans.empty())
+    throw InputError("name object and scan, as in 'hydrodip " + command + " sphere=scan.obj'");
+  if (!(request.calibration.square_mm >= 0.5 && request.calibration.square_mm <= 100))
+    throw InputError("--square: give the side of a square in mm, from 0.5 to 100");
+}
+
+JobResult run_calibrate(const Request& request, RunContext& context) {
+  require_scans(request, "calibrate");
+  JobConfig config = configure(request);
+  if (config.output.empty()) config.output = "calibration";
+  return calibrate_job(config, request.calibration, context);
+}
+
+void declare_measure(CLI::App& app, Request& request) {
+  declare_scans(app, request);
+  declare_output(app, request, "none, nothing is written");
+  declare_reporting(app, request);
+  declare_scan_reading(app, request);
+  declare_film(app, request);
+}
+
+JobResult run_measure(const Request& request, RunContext& context) {
+  require_scans(request, "measure");
+  return measure_job(configure(request), request.calibration, context);
+}
+
+// The kit's three unless some are named.
+CalibrationRequest with_objects(const Request& request) {
+  CalibrationRequest wanted = request.calibration;
+  if (wanted.scans.empty()) wanted.scans = {"sphere", "pyramid", "ellipsoid"};
+  return wanted;
+}
+
+void declare_synth(CLI::App& app, Request& request) {
+  declare_objects(app, request);
+  declare_output(app, request, "synthetic-scans");
+  declare_reporting(app, request);
+  declare_square(app, request);
+  CalibrationRequest& wanted = request.calibration;
+  const auto add = [&](const char* option, auto& value, const char* type, const char* help) {
+    app.add_option(option, value, help)->group(kScanGroup)->type_name(type);
+  };
+  add("--noise", wanted.noise_mm, "MM", "standard deviation of every coordinate (default: 0)");
+  add("--missing", wanted.missing_share, "SHARE", "of the corners, left out at random (default: 0)");
+  add("--seed", wanted.seed, "N", "of noise, gaps and pose (default: 1)");
+  app.add_flag("--aligned", wanted.aligned, "in the posed object's frame instead of a random pose")
+      ->group(kScanGroup);
+  declare_film(app, request);
+}
+
+JobResult run_synth(const Request& request, RunContext& context) {
+  const CalibrationRequest wanted = with_objects(request);
+  JobConfig config = configure(request);
+  if (config.output.empty()) config.output = "synthetic-scans";
+  return synth_job(config, wanted, context);
+}
+
+}  // namespace
+
+std::vector<Command> calibrate_commands() {
+  return {
+      {"calibrate", "fit z_stretch, ink stiffness and Poisson's ratio to scanned dips",
+       "Writes profile.toml (for --profile), calibration.json, error-surface.csv and\n"
+       "error-surface.png. Started again, an interrupted calibration goes on where it was.\n"
+       "A RANGE is FROM:TO:STEP, FROM:TO:xFACTOR, values with commas, or one value that is known.\n"
+       "The grid is searched on a film of a quarter of the triangles and twice the step, and the\n"
+       "result corrected by dips on the film that is asked for. See also 'calibrate kit' and\n"
+       "'calibrate synth', and docs/calibration.md.",
+       declare_calibrate, run_calibrate},
+      {"calibrate synth", "scans computed from known parameters, to try calibrations on",
+       "Writes OBJECT-scan.obj, OBJECT-scan.csv and truth.toml. They are computed on four times the\n"
+       "triangles and half the step. Truth: --set material.z_stretch=0.65 and so on.",
+       declare_synth, run_synth},
+      {"measure", "the error of a simulated dip against a scan, Eq. 4 of the paper",
+       "For the full method and for the baselines single-step and projection. With -o it writes\n"
+       "error-map.png and measure.json.",
+       declare_measure, run_measure},
+  };
+}
+
+}  // namespace hydrodip

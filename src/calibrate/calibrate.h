@@ -1,0 +1,58 @@
+// The commands around calibration: hydrodip calibrate kit, synth, and calibrate itself; measure.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "job/config.h"
+#include "job/jobs.h"
+
+namespace hydrodip {
+
+// What the commands ask beside the configuration.
+struct CalibrationRequest {
+  std::vector<std::string> scans;  // "sphere=scan.obj", or of synth and kit: "sphere"
+  double square_mm = 5;
+  std::string scan_units = "mm";
+  bool aligned = false;
+  bool mirrored = false;
+
+  // calibrate: the grid, "FROM:TO:STEP", "FROM:TO:xFACTOR", "A,B,C" or one value
+  std::string z_stretch = "0.4:0.9:0.1";
+  std::string stiffness_ratio = "10:2560:x4";
+  std::string poisson = "0:0.4:0.1";
+  std::string shard;                // "1/4"; empty: everything
+  std::vector<std::string> merged;  // folders or stores of other shards
+
+  // synth
+  double noise_mm = 0;
+  double missing_share = 0;
+  std::uint64_t seed = 1;
+};
+
+// The values that a range names, ascending. Throws InputError naming `option`.
+std::vector<double> parse_range(const std::string& text, const std::string& option, double least,
+                                double most);
+
+// Fits the film's parameters: profile.toml, calibration.json, error-surface.csv and
+// error-surface.png in config.output, with simulations.jsonl, from which an interrupted calibration
+// goes on. With a shard only the latter. Throws InputError, DipError, Cancelled.
+JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& request,
+                        RunContext& context);
+
+// Eq. 4 for each scan and each method (full, single-step, projection) with the configuration's
+// parameters. Writes error-map.png and measure.json only if config.output is given.
+JobResult measure_job(const JobConfig& config, const CalibrationRequest& request,
+                      RunContext& context);
+
+// Scans from known parameters: NAME-scan.obj and .csv for each object, truth.toml.
+JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
+                    RunContext& context);
+
+// What a calibration needs: the shapes as STL, the film's PDF, instructions.
+JobResult kit_job(const JobConfig& config, const CalibrationRequest& request, RunContext& context);
+
+}  // namespace hydrodip

@@ -1,0 +1,333 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/output_folder.h"
+#include "base/parallel.h"
+#include "calibrate/calibrate.h"
+#include "calibrate/pictures.h"
+#include "calibrate/search.h"
+#include "image/files.h"
+
+namespace hydrodip {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kStoreName = "simulations.jsonl";
+constexpr int kSchemaVersion = 1;
+constexpr std::size_t kMostGridPoints = 100000;
+
+SearchOptions search_options(const CalibrationRequest& request) {
+  SearchOptions options;
+  options.z_stretch = parse_range(request.z_stretch, "--z-stretch", 0, 5);
+  options.stiffness_ratio = parse_range(request.stiffness_ratio, "--ratio", 1, 1e6);
+  options.poisson = parse_range(request.poisson, "--poisson", 0, 0.48);
+  const std::size_t points =
+      options.z_stretch.size() * options.stiffness_ratio.size() * options.poisson.size();
+  if (points > kMostGridPoints)
+    throw InputError(fmt::format("the grid has {} points; {} are the most: take larger steps",
+                                 points, kMostGridPoints));
+  return options;
+}
+
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  if (text.empty()) return shard;
+  const std::size_t slash = text.find('/');
+  const auto number = [&](std::size_t begin, std::size_t end, int& value) {
+    const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
+    return error == std::errc() && stop == text.data() + end;
+  };
+  const bool good = slash != std::string::npos && number(0, slash, shard.number) &&
+                    number(slash + 1, text.size(), shard.shards) && shard.shards >= 1 &&
+                    shard.shards <= 10000 && shard.number >= 1 && shard.number <= shard.shards;
+  if (!good)
+    throw InputError(
+        fmt::format("--shard '{}': give the part and the number of parts, as in 2/4", text));
+  return shard;
+}
+
+// A folder stands for the store in it.
+std::vector<std::filesystem::path> store_files(const std::vector<std::string>& merged) {
+  std::vector<std::filesystem::path> files;
+  std::error_code ignored;
+  for (const std::filesystem::path path : merged)
+    files.push_back(std::filesystem::is_directory(path, ignored) ? path / kStoreName : path);
+  return files;
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw InputError(fmt::format("{}: the output folder cannot be made ({}); choose another with -o",
+                                 folder.string(), error.message()));
+}
+
+// ---- what is told ----
+
+std::string plain(double value) {
+  return std::isfinite(value) ? fmt::format("{:.3g}", value) : "unbounded";
+}
+
+std::string interval(double low, double high) {
+  return fmt::format("{} to {}", plain(low), plain(high));
+}
+
+struct ParameterText {
+  const char* name;
+  double FilmParameters::*member;
+};
+constexpr ParameterText kParameters[] = {{"z_stretch", &FilmParameters::z_stretch},
+                                         {"ink_stiffness_ratio", &FilmParameters::stiffness_ratio},
+                                         {"poisson", &FilmParameters::poisson}};
+
+// An interval that takes in a good part of what is possible says little.
+bool poorly_determined(const Answer& answer, int k) {
+  if (!answer.fit.free[std::size_t(k)]) return false;
+  const double half = 1.96 * std::sqrt(answer.certainty.covariance(k, k));
+  const double limits[3] = {0.1, 0.1, 0.1};
+  return half > limits[k] || (k == 1 && !std::isfinite(answer.certainty.high.stiffness_ratio));
+}
+
+std::string describe(const Answer& answer) {
+  std::string text;
+  for (int k = 0; k < 3; ++k) {
+    const ParameterText& p = kParameters[k];
+    text += fmt::format("  {:<20} {:>8}", p.name, plain(answer.parameters.*p.member));
+    if (answer.fit.free[std::size_t(k)])
+      text += fmt::format("   95 %: {}",
+                          interval(answer.certainty.low.*p.member, answer.certainty.high.*p.member));
+    else
+      text += "   given";
+    if (poorly_determined(answer, k)) text += "   (hardly determined by these scans)";
+    text += "\n";
+  }
+  return text;
+}
+
+Json json_of(const FilmParameters& parameters) {
+  Json json;
+  for (const ParameterText& p : kParameters)
+    json[p.name] = std::isfinite(parameters.*p.member) ? Json(parameters.*p.member) : Json(nullptr);
+  return json;
+}
+
+Json json_of(const Answer& answer) {
+  Json correlation = Json::array();
+  const Eigen::Matrix3d& c = answer.certainty.covariance;
+  for (int a = 0; a < 3; ++a) {
+    Json row = Json::array();
+    for (int b = 0; b < 3; ++b) {
+      const double scale = std::sqrt(c(a, a) * c(b, b));
+      row.push_back(scale > 0 ? Json(c(a, b) / scale) : Json(nullptr));
+    }
+    correlation.push_back(row);
+  }
+  Json at_edge = Json::array();
+  for (std::size_t k = 0; k < 3; ++k)
+    if (answer.fit.at_bound[k]) at_edge.push_back(kParameters[k].name);
+  return {{"parameters", json_of(answer.parameters)},
+          {"low_95", json_of(answer.certainty.low)},
+          {"high_95", json_of(answer.certainty.high)},
+          {"correlation", correlation},
+          {"noise_mm", answer.certainty.noise_mm},
+          {"rms_mm", answer.fit.rms_mm},
+          {"rounds", answer.fit.rounds},
+          {"settled", answer.fit.settled},
+          {"at_edge_of_range", at_edge}};
+}
+
+Json json_of(const GridError& error) {
+  return {{"rms_mm", error.rms_mm},
+          {"literal_mm05", error.literal},
+          {"edge_rms_mm", error.edge_rms_mm},
+          {"diagonal_rms_mm", error.diagonal_rms_mm},
+          {"mean_mm", error.mean_mm},
+          {"worst_mm", error.worst_mm},
+          {"edges", error.edges},
+          {"diagonals", error.diagonals}};
+}
+
+std::string source_of(const std::vector<Subject>& subjects) {
+  std::string text = fmt::format("{} scan{}", subjects.size(), subjects.size() == 1 ? "" : "s");
+  return any_synthetic(subjects) ? text + ", of which some were computed, not scanned" : text;
+}
+
+std::string profile_toml(const Calibration& calibration, const std::vector<Subject>& subjects) {
+  std::string text = fmt::format("# A film's parameters, calibrated by hydrodip on {}.\n",
+                                 source_of(subjects));
+  for (const Subject& subject : subjects)
+    text += fmt::format("#   {}\n", subject.file.filename().string());
+  text += "# 95 % intervals in the comments. Use it with --profile.\n\n[material]\n";
+  const Answer& all = calibration.all;
+  const char* names[3] = {"z_stretch", "ink_stiffness_ratio", "poisson"};
+  for (int k = 0; k < 3; ++k) {
+    const ParameterText& p = kParameters[k];
+    // A ratio is known to a few digits at most.
+    const double value = std::stod(fmt::format("{:.4g}", all.parameters.*p.member));
+    text += fmt::format("{} = {}", names[k], value == std::floor(value)
+                                                 ? fmt::format("{:.1f}", value)
+                                                 : fmt::format("{}", value));
+    if (all.fit.free[std::size_t(k)])
+      text += fmt::format(
+          "  # {}", interval(all.certainty.low.*p.member, all.certainty.high.*p.member));
+    text += "\n";
+  }
+  return text;
+}
+
+std::string surface_csv(const Calibration& calibration, const std::vector<Subject>& subjects) {
+  std::string text = "z_stretch,ink_stiffness_ratio,poisson";
+  for (const Subject& subject : subjects) text += fmt::format(",{}_mm", subject.name);
+  text += ",all_mm\n";
+  const auto number = [](double value) {
+    return std::isnan(value) ? std::string() : fmt::format("{:.6f}", value);
+  };
+  for (const GridPointError& point : calibration.grid) {
+    text += fmt::format("{},{},{}", point.parameters.z_stretch, point.parameters.stiffness_ratio,
+                        point.parameters.poisson);
+    for (const double rms : point.rms_mm) text += fmt::format(",{}", number(rms));
+    text += fmt::format(",{}\n", number(point.all_mm));
+  }
+  return text;
+}
+
+Json calibration_json(const Calibration& calibration, const std::vector<Subject>& subjects,
+                      const JobConfig& config, double square_mm, const RunContext& context) {
+  Json scans = Json::array();
+  for (std::size_t s = 0; s < subjects.size(); ++s)
+    scans.push_back({{"name", subjects[s].name},
+                     {"file", subjects[s].file.string()},
+                     {"synthetic", subjects[s].scan.synthetic},
+                     {"depth_mm", subjects[s].object.depth_mm},
+                     {"corners", subjects[s].scan.grid.position.size()},
+                     {"error", json_of(calibration.error[s])},
+                     {"alone", json_of(calibration.each[s])}});
+  return {{"schema_version", kSchemaVersion},
+          {"command", "calibrate"},
+          {"folder", config.output.string()},
+          {"square_mm", square_mm},
+          {"film_elements", config.film.elements},
+          {"step_mm", config.dip.step_mm},
+          {"result", json_of(calibration.all)},
+          {"average_of_each", json_of(calibration.average)},
+          {"scans", scans},
+          {"grid_points", calibration.grid.size()},
+          {"correction_mm", calibration.correction_mm},
+          {"warnings", context.warnings()}};
+}
+
+void warn_of_edges(const Calibration& calibration, RunContext& context) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const FilmParameters& p = calibration.all.parameters;
+    // No film has less than none, and no ink makes it softer.
+    const bool natural = (k == 2 && p.poisson <= 1e-9) || (k == 1 && p.stiffness_ratio <= 1 + 1e-9);
+    if (calibration.all.fit.at_bound[k] && !natural)
+      context.warn(fmt::format(
+          "{} came out at the edge of its range; search a wider one, unless the scans do not "
+          "determine it.",
+          kParameters[k].name));
+  }
+  if (!calibration.all.fit.settled)
+    context.warn("The refinement did not settle; the scans hardly determine the parameters.");
+}
+
+std::string summary(const Calibration& calibration, const std::vector<Subject>& subjects,
+                    const RunContext& context) {
+  std::string text = fmt::format("Calibrated on {}:\n{}", source_of(subjects),
+                                 describe(calibration.all));
+  text += fmt::format("The scans' noise seems to be {:.3f} mm. Eq. 4 with these parameters, mm:\n",
+                      calibration.all.certainty.noise_mm);
+  for (std::size_t s = 0; s < subjects.size(); ++s) {
+    const GridError& error = calibration.error[s];
+    const FilmParameters& alone = calibration.each[s].parameters;
+    text += fmt::format(
+        "  {:<12} {:.4f} (worst {:.3f}, {} lengths); alone: z_stretch {}, ratio {}, poisson {}\n",
+        subjects[s].name, error.rms_mm, error.worst_mm, error.edges + error.diagonals,
+        plain(alone.z_stretch), plain(alone.stiffness_ratio), plain(alone.poisson));
+  }
+  text += fmt::format("  average of each alone: z_stretch {}, ratio {}, poisson {}\n",
+                      plain(calibration.average.z_stretch),
+                      plain(calibration.average.stiffness_ratio),
+                      plain(calibration.average.poisson));
+  for (const std::string& warning : context.warnings()) text += fmt::format("warning: {}\n", warning);
+  return text;
+}
+
+JobResult shard_result(const JobConfig& config, const Shard& shard, const Search& search,
+                       std::size_t total) {
+  JobResult result;
+  result.folder = config.output;
+  result.files = {kStoreName};
+  const std::size_t missing = search.missing();
+  result.text = fmt::format(
+      "shard {}/{} is done; {} of {} simulations of the grid are in {}.\n"
+      "When all shards are done, run the same command without --shard and with --merge DIR for each "
+      "of their folders.\n",
+      shard.number, shard.shards, total - missing, total, (config.output / kStoreName).string());
+  result.json = Json{{"command", "calibrate"},
+                     {"folder", config.output.string()},
+                     {"shard", fmt::format("{}/{}", shard.number, shard.shards)},
+                     {"simulations", total - missing},
+                     {"missing", missing}}
+                    .dump(2) +
+                "\n";
+  return result;
+}
+
+}  // namespace
+
+JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& request,
+                        RunContext& context) {
+  const ThreadLimit threads(config.threads);
+  const SearchOptions options = search_options(request);
+  const Shard shard = parse_shard(request.shard);
+  if (config.dip.method != DipMethod::kFull)
+    throw InputError("calibrate: only --method full has parameters to calibrate");
+  const ScanSettings settings = {{request.scan_units, request.square_mm, request.mirrored},
+                                 request.aligned};
+  const std::vector<Subject> subjects = load_subjects(request.scans, settings, config, context);
+
+  make_folder(config.output);
+  SimulationStore store(config.output / kStoreName, store_files(request.merged));
+  Search search(subjects, config, request.square_mm, options, store);
+  if (!request.shard.empty()) {
+    search.simulate_grid(shard, context);
+    return shard_result(config, shard, search, grid_points(options).size() * subjects.size());
+  }
+  const Calibration calibration = search.run(context);
+  warn_of_edges(calibration, context);
+
+  OutputFolder folder(config.output);
+  write_file(folder.path("profile.toml"), profile_toml(calibration, subjects));
+  const std::string json =
+      calibration_json(calibration, subjects, config, request.square_mm, context)
+          .dump(2, ' ', false, Json::error_handler_t::replace) +
+      "\n";
+  write_file(folder.path("calibration.json"), json);
+  write_file(folder.path("error-surface.csv"), surface_csv(calibration, subjects));
+  save_png(folder.path("error-surface.png"),
+           draw_error_surface(options, calibration.grid, calibration.all.parameters,
+                              "Calibrated on " + source_of(subjects)));
+  context.check_cancelled();
+  folder.commit();
+
+  JobResult result;
+  result.folder = config.output;
+  result.files = {"profile.toml", "calibration.json", "error-surface.csv", "error-surface.png",
+                  kStoreName};
+  result.text = summary(calibration, subjects, context);
+  for (const std::string& file : result.files)
+    result.text += fmt::format("wrote {}\n", (config.output / file).string());
+  result.json = json;
+  return result;
+}
+
+}  // namespace hydrodip

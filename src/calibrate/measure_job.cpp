@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/output_folder.h"
+#include "base/parallel.h"
+#include "calibrate/calibrate.h"
+#include "calibrate/pictures.h"
+#include "calibrate/subject.h"
+#include "image/files.h"
+
+namespace hydrodip {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Method {
+  const char* name;
+  DipMethod method;
+};
+constexpr Method kMethods[] = {{"full", DipMethod::kFull},
+                               {"single-step", DipMethod::kSingleStep},
+                               {"projection", DipMethod::kProjection}};
+
+// One scan by one method.
+struct Measurement {
+  const char* method = "";
+  GridError error;
+  Alignment alignment;
+  std::size_t unknown = 0;  // corners without film
+  ErrorMap map;
+};
+
+Measurement measure(const Subject& subject, const CheckeredFilm& film, const JobConfig& config,
+                    const Method& method, double square_mm, RunContext& context) {
+  DipOptions options = config.dip;
+  options.method = method.method;
+  const CheckerboardDip dip = dip_checkerboard(film, subject.object, *subject.surface,
+                                               film_parameters(config), options, context);
+  Comparison comparison = compare(subject, dip);
+  Measurement result;
+  result.method = method.name;
+  result.alignment = comparison.alignment;
+  result.map.errors = length_errors(subject.lengths, comparison.warped, square_mm);
+  result.error = grid_error(result.map.errors, square_mm);
+  for (const auto& corner : comparison.warped) result.unknown += !corner;
+  result.map.warped = std::move(comparison.warped);
+  result.map.title = fmt::format("{}, {}", subject.name, method.name);
+  result.map.figure =
+      fmt::format("{:.4f} mm, worst {:.3f} mm", result.error.rms_mm, result.error.worst_mm);
+  return result;
+}
+
+Json json_of(const Subject& subject, const std::vector<Measurement>& measurements) {
+  Json methods;
+  for (const Measurement& m : measurements)
+    methods[m.method] = {{"rms_mm", m.error.rms_mm},
+                         {"literal_mm05", m.error.literal},
+                         {"mean_mm", m.error.mean_mm},
+                         {"worst_mm", m.error.worst_mm},
+                         {"edge_rms_mm", m.error.edge_rms_mm},
+                         {"diagonal_rms_mm", m.error.diagonal_rms_mm},
+                         {"edges", m.error.edges},
+                         {"diagonals", m.error.diagonals},
+                         {"corners_without_film", m.unknown}};
+  return {{"name", subject.name},
+          {"file", subject.file.string()},
+          {"synthetic", subject.scan.synthetic},
+          {"depth_mm", subject.object.depth_mm},
+          {"corners", subject.scan.grid.position.size()},
+          {"off_surface_rms_mm", measurements.front().alignment.rms_mm},
+          {"off_surface_worst_mm", measurements.front().alignment.worst_mm},
+          {"methods", methods}};
+}
+
+std::string text_of(const Subject& subject, const std::vector<Measurement>& measurements) {
+  std::string text = fmt::format(
+      "{} ({}{}): {} corners, {:.3f} mm off the surface\n"
+      "  {:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>8}\n",
+      subject.name, subject.file.filename().string(),
+      subject.scan.synthetic ? ", computed, not scanned" : "", subject.scan.grid.position.size(),
+      measurements.front().alignment.rms_mm, "method", "Eq. 4, mm", "edges", "diagonals", "mean",
+      "worst", "literal", "lengths");
+  for (const Measurement& m : measurements)
+    text += fmt::format("  {:<12} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>7.4f} mm^.5 {:>6}\n",
+                        m.method, m.error.rms_mm, m.error.edge_rms_mm, m.error.diagonal_rms_mm,
+                        m.error.mean_mm, m.error.worst_mm, m.error.literal,
+                        m.error.edges + m.error.diagonals);
+  return text;
+}
+
+void warn_of_bare_corners(const Subject& subject, const Measurement& full, RunContext& context) {
+  if (5 * full.unknown > subject.scan.grid.position.size())
+    context.warn(fmt::format(
+        "{}: {} of {} corners lie where the simulated dip lays no film; check the depth ('{}@DEPTH="
+        "...').",
+        subject.file.string(), full.unknown, subject.scan.grid.position.size(),
+        subject.object.name));
+}
+
+}  // namespace
+
+JobResult measure_job(const JobConfig& config, const CalibrationRequest& request,
+                      RunContext& context) {
+  const ThreadLimit threads(config.threads);
+  const ScanSettings settings = {{request.scan_units, request.square_mm, request.mirrored},
+                                 request.aligned};
+  const std::vector<Subject> subjects = load_subjects(request.scans, settings, config, context);
+  const CheckeredFilm film = checkered_film(config, request.square_mm);
+
+  JobResult result;
+  Json scans = Json::array();
+  std::vector<std::vector<ErrorMap>> maps;
+  for (const Subject& subject : subjects) {
+    std::vector<Measurement> measurements;
+    for (const Method& method : kMethods)
+      measurements.push_back(measure(subject, film, config, method, request.square_mm, context));
+    if (measurements.front().error.edges == 0)
+      throw InputError(fmt::format(
+          "{}: the simulated dip lays no film on any two neighbouring corners; check the depth "
+          "('{}@DEPTH=...')",
+          subject.file.string(), subject.object.name));
+    warn_of_bare_corners(subject, measurements.front(), context);
+    scans.push_back(json_of(subject, measurements));
+    result.text += text_of(subject, measurements);
+    maps.emplace_back();
+    for (Measurement& m : measurements) maps.back().push_back(std::move(m.map));
+  }
+  for (const std::string& warning : context.warnings()) 
+    result.text += fmt::format("warning: {}\n", warning);
+  const FilmParameters parameters = film_parameters(config);
+  result.json = Json{{"schema_version", 1},
+                     {"command", "measure"},
+                     {"folder", config.output.string()},
+                     {"parameters",
+                      {{"z_stretch", parameters.z_stretch},
+                       {"ink_stiffness_ratio", parameters.stiffness_ratio},
+                       {"poisson", parameters.poisson}}},
+                     {"square_mm", request.square_mm},
+                     {"scans", scans},
+                     {"warnings", context.warnings()}}
+                    .dump(2, ' ', false, Json::error_handler_t::replace) +
+                "\n";
+  if (config.output.empty()) return result;
+
+  OutputFolder folder(config.output);
+  save_png(folder.path("error-map.png"),
+           draw_error_maps(maps, any_synthetic(subjects)
+                                     ? "Some of these scans were computed, not scanned."
+                                     : "Scans carried back to the film."));
+  write_file(folder.path("measure.json"), result.json);
+  context.check_cancelled();
+  folder.commit();
+  result.folder = config.output;
+  result.files = {"error-map.png", "measure.json"};
+  for (const std::string& file : result.files)
+    result.text += fmt::format("wrote {}\n", (config.output / file).string());
+  return result;
+}
+
+}  // namespace hydrodip

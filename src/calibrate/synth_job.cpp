@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/output_folder.h"
+#include "base/parallel.h"
+#include "calibrate/calibrate.h"
+#include "calibrate/synthetic.h"
+#include "scan/read_scan.h"
+
+namespace hydrodip {
+namespace {
+
+void check(const CalibrationRequest& request) {
+  if (!(request.noise_mm >= 0 && request.noise_mm <= 10))
+    throw InputError("--noise: give the noise in mm, from 0 to 10");
+  if (!(request.missing_share >= 0 && request.missing_share < 1))
+    throw InputError("--missing: give the share of corners to leave out, from 0 to below 1");
+}
+
+std::string truth_toml(const FilmParameters& truth) {
+  return fmt::format(
+      "# The parameters that these synthetic scans were computed with.\n[material]\n"
+      "z_stretch = {}\nink_stiffness_ratio = {}\npoisson = {}\n",
+      truth.z_stretch, truth.stiffness_ratio, truth.poisson);
+}
+
+}  // namespace
+
+JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
+                    RunContext& context) {
+  check(request);
+  const ThreadLimit threads(config.threads);
+  const JobConfig fine = finer_film(config);
+  const FilmParameters truth = film_parameters(config);
+  const CheckeredFilm film = checkered_film(fine, request.square_mm);
+  OutputFolder folder(config.output);
+  JobResult result;
+  const GridPlace reach = {int(0.5 * config.film.width_mm / request.square_mm),
+                           int(0.5 * config.film.height_mm / request.square_mm)};
+  nlohmann::ordered_json scans = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < request.scans.size(); ++i) {
+    const CalibrationObject object = calibration_object(request.scans[i], config, context);
+    const Surface surface(object.object.positions, object.object.triangles);
+    const CheckerboardDip dip =
+        dip_checkerboard(film, object, surface, truth, fine.dip, context);
+    const CornerGrid grid = synthetic_scan(
+        dip, object, reach,
+        {request.noise_mm, request.missing_share, request.seed * 1000 + i, request.aligned});
+    const std::string comment = fmt::format(
+        "{}: {} dipped {:g} mm, z_stretch {:g}, ink_stiffness_ratio {:g}, poisson {:g}, noise {:g} "
+        "mm, seed {}",
+        kSyntheticMark, object.name, object.depth_mm, truth.z_stretch, truth.stiffness_ratio,
+        truth.poisson, request.noise_mm, request.seed);
+    const std::string name = object.name + "-scan";
+    write_scan_quads(folder.path(name + ".obj"), grid, comment);
+    write_scan_table(folder.path(name + ".csv"), grid, comment);
+    result.files.push_back(name + ".obj");
+    result.files.push_back(name + ".csv");
+    scans.push_back({{"name", object.name}, {"corners", grid.position.size()}});
+  }
+  write_file(folder.path("truth.toml"), truth_toml(truth));
+  result.files.push_back("truth.toml");
+  context.check_cancelled();
+  folder.commit();
+
+  result.folder = config.output;
+  for (const std::string& file : result.files)
+    result.text += fmt::format("wrote {}\n", (config.output / file).string());
+  result.text += "These scans are computed, not measured: they test the calibration, not a film.\n";
+  result.json = nlohmann::ordered_json{{"command", "calibrate synth"},
+                                       {"folder", config.output.string()},
+                                       {"files", result.files},
+                                       {"scans", scans}}
+                    .dump(2) +
+                "\n";
+  return result;
+}
+
+}  // namespace hydrodip
