@@ -117,7 +117,8 @@ void declare_synth(CLI::App& app, Request& request) {
     app.add_option(option, value, help)->group(kScanGroup)->type_name(type);
   };
   add("--noise", wanted.noise_mm, "MM", "standard deviation of every coordinate (default: 0)");
-  add("--missing", wanted.missing_share, "SHARE", "of the corners, left out at random (default: 0)");
+  add("--missing", wanted.missing_share, "SHARE",
+      "of the corners, left out at random (default: 0)");
   add("--seed", wanted.seed, "N", "of noise, gaps and pose (default: 1)");
   app.add_flag("--aligned", wanted.aligned, "in the posed object's frame instead of a random pose")
       ->group(kScanGroup);
@@ -144,7 +145,8 @@ std::vector<Command> calibrate_commands() {
        "'calibrate synth', and docs/calibration.md.",
        declare_calibrate, run_calibrate},
       {"calibrate synth", "scans computed from known parameters, to try calibrations on",
-       "Writes OBJECT-scan.obj, OBJECT-scan.csv and truth.toml. They are computed on four times the\n"
+       "Writes OBJECT-scan.obj, OBJECT-scan.csv and truth.toml. They are computed on four times "
+       "the\n"
        "triangles and half the step. Truth: --set material.z_stretch=0.65 and so on.",
        declare_synth, run_synth},
       {"measure", "the error of a simulated dip against a scan, Eq. 4 of the paper",

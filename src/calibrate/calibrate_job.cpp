@@ -66,8 +66,9 @@ void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
-    throw InputError(fmt::format("{}: the output folder cannot be made ({}); choose another with -o",
-                                 folder.string(), error.message()));
+    throw InputError(
+        fmt::format("{}: the output folder cannot be made ({}); choose another with -o",
+                    folder.string(), error.message()));
 }
 
 // ---- what is told ----
@@ -102,8 +103,8 @@ std::string describe(const Answer& answer) {
     const ParameterText& p = kParameters[k];
     text += fmt::format("  {:<20} {:>8}", p.name, plain(answer.parameters.*p.member));
     if (answer.fit.free[std::size_t(k)])
-      text += fmt::format("   95 %: {}",
-                          interval(answer.certainty.low.*p.member, answer.certainty.high.*p.member));
+      text += fmt::format(
+          "   95 %: {}", interval(answer.certainty.low.*p.member, answer.certainty.high.*p.member));
     else
       text += "   given";
     if (poorly_determined(answer, k)) text += "   (hardly determined by these scans)";
@@ -161,8 +162,8 @@ std::string source_of(const std::vector<Subject>& subjects) {
 }
 
 std::string profile_toml(const Calibration& calibration, const std::vector<Subject>& subjects) {
-  std::string text = fmt::format("# A film's parameters, calibrated by hydrodip on {}.\n",
-                                 source_of(subjects));
+  std::string text =
+      fmt::format("# A film's parameters, calibrated by hydrodip on {}.\n", source_of(subjects));
   for (const Subject& subject : subjects)
     text += fmt::format("#   {}\n", subject.file.filename().string());
   text += "# 95 % intervals in the comments. Use it with --profile.\n\n[material]\n";
@@ -172,12 +173,12 @@ std::string profile_toml(const Calibration& calibration, const std::vector<Subje
     const ParameterText& p = kParameters[k];
     // A ratio is known to a few digits at most.
     const double value = std::stod(fmt::format("{:.4g}", all.parameters.*p.member));
-    text += fmt::format("{} = {}", names[k], value == std::floor(value)
-                                                 ? fmt::format("{:.1f}", value)
-                                                 : fmt::format("{}", value));
+    text += fmt::format(
+        "{} = {}", names[k],
+        value == std::floor(value) ? fmt::format("{:.1f}", value) : fmt::format("{}", value));
     if (all.fit.free[std::size_t(k)])
-      text += fmt::format(
-          "  # {}", interval(all.certainty.low.*p.member, all.certainty.high.*p.member));
+      text += fmt::format("  # {}",
+                          interval(all.certainty.low.*p.member, all.certainty.high.*p.member));
     text += "\n";
   }
   return text;
@@ -241,8 +242,8 @@ void warn_of_edges(const Calibration& calibration, RunContext& context) {
 
 std::string summary(const Calibration& calibration, const std::vector<Subject>& subjects,
                     const RunContext& context) {
-  std::string text = fmt::format("Calibrated on {}:\n{}", source_of(subjects),
-                                 describe(calibration.all));
+  std::string text =
+      fmt::format("Calibrated on {}:\n{}", source_of(subjects), describe(calibration.all));
   text += fmt::format("The scans' noise seems to be {:.3f} mm. Eq. 4 with these parameters, mm:\n",
                       calibration.all.certainty.noise_mm);
   for (std::size_t s = 0; s < subjects.size(); ++s) {
@@ -253,11 +254,12 @@ std::string summary(const Calibration& calibration, const std::vector<Subject>& 
         subjects[s].name, error.rms_mm, error.worst_mm, error.edges + error.diagonals,
         plain(alone.z_stretch), plain(alone.stiffness_ratio), plain(alone.poisson));
   }
-  text += fmt::format("  average of each alone: z_stretch {}, ratio {}, poisson {}\n",
-                      plain(calibration.average.z_stretch),
-                      plain(calibration.average.stiffness_ratio),
-                      plain(calibration.average.poisson));
-  for (const std::string& warning : context.warnings()) text += fmt::format("warning: {}\n", warning);
+  text +=
+      fmt::format("  average of each alone: z_stretch {}, ratio {}, poisson {}\n",
+                  plain(calibration.average.z_stretch), plain(calibration.average.stiffness_ratio),
+                  plain(calibration.average.poisson));
+  for (const std::string& warning : context.warnings())
+    text += fmt::format("warning: {}\n", warning);
   return text;
 }
 
@@ -269,7 +271,8 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
   const std::size_t missing = search.missing();
   result.text = fmt::format(
       "shard {}/{} is done; {} of {} simulations of the grid are in {}.\n"
-      "When all shards are done, run the same command without --shard and with --merge DIR for each "
+      "When all shards are done, run the same command without --shard and with --merge DIR for "
+      "each "
       "of their folders.\n",
       shard.number, shard.shards, total - missing, total, (config.output / kStoreName).string());
   result.json = Json{{"command", "calibrate"},

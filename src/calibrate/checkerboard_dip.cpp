@@ -97,8 +97,7 @@ CheckeredFilm checkered_film(const JobConfig& config, double square_mm) {
   film.mesh = make_film_mesh(config.film);
   const Checkerboard board = checkerboard_to_print(config.film, square_mm);
   // A ratio of 2 makes the modulus 1 more than the density.
-  film.ink_density =
-      film_modulus(film.mesh, board.inks, board.raster, {2, config.ink.filter_mm});
+  film.ink_density = film_modulus(film.mesh, board.inks, board.raster, {2, config.ink.filter_mm});
   for (double& density : film.ink_density) density -= 1;
   return film;
 }
@@ -121,8 +120,7 @@ CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObj
   dip_options.material.tear_stretch = 0;
   if (options.method != DipMethod::kProjection) {
     dip_options.modulus = film.ink_density;
-    for (double& value : dip_options.modulus)
-      value = 1 + value * (parameters.stiffness_ratio - 1);
+    for (double& value : dip_options.modulus) value = 1 + value * (parameters.stiffness_ratio - 1);
   }
   CheckerboardDip result;
   result.square_mm = film.square_mm;

@@ -202,10 +202,10 @@ Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitO
     fit.point = stencil.at(d);
     for (int k = 0; k < 3; ++k)
       fit.at_bound[std::size_t(k)] =
-          fit.free[std::size_t(k)] && (fit.point[k] <= options.low[k] + 1e-9 ||
-                                       fit.point[k] >= options.high[k] - 1e-9);
-    fit.residual = Eigen::VectorXd::Constant(values.rows(),
-                                             std::numeric_limits<double>::quiet_NaN());
+          fit.free[std::size_t(k)] &&
+          (fit.point[k] <= options.low[k] + 1e-9 || fit.point[k] >= options.high[k] - 1e-9);
+    fit.residual =
+        Eigen::VectorXd::Constant(values.rows(), std::numeric_limits<double>::quiet_NaN());
     fit.jacobian = Eigen::MatrixX3d::Zero(values.rows(), 3);
     const Eigen::VectorXd residual = model.at(d);
     const Eigen::MatrixX3d slope = model.slope_at(d) * step.cwiseInverse().asDiagonal();
@@ -234,8 +234,8 @@ Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient) {
   const Eigen::VectorXd residual = fit.residual(rows);
 
   // Least squares takes d = -(J^T J)^-1 J^T r, and what is left is (I - H) r.
-  const Eigen::MatrixXd solve = (j.transpose() * j).completeOrthogonalDecomposition().solve(
-      j.transpose());
+  const Eigen::MatrixXd solve =
+      (j.transpose() * j).completeOrthogonalDecomposition().solve(j.transpose());
   const Eigen::MatrixXd left = g - j * (solve * g);
   const double share = left.squaredNorm();
   result.noise_mm = share > 0 ? std::sqrt(residual.squaredNorm() / share) : 0;

@@ -44,10 +44,10 @@ struct Fit {
 // simulations on a stencil around the last answer, until the answer stays.
 Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitOptions& options);
 
-// How the scan's noise shows in the lengths: covariance of `residual` up to the noise's variance, as
-// a product G G^T (rows as residual's, a column for each coordinate of each corner).
+// How the scan's noise shows in the lengths: covariance of `residual` up to the noise's variance,
+// as a product G G^T (rows as residual's, a column for each coordinate of each corner).
 struct Certainty {
-  double noise_mm = 0;           // of a corner's coordinate, judged by what the fit leaves
+  double noise_mm = 0;  // of a corner's coordinate, judged by what the fit leaves
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of FitPoint; 0 where fixed
   // 95 % intervals in film parameters. A ratio without upper bound: infinity.
   FilmParameters low, high;

@@ -84,10 +84,10 @@ std::string text_of(const Subject& subject, const std::vector<Measurement>& meas
       measurements.front().alignment.rms_mm, "method", "Eq. 4, mm", "edges", "diagonals", "mean",
       "worst", "literal", "lengths");
   for (const Measurement& m : measurements)
-    text += fmt::format("  {:<12} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>7.4f} mm^.5 {:>6}\n",
-                        m.method, m.error.rms_mm, m.error.edge_rms_mm, m.error.diagonal_rms_mm,
-                        m.error.mean_mm, m.error.worst_mm, m.error.literal,
-                        m.error.edges + m.error.diagonals);
+    text += fmt::format(
+        "  {:<12} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>7.4f} mm^.5 {:>6}\n", m.method,
+        m.error.rms_mm, m.error.edge_rms_mm, m.error.diagonal_rms_mm, m.error.mean_mm,
+        m.error.worst_mm, m.error.literal, m.error.edges + m.error.diagonals);
   return text;
 }
 
@@ -128,7 +128,7 @@ JobResult measure_job(const JobConfig& config, const CalibrationRequest& request
     maps.emplace_back();
     for (Measurement& m : measurements) maps.back().push_back(std::move(m.map));
   }
-  for (const std::string& warning : context.warnings()) 
+  for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
   const FilmParameters parameters = film_parameters(config);
   result.json = Json{{"schema_version", 1},

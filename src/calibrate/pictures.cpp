@@ -56,8 +56,8 @@ double value_of(const FilmParameters& parameters, int axis) {
 }
 
 // Least error over the third parameter; NaN where no dip is comparable.
-std::vector<double> profile(const std::vector<GridPointError>& grid, const std::array<Axis, 3>& axes,
-                            int x, int y) {
+std::vector<double> profile(const std::vector<GridPointError>& grid,
+                            const std::array<Axis, 3>& axes, int x, int y) {
   const std::size_t width = axes[std::size_t(x)].values.size();
   std::vector<double> least(width * axes[std::size_t(y)].values.size(),
                             std::numeric_limits<double>::quiet_NaN());

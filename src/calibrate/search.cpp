@@ -263,13 +263,14 @@ Answer Search::answer(const std::string& name, const std::vector<std::size_t>& s
 Calibration Search::run(RunContext& context) {
   Calibration result;
   result.grid = grid_errors(context);
-  const auto best = std::min_element(
-      result.grid.begin(), result.grid.end(), [](const auto& a, const auto& b) {
+  const auto best =
+      std::min_element(result.grid.begin(), result.grid.end(), [](const auto& a, const auto& b) {
         return !std::isnan(a.all_mm) && (std::isnan(b.all_mm) || a.all_mm < b.all_mm);
       });
   if (std::isnan(best->all_mm))
     throw InputError(
-        "at no point of the grid do all objects' dips reach the scanned corners; check the objects' "
+        "at no point of the grid do all objects' dips reach the scanned corners; check the "
+        "objects' "
         "depths and the ranges");
 
   const std::vector<std::size_t> everyone = all_indices(subjects_.size());
@@ -302,8 +303,8 @@ Calibration Search::run(RunContext& context) {
   const std::vector<SimulationResult> ends = fine_film_.get(last, "measuring", context);
   for (const std::size_t s : everyone)
     result.error.push_back(grid_error(
-        length_errors(subjects_[s].lengths, ends[s].value_or(WarpedGrid(
-                                                subjects_[s].scan.grid.position.size())),
+        length_errors(subjects_[s].lengths,
+                      ends[s].value_or(WarpedGrid(subjects_[s].scan.grid.position.size())),
                       square_mm_),
         square_mm_));
   result.simulations = store_.size();

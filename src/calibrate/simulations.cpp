@@ -28,8 +28,7 @@ class Crew {
            RunContext& context) {
     std::vector<std::thread> workers;
     const auto size = std::min(count, std::size_t(std::max(1, threads)));
-    for (std::size_t i = 0; i < size; ++i)
-      workers.emplace_back([&] { work(count, task); });
+    for (std::size_t i = 0; i < size; ++i) workers.emplace_back([&] { work(count, task); });
     std::exception_ptr failure;
     try {
       collect(count, done, context);
@@ -107,8 +106,7 @@ CheckerboardDip Simulations::dip(const SimulationRequest& request, RunContext& c
                           context);
 }
 
-SimulationResult Simulations::compute(const SimulationRequest& request,
-                                      RunContext& context) const {
+SimulationResult Simulations::compute(const SimulationRequest& request, RunContext& context) const {
   try {
     return compare(subjects_[request.subject], dip(request, context)).warped;
   } catch (const DipError&) {

@@ -48,8 +48,8 @@ bool parse_line(const std::string& text, SimulationKey& key, SimulationResult& r
   if (!corners.is_array()) return false;
   result.emplace();
   for (const Json& corner : corners) {
-    const bool is_point = corner.is_array() && corner.size() == 2 && corner[0].is_number() &&
-                          corner[1].is_number();
+    const bool is_point =
+        corner.is_array() && corner.size() == 2 && corner[0].is_number() && corner[1].is_number();
     if (!is_point && !corner.is_null()) return false;
     result->push_back(is_point ? std::optional<Vec2>(Vec2(corner[0], corner[1])) : std::nullopt);
   }
@@ -75,8 +75,8 @@ SimulationStore::SimulationStore(const std::filesystem::path& file,
     : file_(file) {
   descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0)
-    refuse(file, fmt::format("the store of simulations cannot be opened ({})",
-                             std::strerror(errno)));
+    refuse(file,
+           fmt::format("the store of simulations cannot be opened ({})", std::strerror(errno)));
   try {
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
       refuse(file, "another calibration is writing to it; wait for it, or choose another folder");

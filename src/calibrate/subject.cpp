@@ -18,8 +18,8 @@ constexpr double kReach_mm = 2;
 constexpr double kSuspiciousDistance_mm = 0.3;
 constexpr double kLargestDistance_mm = 1.5;
 // To find out how a scan lies, this is good enough.
-constexpr int kCoarseElements = 6000;
-constexpr double kCoarseStep_mm = 0.5;
+constexpr int kCoarseElements = 10000;
+constexpr double kCoarseStep_mm = 0.25;
 
 struct SubjectText {
   std::string object;
@@ -47,11 +47,11 @@ GridPlace reach_of(const FilmOptions& film, double square_mm) {
 void judge(const Subject& subject, const Alignment& alignment, bool aligned, RunContext& context) {
   const std::string file = subject.file.string();
   if (alignment.rms_mm > kLargestDistance_mm)
-    throw InputError(fmt::format(
-        "{}: the corners lie {:.1f} mm off the {}'s surface (root mean square); {}", file,
-        alignment.rms_mm, subject.object.name,
-        aligned ? "leave out --aligned to have the scan registered"
-                : "check which object was scanned and its unit"));
+    throw InputError(
+        fmt::format("{}: the corners lie {:.1f} mm off the {}'s surface (root mean square); {}",
+                    file, alignment.rms_mm, subject.object.name,
+                    aligned ? "leave out --aligned to have the scan registered"
+                            : "check which object was scanned and its unit"));
   if (alignment.rms_mm > kSuspiciousDistance_mm || alignment.worst_mm > kReach_mm)
     context.warn(fmt::format(
         "{}: corners lie {:.2f} mm off the {}'s surface (root mean square, worst {:.2f} mm): check "
@@ -63,9 +63,9 @@ void judge_match(const Subject& subject, const GridMatch& match, bool told_mirro
                  RunContext& context) {
   const std::string file = subject.file.string();
   if (match.mirrored)
-    throw InputError(fmt::format(
-        "{}: the scan is a mirror image of the {}; {}", file, subject.object.name,
-        told_mirrored ? "leave out --mirrored" : "export it anew, or give --mirrored"));
+    throw InputError(
+        fmt::format("{}: the scan is a mirror image of the {}; {}", file, subject.object.name,
+                    told_mirrored ? "leave out --mirrored" : "export it anew, or give --mirrored"));
   if (match.turned)
     context.warn(fmt::format(
         "{}: rows and columns run the wrong way round: its faces look into the object, or it is a "
@@ -120,8 +120,8 @@ std::string fingerprint_of(const Subject& subject, const ScanSettings& settings,
   for (const Vec3& p : subject.scan.grid.position)
     for (int k = 0; k < 3; ++k) print.add(p[k]);
   for (std::size_t c = 0; c < subject.scan.grid.place.size(); ++c)
-    for (const int value : {subject.scan.grid.place[c][0], subject.scan.grid.place[c][1],
-                            subject.scan.grid.patch[c]})
+    for (const int value :
+         {subject.scan.grid.place[c][0], subject.scan.grid.place[c][1], subject.scan.grid.patch[c]})
       print.add(value);
   for (const Vec3& p : subject.object.object.positions)
     for (int k = 0; k < 3; ++k) print.add(p[k]);
@@ -143,8 +143,7 @@ void number_namesakes(std::vector<Subject>& subjects) {
     const auto same = [&](const Subject& other) { return other.object.name == name; };
     subjects[i].name = name;
     if (std::count_if(subjects.begin(), subjects.end(), same) < 2) continue;
-    const auto before =
-        std::count_if(subjects.begin(), subjects.begin() + std::ptrdiff_t(i), same);
+    const auto before = std::count_if(subjects.begin(), subjects.begin() + std::ptrdiff_t(i), same);
     subjects[i].name = fmt::format("{}-{}", name, before + 1);
   }
 }
@@ -168,8 +167,8 @@ std::vector<std::optional<WarpGradient>> warp_gradients(const Subject& subject,
                                                         const CheckerboardDip& dip,
                                                         const Eigen::Isometry3d& pose) {
   constexpr double kShift_mm = 0.25;  // about as far as a cell of the film
-  std::vector<std::optional<WarpGradient>> gradients(
-      subject.scan.grid.position.size(), WarpGradient(WarpGradient::Zero()));
+  std::vector<std::optional<WarpGradient>> gradients(subject.scan.grid.position.size(),
+                                                     WarpGradient(WarpGradient::Zero()));
   for (int axis = 0; axis < 3; ++axis) {
     std::array<WarpedGrid, 2> sides;
     for (const int side : {0, 1}) {
@@ -180,8 +179,7 @@ std::vector<std::optional<WarpGradient>> warp_gradients(const Subject& subject,
     }
     for (std::size_t c = 0; c < gradients.size(); ++c) {
       if (!sides[0][c] || !sides[1][c]) gradients[c].reset();
-      if (gradients[c])
-        gradients[c]->col(axis) = (*sides[1][c] - *sides[0][c]) / (2 * kShift_mm);
+      if (gradients[c]) gradients[c]->col(axis) = (*sides[1][c] - *sides[0][c]) / (2 * kShift_mm);
     }
   }
   return gradients;

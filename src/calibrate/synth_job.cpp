@@ -44,8 +44,7 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
   for (std::size_t i = 0; i < request.scans.size(); ++i) {
     const CalibrationObject object = calibration_object(request.scans[i], config, context);
     const Surface surface(object.object.positions, object.object.triangles);
-    const CheckerboardDip dip =
-        dip_checkerboard(film, object, surface, truth, fine.dip, context);
+    const CheckerboardDip dip = dip_checkerboard(film, object, surface, truth, fine.dip, context);
     const CornerGrid grid = synthetic_scan(
         dip, object, reach,
         {request.noise_mm, request.missing_share, request.seed * 1000 + i, request.aligned});

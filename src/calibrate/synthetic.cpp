@@ -31,8 +31,7 @@ class Chance {
     Eigen::Quaterniond turn(normal(), normal(), normal(), normal());
     turn.normalize();
     Eigen::Isometry3d pose(turn);
-    pose.pretranslate(kFarthest_mm *
-                      Vec3(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5));
+    pose.pretranslate(kFarthest_mm * Vec3(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5));
     return pose;
   }
 

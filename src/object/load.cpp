@@ -801,9 +801,10 @@ class PolygonCollector {
 PolygonMesh load_polygons(const fs::path& path) {
   const Format format = format_of(path);
   if (format != Format::kObj && format != Format::kPly)
-    throw InputError(fmt::format("{}: quads are read from OBJ and PLY files; export the mesh as "
-                                 "one of them",
-                                 path.string()));
+    throw InputError(
+        fmt::format("{}: quads are read from OBJ and PLY files; export the mesh as "
+                    "one of them",
+                    path.string()));
   ModelFolder folder(path);
   const CheckedFile checked = check(format, path.string(), folder.read(path), folder);
   const std::string name = path.stem().string() + lower_extension(path);

@@ -8,25 +8,20 @@
 #include "base/output_folder.h"
 #include "rig/pictures.h"
 #include "rig/rig.h"
+#include "sheet/page_writer.h"
 #include "sheet/pdf_document.h"
-#include "sheet/winansi.h"
 
 namespace hydrodip {
 namespace {
 
-constexpr double kMargin_mm = 16;
-constexpr double kGap_mm = 4;
-constexpr double kMmPerPt = kMmPerInch / 72;
+constexpr double kMargin_mm = PageWriter::kMargin_mm;
+constexpr double kGap_mm = PageWriter::kGap_mm;
 constexpr int kPictureWidth_px = 720;
 constexpr double kPictureAspect = 1.15;
-constexpr double kBody_pt = 10, kSmall_pt = 8, kHead_pt = 12, kTitle_pt = 20;
+constexpr double kBody_pt = PageWriter::kBody_pt, kSmall_pt = PageWriter::kSmall_pt;
+constexpr double kHead_pt = PageWriter::kHead_pt, kTitle_pt = PageWriter::kTitle_pt;
 
-// The paper that lies on the bench.
-struct Paper {
-  double width_mm, height_mm;
-};
-
-Paper choose_paper(const std::string& name, const FilmOptions& film) {
+PaperSize choose_paper(const std::string& name, const FilmOptions& film) {
   const auto& formats = film_formats();
   const auto find = [&](const std::string& wanted) {
     return std::find_if(formats.begin(), formats.end(),
@@ -43,109 +38,9 @@ Paper choose_paper(const std::string& name, const FilmOptions& film) {
 
 std::string side_name(const std::string& down) { return "the model's " + down + " side"; }
 
-// Draws from the top of the page down; y is where the next thing goes.
-class Writer {
- public:
-  Writer(PdfDocument& pdf, const Paper& paper) : pdf_(pdf), paper_(paper) { new_page(); }
-
-  double left() const { return kMargin_mm; }
-  double right() const { return paper_.width_mm - kMargin_mm; }
-  double width() const { return right() - left(); }
-  double y = 0;
-
-  void new_page() {
-    pdf_.add_page(paper_.width_mm, paper_.height_mm);
-    y = paper_.height_mm - kMargin_mm;
-  }
-
-  void text(double x, double base, const std::string& words, double size_pt,
-            PdfFont font = PdfFont::kRegular, double gray = 0) {
-    pdf_.draw_text({to_winansi(words), {x, base}, size_pt, font, 0, gray});
-  }
-
-  double width_of(const std::string& words, double size_pt, PdfFont font) const {
-    return pdf_.text_width(to_winansi(words), font) * size_pt * kMmPerPt;
-  }
-
-  // Words in lines of at most that width, from y down; moves y.
-  void paragraph(double x, double width_mm, const std::string& words, double size_pt,
-                 PdfFont font = PdfFont::kRegular, double gray = 0) {
-    const double line_mm = 1.3 * size_pt * kMmPerPt;
-    for (const std::string& line : wrapped(words, width_mm, size_pt, font)) {
-      y -= line_mm;
-      text(x, y + 0.3 * line_mm, line, size_pt, font, gray);
-    }
-  }
-
-  void heading(const std::string& words) {
-    y -= 8;
-    text(left(), y, words, kHead_pt, PdfFont::kBold);
-    y -= 1.6;
-    rule(left(), right(), y, 0.3, 0.6);
-    y -= 1;
-  }
-
-  void rule(double from, double to, double base, double width_mm, double gray) {
-    pdf_.set_stroke(width_mm, gray);
-    pdf_.draw_lines({{Vec2(from, base), Vec2(to, base)}});
-  }
-
-  // A box to tick, what to do, and blanks to fill in below it.
-  void task(const std::string& words, const std::vector<std::string>& blanks = {}) {
-    constexpr double kBox_mm = 4, kIndent_mm = 7.5;
-    const double top = y - 1.6;
-    pdf_.set_stroke(0.35);
-    pdf_.draw_rectangle({Vec2(left(), top - kBox_mm), Vec2(left() + kBox_mm, top)});
-    y -= 0.9;
-    paragraph(left() + kIndent_mm, width() - kIndent_mm, words, kBody_pt);
-    if (!blanks.empty()) fill_in(left() + kIndent_mm, blanks);
-    y -= blanks.empty() ? 1.7 : 2.8;
-  }
-
-  // "label ______" side by side.
-  void fill_in(double x, const std::vector<std::string>& labels) {
-    constexpr double kFewest = 3;
-    y -= 6.4;
-    const double each = (right() - x) / std::max(kFewest, double(labels.size()));
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      const double at = x + double(i) * each;
-      text(at, y, labels[i], kBody_pt, PdfFont::kRegular, 0.25);
-      rule(at + width_of(labels[i], kBody_pt, PdfFont::kRegular) + 1.5, at + each - kGap_mm,
-           y - 0.6, 0.25, 0.3);
-    }
-  }
-
-  PdfDocument& pdf() { return pdf_; }
-  const Paper& paper() const { return paper_; }
-
- private:
-  std::vector<std::string> wrapped(const std::string& words, double width_mm, double size_pt,
-                                   PdfFont font) const {
-    std::vector<std::string> lines;
-    std::string line;
-    for (std::size_t begin = 0; begin < words.size();) {
-      const std::size_t end = std::min(words.find(' ', begin), words.size());
-      const std::string word = words.substr(begin, end - begin);
-      const std::string longer = line.empty() ? word : line + " " + word;
-      if (!line.empty() && width_of(longer, size_pt, font) > width_mm) {
-        lines.push_back(line);
-        line = word;
-      } else {
-        line = longer;
-      }
-      begin = end + 1;
-    }
-    if (!line.empty()) lines.push_back(line);
-    return lines;
-  }
-
-  PdfDocument& pdf_;
-  Paper paper_;
-};
-
 class RunSheet {
  public:
-  RunSheet(PdfDocument& pdf, const Paper& paper, const RigJob& job,
+  RunSheet(PdfDocument& pdf, const PaperSize& paper, const RigJob& job,
            const std::vector<PosePicture>& pictures, RunContext& context)
       : page_(pdf, paper),
         job_(job),
@@ -366,7 +261,7 @@ class RunSheet {
     }
   }
 
-  Writer page_;
+  PageWriter page_;
   const RigJob& job_;
   const ProcessOptions& process_;
   const std::vector<PosePicture>& pictures_;
@@ -377,7 +272,7 @@ class RunSheet {
 
 JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
                     const std::filesystem::path& file, RunContext& context) {
-  const Paper paper = choose_paper(paper_name, job.config.film);
+  const PaperSize paper = choose_paper(paper_name, job.config.film);
   const std::filesystem::path path = file.empty() ? job.folder / "run-sheet.pdf" : file;
   const std::vector<PosePicture> pictures = pose_pictures(
       job, kPictureWidth_px, static_cast<int>(kPictureWidth_px / kPictureAspect), context);

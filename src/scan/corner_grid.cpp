@@ -25,9 +25,9 @@ void check_quads(const std::vector<Quad>& quads, std::size_t corners, const std:
             fmt::format("{}: quad {} refers to a corner that is not there", name, q + 1));
       for (std::size_t l = 0; l < k; ++l)
         if (quads[q][k] == quads[q][l])
-          throw InputError(fmt::format(
-              "{}: quad {} has one corner twice; draw it with four different corners", name,
-              q + 1));
+          throw InputError(
+              fmt::format("{}: quad {} has one corner twice; draw it with four different corners",
+                          name, q + 1));
     }
   }
 }
@@ -77,8 +77,8 @@ class PlaceFinder {
     for (std::size_t i = 0; i < members.size(); ++i) place_neighbors(members[i], members);
 
     // If most quads run the other way than the first, the places came out mirrored.
-    const auto turned = std::count_if(members.begin(), members.end(),
-                                      [&](std::size_t q) { return turn_[q] < 0; });
+    const auto turned =
+        std::count_if(members.begin(), members.end(), [&](std::size_t q) { return turn_[q] < 0; });
     const int mirror = 2 * std::size_t(turned) > members.size() ? -1 : 1;
     for (const auto& [corner, place] : place_) {
       grid_.position.push_back(corners_[std::size_t(corner)]);
@@ -156,8 +156,8 @@ std::vector<GridLength> grid_lengths(const CornerGrid& grid) {
   std::vector<GridLength> lengths;
   for (std::size_t c = 0; c < grid.place.size(); ++c) {
     const auto add = [&](int columns, int rows) {
-      const auto found = corner_at.find(
-          {grid.patch[c], grid.place[c][0] + columns, grid.place[c][1] + rows});
+      const auto found =
+          corner_at.find({grid.patch[c], grid.place[c][0] + columns, grid.place[c][1] + rows});
       if (found == corner_at.end()) return;
       lengths.push_back({std::int32_t(c), found->second, columns != 0 && rows != 0});
     };

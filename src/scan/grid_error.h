@@ -25,8 +25,8 @@ struct LengthError {
 std::vector<LengthError> length_errors(const std::vector<GridLength>& lengths,
                                        const WarpedGrid& warped, double square_mm);
 
-// Eq. 4 with |e| and |d| read as counts: a root mean square in mm. The printed formula divides a sum
-// of squares by a sum of lengths, of which the root is mm^0.5; literal is its value.
+// Eq. 4 with |e| and |d| read as counts: a root mean square in mm. The printed formula divides a
+// sum of squares by a sum of lengths, of which the root is mm^0.5; literal is its value.
 struct GridError {
   double rms_mm = 0;
   double literal = 0;  // mm^0.5

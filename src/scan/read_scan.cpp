@@ -31,9 +31,10 @@ struct Unit {
   const char* plural;
   double mm;
 };
-constexpr Unit kUnits[] = {
-    {"mm", "millimetres", 1}, {"cm", "centimetres", 10}, {"in", "inches", kMmPerInch},
-    {"m", "metres", 1000}};
+constexpr Unit kUnits[] = {{"mm", "millimetres", 1},
+                           {"cm", "centimetres", 10},
+                           {"in", "inches", kMmPerInch},
+                           {"m", "metres", 1000}};
 
 const Unit& find_unit(const std::string& name) {
   for (const Unit& unit : kUnits)
@@ -60,11 +61,12 @@ CornerGrid read_quads(const std::filesystem::path& file) {
       ++(face.size() == 3 ? triangles : others);
   }
   if (quads.empty() && triangles > 0)
-    throw InputError(fmt::format(
-        "{}: all {} faces are triangles, but one face is needed for each square of the "
-        "checkerboard, with its four corners; draw a quad mesh over the scan (docs/calibration.md), "
-        "or join triangles into quads before the export",
-        file.string(), triangles));
+    throw InputError(
+        fmt::format("{}: all {} faces are triangles, but one face is needed for each square of the "
+                    "checkerboard, with its four corners; draw a quad mesh over the scan "
+                    "(docs/calibration.md), "
+                    "or join triangles into quads before the export",
+                    file.string(), triangles));
   if (triangles + others > 0)
     throw InputError(fmt::format(
         "{}: {} of {} faces do not have four corners; every face must be one square of the "
@@ -135,9 +137,8 @@ double median_edge(const CornerGrid& grid) {
   std::vector<double> edges;
   for (const GridLength& length : grid_lengths(grid))
     if (!length.diagonal)
-      edges.push_back((grid.position[std::size_t(length.from)] -
-                       grid.position[std::size_t(length.to)])
-                          .norm());
+      edges.push_back(
+          (grid.position[std::size_t(length.from)] - grid.position[std::size_t(length.to)]).norm());
   if (edges.empty()) return 0;
   std::nth_element(edges.begin(), edges.begin() + std::ptrdiff_t(edges.size() / 2), edges.end());
   return edges[edges.size() / 2];

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kFewestCorners = 6;
 // So many of the patch's corners have to land for a shift to count.
-constexpr double kLeastOverlap = 0.9;
+constexpr double kLeastOverlap = 0.7;
 // A fit worse than this share of a square is none.
 constexpr double kLargestMisfit = 0.5;
 // A mirrored reading is believed when it fits this much better.
@@ -78,8 +78,8 @@ struct Reading {
 void fit_rigidly(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to, Reading& reading) {
   const Eigen::Matrix4d pose = Eigen::umeyama(from, to, false);
   reading.pose.matrix() = pose;
-  const Eigen::Matrix3Xd left = (reading.pose.linear() * from).colwise() +
-                                reading.pose.translation() - to;
+  const Eigen::Matrix3Xd left =
+      (reading.pose.linear() * from).colwise() + reading.pose.translation() - to;
   reading.rms_mm = std::sqrt(left.squaredNorm() / double(from.cols()));
 }
 
@@ -107,7 +107,7 @@ class Matcher {
           high[k] = std::max(high[k], places.back()[k]);
         }
       }
-      // Shifts that leave at most a tenth of a side outside.
+      // Shifts that leave no more than a strip outside.
       const GridPlace slack = {(high[0] - low[0]) / 8 + 1, (high[1] - low[1]) / 8 + 1};
       for (int dy = landings_.low()[1] - low[1] - slack[1];
            dy <= landings_.high()[1] - high[1] + slack[1]; ++dy)
@@ -203,9 +203,9 @@ GridMatch match_grid(const CornerGrid& grid, const GridLanding& landing, const G
   const Matcher matcher(grid, corners, landings);
   Reading best = matcher.best(false, false);
   const Reading turned = matcher.best(false, true);
-  const Reading mirror = std::min(
-      matcher.best(true, true), matcher.best(true, false),
-      [](const Reading& a, const Reading& b) { return a.rms_mm < b.rms_mm; });
+  const Reading mirror =
+      std::min(matcher.best(true, true), matcher.best(true, false),
+               [](const Reading& a, const Reading& b) { return a.rms_mm < b.rms_mm; });
 
   GridMatch match;
   if (turned.rms_mm < kClearlyBetter * best.rms_mm) {

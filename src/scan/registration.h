@@ -21,7 +21,7 @@ struct GridMatch {
   // Absolute places of the largest patch's corners; of others none.
   std::vector<std::optional<GridPlace>> place;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // scan to posed object, roughly
-  double rms_mm = 0;  // of the corners from where they land
+  double rms_mm = 0;                                       // of the corners from where they land
   // The rows run the other way round than the scan's faces say. On an object that is its own mirror
   // image that comes to the same; on others see mirrored.
   bool turned = false;
@@ -36,7 +36,7 @@ GridMatch match_grid(const CornerGrid& grid, const GridLanding& landing, const G
 
 struct Alignment {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // scan to posed object
-  double rms_mm = 0;    // of the corners from the surface
+  double rms_mm = 0;                                       // of the corners from the surface
   double worst_mm = 0;  // largest distance of a corner from the surface
 };
 
