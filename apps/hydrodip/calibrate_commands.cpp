@@ -73,11 +73,15 @@ void declare_calibrate(CLI::App& app, Request& request) {
   declare_film(app, request);
 }
 
+void check_square(const Request& request) {
+  if (!(request.calibration.square_mm >= 0.5 && request.calibration.square_mm <= 100))
+    throw InputError("--square: give the side of a square in mm, from 0.5 to 100");
+}
+
 void require_scans(const Request& request, const std::string& command) {
   if (request.calibration.scans.empty())
     throw InputError("name object and scan, as in 'hydrodip " + command + " sphere=scan.obj'");
-  if (!(request.calibration.square_mm >= 0.5 && request.calibration.square_mm <= 100))
-    throw InputError("--square: give the side of a square in mm, from 0.5 to 100");
+  check_square(request);
 }
 
 JobResult run_calibrate(const Request& request, RunContext& context) {
@@ -102,6 +106,7 @@ JobResult run_measure(const Request& request, RunContext& context) {
 
 // The kit's three unless some are named.
 CalibrationRequest with_objects(const Request& request) {
+  check_square(request);
   CalibrationRequest wanted = request.calibration;
   if (wanted.scans.empty()) wanted.scans = {"sphere", "pyramid", "ellipsoid"};
   return wanted;
@@ -132,6 +137,20 @@ JobResult run_synth(const Request& request, RunContext& context) {
   return synth_job(config, wanted, context);
 }
 
+void declare_kit(CLI::App& app, Request& request) {
+  declare_output(app, request, "calibration-kit");
+  declare_reporting(app, request);
+  declare_square(app, request);
+  declare_film(app, request);
+}
+
+JobResult run_kit(const Request& request, RunContext& context) {
+  const CalibrationRequest wanted = with_objects(request);
+  JobConfig config = configure(request);
+  if (config.output.empty()) config.output = "calibration-kit";
+  return kit_job(config, wanted, context);
+}
+
 }  // namespace
 
 std::vector<Command> calibrate_commands() {
@@ -144,6 +163,10 @@ std::vector<Command> calibrate_commands() {
        "result corrected by dips on the film that is asked for. See also 'calibrate kit' and\n"
        "'calibrate synth', and docs/calibration.md.",
        declare_calibrate, run_calibrate},
+      {"calibrate kit", "what a calibration needs: shapes to print, film, instructions",
+       "Writes sphere.stl, pyramid.stl, ellipsoid.stl, checkerboard.pdf (print it at 100 %) and\n"
+       "instructions.pdf.",
+       declare_kit, run_kit},
       {"calibrate synth", "scans computed from known parameters, to try calibrations on",
        "Writes OBJECT-scan.obj, OBJECT-scan.csv and truth.toml. They are computed on four times "
        "the\n"

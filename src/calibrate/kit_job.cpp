@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/output_folder.h"
+#include "calibrate/calibrate.h"
+#include "calibrate/checkerboard_dip.h"
+#include "calibrate/kit_shapes.h"
+#include "ink/color_model.h"
+#include "sheet/page_writer.h"
+#include "sheet/sheet.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr PaperSize kA4 = {210, 297}, kLetter = {215.9, 279.4};
+
+PaperSize paper_for(const FilmOptions& film) {
+  const double shorter = std::min(film.width_mm, film.height_mm);
+  return shorter == kLetter.width_mm ? kLetter : kA4;
+}
+
+// Black and white, as a desktop printer takes it.
+Image as_image(const InkImage& inks) {
+  Image image(inks.width_px, inks.height_px);
+  for (std::size_t i = 0; i < inks.cmyk.size(); i += 4) {
+    image.rgba[i] = image.rgba[i + 1] = image.rgba[i + 2] = std::uint8_t(255 - inks.cmyk[i + 3]);
+    // What is white is not printed.
+    image.rgba[i + 3] = inks.cmyk[i + 3];
+  }
+  return image;
+}
+
+void write_film(const std::filesystem::path& path, const JobConfig& config, double square_mm,
+                RunContext& context) {
+  const Checkerboard board = checkerboard_to_print(config.film, square_mm);
+  SheetOptions sheet;
+  sheet.width_mm = config.film.width_mm;
+  sheet.height_mm = config.film.height_mm;
+  sheet.margin_mm = config.film.margin_mm;
+  sheet.disc = config.film.shape == FilmShape::kDisc;
+  sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
+  sheet.dpi = board.raster.dpi;
+  sheet.job_name = fmt::format("calibration, {:g} mm squares", square_mm);
+  const Image image = as_image(board.inks);
+  write_print_pdf(path, image, srgb_profile(), sheet, context);
+}
+
+// ---- the page to work by ----
+
+std::string scans_of(const std::vector<std::string>& objects) {
+  std::string text;
+  for (const std::string& object : objects) text += fmt::format(" {}=FILE", object);
+  return text;
+}
+
+void write_instructions(const std::filesystem::path& path, const JobConfig& config,
+                        const std::vector<std::string>& objects, double square_mm) {
+  const ProcessOptions& process = config.process;
+  PdfDocument pdf;
+  pdf.set_title("Calibrating a film");
+  PageWriter page(pdf, paper_for(config.film));
+  const auto say = [&](const std::string& words) {
+    page.paragraph(page.left(), page.width(), words, PageWriter::kBody_pt);
+    page.y -= 1.5;
+  };
+  page.y -= 6;
+  page.text(page.left(), page.y, "Calibrating a film", PageWriter::kTitle_pt, PdfFont::kBold);
+  page.y -= 3;
+  say("Dip a printed checkerboard onto shapes that are known, scan where its corners came to lie, "
+      "and let hydrodip find the film's parameters. One dip of each shape takes an afternoon; a "
+      "second one of each tells how alike your dips are.");
+
+  page.heading("Shapes");
+  page.task(
+      "Print the STL files as they stand, flat end down, without supports, in a matt light colour; "
+      "layers of 0.1 mm. Sand and prime them: the film shows every layer.");
+  page.task(fmt::format(
+      "Screw a tripod plate (1/4-20) into the {:g} mm hole in the flat end; the screw cuts its own "
+      "thread. Hang the shape with its flat end up and level.",
+      kMountHole_mm));
+
+  page.heading("Film");
+  page.task(
+      fmt::format("Print checkerboard.pdf once for each dip at 100 %, no scaling; the ruler in its "
+                  "margin must measure true. Four squares together are {:g} mm wide.",
+                  4 * square_mm),
+      {"Four squares, mm"});
+  page.task(fmt::format("Tape {:g} mm around all four edges. Dry for as long as your ink needs.",
+                        config.film.margin_mm));
+
+  page.heading("Dip");
+  for (const std::string& text : objects) {
+    RunContext quiet;
+    const CalibrationObject object = calibration_object(text, config, quiet);
+    page.task(fmt::format("{}: its tip {:g} mm below the water, {:g} mm/min, over the middle of "
+                          "the film, no turn.",
+                          object.name, object.depth_mm, process.speed_mm_per_min),
+              {"Depth reached, mm"});
+  }
+  page.task(fmt::format(
+      "Water {:g} to {:g} °C; film soaks {:g} to {:g} s until it lies flat; activator {:g} ± {:g} g "
+      "per letter sheet; wait {:g} s; then dip. Exactly as in the jobs to come.",
+      process.water_min_c, process.water_max_c, process.soak_min_s, process.soak_max_s,
+      process.activator_g, process.activator_tolerance_g, process.activator_wait_s));
+  page.task("Clear the surface, lift the shape out, let it dry.");
+
+  page.heading("Scan");
+  page.task(
+      "Scan the printed side with its colours; 5 samples a millimetre or better. Keep millimetres.");
+  page.task(
+      "On the scan, draw a quad mesh: a vertex on every corner where two black squares meet, a face "
+      "for every square. Leave out what tore or is not to be seen. Or write a table: "
+      "column,row,x,y,z, a line per corner. Save as OBJ, PLY or CSV; its pose does not matter.");
+
+  page.heading("Fit");
+  say(fmt::format("hydrodip measure{}    shows at once whether the scans are read well.",
+                  scans_of(objects)));
+  say(fmt::format("hydrodip calibrate{} -o my-film", scans_of(objects)));
+  say("Where you dipped deeper or less, say so: sphere@11.5=FILE. Then print with "
+      "--profile my-film/profile.toml.");
+  pdf.save(path);
+}
+
+}  // namespace
+
+JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
+                  RunContext& context) {
+  for (const std::string& text : request.scans)
+    calibration_object(text, config, context);  // refuses what does not fit the film
+  OutputFolder folder(config.output);
+  JobResult result;
+  for (const KitShape& shape : kit_shapes()) {
+    const std::string name = std::string(shape.name) + ".stl";
+    write_stl(folder.path(name), kit_shape(shape.name));
+    result.files.push_back(name);
+  }
+  write_film(folder.path("checkerboard.pdf"), config, request.square_mm, context);
+  write_instructions(folder.path("instructions.pdf"), config, request.scans, request.square_mm);
+  result.files.insert(result.files.end(), {"checkerboard.pdf", "instructions.pdf"});
+  context.check_cancelled();
+  folder.commit();
+
+  result.folder = config.output;
+  for (const std::string& file : result.files)
+    result.text += fmt::format("wrote {}\n", (config.output / file).string());
+  for (const std::string& warning : context.warnings())
+    result.text += fmt::format("warning: {}\n", warning);
+  result.json = nlohmann::ordered_json{{"command", "calibrate kit"},
+                                       {"folder", config.output.string()},
+                                       {"files", result.files}}
+                    .dump(2) +
+                "\n";
+  return result;
+}
+
+}  // namespace hydrodip

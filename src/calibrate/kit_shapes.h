@@ -1,0 +1,21 @@
+// The calibration shapes to print: watertight, standing on their mount, with a hole for it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "object/object.h"
+
+namespace hydrodip {
+
+// The sample's side that dips, made longer upwards by a straight body with a flat end, in the middle
+// of which is a blind hole for a screw. As printed: z up, standing on the flat end at z = 0.
+Object kit_shape(const std::string& sample);
+
+constexpr double kMountHole_mm = 5.6;  // a 1/4-20 tripod screw cuts its thread into it
+constexpr double kMountHoleDepth_mm = 12;
+
+// Binary STL, mm.
+void write_stl(const std::filesystem::path& file, const Object& object);
+
+}  // namespace hydrodip
