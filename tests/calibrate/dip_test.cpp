@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "base/error.h"
+#include "calibrate/kit_shapes.h"
+#include "object/health.h"
+#include "object/samples.h"
+#include "scans.h"
+
+namespace hydrodip {
+namespace {
+
+TEST(CheckerboardTest, SquaresAlternateAroundTheCentreAndStayInsideTheTape) {
+  FilmOptions film;
+  film.width_mm = 100;
+  film.height_mm = 80;
+  const Checkerboard board = checkerboard_to_print(film, 5);
+  const auto inked = [&](double x, double y) {
+    const Vec2 p = board.raster.to_pixel({x, y});
+    return board.inks.pixel(int(p.x()), int(p.y()))[3] == 255;
+  };
+  for (double x = -37.5; x < 38; x += 5)
+    for (double y = -27.5; y < 28; y += 5)
+      EXPECT_EQ(inked(x, y), (long(std::floor(x / 5)) + long(std::floor(y / 5))) % 2 == 0);
+  EXPECT_FALSE(inked(42.5, 2.5));
+  EXPECT_FALSE(inked(2.5, 32.5));
+  // Half of the free film.
+  double sum = 0;
+  for (std::size_t i = 3; i < board.inks.cmyk.size(); i += 4) sum += board.inks.cmyk[i] / 255.0;
+  const double pixel_mm = kMmPerInch / board.raster.dpi;
+  EXPECT_NEAR(sum * pixel_mm * pixel_mm, 0.5 * 80 * 60, 20);
+}
+
+TEST(CalibrationObjectTest, DepthsAndNames) {
+  RunContext context;
+  const JobConfig config = scans::quick_config();
+  EXPECT_EQ(calibration_object("sphere", config, context).depth_mm, 12);
+  EXPECT_EQ(calibration_object("sphere@9.5", config, context).depth_mm, 9.5);
+  EXPECT_THROW(calibration_object("sphere@-1", config, context), InputError);
+  EXPECT_THROW(calibration_object("no-such.obj@3", config, context), InputError);
+}
+
+TEST(SyntheticTest, SameSeedSameScanAndNoiseAsAsked) {
+  RunContext context;
+  const scans::Truth truth("sphere", {0.65, 30, 0.1}, context);
+  const auto scan = [&](const SyntheticOptions& options) {
+    return synthetic_scan(truth.dip, truth.object, {12, 12}, options);
+  };
+  const CornerGrid clean = scan({.aligned = true});
+  const CornerGrid noisy = scan({.noise_mm = 0.05, .seed = 3, .aligned = true});
+  const CornerGrid again = scan({.noise_mm = 0.05, .seed = 3, .aligned = true});
+  ASSERT_EQ(clean.position.size(), noisy.position.size());
+  double sum = 0;
+  for (std::size_t c = 0; c < clean.position.size(); ++c) {
+    EXPECT_EQ(noisy.position[c], again.position[c]);
+    sum += (noisy.position[c] - clean.position[c]).squaredNorm();
+  }
+  EXPECT_NEAR(std::sqrt(sum / (3.0 * double(clean.position.size()))), 0.05, 0.01);
+  const CornerGrid gaps = scan({.missing_share = 0.33, .seed = 5});
+  EXPECT_NEAR(double(gaps.position.size()) / double(clean.position.size()), 0.67, 0.15);
+  // A corner of the film in the middle lands on the lowest point.
+  for (std::size_t c = 0; c < clean.place.size(); ++c)
+    if (clean.place[c] == GridPlace{0, 0}) EXPECT_LT(clean.position[c].norm(), 0.05);
+}
+
+class KitShapeTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(KitShapeTest, IsOneClosedBodyWhoseDippedSideIsTheSamples) {
+  const std::string name = GetParam();
+  Object shape = kit_shape(name);
+  // Every edge twice, once in each direction.
+  std::map<std::pair<int, int>, int> edges;
+  for (const Triangle& t : shape.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
+  for (const auto& [edge, count] : edges) {
+    EXPECT_EQ(count, 1);
+    EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
+  }
+  double volume = 0;
+  for (const Triangle& t : shape.triangles)
+    volume += shape.positions[std::size_t(t[0])].dot(
+                  shape.positions[std::size_t(t[1])].cross(shape.positions[std::size_t(t[2])])) /
+              6;
+  EXPECT_GT(volume, 0);  // outward
+  EXPECT_NEAR(shape.bounds().min.z(), 0, 1e-9);
+
+  // Hung up again, it is the sample below the depth of its dip.
+  const double top = shape.bounds().max.z();
+  for (Vec3& p : shape.positions) p = Vec3(p.x(), -p.y(), top - p.z());
+  const Object sample = make_sample(name);
+  const Surface a(shape.positions, shape.triangles), b(sample.positions, sample.triangles);
+  double depth = 0;
+  for (const KitShape& known : kit_shapes())
+    if (name == known.name) depth = known.depth_mm;
+  int compared = 0;
+  for (const Vec3& p : sample.positions) {
+    if (p.z() > depth) continue;
+    const auto hit = a.closest_point(p, 1);
+    ASSERT_TRUE(hit);
+    EXPECT_LT(hit->t, 0.02);
+    ++compared;
+  }
+  EXPECT_GT(compared, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, KitShapeTest, testing::Values("sphere", "pyramid", "ellipsoid"));
+
+}  // namespace
+}  // namespace hydrodip

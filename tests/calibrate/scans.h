@@ -1,0 +1,62 @@
+// Small synthetic scans for tests: quick dips, in a folder of their own.
+#pragma once
+
+#include <stdlib.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calibrate/search.h"
+#include "calibrate/synthetic.h"
+#include "scan/read_scan.h"
+
+namespace hydrodip::scans {
+
+class Folder {
+ public:
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "hydrodip-cal-XXXXXX").string();
+    path = mkdtemp(name.data());
+  }
+  ~Folder() { std::filesystem::remove_all(path); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::filesystem::path path;
+};
+
+// A small sheet and coarse triangles: hundredths of a second for a dip.
+inline JobConfig quick_config() {
+  JobConfig config;
+  config.film.width_mm = config.film.height_mm = 110;
+  config.film.elements = 6000;
+  config.dip.step_mm = 0.4;
+  return config;
+}
+
+// A dip of a kit shape on film finer than quick_config's, simulated once.
+struct Truth {
+  CalibrationObject object;
+  Surface surface;
+  CheckerboardDip dip;
+
+  Truth(const std::string& name, const FilmParameters& parameters, RunContext& context)
+      : object(calibration_object(name, quick_config(), context)),
+        surface(object.object.positions, object.object.triangles),
+        dip(dip_checkerboard(checkered_film(finer_film(quick_config()), 5), object, surface,
+                             parameters, finer_film(quick_config()).dip, context)) {}
+
+  void write(const std::filesystem::path& file, const SyntheticOptions& options) const {
+    write_scan_table(file, synthetic_scan(dip, object, {12, 12}, options), kSyntheticMark);
+  }
+};
+
+inline SearchOptions around(const FilmParameters& truth) {
+  SearchOptions options;
+  options.z_stretch = {truth.z_stretch - 0.12, truth.z_stretch + 0.02, truth.z_stretch + 0.16};
+  options.stiffness_ratio = {truth.stiffness_ratio};
+  options.poisson = {truth.poisson};
+  return options;
+}
+
+}  // namespace hydrodip::scans

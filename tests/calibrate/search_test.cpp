@@ -1,0 +1,149 @@
+#include "calibrate/search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "scans.h"
+
+namespace hydrodip {
+namespace {
+
+const FilmParameters kTruth{0.65, 30, 0.1};
+
+class SearchSlow : public testing::Test {
+ protected:
+  // Scans of two shapes, in random poses.
+  std::vector<Subject> subjects(const SyntheticOptions& options,
+                                const std::vector<std::string>& names = {"sphere", "pyramid"}) {
+    std::vector<std::string> texts;
+    for (const std::string& name : names) {
+      const std::filesystem::path file = folder_.path / (name + ".csv");
+      truth(name).write(file, options);
+      texts.push_back(name + "=" + file.string());
+    }
+    return load_subjects(texts, {}, scans::quick_config(), context_);
+  }
+
+  static const scans::Truth& truth(const std::string& name) {
+    static RunContext context;
+    static const scans::Truth sphere("sphere", kTruth, context);
+    static const scans::Truth pyramid("pyramid", kTruth, context);
+    return name == "sphere" ? sphere : pyramid;
+  }
+
+  Calibration calibrate(const std::vector<Subject>& scanned, const SearchOptions& options,
+                        const std::string& store_name,
+                        const std::vector<std::filesystem::path>& merged = {}) {
+    SimulationStore store(folder_.path / store_name, merged);
+    RunContext context;
+    return Search(scanned, scans::quick_config(), 5, options, store).run(context);
+  }
+
+  static void expect_same(const Calibration& a, const Calibration& b) {
+    ASSERT_EQ(a.grid.size(), b.grid.size());
+    for (std::size_t p = 0; p < a.grid.size(); ++p) {
+      EXPECT_EQ(a.grid[p].all_mm, b.grid[p].all_mm);
+      EXPECT_EQ(a.grid[p].rms_mm, b.grid[p].rms_mm);
+    }
+    EXPECT_EQ(a.all.fit.point, b.all.fit.point);
+    EXPECT_EQ(a.all.certainty.covariance, b.all.certainty.covariance);
+    EXPECT_EQ(a.correction_mm, b.correction_mm);
+    for (std::size_t s = 0; s < a.error.size(); ++s) {
+      EXPECT_EQ(a.error[s].rms_mm, b.error[s].rms_mm);
+      EXPECT_EQ(a.each[s].fit.point, b.each[s].fit.point);
+    }
+  }
+
+  scans::Folder folder_;
+  RunContext context_;
+};
+
+TEST_F(SearchSlow, FindsTheFilmThatMadeTheScans) {
+  SearchOptions options = scans::around(kTruth);
+  options.stiffness_ratio = {7.5, 120};
+  options.poisson = {0, 0.3};
+  const Calibration found = calibrate(subjects({}), options, "store.jsonl");
+  EXPECT_NEAR(found.all.parameters.z_stretch, kTruth.z_stretch, 0.01);
+  // On films this coarse the others come out roughly.
+  EXPECT_NEAR(std::log(found.all.parameters.stiffness_ratio), std::log(kTruth.stiffness_ratio),
+              0.8);
+  EXPECT_NEAR(found.all.parameters.poisson, kTruth.poisson, 0.15);
+  for (const GridError& error : found.error) EXPECT_LT(error.rms_mm, 0.03);
+  // The search is right to leave the grid's points.
+  for (const GridPointError& point : found.grid) EXPECT_GT(point.all_mm, found.all.fit.rms_mm);
+}
+
+TEST_F(SearchSlow, InterruptedAnywhereItEndsTheSame) {
+  const std::vector<Subject> scanned = subjects({.noise_mm = 0.05}, {"sphere"});
+  const SearchOptions options = scans::around(kTruth);
+  const Calibration whole = calibrate(scanned, options, "whole.jsonl");
+  std::size_t kept = 0;
+  for (const int reports : {2, 5, 9}) {
+    SimulationStore store(folder_.path / "broken.jsonl", {});
+    RunContext context;
+    int seen = 0;
+    context.on_progress([&](const std::string&, double) {
+      if (++seen >= reports) context.cancel();
+    });
+    EXPECT_THROW(Search(scanned, scans::quick_config(), 5, options, store).run(context), Cancelled);
+    EXPECT_GE(store.size(), kept);
+    kept = store.size();
+  }
+  EXPECT_GT(kept, 0u);
+  expect_same(calibrate(scanned, options, "broken.jsonl"), whole);
+  // Nothing is computed twice.
+  EXPECT_EQ(SimulationStore(folder_.path / "broken.jsonl", {}).size(),
+            SimulationStore(folder_.path / "whole.jsonl", {}).size());
+}
+
+TEST_F(SearchSlow, ShardsMergedAreOneRun) {
+  const std::vector<Subject> scanned = subjects({.noise_mm = 0.05}, {"sphere"});
+  const SearchOptions options = scans::around(kTruth);
+  const Calibration whole = calibrate(scanned, options, "whole.jsonl");
+  std::vector<std::filesystem::path> stores;
+  for (const int number : {1, 2}) {
+    stores.push_back(folder_.path / ("shard" + std::to_string(number)));
+    SimulationStore store(stores.back(), {});
+    RunContext context;
+    Search search(scanned, scans::quick_config(), 5, options, store);
+    search.simulate_grid({number, 2}, context);
+    EXPECT_EQ(search.missing(), number == 1 ? 1u : 2u);
+  }
+  {
+    SimulationStore store(folder_.path / "merged.jsonl", stores);
+    EXPECT_EQ(Search(scanned, scans::quick_config(), 5, options, store).missing(), 0u);
+  }
+  expect_same(calibrate(scanned, options, "merged.jsonl", stores), whole);
+}
+
+TEST_F(SearchSlow, ThreadsDoNotMatter) {
+  const std::vector<Subject> scanned = subjects({.noise_mm = 0.05}, {"sphere"});
+  std::optional<Calibration> one;
+  {
+    const ThreadLimit limit(1);
+    one = calibrate(scanned, scans::around(kTruth), "one.jsonl");
+  }
+  expect_same(calibrate(scanned, scans::around(kTruth), "many.jsonl"), *one);
+}
+
+// The long study is bench/calibrate/noise.cpp.
+TEST_F(SearchSlow, NoiseStaysWithinTheStatedUncertainty) {
+  int covered = 0;
+  constexpr int kSeeds = 6;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const std::vector<Subject> scanned =
+        subjects({.noise_mm = 0.05, .seed = std::uint64_t(seed)}, {"sphere"});
+    const Answer found = calibrate(scanned, scans::around(kTruth), "n" + std::to_string(seed)).all;
+    EXPECT_NEAR(found.certainty.noise_mm, 0.05, 0.02);
+    covered += found.certainty.low.z_stretch <= kTruth.z_stretch &&
+               kTruth.z_stretch <= found.certainty.high.z_stretch;
+  }
+  EXPECT_GE(covered, kSeeds - 1);
+}
+
+}  // namespace
+}  // namespace hydrodip

@@ -1,0 +1,106 @@
+#include "calibrate/store.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+class StoreTest : public testing::Test {
+ protected:
+  StoreTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "hydrodip-store-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    file_ = folder_ / "simulations.jsonl";
+  }
+  ~StoreTest() override { std::filesystem::remove_all(folder_); }
+
+  static SimulationKey key(double z) { return {"abc-search", {z, 600, 0.1}}; }
+  static SimulationResult result(double x) {
+    return WarpedGrid{Vec2(x, 1.0 / 3), std::nullopt, Vec2(-0.1, 1e-17)};
+  }
+  std::string text() const {
+    std::ifstream in(file_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  void write(const std::string& content) const {
+    std::ofstream(file_, std::ios::binary) << content;
+  }
+
+  std::filesystem::path folder_, file_;
+};
+
+TEST_F(StoreTest, ResultsComeBackToTheLastBit) {
+  {
+    SimulationStore store(file_, {});
+    store.add(key(0.1 + 0.2), result(0.7));
+    store.add(key(0.6), std::nullopt);
+  }
+  const SimulationStore store(file_, {});
+  EXPECT_EQ(store.size(), 2u);
+  EXPECT_EQ(store.find(key(0.3)), nullptr);  // 0.1 + 0.2 is not 0.3
+  const SimulationResult* found = store.find(key(0.1 + 0.2));
+  ASSERT_NE(found, nullptr);
+  ASSERT_TRUE(found->has_value());
+  EXPECT_EQ((*found)->at(0)->y(), 1.0 / 3);
+  EXPECT_FALSE((*found)->at(1).has_value());
+  EXPECT_EQ((*found)->at(2)->y(), 1e-17);
+  ASSERT_NE(store.find(key(0.6)), nullptr);
+  EXPECT_FALSE(store.find(key(0.6))->has_value());
+}
+
+TEST_F(StoreTest, CutAtAnyByteItKeepsWholeLinesAndGoesOn) {
+  {
+    SimulationStore store(file_, {});
+    store.add(key(0.1), result(1));
+    store.add(key(0.2), result(2));
+  }
+  const std::string whole = text();
+  const std::size_t first = whole.find('\n') + 1;
+  for (std::size_t cut = 0; cut <= whole.size(); ++cut) {
+    write(whole.substr(0, cut));
+    {
+      SimulationStore store(file_, {});
+      EXPECT_EQ(store.size(), cut == whole.size() ? 2u : cut >= first ? 1u : 0u) << cut;
+      if (!store.find(key(0.1))) store.add(key(0.1), result(1));
+      if (!store.find(key(0.2))) store.add(key(0.2), result(2));
+    }
+    EXPECT_EQ(text(), whole);
+  }
+}
+
+TEST_F(StoreTest, StoresMergeByFileAndByConcatenation) {
+  const std::filesystem::path other = folder_ / "other.jsonl";
+  SimulationStore(file_, {}).add(key(0.1), result(1));
+  SimulationStore(other, {}).add(key(0.2), result(2));
+  EXPECT_EQ(SimulationStore(file_, {other}).size(), 2u);
+  const std::string both = text();
+  std::ifstream in(other);
+  write(both + std::string(std::istreambuf_iterator<char>(in), {}));
+  EXPECT_EQ(SimulationStore(file_, {}).size(), 2u);
+}
+
+TEST_F(StoreTest, OnlyOneMayWrite) {
+  const SimulationStore store(file_, {});
+  EXPECT_THROW(SimulationStore(file_, {}), InputError);
+}
+
+TEST_F(StoreTest, RefusesOtherFiles) {
+  for (const char* content : {"hello\n", "{}\n", "{\"subject\":1}\n", "[]\n\n"}) {
+    write(content);
+    EXPECT_THROW(SimulationStore(file_, {}), InputError) << content;
+  }
+  EXPECT_THROW(SimulationStore(folder_ / "no" / "folder", {}), InputError);
+  write("");
+  EXPECT_THROW(SimulationStore(file_, {folder_ / "missing"}), InputError);
+}
+
+}  // namespace
+}  // namespace hydrodip

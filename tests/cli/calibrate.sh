@@ -1,0 +1,116 @@
+#!/bin/sh
+# hydrodip calibrate and measure from outside: kit, synthetic scans, a calibration that is killed,
+# shards, refusals. Usage: sh calibrate.sh HYDRODIP
+. "$(dirname "$0")/common.sh"
+
+film='--film 110x110 --set film.elements=3000 --set dip.step_mm=0.5'
+grid='--z-stretch 0.55,0.75 --ratio 30 --poisson 0.1'
+
+# refuse PATTERN ARGUMENT...: exit code 2, one line that says PATTERN.
+refuse() {
+  pattern=$1
+  shift
+  "$hydrodip" "$@" > stdout.txt 2> stderr.txt
+  code=$?
+  [ "$code" -eq 2 ] || fail "$*: exit code $code instead of 2"
+  grep -v '%' stderr.txt | grep -q -- "$pattern" ||
+    fail "$*: does not say '$pattern': $(cat stderr.txt)"
+}
+
+"$hydrodip" calibrate kit -o kit --film letter --quiet > /dev/null || fail "kit"
+[ "$(find kit -type f | wc -l)" -eq 5 ] || fail "the kit has not five files: $(ls kit)"
+pdfinfo kit/checkerboard.pdf | grep -q '612 x 792 pts (letter)' || fail "the film is not letter"
+for shape in sphere pyramid ellipsoid; do
+  "$hydrodip" inspect kit/$shape.stl > said.txt || fail "inspect $shape.stl"
+  grep -q '1 shell, closed' said.txt || fail "$shape.stl is not closed: $(cat said.txt)"
+done
+# Squares of true size: five black ones in a row of ten, by an independent reader.
+pdftoppm -r 254 -gray kit/checkerboard.pdf film || fail "the film's PDF cannot be drawn"
+
+# shellcheck disable=SC2086
+"$hydrodip" calibrate synth sphere $film --set material.ink_stiffness_ratio=30 \
+  --set material.poisson=0.1 --noise 0.03 -o scans --quiet > said.txt || fail "synth"
+grep -q 'computed, not measured' said.txt || fail "synth does not say that it is synthetic"
+# shellcheck disable=SC2086
+"$hydrodip" measure sphere=scans/sphere-scan.csv $film --profile scans/truth.toml -o measured \
+  --quiet --json > said.json || fail "measure"
+node -e '
+  const m = JSON.parse(require("fs").readFileSync("said.json")).scans[0].methods;
+  const [full, single, straight] =
+    ["full", "single-step", "projection"].map((name) => m[name].rms_mm);
+  if (!(full < single && full < straight)) process.exit(1);
+' || fail "the full method is not the best: $(cat said.json)"
+
+# A calibration in one go, then one that is killed again and again.
+# shellcheck disable=SC2086
+"$hydrodip" calibrate scans/sphere-scan.obj $film $grid -o whole --quiet > whole.txt ||
+  fail "calibrate"
+grep -q 'computed, not scanned' whole.txt || fail "does not say that the scan is synthetic"
+tries=0
+while [ "$tries" -lt 40 ]; do
+  tries=$((tries + 1))
+  # shellcheck disable=SC2086
+  "$hydrodip" calibrate scans/sphere-scan.obj $film $grid -o killed --quiet > killed.txt 2>&1 &
+  job=$!
+  ( sleep "0.$((tries * 7 % 10))"; sleep $((tries / 4)); kill -9 "$job" 2> /dev/null ) &
+  killer=$!
+  wait "$job" 2> /dev/null
+  code=$?
+  kill "$killer" 2> /dev/null
+  [ "$code" -eq 137 ] || break
+done
+[ "$code" -eq 0 ] || fail "killed $tries times, it never ended: $code $(cat killed.txt)"
+[ "$tries" -gt 1 ] || fail "it was never killed"
+for file in profile.toml error-surface.csv error-surface.png; do
+  cmp -s "whole/$file" "killed/$file" || fail "$file differs after $tries kills"
+done
+[ "$(sort whole/simulations.jsonl | cksum)" = "$(sort killed/simulations.jsonl | cksum)" ] ||
+  fail "the stores differ"
+
+# Two shards and their merger.
+for shard in 1 2; do
+  # shellcheck disable=SC2086
+  "$hydrodip" calibrate scans/sphere-scan.obj $film $grid --shard $shard/2 -o shard$shard \
+    --quiet > said.txt || fail "shard $shard"
+done
+# shellcheck disable=SC2086
+"$hydrodip" calibrate scans/sphere-scan.obj $film $grid --merge shard1 --merge shard2 -o merged \
+  --quiet > said.txt || fail "merge"
+cmp -s whole/profile.toml merged/profile.toml || fail "merged shards give another profile"
+cmp -s whole/error-surface.csv merged/error-surface.csv || fail "merged shards: another surface"
+
+# The profile works.
+"$hydrodip" params --help > /dev/null
+write_tetrahedron tetra.obj
+# shellcheck disable=SC2086
+"$hydrodip" simulate tetra.obj $quick_simulate --profile whole/profile.toml -o used --quiet \
+  > /dev/null || fail "the profile is refused"
+
+# Scans that are not right.
+awk -F, '/^[0-9]/ {printf "%s,%s,%.7f,%.7f,%.7f\n", $1, $2, $3/25.4, $4/25.4, $5/25.4; next} {print}' \
+  scans/sphere-scan.csv > inches.csv
+# shellcheck disable=SC2086
+refuse '--scan-units in' measure sphere=inches.csv $film
+# shellcheck disable=SC2086
+"$hydrodip" measure sphere=inches.csv --scan-units in $film --quiet > /dev/null ||
+  fail "a scan in inches"
+awk '/^f / {print $1, $2, $3, $4; print $1, $2, $4, $5; next} {print}' scans/sphere-scan.obj \
+  > triangles.obj
+# shellcheck disable=SC2086
+refuse 'triangles' measure sphere=triangles.obj $film
+# shellcheck disable=SC2086
+refuse 'shape' measure pyramid=scans/sphere-scan.csv $film
+# shellcheck disable=SC2086
+refuse '--aligned' measure sphere=scans/sphere-scan.csv --aligned $film
+awk -F, '/^[0-9]/ {printf "%s,%s,%s,%s,%s\n", $1, $2, -$3, $4, $5; next} {print}' \
+  scans/sphere-scan.csv > mirrored.csv
+# shellcheck disable=SC2086
+"$hydrodip" measure sphere=mirrored.csv $film --quiet > said.txt || fail "a mirrored sphere"
+grep -q 'wrong way round' said.txt || fail "does not say that the scan is mirrored: $(cat said.txt)"
+refuse 'sphere=scan.obj' calibrate
+refuse 'which object' calibrate unknown.obj
+refuse 'no-such.csv' calibrate sphere=no-such.csv
+refuse '--poisson' calibrate sphere=scans/sphere-scan.csv --poisson 0:1:0.1
+refuse '--shard' calibrate sphere=scans/sphere-scan.csv --shard 3/2
+refuse '--square' measure sphere=scans/sphere-scan.csv --square 0
+finish
