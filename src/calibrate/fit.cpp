@@ -222,7 +222,8 @@ Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitO
   }
 }
 
-Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient) {
+Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
+                    const FitPoint& systematic) {
   std::vector<Eigen::Index> rows, free;
   for (Eigen::Index i = 0; i < fit.residual.size(); ++i)
     if (std::isfinite(fit.residual[i])) rows.push_back(i);
@@ -245,7 +246,11 @@ Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient) {
     for (std::size_t b = 0; b < free.size(); ++b)
       result.covariance(free[a], free[b]) = covariance(Eigen::Index(a), Eigen::Index(b));
 
-  const Eigen::Vector3d half = kQuantile * result.covariance.diagonal().cwiseSqrt();
+  Eigen::Vector3d half;
+  for (int k = 0; k < 3; ++k)
+    half[k] = fit.free[std::size_t(k)]
+                  ? std::hypot(kQuantile * std::sqrt(result.covariance(k, k)), systematic[k])
+                  : 0;
   const FitPoint low = fit.point - half, high = fit.point + half;
   // A film is no stiffer without ink, and its Poisson's ratio is a material's.
   result.low = {std::max(0.0, low[0]), high[1] >= 1 ? 1 : 1 / (high[1] * high[1]),

@@ -44,14 +44,17 @@ struct Fit {
 // simulations on a stencil around the last answer, until the answer stays.
 Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitOptions& options);
 
-// How the scan's noise shows in the lengths: covariance of `residual` up to the noise's variance,
-// as a product G G^T (rows as residual's, a column for each coordinate of each corner).
+// How well the scans determine an answer.
 struct Certainty {
   double noise_mm = 0;  // of a corner's coordinate, judged by what the fit leaves
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of FitPoint; 0 where fixed
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of FitPoint, by noise; 0 where fixed
   // 95 % intervals in film parameters. A ratio without upper bound: infinity.
   FilmParameters low, high;
 };
-Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient);
+// `noise_gradient`: how the scan's noise shows in the lengths (rows as residual's, a column for
+// each coordinate of each corner). `systematic`: what may be wrong with the point for other
+// reasons; it widens the intervals.
+Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
+                    const FitPoint& systematic = FitPoint::Zero());
 
 }  // namespace hydrodip

@@ -99,18 +99,21 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
                           object.name, object.depth_mm, process.speed_mm_per_min),
               {"Depth reached, mm"});
   }
-  page.task(fmt::format(
-      "Water {:g} to {:g} °C; film soaks {:g} to {:g} s until it lies flat; activator {:g} ± {:g} g "
-      "per letter sheet; wait {:g} s; then dip. Exactly as in the jobs to come.",
-      process.water_min_c, process.water_max_c, process.soak_min_s, process.soak_max_s,
-      process.activator_g, process.activator_tolerance_g, process.activator_wait_s));
+  page.task(
+      fmt::format("Water {:g} to {:g} °C; film soaks {:g} to {:g} s until it lies flat; activator "
+                  "{:g} ± {:g} g "
+                  "per letter sheet; wait {:g} s; then dip. Exactly as in the jobs to come.",
+                  process.water_min_c, process.water_max_c, process.soak_min_s, process.soak_max_s,
+                  process.activator_g, process.activator_tolerance_g, process.activator_wait_s));
   page.task("Clear the surface, lift the shape out, let it dry.");
 
   page.heading("Scan");
   page.task(
-      "Scan the printed side with its colours; 5 samples a millimetre or better. Keep millimetres.");
+      "Scan the printed side with its colours; 5 samples a millimetre or better. Keep "
+      "millimetres.");
   page.task(
-      "On the scan, draw a quad mesh: a vertex on every corner where two black squares meet, a face "
+      "On the scan, draw a quad mesh: a vertex on every corner where two black squares meet, a "
+      "face "
       "for every square. Leave out what tore or is not to be seen. Or write a table: "
       "column,row,x,y,z, a line per corner. Save as OBJ, PLY or CSV; its pose does not matter.");
 
@@ -125,8 +128,7 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
 
 }  // namespace
 
-JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
-                  RunContext& context) {
+JobResult kit_job(const JobConfig& config, const CalibrationRequest& request, RunContext& context) {
   for (const std::string& text : request.scans)
     calibration_object(text, config, context);  // refuses what does not fit the film
   OutputFolder folder(config.output);
@@ -147,11 +149,11 @@ JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
     result.text += fmt::format("wrote {}\n", (config.output / file).string());
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
-  result.json = nlohmann::ordered_json{{"command", "calibrate kit"},
-                                       {"folder", config.output.string()},
-                                       {"files", result.files}}
-                    .dump(2) +
-                "\n";
+  result.json =
+      nlohmann::ordered_json{
+          {"command", "calibrate kit"}, {"folder", config.output.string()}, {"files", result.files}}
+          .dump(2) +
+      "\n";
   return result;
 }
 

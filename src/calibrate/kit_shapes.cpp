@@ -77,9 +77,8 @@ Object with_mount(Stack stack, const Outline& widest, double height_mm) {
 
 Object round_shape(const Vec3& semi_axes_mm) {
   const auto ellipse = [&](double share) {
-    return outline([&](const Vec2& d) -> Vec2 {
-      return share * d.cwiseProduct(semi_axes_mm.head<2>());
-    });
+    return outline(
+        [&](const Vec2& d) -> Vec2 { return share * d.cwiseProduct(semi_axes_mm.head<2>()); });
   };
   Stack stack(Vec3::Zero());
   for (int k = 1; k <= kRings; ++k) {
@@ -90,8 +89,8 @@ Object round_shape(const Vec3& semi_axes_mm) {
 }
 
 Object pyramid_shape(double base_mm, double height_mm) {
-  const Outline square = outline(
-      [&](const Vec2& d) -> Vec2 { return 0.5 * base_mm / d.cwiseAbs().maxCoeff() * d; });
+  const Outline square =
+      outline([&](const Vec2& d) -> Vec2 { return 0.5 * base_mm / d.cwiseAbs().maxCoeff() * d; });
   Stack stack(Vec3::Zero());
   stack.add(square, height_mm);
   return with_mount(std::move(stack), square, height_mm);
@@ -108,9 +107,8 @@ void stand_on_mount(Object& object) {
 Object kit_shape(const std::string& sample) {
   // The samples' own sizes, so that a printed shape and its simulation cannot drift apart.
   const Box3 box = make_sample(sample).bounds();
-  Object object = sample == "pyramid"
-                      ? pyramid_shape(box.size().x(), box.size().z())
-                      : round_shape(0.5 * box.size());
+  Object object = sample == "pyramid" ? pyramid_shape(box.size().x(), box.size().z())
+                                      : round_shape(0.5 * box.size());
   stand_on_mount(object);
   return object;
 }

@@ -8,8 +8,8 @@
 
 namespace hydrodip {
 
-// The sample's side that dips, made longer upwards by a straight body with a flat end, in the middle
-// of which is a blind hole for a screw. As printed: z up, standing on the flat end at z = 0.
+// The sample's side that dips, made longer upwards by a straight body with a flat end, in the
+// middle of which is a blind hole for a screw. As printed: z up, standing on the flat end at z = 0.
 Object kit_shape(const std::string& sample);
 
 constexpr double kMountHole_mm = 5.6;  // a 1/4-20 tripod screw cuts its thread into it

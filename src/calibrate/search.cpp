@@ -19,6 +19,9 @@ constexpr double kLeastShare = 0.8;
 // The correction is found anew where the answer moved further than this, in stencils.
 constexpr double kMovedFar = 1.0;
 constexpr int kMostCorrections = 3;
+// Of what the correction moves, so much may be missing still: measured on films from 2,500 to
+// 160,000 triangles (docs/calibration.md).
+constexpr double kUncorrectedShare = 1.0 / 3;
 // Widest stencil of the refinement.
 const FitPoint kWidestStep(0.03, 0.1, 0.06);
 
@@ -27,18 +30,6 @@ JobConfig search_config(const JobConfig& config, const SearchOptions& options) {
   result.film.elements = std::max(8, int(config.film.elements * options.elements_factor));
   result.dip.step_mm = std::min(10.0, config.dip.step_mm * options.step_factor);
   return result;
-}
-
-// Of one subject: per length its error; NaN where the dip has none.
-std::vector<double> errors_of(const Subject& subject, const SimulationResult& result,
-                              double square_mm) {
-  std::vector<double> errors(subject.lengths.size(), kNaN);
-  if (!result || result->size() != subject.scan.grid.position.size()) return errors;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    const std::vector<LengthError> one = length_errors({subject.lengths[i]}, *result, square_mm);
-    if (!one.empty()) errors[i] = one.front().error_mm;
-  }
-  return errors;
 }
 
 std::size_t known(const std::vector<double>& errors) {
@@ -154,7 +145,7 @@ std::vector<GridPointError> Search::grid_errors(RunContext& context) {
   for (std::size_t s = 0; s < subjects_.size(); ++s) {
     std::vector<std::vector<double>> rows;
     for (std::size_t p = 0; p < points.size(); ++p)
-      rows.push_back(errors_of(subjects_[s], results[p * subjects_.size() + s], square_mm_));
+      rows.push_back(errors_by_length(subjects_[s], results[p * subjects_.size() + s], square_mm_));
     compared_.push_back(common_lengths(rows));
     const auto number = double(compared_.back().size());
     if (number < 4)
@@ -197,7 +188,7 @@ Eigen::MatrixXd Search::errors_at(Simulations& simulations,
     Eigen::Index row = 0;
     for (std::size_t i = 0; i < subjects.size(); ++i) {
       const std::vector<double> all =
-          errors_of(subjects_[subjects[i]], results[p * subjects.size() + i], square_mm_);
+          errors_by_length(subjects_[subjects[i]], results[p * subjects.size() + i], square_mm_);
       for (const std::size_t length : compared_[subjects[i]])
         errors(row++, Eigen::Index(p)) = all[length];
     }
@@ -208,11 +199,11 @@ Eigen::MatrixXd Search::errors_at(Simulations& simulations,
 Eigen::VectorXd Search::correction_at(const std::vector<std::size_t>& subjects,
                                       const FitPoint& point, RunContext& context) {
   const Eigen::MatrixXd fine = errors_at(fine_film_, subjects, {point}, "correcting", context);
-  const Eigen::MatrixXd search =
-      errors_at(search_film_, subjects, {point}, "correcting", context);
+  const Eigen::MatrixXd search = errors_at(search_film_, subjects, {point}, "correcting", context);
   // Richardson: were the error to fall as the square of the cells' size, this would be all of it.
   // It falls slower where ink is stiff and edges are sharp, so that a part of it stays.
-  return (fine.col(0) - search.col(0)) / (1 - options_.elements_factor);
+  const double share = options_.elements_factor < 1 ? 1 - options_.elements_factor : 1;
+  return (fine.col(0) - search.col(0)) / share;
 }
 
 Eigen::MatrixXd Search::noise_gradient(const std::vector<std::size_t>& subjects,
@@ -230,22 +221,10 @@ Eigen::MatrixXd Search::noise_gradient(const std::vector<std::size_t>& subjects,
     const CheckerboardDip dip = search_film_.dip({s, from_fit(point)}, quiet);
     context.check_cancelled();
     const Comparison comparison = compare(subject, dip);
-    const auto corners = warp_gradients(subject, dip, comparison.alignment.pose);
-    for (const std::size_t i : compared_[s]) {
-      const auto from = std::size_t(subject.lengths[i].from);
-      const auto to = std::size_t(subject.lengths[i].to);
-      const auto &a = comparison.warped[from], &b = comparison.warped[to];
-      if (a && b) {
-        const Vec2 along = (*b - *a).normalized();
-        if (corners[from])
-          gradient.block<1, 3>(row, column + 3 * Eigen::Index(from)) =
-              -along.transpose() * *corners[from];
-        if (corners[to])
-          gradient.block<1, 3>(row, column + 3 * Eigen::Index(to)) =
-              along.transpose() * *corners[to];
-      }
-      ++row;
-    }
+    gradient.block(row, column, Eigen::Index(compared_[s].size()),
+                   3 * Eigen::Index(subject.scan.grid.position.size())) =
+        noise_gradient_of(subject, dip, comparison)(compared_[s], Eigen::all);
+    row += Eigen::Index(compared_[s].size());
     column += 3 * Eigen::Index(subject.scan.grid.position.size());
   }
   return gradient;
@@ -279,6 +258,7 @@ Calibration Search::run(RunContext& context) {
 
   const std::vector<std::size_t> everyone = all_indices(subjects_.size());
   result.all = answer("all", everyone, to_fit(best->parameters), {}, context);
+  const FitPoint uncorrected = result.all.fit.point;
   Eigen::VectorXd correction;
   for (int i = 0; i < kMostCorrections; ++i) {
     const FitPoint before = result.all.fit.point;
@@ -290,14 +270,15 @@ Calibration Search::run(RunContext& context) {
   result.correction_mm = root_mean_square(correction);
   const FitPoint end = result.all.fit.point;
   const Eigen::MatrixXd noise = noise_gradient(everyone, end, context);
-  result.all.certainty = certainty(result.all.fit, noise);
+  const FitPoint systematic = kUncorrectedShare * (end - uncorrected).cwiseAbs();
+  result.all.certainty = certainty(result.all.fit, noise, systematic);
 
   FitPoint sum = FitPoint::Zero();
   for (const std::size_t s : everyone) {
     result.each.push_back(
         answer(subjects_[s].name, {s}, end, part(correction, compared_, s), context));
     Answer& one = result.each.back();
-    one.certainty = certainty(one.fit, noise_gradient({s}, one.fit.point, context));
+    one.certainty = certainty(one.fit, noise_gradient({s}, one.fit.point, context), systematic);
     sum += one.fit.point;
   }
   result.average = from_fit(sum / double(subjects_.size()));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -148,21 +149,8 @@ void number_namesakes(std::vector<Subject>& subjects) {
   }
 }
 
-}  // namespace
-
-Comparison compare(const Subject& subject, const CheckerboardDip& dip) {
-  Comparison result;
-  CornerGrid grid = subject.scan.grid;
-  if (subject.match) {
-    result.alignment = align(grid, *subject.match, *subject.surface, dip.landing(subject.object));
-    grid = moved(grid, result.alignment.pose);
-  } else {
-    result.alignment = as_it_lies(grid, *subject.surface);
-  }
-  result.warped = warp(grid, *subject.surface, *dip.map, kReach_mm);
-  return result;
-}
-
+// Film coordinates by scan coordinates, per corner: how an error of the scan shows on the film.
+using WarpGradient = Eigen::Matrix<double, 2, 3>;
 std::vector<std::optional<WarpGradient>> warp_gradients(const Subject& subject,
                                                         const CheckerboardDip& dip,
                                                         const Eigen::Isometry3d& pose) {
@@ -183,6 +171,52 @@ std::vector<std::optional<WarpGradient>> warp_gradients(const Subject& subject,
     }
   }
   return gradients;
+}
+
+}  // namespace
+
+Comparison compare(const Subject& subject, const CheckerboardDip& dip) {
+  Comparison result;
+  CornerGrid grid = subject.scan.grid;
+  if (subject.match) {
+    result.alignment = align(grid, *subject.match, *subject.surface, dip.landing(subject.object));
+    grid = moved(grid, result.alignment.pose);
+  } else {
+    result.alignment = as_it_lies(grid, *subject.surface);
+  }
+  result.warped = warp(grid, *subject.surface, *dip.map, kReach_mm);
+  return result;
+}
+
+std::vector<double> errors_by_length(const Subject& subject,
+                                     const std::optional<WarpedGrid>& warped, double square_mm) {
+  std::vector<double> errors(subject.lengths.size(), std::numeric_limits<double>::quiet_NaN());
+  if (!warped || warped->size() != subject.scan.grid.position.size()) return errors;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const std::vector<LengthError> one = length_errors({subject.lengths[i]}, *warped, square_mm);
+    if (!one.empty()) errors[i] = one.front().error_mm;
+  }
+  return errors;
+}
+
+Eigen::MatrixXd noise_gradient_of(const Subject& subject, const CheckerboardDip& dip,
+                                  const Comparison& comparison) {
+  const auto corners = warp_gradients(subject, dip, comparison.alignment.pose);
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(
+      Eigen::Index(subject.lengths.size()), 3 * Eigen::Index(subject.scan.grid.position.size()));
+  for (std::size_t i = 0; i < subject.lengths.size(); ++i) {
+    const auto from = std::size_t(subject.lengths[i].from);
+    const auto to = std::size_t(subject.lengths[i].to);
+    const auto &a = comparison.warped[from], &b = comparison.warped[to];
+    if (!a || !b) continue;
+    const Vec2 along = (*b - *a).normalized();
+    const auto row = Eigen::Index(i);
+    if (corners[from])
+      gradient.block<1, 3>(row, 3 * Eigen::Index(from)) = -along.transpose() * *corners[from];
+    if (corners[to])
+      gradient.block<1, 3>(row, 3 * Eigen::Index(to)) = along.transpose() * *corners[to];
+  }
+  return gradient;
 }
 
 std::vector<Subject> load_subjects(const std::vector<std::string>& texts,

@@ -38,12 +38,13 @@ struct Comparison {
 };
 Comparison compare(const Subject& subject, const CheckerboardDip& dip);
 
-// Film coordinates by scan coordinates, per corner: how an error of the scan shows on the film.
-// `pose` as the comparison has it.
-using WarpGradient = Eigen::Matrix<double, 2, 3>;
-std::vector<std::optional<WarpGradient>> warp_gradients(const Subject& subject,
-                                                        const CheckerboardDip& dip,
-                                                        const Eigen::Isometry3d& pose);
+// Per length of the subject, its error on the film, mm; NaN where the comparison has none.
+std::vector<double> errors_by_length(const Subject& subject,
+                                     const std::optional<WarpedGrid>& warped, double square_mm);
+
+// How the lengths change with the scan's corners: a row per length, three columns per corner.
+Eigen::MatrixXd noise_gradient_of(const Subject& subject, const CheckerboardDip& dip,
+                                  const Comparison& comparison);
 
 // "sphere=scan.obj", "ellipsoid@11=scan.csv", "part.stl@20=scan.ply", or a scan's name that holds a
 // kit shape's name. Reads the scans and finds how they lie, with one coarse simulated dip each.

@@ -18,7 +18,7 @@ class SearchSlow : public testing::Test {
  protected:
   // Scans of two shapes, in random poses.
   std::vector<Subject> subjects(const SyntheticOptions& options,
-                                const std::vector<std::string>& names = {"sphere", "pyramid"}) {
+                                const std::vector<std::string>& names) {
     std::vector<std::string> texts;
     for (const std::string& name : names) {
       const std::filesystem::path file = folder_.path / (name + ".csv");
@@ -31,8 +31,8 @@ class SearchSlow : public testing::Test {
   static const scans::Truth& truth(const std::string& name) {
     static RunContext context;
     static const scans::Truth sphere("sphere", kTruth, context);
-    static const scans::Truth pyramid("pyramid", kTruth, context);
-    return name == "sphere" ? sphere : pyramid;
+    EXPECT_EQ(name, "sphere");
+    return sphere;
   }
 
   Calibration calibrate(const std::vector<Subject>& scanned, const SearchOptions& options,
@@ -62,19 +62,31 @@ class SearchSlow : public testing::Test {
   RunContext context_;
 };
 
-TEST_F(SearchSlow, FindsTheFilmThatMadeTheScans) {
-  SearchOptions options = scans::around(kTruth);
-  options.stiffness_ratio = {7.5, 120};
+// Without noise and on the very film that made the scan, the answer is the truth.
+TEST_F(SearchSlow, FindsTheParametersThatMadeTheScan) {
+  JobConfig config = scans::quick_config();
+  config.film.elements = 2000;
+  config.dip.step_mm = 0.5;
+  const CalibrationObject object = calibration_object("pyramid", config, context_);
+  const Surface surface(object.object.positions, object.object.triangles);
+  const CheckerboardDip dip =
+      dip_checkerboard(checkered_film(config, 5), object, surface, kTruth, config.dip, context_);
+  const std::filesystem::path file = folder_.path / "own.csv";
+  write_scan_table(file, synthetic_scan(dip, object, {12, 12}, {}), kSyntheticMark);
+  const std::vector<Subject> scanned =
+      load_subjects({"pyramid=" + file.string()}, {}, config, context_);
+  SearchOptions options;
+  options.z_stretch = {0.5, 0.6, 0.7};
+  options.stiffness_ratio = {10, 160};
   options.poisson = {0, 0.3};
-  const Calibration found = calibrate(subjects({}), options, "store.jsonl");
-  EXPECT_NEAR(found.all.parameters.z_stretch, kTruth.z_stretch, 0.01);
-  // On films this coarse the others come out roughly.
-  EXPECT_NEAR(std::log(found.all.parameters.stiffness_ratio), std::log(kTruth.stiffness_ratio),
-              0.8);
-  EXPECT_NEAR(found.all.parameters.poisson, kTruth.poisson, 0.15);
-  for (const GridError& error : found.error) EXPECT_LT(error.rms_mm, 0.03);
-  // The search is right to leave the grid's points.
-  for (const GridPointError& point : found.grid) EXPECT_GT(point.all_mm, found.all.fit.rms_mm);
+  options.elements_factor = options.step_factor = 1;
+  SimulationStore store(folder_.path / "own.jsonl", {});
+  const Calibration found = Search(scanned, config, 5, options, store).run(context_);
+  EXPECT_NEAR(found.all.parameters.z_stretch, kTruth.z_stretch, 0.002);
+  EXPECT_NEAR(found.all.parameters.stiffness_ratio, kTruth.stiffness_ratio,
+              0.1 * kTruth.stiffness_ratio);
+  EXPECT_NEAR(found.all.parameters.poisson, kTruth.poisson, 0.02);
+  EXPECT_LT(found.error[0].rms_mm, 0.002);
 }
 
 TEST_F(SearchSlow, InterruptedAnywhereItEndsTheSame) {
@@ -133,7 +145,7 @@ TEST_F(SearchSlow, ThreadsDoNotMatter) {
 // The long study is bench/calibrate/noise.cpp.
 TEST_F(SearchSlow, NoiseStaysWithinTheStatedUncertainty) {
   int covered = 0;
-  constexpr int kSeeds = 6;
+  constexpr int kSeeds = 4;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     const std::vector<Subject> scanned =
         subjects({.noise_mm = 0.05, .seed = std::uint64_t(seed)}, {"sphere"});
@@ -142,7 +154,7 @@ TEST_F(SearchSlow, NoiseStaysWithinTheStatedUncertainty) {
     covered += found.certainty.low.z_stretch <= kTruth.z_stretch &&
                kTruth.z_stretch <= found.certainty.high.z_stretch;
   }
-  EXPECT_GE(covered, kSeeds - 1);
+  EXPECT_GE(covered, kSeeds - 1) << "a 95 % interval misses once in twenty";
 }
 
 }  // namespace

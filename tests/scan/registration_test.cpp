@@ -30,7 +30,7 @@ struct Landed {
     Vec2 u = kSquare_mm * Vec2(place[0], place[1]);
     const double r = u.norm();
     u *= 1 - 0.002 * r;
-    if (lopsided) u += Vec2(0.004 * u.x() * u.y(), 0.002 * u.x() * u.x());
+    if (lopsided) u += Vec2(0.003 * u.y() * u.y() + 0.002 * u.x() * u.y(), 0.002 * u.x() * u.x());
     if (r > 22) return std::nullopt;
     const auto hit = surface.first_hit({u.x(), u.y(), -1}, {0, 0, 1}, 0, 100);
     if (!hit) return std::nullopt;
