@@ -17,5 +17,8 @@ struct Study {
 std::string figure_5(const Study& study);
 std::string figure_6(const Study& study);
 std::string figure_7(const Study& study);
+std::string figure_8(const Study& study);
+std::string figure_9(const Study& study);
+std::string table_1(const Study& study);
 
 }  // namespace hydrodip::paper

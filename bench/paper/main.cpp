@@ -25,6 +25,9 @@ const std::vector<Figure>& figures() {
       {"figure_5", "Figure 5: ink pales on stretched film, and is made up for", figure_5},
       {"figure_6", "Figure 6: ink bends the lines of a checkerboard", figure_6},
       {"figure_7", "Figure 7: the printed image over the rounds", figure_7},
+      {"figure_8", "Figure 8: a checkerboard on three shapes, and back", figure_8},
+      {"figure_9", "Figure 9: three methods against the same truth", figure_9},
+      {"table_1", "Table 1: calibration, on synthetic scans", table_1},
   };
   return all;
 }

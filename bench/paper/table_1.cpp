@@ -1,0 +1,99 @@
+// Table 1's protocol on synthetic scans with 0.05 mm noise: grid search and refinement, each shape
+// alone, the average, all together; then Eq. 4 with the result.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "calibrate/pictures.h"
+#include "calibrate/search.h"
+#include "calibrate/synthetic.h"
+#include "figures.h"
+#include "image/files.h"
+#include "scan/read_scan.h"
+#include "study.h"
+
+namespace hydrodip::paper {
+namespace {
+
+constexpr double kSquare_mm = 5;
+constexpr double kNoise_mm = 0.05;
+
+// The paper's error, by shape.
+constexpr const char* kPaper[] = {"0.020", "0.052", "0.032"};
+
+std::vector<Subject> scans(const JobConfig& config, const Study& study) {
+  const JobConfig fine = finer_film(config);
+  const CheckeredFilm film = checkered_film(fine, kSquare_mm);
+  std::vector<std::string> texts;
+  for (const KitShape& shape : kit_shapes()) {
+    const CalibrationObject object = calibration_object(shape.name, config, study.context);
+    const Surface surface(object.object.positions, object.object.triangles);
+    const CheckerboardDip dip =
+        dip_checkerboard(film, object, surface, film_parameters(config), fine.dip, study.context);
+    const std::filesystem::path file = study.folder / fmt::format("table_1_{}.csv", shape.name);
+    write_scan_table(
+        file,
+        synthetic_scan(dip, object, {30, 30}, {.noise_mm = kNoise_mm, .seed = texts.size() + 1}),
+        kSyntheticMark);
+    texts.push_back(fmt::format("{}={}", shape.name, file.string()));
+  }
+  return load_subjects(texts, {}, config, study.context);
+}
+
+std::string figures_of(const FilmParameters& p) {
+  return fmt::format("{:.3f} | {:.0f} | {:.2f}", p.z_stretch, p.stiffness_ratio, p.poisson);
+}
+
+std::string interval(double low, double high, int digits) {
+  return std::isfinite(high) ? fmt::format("{:.{}f} to {:.{}f}", low, digits, high, digits)
+                             : fmt::format("{:.{}f} or more", low, digits);
+}
+
+}  // namespace
+
+std::string table_1(const Study& study) {
+  const JobConfig config = paper_config();
+  const std::vector<Subject> subjects = scans(config, study);
+  SearchOptions options;
+  options.z_stretch = {0.5, 0.6, 0.7, 0.8};
+  options.stiffness_ratio = {10, 100, 1000, 10000};
+  options.poisson = {0, 0.15, 0.3};
+  SimulationStore store(study.folder / "table_1.jsonl", {});
+  const Calibration found = Search(subjects, config, kSquare_mm, options, store).run(study.context);
+  save_png(study.folder / "table_1.png",
+           draw_error_surface(options, found.grid, found.all.parameters,
+                              "Synthetic scans with 0.05 mm of noise"));
+
+  Table errors(
+      {"object", "paper, real scans (mm)", "here, synthetic scans (mm)", "worst (mm)", "lengths"});
+  for (std::size_t s = 0; s < subjects.size(); ++s)
+    errors.add({subjects[s].name, kPaper[s], fmt::format("{:.3f}", found.error[s].rms_mm),
+                fmt::format("{:.3f}", found.error[s].worst_mm),
+                std::to_string(found.error[s].edges + found.error[s].diagonals)});
+  Table parameters({"from", "z_stretch", "ink_stiffness_ratio", "poisson"});
+  parameters.add({"truth, the paper's values | 0.650 | 600 | 0.00"});
+  for (const Answer& one : found.each)
+    parameters.add({one.name + " alone | " + figures_of(one.parameters)});
+  parameters.add({"average of these | " + figures_of(found.average)});
+  parameters.add({"all together | " + figures_of(found.all.parameters)});
+  const FilmParameters &low = found.all.certainty.low, &high = found.all.certainty.high;
+  parameters.add({"its 95 % interval", interval(low.z_stretch, high.z_stretch, 3),
+                  interval(low.stiffness_ratio, high.stiffness_ratio, 0),
+                  interval(low.poisson, high.poisson, 2)});
+  return errors.text() + "\n" + parameters.text() +
+         fmt::format(
+             "\nThe scans are computed with noise of {:g} mm on every coordinate of every corner, "
+             "of "
+             "which the fit finds {:.3f} mm; on lengths that makes 0.06 mm or so, which is what "
+             "the "
+             "errors here consist of. The paper's errors are those of real dips, read off real "
+             "scans, and its noise is not known: the two columns are of a kind, but no comparison "
+             "of "
+             "methods. From these three dips z_stretch is known well, the other two hardly, "
+             "whatever "
+             "the simulation: from 100 to infinity the ratio moves no corner by more than 0.02 "
+             "mm.\n",
+             kNoise_mm, found.all.certainty.noise_mm);
+}
+
+}  // namespace hydrodip::paper
