@@ -44,12 +44,6 @@ void declare_scan_reading(CLI::App& app, Request& request) {
       ->group(kScanGroup);
 }
 
-// --aligned is the user's word for what the scan is; the rest is the film's.
-void declare_film(CLI::App& app, Request& request) {
-  declare_film_and_dip(app, request);
-  declare_configuration(app, request);
-}
-
 void declare_calibrate(CLI::App& app, Request& request) {
   declare_scans(app, request);
   declare_output(app, request, "calibration");
@@ -71,6 +65,7 @@ void declare_calibrate(CLI::App& app, Request& request) {
       ->type_name("DIR")
       ->allow_extra_args(false);
   declare_film(app, request);
+  declare_configuration(app, request);
 }
 
 void check_square(const Request& request) {
@@ -97,6 +92,7 @@ void declare_measure(CLI::App& app, Request& request) {
   declare_reporting(app, request);
   declare_scan_reading(app, request);
   declare_film(app, request);
+  declare_configuration(app, request);
 }
 
 JobResult run_measure(const Request& request, RunContext& context) {
@@ -128,6 +124,7 @@ void declare_synth(CLI::App& app, Request& request) {
   app.add_flag("--aligned", wanted.aligned, "in the posed object's frame instead of a random pose")
       ->group(kScanGroup);
   declare_film(app, request);
+  declare_configuration(app, request);
 }
 
 JobResult run_synth(const Request& request, RunContext& context) {
@@ -142,6 +139,7 @@ void declare_kit(CLI::App& app, Request& request) {
   declare_reporting(app, request);
   declare_square(app, request);
   declare_film(app, request);
+  declare_configuration(app, request);
 }
 
 JobResult run_kit(const Request& request, RunContext& context) {

@@ -62,7 +62,7 @@ void declare_object(CLI::App& app, Request& request) {
       "then turn about fixed x, y, z in that order (degrees)");
 }
 
-void declare_film_and_dip(CLI::App& app, Request& request) {
+void declare_film(CLI::App& app, Request& request) {
   app.add_option_function<std::string>(
          "--film",
          [&request](const std::string& film) {
@@ -82,6 +82,10 @@ void declare_film_and_dip(CLI::App& app, Request& request) {
       ->group(kFilmGroup)
       ->type_name("draft|normal|fine")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+void declare_film_and_dip(CLI::App& app, Request& request) {
+  declare_film(app, request);
   add_parameter_option(app, request, "--depth", "dip.depth_mm", "MM", kFilmGroup,
                        "how deep to dip (default: the whole object)");
   add_parameter_option(app, request, "--method", "dip.method", "full|single-step|projection",

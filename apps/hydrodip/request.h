@@ -36,7 +36,8 @@ void declare_model(CLI::App& app, Request& request);
 void declare_output(CLI::App& app, Request& request, const std::string& default_folder);
 void declare_reporting(CLI::App& app, Request& request);  // --json, --quiet
 void declare_object(CLI::App& app, Request& request);
-void declare_film_and_dip(CLI::App& app, Request& request);
+void declare_film(CLI::App& app, Request& request);          // --film, --quality
+void declare_film_and_dip(CLI::App& app, Request& request);  // the same, --depth, --method
 void declare_ink(CLI::App& app, Request& request);
 void declare_resolution(CLI::App& app, Request& request);
 void declare_configuration(CLI::App& app, Request& request);

@@ -17,7 +17,7 @@ namespace {
 constexpr double kReach_mm = 2;
 // Scanners are good to tenths of a millimetre.
 constexpr double kSuspiciousDistance_mm = 0.3;
-constexpr double kLargestDistance_mm = 1.5;
+constexpr double kLargestDistance_mm = 0.7;
 // To find out how a scan lies, this is good enough.
 constexpr int kCoarseElements = 10000;
 constexpr double kCoarseStep_mm = 0.25;

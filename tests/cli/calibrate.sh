@@ -99,7 +99,7 @@ awk '/^f / {print $1, $2, $3, $4; print $1, $2, $4, $5; next} {print}' scans/sph
 # shellcheck disable=SC2086
 refuse 'triangles' measure sphere=triangles.obj $film
 # shellcheck disable=SC2086
-refuse 'shape' measure pyramid=scans/sphere-scan.csv $film
+refuse 'which object was scanned' measure pyramid=scans/sphere-scan.csv $film
 # shellcheck disable=SC2086
 refuse '--aligned' measure sphere=scans/sphere-scan.csv --aligned $film
 awk -F, '/^[0-9]/ {printf "%s,%s,%s,%s,%s\n", $1, $2, -$3, $4, $5; next} {print}' \
