@@ -124,10 +124,11 @@ CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObj
   }
   CheckerboardDip result;
   result.square_mm = film.square_mm;
-  result.film = dip(film.mesh, object.object.positions, object.object.triangles, surface,
-                    dip_options, context)
-                    .film;
-  result.map = std::make_unique<FilmMap>(object.object, surface, result.film);
+  result.film =
+      std::make_unique<DippedFilm>(dip(film.mesh, object.object.positions, object.object.triangles,
+                                       surface, dip_options, context)
+                                       .film);
+  result.map = std::make_unique<FilmMap>(object.object, surface, *result.film);
   return result;
 }
 

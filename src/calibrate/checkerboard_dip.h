@@ -59,8 +59,8 @@ CheckeredFilm checkered_film(const JobConfig& config, double square_mm);
 
 // One simulated dip with what is asked of it. Refers to the object and its surface.
 struct CheckerboardDip {
-  DippedFilm film;
-  std::unique_ptr<FilmMap> map;
+  std::unique_ptr<DippedFilm> film;
+  std::unique_ptr<FilmMap> map;  // refers to it
   double square_mm = 5;
   // Where a corner of the checkerboard ends up.
   GridLanding landing(const CalibrationObject& object) const;
