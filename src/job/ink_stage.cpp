@@ -25,6 +25,9 @@ constexpr int kFreeRounds = 2;
 constexpr int kMixed = 2;
 // From there on two rounds have to bring the change below this share.
 constexpr double kLeastProgress = 0.5;
+// Where more of the film tears than this share of what meets the object, flaps decide and rounds do
+// not settle: such a dip is to be planned anew.
+constexpr double kHopelessShare = 0.2;
 // While ink and film settle, the film image need only be as fine as stiffness can tell: several
 // pixels to a millimetre.
 constexpr double kRoundsDpi = 150;
@@ -194,6 +197,12 @@ class InkRounds {
     const bool iterate = ink_matters(config_) && config_.ink.rounds_max > 1;
     result_.settled = !iterate || (before_ && change(0) < kSettled_mm);
     if (result_.settled || rounds() >= config_.ink.rounds_max) return true;
+    if (dipped_.coverage.torn_share() > kHopelessShare) {
+      context_.warn(
+          "so much film tears that the dip was not computed again with its ink; turn steep sides "
+          "down or dip less, then print anew");
+      return true;
+    }
     // What does not settle costs a dip each round.
     return rounds() > kFreeRounds + 2 && change(0) > kLeastProgress * change(2);
   }
