@@ -82,7 +82,7 @@ Eigen::Vector3d minimize(const QuadraticModel& model, const Eigen::Vector3d& low
     for (std::size_t i = 0; i < free.size(); ++i) x[Eigen::Index(i)] = d[free[i]];
     Eigen::LevenbergMarquardt<FreeModel> optimizer(functor);
     optimizer.minimize(x);
-    const Eigen::Vector3d found = functor.whole(x);
+    Eigen::Vector3d found = functor.whole(x);
     int worst = -1;
     double excess = 0;
     for (const int k : free) {

@@ -137,6 +137,7 @@ std::vector<GridPointError> Search::grid_errors(RunContext& context) {
   const std::vector<SimulationResult> results =
       search_film_.get(grid_requests(options_, subjects_.size()), "searching", context);
   std::vector<GridPointError> grid;
+  grid.reserve(points.size());
   for (const FilmParameters& parameters : points)
     grid.push_back({parameters, std::vector<double>(subjects_.size(), kNaN), 0});
   std::vector<double> sums(points.size(), 0);
@@ -284,6 +285,7 @@ Calibration Search::run(RunContext& context) {
   result.average = from_fit(sum / double(subjects_.size()));
 
   std::vector<SimulationRequest> last;
+  last.reserve(everyone.size());
   for (const std::size_t s : everyone) last.push_back({s, result.all.parameters});
   const std::vector<SimulationResult> ends = fine_film_.get(last, "measuring", context);
   for (const std::size_t s : everyone)

@@ -81,7 +81,7 @@ FilmLocation locate(const FilmMesh& mesh, const std::vector<Vec2>& u,
 
 FilmLocation locate_flat(const FilmMesh& mesh, const Vec2& target) {
   if (!target.allFinite()) return {};
-  if (const FilmLocation found = locate_in_cell(mesh, target); found.inside) return found;
+  if (FilmLocation found = locate_in_cell(mesh, target); found.inside) return found;
   const auto nearest_line = [](const std::vector<double>& lines, double x) {
     const auto above = std::lower_bound(lines.begin(), lines.end(), x);
     if (above == lines.begin()) return std::ptrdiff_t(0);
