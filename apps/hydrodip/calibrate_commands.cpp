@@ -79,11 +79,15 @@ void require_scans(const Request& request, const std::string& command) {
   check_square(request);
 }
 
+JobConfig configure_writing_to(const Request& request, const char* default_folder) {
+  JobConfig config = configure(request);
+  if (config.output.empty()) config.output = default_folder;
+  return config;
+}
+
 JobResult run_calibrate(const Request& request, RunContext& context) {
   require_scans(request, "calibrate");
-  JobConfig config = configure(request);
-  if (config.output.empty()) config.output = "calibration";
-  return calibrate_job(config, request.calibration, context);
+  return calibrate_job(configure_writing_to(request, "calibration"), request.calibration, context);
 }
 
 void declare_measure(CLI::App& app, Request& request) {
@@ -129,9 +133,7 @@ void declare_synth(CLI::App& app, Request& request) {
 
 JobResult run_synth(const Request& request, RunContext& context) {
   const CalibrationRequest wanted = with_objects(request);
-  JobConfig config = configure(request);
-  if (config.output.empty()) config.output = "synthetic-scans";
-  return synth_job(config, wanted, context);
+  return synth_job(configure_writing_to(request, "synthetic-scans"), wanted, context);
 }
 
 void declare_kit(CLI::App& app, Request& request) {
@@ -144,9 +146,7 @@ void declare_kit(CLI::App& app, Request& request) {
 
 JobResult run_kit(const Request& request, RunContext& context) {
   const CalibrationRequest wanted = with_objects(request);
-  JobConfig config = configure(request);
-  if (config.output.empty()) config.output = "calibration-kit";
-  return kit_job(config, wanted, context);
+  return kit_job(configure_writing_to(request, "calibration-kit"), wanted, context);
 }
 
 }  // namespace

@@ -170,12 +170,12 @@ Waterline::Point Waterline::at_joint(const Point& point, const Segment& segment,
                                      const Vec2& way) const {
   Vec2 outward = Vec2::Zero();
   double steepness = 0, count = 0;
+  const double slack = kEndSlack * (segment.b - segment.a).norm();
   const std::size_t c =
       std::size_t(cell_y(end.y())) * std::size_t(grid_nx_) + std::size_t(cell_x(end.x()));
   for (auto n = grid_begin_[c]; n < grid_begin_[c + 1]; ++n) {
     const Segment& s = segments_[std::size_t(grid_items_[std::size_t(n)])];
-    const double length = (segment.b - segment.a).norm();
-    if (std::min((s.a - end).norm(), (s.b - end).norm()) > kEndSlack * length) continue;
+    if (std::min((s.a - end).norm(), (s.b - end).norm()) > slack) continue;
     if (way.dot(s.outward) <= 0) continue;
     outward += s.outward;
     steepness += s.steepness;
