@@ -15,7 +15,6 @@ namespace {
 
 constexpr SrgbColor kBlue{0.29F, 0.44F, 0.82F};
 constexpr double kDepth_mm = 25;  // of a radius of 30: to 80 degrees
-constexpr int kPicture_px = 330;
 
 Object blue_sphere() {
   Object sphere = make_sample("sphere");

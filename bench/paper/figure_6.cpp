@@ -20,7 +20,6 @@
 namespace hydrodip::paper {
 namespace {
 
-constexpr int kPicture_px = 330;
 constexpr double kSample_mm = 0.25;  // along lines
 // Of the sample's own checkerboard, and of the one on film.
 constexpr double kWantedCell_mm = 5, kFilmCell_mm = 10;

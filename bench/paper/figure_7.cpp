@@ -9,8 +9,6 @@
 namespace hydrodip::paper {
 namespace {
 
-constexpr int kPicture_px = 330;
-
 struct Growth {
   std::vector<InkRound> rounds;
   bool settled = false;

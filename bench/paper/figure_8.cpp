@@ -15,9 +15,6 @@
 namespace hydrodip::paper {
 namespace {
 
-constexpr int kPicture_px = 330;
-constexpr double kSquare_mm = 5;
-
 Image as_image(const InkImage& inks) {
   Image image(inks.width_px, inks.height_px);
   for (std::size_t i = 0; i < inks.cmyk.size(); i += 4) {

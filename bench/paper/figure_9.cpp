@@ -12,7 +12,6 @@
 namespace hydrodip::paper {
 namespace {
 
-constexpr double kSquare_mm = 5;
 constexpr double kReach_mm = 2;
 
 struct Method {

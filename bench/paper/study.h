@@ -12,6 +12,9 @@
 
 namespace hydrodip::paper {
 
+constexpr int kPicture_px = 330;  // a panel
+constexpr double kSquare_mm = 5;  // of checkerboards
+
 // Letter film, and as in the paper it never tears; everything else as hydrodip has it by default.
 JobConfig paper_config();
 

@@ -15,7 +15,6 @@
 namespace hydrodip::paper {
 namespace {
 
-constexpr double kSquare_mm = 5;
 constexpr double kNoise_mm = 0.05;
 
 // The paper's error, by shape.

@@ -16,6 +16,7 @@ using Mat3 = Eigen::Matrix3d;
 using Triangle = std::array<std::int32_t, 3>;
 
 constexpr double kMmPerInch = 25.4;
+constexpr double kMmPerPt = kMmPerInch / 72;
 
 // z component of a x b: twice the signed area of the triangle (0, a, b).
 inline double cross2(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }

@@ -7,6 +7,10 @@
 
 namespace hydrodip {
 
+// Chunks for loops over triangles or vertices with little work each: large enough that handing them
+// out costs nothing.
+inline constexpr std::size_t kElementGrain = 2048;
+
 // Calls body(begin, end) on disjoint chunks that together cover [0, count), on any thread.
 // Chunk limits are fixed multiples of grain, whatever the number of threads. The first exception
 // is rethrown.

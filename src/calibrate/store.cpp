@@ -15,7 +15,7 @@
 namespace hydrodip {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 std::string line_of(const SimulationKey& key, const SimulationResult& result) {
   Json line = {{"subject", key.subject},

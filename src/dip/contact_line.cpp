@@ -22,7 +22,6 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
 // Smallest rest area of a triangle at the contact line, as a share of its flat area: keeps the
 // energy finite where ghosts of a crumpled contact line meet.
 constexpr double kMinArea = 0.02;
@@ -206,7 +205,7 @@ class ContactLineScheme : public Scheme {
     energy_.set_flat_rest(plan_, usable_);
     for (std::size_t t : line_triangles_)
       if (usable_[t]) energy_.set_rest(t, rest_of(t));
-    parallel_for(usable_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(usable_.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       const double* area = energy_.elements().area;
       for (std::size_t t = begin; t < end; ++t)
         if (area[t] < smallest_area_[t] && usable_[t]) energy_.set_rest(t, rest_of(t));
@@ -259,7 +258,7 @@ class ContactLineScheme : public Scheme {
     RelaxationOptions options;
     options.otherwise = &film_.u;
     relax_film(energy_, is_free, *solver_, u, state_.statistics, options);
-    parallel_for(u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) last_slide_[v] = u[v] - film_.u[v];
     });
     return u;
@@ -268,7 +267,7 @@ class ContactLineScheme : public Scheme {
   // The film slides on as it did in the last step.
   VertexVector first_guess(const std::vector<std::uint8_t>& is_free) const {
     VertexVector u = film_.u;
-    parallel_for(u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
         if (is_free[v]) u[v] += last_slide_[v];
     });
@@ -294,7 +293,7 @@ class ContactLineScheme : public Scheme {
   // Every floating vertex goes where its film coordinate is found in the relaxed film.
   void slide(const VertexVector& u) {
     slid_.resize(film_.u.size());
-    parallel_for(film_.u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         slid_[v] = plan_[v];
         if (state_.state[v] != VertexState::kUnattached) continue;
@@ -340,7 +339,7 @@ class ContactLineScheme : public Scheme {
 
   bool any_fold() const {
     std::atomic<bool> found = false;
-    parallel_for(film_.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(film_.triangles.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end && !found; ++t)
         if (folds(t)) found = true;
     });
@@ -458,13 +457,14 @@ class ContactLineScheme : public Scheme {
       return (a.cwiseMin(b) - swept.max).maxCoeff() < kSweptSlack_mm &&
              (swept.min - a.cwiseMax(b)).maxCoeff() < kSweptSlack_mm;
     };
-    std::vector<std::vector<Touch>> found((film_.u.size() + kGrain - 1) / kGrain);
-    parallel_for(film_.u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::vector<Touch>> found((film_.u.size() + kElementGrain - 1) / kElementGrain);
+    parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         if (state_.state[v] != VertexState::kUnattached || !passes(plan_[v], slid_[v])) continue;
         const Vec3 to(slid_[v].x(), slid_[v].y(), level);
         const auto contact = first_contact(set_.surface, state_.position[v], to);
-        if (contact) found[begin / kGrain].push_back({static_cast<std::int32_t>(v), *contact});
+        if (contact)
+          found[begin / kElementGrain].push_back({static_cast<std::int32_t>(v), *contact});
       }
     });
     std::vector<Touch> all;
@@ -474,7 +474,7 @@ class ContactLineScheme : public Scheme {
 
   void move_floating(double level) {
     plan_.swap(slid_);
-    parallel_for(film_.u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
         if (state_.state[v] == VertexState::kUnattached) state_.position[v] << plan_[v], level;
     });

@@ -7,8 +7,6 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
-
 // A walk of bounded length at a time, until the target's triangle is found.
 FilmLocation find(const FilmMesh& film, const VertexVector& u,
                   const std::vector<std::uint8_t>& everywhere, std::int32_t vertex) {
@@ -29,7 +27,7 @@ FilmLocation find(const FilmMesh& film, const VertexVector& u,
 
 std::vector<std::uint8_t> rise_to(double level, const DipSetting& setting, DipState& state) {
   std::vector<std::uint8_t> meets(state.position.size(), 0);
-  parallel_for(meets.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(meets.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       Vec3& position = state.position[v];
       if (state.state[v] == VertexState::kClamped) position.z() = level;
@@ -52,7 +50,7 @@ std::vector<RestTriangle> rest_in_space(const FilmMesh& film, const std::vector<
     return Vec3(p.x(), p.y(), p.z() * z_stretch);
   };
   std::vector<RestTriangle> rest(film.triangles.size());
-  parallel_for(rest.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rest.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Triangle& v = film.triangles[t];
       if (is_free[std::size_t(v[0])] || is_free[std::size_t(v[1])] || is_free[std::size_t(v[2])])
@@ -66,7 +64,7 @@ std::vector<Vec3> mapped_back(const FilmMesh& film, const std::vector<Vec3>& pos
                               const std::vector<std::uint8_t>& is_free, const VertexVector& u) {
   const std::vector<std::uint8_t> everywhere(film.triangles.size(), 1);
   std::vector<Vec3> mapped = position;
-  parallel_for(mapped.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(mapped.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       if (!is_free[v]) continue;
       const FilmLocation at = find(film, u, everywhere, static_cast<std::int32_t>(v));

@@ -9,8 +9,6 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
-
 class PaperScheme : public Scheme {
  public:
   PaperScheme(const DipSetting& setting, DipState& state)
@@ -50,7 +48,7 @@ class PaperScheme : public Scheme {
   // An attaching vertex ends on the object, not on a chord of it. The film floats, and where its
   // way through this step enters the object it attaches: on walls nothing else makes it meet it.
   void slide(const std::vector<Vec3>& mapped, double level) {
-    parallel_for(mapped.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(mapped.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         if (state_.state[v] != VertexState::kUnattached) continue;
         Vec3& position = state_.position[v];

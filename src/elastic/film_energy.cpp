@@ -11,8 +11,6 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kGrain = 2048;
-
 Mat2 gradient_at(const FilmMesh& mesh, const RestTriangle& rest, std::size_t t,
                  const VertexVector& u) {
   const Triangle& v = mesh.triangles[t];
@@ -56,7 +54,7 @@ kernels::Elements FilmEnergy::elements() const {
 void FilmEnergy::set_flat_rest(const VertexVector& place, const std::vector<std::uint8_t>& film) {
   double* const gradient[2][2] = {{gradient_[0][0].data(), gradient_[0][1].data()},
                                   {gradient_[1][0].data(), gradient_[1][1].data()}};
-  parallel_for(film.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(film.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     kernels::best().rest_shapes(elements(), begin, end, place.data()->data(), film.data(), gradient,
                                 area_.data());
   });
@@ -65,7 +63,7 @@ void FilmEnergy::set_flat_rest(const VertexVector& place, const std::vector<std:
 void FilmEnergy::overstretched(const VertexVector& u, double limit,
                                std::vector<std::int64_t>& out) const {
   out.resize(area_.size());
-  parallel_for(out.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(out.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     kernels::best().overstretched(elements(), begin, end, u.data()->data(), limit, out.data());
   });
 }
@@ -97,13 +95,13 @@ void FilmEnergy::build_pattern() const {
 
 double FilmEnergy::value(const VertexVector& u) const {
   const std::size_t count = mesh_.triangles.size();
-  std::vector<double> partial((count + kGrain - 1) / kGrain, 0.0);
-  parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  std::vector<double> partial((count + kElementGrain - 1) / kElementGrain, 0.0);
+  parallel_for(count, kElementGrain, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t t = begin; t < end; ++t)
       if (area_[t] > 0)
         sum += area_[t] * energy_density(gradient_at(mesh_, rest(t), t, u), material(t));
-    partial[begin / kGrain] = sum;
+    partial[begin / kElementGrain] = sum;
   });
   double total = 0;
   for (double p : partial) total += p;
@@ -115,13 +113,13 @@ std::int64_t FilmEnergy::gradient(const VertexVector& u, const std::vector<std::
   const std::size_t triangles = mesh_.triangles.size();
   double* const force[2][2] = {{force_[0][0].data(), force_[0][1].data()},
                                {force_[1][0].data(), force_[1][1].data()}};
-  std::vector<std::int64_t> turned_over((triangles + kGrain - 1) / kGrain, 0);
-  parallel_for(triangles, kGrain, [&](std::size_t begin, std::size_t end) {
-    turned_over[begin / kGrain] =
+  std::vector<std::int64_t> turned_over((triangles + kElementGrain - 1) / kElementGrain, 0);
+  parallel_for(triangles, kElementGrain, [&](std::size_t begin, std::size_t end) {
+    turned_over[begin / kElementGrain] =
         kernels::best().forces(elements(), begin, end, u.data()->data(), force);
   });
   out.resize(u.size());
-  parallel_for(u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       double x = 0, y = 0;
       for (auto n = std::size_t(mesh_.incident_begin[v]);
@@ -144,12 +142,12 @@ std::int64_t FilmEnergy::gradient(const VertexVector& u, const std::vector<std::
 void FilmEnergy::hessian(const VertexVector& u, bool definite, BlockMatrix& out) const {
   if (pattern_.row_begin.empty()) build_pattern();
   std::vector<Polar> polars(mesh_.triangles.size());
-  parallel_for(polars.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(polars.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       if (area_[t] > 0) polars[t] = polar(gradient_at(mesh_, rest(t), t, u));
   });
   if (out.column.size() != pattern_.column.size()) out = pattern_;
-  parallel_for(u.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       for (auto s = std::size_t(pattern_.row_begin[v]); s < std::size_t(pattern_.row_begin[v + 1]);
            ++s)
@@ -188,7 +186,7 @@ void FilmEnergy::hessian(const VertexVector& u, bool definite, BlockMatrix& out)
 
 bool FilmEnergy::any_inverted(const VertexVector& u) const {
   std::atomic<bool> found = false;
-  parallel_for(mesh_.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(mesh_.triangles.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     if (kernels::best().turned_over(elements(), begin, end, u.data()->data()) > 0) found = true;
   });
   return found;

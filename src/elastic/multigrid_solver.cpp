@@ -11,7 +11,6 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kGrain = 2048;
 constexpr std::size_t kRowsPerTask = 512;
 // A triangle's part of the operator is kept until it has changed by this much, relatively.
 constexpr double kOperatorTolerance = 0.05;
@@ -63,7 +62,7 @@ class MultigridSolver : public LinearSolver {
     const float length = turn();
     if (!(length >= 0)) return false;
     step.resize(gradient.size());
-    parallel_for(step.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(step.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         const auto place = std::size_t(place_[v]);
         step[v] = double(length) * Vec2(p_.x()[place], p_.y()[place]);
@@ -95,7 +94,7 @@ class MultigridSolver : public LinearSolver {
     const std::size_t triangles = mesh_.triangles.size();
     differs_.assign(triangles, 1);
     if (all) return;
-    parallel_for(triangles, kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(triangles, kElementGrain, [&](std::size_t begin, std::size_t end) {
       kernels_.changed(energy.elements(), begin, end, u.data()->data(), kept_.view(),
                        kOperatorTolerance, differs_.data());
     });
@@ -197,7 +196,7 @@ class MultigridSolver : public LinearSolver {
 
   void set_right_side(const VertexVector& b) {
     const float* mask = grid_.finest().mask();
-    parallel_for(b.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(b.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         const auto place = std::size_t(place_[v]);
         r_.x()[place] = mask[place] * float(b[v].x());

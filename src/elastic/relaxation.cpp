@@ -10,7 +10,6 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kGrain = 2048;
 constexpr int kMaxHalvings = 30;
 // Share of the slope that may be left at the end of a whole step.
 constexpr double kFlattened = 0.5;
@@ -20,9 +19,9 @@ constexpr double kFirstContraction = 0.2;
 // Sum or maximum over chunks of vertices, in their order.
 template <typename Body>
 std::vector<double> over_chunks(std::size_t count, const Body& body) {
-  std::vector<double> partial((count + kGrain - 1) / kGrain, 0.0);
-  parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    partial[begin / kGrain] = body(begin, end);
+  std::vector<double> partial((count + kElementGrain - 1) / kElementGrain, 0.0);
+  parallel_for(count, kElementGrain, [&](std::size_t begin, std::size_t end) {
+    partial[begin / kElementGrain] = body(begin, end);
   });
   return partial;
 }
@@ -106,7 +105,7 @@ class Descent {
 
   void move_to(double step) {
     trial_.resize(u_.size());
-    parallel_for(u_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(u_.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) trial_[v] = u_[v] - step * direction_[v];
     });
   }

@@ -11,7 +11,7 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kGrain = 16;  // rows
+constexpr std::size_t kRowGrain = 16;  // rows
 constexpr std::size_t kPixelGrain = 65536;
 constexpr float kKnee = 0.8F;  // of kSoft: up to here nothing is held back
 
@@ -77,7 +77,7 @@ void store(const SrgbColor& color, std::uint8_t* pixel) {
 // work(row) for every row, on any thread.
 template <class Work>
 void for_each_row(int height, const Work& work) {
-  parallel_for(std::size_t(height), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(std::size_t(height), kRowGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) work(static_cast<int>(y));
   });
 }

@@ -10,7 +10,7 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kGrain = 64;
+constexpr std::size_t kBandGrain = 64;
 
 // Over the pixels around one triangle: S, the density summed over everything left of and above a
 // point, and Q, its integral from the left. S is bilinear within a pixel, so both are known
@@ -126,7 +126,7 @@ double mean_density(const InkImage& image, const SheetRaster& raster,
 std::vector<double> film_modulus(const FilmMesh& film, const InkImage& image,
                                  const SheetRaster& raster, const StiffnessOptions& options) {
   std::vector<double> modulus(film.triangles.size());
-  parallel_for(modulus.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(modulus.size(), kBandGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Triangle& v = film.triangles[t];
       const double density = mean_density(

@@ -35,15 +35,15 @@ struct Inspection {
   const JobConfig& config;
   const LoadedObject& posed;
   double depth_mm = 0;
-  std::vector<Fit> fit;  // film and bath of this job
+  std::vector<RoomFit> fit;  // film and bath of this job
   std::vector<FilmChoice> films;
   DipAngles angles;
   std::vector<std::string> warnings;
 };
 
-double worst_excess_mm(const std::vector<Fit>& list) {
+double worst_excess_mm(const std::vector<RoomFit>& list) {
   double worst = -1e300;
-  for (const Fit& fit : list) worst = std::max(worst, fit.excess_mm());
+  for (const RoomFit& fit : list) worst = std::max(worst, fit.excess_mm());
   return worst;
 }
 
@@ -96,7 +96,7 @@ std::string describe_mesh(const Inspection& i) {
 
 std::string describe_fit(const Inspection& i) {
   std::string text;
-  for (const Fit& fit : i.fit)
+  for (const RoomFit& fit : i.fit)
     text +=
         fmt::format("{:<12} {:.2f} of {:.2f} mm {}: {}\n", fit.room == "the bath" ? "bath" : "film",
                     fit.needed_mm, fit.available_mm, fit.what,
@@ -147,9 +147,9 @@ json health_json(const MeshHealth& h) {
           {"findings", h.findings()}};
 }
 
-json fit_json(const std::vector<Fit>& list) {
+json fit_json(const std::vector<RoomFit>& list) {
   json all = json::array();
-  for (const Fit& fit : list)
+  for (const RoomFit& fit : list)
     all.push_back({{"direction", fit.what},
                    {"room", fit.room},
                    {"needed_mm", fit.needed_mm},

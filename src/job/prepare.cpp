@@ -64,14 +64,16 @@ std::string shrunk_size(const Object& posed, double needed_mm, double available_
   return size >= 1 ? fmt::format("--size {:.0f} or less", size) : "--size";
 }
 
-Fit film_fit(const Object& posed, const std::string& what, double needed_mm, double available_mm) {
+RoomFit film_fit(const Object& posed, const std::string& what, double needed_mm,
+                 double available_mm) {
   const std::string remedy =
       fmt::format("shrink it with {}, turn it with --rotate, or take a larger --film",
                   shrunk_size(posed, needed_mm, available_mm));
   return {what, "the free film inside the taped rim", needed_mm, available_mm, remedy};
 }
 
-Fit bath_fit(const Object& posed, const std::string& what, double needed_mm, double available_mm) {
+RoomFit bath_fit(const Object& posed, const std::string& what, double needed_mm,
+                 double available_mm) {
   const std::string remedy = fmt::format(
       "shrink it with {}, turn it with --rotate or --down, or give the size of your bath with "
       "--set bath.{}_mm=...",
@@ -88,7 +90,7 @@ Vec2 bath_along_film(const JobConfig& config) {
                                                       : Vec2(shorter, longer);
 }
 
-void add_film_fits(std::vector<Fit>& list, const Object& posed, const Footprint& footprint,
+void add_film_fits(std::vector<RoomFit>& list, const Object& posed, const Footprint& footprint,
                    const FilmOptions& film) {
   if (film.shape == FilmShape::kDisc) {
     const double diameter = std::min(film.width_mm, film.height_mm) - 2 * film.margin_mm;
@@ -101,12 +103,12 @@ void add_film_fits(std::vector<Fit>& list, const Object& posed, const Footprint&
                           film.height_mm - 2 * film.margin_mm));
 }
 
-void add_bath_fits(std::vector<Fit>& list, const Object& posed, const Footprint& footprint,
+void add_bath_fits(std::vector<RoomFit>& list, const Object& posed, const Footprint& footprint,
                    const JobConfig& config) {
   const Vec2 bath = bath_along_film(config);
   list.push_back(bath_fit(posed, "wide (x)", 2 * footprint.half_width_mm, bath.x()));
   list.push_back(bath_fit(posed, "long (y)", 2 * footprint.half_height_mm, bath.y()));
-  Fit depth =
+  RoomFit depth =
       bath_fit(posed, "deep in the water", dip_depth_mm(posed, config), config.bath.depth_mm);
   depth.remedy = "dip less of it with --depth, " + depth.remedy;
   list.push_back(depth);
@@ -121,8 +123,8 @@ void warn_if_sheet_exceeds_bath(const JobConfig& config, RunContext& context) {
       mm(config.film.width_mm), mm(config.film.height_mm), mm(bath.x()), mm(bath.y())));
 }
 
-void warn_if_tight(const std::vector<Fit>& list, RunContext& context) {
-  for (const Fit& fit : list) {
+void warn_if_tight(const std::vector<RoomFit>& list, RunContext& context) {
+  for (const RoomFit& fit : list) {
     if (fit.room == "the bath" || -fit.excess_mm() >= 2 * kComfortableClearance_mm) continue;
     context.warn(fmt::format(
         "Only {} of free film is left beside the object where it is {} {}: the film there will "
@@ -186,17 +188,17 @@ double dip_depth_mm(const Object& object, const JobConfig& config) {
   return config.dip.depth_mm > 0 ? config.dip.depth_mm : object.bounds().size().z();
 }
 
-std::vector<Fit> fits(const Object& posed, const JobConfig& config) {
+std::vector<RoomFit> fits(const Object& posed, const JobConfig& config) {
   const Footprint footprint = wet_footprint(posed, dip_depth_mm(posed, config));
-  std::vector<Fit> list;
+  std::vector<RoomFit> list;
   add_film_fits(list, posed, footprint, config.film);
   add_bath_fits(list, posed, footprint, config);
   return list;
 }
 
 void require_fit(const Object& posed, const JobConfig& config, RunContext& context) {
-  const std::vector<Fit> list = fits(posed, config);
-  for (const Fit& fit : list)
+  const std::vector<RoomFit> list = fits(posed, config);
+  for (const RoomFit& fit : list)
     if (fit.excess_mm() > kFitTolerance_mm)
       throw InputError(fmt::format(
           "the object is {} {}, {} more than the {} of {}: {}{}", mm(fit.needed_mm), fit.what,

@@ -24,7 +24,7 @@ LinearColor base_color(const JobConfig& config);
 double dip_depth_mm(const Object& object, const JobConfig& config);
 
 // Room that the dipped part of a posed object takes and has, per direction.
-struct Fit {
+struct RoomFit {
   std::string what;  // "wide (x)"
   std::string room;  // "free film between the taped rims"
   double needed_mm = 0;
@@ -34,7 +34,7 @@ struct Fit {
 };
 
 // Every direction that the job has to fit, film first. Only the part that gets wet counts.
-std::vector<Fit> fits(const Object& posed, const JobConfig& config);
+std::vector<RoomFit> fits(const Object& posed, const JobConfig& config);
 
 // Throws InputError for the first that does not fit, saying by how much and how to mend it. Warns
 // about a sheet larger than the bath and about little film around the object.

@@ -11,6 +11,8 @@ namespace hydrodip {
 constexpr LinearColor kTitleInk{0.012f, 0.014f, 0.02f, 1};
 constexpr LinearColor kLabelInk{0.06f, 0.065f, 0.08f, 1};
 
+constexpr int kWidestPicture_px = 16384;
+
 // Nearly white, opaque.
 Image blank_page(int width_px, int height_px);
 

@@ -14,7 +14,6 @@
 namespace hydrodip {
 namespace {
 
-constexpr int kWidestPx = 16384;
 constexpr double kCrease_deg = 30;
 constexpr double kFlatness = 0.6;
 constexpr double kHatch = 17;  // from stripe to stripe, in lengths of the layout
@@ -41,7 +40,7 @@ const ColorRamp& stretch_ramp() {
 // --- Page ---
 
 // Lengths are given for a picture 1600 wide.
-struct Layout {
+struct MapLayout {
   double unit = 1;
   int width = 0, height = 0;
   int margin = 0, gap = 0, header = 0, legend = 0, footer = 0;
@@ -52,10 +51,10 @@ struct Layout {
   int cell_x(int column) const { return margin + column * (cell_width + gap); }
 };
 
-Layout make_layout(const Object& object, const std::array<Vec3, 2>& directions,
-                   const MapOptions& options) {
-  Layout layout;
-  layout.width = std::clamp(options.width_px, 64, kWidestPx);
+MapLayout make_layout(const Object& object, const std::array<Vec3, 2>& directions,
+                      const MapOptions& options) {
+  MapLayout layout;
+  layout.width = std::clamp(options.width_px, 64, kWidestPicture_px);
   layout.unit = layout.width / 1600.0;
   layout.margin = layout.px(28);
   layout.gap = layout.px(12);
@@ -70,19 +69,19 @@ Layout make_layout(const Object& object, const std::array<Vec3, 2>& directions,
   return layout;
 }
 
-TextStyle style(const Layout& layout, double size, const LinearColor& color) {
+TextStyle style(const MapLayout& layout, double size, const LinearColor& color) {
   TextStyle result;
   result.size_px = size * layout.unit;
   result.color = color;
   return result;
 }
 
-void draw_title(Image& page, const Layout& layout, const std::string& text, double center_px) {
+void draw_title(Image& page, const MapLayout& layout, const std::string& text, double center_px) {
   draw_centered(page, text, center_px, layout.header - 31 * layout.unit,
                 style(layout, 25, kTitleInk));
 }
 
-void draw_caption(Image& page, const Layout& layout, const std::string& caption) {
+void draw_caption(Image& page, const MapLayout& layout, const std::string& caption) {
   const TextStyle line = style(layout, 17, kLabelInk);
   const std::string shown = fit_text(caption, line, layout.width - 2.0 * layout.margin);
   draw_centered(page, shown, 0.5 * layout.width, page.height_px - 30 * layout.unit, line);
@@ -98,7 +97,7 @@ bool on_dark_stripe(double along, double period) {
 // lengths in those of the layout.
 class Legend {
  public:
-  Legend(Image& page, const Layout& layout, double x, double y)
+  Legend(Image& page, const MapLayout& layout, double x, double y)
       : page_(page), layout_(layout), x_(x), y_(y) {}
 
   static constexpr double kBarTop = 84, kBarHeight = 30;
@@ -166,7 +165,7 @@ class Legend {
   }
 
   Image& page_;
-  const Layout& layout_;
+  const MapLayout& layout_;
   double x_, y_;
 };
 
@@ -228,7 +227,8 @@ struct View {
   int height_px;
 };
 
-View view_from(const Object& object, const Vec3& direction, const Layout& layout, int height_px) {
+View view_from(const Object& object, const Vec3& direction, const MapLayout& layout,
+               int height_px) {
   return {frame_object(object, direction, double(layout.cell_width) / height_px, 0.80), height_px};
 }
 
@@ -238,7 +238,7 @@ double mm_per_px(const Object& object, const Camera& camera, int width_px) {
 }
 
 ViewPair render(const MapScene& scene, const Surface& surface, const View& view,
-                const Layout& layout, const MapOptions& options, RunContext& context) {
+                const MapLayout& layout, const MapOptions& options, RunContext& context) {
   const double hatch_mm =
       kHatch * layout.unit * mm_per_px(scene.object, view.camera, layout.cell_width);
   const Appearance appearance = map_appearance(scene, view.camera, hatch_mm);
@@ -309,7 +309,7 @@ Image render_maps(const Object& object, const Surface& surface, const DippedFilm
   const MapScene scene{object, normals, film.depth_mm, &map,
                        stretch_scale_end(film, options.tear_stretch)};
   const std::array<Vec3, 2> directions = telling_directions(object, surface, film);
-  const Layout layout = make_layout(object, directions, options);
+  const MapLayout layout = make_layout(object, directions, options);
 
   const int views_height = layout.cell_height[0] + layout.gap + layout.cell_height[1];
   Image page =
@@ -343,7 +343,7 @@ Image render_angle_map(const Object& object, const Surface& surface, double dept
   const std::vector<CornerNormals> normals = map_normals(object);
   const MapScene scene{object, normals, depth_mm};
   const std::array<Vec3, 2> directions = telling_directions(object, surface, DippedFilm{});
-  const Layout layout = make_layout(object, directions, options);
+  const MapLayout layout = make_layout(object, directions, options);
 
   const int height = std::max(layout.cell_height[0], layout.cell_height[1]);
   Image page = blank_page(layout.width, layout.header + height + layout.legend + layout.footer);

@@ -12,10 +12,8 @@
 namespace hydrodip {
 namespace {
 
-constexpr int kWidestPx = 16384;
-
 // Where everything goes, in pixels; lengths are given for a picture 1600 wide.
-struct Layout {
+struct PageLayout {
   int width = 0, height = 0;
   int margin = 0, gap = 0, header = 0, footer = 0;
   int cell_width = 0;
@@ -23,10 +21,10 @@ struct Layout {
   double unit = 1;
 };
 
-Layout make_layout(const Object& object, const std::array<Vec3, 2>& directions,
-                   const PreviewOptions& options) {
-  Layout layout;
-  layout.width = std::clamp(options.width_px, 64, kWidestPx);
+PageLayout make_layout(const Object& object, const std::array<Vec3, 2>& directions,
+                       const PreviewOptions& options) {
+  PageLayout layout;
+  layout.width = std::clamp(options.width_px, 64, kWidestPicture_px);
   layout.unit = layout.width / 1600.0;
   const auto px = [&](double length) { return int(std::lround(length * layout.unit)); };
   layout.margin = px(28);
@@ -43,7 +41,7 @@ Layout make_layout(const Object& object, const std::array<Vec3, 2>& directions,
   return layout;
 }
 
-void write_labels(Image& page, const Layout& layout, const PreviewOptions& options) {
+void write_labels(Image& page, const PageLayout& layout, const PreviewOptions& options) {
   TextStyle title;
   title.size_px = 25 * layout.unit;
   title.color = kTitleInk;
@@ -80,7 +78,7 @@ Image render_preview(const Object& object, const Surface& surface, const DippedF
   const std::vector<CornerNormals> normals = corner_normals(object.positions, object.triangles);
   const Studio studio{object, surface, normals, shown, std::clamp(options.samples_per_axis, 1, 8)};
   const std::array<Vec3, 2> directions = telling_directions(object, surface, film);
-  const Layout layout = make_layout(object, directions, options);
+  const PageLayout layout = make_layout(object, directions, options);
 
   Image page = blank_page(layout.width, layout.height);
   int y = layout.header;

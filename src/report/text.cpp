@@ -141,7 +141,7 @@ constexpr std::array<GlyphSource, 95> kAscii = {{
 #undef BOWL
 
 constexpr GlyphSource kBox = {4, "l 0 0 0 7 4 7 4 0 0 0"};
-constexpr GlyphSource kDegree = {2, "a 1 6 1 1 0 360"};
+constexpr GlyphSource kDegreeSign = {2, "a 1 6 1 1 0 360"};
 constexpr GlyphSource kTimes = {3.4, "l 0 1.4 3.4 4.8;l 3.4 1.4 0 4.8"};
 constexpr GlyphSource kSquared = {2.3, "a 1.1 6.3 1 1.1 165 -38;l 1.9 5.6 0.1 3.6 2.2 3.6"};
 constexpr GlyphSource kDash = {4.4, "l 0 2.7 4.4 2.7"};
@@ -155,7 +155,7 @@ GlyphSource glyph_of(std::uint32_t code) {
     case 0x202f:
       return kAscii[0];
     case 0xb0:
-      return kDegree;
+      return kDegreeSign;
     case 0xb2:
       return kSquared;
     case 0xb5:

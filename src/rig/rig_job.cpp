@@ -13,7 +13,7 @@
 namespace hydrodip {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr const char* kLevelFile = "rig-water-level.json";
 

@@ -12,7 +12,7 @@
 namespace hydrodip {
 namespace {
 
-constexpr std::size_t kFewestCorners = 6;
+constexpr std::size_t kFewestPairs = 6;
 // So many of the patch's corners have to land for a shift to count.
 constexpr double kLeastOverlap = 0.7;
 // A fit worse than this share of a square is none.
@@ -194,7 +194,7 @@ CornerGrid moved(const CornerGrid& grid, const Eigen::Isometry3d& pose) {
 GridMatch match_grid(const CornerGrid& grid, const GridLanding& landing, const GridPlace& reach,
                      double square_mm, const std::string& name) {
   const std::vector<std::size_t> corners = largest_patch(grid);
-  if (corners.size() < kFewestCorners)
+  if (corners.size() < kFewestPairs)
     throw InputError(fmt::format(
         "{}: no more than {} corners hang together, too few to find out where they lie on the "
         "object; give a table of corners, or a scan in the object's frame with --aligned",

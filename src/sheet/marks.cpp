@@ -12,7 +12,6 @@ namespace hydrodip {
 
 namespace {
 
-constexpr double kMmPerPt = kMmPerInch / 72;
 constexpr double kFullMarginMm = 7;   // marks have their full size from this margin on
 constexpr double kLeastMarginMm = 1;  // nothing is drawn in less
 constexpr double kTextPt = 7;

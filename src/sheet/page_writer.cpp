@@ -5,12 +5,6 @@
 #include "sheet/winansi.h"
 
 namespace hydrodip {
-namespace {
-
-constexpr double kMmPerPt = kMmPerInch / 72;
-
-}  // namespace
-
 PageWriter::PageWriter(PdfDocument& pdf, const PaperSize& paper) : pdf_(pdf), paper_(paper) {
   new_page();
 }

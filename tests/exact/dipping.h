@@ -14,6 +14,7 @@
 namespace hydrodip::exact {
 
 constexpr double kClampRadius = 100;  // of disc_film, mm
+constexpr double kZStretch = 0.65;    // the default
 
 // The clamped disc L = 100 mm of the exact solutions.
 inline FilmMesh disc_film(int elements) {

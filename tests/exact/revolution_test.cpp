@@ -7,7 +7,8 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kZStretch = 0.65;  // the default
+using exact::kZStretch;
+
 constexpr double kBar_mm = 0.02;
 constexpr double kFrom_mm = 3, kTo_mm = 28;
 constexpr double kContact_mm = 28.4;  // where the water stands in the end

@@ -10,7 +10,8 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kZStretch = 0.65;
+using exact::kZStretch;
+
 constexpr double kRadius = 30;
 constexpr double kRing_mm = 16;  // from one dark ring to the next
 constexpr double kRatio = 600;

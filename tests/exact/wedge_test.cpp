@@ -6,8 +6,9 @@
 namespace hydrodip {
 namespace {
 
+using exact::kZStretch;
+
 constexpr double kDegree = M_PI / 180;
-constexpr double kZStretch = 0.65;  // the default
 
 // A strip of film, clamped at x = +-100 and free along its other two edges.
 FilmMesh strip(int elements, double grading) {

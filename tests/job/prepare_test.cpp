@@ -3,14 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "contains.h"
 #include "object/samples.h"
 
 namespace hydrodip {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 // A funnel: point down, 10 mm deep per 10 mm of half width, 100 mm square on top at z = 50.
 Object funnel() {

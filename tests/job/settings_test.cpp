@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "contains.h"
 
 namespace hydrodip {
 namespace {
@@ -51,10 +52,6 @@ class Settings : public testing::Test {
 
   std::filesystem::path folder_;
 };
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 TEST_F(Settings, TablesAndDottedKeysMeanTheSame) {
   const JobConfig nested =

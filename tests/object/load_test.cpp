@@ -16,9 +16,9 @@
 namespace hydrodip {
 namespace {
 
-using testing::Bytes;
-using testing::GlbOptions;
-using testing::TempFolder;
+using fixtures::Bytes;
+using fixtures::GlbOptions;
+using fixtures::TempFolder;
 
 constexpr LinearColor kBlack{0, 0, 0, 1};
 
@@ -73,9 +73,9 @@ void expect_squares(const LoadedObject& loaded, double mm = 1) {
 }
 
 TempFolder& obj_in(TempFolder& folder) {
-  folder.write("squares.obj", testing::obj_text());
-  folder.write("squares.mtl", testing::mtl_text());
-  folder.write("left.png", testing::four_colour_png());
+  folder.write("squares.obj", fixtures::obj_text());
+  folder.write("squares.mtl", fixtures::mtl_text());
+  folder.write("left.png", fixtures::four_colour_png());
   return folder;
 }
 
@@ -113,7 +113,7 @@ TEST(Load, SeveralTextures) {
   TempFolder folder;
   obj_in(folder).write("squares.mtl",
                        "newmtl left\nmap_Kd left.png\nnewmtl right\nmap_Kd -clamp on right.png\n");
-  folder.write("right.png", testing::png_of(1, 1, {{0, 255, 255}}));
+  folder.write("right.png", fixtures::png_of(1, 1, {{0, 255, 255}}));
   const LoadedObject loaded = load(folder.path("squares.obj"));
   EXPECT_EQ(loaded.object.textures.size(), 2u);
   expect_color(color_near(loaded.object, 0.25, 0.75), 1, 0, 0);
@@ -156,7 +156,7 @@ TEST(Load, TextureOptionReplacesEverything) {
   TempFolder folder;
   obj_in(folder);
   LoadOptions options;
-  options.texture = folder.write("other.png", testing::png_of(1, 1, {{255, 0, 255}}));
+  options.texture = folder.write("other.png", fixtures::png_of(1, 1, {{255, 0, 255}}));
   const LoadedObject loaded = load(folder.path("squares.obj"), options);
   expect_color(color_near(loaded.object, 0.25, 0.75), 1, 0, 1);
   expect_color(color_near(loaded.object, 1.5, 0.5), 1, 0, 1);
@@ -168,7 +168,7 @@ TEST(Load, TextureOptionNeedsUvsAndAPicture) {
   obj_in(folder);
   LoadOptions options;
   options.texture = folder.path("left.png");
-  EXPECT_NE(refusal(folder.write("a.stl", testing::binary_stl()), options).find("UVs"),
+  EXPECT_NE(refusal(folder.write("a.stl", fixtures::binary_stl()), options).find("UVs"),
             std::string::npos);
   options.texture = folder.path("none.png");
   EXPECT_NE(refusal(folder.path("squares.obj"), options).find("none.png"), std::string::npos);
@@ -187,9 +187,9 @@ TEST(Load, ObjContinuationsNegativeIndicesAndConcavePolygons) {
 
 TEST(Load, PlyWithVertexColours) {
   TempFolder folder;
-  for (const auto& path : {folder.write("ascii.ply", testing::ascii_ply_text()),
-                           folder.write("little.ply", testing::binary_ply(false)),
-                           folder.write("big.PLY", testing::binary_ply(true))}) {
+  for (const auto& path : {folder.write("ascii.ply", fixtures::ascii_ply_text()),
+                           folder.write("little.ply", fixtures::binary_ply(false)),
+                           folder.write("big.PLY", fixtures::binary_ply(true))}) {
     const LoadedObject loaded = load(path);
     expect_squares(loaded);
     expect_color(color_near(loaded.object, 0.5, 0.5), 1, 0, 0);
@@ -200,7 +200,7 @@ TEST(Load, PlyWithVertexColours) {
 
 TEST(Load, PlyBytesAreSrgb) {
   TempFolder folder;
-  std::string text = testing::ascii_ply_text();
+  std::string text = fixtures::ascii_ply_text();
   for (std::size_t at; (at = text.find("255 0 0")) != std::string::npos;) {
     text.replace(at, 7, "128 0 64");
   }
@@ -210,13 +210,13 @@ TEST(Load, PlyBytesAreSrgb) {
 
 TEST(Load, StlAndOff) {
   TempFolder folder;
-  expect_squares(load(folder.write("ascii.stl", testing::ascii_stl_text())));
-  expect_squares(load(folder.write("binary.stl", testing::binary_stl())));
-  expect_squares(load(folder.write("plain.off", testing::off_text())));
+  expect_squares(load(folder.write("ascii.stl", fixtures::ascii_stl_text())));
+  expect_squares(load(folder.write("binary.stl", fixtures::binary_stl())));
+  expect_squares(load(folder.write("plain.off", fixtures::off_text())));
   const LoadedObject plain = load(folder.path("binary.stl"));
   EXPECT_FALSE(plain.object.has_appearance());
   expect_color(color_near(plain.object, 0.5, 0.5), 1, 1, 1);
-  const LoadedObject colored = load(folder.write("colored.off", testing::coff_text()));
+  const LoadedObject colored = load(folder.write("colored.off", fixtures::coff_text()));
   expect_squares(colored);
   expect_color(color_near(colored.object, 0.5, 0.5), 1, 0, 0);
 }
@@ -227,7 +227,7 @@ TEST(Load, ThreeMfUnitsTransformsAndColours) {
       {"", 1},         {"millimeter", 1}, {"centimeter", 10}, {"inch", 25.4},
       {"foot", 304.8}, {"meter", 1000},   {"micron", 0.001}};
   for (const auto& [unit, mm] : units) {
-    const LoadedObject loaded = load(folder.write("a.3mf", testing::threemf(unit)));
+    const LoadedObject loaded = load(folder.write("a.3mf", fixtures::threemf(unit)));
     expect_squares(loaded, mm);
     expect_color(color_near(loaded.object, 0.5 * mm, 0.5 * mm), 1, 0, 0);
     expect_color(color_near(loaded.object, 1.5 * mm, 0.5 * mm), 0, 0, 1);
@@ -239,7 +239,7 @@ TEST(Load, ThreeMfUnitsTransformsAndColours) {
 
 TEST(Load, GlbTexturesMaterialsNodesAndMetres) {
   TempFolder folder;
-  const LoadedObject loaded = load(folder.write("a.glb", testing::glb()));
+  const LoadedObject loaded = load(folder.write("a.glb", fixtures::glb()));
   EXPECT_EQ(loaded.units, "m");
   expect_squares(loaded, 1000);
   // UVs run to 2: the left square shows the picture four times.
@@ -259,13 +259,13 @@ TEST(Load, GlbTexturesMaterialsNodesAndMetres) {
 
 TEST(Load, GltfTextWithEmbeddedAndExternalData) {
   TempFolder folder;
-  expect_squares(load(folder.write("a.gltf", testing::gltf_text())), 1000);
-  folder.write("with blank.bin", testing::gltf_bin({}));
-  const LoadedObject loaded = load(folder.write("b.gltf", testing::gltf_text("with%20blank.bin")));
+  expect_squares(load(folder.write("a.gltf", fixtures::gltf_text())), 1000);
+  folder.write("with blank.bin", fixtures::gltf_bin({}));
+  const LoadedObject loaded = load(folder.write("b.gltf", fixtures::gltf_text("with%20blank.bin")));
   expect_squares(loaded, 1000);
   EXPECT_EQ(loaded.files.size(), 2u);
   expect_color(color_near(loaded.object, 125, 375), 1, 0, 0);
-  EXPECT_NE(refusal(folder.write("c.gltf", testing::gltf_text("none.bin"))).find("none.bin"),
+  EXPECT_NE(refusal(folder.write("c.gltf", fixtures::gltf_text("none.bin"))).find("none.bin"),
             std::string::npos);
 }
 
@@ -274,7 +274,7 @@ TEST(Load, GlbWrapModes) {
   GlbOptions options;
   options.wrap_s = 33648;  // mirrored
   options.wrap_t = 33071;  // clamped
-  const LoadedObject loaded = load(folder.write("a.glb", testing::glb(options)));
+  const LoadedObject loaded = load(folder.write("a.glb", fixtures::glb(options)));
   // u = 1.25 mirrors to 0.75. In glTF v runs down from the upper edge; the picture fills the upper
   // half and its bottom row (blue, white) extends below.
   expect_color(color_near(loaded.object, 125, 875), 1, 0, 0);
@@ -287,12 +287,12 @@ TEST(Load, GlbWrapModes) {
 TEST(Load, GlbAlphaModes) {
   TempFolder folder;
   GlbOptions options;
-  options.png = testing::png_of(1, 1, {{255, 255, 255, 51}});
+  options.png = fixtures::png_of(1, 1, {{255, 255, 255, 51}});
   options.factor = "1,1,1,0.5";
   const LinearColor base{0, 1, 0, 1};
   const auto red_part = [&](const char* mode) {
     options.alpha_mode = mode;
-    const LoadedObject loaded = load(folder.write("a.glb", testing::glb(options)));
+    const LoadedObject loaded = load(folder.write("a.glb", fixtures::glb(options)));
     return color_near(loaded.object, 500, 500, base).r;
   };
   EXPECT_NEAR(red_part("BLEND"), 0.1, 1e-6);
@@ -309,7 +309,7 @@ TEST(Load, GltfTextureTransform) {
       R"(, "extensions": {"KHR_texture_transform": {"offset": [0, 1], "rotation": 1.5707963267948966}})";
   options.texture_use += "}";
   options.texture_use.pop_back();
-  const LoadedObject loaded = load(folder.write("a.glb", testing::glb(options)));
+  const LoadedObject loaded = load(folder.write("a.glb", fixtures::glb(options)));
   // glTF, v down: (u, v) -> (v, 1 - u): the picture's left column becomes ... its point (u, v)
   // shows what lies at (v, 1 - u). The upper left corner of the square shows the lower left of the
   // picture.
@@ -321,7 +321,7 @@ TEST(Load, GltfTextureTransform) {
 
 TEST(Load, UnitsOption) {
   TempFolder folder;
-  const auto path = folder.write("a.stl", testing::binary_stl());
+  const auto path = folder.write("a.stl", fixtures::binary_stl());
   LoadOptions options;
   for (const auto& [name, mm] : {std::pair{"mm", 1.0}, {"cm", 10.0}, {"m", 1000.0}, {"in", 25.4}}) {
     options.units = name;
@@ -362,7 +362,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 TEST(LoadRefuses, FaceIndicesOutOfRange) {
   TempFolder folder;
-  const std::string obj = testing::obj_text();
+  const std::string obj = fixtures::obj_text();
   EXPECT_NE(refusal(folder.write("a.obj", replaced(obj, "6/3", "7/3"))).find("vertex 7"),
             std::string::npos);
   EXPECT_NE(refusal(folder.write("b.obj", replaced(obj, "6/3", "6/9"))).find("coordinate 9"),
@@ -370,22 +370,22 @@ TEST(LoadRefuses, FaceIndicesOutOfRange) {
   EXPECT_NE(refusal(folder.write("c.obj", replaced(obj, "6/3", "0/3"))), "");
   EXPECT_NE(refusal(folder.write("d.obj", replaced(obj, "6/3", "-7/3"))), "");
   EXPECT_NE(
-      refusal(folder.write("a.ply", replaced(testing::ascii_ply_text(), "4 1 2 5 4", "4 1 2 6 4")))
+      refusal(folder.write("a.ply", replaced(fixtures::ascii_ply_text(), "4 1 2 5 4", "4 1 2 6 4")))
           .find("vertex 6"),
       std::string::npos);
-  EXPECT_NE(refusal(folder.write("a.off", replaced(testing::off_text(), "4 1 2 5 4", "4 1 2 6 4")))
+  EXPECT_NE(refusal(folder.write("a.off", replaced(fixtures::off_text(), "4 1 2 5 4", "4 1 2 6 4")))
                 .find("vertex 6"),
             std::string::npos);
-  Bytes ply = testing::binary_ply(false);
+  Bytes ply = fixtures::binary_ply(false);
   ply[ply.size() - 4] = 200;
   EXPECT_NE(refusal(folder.write("b.ply", ply)).find("vertex 200"), std::string::npos);
-  Bytes bytes = testing::glb();
+  Bytes bytes = fixtures::glb();
   const std::string json_end = "BIN";
   const auto bin = std::search(bytes.begin(), bytes.end(), json_end.begin(), json_end.end()) + 4;
   *(bin + 80) = 9;  // the first index
   EXPECT_NE(refusal(folder.write("a.glb", bytes)).find("vertex 9"), std::string::npos);
   EXPECT_NE(
-      refusal(folder.write("a.3mf", testing::zip_of(
+      refusal(folder.write("a.3mf", fixtures::zip_of(
                                         {{"_rels/.rels", "<Relationships/>"},
                                          {"3D/3dmodel.model",
                                           "<model><resources><object id=\"1\"><mesh><vertices>"
@@ -399,31 +399,31 @@ TEST(LoadRefuses, FaceIndicesOutOfRange) {
 TEST(LoadRefuses, CoordinatesThatAreNotFinite) {
   TempFolder folder;
   for (const char* bad : {"nan", "inf", "-inf", "1e60", "abc"}) {
-    EXPECT_NE(refusal(folder.write("a.obj", replaced(testing::obj_text(), "v 2 0 0",
+    EXPECT_NE(refusal(folder.write("a.obj", replaced(fixtures::obj_text(), "v 2 0 0",
                                                      std::string("v 2 ") + bad + " 0"))),
               "")
         << bad;
-    EXPECT_NE(refusal(folder.write("a.ply", replaced(testing::ascii_ply_text(), "\n2 0 0 ",
+    EXPECT_NE(refusal(folder.write("a.ply", replaced(fixtures::ascii_ply_text(), "\n2 0 0 ",
                                                      std::string("\n2 ") + bad + " 0 "))),
               "")
         << bad;
-    EXPECT_NE(refusal(folder.write("a.off", replaced(testing::off_text(), "\n2 0 0",
+    EXPECT_NE(refusal(folder.write("a.off", replaced(fixtures::off_text(), "\n2 0 0",
                                                      std::string("\n2 ") + bad + " 0"))),
               "")
         << bad;
-    EXPECT_NE(refusal(folder.write("a.stl", replaced(testing::ascii_stl_text(), "vertex 1 0 0",
+    EXPECT_NE(refusal(folder.write("a.stl", replaced(fixtures::ascii_stl_text(), "vertex 1 0 0",
                                                      std::string("vertex 1 ") + bad + " 0"))),
               "")
         << bad;
   }
   const float nan = std::nanf("");
-  Bytes stl = testing::binary_stl();
+  Bytes stl = fixtures::binary_stl();
   std::memcpy(&stl[84 + 12], &nan, 4);
   EXPECT_NE(refusal(folder.write("b.stl", stl)).find("finite"), std::string::npos);
-  Bytes ply = testing::binary_ply(false);
+  Bytes ply = fixtures::binary_ply(false);
   std::memcpy(&ply[ply.size() - 34 - 90], &nan, 4);
   EXPECT_NE(refusal(folder.write("b.ply", ply)).find("finite"), std::string::npos);
-  Bytes gltf = testing::glb();
+  Bytes gltf = fixtures::glb();
   const std::string mark = "BIN";
   const auto bin = std::search(gltf.begin(), gltf.end(), mark.begin(), mark.end()) + 4;
   std::memcpy(&*bin, &nan, 4);
@@ -432,25 +432,26 @@ TEST(LoadRefuses, CoordinatesThatAreNotFinite) {
 
 TEST(LoadRefuses, SizesThatTheFileCannotHold) {
   TempFolder folder;
-  Bytes stl = testing::binary_stl();
+  Bytes stl = fixtures::binary_stl();
   stl.pop_back();
   EXPECT_NE(refusal(folder.write("a.stl", stl)).find("bytes"), std::string::npos);
   stl[80] = stl[81] = stl[82] = stl[83] = 255;
   EXPECT_NE(refusal(folder.write("a.stl", stl)).find("bytes"), std::string::npos);
   EXPECT_NE(refusal(folder.write(
-                "a.ply", replaced(testing::ascii_ply_text(), "vertex 6", "vertex 4000000000"))),
+                "a.ply", replaced(fixtures::ascii_ply_text(), "vertex 6", "vertex 4000000000"))),
             "");
   EXPECT_NE(
-      refusal(folder.write("a.off", replaced(testing::off_text(), "6 2 0", "4000000000 2 0"))), "");
-  EXPECT_NE(refusal(folder.write(
-                "a.gltf", replaced(testing::gltf_text(), "\"count\": 6", "\"count\": 4000000000"))),
+      refusal(folder.write("a.off", replaced(fixtures::off_text(), "6 2 0", "4000000000 2 0"))),
+      "");
+  EXPECT_NE(refusal(folder.write("a.gltf", replaced(fixtures::gltf_text(), "\"count\": 6",
+                                                    "\"count\": 4000000000"))),
             "");
   EXPECT_NE(refusal(folder.write("b.gltf", std::string(1000000, '['))), "");
 }
 
 TEST(LoadRefuses, NodesThatLoop) {
   TempFolder folder;
-  EXPECT_NE(refusal(folder.write("a.gltf", replaced(testing::gltf_text(), "{\"mesh\": 0}",
+  EXPECT_NE(refusal(folder.write("a.gltf", replaced(fixtures::gltf_text(), "{\"mesh\": 0}",
                                                     "{\"mesh\": 0, \"children\": [0]}")))
                 .find("loop"),
             std::string::npos);
@@ -466,16 +467,16 @@ struct Sample {
 Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
 std::vector<Sample> samples_of_every_kind() {
-  return {{"a.obj", bytes_of(testing::obj_text())},
-          {"ascii.ply", bytes_of(testing::ascii_ply_text())},
-          {"binary.ply", testing::binary_ply(false)},
-          {"ascii.stl", bytes_of(testing::ascii_stl_text())},
-          {"binary.stl", testing::binary_stl()},
-          {"a.off", bytes_of(testing::off_text())},
-          {"c.off", bytes_of(testing::coff_text())},
-          {"a.3mf", testing::threemf("inch")},
-          {"a.gltf", bytes_of(testing::gltf_text())},
-          {"a.glb", testing::glb()}};
+  return {{"a.obj", bytes_of(fixtures::obj_text())},
+          {"ascii.ply", bytes_of(fixtures::ascii_ply_text())},
+          {"binary.ply", fixtures::binary_ply(false)},
+          {"ascii.stl", bytes_of(fixtures::ascii_stl_text())},
+          {"binary.stl", fixtures::binary_stl()},
+          {"a.off", bytes_of(fixtures::off_text())},
+          {"c.off", bytes_of(fixtures::coff_text())},
+          {"a.3mf", fixtures::threemf("inch")},
+          {"a.gltf", bytes_of(fixtures::gltf_text())},
+          {"a.glb", fixtures::glb()}};
 }
 
 // A changed byte, a changed bit, a cut, a repeated or a removed piece.
@@ -540,7 +541,7 @@ TEST(Load, DamagedMtlNeverStopsTheModel) {
   expect_squares(load(folder.path("squares.obj")));
   std::mt19937 random(7);
   for (int i = 0; i < 100; ++i) {
-    folder.write("squares.mtl", damaged(bytes_of(testing::mtl_text()), random));
+    folder.write("squares.mtl", damaged(bytes_of(fixtures::mtl_text()), random));
     expect_squares(load(folder.path("squares.obj")));
   }
 }
@@ -549,7 +550,7 @@ TEST(Load, MapOptionsAndBlanksInNames) {
   TempFolder folder;
   obj_in(folder).write("squares.mtl",
                        "newmtl left\nmap_Kd -bm 1 -mm 0 1 -o 0 0 0 -blendu on  a picture.png \n");
-  folder.write("a picture.png", testing::four_colour_png());
+  folder.write("a picture.png", fixtures::four_colour_png());
   expect_color(color_near(load(folder.path("squares.obj")).object, 0.25, 0.75), 1, 0, 0);
 }
 

@@ -14,7 +14,7 @@
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp\n"; }
 
-namespace hydrodip::testing {
+namespace hydrodip::fixtures {
 
 namespace {
 
@@ -336,4 +336,4 @@ std::string gltf_text(const std::string& external_bin) {
                    bin.size());
 }
 
-}  // namespace hydrodip::testing
+}  // namespace hydrodip::fixtures

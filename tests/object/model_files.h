@@ -12,7 +12,7 @@
 
 #include "image/image.h"
 
-namespace hydrodip::testing {
+namespace hydrodip::fixtures {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -76,4 +76,4 @@ std::string gltf_text(const std::string& external_bin = "");
 // The binary chunk that belongs to it.
 Bytes gltf_bin(const GlbOptions& options);
 
-}  // namespace hydrodip::testing
+}  // namespace hydrodip::fixtures

@@ -38,7 +38,7 @@ constexpr std::array<int, 4> kRed = {255, 0, 0, 255}, kGreen = {0, 255, 0, 255},
                              kBlue = {0, 0, 255, 255}, kBlackPixel = {0, 0, 0, 255};
 constexpr LinearColor kBase{0.25f, 0.5f, 0.75f, 1};
 
-void expect_color(const LinearColor& color, double r, double g, double b) {
+void expect_opaque(const LinearColor& color, double r, double g, double b) {
   EXPECT_NEAR(color.r, r, 1e-5);
   EXPECT_NEAR(color.g, g, 1e-5);
   EXPECT_NEAR(color.b, b, 1e-5);
@@ -47,14 +47,14 @@ void expect_color(const LinearColor& color, double r, double g, double b) {
 
 TEST(ColorAt, BottomRowIsAtVZero) {
   const Object object = triangle_with(picture(1, 2, {kRed, kGreen}));
-  expect_color(color_at(object, at(0.5, 0.25), kBase), 0, 1, 0);
-  expect_color(color_at(object, at(0.5, 0.75), kBase), 1, 0, 0);
+  expect_opaque(color_at(object, at(0.5, 0.25), kBase), 0, 1, 0);
+  expect_opaque(color_at(object, at(0.5, 0.75), kBase), 1, 0, 0);
 }
 
 TEST(ColorAt, InterpolatesInLinearLight) {
   const Object object = triangle_with(picture(2, 1, {kRed, kBlackPixel}), Wrap::kClamp);
   for (const double t : {0.0, 0.2, 0.5, 0.9}) {
-    expect_color(color_at(object, at(0.25 + 0.5 * t, 0.5), kBase), 1 - t, 0, 0);
+    expect_opaque(color_at(object, at(0.25 + 0.5 * t, 0.5), kBase), 1 - t, 0, 0);
   }
 }
 
@@ -65,40 +65,40 @@ TEST(ColorAt, WrapModes) {
   const Object mirror = triangle_with(three, Wrap::kMirror);
   const Object clamp = triangle_with(three, Wrap::kClamp);
   for (const int period : {-3, -2, -1, 0, 1, 2}) {
-    expect_color(color_at(repeat, at(period + red, 0.5), kBase), 1, 0, 0);
-    expect_color(color_at(repeat, at(period + green, 0.5), kBase), 0, 1, 0);
+    expect_opaque(color_at(repeat, at(period + red, 0.5), kBase), 1, 0, 0);
+    expect_opaque(color_at(repeat, at(period + green, 0.5), kBase), 0, 1, 0);
     const bool turned = period % 2 != 0;
-    expect_color(color_at(mirror, at(period + red, 0.5), kBase), !turned, 0, turned);
-    expect_color(color_at(mirror, at(period + green, 0.5), kBase), 0, 1, 0);
+    expect_opaque(color_at(mirror, at(period + red, 0.5), kBase), !turned, 0, turned);
+    expect_opaque(color_at(mirror, at(period + green, 0.5), kBase), 0, 1, 0);
     if (period != 0) {
-      expect_color(color_at(clamp, at(period + green, 0.5), kBase), period<0, 0, period> 0);
+      expect_opaque(color_at(clamp, at(period + green, 0.5), kBase), period<0, 0, period> 0);
     }
   }
   // Repeating blends the right edge into the left one; the others do not.
-  expect_color(color_at(repeat, at(1, 0.5), kBase), 0.5, 0, 0.5);
-  expect_color(color_at(mirror, at(1, 0.5), kBase), 0, 0, 1);
-  expect_color(color_at(clamp, at(blue + 0.1, 0.5), kBase), 0, 0, 1);
+  expect_opaque(color_at(repeat, at(1, 0.5), kBase), 0.5, 0, 0.5);
+  expect_opaque(color_at(mirror, at(1, 0.5), kBase), 0, 0, 1);
+  expect_opaque(color_at(clamp, at(blue + 0.1, 0.5), kBase), 0, 0, 1);
 }
 
 TEST(ColorAt, DecalShowsTheBaseColourOutside) {
   Object object = triangle_with(picture(1, 1, {kRed}), Wrap::kDecal, Wrap::kDecal);
   object.materials[0].base_color = {1, 0.5f, 0.25f, 1};
-  expect_color(color_at(object, at(0.5, 0.5), kBase), 1, 0, 0);
-  expect_color(color_at(object, at(1.5, 0.5), kBase), 1, 0.5, 0.25);
-  expect_color(color_at(object, at(0.5, -0.1), kBase), 1, 0.5, 0.25);
+  expect_opaque(color_at(object, at(0.5, 0.5), kBase), 1, 0, 0);
+  expect_opaque(color_at(object, at(1.5, 0.5), kBase), 1, 0.5, 0.25);
+  expect_opaque(color_at(object, at(0.5, -0.1), kBase), 1, 0.5, 0.25);
 }
 
 TEST(ColorAt, AlphaLetsTheBareObjectShow) {
   Object object = triangle_with(picture(1, 1, {{255, 255, 255, 51}}));
   object.materials[0].base_color = {1, 1, 1, 0.5f};
-  expect_color(color_at(object, at(0.5, 0.5), kBase), 0.1 + 0.9 * 0.25, 0.1 + 0.9 * 0.5,
-               0.1 + 0.9 * 0.75);
+  expect_opaque(color_at(object, at(0.5, 0.5), kBase), 0.1 + 0.9 * 0.25, 0.1 + 0.9 * 0.5,
+                0.1 + 0.9 * 0.75);
 }
 
 TEST(ColorAt, HiddenColoursOfTransparentTexelsDoNotBleed) {
   const Object object =
       triangle_with(picture(2, 1, {{255, 0, 0, 255}, {0, 255, 0, 0}}), Wrap::kClamp);
-  expect_color(color_at(object, at(0.5, 0.5), {0, 0, 0, 1}), 0.5, 0, 0);
+  expect_opaque(color_at(object, at(0.5, 0.5), {0, 0, 0, 1}), 0.5, 0, 0);
 }
 
 TEST(ColorAt, VertexColoursBlendLinearlyAndMultiply) {
@@ -106,7 +106,7 @@ TEST(ColorAt, VertexColoursBlendLinearlyAndMultiply) {
   object.colors = {{LinearColor{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}}};
   object.materials[0].base_color = {0.5f, 1, 1, 1};
   const LinearColor color = color_at(object, {0, 0.2, 0.3}, kBase);
-  expect_color(color, 0.25, 0.2, 0.3);
+  expect_opaque(color, 0.25, 0.2, 0.3);
 }
 
 TEST(ColorAt, HugeCoordinatesStayInThePicture) {
@@ -116,7 +116,7 @@ TEST(ColorAt, HugeCoordinatesStayInThePicture) {
     object.uvs = {{Eigen::Vector2f(-3e38f, 3e38f), Eigen::Vector2f(3e38f, 1e20f),
                    Eigen::Vector2f(1e9f, -1e-30f)}};
     for (const double u : {0.0, 0.3, 0.5, 1.0}) {
-      expect_color(color_at(object, {0, u, 0}, kBase), 1, 0, 0);
+      expect_opaque(color_at(object, {0, u, 0}, kBase), 1, 0, 0);
     }
   }
 }

@@ -12,8 +12,8 @@
 namespace hydrodip {
 namespace {
 
-using testing::film_under_ball;
-using testing::two_coloured_ball;
+using fixtures::film_under_ball;
+using fixtures::two_coloured_ball;
 
 struct Dipped {
   Object ball = two_coloured_ball();

@@ -13,8 +13,8 @@
 namespace hydrodip {
 namespace {
 
-using testing::film_under_ball;
-using testing::ScratchFolder;
+using fixtures::film_under_ball;
+using fixtures::ScratchFolder;
 
 // Reads little-endian values off the front of a byte string.
 class Reader {

@@ -11,7 +11,7 @@
 #include "film/film.h"
 #include "object/object.h"
 
-namespace hydrodip::testing {
+namespace hydrodip::fixtures {
 
 constexpr double kRadius = 20;
 
@@ -99,4 +99,4 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace hydrodip::testing
+}  // namespace hydrodip::fixtures

@@ -15,9 +15,9 @@
 namespace hydrodip {
 namespace {
 
-using testing::film_under_ball;
-using testing::kRadius;
-using testing::two_coloured_ball;
+using fixtures::film_under_ball;
+using fixtures::kRadius;
+using fixtures::two_coloured_ball;
 
 constexpr double kDegree = std::numbers::pi / 180;
 

@@ -12,10 +12,10 @@
 namespace hydrodip {
 namespace {
 
-using testing::film_under_ball;
-using testing::kRadius;
-using testing::ScratchFolder;
-using testing::two_coloured_ball;
+using fixtures::film_under_ball;
+using fixtures::kRadius;
+using fixtures::ScratchFolder;
+using fixtures::two_coloured_ball;
 using Json = nlohmann::json;
 
 // A sheet whose colour tells where it is: red grows with x, green with y, opaque.

@@ -13,8 +13,8 @@
 namespace hydrodip {
 namespace {
 
-using testing::film_under_ball;
-using testing::two_coloured_ball;
+using fixtures::film_under_ball;
+using fixtures::two_coloured_ball;
 
 Image draw(const DippedFilm& film, bool same, const std::string& caption = "caption") {
   const Object ball = two_coloured_ball();

@@ -14,9 +14,9 @@
 namespace hydrodip {
 namespace {
 
-using testing::film_under_ball;
-using testing::kRadius;
-using testing::two_coloured_ball;
+using fixtures::film_under_ball;
+using fixtures::kRadius;
+using fixtures::two_coloured_ball;
 using Json = nlohmann::json;
 using Bytes = std::vector<std::uint8_t>;
 

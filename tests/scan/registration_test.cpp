@@ -12,7 +12,7 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kSquare_mm = 5;
+constexpr double kBoardSquare_mm = 5;
 
 // Film laid onto a sample straight up but wider outwards, a little lopsided if asked: no dip, but
 // places land on the surface one to one.
@@ -27,7 +27,7 @@ struct Landed {
         lopsided(is_lopsided) {}
 
   std::optional<Vec3> operator()(const GridPlace& place) const {
-    Vec2 u = kSquare_mm * Vec2(place[0], place[1]);
+    Vec2 u = kBoardSquare_mm * Vec2(place[0], place[1]);
     const double r = u.norm();
     u *= 1 - 0.002 * r;
     if (lopsided) u += Vec2(0.003 * u.y() * u.y() + 0.002 * u.x() * u.y(), 0.002 * u.x() * u.x());
@@ -73,7 +73,7 @@ TEST_P(ShapeTest, AScanInAnyPoseComesBackToTheObject) {
   const CornerGrid truth = landed_grid(landed);
   for (unsigned seed = 1; seed <= 5; ++seed) {
     CornerGrid scan = moved(landed_grid(landed, {2, -3}), some_pose(seed));
-    const GridMatch match = match_grid(scan, std::cref(landed), {6, 6}, kSquare_mm, "scan");
+    const GridMatch match = match_grid(scan, std::cref(landed), {6, 6}, kBoardSquare_mm, "scan");
     EXPECT_FALSE(match.mirrored);
     EXPECT_FALSE(match.turned);
     const Alignment alignment = align(scan, match, landed.surface, std::cref(landed));
@@ -93,7 +93,7 @@ TEST_P(ShapeTest, AThirdOfTheCornersMayBeMissing) {
     truth.patch.push_back(0);
   }
   scan = moved(truth, some_pose(9));
-  const GridMatch match = match_grid(scan, std::cref(landed), {6, 6}, kSquare_mm, "scan");
+  const GridMatch match = match_grid(scan, std::cref(landed), {6, 6}, kBoardSquare_mm, "scan");
   const Alignment alignment = align(scan, match, landed.surface, std::cref(landed));
   EXPECT_LT(largest_error(moved(scan, alignment.pose), truth), 1e-4);
 }
@@ -102,14 +102,14 @@ TEST_P(ShapeTest, AMirroredScanIsToldFromARightOne) {
   const Landed landed(GetParam(), true);  // lopsided: not its own mirror image
   CornerGrid scan = moved(landed_grid(landed), some_pose(3));
   for (Vec3& p : scan.position) p.x() = -p.x();
-  EXPECT_TRUE(match_grid(scan, std::cref(landed), {6, 6}, kSquare_mm, "scan").mirrored);
+  EXPECT_TRUE(match_grid(scan, std::cref(landed), {6, 6}, kBoardSquare_mm, "scan").mirrored);
 }
 
 TEST_P(ShapeTest, OnASymmetricShapeAMirroredScanIsReadTheOtherWayRound) {
   const Landed landed(GetParam());
   CornerGrid scan = moved(landed_grid(landed), some_pose(4));
   for (Vec3& p : scan.position) p.x() = -p.x();
-  const GridMatch match = match_grid(scan, std::cref(landed), {6, 6}, kSquare_mm, "scan");
+  const GridMatch match = match_grid(scan, std::cref(landed), {6, 6}, kBoardSquare_mm, "scan");
   EXPECT_FALSE(match.mirrored);
   EXPECT_TRUE(match.turned);
   EXPECT_LT(match.rms_mm, 1e-6);
@@ -126,7 +126,7 @@ TEST(RegistrationTest, NoiseOnASphereTurnsItLittle) {
   std::normal_distribution<double> noise(0, 0.05);
   for (Vec3& p : scan.position) p += Vec3(noise(random), noise(random), noise(random));
   scan = moved(scan, some_pose(6));
-  const GridMatch match = match_grid(scan, std::cref(landed), {6, 6}, kSquare_mm, "scan");
+  const GridMatch match = match_grid(scan, std::cref(landed), {6, 6}, kBoardSquare_mm, "scan");
   const Alignment alignment = align(scan, match, landed.surface, std::cref(landed));
   double sum = 0;
   for (std::size_t c = 0; c < truth.position.size(); ++c)
@@ -138,14 +138,14 @@ TEST(RegistrationTest, RefusesAnotherShape) {
   const Landed sphere("sphere"), pyramid("pyramid");
   CornerGrid scan = landed_grid(pyramid);
   for (Vec3& p : scan.position) p.z() *= 3;
-  EXPECT_THROW(match_grid(scan, std::cref(sphere), {6, 6}, kSquare_mm, "scan"), InputError);
+  EXPECT_THROW(match_grid(scan, std::cref(sphere), {6, 6}, kBoardSquare_mm, "scan"), InputError);
 }
 
 TEST(RegistrationTest, RefusesScatteredSquares) {
   const Landed sphere("sphere");
   CornerGrid scan = landed_grid(sphere);
   for (std::size_t c = 0; c < scan.patch.size(); ++c) scan.patch[c] = int(c / 4);
-  EXPECT_THROW(match_grid(scan, std::cref(sphere), {6, 6}, kSquare_mm, "scan"), InputError);
+  EXPECT_THROW(match_grid(scan, std::cref(sphere), {6, 6}, kBoardSquare_mm, "scan"), InputError);
 }
 
 }  // namespace

@@ -8,8 +8,6 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kMmPerPt = 25.4 / 72;
-
 // Half an em a letter: about Helvetica.
 double half_em(const std::string& text) { return 0.5 * double(text.size()); }
 

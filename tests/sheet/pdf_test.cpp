@@ -16,16 +16,16 @@
 namespace hydrodip {
 namespace {
 
-using testing::blank_image;
-using testing::device_profile;
-using testing::has_tool;
-using testing::patterned_image;
-using testing::patterned_inks;
-using testing::rasterised;
-using testing::run_tool;
-using testing::sheet;
+using fixtures::blank_image;
+using fixtures::device_profile;
+using fixtures::has_tool;
+using fixtures::patterned_image;
+using fixtures::patterned_inks;
+using fixtures::rasterised;
+using fixtures::run_tool;
+using fixtures::sheet;
 
-class PrintPdf : public testing::ScratchFolder {
+class PrintPdf : public fixtures::ScratchFolder {
  protected:
   std::filesystem::path write(const Image& image, const SheetOptions& options) {
     const std::filesystem::path path = folder_ / "print.pdf";

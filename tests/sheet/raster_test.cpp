@@ -13,15 +13,15 @@
 namespace hydrodip {
 namespace {
 
-using testing::blank_image;
-using testing::device_profile;
-using testing::has_tool;
-using testing::patterned_image;
-using testing::patterned_inks;
-using testing::run_tool;
-using testing::sheet;
+using fixtures::blank_image;
+using fixtures::device_profile;
+using fixtures::has_tool;
+using fixtures::patterned_image;
+using fixtures::patterned_inks;
+using fixtures::run_tool;
+using fixtures::sheet;
 
-class PrintRaster : public testing::ScratchFolder {};
+class PrintRaster : public fixtures::ScratchFolder {};
 
 // Every byte of a CMYK file, rows from the top.
 std::vector<std::uint8_t> read_tiff(const std::filesystem::path& path, const InkImage& image,

@@ -16,7 +16,7 @@
 #include "ink/color_model.h"
 #include "sheet/sheet.h"
 
-namespace hydrodip::testing {
+namespace hydrodip::fixtures {
 
 class ScratchFolder : public ::testing::Test {
  protected:
@@ -102,4 +102,4 @@ inline InkImage patterned_inks(const SheetOptions& options) {
 // The profile that an ICC reader finds in an sRGB picture or in inks.
 inline std::vector<std::uint8_t> device_profile() { return make_device_model()->profile(); }
 
-}  // namespace hydrodip::testing
+}  // namespace hydrodip::fixtures
