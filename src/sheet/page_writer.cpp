@@ -75,7 +75,9 @@ std::vector<std::string> PageWriter::wrapped(const std::string& words, double wi
   for (std::size_t begin = 0; begin < words.size();) {
     const std::size_t end = std::min(words.find(' ', begin), words.size());
     const std::string word = words.substr(begin, end - begin);
-    const std::string longer = line.empty() ? word : line + " " + word;
+    std::string longer = line;
+    if (!longer.empty()) longer += ' ';
+    longer += word;
     if (!line.empty() && width_of(longer, size_pt, font) > width_mm) {
       lines.push_back(line);
       line = word;
