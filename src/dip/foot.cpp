@@ -8,6 +8,9 @@ namespace hydrodip {
 
 namespace {
 
+// Cosines of turns of the waterline: from a bend on, up to a corner.
+constexpr double kBend = 0.9, kCorner = 0.5;
+
 // Length from (0, 0) to (run, rise) with the vertical scaled: along two straight pieces with the
 // given slopes if they meet on the way (a crease lies between), else along the chord.
 double scaled_length(double run, double rise, double first_slope, double last_slope,
@@ -34,9 +37,11 @@ bool usable_gradient(const Mat2& F) {
 Vec2 unrolled(const Vec3& from, const Vec2& first_outward, double first_slope,
               const Waterline::Point& to, double level, double z_stretch) {
   const Vec2 way = to.position - from.head<2>();
-  // Across the line in the middle of the way; around a corner, as at its end.
-  Vec2 across = to.outward;
-  if (first_outward.dot(to.outward) > 0.7) across = (first_outward + to.outward).normalized();
+  // Across the line in the middle of the way; around a corner, more and more as at its end.
+  const double turn = first_outward.dot(to.outward);
+  Vec2 across =
+      (to.outward + std::clamp((turn - kCorner) / (kBend - kCorner), 0.0, 1.0) * first_outward)
+          .normalized();
   // A way along the line must not seem to lead back.
   if (way.dot(across) < 0 && way.dot(to.outward) > 0) across = to.outward;
   const Vec2 tangent(-across.y(), across.x());

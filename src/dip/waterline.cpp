@@ -14,9 +14,11 @@ constexpr double kMaxSteepness = 1e6;
 // Share of its length by which a segment reaches beyond its ends, so that nothing slips out between
 // two segments.
 constexpr double kEndSlack = 1e-6;
-// So near its end, as a share of its length, a segment's direction gives way to the mean with the
-// next one's: rounding must not decide between them where an object and a film are symmetric.
-constexpr double kJoint = 1e-3;
+// The line's direction at a point is the mean over what lies this near, in grid cells: what the
+// film does must not jump where a way slips round an edge of the object.
+constexpr double kBlurred = 0.1;
+// Cosine of directions that belong to the other side of a wall.
+constexpr double kOtherSide = -0.5;
 // What lies this little above the water counts as reached by it.
 constexpr double kLevelSlack_mm = 0.01;
 
@@ -25,6 +27,18 @@ double bottom(const std::vector<Vec3>& p, const Triangle& t) {
 }
 double top(const std::vector<Vec3>& p, const Triangle& t) {
   return std::max({p[std::size_t(t[0])].z(), p[std::size_t(t[1])].z(), p[std::size_t(t[2])].z()});
+}
+
+// Of the part of a segment in a circle.
+double length_within(const Vec2& a, const Vec2& b, const Vec2& centre, double radius) {
+  const double length = (b - a).norm();
+  if (!(length > 0)) return 0;
+  const Vec2 along = (b - a) / length;
+  const double foot = (centre - a).dot(along), beside = cross2(along, centre - a);
+  const double half2 = radius * radius - beside * beside;
+  if (!(half2 > 0)) return 0;
+  const double half = std::sqrt(half2);
+  return std::max(0.0, std::min(length, foot + half) - std::max(0.0, foot - half));
 }
 
 }  // namespace
@@ -139,7 +153,6 @@ std::optional<Waterline::Point> Waterline::exit(const Vec2& from, const Vec2& to
   const Vec2 way = to - from;
   double best = 2;
   const Segment* found = nullptr;
-  const Vec2* end = nullptr;  // of the segment found, if that is where it was crossed
   const int x0 = cell_x(std::min(from.x(), to.x())), x1 = cell_x(std::max(from.x(), to.x()));
   const int y0 = cell_y(std::min(from.y(), to.y())), y1 = cell_y(std::max(from.y(), to.y()));
   for (int y = y0; y <= y1; ++y)
@@ -156,33 +169,39 @@ std::optional<Waterline::Point> Waterline::exit(const Vec2& from, const Vec2& to
         if (along < 0 || along > 1 || along >= best) continue;
         if (across < -kEndSlack || across > 1 + kEndSlack) continue;
         best = along;
-        end = across < kJoint ? &s.a : across > 1 - kJoint ? &s.b : nullptr;
         found = &s;
       }
     }
   if (!found) return std::nullopt;
-  const Point point{from + best * way, found->outward, found->steepness};
-  return end ? at_joint(point, *found, *end, way) : point;
+  return blurred({from + best * way, found->outward, found->steepness},
+                 [&](const Segment& s) { return std::max(0.0, way.dot(s.outward)); });
 }
 
-// The mean over the segments that meet there and are left in this direction.
-Waterline::Point Waterline::at_joint(const Point& point, const Segment& segment, const Vec2& end,
-                                     const Vec2& way) const {
+// With the direction that the line around the point has on average, its parts weighed.
+template <class Weight>
+Waterline::Point Waterline::blurred(const Point& point, const Weight& weight_of) const {
+  const double radius = kBlurred * cell_;
   Vec2 outward = Vec2::Zero();
-  double steepness = 0, count = 0;
-  const double slack = kEndSlack * (segment.b - segment.a).norm();
-  const std::size_t c =
-      std::size_t(cell_y(end.y())) * std::size_t(grid_nx_) + std::size_t(cell_x(end.x()));
-  for (auto n = grid_begin_[c]; n < grid_begin_[c + 1]; ++n) {
-    const Segment& s = segments_[std::size_t(grid_items_[std::size_t(n)])];
-    if (std::min((s.a - end).norm(), (s.b - end).norm()) > slack) continue;
-    if (way.dot(s.outward) <= 0) continue;
-    outward += s.outward;
-    steepness += s.steepness;
-    ++count;
-  }
-  if (!(outward.norm() > 0)) return point;
-  return {point.position, outward.normalized(), steepness / count};
+  double steepness = 0, weights = 0;
+  const int x0 = cell_x(point.position.x() - radius), x1 = cell_x(point.position.x() + radius);
+  const int y0 = cell_y(point.position.y() - radius), y1 = cell_y(point.position.y() + radius);
+  for (int y = y0; y <= y1; ++y)
+    for (int x = x0; x <= x1; ++x) {
+      const std::size_t c = std::size_t(y) * std::size_t(grid_nx_) + std::size_t(x);
+      for (auto n = grid_begin_[c]; n < grid_begin_[c + 1]; ++n) {
+        const Segment& s = segments_[std::size_t(grid_items_[std::size_t(n)])];
+        // Once, though it is listed in several cells.
+        if (x != std::max(x0, cell_x(std::min(s.a.x(), s.b.x()))) ||
+            y != std::max(y0, cell_y(std::min(s.a.y(), s.b.y()))))
+          continue;
+        const double weight = length_within(s.a, s.b, point.position, radius) * weight_of(s);
+        outward += weight * s.outward;
+        steepness += weight * s.steepness;
+        weights += weight;
+      }
+    }
+  if (!(weights > 0) || !(outward.norm() > 0)) return point;
+  return {point.position, outward.normalized(), steepness / weights};
 }
 
 std::optional<Waterline::Point> Waterline::closest(const Vec2& point, double max_distance) const {
@@ -223,7 +242,9 @@ std::optional<Waterline::Point> Waterline::closest(const Vec2& point, double max
     }
   }
   if (!found) return std::nullopt;
-  return Point{position, found->outward, found->steepness};
+  return blurred({position, found->outward, found->steepness}, [&](const Segment& s) {
+    return found->outward.dot(s.outward) > kOtherSide ? 1.0 : 0.0;
+  });
 }
 
 }  // namespace hydrodip

@@ -42,8 +42,8 @@ class Waterline {
     Vec2 outward;
     double steepness;
   };
-  Point at_joint(const Point& point, const Segment& segment, const Vec2& end,
-                 const Vec2& way) const;
+  template <class Weight>
+  Point blurred(const Point& point, const Weight& weight_of) const;
   void sweep();
   void cut(std::int32_t triangle);
   void build_grid();

@@ -17,9 +17,6 @@ class FixedPoint {
   // itself as long as nothing is remembered.
   Eigen::VectorXd next(const Eigen::VectorXd& x, const Eigen::VectorXd& g);
 
-  // What was learnt no longer holds.
-  void forget() { images_.clear(), residuals_.clear(); }
-
  private:
   int memory_;
   std::vector<Eigen::VectorXd> images_, residuals_;  // g(x) and g(x) - x, the latest last

@@ -23,6 +23,8 @@ namespace {
 constexpr int kFreeRounds = 2;
 // And then the next ink can be guessed from so many rounds and the last one.
 constexpr int kMixed = 2;
+// All four inks at once make film so many times as stiff as one alone.
+constexpr double kMostInks = 4;
 // From there on two rounds have to bring the change below this share.
 constexpr double kLeastProgress = 0.5;
 // Where more of the film tears than this share of what meets the object, flaps decide and rounds do
@@ -212,7 +214,6 @@ class InkRounds {
     if (rounds() == kFreeRounds) {
       options_.tear_levels = dipped_.film().tear_level;
       outline_.keep(dipped_.film());
-      mixer_.forget();
     }
     const SheetRaster raster = sheet_raster(rounds_config_, rounds_config_.print.dpi);
     std::vector<double> modulus = times_.measure("stiffness", [&] {
@@ -222,16 +223,22 @@ class InkRounds {
     options_.modulus = options_.modulus.empty() ? modulus : mixed(modulus);
   }
 
-  // In the measure in which stiffness matters.
+  // In the measure in which stiffness matters: next to soft film, hard ink and harder ink act
+  // alike.
   std::vector<double> mixed(const std::vector<double>& modulus) {
-    const auto logs = [](const std::vector<double>& values) {
+    const auto compliance = [](const std::vector<double>& values) {
       return Eigen::VectorXd(
           Eigen::Map<const Eigen::VectorXd>(values.data(), Eigen::Index(values.size()))
               .array()
-              .log());
+              .rsqrt());
     };
-    const Eigen::VectorXd next =
-        mixer_.next(logs(options_.modulus), logs(modulus)).array().exp().max(1.0);
+    const double least = 1 / std::sqrt(kMostInks * config_.ink.stiffness_ratio);
+    const Eigen::VectorXd next = mixer_.next(compliance(options_.modulus), compliance(modulus))
+                                     .cwiseMax(least)
+                                     .cwiseMin(1.0)
+                                     .array()
+                                     .square()
+                                     .inverse();
     return {next.begin(), next.end()};
   }
 

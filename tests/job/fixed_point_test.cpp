@@ -38,13 +38,5 @@ TEST(FixedPoint, StaysWhereItHasArrived) {
   for (int i = 0; i < 4; ++i) EXPECT_LT((search.next(fixed, linear(fixed)) - fixed).norm(), 1e-12);
 }
 
-TEST(FixedPoint, StartsAnewAfterForgetting) {
-  FixedPoint search(2);
-  const Eigen::VectorXd a = Eigen::Vector2d(0, 0), b = Eigen::Vector2d(1, 1);
-  search.next(a, linear(a));
-  search.forget();
-  EXPECT_EQ(search.next(b, linear(b)), linear(b));
-}
-
 }  // namespace
 }  // namespace hydrodip
