@@ -66,8 +66,9 @@ class Study {
       : folder_(folder),
         config_(search_config()),
         search_(config_, context_),
-        fine_(finer_film(config_), context_) {
-    const JobConfig truth = finer_film(finer_film(config_));
+        fine_(finer_film(config_), context_),
+        finest_(finer_film(finer_film(config_)), context_) {
+    const JobConfig truth = finer_film(finer_film(finer_film(config_)));
     const CheckeredFilm film = checkered_film(truth, kSquare_mm);
     for (const KitShape& kit : kit_shapes()) {
       CalibrationObject object = calibration_object(kit.name, config_, context_);
@@ -121,12 +122,12 @@ class Study {
           },
           options);
     };
-    const Eigen::VectorXd here = errors(search_, subjects, start);
-    const Fit coarse = fit_with(Eigen::VectorXd::Zero(here.size()));
-    const Eigen::VectorXd correction = (errors(fine_, subjects, start) - here) / 0.75;
-    const Fit fit = fit_with(correction);
-    return {fit,
-            certainty(fit, gradient(subjects, start), ((fit.point - coarse.point) / 3).cwiseAbs())};
+    const Eigen::VectorXd here = errors(search_, subjects, start),
+                          fine = errors(fine_, subjects, start),
+                          finest = errors(finest_, subjects, start);
+    const Eigen::VectorXd guessed = beyond(fine, finest);
+    const Fit fit = fit_with(finest + guessed - here);
+    return {fit, certainty(fit, gradient(subjects, start), guessed)};
   }
 
  private:
@@ -160,7 +161,7 @@ class Study {
   RunContext context_;
   JobConfig config_;
   std::vector<Shape> shapes_;
-  Dips search_, fine_;
+  Dips search_, fine_, finest_;
 };
 
 std::string interval(double low, double high) { return fmt::format("{:.3g} .. {:.3g}", low, high); }

@@ -17,6 +17,8 @@
 #include "dip/dip.h"
 #include "exact/shapes.h"
 #include "exact/solutions.h"
+#include "job/config.h"
+#include "job/settings.h"
 
 namespace hydrodip {
 namespace {
@@ -65,7 +67,8 @@ struct Result {
   double worst = 0, mean = 0, at_end = 0;
 };
 
-Result measure(const Case& c, const ExactTable& exact, DipScheme scheme, int elements) {
+Result measure(const Case& c, const ExactTable& exact, DipScheme scheme, int elements,
+               double step_mm = DipOptions{}.step_mm) {
   FilmOptions options{.width_mm = 220, .height_mm = 220, .shape = FilmShape::kDisc};
   options.elements = elements;
   if (scheme == DipScheme::kPaper) options.grading = 1;
@@ -73,6 +76,7 @@ Result measure(const Case& c, const ExactTable& exact, DipScheme scheme, int ele
   const Surface surface(c.shape.positions, c.shape.triangles);
   DipOptions dip_options;
   dip_options.scheme = scheme;
+  dip_options.step_mm = step_mm;
   dip_options.material.tear_stretch = 0;
   RunContext context;
   const auto start = std::chrono::steady_clock::now();
@@ -187,6 +191,25 @@ std::string plot(const std::vector<Result>& results) {
   return svg + "</svg>\n";
 }
 
+// What --quality's levels cost and how exact they are, each with its own step.
+void print_qualities() {
+  fmt::print(
+      "\n| quality | shape | triangles | step (mm) | time (s) | largest (mm) | mean (mm) |\n"
+      "|---|---|---|---|---|---|---|\n");
+  for (const Case& c : cases()) {
+    const ExactTable exact(c);
+    for (const char* quality : {"draft", "normal", "fine"}) {
+      JobConfig config;
+      apply_settings(config, quality_settings(quality));
+      const Result r =
+          measure(c, exact, DipScheme::kContactLine, config.film.elements, config.dip.step_mm);
+      fmt::print("| {} | {} | {} | {} | {:.2f} | {:.4f} | {:.4f} |\n", quality, c.name, r.triangles,
+                 config.dip.step_mm, r.seconds, r.worst, r.mean);
+      std::fflush(stdout);
+    }
+  }
+}
+
 int run(int argc, char** argv) {
   const std::string plot_file = argc > 1 ? argv[1] : "docs/work-precision.svg";
   const int largest = argc > 2 ? std::atoi(argv[2]) : 160000;
@@ -202,6 +225,7 @@ int run(int argc, char** argv) {
   }
   std::ofstream(plot_file) << plot(results);
   fmt::print("plot: {}\n", plot_file);
+  print_qualities();
   return 0;
 }
 

@@ -8,6 +8,7 @@ namespace hydrodip {
 
 void RunContext::progress(const std::string& stage, double fraction) {
   check_cancelled();
+  const std::lock_guard lock(progress_mutex_);
   if (progress_sink_) progress_sink_(stage, std::clamp(fraction, 0.0, 1.0));
 }
 

@@ -24,7 +24,8 @@ class RunContext {
   void on_progress(ProgressSink sink) { progress_sink_ = std::move(sink); }
   void on_log(LogSink sink) { log_sink_ = std::move(sink); }
 
-  // Reports progress and throws Cancelled if the job was cancelled. Call it from one thread.
+  // Reports progress and throws Cancelled if the job was cancelled. Callable from any thread; the
+  // sink is called by one at a time.
   void progress(const std::string& stage, double fraction);
 
   // Throws Cancelled if the job was cancelled. Cheap, callable from any thread.
@@ -51,6 +52,7 @@ class RunContext {
   static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
   std::atomic<int> cancel_requests_{0};
   std::atomic<bool> expects_second_{false};
+  std::mutex progress_mutex_;
   ProgressSink progress_sink_;
   LogSink log_sink_;
   mutable std::mutex mutex_;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 namespace hydrodip {
 
@@ -16,6 +17,10 @@ inline constexpr std::size_t kElementGrain = 2048;
 // is rethrown.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+// Runs all of them, on any threads, and returns when all are done or have failed. Of several
+// exceptions the first in the list's order is rethrown.
+void parallel_do(const std::vector<std::function<void()>>& tasks);
 
 // How many threads parallel_for may use now.
 int available_threads();

@@ -223,7 +223,7 @@ Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitO
 }
 
 Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
-                    const FitPoint& systematic) {
+                    const Eigen::VectorXd& doubt_mm) {
   std::vector<Eigen::Index> rows, free;
   for (Eigen::Index i = 0; i < fit.residual.size(); ++i)
     if (std::isfinite(fit.residual[i])) rows.push_back(i);
@@ -246,11 +246,12 @@ Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
     for (std::size_t b = 0; b < free.size(); ++b)
       result.covariance(free[a], free[b]) = covariance(Eigen::Index(a), Eigen::Index(b));
 
-  Eigen::Vector3d half;
-  for (int k = 0; k < 3; ++k)
-    half[k] = fit.free[std::size_t(k)]
-                  ? std::hypot(kQuantile * std::sqrt(result.covariance(k, k)), systematic[k])
-                  : 0;
+  Eigen::Vector3d half = kQuantile * result.covariance.diagonal().cwiseSqrt();
+  if (doubt_mm.size() > 0) {
+    const Eigen::VectorXd moved = solve * doubt_mm(rows);
+    for (std::size_t a = 0; a < free.size(); ++a)
+      half[free[a]] = std::hypot(half[free[a]], moved[Eigen::Index(a)]);
+  }
   const FitPoint low = fit.point - half, high = fit.point + half;
   // A film is no stiffer without ink, and its Poisson's ratio is a material's.
   result.low = {std::max(0.0, low[0]), high[1] >= 1 ? 1 : 1 / (high[1] * high[1]),
@@ -259,6 +260,11 @@ Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
                  low[1] > 0 ? 1 / (low[1] * low[1]) : std::numeric_limits<double>::infinity(),
                  std::min(0.499, high[2])};
   return result;
+}
+
+Eigen::VectorXd beyond(const Eigen::VectorXd& fine, const Eigen::VectorXd& finest) {
+  constexpr double kFinerCells = 2;
+  return (finest - fine) / (kFinerCells * kFinerCells - 1);
 }
 
 }  // namespace hydrodip

@@ -52,9 +52,13 @@ struct Certainty {
   FilmParameters low, high;
 };
 // `noise_gradient`: how the scan's noise shows in the lengths (rows as residual's, a column for
-// each coordinate of each corner). `systematic`: what may be wrong with the point for other
-// reasons; it widens the intervals.
+// each coordinate of each corner). `doubt_mm`: by how much each length may be wrong in simulation,
+// all together; what that does to the answer widens the intervals. Empty: nothing.
 Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
-                    const FitPoint& systematic = FitPoint::Zero());
+                    const Eigen::VectorXd& doubt_mm = {});
+
+// What lengths still change by, beyond a film that has been made finer once more, if their error
+// falls as the square of the cells' size (Richardson). finer_film() halves cells.
+Eigen::VectorXd beyond(const Eigen::VectorXd& fine, const Eigen::VectorXd& finest);
 
 }  // namespace hydrodip

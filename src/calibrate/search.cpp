@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "calibrate/synthetic.h"
 
 namespace hydrodip {
 namespace {
@@ -19,9 +20,6 @@ constexpr double kLeastShare = 0.8;
 // The correction is found anew where the answer moved further than this, in stencils.
 constexpr double kMovedFar = 1.0;
 constexpr int kMostCorrections = 3;
-// Of what the correction moves, so much may be missing still: measured on films from 2,500 to
-// 160,000 triangles (docs/calibration.md).
-constexpr double kUncorrectedShare = 1.0 / 3;
 // Widest stencil of the refinement.
 const FitPoint kWidestStep(0.03, 0.1, 0.06);
 
@@ -80,9 +78,10 @@ double root_mean_square(const Eigen::VectorXd& values) {
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-// The part of a correction for all subjects that belongs to one of them.
+// The part of a correction for all subjects that belongs to one of them; empty if that is.
 Eigen::VectorXd part(const Eigen::VectorXd& whole,
                      const std::vector<std::vector<std::size_t>>& compared, std::size_t subject) {
+  if (whole.size() == 0) return {};
   Eigen::Index begin = 0;
   for (std::size_t s = 0; s < subject; ++s) begin += Eigen::Index(compared[s].size());
   return whole.segment(begin, Eigen::Index(compared[subject].size()));
@@ -107,7 +106,8 @@ Search::Search(const std::vector<Subject>& subjects, const JobConfig& config, do
       search_film_(subjects, search_config(config, options), square_mm,
                    fmt::format("search-{:g}-{:g}", options.elements_factor, options.step_factor),
                    store),
-      fine_film_(subjects, config, square_mm, "fine", store) {}
+      fine_film_(subjects, config, square_mm, "fine", store),
+      finest_film_(subjects, finer_film(config), square_mm, "finest", store) {}
 
 namespace {
 
@@ -197,14 +197,17 @@ Eigen::MatrixXd Search::errors_at(Simulations& simulations,
   return errors;
 }
 
-Eigen::VectorXd Search::correction_at(const std::vector<std::size_t>& subjects,
-                                      const FitPoint& point, RunContext& context) {
-  const Eigen::MatrixXd fine = errors_at(fine_film_, subjects, {point}, "correcting", context);
-  const Eigen::MatrixXd search = errors_at(search_film_, subjects, {point}, "correcting", context);
-  // Richardson: were the error to fall as the square of the cells' size, this would be all of it.
-  // It falls slower where ink is stiff and edges are sharp, so that a part of it stays.
-  const double share = options_.elements_factor < 1 ? 1 - options_.elements_factor : 1;
-  return (fine.col(0) - search.col(0)) / share;
+// A scan knows no triangles. Where ink is stiff and edges are sharp, errors fall as the square of
+// the cells' size only on fine films (docs/calibration.md).
+Search::Correction Search::correction_at(const std::vector<std::size_t>& subjects,
+                                         const FitPoint& point, RunContext& context) {
+  const auto errors = [&](Simulations& simulations) -> Eigen::VectorXd {
+    return errors_at(simulations, subjects, {point}, "correcting", context).col(0);
+  };
+  const Eigen::VectorXd search = errors(search_film_), fine = errors(fine_film_),
+                        finest = errors(finest_film_);
+  const Eigen::VectorXd guessed = beyond(fine, finest);
+  return {finest + guessed - search, guessed};
 }
 
 Eigen::MatrixXd Search::noise_gradient(const std::vector<std::size_t>& subjects,
@@ -259,27 +262,26 @@ Calibration Search::run(RunContext& context) {
 
   const std::vector<std::size_t> everyone = all_indices(subjects_.size());
   result.all = answer("all", everyone, to_fit(best->parameters), {}, context);
-  const FitPoint uncorrected = result.all.fit.point;
-  Eigen::VectorXd correction;
-  for (int i = 0; i < kMostCorrections; ++i) {
+  Correction correction;
+  for (int i = 0; options_.correct && i < kMostCorrections; ++i) {
     const FitPoint before = result.all.fit.point;
     correction = correction_at(everyone, before, context);
-    result.all = answer("all", everyone, before, correction, context);
+    result.all = answer("all", everyone, before, correction.all, context);
     const FitPoint moved = (result.all.fit.point - before).cwiseQuotient(kWidestStep);
     if (moved.cwiseAbs().maxCoeff() < kMovedFar) break;
   }
-  result.correction_mm = root_mean_square(correction);
+  result.correction_mm = root_mean_square(correction.all);
   const FitPoint end = result.all.fit.point;
   const Eigen::MatrixXd noise = noise_gradient(everyone, end, context);
-  const FitPoint systematic = kUncorrectedShare * (end - uncorrected).cwiseAbs();
-  result.all.certainty = certainty(result.all.fit, noise, systematic);
+  result.all.certainty = certainty(result.all.fit, noise, correction.guessed);
 
   FitPoint sum = FitPoint::Zero();
   for (const std::size_t s : everyone) {
     result.each.push_back(
-        answer(subjects_[s].name, {s}, end, part(correction, compared_, s), context));
+        answer(subjects_[s].name, {s}, end, part(correction.all, compared_, s), context));
     Answer& one = result.each.back();
-    one.certainty = certainty(one.fit, noise_gradient({s}, one.fit.point, context), systematic);
+    one.certainty = certainty(one.fit, noise_gradient({s}, one.fit.point, context),
+                              part(correction.guessed, compared_, s));
     sum += one.fit.point;
   }
   result.average = from_fit(sum / double(subjects_.size()));

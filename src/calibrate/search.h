@@ -17,6 +17,9 @@ struct SearchOptions {
   // The search's film: triangles and step of the configuration times these.
   double elements_factor = 0.25;
   double step_factor = 2;
+  // For what finer films would change, up to the continuum. Off: the scan was made on the search's
+  // own film.
+  bool correct = true;
 };
 
 // The grid's points in the order in which they are computed.
@@ -78,8 +81,13 @@ class Search {
   Eigen::MatrixXd errors_at(Simulations& simulations, const std::vector<std::size_t>& subjects,
                             const std::vector<FitPoint>& points, const std::string& stage,
                             RunContext& context);
-  Eigen::VectorXd correction_at(const std::vector<std::size_t>& subjects, const FitPoint& point,
-                                RunContext& context);
+  // What the search's film lacks at a point, per length: what to add to its errors, and what of
+  // that is a guess.
+  struct Correction {
+    Eigen::VectorXd all, guessed;
+  };
+  Correction correction_at(const std::vector<std::size_t>& subjects, const FitPoint& point,
+                           RunContext& context);
   Answer answer(const std::string& name, const std::vector<std::size_t>& subjects,
                 const FitPoint& start, const Eigen::VectorXd& correction, RunContext& context);
   Eigen::MatrixXd noise_gradient(const std::vector<std::size_t>& subjects, const FitPoint& point,
@@ -91,6 +99,7 @@ class Search {
   SimulationStore& store_;
   Simulations search_film_;
   Simulations fine_film_;
+  Simulations finest_film_;
   Lengths compared_;
 };
 

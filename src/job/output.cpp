@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <utility>
 
 #include "base/file.h"
+#include "base/parallel.h"
 #include "image/files.h"
 #include "image/resize.h"
 #include "job/prepare.h"
@@ -114,34 +116,10 @@ Image draw_maps(const JobRecord& record) {
                      record.context);
 }
 
-}  // namespace
-
-ReportPictures write_previews(OutputFolder& folder, const JobRecord& record,
-                              const Image& film_image, const SheetRaster& raster,
-                              const std::string& caption_start) {
+// What the 3D view shows, and what is learnt on the way.
+void make_page(const JobRecord& record, const Appearance& shown, const Image& film_image,
+               const SheetRaster& raster, Previews& previews) {
   const DippedObject& dipped = record.dipped;
-  const LinearColor base = base_color(record.config);
-  write_film_ply(folder.path("film.ply"), dipped.film());
-
-  write_preview_glb(folder.path("preview.glb"), dipped.object(), dipped.film(),
-                    shrink_to(film_image, 2 * record.config.preview_texture_px), raster.width_mm,
-                    raster.height_mm, base, record.config.preview_texture_px);
-  ReportPictures pictures;
-  if (!record.config.pictures) return pictures;
-  const Appearance shown = appearance(dipped, film_image, raster, base);
-  pictures.preview_png =
-      write_picture(folder.path("preview.png"),
-                    draw_preview(record, shown, caption_start + picture_caption(record)));
-  if (record.ink != nullptr)
-    write_picture(folder.path("gamut.png"), draw_reach(record, shown, raster));
-  pictures.maps_png = write_picture(folder.path("maps.png"), draw_maps(record));
-  return pictures;
-}
-
-PageParts page_parts(const JobRecord& record, const Image& film_image, const SheetRaster& raster) {
-  const DippedObject& dipped = record.dipped;
-  if (!record.config.pictures) return {};
-  const LinearColor base = base_color(record.config);
   const Image sheet = shrink_to(film_image, kPageTextureSide_px);
   SceneSource scene{dipped.object(), dipped.film(), dipped.history, sheet};
   scene.sheet_width_mm = raster.width_mm;
@@ -149,31 +127,64 @@ PageParts page_parts(const JobRecord& record, const Image& film_image, const She
   scene.bath_width_mm = record.config.bath.width_mm;
   scene.bath_height_mm = record.config.bath.height_mm;
   scene.tear_stretch = record.config.dip.material.tear_stretch;
-  scene.base = base;
-
-  PageParts page;
+  scene.base = base_color(record.config);
   if (dipped.object().has_appearance()) {
-    scene.layers.push_back(color_error_layer(dipped.object(), *dipped.map,
-                                             appearance(dipped, film_image, raster, base),
-                                             record.context));
-    page.colors = colors_of(scene.layers.back());
+    scene.layers.push_back(color_error_layer(dipped.object(), *dipped.map, shown, record.context));
+    previews.colors = colors_of(scene.layers.back());
   }
   if (record.ink != nullptr) {
     scene.layers.push_back(reach_layer(record, raster));
-    page.ink = ReportInk{heaviest_ink(record.ink->ink.inking.inks), record.config.ink.limit};
+    previews.ink = ReportInk{heaviest_ink(record.ink->ink.inking.inks), record.config.ink.limit};
   }
-  page.scene = scene_json(scene, record.context);
-  return page;
+  previews.pictures.scene = scene_json(scene, record.context);
 }
 
-JobResult finish(OutputFolder& folder, const JobRecord& record, ReportPictures pictures,
-                 PageParts page) {
+void write_glb(const std::filesystem::path& path, const JobRecord& record, const Image& film_image,
+               const SheetRaster& raster) {
+  const DippedObject& dipped = record.dipped;
+  const int texture_px = record.config.preview_texture_px;
+  write_preview_glb(path, dipped.object(), dipped.film(), shrink_to(film_image, 2 * texture_px),
+                    raster.width_mm, raster.height_mm, base_color(record.config), texture_px);
+}
+
+}  // namespace
+
+Previews write_previews(OutputFolder& folder, const JobRecord& record, const Image& film_image,
+                        const SheetRaster& raster, const std::string& caption_start) {
+  const DippedObject& dipped = record.dipped;
+  Previews previews;
+  std::vector<std::function<void()>> tasks;
+  const auto add = [&](const std::string& name, const auto& write) {
+    tasks.emplace_back([path = folder.path(name), write] { write(path); });
+  };
+  // The longest first.
+  Appearance shown;
+  if (record.config.pictures) {
+    shown = appearance(dipped, film_image, raster, base_color(record.config));
+    tasks.emplace_back([&] { make_page(record, shown, film_image, raster, previews); });
+    add("maps.png", [&](const auto& path) {
+      previews.pictures.maps_png = write_picture(path, draw_maps(record));
+    });
+    add("preview.png", [&](const auto& path) {
+      previews.pictures.preview_png =
+          write_picture(path, draw_preview(record, shown, caption_start + picture_caption(record)));
+    });
+    if (record.ink != nullptr)
+      add("gamut.png",
+          [&](const auto& path) { write_picture(path, draw_reach(record, shown, raster)); });
+  }
+  add("preview.glb", [&](const auto& path) { write_glb(path, record, film_image, raster); });
+  add("film.ply", [&](const auto& path) { write_film_ply(path, dipped.film()); });
+  parallel_do(tasks);
+  return previews;
+}
+
+JobResult finish(OutputFolder& folder, const JobRecord& record, Previews previews) {
   Report report = make_report(record);
-  report.colors = page.colors;
-  report.ink = page.ink;
-  pictures.scene = std::move(page.scene);
+  report.colors = previews.colors;
+  report.ink = previews.ink;
   write_report_json(folder.path("report.json"), report);
-  write_report_html(folder.path("report.html"), report, pictures);
+  write_report_html(folder.path("report.html"), report, previews.pictures);
   record.context.check_cancelled();
   folder.commit();
   return describe_result(report, folder.folder());

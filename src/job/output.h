@@ -13,24 +13,21 @@
 
 namespace hydrodip {
 
-// film.ply, preview.png, maps.png and preview.glb for a film that carries `film_image` (as seen
-// from above, over the whole sheet). The picture's caption is a short verdict after
-// `caption_start`. Returns the bytes of both pictures.
-ReportPictures write_previews(OutputFolder& folder, const JobRecord& record,
-                              const Image& film_image, const SheetRaster& raster,
-                              const std::string& caption_start = "");
-
-// What the report page's 3D view shows, and what is learnt on the way. Time it apart.
-struct PageParts {
-  std::string scene;
+// What the report's page shows.
+struct Previews {
+  ReportPictures pictures;  // preview.png and maps.png, and the 3D view's scene
   std::optional<ReportColors> colors;
   std::optional<ReportInk> ink;
 };
-PageParts page_parts(const JobRecord& record, const Image& film_image, const SheetRaster& raster);
+
+// Writes film.ply, preview.glb, preview.png, maps.png, and gamut.png if there is ink, for a film
+// that carries `film_image` (as seen from above, over the whole sheet). Without config.pictures
+// only the first two. The picture's caption is a short verdict after `caption_start`.
+Previews write_previews(OutputFolder& folder, const JobRecord& record, const Image& film_image,
+                        const SheetRaster& raster, const std::string& caption_start = "");
 
 // Writes report.json and report.html, then moves all files to their final names, unless the job was
 // cancelled.
-JobResult finish(OutputFolder& folder, const JobRecord& record, ReportPictures pictures,
-                 PageParts page);
+JobResult finish(OutputFolder& folder, const JobRecord& record, Previews previews);
 
 }  // namespace hydrodip

@@ -43,14 +43,17 @@ void compose(OutputFolder& folder, const FilmInk& ink, const ColorModel& model,
   const SheetOptions sheet = sheet_options(config);
   const InkImage& inks = ink.inking.inks;
   const Image look = look_on_film(inks, ink.wanted, model);
-  context.progress("writing print.png", 0);
-  write_print_png(folder.path("print.png"), look, sheet);
-  context.progress("writing print.tif", 0);
-  write_print_tiff(folder.path("print.tif"), inks, model.profile(), sheet);
-  if (config.print.color == PrintColor::kCmyk)
-    write_print_pdf(folder.path("print.pdf"), inks, model.profile(), sheet, context);
-  else
-    write_rgb_pdf(folder.path("print.pdf"), look, config, context);
+  const auto png = folder.path("print.png"), tiff = folder.path("print.tif"),
+             pdf = folder.path("print.pdf");
+  context.progress("writing the sheet", 0);
+  parallel_do({[&] { write_print_tiff(tiff, inks, model.profile(), sheet); },
+               [&] {
+                 if (config.print.color == PrintColor::kCmyk)
+                   write_print_pdf(pdf, inks, model.profile(), sheet, context);
+                 else
+                   write_rgb_pdf(pdf, look, config, context);
+               },
+               [&] { write_print_png(png, look, sheet); }});
 }
 
 }  // namespace
@@ -75,10 +78,9 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
   const JobRecord record{"print", config, inputs, *dipped, times, context, &result, model->name()};
   const SheetRaster raster = sheet_raster(config, config.print.dpi);
   const Image& image = result.ink.on_object;
-  const ReportPictures pictures =
+  Previews previews =
       times.measure("preview", [&] { return write_previews(folder, record, image, raster); });
-  PageParts page = times.measure("page", [&] { return page_parts(record, image, raster); });
-  return finish(folder, record, pictures, std::move(page));
+  return finish(folder, record, std::move(previews));
 }
 
 }  // namespace hydrodip

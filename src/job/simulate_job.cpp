@@ -132,12 +132,11 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
                          times,      context, nullptr, model->name()};
   const Image seen = times.measure(
       "look", [&] { return seen_on_object(*dipped, printed, *model, config, context); });
-  const ReportPictures pictures = times.measure("preview", [&] {
+  Previews previews = times.measure("preview", [&] {
     return write_previews(folder, record, seen, printed.raster,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");
   });
-  PageParts page = times.measure("page", [&] { return page_parts(record, seen, printed.raster); });
-  return finish(folder, record, pictures, std::move(page));
+  return finish(folder, record, std::move(previews));
 }
 
 }  // namespace hydrodip

@@ -80,6 +80,7 @@ class OwnFilmSlow : public SearchSlow {
     const std::vector<Subject> scanned =
         load_subjects({name_ + "=" + file.string()}, {}, config_, context_);
     options.elements_factor = options.step_factor = 1;
+    options.correct = false;
     SimulationStore store(folder_.path / (std::to_string(scan.seed) + ".jsonl"), {});
     return Search(scanned, config_, 5, options, store).run(context_);
   }
