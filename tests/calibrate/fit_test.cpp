@@ -125,6 +125,32 @@ TEST(CertaintyTest, ARatioThatNothingBoundsIsUnbounded) {
   EXPECT_GE(found.low.stiffness_ratio, 1);
 }
 
+// Lengths that are wrong just as another parameter would make them move the answer by that much.
+TEST(CertaintyTest, DoubtsWidenTheIntervalsByWhatTheyDoToTheAnswer) {
+  Fit fit;
+  fit.point = FitPoint(0.6, 0.2, 0.2);
+  fit.free = {true, true, true};
+  fit.jacobian = Eigen::MatrixX3d::Random(40, 3);
+  fit.residual = Eigen::VectorXd::Zero(40);
+  const Eigen::Vector3d moved(0.01, 0.02, 0.03);
+  const Certainty sure = certainty(fit, Eigen::MatrixXd::Identity(40, 40), fit.jacobian * moved);
+  EXPECT_NEAR(sure.low.z_stretch, 0.59, 1e-9);
+  EXPECT_NEAR(sure.high.z_stretch, 0.61, 1e-9);
+  EXPECT_NEAR(sure.low.stiffness_ratio, 1 / (0.22 * 0.22), 1e-6);
+  EXPECT_NEAR(sure.high.stiffness_ratio, 1 / (0.18 * 0.18), 1e-6);
+  EXPECT_NEAR(sure.low.poisson, 0.17, 1e-9);
+  EXPECT_NEAR(sure.high.poisson, 0.23, 1e-9);
+}
+
+TEST(BeyondTest, FindsTheLimitOfErrorsThatFallAsTheSquareOfTheCells) {
+  const Eigen::VectorXd limit = Eigen::VectorXd::Random(5), slope = Eigen::VectorXd::Random(5);
+  const auto on_cells_of = [&](double size) {
+    return Eigen::VectorXd(limit + size * size * slope);
+  };
+  const Eigen::VectorXd fine = on_cells_of(0.2), finest = on_cells_of(0.1);
+  EXPECT_LT((finest + beyond(fine, finest) - limit).norm(), 1e-12);
+}
+
 TEST(FitPointTest, ComesBack) {
   const FilmParameters p = from_fit(to_fit({0.65, 600, 0.2}));
   EXPECT_NEAR(p.stiffness_ratio, 600, 1e-9);
