@@ -158,7 +158,8 @@ std::vector<Command> calibrate_commands() {
        "error-surface.png. Started again, an interrupted calibration goes on where it was.\n"
        "A RANGE is FROM:TO:STEP, FROM:TO:xFACTOR, values with commas, or one value that is known.\n"
        "The grid is searched on a film of a quarter of the triangles and twice the step, and the\n"
-       "result corrected by dips on the film that is asked for. See also 'calibrate kit' and\n"
+       "result corrected by dips on the film that is asked for and on a finer one. See also "
+       "'calibrate kit' and\n"
        "'calibrate synth', and docs/calibration.md.",
        declare_calibrate, run_calibrate},
       {"calibrate kit", "what a calibration needs: shapes to print, film, instructions",
@@ -166,9 +167,9 @@ std::vector<Command> calibrate_commands() {
        "instructions.pdf.",
        declare_kit, run_kit},
       {"calibrate synth", "scans computed from known parameters, to try calibrations on",
-       "Writes OBJECT-scan.obj, OBJECT-scan.csv and truth.toml. They are computed on four times "
-       "the\n"
-       "triangles and half the step. Truth: --set material.z_stretch=0.65 and so on.",
+       "Writes OBJECT-scan.obj, OBJECT-scan.csv and truth.toml. They are computed on sixteen "
+       "times the\n"
+       "triangles and a quarter of the step. Truth: --set material.z_stretch=0.65 and so on.",
        declare_synth, run_synth},
       {"measure", "the error of a simulated dip against a scan, Eq. 4 of the paper",
        "For the full method and for the baselines single-step and projection. With -o it writes\n"

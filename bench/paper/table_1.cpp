@@ -21,7 +21,7 @@ constexpr double kNoise_mm = 0.05;
 constexpr const char* kPaper[] = {"0.020", "0.052", "0.032"};
 
 std::vector<Subject> scans(const JobConfig& config, const Study& study) {
-  const JobConfig fine = finer_film(config);
+  const JobConfig fine = finer_film(finer_film(config));  // as `calibrate synth`
   const CheckeredFilm film = checkered_film(fine, kSquare_mm);
   std::vector<std::string> texts;
   for (const KitShape& shape : kit_shapes()) {

@@ -33,7 +33,8 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
                     RunContext& context) {
   check(request);
   const ThreadLimit threads(config.threads);
-  const JobConfig fine = finer_film(config);
+  // Finer than any film that calibrate dips with the same configuration.
+  const JobConfig fine = finer_film(finer_film(config));
   const FilmParameters truth = film_parameters(config);
   const CheckeredFilm film = checkered_film(fine, request.square_mm);
   OutputFolder folder(config.output);

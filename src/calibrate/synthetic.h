@@ -20,7 +20,7 @@ struct SyntheticOptions {
 CornerGrid synthetic_scan(const CheckerboardDip& dip, const CalibrationObject& object,
                           const GridPlace& reach, const SyntheticOptions& options);
 
-// The film that synthetic scans are made on: finer than `config`'s, in triangles and step.
+// The next finer film: cells of half the size (four times the triangles) and half the step.
 JobConfig finer_film(const JobConfig& config);
 
 }  // namespace hydrodip
