@@ -24,10 +24,17 @@ const FilmParameters kTruth{0.65, 30, 0.15};
 // Wide enough for what noise of this size moves.
 const FitPoint kStep(0.03, 0.08, 0.12);
 
+// The dip refers to its neighbours, so it stays where it was made.
 struct Shape {
   CalibrationObject object;
   Surface surface;
   CheckerboardDip truth;
+
+  Shape(const std::string& name, const CheckeredFilm& film, const JobConfig& config,
+        RunContext& context)
+      : object(calibration_object(name, config, context)),
+        surface(object.object.positions, object.object.triangles),
+        truth(dip_checkerboard(film, object, surface, kTruth, config.dip, context)) {}
 };
 
 JobConfig search_config() {
@@ -70,18 +77,14 @@ class Study {
         finest_(finer_film(finer_film(config_)), context_) {
     const JobConfig truth = finer_film(finer_film(finer_film(config_)));
     const CheckeredFilm film = checkered_film(truth, kSquare_mm);
-    for (const KitShape& kit : kit_shapes()) {
-      CalibrationObject object = calibration_object(kit.name, config_, context_);
-      Surface surface(object.object.positions, object.object.triangles);
-      CheckerboardDip dip = dip_checkerboard(film, object, surface, kTruth, truth.dip, context_);
-      shapes_.push_back({std::move(object), std::move(surface), std::move(dip)});
-    }
+    for (const KitShape& kit : kit_shapes())
+      shapes_.push_back(std::make_unique<Shape>(kit.name, film, truth, context_));
   }
 
   std::vector<Subject> scan(std::uint64_t seed) {
     std::vector<std::string> texts;
     for (std::size_t s = 0; s < shapes_.size(); ++s) {
-      const Shape& shape = shapes_[s];
+      const Shape& shape = *shapes_[s];
       const std::filesystem::path file = folder_ / (shape.object.name + ".csv");
       write_scan_table(file,
                        synthetic_scan(shape.truth, shape.object, {20, 20},
@@ -132,9 +135,9 @@ class Study {
 
  private:
   const CheckerboardDip& dip_of(Dips& dips, const Subject& subject, const FitPoint& point) {
-    for (const Shape& shape : shapes_)
-      if (shape.object.name == subject.name)
-        return dips.at(subject.name, shape.object, shape.surface, point);
+    for (const auto& shape : shapes_)
+      if (shape->object.name == subject.name)
+        return dips.at(subject.name, shape->object, shape->surface, point);
     throw std::logic_error("no such shape");
   }
 
@@ -160,7 +163,7 @@ class Study {
   std::filesystem::path folder_;
   RunContext context_;
   JobConfig config_;
-  std::vector<Shape> shapes_;
+  std::vector<std::unique_ptr<Shape>> shapes_;
   Dips search_, fine_, finest_;
 };
 

@@ -74,6 +74,12 @@ std::unique_ptr<Scheme> make_scheme(const DipSetting& setting, DipState& state) 
                                                      : make_contact_line_scheme(setting, state);
 }
 
+void check_solved(const DipStatistics& statistics, int steps, const DipOptions& options) {
+  if (double(statistics.unconverged_steps) <= options.unconverged_share_max * steps) return;
+  throw DipError(fmt::format("the film's equilibrium was not found in {} of {} steps",
+                             statistics.unconverged_steps, steps));
+}
+
 int number_of_steps(double depth, const DipOptions& options) {
   if (options.method != DipMethod::kFull) return 1;
   return std::max(1, static_cast<int>(std::ceil(depth / options.step_mm - 1e-9)));
@@ -117,6 +123,7 @@ DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
   for (int step = 1; step <= steps; ++step) {
     context.progress("dipping", double(step - 1) / steps);
     scheme->advance(depth * step / steps);
+    check_solved(state.statistics, steps, options);
     if (observe) observe(step, steps, state.level, state.position, state.state);
   }
   context.progress("dipping", 1);

@@ -44,6 +44,8 @@ struct DipOptions {
   // stretched well beyond tear_stretch. Empty: tear_stretch alone decides. What another dip found,
   // so that two dips can be compared smoothly.
   std::vector<double> tear_levels;
+  // Where more steps than this share end without an equilibrium, dip() gives up.
+  double unconverged_share_max = 1;
 };
 
 // How the computation went; sums over all steps.

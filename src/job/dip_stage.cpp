@@ -25,9 +25,12 @@ void dip_again(DippedObject& dipped, const FilmMesh& film, const DipOptions& opt
                StageTimes& times, RunContext& context) {
   const Object& object = dipped.object();
   times.measure("dip", [&] {
+    DipHistory history;
+    DipResult result = dip(film, object.positions, object.triangles, *dipped.surface, options,
+                           context, [&](auto&&... state) { history.record(state...); });
     dipped.map.reset();  // refers to the film that goes
-    dipped.dip = dip(film, object.positions, object.triangles, *dipped.surface, options, context,
-                     [&](auto&&... state) { dipped.history.record(state...); });
+    dipped.dip = std::move(result);
+    dipped.history = std::move(history);
   });
   times.measure("map", [&] {
     context.progress("mapping", 0);

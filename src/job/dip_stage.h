@@ -35,7 +35,8 @@ struct DippedObject {
 // The object alone, before any dip.
 std::unique_ptr<DippedObject> undipped(LoadedObject posed);
 
-// Simulates its dip on film that it fits; everything but the object is made anew.
+// Simulates its dip on film that it fits; everything but the object is made anew. If that throws,
+// the last dip stays.
 void dip_again(DippedObject& dipped, const FilmMesh& film, const DipOptions& options,
                StageTimes& times, RunContext& context);
 

@@ -27,9 +27,9 @@ constexpr int kMixed = 2;
 constexpr double kMostInks = 4;
 // From there on two rounds have to bring the change below this share.
 constexpr double kLeastProgress = 0.5;
-// Where more of the film tears than this share of what meets the object, flaps decide and rounds do
-// not settle: such a dip is to be planned anew.
-constexpr double kHopelessShare = 0.2;
+// Where film tears, its flaps may have no equilibrium that can be found once ink stiffens them.
+// Such a dip is to be planned anew.
+constexpr double kFailedSteps = 0.02;
 // While ink and film settle, the film image need only be as fine as stiffness can tell: several
 // pixels to a millimetre.
 constexpr double kRoundsDpi = 150;
@@ -149,8 +149,7 @@ class InkRounds {
   }
 
   InkResult run() {
-    while (true) {
-      dip();
+    while (dip()) {
       result_.ink = times_.measure("ink", [&] { return print(rounds_config_, false); });
       judge();
       if (ended()) break;
@@ -164,9 +163,23 @@ class InkRounds {
  private:
   int rounds() const { return int(result_.rounds.size()); }
 
-  void dip() {
-    if (rounds() > 0) before_ = dipped_.film();
-    dip_again(dipped_, film_, options_, times_, context_);
+  // False if the film cannot be dipped with its ink: then the last dip stays.
+  bool dip() {
+    if (rounds() == 0) {
+      dip_again(dipped_, film_, options_, times_, context_);
+      return true;
+    }
+    before_ = dipped_.film();
+    options_.unconverged_share_max = kFailedSteps;
+    try {
+      dip_again(dipped_, film_, options_, times_, context_);
+    } catch (const DipError&) {
+      context_.warn(
+          "so much film tears that the dip could not be computed again with its ink; turn steep "
+          "sides down or dip less, then print anew");
+      return false;
+    }
+    return true;
   }
 
   // What to print on the film as it was dipped last; `all`: wherever it lies on the object.
@@ -199,12 +212,6 @@ class InkRounds {
     const bool iterate = ink_matters(config_) && config_.ink.rounds_max > 1;
     result_.settled = !iterate || (before_ && change(0) < kSettled_mm);
     if (result_.settled || rounds() >= config_.ink.rounds_max) return true;
-    if (dipped_.coverage.torn_share() > kHopelessShare) {
-      context_.warn(
-          "so much film tears that the dip was not computed again with its ink; turn steep sides "
-          "down or dip less, then print anew");
-      return true;
-    }
     // What does not settle costs a dip each round.
     return rounds() > kFreeRounds + 2 && change(0) > kLeastProgress * change(2);
   }
