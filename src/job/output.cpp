@@ -179,7 +179,7 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record, const Ima
   return previews;
 }
 
-JobResult finish(OutputFolder& folder, const JobRecord& record, Previews previews) {
+JobResult finish(OutputFolder& folder, const JobRecord& record, const Previews& previews) {
   Report report = make_report(record);
   report.colors = previews.colors;
   report.ink = previews.ink;

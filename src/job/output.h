@@ -28,6 +28,6 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record, const Ima
 
 // Writes report.json and report.html, then moves all files to their final names, unless the job was
 // cancelled.
-JobResult finish(OutputFolder& folder, const JobRecord& record, Previews previews);
+JobResult finish(OutputFolder& folder, const JobRecord& record, const Previews& previews);
 
 }  // namespace hydrodip

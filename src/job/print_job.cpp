@@ -78,9 +78,9 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
   const JobRecord record{"print", config, inputs, *dipped, times, context, &result, model->name()};
   const SheetRaster raster = sheet_raster(config, config.print.dpi);
   const Image& image = result.ink.on_object;
-  Previews previews =
+  const Previews previews =
       times.measure("preview", [&] { return write_previews(folder, record, image, raster); });
-  return finish(folder, record, std::move(previews));
+  return finish(folder, record, previews);
 }
 
 }  // namespace hydrodip

@@ -132,11 +132,11 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
                          times,      context, nullptr, model->name()};
   const Image seen = times.measure(
       "look", [&] { return seen_on_object(*dipped, printed, *model, config, context); });
-  Previews previews = times.measure("preview", [&] {
+  const Previews previews = times.measure("preview", [&] {
     return write_previews(folder, record, seen, printed.raster,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");
   });
-  return finish(folder, record, std::move(previews));
+  return finish(folder, record, previews);
 }
 
 }  // namespace hydrodip
