@@ -27,8 +27,8 @@ constexpr int kMixed = 2;
 constexpr double kMostInks = 4;
 // From there on two rounds have to bring the change below this share.
 constexpr double kLeastProgress = 0.5;
-// Where film tears, its flaps may have no equilibrium that can be found once ink stiffens them.
-// Such a dip is to be planned anew.
+// Film torn to flaps or stretched too far may have no equilibrium that can be found once ink
+// stiffens it. A dip that fails in more than this share of its steps is to be planned anew.
 constexpr double kFailedSteps = 0.02;
 // While ink and film settle, the film image need only be as fine as stiffness can tell: several
 // pixels to a millimetre.
@@ -175,8 +175,8 @@ class InkRounds {
       dip_again(dipped_, film_, options_, times_, context_);
     } catch (const DipError&) {
       context_.warn(
-          "so much film tears that the dip could not be computed again with its ink; turn steep "
-          "sides down or dip less, then print anew");
+          "the dip could not be computed again with its ink: film torn or stretched this far finds "
+          "no equilibrium; turn steep sides down or dip less, then print anew");
       return false;
     }
     return true;
