@@ -28,6 +28,10 @@ class RunContext {
   // sink is called by one at a time.
   void progress(const std::string& stage, double fraction);
 
+  // Runs the tasks side by side as one stage, whose progress is how many are done: that of the
+  // tasks' own stages is not shown. Exceptions as by parallel_do().
+  void side_by_side(const std::string& stage, const std::vector<std::function<void()>>& tasks);
+
   // Throws Cancelled if the job was cancelled. Cheap, callable from any thread.
   void check_cancelled() const;
 
@@ -49,10 +53,13 @@ class RunContext {
   std::vector<std::string> warnings() const;
 
  private:
+  void show_progress(const std::string& stage, double fraction);
+
   static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
   std::atomic<int> cancel_requests_{0};
   std::atomic<bool> expects_second_{false};
   std::mutex progress_mutex_;
+  std::atomic<bool> side_by_side_{false};
   ProgressSink progress_sink_;
   LogSink log_sink_;
   mutable std::mutex mutex_;

@@ -29,11 +29,13 @@ void parallel_for(std::size_t count, std::size_t grain,
 void parallel_do(const std::vector<std::function<void()>>& tasks) {
   std::vector<std::exception_ptr> failures(tasks.size());
   parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) try {
+    for (std::size_t n = begin; n < end; ++n) {
+      try {
         tasks[n]();
       } catch (...) {
         failures[n] = std::current_exception();
       }
+    }
   });
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/file.h"
-#include "base/parallel.h"
 #include "image/files.h"
 #include "image/resize.h"
 #include "job/prepare.h"
@@ -175,7 +174,7 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record, const Ima
   }
   add("preview.glb", [&](const auto& path) { write_glb(path, record, film_image, raster); });
   add("film.ply", [&](const auto& path) { write_film_ply(path, dipped.film()); });
-  parallel_do(tasks);
+  record.context.side_by_side("drawing the previews", tasks);
   return previews;
 }
 

@@ -45,15 +45,15 @@ void compose(OutputFolder& folder, const FilmInk& ink, const ColorModel& model,
   const Image look = look_on_film(inks, ink.wanted, model);
   const auto png = folder.path("print.png"), tiff = folder.path("print.tif"),
              pdf = folder.path("print.pdf");
-  context.progress("writing the sheet", 0);
-  parallel_do({[&] { write_print_tiff(tiff, inks, model.profile(), sheet); },
-               [&] {
-                 if (config.print.color == PrintColor::kCmyk)
-                   write_print_pdf(pdf, inks, model.profile(), sheet, context);
-                 else
-                   write_rgb_pdf(pdf, look, config, context);
-               },
-               [&] { write_print_png(png, look, sheet); }});
+  context.side_by_side("writing the sheet",
+                       {[&] { write_print_tiff(tiff, inks, model.profile(), sheet); },
+                        [&] {
+                          if (config.print.color == PrintColor::kCmyk)
+                            write_print_pdf(pdf, inks, model.profile(), sheet, context);
+                          else
+                            write_rgb_pdf(pdf, look, config, context);
+                        },
+                        [&] { write_print_png(png, look, sheet); }});
 }
 
 }  // namespace
