@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "calibrate/fit.h"
+#include "calibrate/resolution.h"
 #include "calibrate/subject.h"
 #include "calibrate/synthetic.h"
 #include "scan/read_scan.h"
@@ -109,7 +110,7 @@ class Study {
   std::pair<Fit, Certainty> calibrate(std::uint64_t seed) {
     const std::vector<Subject> subjects = scan(seed);
     const FitPoint start = to_fit(kTruth);
-    const auto fit_with = [&](const Eigen::VectorXd& correction) {
+    const auto fit_with = [&](const Eigen::VectorXd& lacking) {
       FitOptions options;
       options.low = FitPoint(0.4, 0.01, 0);
       options.high = FitPoint(0.9, 0.9, 0.45);
@@ -118,19 +119,25 @@ class Study {
       return fit_parameters(
           start,
           [&](const std::vector<FitPoint>& points) {
-            Eigen::MatrixXd matrix(correction.size(), Eigen::Index(points.size()));
+            Eigen::MatrixXd matrix(lacking.size(), Eigen::Index(points.size()));
             for (std::size_t p = 0; p < points.size(); ++p)
-              matrix.col(Eigen::Index(p)) = errors(search_, subjects, points[p]) + correction;
+              matrix.col(Eigen::Index(p)) = errors(search_, subjects, points[p]) + lacking;
             return matrix;
           },
           options);
     };
-    const Eigen::VectorXd here = errors(search_, subjects, start),
-                          fine = errors(fine_, subjects, start),
-                          finest = errors(finest_, subjects, start);
-    const Eigen::VectorXd guessed = beyond(fine, finest);
-    const Fit fit = fit_with(finest + guessed - here);
-    return {fit, certainty(fit, gradient(subjects, start), guessed)};
+    const Correction lacking =
+        correction(errors(search_, subjects, start), errors(fine_, subjects, start),
+                   errors(finest_, subjects, start));
+    Fit fit = fit_with(lacking.all);
+    // At the truth, not at each seed's answer: all share the dips.
+    const Eigen::MatrixXd here = gradient(subjects, start);
+    Fit at_truth = fit;
+    at_truth.point = start;
+    fit.point -= noise_bias(
+        at_truth, certainty(fit, here).noise_mm,
+        [&](const FitPoint& point) { return gradient(subjects, point); }, kStep);
+    return {fit, certainty(fit, here, lacking.guessed)};
   }
 
  private:

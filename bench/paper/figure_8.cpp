@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "calibrate/checkerboard_dip.h"
-#include "calibrate/synthetic.h"
+#include "calibrate/resolution.h"
 #include "figures.h"
 #include "image/files.h"
 #include "object/samples.h"

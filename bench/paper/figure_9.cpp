@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "calibrate/pictures.h"
+#include "calibrate/resolution.h"
 #include "calibrate/synthetic.h"
 #include "figures.h"
 #include "image/files.h"

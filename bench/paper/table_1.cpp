@@ -6,6 +6,7 @@
 
 #include "calibrate/pictures.h"
 #include "calibrate/search.h"
+#include "calibrate/resolution.h"
 #include "calibrate/synthetic.h"
 #include "figures.h"
 #include "image/files.h"

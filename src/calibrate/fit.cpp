@@ -16,6 +16,8 @@ const FitPoint kLeast(0.0, 1e-4, -0.4), kMost(5.0, 1.0, 0.48);
 constexpr double kSettled = 0.1;
 // How far one round may go, in stencils.
 constexpr double kTrust = 1.5;
+// This near a bound, in stencils, an answer lies at it.
+constexpr double kAtBound = 1e-3;
 // 97.5 % quantile of the normal distribution.
 constexpr double kQuantile = 1.96;
 
@@ -44,14 +46,21 @@ struct QuadraticModel {
   }
 };
 
-// The model over the free parameters, for Eigen's optimiser.
-struct FreeModel : Eigen::DenseFunctor<double> {
-  FreeModel(const QuadraticModel& m, const Eigen::Vector3d& s, const std::vector<int>& f)
-      : DenseFunctor(int(f.size()), int(m.value.size())), model(m), start(s), free(f) {}
+// The model over the free parameters, for Eigen's optimiser, which knows no bounds: each parameter
+// is the sine of one that has none, from its lowest value at -1 to its highest at 1.
+struct BoundedModel : Eigen::DenseFunctor<double> {
+  BoundedModel(const QuadraticModel& m, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+               const std::vector<int>& f)
+      : DenseFunctor(int(f.size()), int(m.value.size())),
+        model(m),
+        middle(0.5 * (low + high)),
+        half(0.5 * (high - low)),
+        free(f) {}
 
   Eigen::Vector3d whole(const Eigen::VectorXd& x) const {
-    Eigen::Vector3d d = start;
-    for (std::size_t i = 0; i < free.size(); ++i) d[free[i]] = x[Eigen::Index(i)];
+    Eigen::Vector3d d = middle;
+    for (std::size_t i = 0; i < free.size(); ++i)
+      d[free[i]] += half[free[i]] * std::sin(x[Eigen::Index(i)]);
     return d;
   }
   int operator()(const Eigen::VectorXd& x, Eigen::VectorXd& r) const {
@@ -60,38 +69,38 @@ struct FreeModel : Eigen::DenseFunctor<double> {
   }
   int df(const Eigen::VectorXd& x, Eigen::MatrixXd& j) const {
     const Eigen::MatrixX3d all = model.slope_at(whole(x));
-    for (std::size_t i = 0; i < free.size(); ++i) j.col(Eigen::Index(i)) = all.col(free[i]);
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const auto k = Eigen::Index(i);
+      j.col(k) = half[free[i]] * std::cos(x[k]) * all.col(free[i]);
+    }
     return 0;
   }
 
   const QuadraticModel& model;
-  Eigen::Vector3d start;
+  Eigen::Vector3d middle, half;
   const std::vector<int>& free;
 };
 
-// The model's least squares within a box: a parameter that leaves it is held at its edge.
+// The model's least squares within a box, from where it was made.
 Eigen::Vector3d minimize(const QuadraticModel& model, const Eigen::Vector3d& low,
                          const Eigen::Vector3d& high) {
-  Eigen::Vector3d d = Eigen::Vector3d::Zero().cwiseMax(low).cwiseMin(high);
+  // At a bound itself nothing would move.
+  constexpr double kFurthestStart = 0.9;
   std::vector<int> free;
   for (int k = 0; k < 3; ++k)
     if (low[k] < high[k]) free.push_back(k);
-  while (!free.empty() && model.value.size() >= Eigen::Index(free.size())) {
-    FreeModel functor(model, d, free);
-    Eigen::VectorXd x(Eigen::Index(free.size()));
-    for (std::size_t i = 0; i < free.size(); ++i) x[Eigen::Index(i)] = d[free[i]];
-    Eigen::LevenbergMarquardt<FreeModel> optimizer(functor);
-    optimizer.minimize(x);
-    Eigen::Vector3d found = functor.whole(x);
-    int worst = -1;
-    double excess = 0;
-    for (const int k : free) {
-      const double beyond = std::max(low[k] - found[k], found[k] - high[k]);
-      if (!(beyond <= excess)) worst = k, excess = beyond;
-    }
-    if (worst < 0) return found;
-    d = found.allFinite() ? found.cwiseMax(low).cwiseMin(high).eval() : d;
-    free.erase(std::find(free.begin(), free.end(), worst));
+  BoundedModel bounded(model, low, high, free);
+  if (free.empty() || model.value.size() < Eigen::Index(free.size())) return bounded.middle;
+  Eigen::VectorXd x(Eigen::Index(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i)
+    x[Eigen::Index(i)] = std::asin(std::clamp(-bounded.middle[free[i]] / bounded.half[free[i]],
+                                              -kFurthestStart, kFurthestStart));
+  Eigen::LevenbergMarquardt<BoundedModel> optimizer(bounded);
+  optimizer.minimize(x);
+  Eigen::Vector3d d = bounded.whole(x);
+  for (int k = 0; k < 3; ++k) {
+    if (d[k] < low[k] + kAtBound) d[k] = low[k];
+    if (d[k] > high[k] - kAtBound) d[k] = high[k];
   }
   return d;
 }
@@ -142,14 +151,6 @@ struct Stencil {
   }
 };
 
-// Where the stencil fits.
-FitPoint stencil_step(const FitPoint& center, const FitOptions& options) {
-  FitPoint step = options.step;
-  // In the ratio a stencil that is wide at soft inks would leave out all stiff ones.
-  step[1] = std::min(step[1], std::max(0.01, 0.4 * center[1]));
-  return step;
-}
-
 std::vector<Eigen::Index> known_rows(const Eigen::MatrixXd& values) {
   std::vector<Eigen::Index> rows;
   for (Eigen::Index i = 0; i < values.rows(); ++i)
@@ -161,6 +162,24 @@ double root_mean_square(const Eigen::VectorXd& values) {
   return values.size() > 0 ? std::sqrt(values.squaredNorm() / double(values.size())) : 0;
 }
 
+// The centre of a stencil near a point for which all dips can be computed.
+FitPoint inside(const FitPoint& point, const FitPoint& step) {
+  return point.cwiseMax(kLeast + step).cwiseMin(kMost - step);
+}
+
+// A fit's known lengths and free parameters.
+struct KnownFit {
+  explicit KnownFit(const Fit& fit) {
+    for (Eigen::Index i = 0; i < fit.residual.size(); ++i)
+      if (std::isfinite(fit.residual[i])) rows.push_back(i);
+    for (int k = 0; k < 3; ++k)
+      if (fit.free[std::size_t(k)]) free.push_back(k);
+    jacobian = fit.jacobian(rows, free);
+  }
+  std::vector<Eigen::Index> rows, free;
+  Eigen::MatrixXd jacobian;
+};
+
 }  // namespace
 
 FitPoint to_fit(const FilmParameters& parameters) {
@@ -171,14 +190,20 @@ FilmParameters from_fit(const FitPoint& point) {
   return {point[0], 1 / (point[1] * point[1]), point[2]};
 }
 
+FitPoint stencil_step(const FitPoint& center, const FitPoint& widest) {
+  FitPoint step = widest;
+  step[1] = std::min(step[1], std::max(0.01, 0.4 * center[1]));
+  return step;
+}
+
 Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitOptions& options) {
   Fit fit;
   for (int k = 0; k < 3; ++k) fit.free[std::size_t(k)] = options.low[k] < options.high[k];
   FitPoint center = start;
   while (true) {
     ++fit.rounds;
-    const FitPoint step = stencil_step(center, options);
-    Stencil stencil{center.cwiseMax(kLeast + step).cwiseMin(kMost - step), step, fit.free};
+    const FitPoint step = stencil_step(center, options.step);
+    Stencil stencil{inside(center, step), step, fit.free};
     for (int k = 0; k < 3; ++k)
       if (!fit.free[std::size_t(k)]) stencil.center[k] = center[k];
     const Eigen::MatrixXd values = errors(stencil.points());
@@ -224,13 +249,10 @@ Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitO
 
 Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
                     const Eigen::VectorXd& doubt_mm) {
-  std::vector<Eigen::Index> rows, free;
-  for (Eigen::Index i = 0; i < fit.residual.size(); ++i)
-    if (std::isfinite(fit.residual[i])) rows.push_back(i);
-  for (int k = 0; k < 3; ++k)
-    if (fit.free[std::size_t(k)]) free.push_back(k);
+  const KnownFit known(fit);
+  const std::vector<Eigen::Index>&rows = known.rows, &free = known.free;
   Certainty result;
-  const Eigen::MatrixXd j = fit.jacobian(rows, free);
+  const Eigen::MatrixXd& j = known.jacobian;
   const Eigen::MatrixXd g = noise_gradient(rows, Eigen::all);
   const Eigen::VectorXd residual = fit.residual(rows);
 
@@ -262,9 +284,33 @@ Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
   return result;
 }
 
-Eigen::VectorXd beyond(const Eigen::VectorXd& fine, const Eigen::VectorXd& finest) {
-  constexpr double kFinerCells = 2;
-  return (finest - fine) / (kFinerCells * kFinerCells - 1);
+// The sum of squares to be expected is that without noise and noise_mm^2 times that of the noise
+// gradient. Where the first one's slope is 0, the second one's is not.
+FitPoint noise_bias(const Fit& fit, double noise_mm, const NoiseGradient& gradient,
+                    const FitPoint& step) {
+  const KnownFit known(fit);
+  const auto count = Eigen::Index(known.free.size());
+  const FitPoint center = inside(fit.point, step);
+  // Per length, on both sides of the answer.
+  Eigen::MatrixXd before(Eigen::Index(known.rows.size()), count), after = before;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const FitPoint way =
+        step[known.free[std::size_t(k)]] * Eigen::Vector3d::Unit(known.free[std::size_t(k)]);
+    before.col(k) = gradient(center - way)(known.rows, Eigen::all).rowwise().squaredNorm();
+    after.col(k) = gradient(center + way)(known.rows, Eigen::all).rowwise().squaredNorm();
+  }
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index i = 0; i < before.rows(); ++i)
+    if (before.row(i).minCoeff() > 0 && after.row(i).minCoeff() > 0)
+      slope += (after.row(i) - before.row(i)).transpose();
+  for (Eigen::Index k = 0; k < count; ++k) slope[k] /= 2 * step[known.free[std::size_t(k)]];
+
+  const Eigen::MatrixXd curvature = known.jacobian.transpose() * known.jacobian;
+  const Eigen::VectorXd moved =
+      curvature.completeOrthogonalDecomposition().solve(-0.5 * noise_mm * noise_mm * slope);
+  FitPoint bias = FitPoint::Zero();
+  bias(known.free) = moved;
+  return bias;
 }
 
 }  // namespace hydrodip

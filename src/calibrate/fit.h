@@ -25,7 +25,7 @@ using LengthErrors = std::function<Eigen::MatrixXd(const std::vector<FitPoint>& 
 
 struct FitOptions {
   FitPoint low, high;  // where the answer is looked for; equal: fixed
-  FitPoint step;       // first half size of the stencil
+  FitPoint step;       // widest half size of the stencil
   int rounds_max = 12;
 };
 
@@ -40,9 +40,17 @@ struct Fit {
   double rms_mm = 0;
 };
 
+// How wide a stencil around a point may be: in the ratio, one that is wide at soft inks would leave
+// out all stiff ones.
+FitPoint stencil_step(const FitPoint& center, const FitPoint& widest);
+
 // Least squares by Levenberg and Marquardt on a quadratic model of every length, made from
 // simulations on a stencil around the last answer, until the answer stays.
 Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitOptions& options);
+
+// How a scan's noise shows in the lengths: rows as those of LengthErrors, zero where that is not
+// known; a column for each coordinate of each corner.
+using NoiseGradient = std::function<Eigen::MatrixXd(const FitPoint& point)>;
 
 // How well the scans determine an answer.
 struct Certainty {
@@ -51,14 +59,15 @@ struct Certainty {
   // 95 % intervals in film parameters. A ratio without upper bound: infinity.
   FilmParameters low, high;
 };
-// `noise_gradient`: how the scan's noise shows in the lengths (rows as residual's, a column for
-// each coordinate of each corner). `doubt_mm`: by how much each length may be wrong in simulation,
+// `noise_gradient`: at the answer. `doubt_mm`: by how much each length may be wrong in simulation,
 // all together; what that does to the answer widens the intervals. Empty: nothing.
 Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
                     const Eigen::VectorXd& doubt_mm = {});
 
-// What lengths still change by, beyond a film that has been made finer once more, if their error
-// falls as the square of the cells' size (Richardson). finer_film() halves cells.
-Eigen::VectorXd beyond(const Eigen::VectorXd& fine, const Eigen::VectorXd& finest);
+// By how much noise moves an answer on average. The further a simulated film is stretched, the less
+// a scan's noise shows in lengths carried back to it, and least squares prefers such a film.
+// `step`: over which the noise's gradient is looked at.
+FitPoint noise_bias(const Fit& fit, double noise_mm, const NoiseGradient& gradient,
+                    const FitPoint& step);
 
 }  // namespace hydrodip

@@ -9,7 +9,6 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "calibrate/synthetic.h"
 
 namespace hydrodip {
 namespace {
@@ -197,17 +196,12 @@ Eigen::MatrixXd Search::errors_at(Simulations& simulations,
   return errors;
 }
 
-// A scan knows no triangles. Where ink is stiff and edges are sharp, errors fall as the square of
-// the cells' size only on fine films (docs/calibration.md).
-Search::Correction Search::correction_at(const std::vector<std::size_t>& subjects,
-                                         const FitPoint& point, RunContext& context) {
+Correction Search::correction_at(const std::vector<std::size_t>& subjects, const FitPoint& point,
+                                 RunContext& context) {
   const auto errors = [&](Simulations& simulations) -> Eigen::VectorXd {
     return errors_at(simulations, subjects, {point}, "correcting", context).col(0);
   };
-  const Eigen::VectorXd search = errors(search_film_), fine = errors(fine_film_),
-                        finest = errors(finest_film_);
-  const Eigen::VectorXd guessed = beyond(fine, finest);
-  return {finest + guessed - search, guessed};
+  return correction(errors(search_film_), errors(fine_film_), errors(finest_film_));
 }
 
 Eigen::MatrixXd Search::noise_gradient(const std::vector<std::size_t>& subjects,
@@ -247,6 +241,24 @@ Answer Search::answer(const std::string& name, const std::vector<std::size_t>& s
   return result;
 }
 
+// Takes out what noise does to the answer on average, and says how sure it is.
+void Search::judge(Answer& answer, const std::vector<std::size_t>& subjects,
+                   const Eigen::VectorXd& doubt_mm, RunContext& context) {
+  const NoiseGradient gradient = [&](const FitPoint& point) {
+    return noise_gradient(subjects, point, context);
+  };
+  Fit& fit = answer.fit;
+  const Eigen::MatrixXd here = gradient(fit.point);
+  const double noise_mm = certainty(fit, here).noise_mm;
+  const FitPoint step = stencil_step(fit.point, kWidestStep);
+  const FitOptions range = fit_options();
+  fit.point = (fit.point - noise_bias(fit, noise_mm, gradient, step))
+                  .cwiseMax(range.low)
+                  .cwiseMin(range.high);
+  answer.certainty = certainty(fit, here, doubt_mm);
+  answer.parameters = from_fit(fit.point);
+}
+
 Calibration Search::run(RunContext& context) {
   Calibration result;
   result.grid = grid_errors(context);
@@ -262,27 +274,24 @@ Calibration Search::run(RunContext& context) {
 
   const std::vector<std::size_t> everyone = all_indices(subjects_.size());
   result.all = answer("all", everyone, to_fit(best->parameters), {}, context);
-  Correction correction;
+  Correction lacking;
   for (int i = 0; options_.correct && i < kMostCorrections; ++i) {
     const FitPoint before = result.all.fit.point;
-    correction = correction_at(everyone, before, context);
-    result.all = answer("all", everyone, before, correction.all, context);
+    lacking = correction_at(everyone, before, context);
+    result.all = answer("all", everyone, before, lacking.all, context);
     const FitPoint moved = (result.all.fit.point - before).cwiseQuotient(kWidestStep);
     if (moved.cwiseAbs().maxCoeff() < kMovedFar) break;
   }
-  result.correction_mm = root_mean_square(correction.all);
+  result.correction_mm = root_mean_square(lacking.all);
   const FitPoint end = result.all.fit.point;
-  const Eigen::MatrixXd noise = noise_gradient(everyone, end, context);
-  result.all.certainty = certainty(result.all.fit, noise, correction.guessed);
+  judge(result.all, everyone, lacking.guessed, context);
 
   FitPoint sum = FitPoint::Zero();
   for (const std::size_t s : everyone) {
     result.each.push_back(
-        answer(subjects_[s].name, {s}, end, part(correction.all, compared_, s), context));
-    Answer& one = result.each.back();
-    one.certainty = certainty(one.fit, noise_gradient({s}, one.fit.point, context),
-                              part(correction.guessed, compared_, s));
-    sum += one.fit.point;
+        answer(subjects_[s].name, {s}, end, part(lacking.all, compared_, s), context));
+    judge(result.each.back(), {s}, part(lacking.guessed, compared_, s), context);
+    sum += result.each.back().fit.point;
   }
   result.average = from_fit(sum / double(subjects_.size()));
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calibrate/fit.h"
+#include "calibrate/resolution.h"
 #include "calibrate/simulations.h"
 #include "calibrate/subject.h"
 
@@ -81,15 +82,13 @@ class Search {
   Eigen::MatrixXd errors_at(Simulations& simulations, const std::vector<std::size_t>& subjects,
                             const std::vector<FitPoint>& points, const std::string& stage,
                             RunContext& context);
-  // What the search's film lacks at a point, per length: what to add to its errors, and what of
-  // that is a guess.
-  struct Correction {
-    Eigen::VectorXd all, guessed;
-  };
+  // Of the search's film at a point.
   Correction correction_at(const std::vector<std::size_t>& subjects, const FitPoint& point,
                            RunContext& context);
   Answer answer(const std::string& name, const std::vector<std::size_t>& subjects,
                 const FitPoint& start, const Eigen::VectorXd& correction, RunContext& context);
+  void judge(Answer& answer, const std::vector<std::size_t>& subjects,
+             const Eigen::VectorXd& doubt_mm, RunContext& context);
   Eigen::MatrixXd noise_gradient(const std::vector<std::size_t>& subjects, const FitPoint& point,
                                  RunContext& context);
 

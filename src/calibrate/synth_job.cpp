@@ -7,6 +7,7 @@
 #include "base/output_folder.h"
 #include "base/parallel.h"
 #include "calibrate/calibrate.h"
+#include "calibrate/resolution.h"
 #include "calibrate/synthetic.h"
 #include "scan/read_scan.h"
 

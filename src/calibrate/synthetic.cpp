@@ -9,8 +9,6 @@
 namespace hydrodip {
 namespace {
 
-constexpr int kFinerElements = 4;
-constexpr double kFinerStep = 0.5;
 constexpr double kFarthest_mm = 200;
 
 // Not the standard library's distributions, which differ between implementations.
@@ -59,13 +57,6 @@ CornerGrid synthetic_scan(const CheckerboardDip& dip, const CalibrationObject& o
       grid.patch.push_back(0);
     }
   return grid;
-}
-
-JobConfig finer_film(const JobConfig& config) {
-  JobConfig fine = config;
-  fine.film.elements = std::min(config.film.elements, 1000000) * kFinerElements;
-  fine.dip.step_mm = config.dip.step_mm * kFinerStep;
-  return fine;
 }
 
 }  // namespace hydrodip

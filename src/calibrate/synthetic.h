@@ -20,7 +20,4 @@ struct SyntheticOptions {
 CornerGrid synthetic_scan(const CheckerboardDip& dip, const CalibrationObject& object,
                           const GridPlace& reach, const SyntheticOptions& options);
 
-// The next finer film: cells of half the size (four times the triangles) and half the step.
-JobConfig finer_film(const JobConfig& config);
-
 }  // namespace hydrodip

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/resolution.h"
 #include "calibrate/search.h"
 #include "calibrate/synthetic.h"
 #include "scan/read_scan.h"

@@ -1,0 +1,26 @@
+#include "calibrate/resolution.h"
+
+#include <algorithm>
+
+namespace hydrodip {
+namespace {
+
+constexpr int kFiner = 2;  // by which cells and steps shrink
+constexpr int kMostElements = 1000000;
+
+}  // namespace
+
+JobConfig finer_film(const JobConfig& config) {
+  JobConfig fine = config;
+  fine.film.elements = std::min(config.film.elements, kMostElements) * kFiner * kFiner;
+  fine.dip.step_mm = config.dip.step_mm / kFiner;
+  return fine;
+}
+
+Correction correction(const Eigen::VectorXd& here, const Eigen::VectorXd& fine,
+                      const Eigen::VectorXd& finest) {
+  const Eigen::VectorXd guessed = (finest - fine) / (kFiner * kFiner - 1);
+  return {finest + guessed - here, guessed};
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,26 @@
+// What a simulated film lacks for being cut into triangles, and finer films.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "job/config.h"
+
+namespace hydrodip {
+
+// Cells half as wide, steps half as high.
+JobConfig finer_film(const JobConfig& config);
+
+// What to add to length errors on a film.
+struct Correction {
+  Eigen::VectorXd all;      // up to the continuum; empty: nothing
+  Eigen::VectorXd guessed;  // the part of it that no film was computed for
+};
+
+// From the same lengths on that film, on a finer one and on finer_film() of that one. What lengths
+// still change by from there on follows from how they changed, if errors fall as the square of the
+// cells' size (Richardson). Where ink is stiff and edges are sharp, they do so on fine films only
+// (docs/calibration.md).
+Correction correction(const Eigen::VectorXd& here, const Eigen::VectorXd& fine,
+                      const Eigen::VectorXd& finest);
+
+}  // namespace hydrodip
