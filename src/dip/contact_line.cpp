@@ -7,7 +7,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -55,6 +54,8 @@ class ContactLineScheme : public Scheme {
         waterline_(setting.positions, setting.triangles, setting.film.cell_mm),
         energy_(setting.film, setting.options.modulus, setting.options.material.poisson),
         solver_(setting.options.make_solver(setting.film)),
+        relaxation_(energy_, *solver_),
+        seen_from_above_(energy_.grid().layout()),
         feet_of_corner_(3 * setting.film.triangles.size(), {-1, -1}),
         usable_(setting.film.triangles.size(), 0),
         is_free_(setting.film.u.size(), 0),
@@ -182,6 +183,7 @@ class ContactLineScheme : public Scheme {
   // drifts: nothing holds or moves it.
   void update_load(std::size_t t) {
     usable_[t] = carries_load(t);
+    energy_.set_film(t, usable_[t]);
     for (std::int32_t v : film_.triangles[t]) {
       const auto begin = film_.incident.begin() + film_.incident_begin[std::size_t(v)],
                  end = film_.incident.begin() + film_.incident_begin[std::size_t(v) + 1];
@@ -202,14 +204,10 @@ class ContactLineScheme : public Scheme {
 
   // Flat where it floats, all at once; with ghosts for corners at the contact line.
   void set_rest() {
-    energy_.set_flat_rest(plan_, usable_);
+    const std::vector<std::int32_t> small = energy_.set_flat_rest(plan_, kMinArea);
     for (std::size_t t : line_triangles_)
       if (usable_[t]) energy_.set_rest(t, rest_of(t));
-    parallel_for(usable_.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-      const double* area = energy_.elements().area;
-      for (std::size_t t = begin; t < end; ++t)
-        if (area[t] < smallest_area_[t] && usable_[t]) energy_.set_rest(t, rest_of(t));
-    });
+    for (std::int32_t t : small) energy_.set_rest(std::size_t(t), rest_of(std::size_t(t)));
   }
 
   // Calls work(v, w) for every floating corner v of usable film and every other corner w.
@@ -257,7 +255,7 @@ class ContactLineScheme : public Scheme {
     VertexVector u = first_guess(is_free);
     RelaxationOptions options;
     options.otherwise = &film_.u;
-    relax_film(energy_, is_free, *solver_, u, state_.statistics, options);
+    relax_film(relaxation_, is_free, u, state_.statistics, options);
     parallel_for(u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) last_slide_[v] = u[v] - film_.u[v];
     });
@@ -278,14 +276,14 @@ class ContactLineScheme : public Scheme {
     const std::vector<double>& told = set_.options.tear_levels;
     const double limit = tear_limit(set_.options);
     if (!(limit > 0) && told.empty()) return;
-    tears_.assign(film_.triangles.size(), 0);
-    if (limit > 0) energy_.overstretched(u, limit, tears_);
-    for (std::size_t t = 0; t < tears_.size(); ++t) {
-      if (!told.empty() && usable_[t] && level >= told[t]) tears_[t] = 1;
-      if (!tears_[t]) continue;
-      state_.torn[t] = 1;
-      state_.tear_level[t] = level;
-      torn_now_.push_back(t);
+    std::vector<std::int32_t> tears;
+    if (limit > 0) tears = energy_.overstretched(u, limit);
+    for (std::size_t t = 0; t < told.size(); ++t)
+      if (usable_[t] && level >= told[t]) tears.push_back(std::int32_t(t));
+    for (std::int32_t t : tears) {
+      state_.torn[std::size_t(t)] = 1;
+      state_.tear_level[std::size_t(t)] = level;
+      torn_now_.push_back(std::size_t(t));
       any_torn_ = true;
     }
   }
@@ -337,13 +335,12 @@ class ContactLineScheme : public Scheme {
     return !attached(v[0]) && !attached(v[1]) && !attached(v[2]);
   }
 
-  bool any_fold() const {
-    std::atomic<bool> found = false;
-    parallel_for(film_.triangles.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end && !found; ++t)
-        if (folds(t)) found = true;
-    });
-    return found;
+  bool any_fold() {
+    energy_.grid().to_grid(slid_, seen_from_above_);
+    if (!energy_.any_inverted(seen_from_above_)) return false;
+    for (std::size_t t = 0; t < film_.triangles.size(); ++t)
+      if (folds(t)) return true;
+    return false;
   }
 
   // The gradient du/dX of a triangle with its floating corners where they slid to.
@@ -543,6 +540,8 @@ class ContactLineScheme : public Scheme {
   Waterline waterline_;
   FilmEnergy energy_;
   std::unique_ptr<LinearSolver> solver_;
+  Relaxation relaxation_;
+  GridField seen_from_above_;
   double part_ = 0;       // of a step, to go at once next
   double last_rise_ = 0;  // of the level
   std::vector<Foot> feet_;
@@ -553,7 +552,6 @@ class ContactLineScheme : public Scheme {
   // Per triangle: carries load in this step; the least rest area.
   std::vector<std::uint8_t> usable_;
   std::vector<double> smallest_area_;
-  std::vector<std::int64_t> tears_;
   std::vector<std::size_t> torn_now_;  // triangles torn in this step
   bool any_torn_ = false;
   std::vector<std::uint8_t> is_free_;  // per vertex: floats and has film around it

@@ -87,10 +87,9 @@ int number_of_steps(double depth, const DipOptions& options) {
 
 }  // namespace
 
-void relax_film(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
-                LinearSolver& solver, VertexVector& u, DipStatistics& statistics,
-                const RelaxationOptions& options) {
-  const RelaxationResult result = relax(energy, is_free, options, solver, u);
+void relax_film(Relaxation& relaxation, const std::vector<std::uint8_t>& is_free, VertexVector& u,
+                DipStatistics& statistics, const RelaxationOptions& options) {
+  const RelaxationResult result = relaxation.run(is_free, options, u);
   statistics.iterations += result.iterations;
   if (!result.converged) ++statistics.unconverged_steps;
   statistics.largest_residual_mm = std::max(statistics.largest_residual_mm, result.last_update_mm);

@@ -16,7 +16,8 @@ class PaperScheme : public Scheme {
         film_(setting.film),
         state_(state),
         energy_(setting.film, setting.options.modulus, setting.options.material.poisson),
-        solver_(setting.options.make_solver(setting.film)) {}
+        solver_(setting.options.make_solver(setting.film)),
+        relaxation_(energy_, *solver_) {}
 
   void advance(double level) override {
     // Steps 1 and 2, collide and lower.
@@ -41,7 +42,7 @@ class PaperScheme : public Scheme {
     energy_.set_rest(
         rest_in_space(film_, state_.position, is_free, set_.options.material.z_stretch));
     VertexVector u = film_.u;
-    relax_film(energy_, is_free, *solver_, u, state_.statistics);
+    relax_film(relaxation_, is_free, u, state_.statistics);
     return u;
   }
 
@@ -81,6 +82,7 @@ class PaperScheme : public Scheme {
   DipState& state_;
   FilmEnergy energy_;
   std::unique_ptr<LinearSolver> solver_;
+  Relaxation relaxation_;
   std::vector<std::uint8_t> attaching_;
 };
 

@@ -45,9 +45,8 @@ std::unique_ptr<Scheme> make_projection(const DipSetting& setting, DipState& sta
 std::unique_ptr<Scheme> make_single_step(const DipSetting& setting, DipState& state);
 
 // Relaxes, and adds to the statistics.
-void relax_film(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
-                LinearSolver& solver, VertexVector& u, DipStatistics& statistics,
-                const RelaxationOptions& options = {});
+void relax_film(Relaxation& relaxation, const std::vector<std::uint8_t>& is_free, VertexVector& u,
+                DipStatistics& statistics, const RelaxationOptions& options = {});
 
 // First contact of a point moving straight from one place to another, both ends included.
 struct Contact {

@@ -53,7 +53,8 @@ class SingleStep : public Scheme {
       state_.statistics.unconverged_steps = 0;
       state_.statistics.largest_residual_mm = 0;
       const auto solver = set_.options.make_solver(film_);
-      relax_film(energy_, is_free, *solver, u, state_.statistics, options);
+      Relaxation relaxation(energy_, *solver);
+      relax_film(relaxation, is_free, u, state_.statistics, options);
       if (state_.statistics.unconverged_steps == 0) break;
       const int folds = hold_folds(u, is_free);
       if (folds == 0) break;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
 
 #include "base/parallel.h"
 #include "elastic/kernel_variants.h"
@@ -21,19 +20,21 @@ Mat2 gradient_at(const FilmMesh& mesh, const RestTriangle& rest, std::size_t t,
 }  // namespace
 
 FilmEnergy::FilmEnergy(const FilmMesh& mesh, const std::vector<double>& modulus, double poisson)
-    : mesh_(mesh), own_corner_(mesh.incident.size()) {
-  const std::size_t triangles = mesh.triangles.size();
-  for (std::size_t t = 0; t < triangles; ++t) {
-    const Lame material = lame(modulus.empty() ? 1.0 : modulus[t], poisson);
-    mu_.push_back(material.mu);
-    lambda_.push_back(material.lambda);
-    for (std::size_t k = 0; k < 3; ++k) corner_[k].push_back(mesh.triangles[t][k]);
-  }
+    : mesh_(mesh), grid_(mesh), own_corner_(mesh.incident.size()), place_(grid_.layout()) {
   for (auto& corner : gradient_)
-    for (auto& component : corner) component.assign(triangles, 0);
-  for (auto& corner : force_)
-    for (auto& component : corner) component.assign(triangles, 0);
-  area_.assign(triangles, 0);
+    for (auto& component : corner) component = GridArray<double>(grid_.elements());
+  for (auto* values : {&area_, &mu_, &lambda_, &film_, &flat_area_})
+    *values = GridArray<double>(grid_.elements());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::size_t e = grid_.element(t);
+    const Lame material = lame(modulus.empty() ? 1.0 : modulus[t], poisson);
+    mu_[e] = material.mu;
+    lambda_[e] = material.lambda;
+    film_[e] = 1;
+    const Triangle& v = mesh.triangles[t];
+    const Vec2& a = mesh.u[std::size_t(v[0])];
+    flat_area_[e] = 0.5 * cross2(mesh.u[std::size_t(v[1])] - a, mesh.u[std::size_t(v[2])] - a);
+  }
   for (std::size_t v = 0; v < mesh.u.size(); ++v)
     for (auto n = std::size_t(mesh.incident_begin[v]); n < std::size_t(mesh.incident_begin[v + 1]);
          ++n) {
@@ -43,7 +44,12 @@ FilmEnergy::FilmEnergy(const FilmMesh& mesh, const std::vector<double>& modulus,
 }
 
 kernels::Elements FilmEnergy::elements() const {
-  return {{corner_[0].data(), corner_[1].data(), corner_[2].data()},
+  const GridLayout& layout = grid_.layout();
+  return {layout.stride,
+          layout.nx,
+          layout.ny,
+          {grid_.rising(0).data(), grid_.rising(1).data()},
+          std::ptrdiff_t(layout.entries()),
           {{gradient_[0][0].data(), gradient_[0][1].data()},
            {gradient_[1][0].data(), gradient_[1][1].data()}},
           area_.data(),
@@ -51,21 +57,63 @@ kernels::Elements FilmEnergy::elements() const {
           lambda_.data()};
 }
 
-void FilmEnergy::set_flat_rest(const VertexVector& place, const std::vector<std::uint8_t>& film) {
-  double* const gradient[2][2] = {{gradient_[0][0].data(), gradient_[0][1].data()},
-                                  {gradient_[1][0].data(), gradient_[1][1].data()}};
-  parallel_for(film.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-    kernels::best().rest_shapes(elements(), begin, end, place.data()->data(), film.data(), gradient,
-                                area_.data());
-  });
+void FilmEnergy::set_rest(std::size_t t, const RestTriangle& rest) {
+  const std::size_t e = grid_.element(t);
+  for (int corner = 1; corner < 3; ++corner)
+    for (int c = 0; c < 2; ++c)
+      gradient_[corner - 1][c][e] = rest.gradient((corner + grid_.first_corner(t)) % 3, c);
+  area_[e] = rest.area;
 }
 
-void FilmEnergy::overstretched(const VertexVector& u, double limit,
-                               std::vector<std::int64_t>& out) const {
-  out.resize(area_.size());
-  parallel_for(out.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-    kernels::best().overstretched(elements(), begin, end, u.data()->data(), limit, out.data());
+RestTriangle FilmEnergy::rest(std::size_t t) const {
+  const std::size_t e = grid_.element(t);
+  const int first = grid_.first_corner(t);
+  RestTriangle rest;
+  for (int c = 0; c < 2; ++c) {
+    const double g1 = gradient_[0][c][e], g2 = gradient_[1][c][e];
+    rest.gradient(first, c) = -(g1 + g2);
+    rest.gradient((1 + first) % 3, c) = g1;
+    rest.gradient((2 + first) % 3, c) = g2;
+  }
+  rest.area = area_[e];
+  return rest;
+}
+
+std::vector<std::int32_t> FilmEnergy::set_flat_rest(const VertexVector& place, double least_share) {
+  double* const gradient[2][2] = {{gradient_[0][0].data(), gradient_[0][1].data()},
+                                  {gradient_[1][0].data(), gradient_[1][1].data()}};
+  grid_.to_grid(place, place_);
+  const kernels::Elements elements = this->elements();
+  std::atomic<std::int64_t> small = 0;
+  grid_.for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    small += kernels::best().rest_shapes(elements, begin, end, place_, film_.data(),
+                                         flat_area_.data(), least_share, gradient, area_.data());
   });
+  std::vector<std::int32_t> list;
+  for (std::size_t e = 0; e < grid_.elements() && small > 0; ++e)
+    if (film_[e] > 0 && area_[e] < least_share * flat_area_[e]) list.push_back(grid_.triangle(e));
+  return list;
+}
+
+std::vector<std::int32_t> FilmEnergy::overstretched(const VertexVector& u, double limit) const {
+  const GridField at = grid_.field(u);
+  const kernels::Elements elements = this->elements();
+  flags_.resize(grid_.elements());
+  std::atomic<bool> any = false;
+  grid_.for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    kernels::best().overstretched(elements, begin, end, at, limit, flags_.data());
+    const auto first = grid_.layout().place(0, int(begin)),
+               last = grid_.layout().place(0, int(end));
+    for (const std::size_t half : {std::size_t(0), grid_.layout().entries()})
+      if (std::any_of(flags_.begin() + std::ptrdiff_t(half + first),
+                      flags_.begin() + std::ptrdiff_t(half + last),
+                      [](std::int64_t flag) { return flag != 0; }))
+        any = true;
+  });
+  std::vector<std::int32_t> list;
+  for (std::size_t t = 0; t < mesh_.triangles.size() && any; ++t)
+    if (flags_[grid_.element(t)]) list.push_back(static_cast<std::int32_t>(t));
+  return list;
 }
 
 void FilmEnergy::build_pattern() const {
@@ -98,9 +146,11 @@ double FilmEnergy::value(const VertexVector& u) const {
   std::vector<double> partial((count + kElementGrain - 1) / kElementGrain, 0.0);
   parallel_for(count, kElementGrain, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
-    for (std::size_t t = begin; t < end; ++t)
-      if (area_[t] > 0)
-        sum += area_[t] * energy_density(gradient_at(mesh_, rest(t), t, u), material(t));
+    for (std::size_t t = begin; t < end; ++t) {
+      const RestTriangle rest = this->rest(t);
+      if (rest.area > 0)
+        sum += rest.area * energy_density(gradient_at(mesh_, rest, t, u), material(t));
+    }
     partial[begin / kElementGrain] = sum;
   });
   double total = 0;
@@ -108,35 +158,16 @@ double FilmEnergy::value(const VertexVector& u) const {
   return total;
 }
 
-std::int64_t FilmEnergy::gradient(const VertexVector& u, const std::vector<std::uint8_t>& is_free,
-                                  VertexVector& out) const {
-  const std::size_t triangles = mesh_.triangles.size();
-  double* const force[2][2] = {{force_[0][0].data(), force_[0][1].data()},
-                               {force_[1][0].data(), force_[1][1].data()}};
-  std::vector<std::int64_t> turned_over((triangles + kElementGrain - 1) / kElementGrain, 0);
-  parallel_for(triangles, kElementGrain, [&](std::size_t begin, std::size_t end) {
-    turned_over[begin / kElementGrain] =
-        kernels::best().forces(elements(), begin, end, u.data()->data(), force);
+std::int64_t FilmEnergy::gradient(const GridField& u, const GridArray<double>& mask,
+                                  GridField& out) const {
+  const kernels::Elements elements = this->elements();
+  std::atomic<std::int64_t> turned_over = 0;
+  grid_.for_rows(elements.ny, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    GridArray<double> scratch(std::size_t(kernels::kScratchRows * elements.stride));
+    turned_over +=
+        kernels::best().gradient(elements, begin, end, u, mask.data(), out, scratch.data());
   });
-  out.resize(u.size());
-  parallel_for(u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      double x = 0, y = 0;
-      for (auto n = std::size_t(mesh_.incident_begin[v]);
-           is_free[v] && n < std::size_t(mesh_.incident_begin[v + 1]); ++n) {
-        const auto t = std::size_t(mesh_.incident[n]);
-        if (own_corner_[n] == 0) {
-          x -= force[0][0][t] + force[1][0][t];
-          y -= force[0][1][t] + force[1][1][t];
-        } else {
-          x += force[own_corner_[n] - 1][0][t];
-          y += force[own_corner_[n] - 1][1][t];
-        }
-      }
-      out[v] = Vec2(x, y);
-    }
-  });
-  return std::accumulate(turned_over.begin(), turned_over.end(), std::int64_t{0});
+  return turned_over;
 }
 
 void FilmEnergy::hessian(const VertexVector& u, bool definite, BlockMatrix& out) const {
@@ -144,7 +175,7 @@ void FilmEnergy::hessian(const VertexVector& u, bool definite, BlockMatrix& out)
   std::vector<Polar> polars(mesh_.triangles.size());
   parallel_for(polars.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
-      if (area_[t] > 0) polars[t] = polar(gradient_at(mesh_, rest(t), t, u));
+      if (rest(t).area > 0) polars[t] = polar(gradient_at(mesh_, rest(t), t, u));
   });
   if (out.column.size() != pattern_.column.size()) out = pattern_;
   parallel_for(u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
@@ -155,8 +186,8 @@ void FilmEnergy::hessian(const VertexVector& u, bool definite, BlockMatrix& out)
       for (auto n = std::size_t(mesh_.incident_begin[v]);
            n < std::size_t(mesh_.incident_begin[v + 1]); ++n) {
         const auto t = std::size_t(mesh_.incident[n]);
-        if (!(area_[t] > 0)) continue;
         const RestTriangle rest = this->rest(t);
+        if (!(rest.area > 0)) continue;
         const Polar& p = polars[t];
         const Lame m = material(t);
         const double turning = rest.area * turning_stiffness(p, m, definite);
@@ -184,10 +215,11 @@ void FilmEnergy::hessian(const VertexVector& u, bool definite, BlockMatrix& out)
   });
 }
 
-bool FilmEnergy::any_inverted(const VertexVector& u) const {
+bool FilmEnergy::any_inverted(const GridField& u) const {
+  const kernels::Elements elements = this->elements();
   std::atomic<bool> found = false;
-  parallel_for(mesh_.triangles.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-    if (kernels::best().turned_over(elements(), begin, end, u.data()->data()) > 0) found = true;
+  grid_.for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    if (kernels::best().turned_over(elements, begin, end, u) > 0) found = true;
   });
   return found;
 }

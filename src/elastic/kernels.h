@@ -11,10 +11,6 @@ namespace hydrodip::kernels {
 // Values of neighbouring grid nodes that are stored and computed together.
 constexpr int kLanes = 16;
 
-struct alignas(64) Lanes {
-  float value[kLanes];
-};
-
 // A symmetric operator on a grid that couples every node with its eight neighbours by 2 x 2 blocks.
 // Arrays over the grid hold node (i, j) at (j + 1) * stride + kLanes + i, and zero around it. Only
 // half of the blocks is stored, as the solver is bound by memory: a node's own (xx, xy, yy) and
@@ -42,9 +38,24 @@ struct Transfer {
   const float *fine_mask, *coarse_mask;
 };
 
-// Per triangle, structure of arrays. Corner 0 is where the shape functions' gradients add up to 0.
+// The same in double precision.
+struct ConstField {
+  const double *x, *y;
+};
+struct Field {
+  double *x, *y;
+};
+
+// The film's triangles, two in each cell of its grid: with a, b, c, d counter-clockwise round cell
+// (i, j) from node (i, j), the lower one has the corners a, b and c or d, the upper one c, d and a
+// or b; the former where `rising` is 1. Arrays over elements hold the lower triangle where arrays
+// over the grid hold node (i, j), and the upper one `upper` entries behind it. The shape functions'
+// gradients add up to 0, so that corner 0's is not kept.
 struct Elements {
-  const std::int32_t* corner[3];
+  std::ptrdiff_t stride;
+  int nx, ny;               // nodes
+  const double* rising[2];  // per column, of rows with even and with odd numbers
+  std::ptrdiff_t upper;
   const double* gradient[2][2];  // of corners 1 and 2: dN/dX [corner - 1][component], 1/mm
   const double* area;            // 0: no film
   const double *mu, *lambda;
@@ -53,6 +64,9 @@ struct Elements {
 struct Linearization {
   const float *gradient[2][2], *area, *cosine, *sine, *turning;
 };
+
+// Rows of the grid that gradient() keeps to itself.
+constexpr std::ptrdiff_t kScratchRows = 16;
 
 struct Table {
   // out = A x, r = b - A x and out = x + weight * D^-1 (b - A x) on grid rows [begin, end).
@@ -77,23 +91,28 @@ struct Table {
   double (*dot)(std::size_t begin, std::size_t end, Input a, Input b);
   void (*scale_and_add)(std::size_t begin, std::size_t end, Output a, float scale, Input b);
 
-  // Rest shapes of triangles [begin, end) whose corners lie flat at the places given (x and y of
-  // every vertex in turn); area 0 where `film` is 0 and where the corners run clockwise.
-  void (*rest_shapes)(const Elements&, std::size_t begin, std::size_t end, const double* place,
-                      const std::uint8_t* film, double* const (*gradient)[2], double* area);
-  // 1 where film is stretched further than the limit at u, in some direction.
-  void (*overstretched)(const Elements&, std::size_t begin, std::size_t end, const double* u,
-                        double limit, std::int64_t* out);
+  // Of the film's elements in the cells of rows [begin, end), at places given for all nodes:
 
-  // force[corner - 1][component] of triangles [begin, end), for corners 1 and 2 (corner 0's is
-  // minus their sum). u: x and y of every vertex in turn. Returns how many are turned over.
-  std::int64_t (*forces)(const Elements&, std::size_t begin, std::size_t end, const double* u,
-                         double* const (*force)[2]);
+  // Rest shapes of triangles whose corners lie flat there; area 0 where `film` is 0 and where the
+  // corners run clockwise. Returns how many triangles with film have less than least_share of the
+  // area given.
+  std::int64_t (*rest_shapes)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end,
+                              ConstField place, const double* film, const double* flat_area,
+                              double least_share, double* const (*gradient)[2], double* area);
+  // 1 where film is stretched further than the limit at u, in some direction.
+  void (*overstretched)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
+                        double limit, std::int64_t* out);
   // How many triangles with film are turned over at u.
-  std::int64_t (*turned_over)(const Elements&, std::size_t begin, std::size_t end, const double* u);
+  std::int64_t (*turned_over)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end,
+                              ConstField u);
   // 1 where the Hessian at u differs from the linearization by more than the tolerance, relatively.
-  void (*changed)(const Elements&, std::size_t begin, std::size_t end, const double* u,
+  void (*changed)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
                   const Linearization&, double tolerance, std::int64_t* out);
+
+  // The energy's gradient at the nodes of rows [begin, end), times the mask. `scratch`:
+  // kScratchRows rows, zero. Returns how many triangles in the cells of those rows are turned over.
+  std::int64_t (*gradient)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
+                           const double* mask, Field out, double* scratch);
 };
 
 }  // namespace hydrodip::kernels

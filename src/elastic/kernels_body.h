@@ -164,28 +164,70 @@ void scale_and_add(std::size_t begin, std::size_t end, Output a, float scale, In
   }
 }
 
-void rest_shapes(const Elements& e, std::size_t begin, std::size_t end, const double* place,
-                 const std::uint8_t* film, double* const (*gradient)[2], double* area) {
-  double* __restrict g1x = gradient[0][0];
-  double* __restrict g1y = gradient[0][1];
-  double* __restrict g2x = gradient[1][0];
-  double* __restrict g2y = gradient[1][1];
+// Where an array over the grid holds the first node of a row.
+inline std::ptrdiff_t first_of_row(const Elements& e, std::ptrdiff_t row) {
+  return (row + 1) * e.stride + kLanes;
+}
+
+struct Corners {
+  double x0, y0, x1, y1, x2, y2;
+};
+
+// Of the triangle in the cell behind node `at`.
+template <bool kUpper>
+[[gnu::always_inline]] inline Corners corners_of(const double* x, const double* y,
+                                                 std::ptrdiff_t at, std::ptrdiff_t stride,
+                                                 double rising) {
+  const double ax = x[at], bx = x[at + 1], cx = x[at + stride + 1], dx = x[at + stride];
+  const double ay = y[at], by = y[at + 1], cy = y[at + stride + 1], dy = y[at + stride];
+  const bool up = rising > 0;
+  if (kUpper) return {cx, cy, dx, dy, up ? ax : bx, up ? ay : by};
+  return {ax, ay, bx, by, up ? cx : dx, up ? cy : dy};
+}
+
+template <bool kUpper>
+inline std::int64_t rest_shapes_of(const Elements& e, std::ptrdiff_t row, ConstField place,
+                                   const double* film, const double* flat_area, double least_share,
+                                   double* const (*gradient)[2], double* area) {
+  const std::ptrdiff_t first = first_of_row(e, row), shift = kUpper ? e.upper : 0;
+  const double *x = place.x + first, *y = place.y + first, *rising = e.rising[row & 1];
+  const std::ptrdiff_t stride = e.stride;
+  double* __restrict g1x = gradient[0][0] + first + shift;
+  double* __restrict g1y = gradient[0][1] + first + shift;
+  double* __restrict g2x = gradient[1][0] + first + shift;
+  double* __restrict g2y = gradient[1][1] + first + shift;
+  double* __restrict size = area + first + shift;
+  film += first + shift;
+  flat_area += first + shift;
+  std::int64_t small = 0;
 #pragma GCC ivdep
-  for (std::size_t t = begin; t < end; ++t) {
-    const std::size_t a = 2 * std::size_t(e.corner[0][t]), b = 2 * std::size_t(e.corner[1][t]),
-                      c = 2 * std::size_t(e.corner[2][t]);
-    const double bx = place[b] - place[a], by = place[b + 1] - place[a + 1];
-    const double cx = place[c] - place[a], cy = place[c + 1] - place[a + 1];
+  for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+    const Corners t = corners_of<kUpper>(x, y, i, stride, rising[i]);
+    const double bx = t.x1 - t.x0, by = t.y1 - t.y0, cx = t.x2 - t.x0, cy = t.y2 - t.y0;
     const double twice = bx * cy - by * cx;
     const bool usable = twice > 0;
-    const double present = film[t];
+    const double present = film[i];
     const double inverse = present / (usable ? twice : 1.0) * (usable ? 1.0 : 0.0);
-    g1x[t] = cy * inverse;
-    g1y[t] = -cx * inverse;
-    g2x[t] = -by * inverse;
-    g2y[t] = bx * inverse;
-    area[t] = usable ? 0.5 * twice * present : 0.0;
+    const double found = usable ? 0.5 * twice * present : 0.0;
+    g1x[i] = cy * inverse;
+    g1y[i] = -cx * inverse;
+    g2x[i] = -by * inverse;
+    g2y[i] = bx * inverse;
+    size[i] = found;
+    small += (present > 0) & (found < least_share * flat_area[i]) ? 1 : 0;
   }
+  return small;
+}
+
+std::int64_t rest_shapes(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end,
+                         ConstField place, const double* film, const double* flat_area,
+                         double least_share, double* const (*gradient)[2], double* area) {
+  std::int64_t small = 0;
+  for (std::ptrdiff_t row = begin; row < end; ++row) {
+    small += rest_shapes_of<false>(e, row, place, film, flat_area, least_share, gradient, area);
+    small += rest_shapes_of<true>(e, row, place, film, flat_area, least_share, gradient, area);
+  }
+  return small;
 }
 
 struct Strain {
@@ -193,14 +235,13 @@ struct Strain {
   double cosine, sine, trace;  // its polar decomposition
 };
 
-// corotated.h's deformation_gradient() and polar(), in a form that vectorises.
-inline Strain strain_of(const Elements& e, std::size_t t, const double* u) {
-  const std::size_t a = 2 * std::size_t(e.corner[0][t]), b = 2 * std::size_t(e.corner[1][t]),
-                    c = 2 * std::size_t(e.corner[2][t]);
-  const double bx = u[b] - u[a], by = u[b + 1] - u[a + 1];
-  const double cx = u[c] - u[a], cy = u[c + 1] - u[a + 1];
-  const double g1x = e.gradient[0][0][t], g1y = e.gradient[0][1][t];
-  const double g2x = e.gradient[1][0][t], g2y = e.gradient[1][1][t];
+// corotated.h's deformation_gradient() and polar(), in a form that vectorises. `at`: of the
+// element.
+[[gnu::always_inline]] inline Strain strain_of(const Elements& e, std::ptrdiff_t at,
+                                               const Corners& u) {
+  const double bx = u.x1 - u.x0, by = u.y1 - u.y0, cx = u.x2 - u.x0, cy = u.y2 - u.y0;
+  const double g1x = e.gradient[0][0][at], g1y = e.gradient[0][1][at];
+  const double g2x = e.gradient[1][0][at], g2y = e.gradient[1][1][at];
   Strain s;
   s.xx = bx * g1x + cx * g2x;
   s.xy = bx * g1y + cx * g2y;
@@ -214,51 +255,130 @@ inline Strain strain_of(const Elements& e, std::size_t t, const double* u) {
   return s;
 }
 
-std::int64_t forces(const Elements& e, std::size_t begin, std::size_t end, const double* u,
-                    double* const (*force)[2]) {
-  double* __restrict f1x = force[0][0];
-  double* __restrict f1y = force[0][1];
-  double* __restrict f2x = force[1][0];
-  double* __restrict f2y = force[1][1];
+// Forces on corners 1 and 2 (on corner 0 minus their sum), and whether the triangle is turned over.
+struct Forces {
+  double x1, y1, x2, y2;
+  std::int64_t turned_over;
+};
+[[gnu::always_inline]] inline Forces forces_of(const Elements& e, std::ptrdiff_t at,
+                                               const Corners& u) {
+  const Strain s = strain_of(e, at, u);
+  // A P = A (2 mu (F - R) + lambda (tr S - 2) R).
+  const double stiff = 2 * e.mu[at] * e.area[at];
+  const double turn = e.lambda[at] * e.area[at] * (s.trace - 2) - stiff;
+  const double xx = stiff * s.xx + turn * s.cosine, xy = stiff * s.xy - turn * s.sine;
+  const double yx = stiff * s.yx + turn * s.sine, yy = stiff * s.yy + turn * s.cosine;
+  const double g1x = e.gradient[0][0][at], g1y = e.gradient[0][1][at];
+  const double g2x = e.gradient[1][0][at], g2y = e.gradient[1][1][at];
+  const double det = s.xx * s.yy - s.xy * s.yx;
+  return {xx * g1x + xy * g1y, yx * g1x + yy * g1y, xx * g2x + xy * g2y, yx * g2x + yy * g2y,
+          (e.area[at] > 0) & !(det > 0) ? 1 : 0};
+}
+
+// What the cells of one row add to their nodes' forces: per corner of the cell, by column.
+struct CellForces {
+  double *ax, *ay, *bx, *by, *cx, *cy, *dx, *dy;
+};
+
+// Of this row of the scratch space, behind room for one column before the first.
+inline CellForces cell_forces(double* scratch, std::ptrdiff_t row, std::ptrdiff_t stride) {
+  double* first = scratch + (row & 1) * (kScratchRows / 2) * stride + kLanes;
+  return {first,
+          first + stride,
+          first + 2 * stride,
+          first + 3 * stride,
+          first + 4 * stride,
+          first + 5 * stride,
+          first + 6 * stride,
+          first + 7 * stride};
+}
+
+std::int64_t add_up_cells(const Elements& e, std::ptrdiff_t row, ConstField u,
+                          const CellForces& to) {
+  const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
+  const double *x = u.x, *y = u.y, *rising = e.rising[row & 1];
+  double* __restrict ax = to.ax, * __restrict ay = to.ay, * __restrict bx = to.bx;
+  double* __restrict by = to.by, * __restrict cx = to.cx, * __restrict cy = to.cy;
+  double* __restrict dx = to.dx, * __restrict dy = to.dy;
   std::int64_t turned_over = 0;
 #pragma GCC ivdep
-  for (std::size_t t = begin; t < end; ++t) {
-    const Strain s = strain_of(e, t, u);
-    // A P = A (2 mu (F - R) + lambda (tr S - 2) R).
-    const double stiff = 2 * e.mu[t] * e.area[t];
-    const double turn = e.lambda[t] * e.area[t] * (s.trace - 2) - stiff;
-    const double xx = stiff * s.xx + turn * s.cosine, xy = stiff * s.xy - turn * s.sine;
-    const double yx = stiff * s.yx + turn * s.sine, yy = stiff * s.yy + turn * s.cosine;
-    const double g1x = e.gradient[0][0][t], g1y = e.gradient[0][1][t];
-    const double g2x = e.gradient[1][0][t], g2y = e.gradient[1][1][t];
-    f1x[t] = xx * g1x + xy * g1y;
-    f1y[t] = yx * g1x + yy * g1y;
-    f2x[t] = xx * g2x + xy * g2y;
-    f2y[t] = yx * g2x + yy * g2y;
-    const double det = s.xx * s.yy - s.xy * s.yx;
-    turned_over += (e.area[t] > 0) & !(det > 0) ? 1 : 0;
+  for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+    const std::ptrdiff_t at = first + i;
+    const bool up = rising[i] > 0;
+    const Forces lower = forces_of(e, at, corners_of<false>(x, y, at, stride, rising[i]));
+    const Forces upper = forces_of(e, at + e.upper, corners_of<true>(x, y, at, stride, rising[i]));
+    const double lower_x = -(lower.x1 + lower.x2), lower_y = -(lower.y1 + lower.y2);
+    const double upper_x = -(upper.x1 + upper.x2), upper_y = -(upper.y1 + upper.y2);
+    ax[i] = lower_x + (up ? upper.x2 : 0.0);
+    ay[i] = lower_y + (up ? upper.y2 : 0.0);
+    bx[i] = lower.x1 + (up ? 0.0 : upper.x2);
+    by[i] = lower.y1 + (up ? 0.0 : upper.y2);
+    cx[i] = upper_x + (up ? lower.x2 : 0.0);
+    cy[i] = upper_y + (up ? lower.y2 : 0.0);
+    dx[i] = upper.x1 + (up ? 0.0 : lower.x2);
+    dy[i] = upper.y1 + (up ? 0.0 : lower.y2);
+    turned_over += lower.turned_over + upper.turned_over;
   }
   return turned_over;
 }
 
-std::int64_t turned_over(const Elements& e, std::size_t begin, std::size_t end, const double* u) {
+std::int64_t gradient(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
+                      const double* mask, Field out, double* scratch) {
+  std::int64_t turned_over = 0;
+  for (std::ptrdiff_t row = begin > 0 ? begin - 1 : 0; row < end; ++row) {
+    const CellForces here = cell_forces(scratch, row, e.stride);
+    const CellForces before = cell_forces(scratch, row + 1, e.stride);
+    if (row < e.ny - 1) {
+      const std::int64_t found = add_up_cells(e, row, u, here);
+      if (row >= begin) turned_over += found;
+    } else {
+      for (int i = 0; i < e.nx; ++i) here.ax[i] = here.ay[i] = here.bx[i] = here.by[i] = 0;
+    }
+    if (row < begin) continue;
+    const std::ptrdiff_t first = first_of_row(e, row);
+    const double* free = mask + first;
+    double* __restrict x = out.x + first, * __restrict y = out.y + first;
+#pragma GCC ivdep
+    for (std::ptrdiff_t i = 0; i < e.nx; ++i) {
+      x[i] = free[i] * ((here.ax[i] + here.bx[i - 1]) + (before.cx[i - 1] + before.dx[i]));
+      y[i] = free[i] * ((here.ay[i] + here.by[i - 1]) + (before.cy[i - 1] + before.dy[i]));
+    }
+  }
+  return turned_over;
+}
+
+template <bool kUpper>
+inline std::int64_t turned_over_of(const Elements& e, std::ptrdiff_t row, ConstField u) {
+  const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
+  const double *x = u.x + first, *y = u.y + first, *rising = e.rising[row & 1];
+  const double* area = e.area + first + (kUpper ? e.upper : 0);
   std::int64_t count = 0;
-  for (std::size_t t = begin; t < end; ++t) {
-    const std::size_t a = 2 * std::size_t(e.corner[0][t]), b = 2 * std::size_t(e.corner[1][t]),
-                      c = 2 * std::size_t(e.corner[2][t]);
-    const double twice =
-        (u[b] - u[a]) * (u[c + 1] - u[a + 1]) - (u[b + 1] - u[a + 1]) * (u[c] - u[a]);
-    count += (e.area[t] > 0) & !(twice > 0) ? 1 : 0;
+  for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+    const Corners t = corners_of<kUpper>(x, y, i, stride, rising[i]);
+    const double twice = (t.x1 - t.x0) * (t.y2 - t.y0) - (t.y1 - t.y0) * (t.x2 - t.x0);
+    count += (area[i] > 0) & !(twice > 0) ? 1 : 0;
   }
   return count;
 }
 
-void changed(const Elements& e, std::size_t begin, std::size_t end, const double* u,
-             const Linearization& old, double tolerance, std::int64_t* out) {
+std::int64_t turned_over(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end,
+                         ConstField u) {
+  std::int64_t count = 0;
+  for (std::ptrdiff_t row = begin; row < end; ++row)
+    count += turned_over_of<false>(e, row, u) + turned_over_of<true>(e, row, u);
+  return count;
+}
+
+template <bool kUpper>
+inline void changed_of(const Elements& e, std::ptrdiff_t row, ConstField u,
+                       const Linearization& old, double tolerance, std::int64_t* out) {
   const double limit = tolerance * tolerance;
+  const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
+  const double* rising = e.rising[row & 1];
 #pragma GCC ivdep
-  for (std::size_t t = begin; t < end; ++t) {
-    const Strain s = strain_of(e, t, u);
+  for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+    const std::ptrdiff_t t = first + i + (kUpper ? e.upper : 0);
+    const Strain s = strain_of(e, t, corners_of<kUpper>(u.x, u.y, first + i, stride, rising[i]));
     const double turning = (e.lambda[t] * (s.trace - 2) - 2 * e.mu[t]) / s.trace;
     const double g1x = e.gradient[0][0][t], g1y = e.gradient[0][1][t];
     const double g2x = e.gradient[1][0][t], g2y = e.gradient[1][1][t];
@@ -280,13 +400,24 @@ void changed(const Elements& e, std::size_t begin, std::size_t end, const double
   }
 }
 
+void changed(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
+             const Linearization& old, double tolerance, std::int64_t* out) {
+  for (std::ptrdiff_t row = begin; row < end; ++row) {
+    changed_of<false>(e, row, u, old, tolerance, out);
+    changed_of<true>(e, row, u, old, tolerance, out);
+  }
+}
+
 // The smallest singular value s of F is below 1 / limit: det(F^T F - s^2 I) < 0, or both are.
-void overstretched(const Elements& e, std::size_t begin, std::size_t end, const double* u,
-                   double limit, std::int64_t* out) {
-  const double bound = 1 / (limit * limit);
+template <bool kUpper>
+inline void overstretched_of(const Elements& e, std::ptrdiff_t row, ConstField u, double bound,
+                             std::int64_t* out) {
+  const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
+  const double* rising = e.rising[row & 1];
 #pragma GCC ivdep
-  for (std::size_t t = begin; t < end; ++t) {
-    const Strain s = strain_of(e, t, u);
+  for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+    const std::ptrdiff_t t = first + i + (kUpper ? e.upper : 0);
+    const Strain s = strain_of(e, t, corners_of<kUpper>(u.x, u.y, first + i, stride, rising[i]));
     const double squares = s.xx * s.xx + s.xy * s.xy + s.yx * s.yx + s.yy * s.yy;
     const double det = s.xx * s.yy - s.xy * s.yx;
     const bool far = (det * det - squares * bound + bound * bound < 0) | (squares < 2 * bound);
@@ -294,11 +425,20 @@ void overstretched(const Elements& e, std::size_t begin, std::size_t end, const 
   }
 }
 
+void overstretched(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
+                   double limit, std::int64_t* out) {
+  const double bound = 1 / (limit * limit);
+  for (std::ptrdiff_t row = begin; row < end; ++row) {
+    overstretched_of<false>(e, row, u, bound, out);
+    overstretched_of<true>(e, row, u, bound, out);
+  }
+}
+
 }  // namespace
 
 extern const Table KERNELS_VARIANT;
-const Table KERNELS_VARIANT = {
-    multiply,      residual,    smooth,        precondition, restrict_rows, prolong_rows, dot,
-    scale_and_add, rest_shapes, overstretched, forces,       turned_over,   changed};
+const Table KERNELS_VARIANT = {multiply,     residual, smooth,        precondition, restrict_rows,
+                               prolong_rows, dot,      scale_and_add, rest_shapes,  overstretched,
+                               turned_over,  changed,  gradient};
 
 }  // namespace hydrodip::kernels

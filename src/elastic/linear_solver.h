@@ -20,13 +20,14 @@ class LinearSolver {
   // of the triangles' definite parts (FilmEnergy::hessian). moved_mm: the furthest that a vertex
   // has moved in u since the last call, while nothing else changed; kAnyChange: something else did.
   static constexpr double kAnyChange = 1e300;
-  virtual void update(const FilmEnergy& energy, const VertexVector& u,
+  virtual void update(const FilmEnergy& energy, const GridField& u,
                       const std::vector<std::uint8_t>& is_free, bool definite,
                       double moved_mm = kAnyChange) = 0;
 
-  // The next step from the gradient where the last one has led. False if there is none because the
+  // The next step from the gradient where the last one has led; `step` is as large as the gradient
+  // and zero where there is no vertex. False if there is none because the
   // operator turned out not to be definite.
-  virtual bool direction(const VertexVector& gradient, VertexVector& step) = 0;
+  virtual bool direction(const GridField& gradient, GridField& step) = 0;
 };
 
 // Newton's steps, by sparse Cholesky of H itself, symbolic analysis reused. Slow: the reference.

@@ -17,15 +17,9 @@ constexpr int kPowerIterations = 12;
 // Grids with at most this many inner nodes are solved directly.
 constexpr std::size_t kCoarsestNodes = 40;
 
-std::size_t lanes_in_array(std::ptrdiff_t groups, int ny) {
-  return std::size_t(groups + 1) * (std::size_t(ny) + 2) + 2;
-}
-
-std::ptrdiff_t groups_for(int nx) { return (nx + kernels::kLanes - 1) / kernels::kLanes; }
-
 kernels::Transfer transfer(const GridOperator& fine, const GridOperator& coarse) {
-  return {fine.row_length(), coarse.row_length(), fine.nx(),    fine.ny(),
-          coarse.nx(),       fine.mask(),         coarse.mask()};
+  return {fine.layout().stride, coarse.layout().stride, fine.nx(), fine.ny(), coarse.nx(),
+          fine.mask(),          coarse.mask()};
 }
 
 // Bilinear interpolation: weight of a coarse node for a fine one at this distance (fine cells).
@@ -34,22 +28,17 @@ float hat(int distance) { return distance == 0 ? 1.0F : 0.5F; }
 }  // namespace
 
 GridOperator::GridOperator(int nx, int ny)
-    : nx_(nx),
-      ny_(ny),
-      groups_(groups_for(nx)),
-      stride_((groups_ + 1) * kernels::kLanes),
+    : layout_(nx, ny),
       kernels_(kernels::best()),
-      mask_(lanes_in_array(groups_, ny)),
-      entries_(kEntries * mask_.size()) {}
-
-GridVector GridOperator::vector() const { return GridVector(mask_.size()); }
+      mask_(layout_.entries()),
+      entries_(kEntries * layout_.entries()) {}
 
 void GridOperator::set_row(int i, int j, const Row& row) {
   const std::size_t at = place(i, j);
   const double xx = row[4][0], xy = 0.5 * (double(row[4][1]) + double(row[4][2])), yy = row[4][3];
   const double det = xx * yy - xy * xy;
   const bool usable = xx > 0 && yy > 0 && det > 1e-6 * xx * yy;
-  mask_.data()->value[at] = usable ? 1.0F : 0.0F;
+  mask_[at] = usable ? 1.0F : 0.0F;
   const auto set = [&](int e, double value) { entry(e)[at] = usable ? float(value) : 0.0F; };
   set(kOwn, xx);
   set(kOwn + 1, xy);
@@ -66,7 +55,7 @@ GridOperator::Row GridOperator::row(int i, int j) const {
   const std::size_t at = place(i, j);
   Row row;
   row[4] = {entry(kOwn)[at], entry(kOwn + 1)[at], entry(kOwn + 1)[at], entry(kOwn + 2)[at]};
-  const std::ptrdiff_t way[] = {1, stride_ - 1, stride_, stride_ + 1};
+  const std::ptrdiff_t stride = layout_.stride, way[] = {1, stride - 1, stride, stride + 1};
   for (int k = 0; k < kernels::kForward; ++k) {
     const std::size_t behind = at - std::size_t(way[k]);
     const float* block[4];
@@ -87,8 +76,8 @@ kernels::Stencil GridOperator::stencil() const {
   for (int k = 0; k < kernels::kForward; ++k)
     for (int e = 0; e < 4; ++e) s.forward[k][e] = entry(kForward + 4 * k + e);
   s.mask = mask();
-  s.groups = groups_;
-  s.stride = stride_;
+  s.groups = layout_.groups;
+  s.stride = layout_.stride;
   return s;
 }
 
@@ -120,8 +109,8 @@ void GridOperator::precondition(const GridVector& b, float weight, GridVector& o
 double GridOperator::largest_eigenvalue() const {
   GridVector x = vector(), Ax = vector();
   std::uint32_t noise = 1;
-  for (int j = 0; j < ny_; ++j)
-    for (int i = 0; i < nx_; ++i) {
+  for (int j = 0; j < ny(); ++j)
+    for (int i = 0; i < nx(); ++i) {
       if (!is_free(i, j)) continue;
       for (float* component : {x.x(), x.y()}) {
         noise = noise * 1664525U + 1013904223U;
@@ -133,14 +122,14 @@ double GridOperator::largest_eigenvalue() const {
     multiply(x, Ax);
     precondition(Ax, 1, x);
     double square = 0;
-    for (int j = 0; j < ny_; ++j)
-      for (std::size_t p = place(0, j); p < place(nx_, j); ++p)
+    for (int j = 0; j < ny(); ++j)
+      for (std::size_t p = place(0, j); p < place(nx(), j); ++p)
         square += double(x.x()[p]) * x.x()[p] + double(x.y()[p]) * x.y()[p];
     norm = std::sqrt(square);
     if (!(norm > 0)) return 0;
     const auto scale = float(1 / norm);
-    for (int j = 0; j < ny_; ++j)
-      for (std::size_t p = place(0, j); p < place(nx_, j); ++p) {
+    for (int j = 0; j < ny(); ++j)
+      for (std::size_t p = place(0, j); p < place(nx(), j); ++p) {
         x.x()[p] *= scale;
         x.y()[p] *= scale;
       }
@@ -194,15 +183,13 @@ void Multigrid::update(bool all) {
 }
 
 void Multigrid::coarsen(const Level& fine, Level& coarse) const {
-  constexpr std::size_t kRowsPerTask = 512;
-  std::vector<GridOperator::Row> rows(coarse.to_do.size());
-  parallel_for(rows.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n)
-      rows[n] =
-          galerkin_row(fine.A, coarse.to_do[n] % coarse.A.nx(), coarse.to_do[n] / coarse.A.nx());
+  constexpr std::size_t kRowsPerTask = 64;
+  parallel_for(coarse.to_do.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const int I = coarse.to_do[n] % coarse.A.nx(), J = coarse.to_do[n] / coarse.A.nx();
+      coarse.A.set_row(I, J, galerkin_row(fine.A, I, J));
+    }
   });
-  for (std::size_t n = 0; n < rows.size(); ++n)
-    coarse.A.set_row(coarse.to_do[n] % coarse.A.nx(), coarse.to_do[n] / coarse.A.nx(), rows[n]);
 }
 
 // Row (I, J) of P^T A P: the rows of the nine fine nodes that the coarse one is interpolated to,

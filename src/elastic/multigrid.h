@@ -11,26 +11,27 @@
 
 #include "base/math.h"
 #include "base/parallel.h"
+#include "elastic/film_grid.h"
 #include "elastic/kernels.h"
 
 namespace hydrodip {
 
-// A vector over a grid: x and y of every node, zero around (see kernels::Stencil).
+// A vector over a grid in single precision.
 class GridVector {
  public:
   GridVector() = default;
-  explicit GridVector(std::size_t lanes) : x_(lanes), y_(lanes) {}
+  explicit GridVector(const GridLayout& layout) : x_(layout.entries()), y_(layout.entries()) {}
 
-  float* x() { return &x_[0].value[0]; }
-  float* y() { return &y_[0].value[0]; }
-  const float* x() const { return &x_[0].value[0]; }
-  const float* y() const { return &y_[0].value[0]; }
+  float* x() { return x_.data(); }
+  float* y() { return y_.data(); }
+  const float* x() const { return x_.data(); }
+  const float* y() const { return y_.data(); }
   // As the kernels take it. Implicit: a view, and nothing else is meant.
   operator kernels::Input() const { return {x(), y()}; }  // NOLINT(google-explicit-constructor)
   operator kernels::Output() { return {x(), y()}; }       // NOLINT(google-explicit-constructor)
   void set_zero() {
-    x_.assign(x_.size(), {});
-    y_.assign(y_.size(), {});
+    x_.set_zero();
+    y_.set_zero();
   }
   void swap(GridVector& other) {
     x_.swap(other.x_);
@@ -38,7 +39,7 @@ class GridVector {
   }
 
  private:
-  std::vector<kernels::Lanes> x_, y_;
+  GridArray<float> x_, y_;
 };
 
 // The operator of one level. A node that is not free has an empty row and keeps the value zero.
@@ -46,22 +47,19 @@ class GridOperator {
  public:
   GridOperator(int nx, int ny);
 
-  int nx() const { return nx_; }
-  int ny() const { return ny_; }
-  std::size_t nodes() const { return std::size_t(nx_) * std::size_t(ny_); }
+  const GridLayout& layout() const { return layout_; }
+  int nx() const { return layout_.nx; }
+  int ny() const { return layout_.ny; }
+  std::size_t nodes() const { return std::size_t(nx()) * std::size_t(ny()); }
   std::size_t node(int i, int j) const {
-    return std::size_t(j) * std::size_t(nx_) + std::size_t(i);
+    return std::size_t(j) * std::size_t(nx()) + std::size_t(i);
   }
-  // Where node (i, j) stands in vectors.
-  std::size_t place(int i, int j) const {
-    return (std::size_t(j) + 1) * std::size_t(stride_) + kernels::kLanes + std::size_t(i);
-  }
+  std::size_t place(int i, int j) const { return layout_.place(i, j); }
   bool is_free(int i, int j) const { return mask()[place(i, j)] > 0; }
   // 1 on free nodes, 0 elsewhere, laid out like vectors.
-  const float* mask() const { return mask_.data()->value; }
-  std::ptrdiff_t row_length() const { return stride_; }
+  const float* mask() const { return mask_.data(); }
 
-  GridVector vector() const;
+  GridVector vector() const { return GridVector(layout_); }
 
   using Row = std::array<std::array<float, 4>, 9>;  // [3 * (dj + 1) + di + 1][xx, xy, yx, yy]
   // Only blocks of nodes that follow are kept: the operator is symmetric. An empty row (or a
@@ -72,8 +70,8 @@ class GridOperator {
   // Calls body(begin, end) over the grid's rows, in parallel where that pays.
   template <typename Body>
   void for_rows(const Body& body) const {
-    const std::ptrdiff_t rows_per_task = std::max<std::ptrdiff_t>(4, kNodesPerTask / stride_);
-    parallel_for(std::size_t(ny_), std::size_t(rows_per_task),
+    const auto rows_per_task = std::max<std::ptrdiff_t>(4, kNodesPerTask / layout_.stride);
+    parallel_for(std::size_t(ny()), std::size_t(rows_per_task),
                  [&](std::size_t begin, std::size_t end) {
                    body(std::ptrdiff_t(begin), std::ptrdiff_t(end));
                  });
@@ -90,17 +88,16 @@ class GridOperator {
   // Arrays over the grid (kernels::Stencil), one after the other.
   static constexpr int kOwn = 0, kInverse = 3, kForward = 6,
                        kEntries = kForward + 4 * kernels::kForward;
-  const float* entry(int e) const { return entries_[std::size_t(e) * mask_.size()].value; }
-  float* entry(int e) { return entries_[std::size_t(e) * mask_.size()].value; }
+  const float* entry(int e) const { return entries_.data() + std::size_t(e) * layout_.entries(); }
+  float* entry(int e) { return entries_.data() + std::size_t(e) * layout_.entries(); }
   kernels::Stencil stencil() const;
 
   // What is worth a thread's while.
   static constexpr std::ptrdiff_t kNodesPerTask = 6000;
 
-  int nx_, ny_;
-  std::ptrdiff_t groups_, stride_;
+  GridLayout layout_;
   const kernels::Table& kernels_;
-  std::vector<kernels::Lanes> mask_, entries_;
+  GridArray<float> mask_, entries_;
 };
 
 // A hierarchy of operators that is kept up to date where the finest one changes.

@@ -1,6 +1,7 @@
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <array>
+#include <cstring>
+#include <vector>
 
 #include "base/parallel.h"
 #include "elastic/kernel_variants.h"
@@ -11,7 +12,7 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 512;
+constexpr std::size_t kRowsPerTask = 64;
 // A triangle's part of the operator is kept until it has changed by this much, relatively.
 constexpr double kOperatorTolerance = 0.05;
 // Vertices that have moved by less than this share of a cell have changed it by less than that.
@@ -21,12 +22,12 @@ class MultigridSolver : public LinearSolver {
  public:
   explicit MultigridSolver(const FilmMesh& mesh)
       : mesh_(mesh),
+        film_(mesh),
         grid_(mesh.nx, mesh.ny),
-        row_sum_(std::size_t(mesh.ny)),
+        row_sums_(std::size_t(mesh.ny)),
         column_(mesh.u.size()),
         line_(mesh.u.size()),
-        place_(mesh.u.size()),
-        r_(grid_.finest().vector()),
+        r_(film_.layout()),
         r_before_(r_),
         z_(r_),
         p_(r_),
@@ -37,48 +38,48 @@ class MultigridSolver : public LinearSolver {
         if (v < 0) continue;
         column_[std::size_t(v)] = i;
         line_[std::size_t(v)] = j;
-        place_[std::size_t(v)] = static_cast<std::int32_t>(grid_.finest().place(i, j));
       }
+    kept_.resize(film_.elements());
   }
 
-  void update(const FilmEnergy& energy, const VertexVector& u,
+  void update(const FilmEnergy& energy, const GridField& u,
               const std::vector<std::uint8_t>& is_free, bool definite, double moved_mm) override {
     const bool all = is_free_.empty();
     if (definite == definite_ && moved_mm < kStillShare * mesh_.cell_mm) return;
-    if (all) kept_.resize(mesh_.triangles.size());
-    find_changes(energy, u, all);
-    if (definite != definite_) find_indefinite(energy);
+    const bool turned = definite != definite_;
     definite_ = definite;
-    linearize(energy, u);
+    linearize(energy, u, turned, all);
     touch_masked(is_free, all);
     compute_rows(energy);
     grid_.update(all);
     restart_ = true;
   }
 
-  bool direction(const VertexVector& gradient, VertexVector& step) override {
+  bool direction(const GridField& gradient, GridField& step) override {
     r_.swap(r_before_);
     set_right_side(gradient);
     const float length = turn();
     if (!(length >= 0)) return false;
-    step.resize(gradient.size());
-    parallel_for(step.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        const auto place = std::size_t(place_[v]);
-        step[v] = double(length) * Vec2(p_.x()[place], p_.y()[place]);
+    const GridLayout& layout = film_.layout();
+    grid_.finest().for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      const float *px = p_.x(), *py = p_.y();
+      double *x = step.x.data(), *y = step.y.data();
+      for (auto n = layout.place(0, int(begin)); n < layout.place(0, int(end)); ++n) {
+        x[n] = double(length) * double(px[n]);
+        y[n] = double(length) * double(py[n]);
       }
     });
     return true;
   }
 
  private:
-  // What the operator was computed from, per triangle.
+  // What the operator was computed from, per element.
   struct Kept {
-    std::vector<float> gradient[2][2], area, cosine, sine, turning;
+    GridArray<float> gradient[2][2], area, cosine, sine, turning;
     void resize(std::size_t n) {
       for (auto& corner : gradient)
-        for (auto& component : corner) component.assign(n, 0);
-      for (auto* values : {&area, &cosine, &sine, &turning}) values->assign(n, 0);
+        for (auto& component : corner) component = GridArray<float>(n);
+      for (auto* values : {&area, &cosine, &sine, &turning}) *values = GridArray<float>(n);
     }
     kernels::Linearization view() const {
       return {{{gradient[0][0].data(), gradient[0][1].data()},
@@ -90,45 +91,63 @@ class MultigridSolver : public LinearSolver {
     }
   };
 
-  void find_changes(const FilmEnergy& energy, const VertexVector& u, bool all) {
-    const std::size_t triangles = mesh_.triangles.size();
-    differs_.assign(triangles, 1);
-    if (all) return;
-    parallel_for(triangles, kElementGrain, [&](std::size_t begin, std::size_t end) {
-      kernels_.changed(energy.elements(), begin, end, u.data()->data(), kept_.view(),
-                       kOperatorTolerance, differs_.data());
+  // Where the Hessian differs from what the operator was computed with, or where definite_, which
+  // has `turned`, makes a difference.
+  void linearize(const FilmEnergy& energy, const GridField& u, bool turned, bool all) {
+    const kernels::Elements elements = energy.elements();
+    differs_.resize(film_.elements(), 0);
+    std::vector<std::vector<std::int32_t>> changed(std::size_t(mesh_.ny));  // by row of cells
+    film_.for_rows(mesh_.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      kernels_.changed(elements, begin, end, u, kept_.view(), kOperatorTolerance, differs_.data());
+      for (auto row = begin; row < end; ++row)
+        for (const std::ptrdiff_t half : {std::ptrdiff_t(0), elements.upper}) {
+          const auto first = film_.layout().place(0, int(row)) + std::size_t(half);
+          for (std::size_t e = first; e < first + std::size_t(mesh_.nx) - 1; ++e) {
+            const std::int32_t t = film_.triangle(e);
+            if (t < 0) continue;
+            const bool indefinite =
+                turned && double(kept_.turning[e]) < -energy.material(std::size_t(t)).mu;
+            if (!all && !differs_[e] && !indefinite) continue;
+            linearize(energy, u, std::size_t(t));
+            changed[std::size_t(row)].push_back(t);
+          }
+        }
     });
+    for (const auto& row : changed)
+      for (const std::int32_t t : row)
+        for (const std::int32_t corner : mesh_.triangles[std::size_t(t)])
+          touch(std::size_t(corner));
   }
 
-  // Triangles whose parts depend on definite_.
-  void find_indefinite(const FilmEnergy& energy) {
-    for (std::size_t t = 0; t < differs_.size(); ++t)
-      differs_[t] |= std::int64_t(double(kept_.turning[t]) < -energy.material(t).mu);
-  }
-
-  void linearize(const FilmEnergy& energy, const VertexVector& u) {
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      if (!differs_[t]) continue;
-      const RestTriangle rest = energy.rest(t);
-      const Triangle& v = mesh_.triangles[t];
-      const Polar p = polar(deformation_gradient(rest, u[std::size_t(v[0])], u[std::size_t(v[1])],
-                                                 u[std::size_t(v[2])]));
-      for (Eigen::Index k = 0; k < 2; ++k)
-        for (Eigen::Index c = 0; c < 2; ++c)
-          kept_.gradient[k][c][t] = float(rest.gradient(k + 1, c));
-      kept_.area[t] = float(rest.area);
-      kept_.cosine[t] = float(p.cosine);
-      kept_.sine[t] = float(p.sine);
-      kept_.turning[t] = float(turning_stiffness(p, energy.material(t), false));
-      for (std::int32_t corner : v) touch(std::size_t(corner));
+  void linearize(const FilmEnergy& energy, const GridField& u, std::size_t t) {
+    const std::size_t e = film_.element(t);
+    const RestTriangle rest = energy.rest(t);
+    std::array<Vec2, 3> at;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t place = film_.place(std::size_t(mesh_.triangles[t][k]));
+      at[k] = Vec2(u.x[place], u.y[place]);
     }
+    const Polar p = polar(deformation_gradient(rest, at[0], at[1], at[2]));
+    const kernels::Elements elements = energy.elements();
+    for (int k = 0; k < 2; ++k)
+      for (int c = 0; c < 2; ++c) kept_.gradient[k][c][e] = float(elements.gradient[k][c][e]);
+    kept_.area[e] = float(rest.area);
+    kept_.cosine[e] = float(p.cosine);
+    kept_.sine[e] = float(p.sine);
+    kept_.turning[e] = float(turning_stiffness(p, energy.material(t), false));
   }
 
   void touch(std::size_t v) { grid_.touch(column_[v], line_[v]); }
 
   // A vertex that is held no longer moves its neighbours.
   void touch_masked(const std::vector<std::uint8_t>& is_free, bool all) {
+    constexpr std::size_t kAtOnce = 64;
     for (std::size_t v = 0; v < is_free.size(); ++v) {
+      if (!all && v % kAtOnce == 0 && v + kAtOnce <= is_free.size() &&
+          std::memcmp(&is_free[v], &is_free_[v], kAtOnce) == 0) {
+        v += kAtOnce - 1;
+        continue;
+      }
       if (!all && is_free[v] == is_free_[v]) continue;
       for (int j = line_[v] - 1; j <= line_[v] + 1; ++j)
         for (int i = column_[v] - 1; i <= column_[v] + 1; ++i)
@@ -139,15 +158,14 @@ class MultigridSolver : public LinearSolver {
 
   void compute_rows(const FilmEnergy& energy) {
     const std::vector<std::int32_t>& nodes = grid_.touched();
-    std::vector<GridOperator::Row> rows(nodes.size());
     parallel_for(nodes.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
         const std::int32_t v = mesh_.vertex_at[std::size_t(nodes[n])];
-        if (v >= 0 && is_free_[std::size_t(v)]) rows[n] = row_of(energy, std::size_t(v));
+        GridOperator::Row row{};
+        if (v >= 0 && is_free_[std::size_t(v)]) row = row_of(energy, std::size_t(v));
+        grid_.finest().set_row(nodes[n] % mesh_.nx, nodes[n] / mesh_.nx, row);
       }
     });
-    for (std::size_t n = 0; n < nodes.size(); ++n)
-      grid_.finest().set_row(nodes[n] % mesh_.nx, nodes[n] / mesh_.nx, rows[n]);
   }
 
   // FilmEnergy::hessian's row of a vertex, from what was kept of its triangles.
@@ -156,25 +174,26 @@ class MultigridSolver : public LinearSolver {
     for (auto n = std::size_t(mesh_.incident_begin[v]);
          n < std::size_t(mesh_.incident_begin[v + 1]); ++n) {
       const auto t = std::size_t(mesh_.incident[n]);
-      const float area = kept_.area[t];
-      if (!(area > 0)) continue;
-      add_triangle(energy.material(t), t, v, row);
+      if (kept_.area[film_.element(t)] > 0) add_triangle(energy.material(t), t, v, row);
     }
     return row;
   }
 
   void add_triangle(const Lame& material, std::size_t t, std::size_t v,
                     GridOperator::Row& row) const {
+    const std::size_t e = film_.element(t);
     const auto mu = float(material.mu), lambda = float(material.lambda);
-    const float area = kept_.area[t], cosine = kept_.cosine[t], sine = kept_.sine[t];
-    const float turning = area * (definite_ ? std::max(kept_.turning[t], -mu) : kept_.turning[t]);
+    const float area = kept_.area[e], cosine = kept_.cosine[e], sine = kept_.sine[e];
+    const float turning = area * (definite_ ? std::max(kept_.turning[e], -mu) : kept_.turning[e]);
+    // Of the triangle's own corners.
+    const auto first = std::size_t(film_.first_corner(t));
     float gx[3], gy[3];
     for (std::size_t k = 1; k < 3; ++k) {
-      gx[k] = kept_.gradient[k - 1][0][t];
-      gy[k] = kept_.gradient[k - 1][1][t];
+      gx[(first + k) % 3] = kept_.gradient[k - 1][0][e];
+      gy[(first + k) % 3] = kept_.gradient[k - 1][1][e];
     }
-    gx[0] = -gx[1] - gx[2];
-    gy[0] = -gy[1] - gy[2];
+    gx[first] = -kept_.gradient[0][0][e] - kept_.gradient[1][0][e];
+    gy[first] = -kept_.gradient[0][1][e] - kept_.gradient[1][1][e];
     const Triangle& corners = mesh_.triangles[t];
     const std::size_t a = std::size_t(corners[0]) == v ? 0 : std::size_t(corners[1]) == v ? 1 : 2;
     const auto rotated_x = [&](std::size_t k) { return cosine * gx[k] - sine * gy[k]; };
@@ -194,41 +213,43 @@ class MultigridSolver : public LinearSolver {
     }
   }
 
-  void set_right_side(const VertexVector& b) {
-    const float* mask = grid_.finest().mask();
-    parallel_for(b.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        const auto place = std::size_t(place_[v]);
-        r_.x()[place] = mask[place] * float(b[v].x());
-        r_.y()[place] = mask[place] * float(b[v].y());
+  void set_right_side(const GridField& b) {
+    const GridLayout& layout = film_.layout();
+    grid_.finest().for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      const float* mask = grid_.finest().mask();
+      const double *bx = b.x.data(), *by = b.y.data();
+      float *x = r_.x(), *y = r_.y();
+      for (auto n = layout.place(0, int(begin)); n < layout.place(0, int(end)); ++n) {
+        x[n] = mask[n] * float(bx[n]);
+        y[n] = mask[n] * float(by[n]);
       }
     });
   }
 
-  // Sum over the grid's rows, in their order, of body(first, last entry of the row).
-  template <typename Body>
-  double sum_over_rows(const Body& body) {
-    const GridOperator& A = grid_.finest();
-    A.for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      for (auto j = begin; j < end; ++j)
-        row_sum_[std::size_t(j)] =
-            body(A.place(0, int(j)), A.place(0, int(j) + 1) - kernels::kLanes);
+  // a . b and a . c, summed over the grid's rows in their order.
+  std::array<double, 2> dots(const GridVector& a, const GridVector& b, const GridVector& c) {
+    const GridLayout& layout = film_.layout();
+    grid_.finest().for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      for (auto j = begin; j < end; ++j) {
+        const std::size_t first = layout.place(0, int(j));
+        const std::size_t last = layout.place(0, int(j) + 1) - kernels::kLanes;
+        row_sums_[std::size_t(j)] = {kernels_.dot(first, last, a, b),
+                                     kernels_.dot(first, last, a, c)};
+      }
     });
-    return std::accumulate(row_sum_.begin(), row_sum_.end(), 0.0);
-  }
-
-  double dot(const GridVector& a, const GridVector& b) {
-    return sum_over_rows(
-        [&](std::size_t first, std::size_t last) { return kernels_.dot(first, last, a, b); });
+    std::array<double, 2> sums{};
+    for (const auto& row : row_sums_)
+      for (std::size_t k = 0; k < 2; ++k) sums[k] += row[k];
+    return sums;
   }
 
   // Turns p_ into the next conjugate direction, from the gradients r_ and r_before_. Returns how
   // far to go along it; below 0 if the operator is not definite.
   float turn() {
     grid_.cycle(r_, z_);
-    const double rz = dot(r_, z_);
+    const auto [rz, rz_between] = dots(z_, r_, r_before_);
     if (rz < 0) return -1;
-    const double bend = restart_ ? 0 : std::max(0.0, (rz - dot(r_before_, z_)) / rz_before_);
+    const double bend = restart_ ? 0 : std::max(0.0, (rz - rz_between) / rz_before_);
     rz_before_ = rz;
     restart_ = !(rz > 0);
     if (bend > 0)
@@ -236,9 +257,9 @@ class MultigridSolver : public LinearSolver {
     else
       p_ = z_;
     grid_.finest().multiply(p_, Ap_);
-    const double curvature = dot(p_, Ap_);
+    const auto [curvature, slope] = dots(p_, Ap_, r_);
     if (!(curvature > 0)) return rz > 0 ? -1.0F : 0.0F;
-    return float(dot(r_, p_) / curvature);
+    return float(slope / curvature);
   }
 
   // p_ = z_ + bend p_.
@@ -251,11 +272,11 @@ class MultigridSolver : public LinearSolver {
   }
 
   const FilmMesh& mesh_;
+  const FilmGrid film_;
   const kernels::Table& kernels_ = kernels::best();
   Multigrid grid_;
-  std::vector<double> row_sum_;
-  // Of each vertex: on the grid, and in vectors over it.
-  std::vector<std::int32_t> column_, line_, place_;
+  std::vector<std::array<double, 2>> row_sums_;
+  std::vector<int> column_, line_;  // of each vertex
   std::vector<std::uint8_t> is_free_;
   std::vector<std::int64_t> differs_;
   Kept kept_;

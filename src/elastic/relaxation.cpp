@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <vector>
 
 #include "base/parallel.h"
 
@@ -16,50 +16,76 @@ constexpr double kFlattened = 0.5;
 // What is left of an error after one iteration, until the second shows.
 constexpr double kFirstContraction = 0.2;
 
-// Sum or maximum over chunks of vertices, in their order.
+// Entries of a field at a time, and what they add up to.
+constexpr std::size_t kGrain = 8192;
+struct Sums {
+  double slope = 0;           // dot product
+  double largest_square = 0;  // of a vector's length
+};
+
+// Calls body(first, last entry, sums) for parts of a field of this many entries; sums are added up
+// in the parts' order.
 template <typename Body>
-std::vector<double> over_chunks(std::size_t count, const Body& body) {
-  std::vector<double> partial((count + kElementGrain - 1) / kElementGrain, 0.0);
-  parallel_for(count, kElementGrain, [&](std::size_t begin, std::size_t end) {
-    partial[begin / kElementGrain] = body(begin, end);
+Sums over_parts(std::size_t entries, const Body& body) {
+  std::vector<Sums> partial((entries + kGrain - 1) / kGrain);
+  parallel_for(entries, kGrain, [&](std::size_t begin, std::size_t end) {
+    body(begin, end, partial[begin / kGrain]);
   });
-  return partial;
+  Sums all;
+  for (const Sums& part : partial) {
+    all.slope += part.slope;
+    all.largest_square = std::max(all.largest_square, part.largest_square);
+  }
+  return all;
 }
 
-double largest_norm(const VertexVector& x) {
-  const auto partial = over_chunks(x.size(), [&](std::size_t begin, std::size_t end) {
-    double largest = 0;
-    for (std::size_t v = begin; v < end; ++v) largest = std::max(largest, x[v].squaredNorm());
-    return largest;
-  });
-  return std::sqrt(*std::max_element(partial.begin(), partial.end()));
+double dot(std::size_t begin, std::size_t end, kernels::ConstField a, kernels::ConstField b) {
+  // Several sums at once: one alone would wait for itself.
+  constexpr std::size_t kSums = 8;
+  double sum[kSums] = {};
+  for (std::size_t n = begin; n < end; n += kSums)
+    for (std::size_t k = 0; k < kSums; ++k)
+      sum[k] += a.x[n + k] * b.x[n + k] + a.y[n + k] * b.y[n + k];
+  double total = 0;
+  for (const double part : sum) total += part;
+  return total;
 }
 
-double dot(const VertexVector& a, const VertexVector& b) {
-  const auto partial = over_chunks(a.size(), [&](std::size_t begin, std::size_t end) {
-    // Several sums at once: one alone would wait for itself.
-    Vec2 sum[4] = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
-    std::size_t v = begin;
-    for (; v + 4 <= end; v += 4)
-      for (std::size_t k = 0; k < 4; ++k) sum[k] += a[v + k].cwiseProduct(b[v + k]);
-    for (; v < end; ++v) sum[0] += a[v].cwiseProduct(b[v]);
-    return Vec2((sum[0] + sum[1]) + (sum[2] + sum[3])).sum();
-  });
-  return std::accumulate(partial.begin(), partial.end(), 0.0);
+double largest_square(std::size_t begin, std::size_t end, kernels::ConstField a) {
+  constexpr std::size_t kLargest = 8;
+  double largest[kLargest] = {};
+  for (std::size_t n = begin; n < end; n += kLargest)
+    for (std::size_t k = 0; k < kLargest; ++k) {
+      const double square = a.x[n + k] * a.x[n + k] + a.y[n + k] * a.y[n + k];
+      largest[k] = square > largest[k] ? square : largest[k];
+    }
+  return *std::max_element(largest, largest + kLargest);
 }
+
+}  // namespace
 
 // The descent and what it carries from one iteration to the next.
 class Descent {
  public:
-  Descent(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
-          const RelaxationOptions& options, LinearSolver& solver, VertexVector& u)
-      : energy_(energy), is_free_(is_free), options_(options), solver_(solver), u_(u) {}
+  Descent(Relaxation& fields, const std::vector<std::uint8_t>& is_free,
+          const RelaxationOptions& options)
+      : energy_(fields.energy_),
+        solver_(fields.solver_),
+        is_free_(is_free),
+        options_(options),
+        entries_(energy_.grid().layout().entries()),
+        u_(fields.u_),
+        gradient_(fields.gradient_),
+        direction_(fields.direction_),
+        trial_(fields.trial_),
+        trial_gradient_(fields.trial_gradient_),
+        mask_(fields.mask_) {}
 
   RelaxationResult run() {
-    const bool turned_over = energy_.gradient(u_, is_free_, gradient_) > 0;
+    const bool turned_over = energy_.gradient(u_, mask_, gradient_) > 0;
     if (turned_over && options_.otherwise) {
-      u_ = *options_.otherwise;
-      energy_.gradient(u_, is_free_, gradient_);
+      energy_.grid().to_grid(*options_.otherwise, u_);
+      energy_.gradient(u_, mask_, gradient_);
     }
     double contraction = kFirstContraction;
     while (result_.iterations < options_.max_iterations) {
@@ -70,11 +96,10 @@ class Descent {
         result_.converged = true;
         return result_;
       }
-      const double update = largest_norm(direction_);
-      if (result_.iterations > 1) contraction = std::min(1.0, update / result_.last_update_mm);
-      result_.last_update_mm = update;
+      if (result_.iterations > 1) contraction = std::min(1.0, update_ / result_.last_update_mm);
+      result_.last_update_mm = update_;
       // What the next iterations would still change.
-      result_.converged = update * contraction <= options_.tolerance_mm;
+      result_.converged = update_ * contraction <= options_.tolerance_mm;
       if (result_.converged && take_last_step()) return result_;
       if (!take_whole_step() && !search()) return result_;
     }
@@ -97,22 +122,31 @@ class Descent {
     return goes_down();
   }
 
+  // The whole step is tried first, so it is taken on the way.
   bool goes_down() {
     if (!solver_.direction(gradient_, direction_)) return false;
-    slope_ = dot(gradient_, direction_);
+    const Sums sums = move_to(1);
+    slope_ = sums.slope;
+    update_ = std::sqrt(sums.largest_square);
     return slope_ >= 0;
   }
 
-  void move_to(double step) {
-    trial_.resize(u_.size());
-    parallel_for(u_.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) trial_[v] = u_[v] - step * direction_[v];
+  // Slope and longest move along the direction are found on the way.
+  Sums move_to(double step) {
+    return over_parts(entries_, [&](std::size_t begin, std::size_t end, Sums& sums) {
+      const kernels::ConstField from = u_, way = direction_;
+      const kernels::Field to = trial_;
+      for (std::size_t n = begin; n < end; ++n) {
+        to.x[n] = from.x[n] - step * way.x[n];
+        to.y[n] = from.y[n] - step * way.y[n];
+      }
+      sums.slope = dot(begin, end, gradient_, way);
+      sums.largest_square = largest_square(begin, end, way);
     });
   }
 
   // So near the minimum, any step that turns nothing over will do.
   bool take_last_step() {
-    move_to(1);
     if (energy_.any_inverted(trial_)) return false;
     u_.swap(trial_);
     return true;
@@ -121,12 +155,15 @@ class Descent {
   // The energy is convex enough along the way if its slope has become small at the end: then the
   // step is taken without asking for the energy itself.
   bool take_whole_step() {
-    move_to(1);
-    if (energy_.gradient(trial_, is_free_, trial_gradient_) > 0) return false;
-    if (std::abs(dot(trial_gradient_, direction_)) > kFlattened * slope_) return false;
+    if (energy_.gradient(trial_, mask_, trial_gradient_) > 0) return false;
+    const Sums end_of_step =
+        over_parts(entries_, [&](std::size_t begin, std::size_t end, Sums& sums) {
+          sums.slope = dot(begin, end, trial_gradient_, direction_);
+        });
+    if (std::abs(end_of_step.slope) > kFlattened * slope_) return false;
     u_.swap(trial_);
     gradient_.swap(trial_gradient_);
-    moved_mm_ += result_.last_update_mm;
+    moved_mm_ += update_;
     return true;
   }
 
@@ -138,40 +175,61 @@ class Descent {
   }
 
   bool line_search() {
-    const double before = energy_.value(u_);
+    const double before = energy_at(u_);
     // What rounding alone may add: near the minimum, an energy difference cannot be resolved.
     const double noise = 1e-13 * std::abs(before);
     double step = 1;
     for (int halving = 0; halving < kMaxHalvings; ++halving, step *= 0.5) {
       move_to(step);
       if (energy_.any_inverted(trial_)) continue;
-      if (energy_.value(trial_) > before - 1e-4 * step * slope_ + noise) continue;
+      if (energy_at(trial_) > before - 1e-4 * step * slope_ + noise) continue;
       u_.swap(trial_);
-      energy_.gradient(u_, is_free_, gradient_);
-      result_.last_update_mm = step * largest_norm(direction_);
+      energy_.gradient(u_, mask_, gradient_);
+      result_.last_update_mm = step * update_;
       moved_mm_ += result_.last_update_mm;
       return true;
     }
     return false;
   }
 
+  double energy_at(const GridField& u) {
+    energy_.grid().to_vertices(u, by_vertex_);
+    return energy_.value(by_vertex_);
+  }
+
   const FilmEnergy& energy_;
+  LinearSolver& solver_;
   const std::vector<std::uint8_t>& is_free_;
   const RelaxationOptions& options_;
-  LinearSolver& solver_;
-  VertexVector& u_;
-  VertexVector gradient_, direction_, trial_, trial_gradient_;
+  const std::size_t entries_;  // of fields
+  GridField &u_, &gradient_, &direction_, &trial_, &trial_gradient_;
+  const GridArray<double>& mask_;
+  VertexVector by_vertex_;
   bool definite_ = false;
   double slope_ = 0;                            // of the energy against the direction
+  double update_ = 0;                           // longest move in the direction, mm
   double moved_mm_ = LinearSolver::kAnyChange;  // since the solver was updated
   RelaxationResult result_;
 };
 
-}  // namespace
+Relaxation::Relaxation(const FilmEnergy& energy, LinearSolver& solver)
+    : energy_(energy),
+      solver_(solver),
+      u_(energy.grid().layout()),
+      gradient_(u_),
+      direction_(u_),
+      trial_(u_),
+      trial_gradient_(u_),
+      mask_(energy.grid().layout().entries()) {}
 
-RelaxationResult relax(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
-                       const RelaxationOptions& options, LinearSolver& solver, VertexVector& u) {
-  return Descent(energy, is_free, options, solver, u).run();
+RelaxationResult Relaxation::run(const std::vector<std::uint8_t>& is_free,
+                                 const RelaxationOptions& options, VertexVector& u) {
+  const FilmGrid& grid = energy_.grid();
+  grid.to_grid(u, u_);
+  grid.to_mask(is_free, mask_);
+  const RelaxationResult result = Descent(*this, is_free, options).run();
+  grid.to_vertices(u_, u);
+  return result;
 }
 
 }  // namespace hydrodip

@@ -24,9 +24,24 @@ struct RelaxationResult {
   bool converged = false;
 };
 
-// Minimises energy.value(u) over the vertices with is_free 1, from the u given. Never turns over a
-// triangle that was not turned over, and never raises the energy.
-RelaxationResult relax(const FilmEnergy& energy, const std::vector<std::uint8_t>& is_free,
-                       const RelaxationOptions& options, LinearSolver& solver, VertexVector& u);
+// Keeps the fields that it computes with, for the next time.
+class Relaxation {
+ public:
+  // Refers to both.
+  Relaxation(const FilmEnergy& energy, LinearSolver& solver);
+
+  // Minimises energy.value(u) over the vertices with is_free 1, from the u given. Never turns over
+  // a triangle that was not turned over, and never raises the energy.
+  RelaxationResult run(const std::vector<std::uint8_t>& is_free, const RelaxationOptions& options,
+                       VertexVector& u);
+
+ private:
+  const FilmEnergy& energy_;
+  LinearSolver& solver_;
+  GridField u_, gradient_, direction_, trial_, trial_gradient_;
+  GridArray<double> mask_;
+
+  friend class Descent;
+};
 
 }  // namespace hydrodip

@@ -14,9 +14,12 @@ namespace hydrodip {
 template <typename Cholesky>
 class SparseCholeskySolver : public LinearSolver {
  public:
-  void update(const FilmEnergy& energy, const VertexVector& u,
+  void update(const FilmEnergy& energy, const GridField& u,
               const std::vector<std::uint8_t>& is_free, bool definite, double) override {
-    energy.hessian(u, definite, H_);
+    grid_ = &energy.grid();
+    VertexVector by_vertex;
+    grid_->to_vertices(u, by_vertex);
+    energy.hessian(by_vertex, definite, H_);
     is_free_ = is_free;
     const bool first = entries_.empty();
     if (first) build_pattern();
@@ -25,15 +28,19 @@ class SparseCholeskySolver : public LinearSolver {
     cholesky_.factorize(matrix_);
   }
 
-  bool direction(const VertexVector& gradient, VertexVector& step) override {
-    step.assign(gradient.size(), Vec2::Zero());
+  bool direction(const GridField& gradient, GridField& step) override {
     if (cholesky_.info() != Eigen::Success) return false;
-    Eigen::VectorXd right(2 * Eigen::Index(gradient.size()));
-    for (std::size_t v = 0; v < gradient.size(); ++v)
-      right.segment<2>(2 * Eigen::Index(v)) = is_free_[v] ? gradient[v] : Vec2::Zero();
+    Eigen::VectorXd right(2 * Eigen::Index(is_free_.size()));
+    for (std::size_t v = 0; v < is_free_.size(); ++v) {
+      const std::size_t place = grid_->place(v);
+      right.segment<2>(2 * Eigen::Index(v)) =
+          is_free_[v] ? Vec2(gradient.x[place], gradient.y[place]) : Vec2(0, 0);
+    }
     const Eigen::VectorXd solution = cholesky_.solve(right);
-    for (std::size_t v = 0; v < step.size(); ++v)
-      step[v] = solution.segment<2>(2 * Eigen::Index(v));
+    for (std::size_t v = 0; v < is_free_.size(); ++v) {
+      step.x[grid_->place(v)] = solution[2 * Eigen::Index(v)];
+      step.y[grid_->place(v)] = solution[2 * Eigen::Index(v) + 1];
+    }
     return solution.allFinite();
   }
 
@@ -78,6 +85,7 @@ class SparseCholeskySolver : public LinearSolver {
     }
   }
 
+  const FilmGrid* grid_ = nullptr;
   BlockMatrix H_;
   std::vector<std::uint8_t> is_free_;
   std::vector<Entry> entries_;

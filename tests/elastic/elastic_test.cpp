@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 #include <random>
 
+#include "elastic/by_vertex.h"
 #include "elastic/film_energy.h"
 #include "elastic/linear_solver.h"
 #include "elastic/relaxation.h"
@@ -92,8 +93,7 @@ TEST(FilmEnergy, GradientMatchesFiniteDifferences) {
   for (double nu : kPoissonRatios) {
     const RandomFilm film(7);
     const FilmEnergy energy = film.energy(nu);
-    VertexVector gradient;
-    energy.gradient(film.u, film.is_free, gradient);
+    const VertexVector gradient = fixtures::gradient_by_vertex(energy, film.u, film.is_free);
     double scale = 0, worst = 0;
     for (std::size_t v = 0; v < film.u.size(); ++v) {
       if (!film.is_free[v]) {
@@ -129,10 +129,9 @@ TEST(FilmEnergy, HessianMatchesFiniteDifferences) {
       for (int k = 0; k < 2; ++k) {
         const double h = 1e-3;
         const auto at = [&](double d) {
-          VertexVector u = film.u, g;
+          VertexVector u = film.u;
           u[w][k] += d;
-          energy.gradient(u, all, g);
-          return g;
+          return fixtures::gradient_by_vertex(energy, u, all);
         };
         const VertexVector p1 = at(h), m1 = at(-h), p2 = at(2 * h), m2 = at(-2 * h);
         for (std::size_t v = 0; v < film.u.size(); ++v) {
@@ -201,21 +200,24 @@ TEST(LinearSolver, BothSolversFindTheMinimum) {
     const FilmEnergy energy = film.energy(nu);
     BlockMatrix H;
     energy.hessian(film.u, true, H);
-    VertexVector b(film.u.size()), exact, iterative;
+    const FilmGrid& grid = energy.grid();
+    VertexVector b(film.u.size()), exact;
     for (std::size_t v = 0; v < b.size(); ++v)
       b[v] = Vec2(std::sin(double(v)), std::cos(2.0 * double(v)));
     const auto direct = make_direct_solver();
     const auto multigrid = make_multigrid_solver(film.mesh);
-    direct->update(energy, film.u, film.is_free, true);
-    multigrid->update(energy, film.u, film.is_free, true);
-    EXPECT_TRUE(direct->direction(b, exact));
-    iterative.assign(b.size(), Vec2::Zero());
-    VertexVector residual = b, step;
+    direct->update(energy, grid.field(film.u), film.is_free, true);
+    multigrid->update(energy, grid.field(film.u), film.is_free, true);
+    GridField step(grid.layout());
+    EXPECT_TRUE(direct->direction(grid.field(b), step));
+    grid.to_vertices(step, exact);
+    VertexVector iterative(b.size(), Vec2::Zero()), residual = b, way;
     int iterations = 0;
     while (norm(residual, film.is_free) > 1e-5 * norm(b, film.is_free)) {
-      ASSERT_TRUE(multigrid->direction(residual, step));
+      ASSERT_TRUE(multigrid->direction(grid.field(residual), step));
       ASSERT_LT(++iterations, 25);
-      for (std::size_t v = 0; v < b.size(); ++v) iterative[v] += step[v];
+      grid.to_vertices(step, way);
+      for (std::size_t v = 0; v < b.size(); ++v) iterative[v] += way[v];
       for (std::size_t v = 0; v < b.size(); ++v) residual[v] = b[v] - times(H, iterative, v);
     }
     double scale = 0, worst = 0;
@@ -251,7 +253,7 @@ TEST(Relaxation, RecoversALinearMapFromAnyStart) {
       if (film.is_free[v]) u[v] += 0.1 * film.mesh.cell_mm * Vec2(std::sin(7.0 * double(v)), 0.5);
     const auto solver = make_multigrid_solver(film.mesh);
     const RelaxationResult result =
-        relax(energy, film.is_free, {.tolerance_mm = 1e-10}, *solver, u);
+        Relaxation(energy, *solver).run(film.is_free, {.tolerance_mm = 1e-10}, u);
     EXPECT_TRUE(result.converged);
     for (std::size_t v = 0; v < u.size(); ++v) EXPECT_LT((u[v] - expected[v]).norm(), 1e-7);
   }

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "elastic/by_vertex.h"
 #include "elastic/corotated.h"
 #include "elastic/film_energy.h"
 #include "elastic/kernel_variants.h"
@@ -31,9 +32,8 @@ struct StrainedFilm {
     for (Vec2& p : u) p += 0.2 * mesh.cell_mm * Vec2(unit(generator), unit(generator));
     VertexVector place = mesh.u;
     for (Vec2& p : place) p += 0.1 * mesh.cell_mm * Vec2(unit(generator), unit(generator));
-    std::vector<std::uint8_t> film(mesh.triangles.size(), 1);
-    for (std::size_t t = 0; t < film.size(); t += 17) film[t] = 0;
-    energy.set_flat_rest(place, film);
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += 17) energy.set_film(t, false);
+    energy.set_flat_rest(place, 0);
     for (std::uint8_t rim : mesh.on_rim) is_free.push_back(!rim);
   }
 };
@@ -41,23 +41,41 @@ struct StrainedFilm {
 // Everything that a table computes from one film, one after the other.
 std::vector<double> results_of(const kernels::Table& table) {
   const StrainedFilm film;
-  const std::size_t n = film.mesh.triangles.size();
+  const FilmGrid& grid = film.energy.grid();
+  const kernels::Elements elements = film.energy.elements();
+  const GridField u = grid.field(film.u);
+  const std::size_t n = grid.elements();
+  const int ny = grid.layout().ny;
   std::vector<double> results;
-  std::vector<std::vector<double>> force(4, std::vector<double>(n));
-  double* const out[2][2] = {{force[0].data(), force[1].data()},
-                             {force[2].data(), force[3].data()}};
-  results.push_back(double(table.forces(film.energy.elements(), 0, n, film.u.data()->data(), out)));
-  for (const auto& f : force) results.insert(results.end(), f.begin(), f.end());
-  results.push_back(double(table.turned_over(film.energy.elements(), 0, n, film.u.data()->data())));
+  const auto add = [&](const GridArray<double>& values, std::size_t count) {
+    results.insert(results.end(), values.data(), values.data() + count);
+  };
+
+  GridField force(grid.layout());
+  GridArray<double> mask(grid.layout().entries());
+  grid.to_mask(film.is_free, mask);
+  GridArray<double> scratch(std::size_t(kernels::kScratchRows * grid.layout().stride));
+  results.push_back(
+      double(table.gradient(elements, 0, ny, u, mask.data(), force, scratch.data())));
+  add(force.x, grid.layout().entries());
+  add(force.y, grid.layout().entries());
+  results.push_back(double(table.turned_over(elements, 0, ny - 1, u)));
+
   std::vector<std::int64_t> flags(n);
-  table.overstretched(film.energy.elements(), 0, n, film.u.data()->data(), 1.2, flags.data());
+  table.overstretched(elements, 0, ny - 1, u, 1.2, flags.data());
   results.insert(results.end(), flags.begin(), flags.end());
-  std::vector<double> area(n);
-  const std::vector<std::uint8_t> present(n, 1);
-  table.rest_shapes(film.energy.elements(), 0, n, film.u.data()->data(), present.data(), out,
-                    area.data());
-  for (const auto& g : force) results.insert(results.end(), g.begin(), g.end());
-  results.insert(results.end(), area.begin(), area.end());
+
+  GridArray<double> rest[2][2], area(n), present(n), flat_area(n);
+  for (auto& corner : rest)
+    for (auto& component : corner) component = GridArray<double>(n);
+  for (std::size_t e = 0; e < n; ++e) present[e] = flat_area[e] = grid.triangle(e) < 0 ? 0 : 1;
+  double* const out[2][2] = {{rest[0][0].data(), rest[0][1].data()},
+                             {rest[1][0].data(), rest[1][1].data()}};
+  results.push_back(double(table.rest_shapes(elements, 0, ny - 1, u, present.data(),
+                                             flat_area.data(), 0.5, out, area.data())));
+  for (const auto& corner : rest)
+    for (const auto& component : corner) add(component, n);
+  add(area, n);
   return results;
 }
 
@@ -70,8 +88,7 @@ TEST(Kernels, EveryInstructionSetGivesTheSameBytes) {
 
 TEST(Kernels, ForcesAreTheDerivativeOfTheEnergy) {
   const StrainedFilm film;
-  VertexVector gradient;
-  film.energy.gradient(film.u, film.is_free, gradient);
+  const VertexVector gradient = fixtures::gradient_by_vertex(film.energy, film.u, film.is_free);
   constexpr double kStep = 1e-6;
   for (std::size_t v = 0; v < film.u.size(); v += 7)
     for (Eigen::Index c = 0; c < 2; ++c) {
@@ -86,21 +103,65 @@ TEST(Kernels, ForcesAreTheDerivativeOfTheEnergy) {
 TEST(Kernels, OverstretchedIsWhereThePrincipalStretchPassesTheLimit) {
   const StrainedFilm film;
   for (const double limit : {1.05, 1.2, 1.6}) {
-    std::vector<std::int64_t> flags;
-    film.energy.overstretched(film.u, limit, flags);
-    std::size_t over = 0;
-    for (std::size_t t = 0; t < flags.size(); ++t) {
+    std::vector<std::int32_t> expected;
+    for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
       const Triangle& v = film.mesh.triangles[t];
       const RestTriangle rest = film.energy.rest(t);
-      const bool expected =
-          rest.area > 0 && largest_stretch(deformation_gradient(rest, film.u[std::size_t(v[0])],
-                                                                film.u[std::size_t(v[1])],
-                                                                film.u[std::size_t(v[2])])) > limit;
-      EXPECT_EQ(flags[t] != 0, expected) << t;
-      over += expected;
+      const Mat2 F = deformation_gradient(rest, film.u[std::size_t(v[0])],
+                                          film.u[std::size_t(v[1])], film.u[std::size_t(v[2])]);
+      if (rest.area > 0 && largest_stretch(F) > limit) expected.push_back(std::int32_t(t));
     }
-    EXPECT_GT(over, 0U);
-    EXPECT_LT(over, flags.size());
+    EXPECT_EQ(film.energy.overstretched(film.u, limit), expected);
+    EXPECT_FALSE(expected.empty());
+    EXPECT_LT(expected.size(), film.mesh.triangles.size());
+  }
+}
+
+// Rest shapes come back corner by corner, whichever way a cell is cut.
+TEST(FilmEnergy, FlatRestShapesAreThoseOfTheTriangles) {
+  const StrainedFilm film;
+  FilmEnergy energy(film.mesh, {}, 0.3);
+  const std::vector<std::int32_t> small = energy.set_flat_rest(film.u, 0.9);
+  std::size_t expected_small = 0;
+  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
+    const Triangle& v = film.mesh.triangles[t];
+    const auto triangle_in = [&](const VertexVector& at) {
+      return rest_triangle(at[std::size_t(v[0])], at[std::size_t(v[1])], at[std::size_t(v[2])]);
+    };
+    const RestTriangle expected = triangle_in(film.u), found = energy.rest(t);
+    EXPECT_NEAR(found.area, expected.area, 1e-12);
+    EXPECT_LT((found.gradient - expected.gradient).norm(), 1e-12) << t;
+    expected_small += expected.area < 0.9 * triangle_in(film.mesh.u).area;
+    energy.set_rest(t, expected);
+    EXPECT_LT((energy.rest(t).gradient - expected.gradient).norm(), 1e-14) << t;
+  }
+  EXPECT_EQ(small.size(), expected_small);
+  EXPECT_GT(expected_small, 0U);
+}
+
+// Also where a disc leaves cells with one triangle, or none.
+TEST(FilmGrid, HoldsEveryTriangleOfADisc) {
+  const FilmMesh mesh = make_film_mesh({.width_mm = 90,
+                                        .height_mm = 90,
+                                        .shape = FilmShape::kDisc,
+                                        .margin_mm = 5,
+                                        .elements = 500});
+  const FilmEnergy energy(mesh, {}, 0.2);
+  const FilmGrid& grid = energy.grid();
+  const kernels::Elements elements = energy.elements();
+  const auto entries = grid.layout().entries();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::size_t e = grid.element(t), a = e % entries, stride = std::size_t(elements.stride);
+    ASSERT_EQ(grid.triangle(e), std::int32_t(t));
+    const std::size_t row = a / stride - 1, column = a % stride - kernels::kLanes;
+    const bool upper = e >= entries, rising = elements.rising[row % 2][column] > 0;
+    const std::size_t b = a + 1, c = a + stride + 1, d = a + stride;
+    const std::array<std::size_t, 3> expected =
+        upper ? std::array{c, d, rising ? a : b} : std::array{a, b, rising ? c : d};
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(
+          grid.place(std::size_t(mesh.triangles[t][(k + std::size_t(grid.first_corner(t))) % 3])),
+          expected[k]);
   }
 }
 

@@ -1,0 +1,119 @@
+// The film laid out over its own regular grid, as the solver computes on it: vertices as nodes, two
+// triangles in every cell. What lies outside a disc is there as well, without film.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "elastic/kernels.h"
+#include "film/film.h"
+
+namespace hydrodip {
+
+// Vectors over vertices: 2 values per vertex.
+using VertexVector = std::vector<Vec2>;
+
+// Where arrays over a grid hold its nodes (see kernels.h).
+struct GridLayout {
+  GridLayout(int nodes_x, int nodes_y);
+
+  std::size_t place(int i, int j) const {
+    return (std::size_t(j) + 1) * std::size_t(stride) + kernels::kLanes + std::size_t(i);
+  }
+  // Of an array over the grid.
+  std::size_t entries() const { return std::size_t(stride) * (std::size_t(ny) + 2) + kLooseEnds; }
+
+  int nx, ny;
+  std::ptrdiff_t groups;  // of kernels::kLanes nodes, per row
+  std::ptrdiff_t stride;
+
+ private:
+  // The nodes behind the last and before the first are asked for as well.
+  static constexpr std::size_t kLooseEnds = 2 * kernels::kLanes;
+};
+
+// An array over a grid, zero at first, at addresses that registers are loaded from at once.
+template <typename Real>
+class GridArray {
+ public:
+  GridArray() = default;
+  explicit GridArray(std::size_t entries) : lines_((entries + kPerLine - 1) / kPerLine) {}
+
+  Real* data() { return lines_.data()->value; }
+  const Real* data() const { return lines_.data()->value; }
+  Real& operator[](std::size_t n) { return data()[n]; }
+  const Real& operator[](std::size_t n) const { return data()[n]; }
+  void swap(GridArray& other) { lines_.swap(other.lines_); }
+  void set_zero() { lines_.assign(lines_.size(), {}); }
+
+ private:
+  static constexpr std::size_t kPerLine = 64 / sizeof(Real);
+  struct alignas(64) Line {
+    Real value[kPerLine];
+  };
+  std::vector<Line> lines_;
+};
+
+// A vector field over the film's grid.
+struct GridField {
+  GridField() = default;
+  explicit GridField(const GridLayout& layout) : x(layout.entries()), y(layout.entries()) {}
+  void swap(GridField& other) {
+    x.swap(other.x);
+    y.swap(other.y);
+  }
+  // As the kernels take it. Implicit: a view, and nothing else is meant.
+  operator kernels::ConstField() const {  // NOLINT(google-explicit-constructor)
+    return {x.data(), y.data()};
+  }
+  operator kernels::Field() { return {x.data(), y.data()}; }  // NOLINT(google-explicit-constructor)
+
+  GridArray<double> x, y;
+};
+
+// How a film mesh lies on its grid.
+class FilmGrid {
+ public:
+  explicit FilmGrid(const FilmMesh& mesh);
+
+  const GridLayout& layout() const { return layout_; }
+  std::size_t vertices() const { return place_.size(); }
+  // Of a vertex, in arrays over the grid.
+  std::size_t place(std::size_t v) const { return std::size_t(place_[v]); }
+
+  // Of a triangle, in arrays over elements (kernels::Elements), which have `elements()` entries.
+  std::size_t element(std::size_t t) const { return std::size_t(element_[t]); }
+  std::size_t elements() const { return 2 * layout_.entries(); }
+  // The triangle there; -1: none.
+  std::int32_t triangle(std::size_t element) const { return triangle_[element]; }
+  // Corner 0 of the triangle's element is the triangle's corner of this number, and so on round.
+  int first_corner(std::size_t t) const { return first_corner_[t]; }
+  const GridArray<double>& rising(int parity) const { return rising_[std::size_t(parity)]; }
+
+  // Calls body(begin, end) for parts of `rows` rows of the grid, in parallel where that pays.
+  void for_rows(int rows, const std::function<void(std::ptrdiff_t, std::ptrdiff_t)>& body) const;
+
+  // Of a loop over vertices with little to do for each.
+  static constexpr std::size_t kVertexGrain = 8192;
+
+  // From vertices to the grid and back; what is no vertex stays as it is.
+  void to_grid(const VertexVector& from, GridField& to) const;
+  void to_vertices(const GridField& from, VertexVector& to) const;
+  GridField field(const VertexVector& from) const;
+  // 1 where is_set is 1, 0 at other vertices.
+  void to_mask(const std::vector<std::uint8_t>& is_set, GridArray<double>& mask) const;
+
+ private:
+  void place_vertices(const FilmMesh& mesh);
+  void place_triangles(const FilmMesh& mesh);
+
+  GridLayout layout_;
+  std::vector<std::int32_t> place_;
+  std::vector<std::int32_t> element_, triangle_;
+  std::vector<std::uint8_t> first_corner_;
+  std::array<GridArray<double>, 2> rising_;
+};
+
+}  // namespace hydrodip

@@ -1,0 +1,20 @@
+// Fields over vertices, where the solver computes on the film's grid.
+#pragma once
+
+#include "elastic/film_energy.h"
+
+namespace hydrodip::fixtures {
+
+inline VertexVector gradient_by_vertex(const FilmEnergy& energy, const VertexVector& u,
+                                       const std::vector<std::uint8_t>& is_free) {
+  const FilmGrid& grid = energy.grid();
+  GridArray<double> mask(grid.layout().entries());
+  grid.to_mask(is_free, mask);
+  GridField gradient(grid.layout());
+  energy.gradient(grid.field(u), mask, gradient);
+  VertexVector result;
+  grid.to_vertices(gradient, result);
+  return result;
+}
+
+}  // namespace hydrodip::fixtures
