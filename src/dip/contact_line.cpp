@@ -9,12 +9,14 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "base/parallel.h"
 #include "dip/foot.h"
 #include "dip/measure.h"
 #include "dip/scheme.h"
 #include "dip/waterline.h"
+#include "elastic/kernel_variants.h"
 #include "film/locate.h"
 
 namespace hydrodip {
@@ -60,8 +62,13 @@ class ContactLineScheme : public Scheme {
         usable_(setting.film.triangles.size(), 0),
         is_free_(setting.film.u.size(), 0),
         plan_(setting.film.u),
+        slid_(setting.film.u.size()),
         last_slide_(setting.film.u.size(), Vec2::Zero()),
         slid_in_(setting.film.u.size(), -1),
+        carried_x_(setting.film.u.size()),
+        carried_y_(setting.film.u.size()),
+        found_(setting.film.u.size(), 0),
+        is_plain_(setting.film.triangles.size(), 0),
         touches_(setting.film.u.size(), 0) {
     for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
       const Triangle& v = film_.triangles[t];
@@ -69,6 +76,11 @@ class ContactLineScheme : public Scheme {
       smallest_area_.push_back(
           kMinArea * 0.5 * cross2(film_.u[std::size_t(v[1])] - a, film_.u[std::size_t(v[2])] - a));
       update_load(t);
+    }
+    for (auto& corner : slid_in_corner_) corner.assign(film_.u.size(), 0);
+    for (const Vec2& u : film_.u) {
+      film_x_.push_back(u.x());
+      film_y_.push_back(u.y());
     }
   }
 
@@ -152,7 +164,7 @@ class ContactLineScheme : public Scheme {
     const double rise = level - state_.level;
     const double ratio = last_rise_ > 0 ? rise / last_rise_ : 1.0;
     last_rise_ = rise;
-    for (Foot& foot : feet_) {
+    for_feet([&](Foot& foot) {
       const Waterline::Point to = next_on_line(foot);
       foot.last_way = unrolled(foot.point, foot.outward, foot.steepness, to, level, z_stretch());
       foot.laid_before = foot.laid;
@@ -162,7 +174,16 @@ class ContactLineScheme : public Scheme {
       foot.outward = to.outward;
       foot.steepness = to.steepness;
       place_ghost(foot, foot.element.next(ratio));
-    }
+    });
+  }
+
+  // Calls work(foot) for each, side by side.
+  template <class Work>
+  void for_feet(const Work& work) {
+    constexpr std::size_t kFeetPerTask = 32;
+    parallel_for(feet_.size(), kFeetPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t f = begin; f < end; ++f) work(feet_[f]);
+    });
   }
 
   Vec2 corner(std::size_t t, std::size_t k) const {
@@ -182,12 +203,14 @@ class ContactLineScheme : public Scheme {
   // After a corner of the triangle attached or it tore. A vertex without any film left around it
   // drifts: nothing holds or moves it.
   void update_load(std::size_t t) {
+    const Triangle& v = film_.triangles[t];
     usable_[t] = carries_load(t);
+    is_plain_[t] = usable_[t] && !attached(v[0]) && !attached(v[1]) && !attached(v[2]);
     energy_.set_film(t, usable_[t]);
-    for (std::int32_t v : film_.triangles[t]) {
-      const auto begin = film_.incident.begin() + film_.incident_begin[std::size_t(v)],
-                 end = film_.incident.begin() + film_.incident_begin[std::size_t(v) + 1];
-      is_free_[std::size_t(v)] = floats(v) && std::any_of(begin, end, [&](std::int32_t other) {
+    for (std::int32_t w : v) {
+      const auto begin = film_.incident.begin() + film_.incident_begin[std::size_t(w)],
+                 end = film_.incident.begin() + film_.incident_begin[std::size_t(w) + 1];
+      is_free_[std::size_t(w)] = floats(w) && std::any_of(begin, end, [&](std::int32_t other) {
                                    return usable_[std::size_t(other)] != 0;
                                  });
     }
@@ -288,26 +311,45 @@ class ContactLineScheme : public Scheme {
     }
   }
 
-  // Every floating vertex goes where its film coordinate is found in the relaxed film.
+  // Every floating vertex goes where its film coordinate is found in the relaxed film. Most are
+  // found where they were found last, all at once.
   void slide(const VertexVector& u) {
-    slid_.resize(film_.u.size());
+    const auto carry = kernels::best().carry;
+    const std::int32_t* const corners[3] = {slid_in_corner_[0].data(), slid_in_corner_[1].data(),
+                                            slid_in_corner_[2].data()};
     parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+      carry(begin, end, corners, {film_x_.data(), film_y_.data()}, relaxation_.result(),
+            energy_.flat_place(), {carried_x_.data(), carried_y_.data()}, found_.data());
       for (std::size_t v = begin; v < end; ++v) {
         slid_[v] = plan_[v];
         if (state_.state[v] != VertexState::kUnattached) continue;
-        const FilmLocation at =
-            locate(film_, u, usable_, static_cast<std::int32_t>(v), film_.u[v], slid_in_[v]);
-        slid_in_[v] = at.triangle;
-        if (at.triangle < 0) continue;
-        const auto t = std::size_t(at.triangle);
-        const Vec2 place =
-            at.weight[0] * corner(t, 0) + at.weight[1] * corner(t, 1) + at.weight[2] * corner(t, 2);
+        Vec2 place(carried_x_[v], carried_y_[v]);
+        if (!found_[v] || !is_plain_[std::size_t(slid_in_[v])]) {
+          const auto looked_up = look_up(v, u);
+          if (!looked_up) continue;
+          place = *looked_up;
+        }
         // Scraps of torn film may have no place that means anything.
         if ((place - plan_[v]).norm() < kLongestSlide * film_.cell_mm + set_.options.step_mm)
           slid_[v] = place;
       }
     });
     hold_back_folds();
+  }
+
+  // Where the vertex goes if it is not where it was found last, or if a corner there has a ghost.
+  std::optional<Vec2> look_up(std::size_t v, const VertexVector& u) {
+    const FilmLocation at =
+        locate(film_, u, usable_, static_cast<std::int32_t>(v), film_.u[v], slid_in_[v]);
+    slid_in_[v] = at.triangle;
+    for (std::size_t k = 0; k < 3; ++k)
+      slid_in_corner_[k][v] = at.triangle < 0
+                                  ? 0
+                                  : static_cast<std::int32_t>(energy_.grid().place(
+                                        std::size_t(film_.triangles[std::size_t(at.triangle)][k])));
+    if (at.triangle < 0) return std::nullopt;
+    const auto t = std::size_t(at.triangle);
+    return at.weight[0] * corner(t, 0) + at.weight[1] * corner(t, 1) + at.weight[2] * corner(t, 2);
   }
 
   // Where sliding that far would turn floating film over, its vertices stay where they were; there
@@ -443,7 +485,7 @@ class ContactLineScheme : public Scheme {
     update_loads(touches);
     std::erase_if(feet_, [&](const Foot& foot) { return !floats(foot.floating); });
     feet_.insert(feet_.end(), created.begin(), created.end());
-    for (Foot& foot : feet_) place_ghost(foot, foot.element.now);
+    for_feet([](Foot& foot) { place_ghost(foot, foot.element.now); });
     index_feet();
   }
 
@@ -557,9 +599,14 @@ class ContactLineScheme : public Scheme {
   std::vector<std::uint8_t> is_free_;  // per vertex: floats and has film around it
   // Per vertex, seen from above: now, and after relaxing.
   VertexVector plan_, slid_;
-  VertexVector last_slide_;            // per vertex, in film coordinates: of the last relaxation
-  std::vector<std::int32_t> slid_in_;  // per vertex: the triangle that it was last found in
-  std::vector<std::uint8_t> touches_;  // per vertex: attaches in this step
+  VertexVector last_slide_;  // per vertex, in film coordinates: of the last relaxation
+  // Per vertex: the triangle that it was last found in, with its corners' places on the grid; where
+  // it has been carried there, and whether it still was inside.
+  std::vector<std::int32_t> slid_in_, slid_in_corner_[3];
+  std::vector<double> film_x_, film_y_, carried_x_, carried_y_;
+  std::vector<std::int64_t> found_;
+  std::vector<std::uint8_t> is_plain_;  // per triangle: usable, and none of its corners attached
+  std::vector<std::uint8_t> touches_;   // per vertex: attaches in this step
 };
 
 }  // namespace

@@ -40,6 +40,9 @@ class FilmEnergy {
   // triangles with film whose area comes out below least_share of that on the flat film.
   std::vector<std::int32_t> set_flat_rest(const VertexVector& place, double least_share);
 
+  // The places that set_flat_rest() was given last.
+  const GridField& flat_place() const { return place_; }
+
   Lame material(std::size_t t) const { return {mu_[grid_.element(t)], lambda_[grid_.element(t)]}; }
   // All of it as arrays.
   kernels::Elements elements() const;
@@ -66,8 +69,8 @@ class FilmEnergy {
   GridArray<double> gradient_[2][2], area_, mu_, lambda_, film_, flat_area_;
   // Corner of mesh.triangles[mesh.incident[n]] that is the vertex itself.
   std::vector<std::uint8_t> own_corner_;
-  GridField place_;                          // scratch of set_flat_rest()
-  mutable std::vector<std::int64_t> flags_;  // and of overstretched()
+  GridField place_;
+  mutable std::vector<std::int64_t> flags_;  // scratch of overstretched()
 
   // Of hessian(), made when it is first called.
   mutable BlockMatrix pattern_;

@@ -106,8 +106,16 @@ struct Table {
   std::int64_t (*turned_over)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end,
                               ConstField u);
   // 1 where the Hessian at u differs from the linearization by more than the tolerance, relatively.
-  void (*changed)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
-                  const Linearization&, double tolerance, std::int64_t* out);
+  // Returns how many do.
+  std::int64_t (*changed)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
+                          const Linearization&, double tolerance, std::int64_t* out);
+
+  // Where the points `target`, one for each entry in [begin, end), lie when the film whose nodes
+  // are at u is laid down with its nodes at `place`: each is looked for in one element only, given
+  // by the arrays' entries of its corners (clockwise ones have nothing in them). 1 in `inside`
+  // where it is found there.
+  void (*carry)(std::size_t begin, std::size_t end, const std::int32_t* const corner[3],
+                ConstField target, ConstField u, ConstField place, Field out, std::int64_t* inside);
 
   // The energy's gradient at the nodes of rows [begin, end), times the mask. `scratch`:
   // kScratchRows rows, zero. Returns how many triangles in the cells of those rows are turned over.

@@ -370,9 +370,10 @@ std::int64_t turned_over(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t
 }
 
 template <bool kUpper>
-inline void changed_of(const Elements& e, std::ptrdiff_t row, ConstField u,
-                       const Linearization& old, double tolerance, std::int64_t* out) {
+inline std::int64_t changed_of(const Elements& e, std::ptrdiff_t row, ConstField u,
+                               const Linearization& old, double tolerance, std::int64_t* out) {
   const double limit = tolerance * tolerance;
+  std::int64_t count = 0;
   const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
   const double* rising = e.rising[row & 1];
 #pragma GCC ivdep
@@ -397,15 +398,19 @@ inline void changed_of(const Elements& e, std::ptrdiff_t row, ConstField u,
                          (stiffened * stiffened > limit * e.mu[t] * e.mu[t]);
     const bool emptied = old.area[t] > 0;
     out[t] = film ? (differs ? 1 : 0) : (emptied ? 1 : 0);
+    count += out[t];
   }
+  return count;
 }
 
-void changed(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
-             const Linearization& old, double tolerance, std::int64_t* out) {
+std::int64_t changed(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
+                     const Linearization& old, double tolerance, std::int64_t* out) {
+  std::int64_t count = 0;
   for (std::ptrdiff_t row = begin; row < end; ++row) {
-    changed_of<false>(e, row, u, old, tolerance, out);
-    changed_of<true>(e, row, u, old, tolerance, out);
+    count += changed_of<false>(e, row, u, old, tolerance, out);
+    count += changed_of<true>(e, row, u, old, tolerance, out);
   }
+  return count;
 }
 
 // The smallest singular value s of F is below 1 / limit: det(F^T F - s^2 I) < 0, or both are.
@@ -434,11 +439,32 @@ void overstretched(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, 
   }
 }
 
+void carry(std::size_t begin, std::size_t end, const std::int32_t* const corner[3],
+           ConstField target, ConstField u, ConstField place, Field out, std::int64_t* inside) {
+  constexpr double kInside = -1e-12;
+  double* __restrict to_x = out.x, * __restrict to_y = out.y;
+#pragma GCC ivdep
+  for (std::size_t n = begin; n < end; ++n) {
+    const std::int32_t a = corner[0][n], b = corner[1][n], c = corner[2][n];
+    const double ux = u.x[a], uy = u.y[a];
+    const double bx = u.x[b] - ux, by = u.y[b] - uy, cx = u.x[c] - ux, cy = u.y[c] - uy;
+    const double tx = target.x[n] - ux, ty = target.y[n] - uy;
+    const double twice = bx * cy - by * cx;
+    const bool usable = twice > 0;
+    const double inverse = 1 / (usable ? twice : 1.0);
+    const double wb = (tx * cy - ty * cx) * inverse, wc = (bx * ty - by * tx) * inverse;
+    const double wa = 1 - wb - wc;
+    to_x[n] = wa * place.x[a] + wb * place.x[b] + wc * place.x[c];
+    to_y[n] = wa * place.y[a] + wb * place.y[b] + wc * place.y[c];
+    inside[n] = usable & (wa >= kInside) & (wb >= kInside) & (wc >= kInside) ? 1 : 0;
+  }
+}
+
 }  // namespace
 
 extern const Table KERNELS_VARIANT;
 const Table KERNELS_VARIANT = {multiply,     residual, smooth,        precondition, restrict_rows,
                                prolong_rows, dot,      scale_and_add, rest_shapes,  overstretched,
-                               turned_over,  changed,  gradient};
+                               turned_over,  changed,  carry,         gradient};
 
 }  // namespace hydrodip::kernels

@@ -18,6 +18,9 @@ constexpr double kOperatorTolerance = 0.05;
 // Vertices that have moved by less than this share of a cell have changed it by less than that.
 constexpr double kStillShare = kOperatorTolerance / 4;
 
+// Of so many rows of cells one is looked at for changes, each in its turn.
+constexpr int kLookedAtInTurn = 2;
+
 class MultigridSolver : public LinearSolver {
  public:
   explicit MultigridSolver(const FilmMesh& mesh)
@@ -95,23 +98,27 @@ class MultigridSolver : public LinearSolver {
   // has `turned`, makes a difference.
   void linearize(const FilmEnergy& energy, const GridField& u, bool turned, bool all) {
     const kernels::Elements elements = energy.elements();
+    looked_at_ = (looked_at_ + 1) % kLookedAtInTurn;
     differs_.resize(film_.elements(), 0);
     std::vector<std::vector<std::int32_t>> changed(std::size_t(mesh_.ny));  // by row of cells
     film_.for_rows(mesh_.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      kernels_.changed(elements, begin, end, u, kept_.view(), kOperatorTolerance, differs_.data());
-      for (auto row = begin; row < end; ++row)
+      for (auto row = begin; row < end; ++row) {
+        if (!all && !turned && row % kLookedAtInTurn != looked_at_) continue;
+        const std::int64_t count = kernels_.changed(elements, row, row + 1, u, kept_.view(),
+                                                    kOperatorTolerance, differs_.data());
+        if (count == 0 && !turned && !all) continue;
         for (const std::ptrdiff_t half : {std::ptrdiff_t(0), elements.upper}) {
           const auto first = film_.layout().place(0, int(row)) + std::size_t(half);
           for (std::size_t e = first; e < first + std::size_t(mesh_.nx) - 1; ++e) {
+            const bool indefinite = turned && double(kept_.turning[e]) < -elements.mu[e];
+            if (!differs_[e] && !indefinite && !all) continue;
             const std::int32_t t = film_.triangle(e);
             if (t < 0) continue;
-            const bool indefinite =
-                turned && double(kept_.turning[e]) < -energy.material(std::size_t(t)).mu;
-            if (!all && !differs_[e] && !indefinite) continue;
             linearize(energy, u, std::size_t(t));
             changed[std::size_t(row)].push_back(t);
           }
         }
+      }
     });
     for (const auto& row : changed)
       for (const std::int32_t t : row)
@@ -280,6 +287,7 @@ class MultigridSolver : public LinearSolver {
   std::vector<std::uint8_t> is_free_;
   std::vector<std::int64_t> differs_;
   Kept kept_;
+  int looked_at_ = 0;  // the rows of cells with this number, by kLookedAtInTurn
   bool definite_ = false, restart_ = true;
   // Gradient and the one before, preconditioned gradient, direction, operator times direction.
   GridVector r_, r_before_, z_, p_, Ap_;

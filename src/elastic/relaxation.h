@@ -35,6 +35,9 @@ class Relaxation {
   RelaxationResult run(const std::vector<std::uint8_t>& is_free, const RelaxationOptions& options,
                        VertexVector& u);
 
+  // The u of the last run.
+  const GridField& result() const { return u_; }
+
  private:
   const FilmEnergy& energy_;
   LinearSolver& solver_;
