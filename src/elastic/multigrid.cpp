@@ -212,19 +212,18 @@ GridOperator::Row Multigrid::galerkin_row(const GridOperator& fine, int I, int J
         for (std::size_t e = 0; e < 4; ++e) sum[e] += weight * row[std::size_t(k)][e];
       }
     }
+  // Only the node's own block and those of the nodes that follow are kept.
   GridOperator::Row coarse{};
-  for (int cj = -2; cj <= 2; ++cj)
-    for (int ci = -2; ci <= 2; ++ci) {
-      const auto& sum = reach[std::size_t(cj + 2)][std::size_t(ci + 2)];
-      for (int sj = -1; sj <= 1; ++sj)
-        for (int si = -1; si <= 1; ++si) {
-          const int di = ci - 2 * si, dj = cj - 2 * sj;
-          if (std::abs(di) > 1 || std::abs(dj) > 1) continue;
-          const float weight = hat(di) * hat(dj);
-          auto& out = coarse[std::size_t(3 * (sj + 1) + si + 1)];
-          for (std::size_t e = 0; e < 4; ++e) out[e] += weight * sum[e];
-        }
-    }
+  for (int k = 4; k < 9; ++k) {
+    const int ci = 2 * (k % 3 - 1), cj = 2 * (k / 3 - 1);
+    auto& out = coarse[std::size_t(k)];
+    for (int dj = std::max(-1, -2 - cj); dj <= std::min(1, 2 - cj); ++dj)
+      for (int di = std::max(-1, -2 - ci); di <= std::min(1, 2 - ci); ++di) {
+        const auto& sum = reach[std::size_t(cj + dj + 2)][std::size_t(ci + di + 2)];
+        const float weight = hat(di) * hat(dj);
+        for (std::size_t e = 0; e < 4; ++e) out[e] += weight * sum[e];
+      }
+  }
   return coarse;
 }
 

@@ -18,8 +18,8 @@ constexpr double kOperatorTolerance = 0.05;
 // Vertices that have moved by less than this share of a cell have changed it by less than that.
 constexpr double kStillShare = kOperatorTolerance / 4;
 
-// Of so many rows of cells one is looked at for changes, each in its turn.
-constexpr int kLookedAtInTurn = 2;
+// Rows of cells in which nothing had changed are looked at again this many updates later.
+constexpr int kLookAgain = 8;
 
 class MultigridSolver : public LinearSolver {
  public:
@@ -43,6 +43,7 @@ class MultigridSolver : public LinearSolver {
         line_[std::size_t(v)] = j;
       }
     kept_.resize(film_.elements());
+    look_in_.resize(std::size_t(mesh.ny), 0);
   }
 
   void update(const FilmEnergy& energy, const GridField& u,
@@ -51,8 +52,8 @@ class MultigridSolver : public LinearSolver {
     if (definite == definite_ && moved_mm < kStillShare * mesh_.cell_mm) return;
     const bool turned = definite != definite_;
     definite_ = definite;
-    linearize(energy, u, turned, all);
     touch_masked(is_free, all);
+    linearize(energy, u, turned, all);
     compute_rows(energy);
     grid_.update(all);
     restart_ = true;
@@ -98,14 +99,16 @@ class MultigridSolver : public LinearSolver {
   // has `turned`, makes a difference.
   void linearize(const FilmEnergy& energy, const GridField& u, bool turned, bool all) {
     const kernels::Elements elements = energy.elements();
-    looked_at_ = (looked_at_ + 1) % kLookedAtInTurn;
     differs_.resize(film_.elements(), 0);
     std::vector<std::vector<std::int32_t>> changed(std::size_t(mesh_.ny));  // by row of cells
     film_.for_rows(mesh_.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       for (auto row = begin; row < end; ++row) {
-        if (!all && !turned && row % kLookedAtInTurn != looked_at_) continue;
+        int& wait = look_in_[std::size_t(row)];
+        if (!all && !turned && --wait > 0) continue;
         const std::int64_t count = kernels_.changed(elements, row, row + 1, u, kept_.view(),
                                                     kOperatorTolerance, differs_.data());
+        // Not all of them in the same update.
+        wait = count > 0 ? 0 : kLookAgain - (all || turned ? int(row) % kLookAgain : 0);
         if (count == 0 && !turned && !all) continue;
         for (const std::ptrdiff_t half : {std::ptrdiff_t(0), elements.upper}) {
           const auto first = film_.layout().place(0, int(row)) + std::size_t(half);
@@ -156,6 +159,8 @@ class MultigridSolver : public LinearSolver {
         continue;
       }
       if (!all && is_free[v] == is_free_[v]) continue;
+      for (int j = std::max(0, line_[v] - 2); j <= std::min(line_[v] + 1, mesh_.ny - 1); ++j)
+        look_in_[std::size_t(j)] = 0;
       for (int j = line_[v] - 1; j <= line_[v] + 1; ++j)
         for (int i = column_[v] - 1; i <= column_[v] + 1; ++i)
           if (i >= 0 && j >= 0 && i < mesh_.nx && j < mesh_.ny) grid_.touch(i, j);
@@ -287,7 +292,7 @@ class MultigridSolver : public LinearSolver {
   std::vector<std::uint8_t> is_free_;
   std::vector<std::int64_t> differs_;
   Kept kept_;
-  int looked_at_ = 0;  // the rows of cells with this number, by kLookedAtInTurn
+  std::vector<int> look_in_;  // by row of cells: after so many updates
   bool definite_ = false, restart_ = true;
   // Gradient and the one before, preconditioned gradient, direction, operator times direction.
   GridVector r_, r_before_, z_, p_, Ap_;

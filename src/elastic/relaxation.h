@@ -12,7 +12,7 @@
 namespace hydrodip {
 
 struct RelaxationOptions {
-  double tolerance_mm = 5e-6;  // stop once no vertex would move further in the next iteration
+  double tolerance_mm = 1.5e-5;  // stop once no vertex would move further in the next iteration
   int max_iterations = 60;
   const VertexVector* otherwise = nullptr;  // if given: the start, should u turn a triangle over
   const RunContext* context = nullptr;  // if given: asked between iterations, Cancelled is thrown
