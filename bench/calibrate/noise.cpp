@@ -137,7 +137,7 @@ class Study {
     fit.point -= noise_bias(
         at_truth, certainty(fit, here).noise_mm,
         [&](const FitPoint& point) { return gradient(subjects, point); }, kStep);
-    return {fit, certainty(fit, here, lacking.guessed)};
+    return {fit, certainty(fit, here, lacking.doubt)};
   }
 
  private:

@@ -19,8 +19,10 @@ JobConfig finer_film(const JobConfig& config) {
 
 Correction correction(const Eigen::VectorXd& here, const Eigen::VectorXd& fine,
                       const Eigen::VectorXd& finest) {
-  const Eigen::VectorXd guessed = (finest - fine) / (kFiner * kFiner - 1);
-  return {finest + guessed - here, guessed};
+  const Eigen::VectorXd step = finest - fine;
+  const Eigen::VectorXd beyond = step / (kFiner * kFiner - 1);
+  const Eigen::VectorXd at_worst = step / (kFiner - 1);
+  return {finest + beyond - here, at_worst - beyond};
 }
 
 }  // namespace hydrodip

@@ -10,16 +10,16 @@ namespace hydrodip {
 // Cells half as wide, steps half as high.
 JobConfig finer_film(const JobConfig& config);
 
-// What to add to length errors on a film.
+// What to add to length errors on a film, up to the continuum, and by how much that may be wrong,
+// all together. Empty: nothing.
 struct Correction {
-  Eigen::VectorXd all;      // up to the continuum; empty: nothing
-  Eigen::VectorXd guessed;  // the part of it that no film was computed for
+  Eigen::VectorXd all, doubt;
 };
 
 // From the same lengths on that film, on a finer one and on finer_film() of that one. What lengths
 // still change by from there on follows from how they changed, if errors fall as the square of the
-// cells' size (Richardson). Where ink is stiff and edges are sharp, they do so on fine films only
-// (docs/calibration.md).
+// cells' size (Richardson). Where ink is stiff and edges are sharp, they may fall only as the size
+// itself (docs/calibration.md): the doubt.
 Correction correction(const Eigen::VectorXd& here, const Eigen::VectorXd& fine,
                       const Eigen::VectorXd& finest);
 

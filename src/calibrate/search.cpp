@@ -284,13 +284,13 @@ Calibration Search::run(RunContext& context) {
   }
   result.correction_mm = root_mean_square(lacking.all);
   const FitPoint end = result.all.fit.point;
-  judge(result.all, everyone, lacking.guessed, context);
+  judge(result.all, everyone, lacking.doubt, context);
 
   FitPoint sum = FitPoint::Zero();
   for (const std::size_t s : everyone) {
     result.each.push_back(
         answer(subjects_[s].name, {s}, end, part(lacking.all, compared_, s), context));
-    judge(result.each.back(), {s}, part(lacking.guessed, compared_, s), context);
+    judge(result.each.back(), {s}, part(lacking.doubt, compared_, s), context);
     sum += result.each.back().fit.point;
   }
   result.average = from_fit(sum / double(subjects_.size()));

@@ -70,7 +70,8 @@ class GridOperator {
   // Calls body(begin, end) over the grid's rows, in parallel where that pays.
   template <typename Body>
   void for_rows(const Body& body) const {
-    const auto rows_per_task = std::max<std::ptrdiff_t>(4, kNodesPerTask / layout_.stride);
+    const std::ptrdiff_t tasks = (layout_.stride * ny() + kNodesPerTask / 2) / kNodesPerTask;
+    const auto rows_per_task = ny() / std::max<std::ptrdiff_t>(1, tasks) + 1;
     parallel_for(std::size_t(ny()), std::size_t(rows_per_task),
                  [&](std::size_t begin, std::size_t end) {
                    body(std::ptrdiff_t(begin), std::ptrdiff_t(end));
@@ -93,7 +94,7 @@ class GridOperator {
   kernels::Stencil stencil() const;
 
   // What is worth a thread's while.
-  static constexpr std::ptrdiff_t kNodesPerTask = 6000;
+  static constexpr std::ptrdiff_t kNodesPerTask = 3000;
 
   GridLayout layout_;
   const kernels::Table& kernels_;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace hydrodip {
 namespace {
 
@@ -13,7 +15,20 @@ TEST(CorrectionTest, LeadsToTheLimitOfErrorsThatFallAsTheSquareOfTheCells) {
   const Eigen::VectorXd here = on_cells_of(0.4), fine = on_cells_of(0.2), finest = on_cells_of(0.1);
   const Correction found = correction(here, fine, finest);
   EXPECT_LT((here + found.all - limit).norm(), 1e-12);
-  EXPECT_LT((finest + found.guessed - limit).norm(), 1e-12);
+}
+
+// However errors fall between the cells' size and its square, the limit is within the doubt.
+TEST(CorrectionTest, DoubtReachesTheLimitOfErrorsThatFallAsTheCells) {
+  const Eigen::VectorXd limit = Eigen::VectorXd::Random(5), slope = Eigen::VectorXd::Random(5);
+  for (const double order : {1.0, 1.3, 1.7, 2.0}) {
+    const auto on_cells_of = [&](double size) {
+      return Eigen::VectorXd(limit + std::pow(size, order) * slope);
+    };
+    const Eigen::VectorXd here = on_cells_of(0.4);
+    const Correction found = correction(here, on_cells_of(0.2), on_cells_of(0.1));
+    const Eigen::ArrayXd missed = (here + found.all - limit).array().abs();
+    EXPECT_TRUE((missed <= found.doubt.array().abs() + 1e-12).all()) << order;
+  }
 }
 
 TEST(FinerFilmTest, HalvesCellsAndSteps) {
