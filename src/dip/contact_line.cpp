@@ -233,17 +233,6 @@ class ContactLineScheme : public Scheme {
     for (std::int32_t t : small) energy_.set_rest(std::size_t(t), rest_of(std::size_t(t)));
   }
 
-  // Calls work(v, w) for every floating corner v of usable film and every other corner w.
-  template <class Work>
-  void for_each_link(const Work& work) const {
-    for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
-      if (!usable_[t]) continue;
-      for (std::int32_t v : film_.triangles[t])
-        for (std::int32_t w : film_.triangles[t])
-          if (v != w && floats(v)) work(v, w);
-    }
-  }
-
   // The free vertices, without islands: film torn off all around or hanging by one point drifts,
   // because nothing says where it should be.
   std::vector<std::uint8_t> held_vertices() const {
@@ -255,18 +244,32 @@ class ContactLineScheme : public Scheme {
         v = island[std::size_t(v)] = island[std::size_t(island[std::size_t(v)])];
       return v;
     };
-    for_each_link([&](std::int32_t v, std::int32_t w) {
-      if (floats(w)) island[std::size_t(root(v))] = root(w);
-    });
+    std::vector<std::size_t>
+        at_edge;  // usable film with corners that float and corners that do not
+    for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
+      if (!usable_[t]) continue;
+      std::int32_t first = -1;
+      int floating = 0;
+      for (std::int32_t v : film_.triangles[t]) {
+        if (!floats(v)) continue;
+        if (floating++ == 0)
+          first = v;
+        else
+          island[std::size_t(root(v))] = root(first);
+      }
+      if (floating > 0 && floating < 3) at_edge.push_back(t);
+    }
     // The first vertex that holds each island, and whether there is another.
     std::vector<std::int32_t> holder(film_.u.size(), -1);
     std::vector<std::uint8_t> held(film_.u.size(), 0);
-    for_each_link([&](std::int32_t v, std::int32_t w) {
-      if (floats(w)) return;
-      const auto i = std::size_t(root(v));
-      if (holder[i] < 0) holder[i] = w;
-      held[i] |= std::uint8_t(holder[i] != w);
-    });
+    for (std::size_t t : at_edge)
+      for (std::int32_t v : film_.triangles[t])
+        for (std::int32_t w : film_.triangles[t]) {
+          if (!floats(v) || floats(w)) continue;
+          const auto i = std::size_t(root(v));
+          if (holder[i] < 0) holder[i] = w;
+          held[i] |= std::uint8_t(holder[i] != w);
+        }
     std::vector<std::uint8_t> result = is_free_;
     for (std::size_t v = 0; v < result.size(); ++v)
       result[v] &= held[std::size_t(root(std::int32_t(v)))];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "elastic/kernel_variants.h"
@@ -141,21 +142,16 @@ void FilmEnergy::build_pattern() const {
   pattern_.block.assign(pattern_.column.size(), Mat2::Zero());
 }
 
-double FilmEnergy::value(const VertexVector& u) const {
-  const std::size_t count = mesh_.triangles.size();
-  std::vector<double> partial((count + kElementGrain - 1) / kElementGrain, 0.0);
-  parallel_for(count, kElementGrain, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t t = begin; t < end; ++t) {
-      const RestTriangle rest = this->rest(t);
-      if (rest.area > 0)
-        sum += rest.area * energy_density(gradient_at(mesh_, rest, t, u), material(t));
-    }
-    partial[begin / kElementGrain] = sum;
+double FilmEnergy::value(const GridField& u) const {
+  const kernels::Elements elements = this->elements();
+  // By the first row of a part, so that they are added up in the same order on any threads.
+  std::vector<double> part(std::size_t(elements.ny), 0.0);
+  grid_.for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    std::vector<double> columns(std::size_t(elements.nx), 0.0);
+    kernels::best().energy(elements, begin, end, u, columns.data());
+    for (const double column : columns) part[std::size_t(begin)] += column;
   });
-  double total = 0;
-  for (double p : partial) total += p;
-  return total;
+  return std::accumulate(part.begin(), part.end(), 0.0);
 }
 
 std::int64_t FilmEnergy::gradient(const GridField& u, const GridArray<double>& mask,

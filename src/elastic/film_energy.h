@@ -50,7 +50,7 @@ class FilmEnergy {
   // The triangles in which film is stretched further than the limit at u, ascending.
   std::vector<std::int32_t> overstretched(const VertexVector& u, double limit) const;
 
-  double value(const VertexVector& u) const;
+  double value(const GridField& u) const;
   // dE/du times the mask (1 where a vertex is free, 0 elsewhere). Returns how many triangles are
   // turned over.
   std::int64_t gradient(const GridField& u, const GridArray<double>& mask, GridField& out) const;

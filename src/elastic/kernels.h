@@ -117,6 +117,9 @@ struct Table {
   void (*carry)(std::size_t begin, std::size_t end, const std::int32_t* const corner[3],
                 ConstField target, ConstField u, ConstField place, Field out, std::int64_t* inside);
 
+  // The energy at u, added to one sum for each column.
+  void (*energy)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
+                 double* columns);
   // The energy's gradient at the nodes of rows [begin, end), times the mask. `scratch`:
   // kScratchRows rows, zero. Returns how many triangles in the cells of those rows are turned over.
   std::int64_t (*gradient)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,

@@ -275,6 +275,32 @@ struct Forces {
           (e.area[at] > 0) & !(det > 0) ? 1 : 0};
 }
 
+// A psi = A (mu |F - R|^2 + lambda / 2 (tr S - 2)^2).
+[[gnu::always_inline]] inline double energy_of(const Elements& e, std::ptrdiff_t at,
+                                               const Corners& u) {
+  const Strain s = strain_of(e, at, u);
+  const double xx = s.xx - s.cosine, xy = s.xy + s.sine, yx = s.yx - s.sine, yy = s.yy - s.cosine;
+  const double dilation = s.trace - 2;
+  const double density =
+      e.mu[at] * (xx * xx + xy * xy + yx * yx + yy * yy) + 0.5 * e.lambda[at] * dilation * dilation;
+  return e.area[at] * density;
+}
+
+void energy(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
+            double* columns) {
+  double* __restrict sum = columns;
+  for (std::ptrdiff_t row = begin; row < end; ++row) {
+    const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
+    const double *x = u.x, *y = u.y, *rising = e.rising[row & 1];
+#pragma GCC ivdep
+    for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+      const std::ptrdiff_t at = first + i;
+      sum[i] += energy_of(e, at, corners_of<false>(x, y, at, stride, rising[i])) +
+                energy_of(e, at + e.upper, corners_of<true>(x, y, at, stride, rising[i]));
+    }
+  }
+}
+
 // What the cells of one row add to their nodes' forces: per corner of the cell, by column.
 struct CellForces {
   double *ax, *ay, *bx, *by, *cx, *cy, *dx, *dy;
@@ -465,6 +491,6 @@ void carry(std::size_t begin, std::size_t end, const std::int32_t* const corner[
 extern const Table KERNELS_VARIANT;
 const Table KERNELS_VARIANT = {multiply,     residual, smooth,        precondition, restrict_rows,
                                prolong_rows, dot,      scale_and_add, rest_shapes,  overstretched,
-                               turned_over,  changed,  carry,         gradient};
+                               turned_over,  changed,  carry,         energy,       gradient};
 
 }  // namespace hydrodip::kernels

@@ -175,14 +175,14 @@ class Descent {
   }
 
   bool line_search() {
-    const double before = energy_at(u_);
+    const double before = energy_.value(u_);
     // What rounding alone may add: near the minimum, an energy difference cannot be resolved.
     const double noise = 1e-13 * std::abs(before);
     double step = 1;
     for (int halving = 0; halving < kMaxHalvings; ++halving, step *= 0.5) {
       move_to(step);
       if (energy_.any_inverted(trial_)) continue;
-      if (energy_at(trial_) > before - 1e-4 * step * slope_ + noise) continue;
+      if (energy_.value(trial_) > before - 1e-4 * step * slope_ + noise) continue;
       u_.swap(trial_);
       energy_.gradient(u_, mask_, gradient_);
       result_.last_update_mm = step * update_;
@@ -192,11 +192,6 @@ class Descent {
     return false;
   }
 
-  double energy_at(const GridField& u) {
-    energy_.grid().to_vertices(u, by_vertex_);
-    return energy_.value(by_vertex_);
-  }
-
   const FilmEnergy& energy_;
   LinearSolver& solver_;
   const std::vector<std::uint8_t>& is_free_;
@@ -204,7 +199,6 @@ class Descent {
   const std::size_t entries_;  // of fields
   GridField &u_, &gradient_, &direction_, &trial_, &trial_gradient_;
   const GridArray<double>& mask_;
-  VertexVector by_vertex_;
   bool definite_ = false;
   double slope_ = 0;                            // of the energy against the direction
   double update_ = 0;                           // longest move in the direction, mm

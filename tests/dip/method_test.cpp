@@ -50,7 +50,7 @@ double energy(const FilmMesh& film, const std::vector<Vec3>& position, const Dip
     rest.push_back(rest_triangle(at(0), at(1), at(2)));
   }
   energy.set_rest(rest);
-  return energy.value(film.u);
+  return energy.value(energy.grid().field(film.u));
 }
 
 // The film held at x = +-L only, as if it went on forever along y.

@@ -55,10 +55,12 @@ std::vector<double> results_of(const kernels::Table& table) {
   GridArray<double> mask(grid.layout().entries());
   grid.to_mask(film.is_free, mask);
   GridArray<double> scratch(std::size_t(kernels::kScratchRows * grid.layout().stride));
-  results.push_back(
-      double(table.gradient(elements, 0, ny, u, mask.data(), force, scratch.data())));
+  results.push_back(double(table.gradient(elements, 0, ny, u, mask.data(), force, scratch.data())));
   add(force.x, grid.layout().entries());
   add(force.y, grid.layout().entries());
+  std::vector<double> columns(std::size_t(grid.layout().nx));
+  table.energy(elements, 0, ny - 1, u, columns.data());
+  results.insert(results.end(), columns.begin(), columns.end());
   results.push_back(double(table.turned_over(elements, 0, ny - 1, u)));
 
   std::vector<std::int64_t> flags(n);
@@ -90,12 +92,15 @@ TEST(Kernels, ForcesAreTheDerivativeOfTheEnergy) {
   const StrainedFilm film;
   const VertexVector gradient = fixtures::gradient_by_vertex(film.energy, film.u, film.is_free);
   constexpr double kStep = 1e-6;
+  const auto value_of = [&](const VertexVector& u) {
+    return film.energy.value(film.energy.grid().field(u));
+  };
   for (std::size_t v = 0; v < film.u.size(); v += 7)
     for (Eigen::Index c = 0; c < 2; ++c) {
       VertexVector ahead = film.u, behind = film.u;
       ahead[v][c] += kStep;
       behind[v][c] -= kStep;
-      const double slope = (film.energy.value(ahead) - film.energy.value(behind)) / (2 * kStep);
+      const double slope = (value_of(ahead) - value_of(behind)) / (2 * kStep);
       EXPECT_NEAR(gradient[v][c], film.is_free[v] ? slope : 0, 1e-6);
     }
 }
@@ -115,6 +120,20 @@ TEST(Kernels, OverstretchedIsWhereThePrincipalStretchPassesTheLimit) {
     EXPECT_FALSE(expected.empty());
     EXPECT_LT(expected.size(), film.mesh.triangles.size());
   }
+}
+
+TEST(FilmEnergy, IsTheSumOfTheTriangles) {
+  const StrainedFilm film;
+  double sum = 0;
+  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
+    const Triangle& v = film.mesh.triangles[t];
+    const RestTriangle rest = film.energy.rest(t);
+    if (!(rest.area > 0)) continue;
+    const Mat2 F = deformation_gradient(rest, film.u[std::size_t(v[0])], film.u[std::size_t(v[1])],
+                                        film.u[std::size_t(v[2])]);
+    sum += rest.area * energy_density(F, film.energy.material(t));
+  }
+  EXPECT_NEAR(film.energy.value(film.energy.grid().field(film.u)), sum, 1e-12 * sum);
 }
 
 // Rest shapes come back corner by corner, whichever way a cell is cut.
