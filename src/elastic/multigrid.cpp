@@ -13,6 +13,9 @@ namespace {
 // The smoother damps errors with eigenvalues of D^-1 A above the largest over this.
 constexpr double kSmoothedRange = 14;
 constexpr double kEigenvalueMargin = 1.1;
+// Of an operator that is a sum over cells, D^-1 A has no eigenvalue above the nodes in a cell.
+constexpr double kWidest = 4;
+constexpr double kWidening = 1.25;
 constexpr int kPowerIterations = 12;
 // Grids with at most this many inner nodes are solved directly.
 constexpr std::size_t kCoarsestNodes = 40;
@@ -174,7 +177,10 @@ void Multigrid::update(bool all) {
     coarsen(fine, coarse);
   }
   if (all)
-    for (Level& level : levels_) choose_weights(level);
+    for (Level& level : levels_) {
+      level.largest = kEigenvalueMargin * level.A.largest_eigenvalue();
+      choose_weights(level);
+    }
   factor_coarsest();
   for (Level& level : levels_) {
     for (std::int32_t n : level.to_do) level.touched[std::size_t(n)] = 0;
@@ -228,13 +234,24 @@ GridOperator::Row Multigrid::galerkin_row(const GridOperator& fine, int I, int J
 }
 
 // Two Jacobi steps whose weights are the roots of the Chebyshev polynomial over the range to damp.
-void Multigrid::choose_weights(Level& level) const {
-  const double largest = kEigenvalueMargin * level.A.largest_eigenvalue();
+void Multigrid::choose_weights(Level& level) {
+  const double largest = level.largest;
   if (!(largest > 0)) return;
   const double middle = 0.5 * largest * (1 + 1 / kSmoothedRange);
   const double radius = 0.5 * largest * (1 - 1 / kSmoothedRange);
   level.weight[0] = float(1 / (middle + radius * std::sqrt(0.5)));
   level.weight[1] = float(1 / (middle - radius * std::sqrt(0.5)));
+}
+
+bool Multigrid::widen() {
+  bool wider = false;
+  for (Level& level : levels_) {
+    const double largest = std::min(kWidest, kWidening * level.largest);
+    wider |= largest > level.largest;
+    level.largest = std::max(level.largest, largest);
+    choose_weights(level);
+  }
+  return wider;
 }
 
 void Multigrid::factor_coarsest() {

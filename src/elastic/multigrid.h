@@ -116,8 +116,11 @@ class Multigrid {
   // ... and then once. `all`: everything has changed.
   void update(bool all);
 
-  // x = M^-1 b, one V-cycle: symmetric and positive definite.
+  // x = M^-1 b, one V-cycle: symmetric, and positive definite if the smoothers damp all of the
+  // operator's eigenvalues. Estimates say which those are ...
   void cycle(const GridVector& b, GridVector& x);
+  // ... and this widens them, where they turn out too low. False if they cannot be.
+  bool widen();
 
  private:
   struct Level {
@@ -126,12 +129,13 @@ class Multigrid {
     GridVector b, x, other;
     std::vector<std::uint8_t> touched;
     std::vector<std::int32_t> to_do;  // touched nodes
+    double largest = 0;               // eigenvalue of D^-1 A to be damped
     float weight[2] = {1, 1};         // of the two smoothing steps
   };
   void touch(Level& level, int i, int j);
   void coarsen(const Level& fine, Level& coarse) const;
   GridOperator::Row galerkin_row(const GridOperator& fine, int I, int J) const;
-  void choose_weights(Level& level) const;
+  static void choose_weights(Level& level);
   void factor_coarsest();
   void restrict_to(const Level& fine, const GridVector& r, Level& coarse) const;
   void prolong_and_add(const Level& coarse, const Level& fine, GridVector& x) const;

@@ -255,11 +255,21 @@ class MultigridSolver : public LinearSolver {
     return sums;
   }
 
+  // z_ from r_. Returns its products with r_ and r_before_.
+  std::array<double, 2> precondition() {
+    while (true) {
+      grid_.cycle(r_, z_);
+      const std::array<double, 2> products = dots(z_, r_, r_before_);
+      // Torn film can be stiffer in places than any was at first.
+      if (!(products[0] < 0) || !definite_ || !grid_.widen()) return products;
+      restart_ = true;
+    }
+  }
+
   // Turns p_ into the next conjugate direction, from the gradients r_ and r_before_. Returns how
   // far to go along it; below 0 if the operator is not definite.
   float turn() {
-    grid_.cycle(r_, z_);
-    const auto [rz, rz_between] = dots(z_, r_, r_before_);
+    const auto [rz, rz_between] = precondition();
     if (rz < 0) return -1;
     const double bend = restart_ ? 0 : std::max(0.0, (rz - rz_between) / rz_before_);
     rz_before_ = rz;
