@@ -36,6 +36,8 @@ constexpr double kFasterShare = 0.1;
 constexpr double kMaxJump = 2.5;
 // In one step a floating vertex slides by less than the step and this, in cells.
 constexpr double kLongestSlide = 10;
+// So often in a step film that blocks the rest is released.
+constexpr int kMostReleases = 8;
 // Ways that pass the part of the object between two levels further off than this do not touch it.
 constexpr double kSweptSlack_mm = 0.01;
 
@@ -110,7 +112,7 @@ class ContactLineScheme : public Scheme {
     waterline_.raise_to(level);
     climb(level);
     set_rest();
-    const VertexVector u = relaxed();
+    const VertexVector u = relaxed(level);
     tear(u, level);
     slide(u);
     correct_feet();
@@ -276,16 +278,41 @@ class ContactLineScheme : public Scheme {
     return result;
   }
 
-  VertexVector relaxed() {
-    const std::vector<std::uint8_t> is_free = held_vertices();
+  VertexVector relaxed(double level) {
+    std::vector<std::uint8_t> is_free = held_vertices();
     VertexVector u = first_guess(is_free);
     RelaxationOptions options;
     options.otherwise = &film_.u;
-    relax_film(relaxation_, is_free, u, state_.statistics, options);
+    for (int round = 0;; ++round) {
+      const RelaxationResult result = relaxation_.run(is_free, options, u);
+      if (result.blocked.empty() || round == kMostReleases) {
+        count(result, u, state_.statistics);
+        break;
+      }
+      state_.statistics.iterations += result.iterations;
+      release(result.blocked, level, is_free);
+    }
     parallel_for(u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) last_slide_[v] = u[v] - film_.u[v];
     });
     return u;
+  }
+
+  // Film that would have to turn over to follow is stretched past any limit: it tears, or if film
+  // never does, its vertices stay where they are.
+  void release(const std::vector<std::int32_t>& blocked, double level,
+               std::vector<std::uint8_t>& is_free) {
+    if (tear_limit(set_.options) > 0) {
+      for (std::int32_t t : blocked) {
+        tear(t, level);
+        update_load(std::size_t(t));
+        energy_.set_rest(std::size_t(t), {});
+      }
+      is_free = held_vertices();
+      return;
+    }
+    for (std::int32_t t : blocked)
+      for (std::int32_t v : film_.triangles[std::size_t(t)]) is_free[std::size_t(v)] = 0;
   }
 
   // The film slides on as it did in the last step.
@@ -306,12 +333,14 @@ class ContactLineScheme : public Scheme {
     if (limit > 0) tears = energy_.overstretched(u, limit);
     for (std::size_t t = 0; t < told.size(); ++t)
       if (usable_[t] && level >= told[t]) tears.push_back(std::int32_t(t));
-    for (std::int32_t t : tears) {
-      state_.torn[std::size_t(t)] = 1;
-      state_.tear_level[std::size_t(t)] = level;
-      torn_now_.push_back(std::size_t(t));
-      any_torn_ = true;
-    }
+    for (std::int32_t t : tears) tear(t, level);
+  }
+
+  void tear(std::int32_t t, double level) {
+    state_.torn[std::size_t(t)] = 1;
+    state_.tear_level[std::size_t(t)] = level;
+    torn_now_.push_back(std::size_t(t));
+    any_torn_ = true;
   }
 
   // Every floating vertex goes where its film coordinate is found in the relaxed film. Most are

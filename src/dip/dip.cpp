@@ -19,6 +19,9 @@ namespace {
 // between two steps or through single precision.
 constexpr double kContactSlack_mm = 1e-3;
 
+// Half a pixel at 600 dpi.
+constexpr double kVisible_mm = 0.02;
+
 void check(const DipOptions& options, const FilmMesh& film) {
   const auto refuse = [](const std::string& what) { throw InputError(what); };
   if (!(options.step_mm > 0)) refuse("dip.step_mm must be above 0");
@@ -75,9 +78,9 @@ std::unique_ptr<Scheme> make_scheme(const DipSetting& setting, DipState& state) 
 }
 
 void check_solved(const DipStatistics& statistics, int steps, const DipOptions& options) {
-  if (double(statistics.unconverged_steps) <= options.unconverged_share_max * steps) return;
+  if (double(statistics.failed_steps) <= options.failed_share_max * steps) return;
   throw DipError(fmt::format("the film's equilibrium was not found in {} of {} steps",
-                             statistics.unconverged_steps, steps));
+                             statistics.failed_steps, steps));
 }
 
 int number_of_steps(double depth, const DipOptions& options) {
@@ -89,9 +92,13 @@ int number_of_steps(double depth, const DipOptions& options) {
 
 void relax_film(Relaxation& relaxation, const std::vector<std::uint8_t>& is_free, VertexVector& u,
                 DipStatistics& statistics, const RelaxationOptions& options) {
-  const RelaxationResult result = relaxation.run(is_free, options, u);
+  count(relaxation.run(is_free, options, u), u, statistics);
+}
+
+void count(const RelaxationResult& result, const VertexVector& u, DipStatistics& statistics) {
   statistics.iterations += result.iterations;
   if (!result.converged) ++statistics.unconverged_steps;
+  if (!result.converged && !(result.last_update_mm < kVisible_mm)) ++statistics.failed_steps;
   statistics.largest_residual_mm = std::max(statistics.largest_residual_mm, result.last_update_mm);
   for (const Vec2& p : u)
     if (!p.allFinite()) throw DipError("the film's equilibrium has no finite solution");

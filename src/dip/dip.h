@@ -44,8 +44,8 @@ struct DipOptions {
   // stretched well beyond tear_stretch. Empty: tear_stretch alone decides. What another dip found,
   // so that two dips can be compared smoothly.
   std::vector<double> tear_levels;
-  // Where more steps than this share end without an equilibrium, dip() gives up.
-  double unconverged_share_max = 1;
+  // Where more steps than this share fail, dip() gives up.
+  double failed_share_max = 1;
 };
 
 // How the computation went; sums over all steps.
@@ -53,6 +53,7 @@ struct DipStatistics {
   int steps = 0;
   long iterations = 0;             // of all relaxations
   long unconverged_steps = 0;      // steps that ended at the iteration bound
+  long failed_steps = 0;           // of these, still so far from equilibrium that print shows it
   double largest_residual_mm = 0;  // largest last update over all steps
 };
 

@@ -47,6 +47,8 @@ std::unique_ptr<Scheme> make_single_step(const DipSetting& setting, DipState& st
 // Relaxes, and adds to the statistics.
 void relax_film(Relaxation& relaxation, const std::vector<std::uint8_t>& is_free, VertexVector& u,
                 DipStatistics& statistics, const RelaxationOptions& options = {});
+// The second part of that.
+void count(const RelaxationResult& result, const VertexVector& u, DipStatistics& statistics);
 
 // First contact of a point moving straight from one place to another, both ends included.
 struct Contact {

@@ -50,7 +50,7 @@ class SingleStep : public Scheme {
     options.context = &set_.context;
     int held = 0;
     for (int round = 0; round < kMaxRounds; ++round) {
-      state_.statistics.unconverged_steps = 0;
+      state_.statistics.unconverged_steps = state_.statistics.failed_steps = 0;
       state_.statistics.largest_residual_mm = 0;
       const auto solver = set_.options.make_solver(film_);
       Relaxation relaxation(energy_, *solver);

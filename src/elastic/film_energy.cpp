@@ -220,4 +220,18 @@ bool FilmEnergy::any_inverted(const GridField& u) const {
   return found;
 }
 
+std::vector<std::int32_t> FilmEnergy::inverted(const GridField& u) const {
+  std::vector<std::int32_t> list;
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    if (!(area_[grid_.element(t)] > 0)) continue;
+    std::array<Vec2, 3> at;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t place = grid_.place(std::size_t(mesh_.triangles[t][k]));
+      at[k] = Vec2(u.x[place], u.y[place]);
+    }
+    if (!(cross2(at[1] - at[0], at[2] - at[0]) > 0)) list.push_back(std::int32_t(t));
+  }
+  return list;
+}
+
 }  // namespace hydrodip

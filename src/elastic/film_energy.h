@@ -59,6 +59,8 @@ class FilmEnergy {
   void hessian(const VertexVector& u, bool definite, BlockMatrix& out) const;
   // Whether a triangle that has film is turned over at u.
   bool any_inverted(const GridField& u) const;
+  // Those, ascending.
+  std::vector<std::int32_t> inverted(const GridField& u) const;
 
  private:
   void build_pattern() const;

@@ -21,6 +21,9 @@ constexpr double kStillShare = kOperatorTolerance / 4;
 // Rows of cells in which nothing had changed are looked at again this many updates later.
 constexpr int kLookAgain = 8;
 
+// A step by the operator's diagonal alone may be this much too long.
+constexpr double kWidestStep = 4;
+
 class MultigridSolver : public LinearSolver {
  public:
   explicit MultigridSolver(const FilmMesh& mesh)
@@ -270,18 +273,37 @@ class MultigridSolver : public LinearSolver {
   // far to go along it; below 0 if the operator is not definite.
   float turn() {
     const auto [rz, rz_between] = precondition();
-    if (rz < 0) return -1;
+    if (!(rz >= 0)) return definite_ ? plainly() : -1;
     const double bend = restart_ ? 0 : std::max(0.0, (rz - rz_between) / rz_before_);
     rz_before_ = rz;
     restart_ = !(rz > 0);
-    if (bend > 0)
+    if (rz == 0) return 0;
+    if (bend > 0) {
       add_to_direction(float(bend));
-    else
-      p_ = z_;
+      const float length = best_length();
+      if (length > 0) return length;
+    }
+    p_ = z_;
+    const float length = best_length();
+    if (length > 0) return length;
+    return definite_ ? plainly() : -1;
+  }
+
+  // To where the quadratic that the operator stands for is lowest along p_; below 0 if it has no
+  // such place, or if that lies behind.
+  float best_length() {
     grid_.finest().multiply(p_, Ap_);
     const auto [curvature, slope] = dots(p_, Ap_, r_);
-    if (!(curvature > 0)) return rz > 0 ? -1.0F : 0.0F;
-    return float(slope / curvature);
+    return curvature > 0 && slope > 0 ? float(slope / curvature) : -1;
+  }
+
+  // Without coarse grids, whose rounding can spoil an operator that is all but singular: film that
+  // hangs by little. A step along this always goes down.
+  float plainly() {
+    grid_.finest().precondition(r_, 1, p_);
+    restart_ = true;
+    const float length = best_length();
+    return length > 0 ? length : 1.0F / float(kWidestStep);
   }
 
   // p_ = z_ + bend p_.

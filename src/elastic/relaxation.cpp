@@ -11,6 +11,8 @@ namespace hydrodip {
 namespace {
 
 constexpr int kMaxHalvings = 30;
+// A step that still turns a triangle over after so many is blocked by it.
+constexpr int kBlockedHalvings = 8;
 // Share of the slope that may be left at the end of a whole step.
 constexpr double kFlattened = 0.5;
 // What is left of an error after one iteration, until the second shows.
@@ -171,7 +173,7 @@ class Descent {
   // mislead, once more along the definite direction.
   bool search() {
     if (line_search()) return true;
-    return !definite_ && find_definite_direction() && line_search();
+    return result_.blocked.empty() && !definite_ && find_definite_direction() && line_search();
   }
 
   bool line_search() {
@@ -181,7 +183,11 @@ class Descent {
     double step = 1;
     for (int halving = 0; halving < kMaxHalvings; ++halving, step *= 0.5) {
       move_to(step);
-      if (energy_.any_inverted(trial_)) continue;
+      if (energy_.any_inverted(trial_)) {
+        if (halving < kBlockedHalvings) continue;
+        result_.blocked = energy_.inverted(trial_);
+        return false;
+      }
       if (energy_.value(trial_) > before - 1e-4 * step * slope_ + noise) continue;
       u_.swap(trial_);
       energy_.gradient(u_, mask_, gradient_);

@@ -13,7 +13,7 @@ namespace hydrodip {
 
 struct RelaxationOptions {
   double tolerance_mm = 1.5e-5;  // stop once no vertex would move further in the next iteration
-  int max_iterations = 60;
+  int max_iterations = 200;
   const VertexVector* otherwise = nullptr;  // if given: the start, should u turn a triangle over
   const RunContext* context = nullptr;  // if given: asked between iterations, Cancelled is thrown
 };
@@ -22,6 +22,9 @@ struct RelaxationResult {
   int iterations = 0;
   double last_update_mm = 0;  // largest move in the last iteration
   bool converged = false;
+  // Triangles that would turn over long before the energy falls no further: given up because of
+  // them.
+  std::vector<std::int32_t> blocked;
 };
 
 // Keeps the fields that it computes with, for the next time.

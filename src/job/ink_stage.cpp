@@ -27,6 +27,8 @@ constexpr int kMixed = 2;
 constexpr double kMostInks = 4;
 // From there on two rounds have to bring the change below this share.
 constexpr double kLeastProgress = 0.5;
+// Film that its first ink moves so far on average hangs in flaps that fall another way every time.
+constexpr double kHopeless_mm = 2;
 // Film torn to flaps or stretched too far may have no equilibrium that can be found once ink
 // stiffens it. A dip that fails in more than this share of its steps is to be planned anew.
 constexpr double kFailedSteps = 0.02;
@@ -155,7 +157,15 @@ class InkRounds {
       if (ended()) break;
       stiffen();
     }
-    warn_unsettled(result_, context_);
+    if (is_hopeless())
+      context_.warn(fmt::format(
+          "this film tears into flaps that fall another way with every change of its ink (by "
+          "{:.1f} "
+          "mm on average): colours will not land where they should; turn steep sides down or dip "
+          "less deep",
+          change(0)));
+    else
+      warn_unsettled(result_, context_);
     finish();
     return std::move(result_);
   }
@@ -170,7 +180,7 @@ class InkRounds {
       return true;
     }
     before_ = dipped_.film();
-    options_.unconverged_share_max = kFailedSteps;
+    options_.failed_share_max = kFailedSteps;
     try {
       dip_again(dipped_, film_, options_, times_, context_);
     } catch (const DipError&) {
@@ -208,11 +218,14 @@ class InkRounds {
     return rounds() > rounds_ago ? result_.rounds.rbegin()[rounds_ago].change_mm : 0;
   }
 
+  bool is_hopeless() const { return rounds() == kFreeRounds && change(0) > kHopeless_mm; }
+
   bool ended() {
     const bool iterate = ink_matters(config_) && config_.ink.rounds_max > 1;
     result_.settled = !iterate || (before_ && change(0) < kSettled_mm);
     if (result_.settled || rounds() >= config_.ink.rounds_max) return true;
     // What does not settle costs a dip each round.
+    if (is_hopeless()) return true;
     return rounds() > kFreeRounds + 2 && change(0) > kLeastProgress * change(2);
   }
 
