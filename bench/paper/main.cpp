@@ -64,6 +64,9 @@ void make(const Figure& figure, const Study& study) {
 }
 
 int run(const std::vector<std::string>& arguments) {
+  if (!arguments.empty() && arguments.front().starts_with("-"))
+    throw InputError(
+        fmt::format("usage: paper_figures [FOLDER [FIGURE...]]; the figures: {}", known_names()));
   const std::filesystem::path folder = arguments.empty() ? "out/paper" : arguments.front();
   const std::vector<std::string> names(arguments.begin() + (arguments.empty() ? 0 : 1),
                                        arguments.end());

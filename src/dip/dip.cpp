@@ -98,7 +98,8 @@ void relax_film(Relaxation& relaxation, const std::vector<std::uint8_t>& is_free
 void count(const RelaxationResult& result, const VertexVector& u, DipStatistics& statistics) {
   statistics.iterations += result.iterations;
   if (!result.converged) ++statistics.unconverged_steps;
-  if (!result.converged && !(result.last_update_mm < kVisible_mm)) ++statistics.failed_steps;
+  const bool near = result.iterations > 0 && result.last_update_mm < kVisible_mm;
+  if (!result.converged && !near) ++statistics.failed_steps;
   statistics.largest_residual_mm = std::max(statistics.largest_residual_mm, result.last_update_mm);
   for (const Vec2& p : u)
     if (!p.allFinite()) throw DipError("the film's equilibrium has no finite solution");

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <optional>
 
 #include "base/error.h"
@@ -71,6 +72,31 @@ TEST(Dip, ReachesTheAskedDepth) {
   EXPECT_DOUBLE_EQ(exact::dip_shape(box, film, exact::untearing(0.5, 3.3)).depth_mm, 3.3);
   EXPECT_DOUBLE_EQ(exact::dip_shape(box, film, exact::untearing(0.5, 0)).depth_mm, 5);
   EXPECT_DOUBLE_EQ(exact::dip_shape(box, film, exact::untearing(0.5, 99)).depth_mm, 5);
+}
+
+// Finds no direction, ever.
+class NoSolver : public LinearSolver {
+ public:
+  void update(const FilmEnergy&, const GridField&, const std::vector<std::uint8_t>&, bool,
+              double) override {}
+  bool direction(const GridField&, GridField&) override { return false; }
+};
+
+TEST(Dip, GivesUpWhereTooManyStepsFail) {
+  const shapes::Shape box = shapes::box(Vec3(-10, -10, 0), Vec3(10, 10, 5));
+  const FilmMesh film = exact::disc_film(200);
+  const Surface surface(box.positions, box.triangles);
+  DipOptions options = exact::untearing(0.5, 3);
+  options.make_solver = [](const FilmMesh&) { return std::make_unique<NoSolver>(); };
+  RunContext context;
+  const auto dip_box = [&] {
+    return dip(film, box.positions, box.triangles, surface, options, context).statistics;
+  };
+  const DipStatistics all_failed = dip_box();
+  EXPECT_GE(all_failed.failed_steps, all_failed.steps);
+  EXPECT_FALSE(context.warnings().empty());
+  options.failed_share_max = 0.02;
+  EXPECT_THROW(dip_box(), DipError);
 }
 
 }  // namespace

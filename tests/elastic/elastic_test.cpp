@@ -259,5 +259,42 @@ TEST(Relaxation, RecoversALinearMapFromAnyStart) {
   }
 }
 
+// Stiff film on one side of a vertex has its rest shape where the vertex lies beyond the soft film
+// on the other side: it stops before that turns over, and says which film is in the way.
+TEST(Relaxation, SaysWhichFilmWouldHaveToTurnOver) {
+  const FilmMesh mesh = make_film_mesh(
+      {.width_mm = 30, .height_mm = 30, .margin_mm = 5, .elements = 8, .grading = 1});
+  ASSERT_EQ(mesh.triangles.size(), 8U);
+  const std::size_t centre = std::size_t(mesh.vertex_at[4]);
+  VertexVector wanted = mesh.u;
+  wanted[centre] = Vec2(14, 0);  // the film ends at 10
+  std::vector<double> modulus;
+  std::vector<RestTriangle> rest;
+  std::vector<std::int32_t> in_the_way;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto triangle_in = [&](const VertexVector& at) {
+      const Triangle& v = mesh.triangles[t];
+      return rest_triangle(at[std::size_t(v[0])], at[std::size_t(v[1])], at[std::size_t(v[2])]);
+    };
+    const bool stiff = triangle_in(wanted).area > 0;
+    rest.push_back(triangle_in(stiff ? wanted : mesh.u));
+    modulus.push_back(stiff ? 1000 : 1);
+    if (!stiff) in_the_way.push_back(std::int32_t(t));
+  }
+  ASSERT_FALSE(in_the_way.empty());
+  FilmEnergy energy(mesh, modulus, 0);
+  energy.set_rest(rest);
+  std::vector<std::uint8_t> is_free(mesh.u.size(), 0);
+  is_free[centre] = 1;
+  for (const auto& solver : {make_multigrid_solver(mesh), make_direct_solver()}) {
+    VertexVector u = mesh.u;
+    const RelaxationResult result = Relaxation(energy, *solver).run(is_free, {}, u);
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.blocked, in_the_way);
+    EXPECT_FALSE(energy.any_inverted(energy.grid().field(u)));
+    EXPECT_GT(u[centre].x(), 8);
+  }
+}
+
 }  // namespace
 }  // namespace hydrodip
