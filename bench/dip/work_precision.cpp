@@ -223,8 +223,10 @@ int run(int argc, char** argv) {
         print_row(results.emplace_back(measure(c, exact, scheme, elements)));
       }
   }
-  std::ofstream(plot_file) << plot(results);
-  fmt::print("plot: {}\n", plot_file);
+  if (!results.empty()) {
+    std::ofstream(plot_file) << plot(results);
+    fmt::print("plot: {}\n", plot_file);
+  }
   print_qualities();
   return 0;
 }

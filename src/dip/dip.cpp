@@ -129,7 +129,13 @@ DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
   if (observe) observe(0, steps, 0, state.position, state.state);
   for (int step = 1; step <= steps; ++step) {
     context.progress("dipping", double(step - 1) / steps);
+    const DipStatistics before = state.statistics;
     scheme->advance(depth * step / steps);
+    // In however many parts.
+    state.statistics.unconverged_steps =
+        std::min(state.statistics.unconverged_steps, before.unconverged_steps + 1);
+    state.statistics.failed_steps =
+        std::min(state.statistics.failed_steps, before.failed_steps + 1);
     check_solved(state.statistics, steps, options);
     if (observe) observe(step, steps, state.level, state.position, state.state);
   }

@@ -85,7 +85,7 @@ std::vector<Setting> quality_settings(const std::string& quality) {
   };
   if (quality == "draft")
     return settings({{"film.elements", "10000"},
-                     {"dip.step_mm", "0.5"},
+                     {"dip.step_mm", "1.0"},
                      {"ink.rounds_max", "1"},
                      {"preview.texture_px", "512"},
                      {"preview.pictures", "off"}});
