@@ -96,7 +96,7 @@ class FilmGrid {
   void for_rows(int rows, const std::function<void(std::ptrdiff_t, std::ptrdiff_t)>& body) const;
 
   // Of a loop over vertices with little to do for each.
-  static constexpr std::size_t kVertexGrain = 8192;
+  static constexpr std::size_t kVertexGrain = 5120;
 
   // From vertices to the grid and back; what is no vertex stays as it is.
   void to_grid(const VertexVector& from, GridField& to) const;

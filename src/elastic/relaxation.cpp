@@ -19,7 +19,7 @@ constexpr double kFlattened = 0.5;
 constexpr double kFirstContraction = 0.2;
 
 // Entries of a field at a time, and what they add up to.
-constexpr std::size_t kGrain = 8192;
+constexpr std::size_t kGrain = 6144;
 struct Sums {
   double slope = 0;           // dot product
   double largest_square = 0;  // of a vector's length
