@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "calibrate/pictures.h"
-#include "calibrate/search.h"
 #include "calibrate/resolution.h"
+#include "calibrate/search.h"
 #include "calibrate/synthetic.h"
 #include "figures.h"
 #include "image/files.h"
