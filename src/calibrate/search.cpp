@@ -244,10 +244,13 @@ Answer Search::answer(const std::string& name, const std::vector<std::size_t>& s
 // Takes out what noise does to the answer on average, and says how sure it is.
 void Search::judge(Answer& answer, const std::vector<std::size_t>& subjects,
                    const Eigen::VectorXd& doubt_mm, RunContext& context) {
+  Fit& fit = answer.fit;
+  const auto asked = 1 + 2 * std::count(fit.free.begin(), fit.free.end(), true);
+  int known = 0;
   const NoiseGradient gradient = [&](const FitPoint& point) {
+    context.progress("weighing noise", double(known++) / double(asked));
     return noise_gradient(subjects, point, context);
   };
-  Fit& fit = answer.fit;
   const Eigen::MatrixXd here = gradient(fit.point);
   const double noise_mm = certainty(fit, here).noise_mm;
   const FitPoint step = stencil_step(fit.point, kWidestStep);

@@ -246,8 +246,8 @@ class ContactLineScheme : public Scheme {
         v = island[std::size_t(v)] = island[std::size_t(island[std::size_t(v)])];
       return v;
     };
-    std::vector<std::size_t>
-        at_edge;  // usable film with corners that float and corners that do not
+    // Usable film with corners that float and corners that do not.
+    std::vector<std::size_t> at_edge;
     for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
       if (!usable_[t]) continue;
       std::int32_t first = -1;

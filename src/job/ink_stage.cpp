@@ -160,9 +160,8 @@ class InkRounds {
     if (is_hopeless())
       context_.warn(fmt::format(
           "this film tears into flaps that fall another way with every change of its ink (by "
-          "{:.1f} "
-          "mm on average): colours will not land where they should; turn steep sides down or dip "
-          "less deep",
+          "{:.1f} mm on average): colours will not land where they should; turn steep sides down "
+          "or dip less deep",
           change(0)));
     else
       warn_unsettled(result_, context_);
