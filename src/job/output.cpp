@@ -34,12 +34,19 @@ ReportColors colors_of(const FilmLayer& error) {
   return {summary.mean, summary.most_of};
 }
 
-// The largest sum of the inks over the sheet.
-double heaviest_ink(const InkImage& inks) {
+ReportInk ink_amounts(const InkImage& inks, double limit) {
+  ReportInk amounts;
+  amounts.density_limit = limit;
   float most = 0;
-  for (std::size_t i = 0; i < inks.cmyk.size(); i += 4)
+  std::array<std::uint64_t, 4> sum{};
+  for (std::size_t i = 0; i < inks.cmyk.size(); i += 4) {
     most = std::max(most, from_bytes(inks.cmyk.data() + i).density());
-  return double(most);
+    for (std::size_t k = 0; k < 4; ++k) sum[k] += inks.cmyk[i + k];
+  }
+  amounts.density_max = double(most);
+  for (std::size_t k = 0; k < 4; ++k)
+    amounts.mean[k] = double(sum[k]) / (255.0 * std::max(1.0, double(inks.cmyk.size() / 4)));
+  return amounts;
 }
 
 // The verdict in one line.
@@ -133,7 +140,7 @@ void make_page(const JobRecord& record, const Appearance& shown, const Image& fi
   }
   if (record.ink != nullptr) {
     scene.layers.push_back(reach_layer(record, raster));
-    previews.ink = ReportInk{heaviest_ink(record.ink->ink.inking.inks), record.config.ink.limit};
+    previews.ink = ink_amounts(record.ink->ink.inking.inks, record.config.ink.limit);
   }
   previews.pictures.scene = scene_json(scene, record.context);
 }

@@ -130,7 +130,10 @@ Finding ink(const ReportInk& ink) {
   Finding finding{
       "ink", Concern::kNone, "Heaviest ink", fmt::format("{:.0f} %", 100 * ink.density_max), "",
       ""};
-  finding.text = "is the largest sum of cyan, magenta, yellow and black.";
+  finding.text = fmt::format(
+      "is the largest sum of cyan, magenta, yellow and black. Over the sheet they come to {:.2f}, "
+      "{:.2f}, {:.2f} and {:.2f} %.",
+      100 * ink.mean[0], 100 * ink.mean[1], 100 * ink.mean[2], 100 * ink.mean[3]);
   if (!(ink.density_limit > 0)) {
     finding.advice = "Compare it with what your printer and film bear.";
   } else if (ink.density_max > ink.density_limit + 1e-6) {

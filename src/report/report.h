@@ -69,6 +69,8 @@ struct ReportOutput {
 struct ReportInk {
   double density_max = 0;
   double density_limit = 0;  // 0: none is set
+  // Cyan, magenta, yellow, black: mean over the sheet, without the marks in its margin.
+  std::array<double, 4> mean{};
 };
 
 // CIEDE2000 between wanted and predicted colour, over the covered surface.

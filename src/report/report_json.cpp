@@ -130,6 +130,10 @@ Json findings_json(const Report& report) {
 Json ink_json(const ReportInk& ink) {
   Json json = {{"density_max", number(ink.density_max)}};
   if (ink.density_limit > 0) json["density_limit"] = number(ink.density_limit);
+  json["mean"] = {{"cyan", number(ink.mean[0])},
+                  {"magenta", number(ink.mean[1])},
+                  {"yellow", number(ink.mean[2])},
+                  {"black", number(ink.mean[3])}};
   return json;
 }
 

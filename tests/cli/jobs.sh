@@ -29,6 +29,19 @@ fi
 if command -v tiffinfo > /dev/null; then
   tiffinfo out/print.tif 2>&1 | grep -q 'separated' || fail 'tiffinfo on print.tif'
 fi
+# Ghostscript measures the inks that the report states: mean over a sheet without marks.
+if command -v gs > /dev/null; then
+  "$hydrodip" print samples/sphere.obj --size 40 $quick --set film.margin_mm=0 \
+    --set print.color=cmyk -o inks --quiet > /dev/null || fail 'print of a sheet without margin'
+  for ink in cyan magenta yellow black; do
+    sed -n "s/.*\"$ink\": *\([0-9.e-]*\).*/\1/p" inks/report.json
+  done > inks.said
+  gs -q -dBATCH -dNOPAUSE -r72 -sDEVICE=ink_cov -o - inks/print.pdf > inks.gs || fail 'gs on print.pdf'
+  tr -s ' ' '\n' < inks.gs | sed -n '/[0-9]/p' | paste inks.said - | awk '
+      { d = 100 * $1 - $2; if (d > 0.1 || d < -0.1) ++wrong; sum += $2 }
+      END { exit NR == 4 && sum > 1 && !wrong ? 0 : 1 }' ||
+    fail "inks: $(tr '\n' ' ' < inks.said) against $(cat inks.gs) %"
+fi
 if command -v pngcheck > /dev/null; then
   pngcheck -q out/print.png out/preview.png out/maps.png || fail 'pngcheck'
 fi
