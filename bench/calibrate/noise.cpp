@@ -116,6 +116,7 @@ class Study {
       options.high = FitPoint(0.9, 0.9, 0.45);
       options.step = kStep;
       options.rounds_max = 1;
+      options = without_bounds(options);
       return fit_parameters(
           start,
           [&](const std::vector<FitPoint>& points) {
@@ -188,7 +189,7 @@ void run(int seeds) {
   std::array<int, 3> covered{};
   for (int seed = 1; seed <= seeds; ++seed) {
     const auto [fit, sure] = study.calibrate(std::uint64_t(seed));
-    const FilmParameters found = from_fit(fit.point);
+    const FilmParameters found = from_fit(fit.point.cwiseMax(FitPoint(0, 0.01, 0)));
     const auto inside = [&](double FilmParameters::*member) {
       return sure.low.*member <= kTruth.*member && kTruth.*member <= sure.high.*member;
     };

@@ -18,6 +18,8 @@ constexpr double kSettled = 0.1;
 constexpr double kTrust = 1.5;
 // This near a bound, in stencils, an answer lies at it.
 constexpr double kAtBound = 1e-3;
+// An answer without bounds only says where noise has driven it.
+constexpr int kUnboundedRounds = 4;
 // 97.5 % quantile of the normal distribution.
 constexpr double kQuantile = 1.96;
 
@@ -190,6 +192,14 @@ FilmParameters from_fit(const FitPoint& point) {
   return {point[0], 1 / (point[1] * point[1]), point[2]};
 }
 
+FitOptions without_bounds(const FitOptions& options) {
+  FitOptions free = options;
+  for (int k = 0; k < 3; ++k)
+    if (options.low[k] < options.high[k]) free.low[k] = kLeast[k], free.high[k] = kMost[k];
+  free.rounds_max = std::min(options.rounds_max, kUnboundedRounds);
+  return free;
+}
+
 FitPoint stencil_step(const FitPoint& center, const FitPoint& widest) {
   FitPoint step = widest;
   step[1] = std::min(step[1], std::max(0.01, 0.4 * center[1]));
@@ -276,11 +286,12 @@ Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
   }
   const FitPoint low = fit.point - half, high = fit.point + half;
   // A film is no stiffer without ink, and its Poisson's ratio is a material's.
-  result.low = {std::max(0.0, low[0]), high[1] >= 1 ? 1 : 1 / (high[1] * high[1]),
+  const double softest = std::max(high[1], kLeast[1]);
+  result.low = {std::max(0.0, low[0]), softest >= 1 ? 1 : 1 / (softest * softest),
                 std::max(0.0, low[2])};
   result.high = {high[0],
                  low[1] > 0 ? 1 / (low[1] * low[1]) : std::numeric_limits<double>::infinity(),
-                 std::min(0.499, high[2])};
+                 std::clamp(high[2], 0.0, 0.499)};
   return result;
 }
 

@@ -40,6 +40,9 @@ struct Fit {
   double rms_mm = 0;
 };
 
+// The same with nothing but what a dip can be computed for as bounds, and few rounds.
+FitOptions without_bounds(const FitOptions& options);
+
 // How wide a stencil around a point may be: in the ratio, one that is wide at soft inks would leave
 // out all stiff ones.
 FitPoint stencil_step(const FitPoint& center, const FitPoint& widest);

@@ -228,23 +228,32 @@ Eigen::MatrixXd Search::noise_gradient(const std::vector<std::size_t>& subjects,
   return gradient;
 }
 
+LengthErrors Search::errors_with(const std::vector<std::size_t>& subjects,
+                                 const Eigen::VectorXd& correction, RunContext& context) {
+  return [this, subjects, correction, &context](const std::vector<FitPoint>& points) {
+    return with(errors_at(search_film_, subjects, points, "refining", context), correction);
+  };
+}
+
 Answer Search::answer(const std::string& name, const std::vector<std::size_t>& subjects,
                       const FitPoint& start, const Eigen::VectorXd& correction,
                       RunContext& context) {
-  const LengthErrors errors = [&](const std::vector<FitPoint>& points) {
-    return with(errors_at(search_film_, subjects, points, "refining", context), correction);
-  };
   Answer result;
   result.name = name;
-  result.fit = fit_parameters(start, errors, fit_options());
+  result.fit = fit_parameters(start, errors_with(subjects, correction, context), fit_options());
   result.parameters = from_fit(result.fit.point);
   return result;
 }
 
-// Takes out what noise does to the answer on average, and says how sure it is.
+// Takes out what noise does to the answer on average, and says how sure it is. Where the answer is
+// at the edge of its range, both start from where noise has driven it beyond.
 void Search::judge(Answer& answer, const std::vector<std::size_t>& subjects,
-                   const Eigen::VectorXd& doubt_mm, RunContext& context) {
-  Fit& fit = answer.fit;
+                   const Correction& lacking, RunContext& context) {
+  Fit fit = answer.fit;
+  const bool at_edge = fit.at_bound[0] || fit.at_bound[1] || fit.at_bound[2];
+  if (at_edge)
+    fit = fit_parameters(fit.point, errors_with(subjects, lacking.all, context),
+                         without_bounds(fit_options()));
   const auto asked = 1 + 2 * std::count(fit.free.begin(), fit.free.end(), true);
   int known = 0;
   const NoiseGradient gradient = [&](const FitPoint& point) {
@@ -254,12 +263,11 @@ void Search::judge(Answer& answer, const std::vector<std::size_t>& subjects,
   const Eigen::MatrixXd here = gradient(fit.point);
   const double noise_mm = certainty(fit, here).noise_mm;
   const FitPoint step = stencil_step(fit.point, kWidestStep);
+  fit.point -= noise_bias(fit, noise_mm, gradient, step);
+  answer.certainty = certainty(fit, here, lacking.doubt);
   const FitOptions range = fit_options();
-  fit.point = (fit.point - noise_bias(fit, noise_mm, gradient, step))
-                  .cwiseMax(range.low)
-                  .cwiseMin(range.high);
-  answer.certainty = certainty(fit, here, doubt_mm);
-  answer.parameters = from_fit(fit.point);
+  answer.fit.point = fit.point.cwiseMax(range.low).cwiseMin(range.high);
+  answer.parameters = from_fit(answer.fit.point);
 }
 
 Calibration Search::run(RunContext& context) {
@@ -287,13 +295,14 @@ Calibration Search::run(RunContext& context) {
   }
   result.correction_mm = root_mean_square(lacking.all);
   const FitPoint end = result.all.fit.point;
-  judge(result.all, everyone, lacking.doubt, context);
+  judge(result.all, everyone, lacking, context);
 
   FitPoint sum = FitPoint::Zero();
   for (const std::size_t s : everyone) {
     result.each.push_back(
         answer(subjects_[s].name, {s}, end, part(lacking.all, compared_, s), context));
-    judge(result.each.back(), {s}, part(lacking.doubt, compared_, s), context);
+    judge(result.each.back(), {s},
+          {part(lacking.all, compared_, s), part(lacking.doubt, compared_, s)}, context);
     sum += result.each.back().fit.point;
   }
   result.average = from_fit(sum / double(subjects_.size()));

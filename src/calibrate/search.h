@@ -87,8 +87,10 @@ class Search {
                            RunContext& context);
   Answer answer(const std::string& name, const std::vector<std::size_t>& subjects,
                 const FitPoint& start, const Eigen::VectorXd& correction, RunContext& context);
-  void judge(Answer& answer, const std::vector<std::size_t>& subjects,
-             const Eigen::VectorXd& doubt_mm, RunContext& context);
+  LengthErrors errors_with(const std::vector<std::size_t>& subjects,
+                           const Eigen::VectorXd& correction, RunContext& context);
+  void judge(Answer& answer, const std::vector<std::size_t>& subjects, const Correction& lacking,
+             RunContext& context);
   Eigen::MatrixXd noise_gradient(const std::vector<std::size_t>& subjects, const FitPoint& point,
                                  RunContext& context);
 
