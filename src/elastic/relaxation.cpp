@@ -227,7 +227,7 @@ RelaxationResult Relaxation::run(const std::vector<std::uint8_t>& is_free,
   const FilmGrid& grid = energy_.grid();
   grid.to_grid(u, u_);
   grid.to_mask(is_free, mask_);
-  const RelaxationResult result = Descent(*this, is_free, options).run();
+  RelaxationResult result = Descent(*this, is_free, options).run();
   grid.to_vertices(u_, u);
   return result;
 }

@@ -44,8 +44,8 @@ ReportInk ink_amounts(const InkImage& inks, double limit) {
     for (std::size_t k = 0; k < 4; ++k) sum[k] += inks.cmyk[i + k];
   }
   amounts.density_max = double(most);
-  for (std::size_t k = 0; k < 4; ++k)
-    amounts.mean[k] = double(sum[k]) / (255.0 * std::max(1.0, double(inks.cmyk.size() / 4)));
+  const double full = 255.0 * std::max(1.0, 0.25 * double(inks.cmyk.size()));
+  for (std::size_t k = 0; k < 4; ++k) amounts.mean[k] = double(sum[k]) / full;
   return amounts;
 }
 
