@@ -112,8 +112,8 @@ class Study {
     const FitPoint start = to_fit(kTruth);
     const auto fit_with = [&](const Eigen::VectorXd& lacking) {
       FitOptions options;
-      options.low = FitPoint(0.4, 0.01, 0);
-      options.high = FitPoint(0.9, 0.9, 0.45);
+      options.low = FitPoint::Zero();  // all three are to be found
+      options.high = FitPoint::Ones();
       options.step = kStep;
       options.rounds_max = 1;
       options = without_bounds(options);

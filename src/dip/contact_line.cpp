@@ -113,7 +113,7 @@ class ContactLineScheme : public Scheme {
     climb(level);
     set_rest();
     const VertexVector u = relaxed(level);
-    tear(u, level);
+    tear_overstretched(level);
     slide(u);
     correct_feet();
     attach(level);
@@ -325,12 +325,12 @@ class ContactLineScheme : public Scheme {
     return u;
   }
 
-  void tear(const VertexVector& u, double level) {
+  void tear_overstretched(double level) {
     const std::vector<double>& told = set_.options.tear_levels;
     const double limit = tear_limit(set_.options);
     if (!(limit > 0) && told.empty()) return;
     std::vector<std::int32_t> tears;
-    if (limit > 0) tears = energy_.overstretched(u, limit);
+    if (limit > 0) tears = energy_.overstretched(relaxation_.result(), limit);
     for (std::size_t t = 0; t < told.size(); ++t)
       if (usable_[t] && level >= told[t]) tears.push_back(std::int32_t(t));
     for (std::int32_t t : tears) tear(t, level);

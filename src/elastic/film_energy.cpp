@@ -96,13 +96,12 @@ std::vector<std::int32_t> FilmEnergy::set_flat_rest(const VertexVector& place, d
   return list;
 }
 
-std::vector<std::int32_t> FilmEnergy::overstretched(const VertexVector& u, double limit) const {
-  const GridField at = grid_.field(u);
+std::vector<std::int32_t> FilmEnergy::overstretched(const GridField& u, double limit) const {
   const kernels::Elements elements = this->elements();
   flags_.resize(grid_.elements());
   std::atomic<bool> any = false;
   grid_.for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    kernels::best().overstretched(elements, begin, end, at, limit, flags_.data());
+    kernels::best().overstretched(elements, begin, end, u, limit, flags_.data());
     const auto first = grid_.layout().place(0, int(begin)),
                last = grid_.layout().place(0, int(end));
     for (const std::size_t half : {std::size_t(0), grid_.layout().entries()})
@@ -224,11 +223,7 @@ std::vector<std::int32_t> FilmEnergy::inverted(const GridField& u) const {
   std::vector<std::int32_t> list;
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     if (!(area_[grid_.element(t)] > 0)) continue;
-    std::array<Vec2, 3> at;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t place = grid_.place(std::size_t(mesh_.triangles[t][k]));
-      at[k] = Vec2(u.x[place], u.y[place]);
-    }
+    const std::array<Vec2, 3> at = grid_.corners(mesh_.triangles[t], u);
     if (!(cross2(at[1] - at[0], at[2] - at[0]) > 0)) list.push_back(std::int32_t(t));
   }
   return list;

@@ -48,7 +48,7 @@ class FilmEnergy {
   kernels::Elements elements() const;
 
   // The triangles in which film is stretched further than the limit at u, ascending.
-  std::vector<std::int32_t> overstretched(const VertexVector& u, double limit) const;
+  std::vector<std::int32_t> overstretched(const GridField& u, double limit) const;
 
   double value(const GridField& u) const;
   // dE/du times the mask (1 where a vertex is free, 0 elsewhere). Returns how many triangles are

@@ -29,23 +29,26 @@ GridLayout::GridLayout(int nodes_x, int nodes_y)
       groups(groups_for(nodes_x)),
       stride((groups + 1) * kernels::kLanes) {}
 
-FilmGrid::FilmGrid(const FilmMesh& mesh) : layout_(mesh.nx, mesh.ny) {
-  place_vertices(mesh);
+FilmGrid::FilmGrid(const FilmMesh& mesh) : layout_(mesh.nx, mesh.ny), node_(nodes_of(mesh)) {
+  for (const auto& [i, j] : node_) place_.push_back(static_cast<std::int32_t>(layout_.place(i, j)));
   place_triangles(mesh);
 }
 
-void FilmGrid::place_vertices(const FilmMesh& mesh) {
-  for (const auto& [i, j] : nodes_of(mesh))
-    place_.push_back(static_cast<std::int32_t>(layout_.place(i, j)));
+std::array<Vec2, 3> FilmGrid::corners(const Triangle& triangle, const GridField& field) const {
+  std::array<Vec2, 3> at;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t there = place(std::size_t(triangle[k]));
+    at[k] = Vec2(field.x[there], field.y[there]);
+  }
+  return at;
 }
 
 void FilmGrid::place_triangles(const FilmMesh& mesh) {
-  const std::vector<std::array<int, 2>> nodes = nodes_of(mesh);
   triangle_.assign(elements(), -1);
   for (auto& row : rising_) row = GridArray<double>(std::size_t(layout_.stride));
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     std::array<std::array<int, 2>, 3> corner;
-    for (std::size_t k = 0; k < 3; ++k) corner[k] = nodes[std::size_t(mesh.triangles[t][k])];
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = node_[std::size_t(mesh.triangles[t][k])];
     const int i = std::min({corner[0][0], corner[1][0], corner[2][0]});
     const int j = std::min({corner[0][1], corner[1][1], corner[2][1]});
     const auto has = [&](int column, int row) {

@@ -82,6 +82,10 @@ class FilmGrid {
   std::size_t vertices() const { return place_.size(); }
   // Of a vertex, in arrays over the grid.
   std::size_t place(std::size_t v) const { return std::size_t(place_[v]); }
+  // Column and row of its node.
+  const std::array<int, 2>& node(std::size_t v) const { return node_[v]; }
+  // What a field holds at a triangle's corners.
+  std::array<Vec2, 3> corners(const Triangle& triangle, const GridField& field) const;
 
   // Of a triangle, in arrays over elements (kernels::Elements), which have `elements()` entries.
   std::size_t element(std::size_t t) const { return std::size_t(element_[t]); }
@@ -106,10 +110,10 @@ class FilmGrid {
   void to_mask(const std::vector<std::uint8_t>& is_set, GridArray<double>& mask) const;
 
  private:
-  void place_vertices(const FilmMesh& mesh);
   void place_triangles(const FilmMesh& mesh);
 
   GridLayout layout_;
+  std::vector<std::array<int, 2>> node_;
   std::vector<std::int32_t> place_;
   std::vector<std::int32_t> element_, triangle_;
   std::vector<std::uint8_t> first_corner_;

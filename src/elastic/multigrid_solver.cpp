@@ -31,20 +31,11 @@ class MultigridSolver : public LinearSolver {
         film_(mesh),
         grid_(mesh.nx, mesh.ny),
         row_sums_(std::size_t(mesh.ny)),
-        column_(mesh.u.size()),
-        line_(mesh.u.size()),
         r_(film_.layout()),
         r_before_(r_),
         z_(r_),
         p_(r_),
         Ap_(r_) {
-    for (int j = 0; j < mesh.ny; ++j)
-      for (int i = 0; i < mesh.nx; ++i) {
-        const std::int32_t v = mesh.vertex_at[grid_.finest().node(i, j)];
-        if (v < 0) continue;
-        column_[std::size_t(v)] = i;
-        line_[std::size_t(v)] = j;
-      }
     kept_.resize(film_.elements());
     look_in_.resize(std::size_t(mesh.ny), 0);
   }
@@ -135,11 +126,7 @@ class MultigridSolver : public LinearSolver {
   void linearize(const FilmEnergy& energy, const GridField& u, std::size_t t) {
     const std::size_t e = film_.element(t);
     const RestTriangle rest = energy.rest(t);
-    std::array<Vec2, 3> at;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t place = film_.place(std::size_t(mesh_.triangles[t][k]));
-      at[k] = Vec2(u.x[place], u.y[place]);
-    }
+    const std::array<Vec2, 3> at = film_.corners(mesh_.triangles[t], u);
     const Polar p = polar(deformation_gradient(rest, at[0], at[1], at[2]));
     const kernels::Elements elements = energy.elements();
     for (int k = 0; k < 2; ++k)
@@ -150,7 +137,7 @@ class MultigridSolver : public LinearSolver {
     kept_.turning[e] = float(turning_stiffness(p, energy.material(t), false));
   }
 
-  void touch(std::size_t v) { grid_.touch(column_[v], line_[v]); }
+  void touch(std::size_t v) { grid_.touch(film_.node(v)[0], film_.node(v)[1]); }
 
   // A vertex that is held no longer moves its neighbours.
   void touch_masked(const std::vector<std::uint8_t>& is_free, bool all) {
@@ -162,10 +149,11 @@ class MultigridSolver : public LinearSolver {
         continue;
       }
       if (!all && is_free[v] == is_free_[v]) continue;
-      for (int j = std::max(0, line_[v] - 2); j <= std::min(line_[v] + 1, mesh_.ny - 1); ++j)
+      const auto [column, line] = film_.node(v);
+      for (int j = std::max(0, line - 2); j <= std::min(line + 1, mesh_.ny - 1); ++j)
         look_in_[std::size_t(j)] = 0;
-      for (int j = line_[v] - 1; j <= line_[v] + 1; ++j)
-        for (int i = column_[v] - 1; i <= column_[v] + 1; ++i)
+      for (int j = line - 1; j <= line + 1; ++j)
+        for (int i = column - 1; i <= column + 1; ++i)
           if (i >= 0 && j >= 0 && i < mesh_.nx && j < mesh_.ny) grid_.touch(i, j);
     }
     is_free_ = is_free;
@@ -216,11 +204,11 @@ class MultigridSolver : public LinearSolver {
     // R g, and R J g at right angles to it.
     const float rx = rotated_x(a), ry = rotated_y(a);
     for (std::size_t b = 0; b < 3; ++b) {
-      const auto w = std::size_t(corners[b]);
+      const auto &here = film_.node(v), &there = film_.node(std::size_t(corners[b]));
       const float sx = rotated_x(b), sy = rotated_y(b);
       const float stretch = 2 * mu * area * (gx[a] * gx[b] + gy[a] * gy[b]);
       const float dilating = area * lambda;
-      auto& block = row[std::size_t(3 * (line_[w] - line_[v] + 1) + column_[w] - column_[v] + 1)];
+      auto& block = row[std::size_t(3 * (there[1] - here[1] + 1) + there[0] - here[0] + 1)];
       block[0] += stretch + dilating * rx * sx + turning * ry * sy;
       block[1] += dilating * rx * sy - turning * ry * sx;
       block[2] += dilating * ry * sx - turning * rx * sy;
@@ -320,7 +308,6 @@ class MultigridSolver : public LinearSolver {
   const kernels::Table& kernels_ = kernels::best();
   Multigrid grid_;
   std::vector<std::array<double, 2>> row_sums_;
-  std::vector<int> column_, line_;  // of each vertex
   std::vector<std::uint8_t> is_free_;
   std::vector<std::int64_t> differs_;
   Kept kept_;
