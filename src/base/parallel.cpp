@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <exception>
 
+#include "base/awake_threads.h"
+
 namespace hydrodip {
 
 void parallel_for(std::size_t count, std::size_t grain,
@@ -17,11 +19,12 @@ void parallel_for(std::size_t count, std::size_t grain,
     body(0, count);
     return;
   }
+  const auto run = [&](std::size_t c) { body(c * grain, std::min(count, (c + 1) * grain)); };
+  if (run_awake(chunks, std::cref(run))) return;
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, chunks, 1),
       [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t c = range.begin(); c != range.end(); ++c)
-          body(c * grain, std::min(count, (c + 1) * grain));
+        for (std::size_t c = range.begin(); c != range.end(); ++c) run(c);
       },
       tbb::simple_partitioner());
 }

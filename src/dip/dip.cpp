@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/awake_threads.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "dip/measure.h"
 #include "dip/scheme.h"
 
@@ -101,8 +103,10 @@ void count(const RelaxationResult& result, const VertexVector& u, DipStatistics&
   const bool near = result.iterations > 0 && result.last_update_mm < kVisible_mm;
   if (!result.converged && !near) ++statistics.failed_steps;
   statistics.largest_residual_mm = std::max(statistics.largest_residual_mm, result.last_update_mm);
-  for (const Vec2& p : u)
-    if (!p.allFinite()) throw DipError("the film's equilibrium has no finite solution");
+  parallel_for(u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      if (!u[v].allFinite()) throw DipError("the film's equilibrium has no finite solution");
+  });
 }
 
 std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, const Vec3& to) {
@@ -124,6 +128,7 @@ DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
   DipState state = floating_film(film);
   const DipSetting setting{film, positions, triangles, surface, options, context};
   const auto scheme = make_scheme(setting, state);
+  const AwakeThreads awake;  // a step is some hundred short loops
 
   const int steps = number_of_steps(depth, options);
   if (observe) observe(0, steps, 0, state.position, state.state);

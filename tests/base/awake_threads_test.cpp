@@ -1,0 +1,99 @@
+#include "base/awake_threads.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace hydrodip {
+namespace {
+
+// Every index of a loop, once, in the chunks that it would have without awake threads.
+void expect_whole_loop(std::size_t count) {
+  std::vector<int> visits(count, 0);
+  parallel_for(count, 10, [&](std::size_t begin, std::size_t end) {
+    EXPECT_EQ(begin % 10, 0U);
+    EXPECT_TRUE(end == count || end == begin + 10);
+    for (std::size_t i = begin; i < end; ++i) ++visits[i];
+  });
+  EXPECT_EQ(visits, std::vector<int>(count, 1));
+}
+
+TEST(AwakeThreads, ShareManyShortLoops) {
+  const AwakeThreads awake;
+  for (int repeat = 0; repeat < 2000; ++repeat)
+    for (const std::size_t count : {0, 1, 10, 11, 95}) expect_whole_loop(count);
+}
+
+TEST(AwakeThreads, TakePartInLoops) {
+  if (available_threads() < 2) GTEST_SKIP() << "one thread";
+  const AwakeThreads awake;
+  // Two chunks that wait for each other need two threads.
+  std::atomic<int> met = 0;
+  std::set<std::thread::id> who[2];
+  parallel_for(2, 1, [&](std::size_t begin, std::size_t) {
+    ++met;
+    while (met < 2) std::this_thread::yield();
+    who[begin].insert(std::this_thread::get_id());
+  });
+  EXPECT_NE(who[0], who[1]);
+}
+
+TEST(AwakeThreads, WakeUpAgain) {
+  const AwakeThreads awake;
+  for (int repeat = 0; repeat < 5; ++repeat) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    expect_whole_loop(1000);
+  }
+}
+
+TEST(AwakeThreads, LoopsMayHoldLoops) {
+  const AwakeThreads awake;
+  std::atomic<int> visits = 0;
+  parallel_for(20, 1, [&](std::size_t, std::size_t) {
+    const AwakeThreads of_its_own;
+    parallel_for(20, 1, [&](std::size_t, std::size_t) { ++visits; });
+  });
+  EXPECT_EQ(visits, 400);
+}
+
+TEST(AwakeThreads, RethrowAndGoOn) {
+  const AwakeThreads awake;
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    EXPECT_THROW(parallel_for(40, 1,
+                              [&](std::size_t begin, std::size_t) {
+                                if (begin == 17) throw std::runtime_error("17");
+                              }),
+                 std::runtime_error);
+    expect_whole_loop(50);
+  }
+}
+
+TEST(AwakeThreads, ServeSeveralOwners) {
+  std::vector<std::thread> owners;
+  for (int n = 0; n < 4; ++n)
+    owners.emplace_back([] {
+      for (int repeat = 0; repeat < 20; ++repeat) {
+        const AwakeThreads awake;
+        for (int loop = 0; loop < 50; ++loop) expect_whole_loop(95);
+      }
+    });
+  for (std::thread& owner : owners) owner.join();
+}
+
+TEST(AwakeThreads, OneThreadNeedsNone) {
+  const ThreadLimit one(1);
+  const AwakeThreads awake;
+  EXPECT_FALSE(run_awake(3, [](std::size_t) {}));
+  expect_whole_loop(95);
+}
+
+}  // namespace
+}  // namespace hydrodip
