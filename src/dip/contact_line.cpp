@@ -38,8 +38,6 @@ constexpr double kMaxJump = 2.5;
 constexpr double kLongestSlide = 10;
 // So often in a step film that blocks the rest is released.
 constexpr int kMostReleases = 8;
-// Ways that pass the part of the object between two levels further off than this do not touch it.
-constexpr double kSweptSlack_mm = 0.01;
 
 RestTriangle rest_from_lengths(double ab, double bc, double ca, double min_area) {
   const double length = std::max(ab, 1e-9);
@@ -47,6 +45,13 @@ RestTriangle rest_from_lengths(double ab, double bc, double ca, double min_area)
   const double across = std::sqrt(std::max(0.0, ca * ca - along * along));
   return rest_triangle(Vec2(0, 0), Vec2(length, 0),
                        Vec2(along, std::max(across, 2 * min_area / length)));
+}
+
+template <typename Item>
+std::vector<Item> joined(const std::vector<std::vector<Item>>& parts) {
+  std::vector<Item> all;
+  for (const std::vector<Item>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
 
 class ContactLineScheme : public Scheme {
@@ -65,7 +70,6 @@ class ContactLineScheme : public Scheme {
         is_free_(setting.film.u.size(), 0),
         plan_(setting.film.u),
         slid_(setting.film.u.size()),
-        last_slide_(setting.film.u.size(), Vec2::Zero()),
         slid_in_(setting.film.u.size(), -1),
         carried_x_(setting.film.u.size()),
         carried_y_(setting.film.u.size()),
@@ -79,6 +83,7 @@ class ContactLineScheme : public Scheme {
           kMinArea * 0.5 * cross2(film_.u[std::size_t(v[1])] - a, film_.u[std::size_t(v[2])] - a));
       update_load(t);
     }
+    energy_.grid().to_grid(film_.u, relaxation_.field());
     for (auto& corner : slid_in_corner_) corner.assign(film_.u.size(), 0);
     for (const Vec2& u : film_.u) {
       film_x_.push_back(u.x());
@@ -112,9 +117,9 @@ class ContactLineScheme : public Scheme {
     waterline_.raise_to(level);
     climb(level);
     set_rest();
-    const VertexVector u = relaxed(level);
+    relax(level);
     tear_overstretched(level);
-    slide(u);
+    slide();
     correct_feet();
     attach(level);
     state_.level = level;
@@ -187,6 +192,8 @@ class ContactLineScheme : public Scheme {
       for (std::size_t f = begin; f < end; ++f) work(feet_[f]);
     });
   }
+
+  std::size_t number(const Foot& foot) const { return std::size_t(&foot - feet_.data()); }
 
   Vec2 corner(std::size_t t, std::size_t k) const {
     const std::int32_t v = film_.triangles[t][k];
@@ -278,24 +285,35 @@ class ContactLineScheme : public Scheme {
     return result;
   }
 
-  VertexVector relaxed(double level) {
+  // From where the film lay after the last step: it slides on as it did then.
+  void relax(double level) {
     std::vector<std::uint8_t> is_free = held_vertices();
-    VertexVector u = first_guess(is_free);
+    put_back(is_free);
     RelaxationOptions options;
     options.otherwise = &film_.u;
     for (int round = 0;; ++round) {
-      const RelaxationResult result = relaxation_.run(is_free, options, u);
+      const RelaxationResult result = relaxation_.run(is_free, options);
       if (result.blocked.empty() || round == kMostReleases) {
-        count(result, u, state_.statistics);
-        break;
+        energy_.grid().to_vertices(relaxation_.field(), relaxed_);
+        count(result, relaxed_, state_.statistics);
+        return;
       }
       state_.statistics.iterations += result.iterations;
       release(result.blocked, level, is_free);
     }
-    parallel_for(u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) last_slide_[v] = u[v] - film_.u[v];
+  }
+
+  // The vertices that are not free have their own film coordinates.
+  void put_back(const std::vector<std::uint8_t>& is_free) {
+    double *x = relaxation_.field().x.data(), *y = relaxation_.field().y.data();
+    parallel_for(is_free.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        if (is_free[v]) continue;
+        const std::size_t place = energy_.grid().place(v);
+        x[place] = film_x_[v];
+        y[place] = film_y_[v];
+      }
     });
-    return u;
   }
 
   // Film that would have to turn over to follow is stretched past any limit: it tears, or if film
@@ -315,22 +333,12 @@ class ContactLineScheme : public Scheme {
       for (std::int32_t v : film_.triangles[std::size_t(t)]) is_free[std::size_t(v)] = 0;
   }
 
-  // The film slides on as it did in the last step.
-  VertexVector first_guess(const std::vector<std::uint8_t>& is_free) const {
-    VertexVector u = film_.u;
-    parallel_for(u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v)
-        if (is_free[v]) u[v] += last_slide_[v];
-    });
-    return u;
-  }
-
   void tear_overstretched(double level) {
     const std::vector<double>& told = set_.options.tear_levels;
     const double limit = tear_limit(set_.options);
     if (!(limit > 0) && told.empty()) return;
     std::vector<std::int32_t> tears;
-    if (limit > 0) tears = energy_.overstretched(relaxation_.result(), limit);
+    if (limit > 0) tears = energy_.overstretched(relaxation_.field(), limit);
     for (std::size_t t = 0; t < told.size(); ++t)
       if (usable_[t] && level >= told[t]) tears.push_back(std::int32_t(t));
     for (std::int32_t t : tears) tear(t, level);
@@ -345,19 +353,19 @@ class ContactLineScheme : public Scheme {
 
   // Every floating vertex goes where its film coordinate is found in the relaxed film. Most are
   // found where they were found last, all at once.
-  void slide(const VertexVector& u) {
+  void slide() {
     const auto carry = kernels::best().carry;
     const std::int32_t* const corners[3] = {slid_in_corner_[0].data(), slid_in_corner_[1].data(),
                                             slid_in_corner_[2].data()};
     parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-      carry(begin, end, corners, {film_x_.data(), film_y_.data()}, relaxation_.result(),
+      carry(begin, end, corners, {film_x_.data(), film_y_.data()}, relaxation_.field(),
             energy_.flat_place(), {carried_x_.data(), carried_y_.data()}, found_.data());
       for (std::size_t v = begin; v < end; ++v) {
         slid_[v] = plan_[v];
         if (state_.state[v] != VertexState::kUnattached) continue;
         Vec2 place(carried_x_[v], carried_y_[v]);
         if (!found_[v] || !is_plain_[std::size_t(slid_in_[v])]) {
-          const auto looked_up = look_up(v, u);
+          const auto looked_up = look_up(v);
           if (!looked_up) continue;
           place = *looked_up;
         }
@@ -370,9 +378,9 @@ class ContactLineScheme : public Scheme {
   }
 
   // Where the vertex goes if it is not where it was found last, or if a corner there has a ghost.
-  std::optional<Vec2> look_up(std::size_t v, const VertexVector& u) {
+  std::optional<Vec2> look_up(std::size_t v) {
     const FilmLocation at =
-        locate(film_, u, usable_, static_cast<std::int32_t>(v), film_.u[v], slid_in_[v]);
+        locate(film_, relaxed_, usable_, static_cast<std::int32_t>(v), film_.u[v], slid_in_[v]);
     slid_in_[v] = at.triangle;
     for (std::size_t k = 0; k < 3; ++k)
       slid_in_corner_[k][v] = at.triangle < 0
@@ -458,15 +466,16 @@ class ContactLineScheme : public Scheme {
   // Trapezoidal rule: the film laid in this step has the mean of the strain before and after.
   void correct_feet() {
     std::vector<Mat2> element(feet_.size());
-    for (std::size_t f = 0; f < feet_.size(); ++f)
-      element[f] = gradient_at_edge(feet_[f].attached, feet_[f].floating, feet_[f].element.now);
-    for (std::size_t f = 0; f < feet_.size(); ++f) {
-      Foot& foot = feet_[f];
-      const Mat2 line = gradient_on_line(foot, element[f]);
+    for_feet([&](const Foot& foot) {
+      element[number(foot)] = gradient_at_edge(foot.attached, foot.floating, foot.element.now);
+    });
+    for_feet([&](Foot& foot) {
+      const Mat2& floating = element[number(foot)];
+      const Mat2 line = gradient_on_line(foot, floating);
       foot.laid = foot.laid_before + 0.5 * (foot.line.now + line) * foot.last_way;
       foot.line.advance(line);
-      foot.element.advance(element[f]);
-    }
+      foot.element.advance(floating);
+    });
   }
 
   // Around a vertex that is attached alone, the contact line is a circle smaller than the triangles
@@ -504,8 +513,7 @@ class ContactLineScheme : public Scheme {
   void attach(double level) {
     const std::vector<Touch> touches = find_contacts(level);
     for (const Touch& touch : touches) touches_[std::size_t(touch.vertex)] = 1;
-    std::vector<Foot> created;
-    for (const Touch& touch : touches) create_feet(touch, level, created);
+    const std::vector<Foot> created = created_feet(touches, level);
     move_floating(level);
     for (const Touch& touch : touches) {
       const auto v = std::size_t(touch.vertex);
@@ -523,24 +531,21 @@ class ContactLineScheme : public Scheme {
 
   // In the order of the vertices.
   std::vector<Touch> find_contacts(double level) const {
-    const Box2& swept = waterline_.swept();
-    const auto passes = [&](const Vec2& a, const Vec2& b) {
-      return (a.cwiseMin(b) - swept.max).maxCoeff() < kSweptSlack_mm &&
-             (swept.min - a.cwiseMax(b)).maxCoeff() < kSweptSlack_mm;
-    };
-    std::vector<std::vector<Touch>> found((film_.u.size() + kElementGrain - 1) / kElementGrain);
-    parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+    // Few, because those that may touch lie together.
+    constexpr std::size_t kVerticesPerTask = 256;
+    std::vector<std::vector<Touch>> found((film_.u.size() + kVerticesPerTask - 1) /
+                                          kVerticesPerTask);
+    parallel_for(film_.u.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
-        if (state_.state[v] != VertexState::kUnattached || !passes(plan_[v], slid_[v])) continue;
+        if (state_.state[v] != VertexState::kUnattached) continue;
+        if (!waterline_.may_touch(plan_[v], slid_[v])) continue;
         const Vec3 to(slid_[v].x(), slid_[v].y(), level);
         const auto contact = first_contact(set_.surface, state_.position[v], to);
         if (contact)
-          found[begin / kElementGrain].push_back({static_cast<std::int32_t>(v), *contact});
+          found[begin / kVerticesPerTask].push_back({static_cast<std::int32_t>(v), *contact});
       }
     });
-    std::vector<Touch> all;
-    for (const std::vector<Touch>& part : found) all.insert(all.end(), part.begin(), part.end());
-    return all;
+    return joined(found);
   }
 
   void move_floating(double level) {
@@ -558,6 +563,16 @@ class ContactLineScheme : public Scheme {
         update_load(std::size_t(film_.incident[std::size_t(n)]));
     for (std::size_t t : torn_now_) update_load(t);
     torn_now_.clear();
+  }
+
+  // In the order of their touches.
+  std::vector<Foot> created_feet(const std::vector<Touch>& touches, double level) const {
+    constexpr std::size_t kTouchesPerTask = 2;
+    std::vector<std::vector<Foot>> created(touches.size());
+    parallel_for(touches.size(), kTouchesPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) create_feet(touches[n], level, created[n]);
+    });
+    return joined(created);
   }
 
   // One for every edge from a vertex that attaches now to one that goes on floating.
@@ -631,7 +646,7 @@ class ContactLineScheme : public Scheme {
   std::vector<std::uint8_t> is_free_;  // per vertex: floats and has film around it
   // Per vertex, seen from above: now, and after relaxing.
   VertexVector plan_, slid_;
-  VertexVector last_slide_;  // per vertex, in film coordinates: of the last relaxation
+  VertexVector relaxed_;  // per vertex: film coordinates after relaxing
   // Per vertex: the triangle that it was last found in, with its corners' places on the grid; where
   // it has been carried there, and whether it still was inside.
   std::vector<std::int32_t> slid_in_, slid_in_corner_[3];

@@ -21,6 +21,8 @@ constexpr double kBlurred = 0.1;
 constexpr double kOtherSide = -0.5;
 // What lies this little above the water counts as reached by it.
 constexpr double kLevelSlack_mm = 0.01;
+// Ways that pass what lies between two levels further off than this do not touch it.
+constexpr double kTouchSlack_mm = 0.01;
 
 double bottom(const std::vector<Vec3>& p, const Triangle& t) {
   return std::min({p[std::size_t(t[0])].z(), p[std::size_t(t[1])].z(), p[std::size_t(t[2])].z()});
@@ -49,6 +51,14 @@ Waterline::Waterline(const std::vector<Vec3>& positions, const std::vector<Trian
   by_bottom_.resize(triangles.size());
   std::iota(by_bottom_.begin(), by_bottom_.end(), 0);
   std::vector<double> bottoms(triangles.size());
+  for (const Triangle& t : triangles)
+    for (std::int32_t v : t) whole_.add(positions[std::size_t(v)].head<2>());
+  if (!triangles.empty()) {
+    const Vec2 size = (whole_.max - whole_.min) / cell_;
+    whole_nx_ = static_cast<int>(size.x()) + 1;
+    whole_ny_ = static_cast<int>(size.y()) + 1;
+    reached_.resize(std::size_t(whole_nx_) * std::size_t(whole_ny_), 0);
+  }
   for (std::size_t t = 0; t < triangles.size(); ++t) bottoms[t] = bottom(positions, triangles[t]);
   std::stable_sort(by_bottom_.begin(), by_bottom_.end(), [&](std::int32_t a, std::int32_t b) {
     return bottoms[std::size_t(a)] < bottoms[std::size_t(b)];
@@ -71,15 +81,45 @@ void Waterline::raise_to(double level) {
 
 void Waterline::sweep() {
   swept_ = {};
-  const auto add = [&](std::int32_t triangle) {
-    for (std::int32_t v : triangles_[std::size_t(triangle)])
-      swept_.add(positions_[std::size_t(v)].head<2>());
-  };
-  for (std::int32_t t : active_) add(t);
+  ++raises_;
+  for (std::int32_t t : active_) reach(t);
   for (std::size_t n = next_; n < by_bottom_.size(); ++n) {
     if (bottom(positions_, triangles_[std::size_t(by_bottom_[n])]) > level_ + kLevelSlack_mm) break;
-    add(by_bottom_[n]);
+    reach(by_bottom_[n]);
   }
+}
+
+void Waterline::reach(std::int32_t triangle) {
+  Box2 box;
+  for (std::int32_t v : triangles_[std::size_t(triangle)])
+    box.add(positions_[std::size_t(v)].head<2>());
+  swept_.add(box.min);
+  swept_.add(box.max);
+  const auto [x0, y0, x1, y1] = whole_cells(box.min, box.max);
+  for (int y = y0; y <= y1; ++y)
+    for (int x = x0; x <= x1; ++x)
+      reached_[std::size_t(y) * std::size_t(whole_nx_) + std::size_t(x)] = raises_;
+}
+
+// Of the grid over the whole object: first column and row, last column and row.
+std::array<int, 4> Waterline::whole_cells(const Vec2& min, const Vec2& max) const {
+  const auto cell = [&](double distance, int cells) {
+    return static_cast<int>(std::clamp(std::floor(distance / cell_), 0.0, double(cells - 1)));
+  };
+  return {cell(min.x() - whole_.min.x(), whole_nx_), cell(min.y() - whole_.min.y(), whole_ny_),
+          cell(max.x() - whole_.min.x(), whole_nx_), cell(max.y() - whole_.min.y(), whole_ny_)};
+}
+
+bool Waterline::may_touch(const Vec2& a, const Vec2& b) const {
+  const Vec2 slack(kTouchSlack_mm, kTouchSlack_mm);
+  const Vec2 min = a.cwiseMin(b) - slack, max = a.cwiseMax(b) + slack;
+  if ((min - swept_.max).maxCoeff() > 0 || (swept_.min - max).maxCoeff() > 0) return false;
+  const auto [x0, y0, x1, y1] = whole_cells(min, max);
+  for (int y = y0; y <= y1; ++y)
+    for (int x = x0; x <= x1; ++x)
+      if (reached_[std::size_t(y) * std::size_t(whole_nx_) + std::size_t(x)] == raises_)
+        return true;
+  return false;
 }
 
 void Waterline::cut(std::int32_t triangle) {
@@ -131,11 +171,16 @@ void Waterline::build_grid() {
   const Vec2 size = box.max - box.min;
   grid_nx_ = static_cast<int>(size.x() / cell_) + 1;
   grid_ny_ = static_cast<int>(size.y() / cell_) + 1;
+  for (Segment& s : segments_) {
+    s.x0 = cell_x(std::min(s.a.x(), s.b.x()));
+    s.x1 = cell_x(std::max(s.a.x(), s.b.x()));
+    s.y0 = cell_y(std::min(s.a.y(), s.b.y()));
+    s.y1 = cell_y(std::max(s.a.y(), s.b.y()));
+  }
   const auto for_cells = [&](const Segment& s, const auto& visit) {
-    const int x0 = cell_x(std::min(s.a.x(), s.b.x())), x1 = cell_x(std::max(s.a.x(), s.b.x()));
-    const int y0 = cell_y(std::min(s.a.y(), s.b.y())), y1 = cell_y(std::max(s.a.y(), s.b.y()));
-    for (int y = y0; y <= y1; ++y)
-      for (int x = x0; x <= x1; ++x) visit(std::size_t(y) * std::size_t(grid_nx_) + std::size_t(x));
+    for (int y = s.y0; y <= s.y1; ++y)
+      for (int x = s.x0; x <= s.x1; ++x)
+        visit(std::size_t(y) * std::size_t(grid_nx_) + std::size_t(x));
   };
   grid_begin_.assign(std::size_t(grid_nx_) * std::size_t(grid_ny_) + 1, 0);
   for (const Segment& s : segments_) for_cells(s, [&](std::size_t c) { ++grid_begin_[c + 1]; });
@@ -191,9 +236,7 @@ Waterline::Point Waterline::blurred(const Point& point, const Weight& weight_of)
       for (auto n = grid_begin_[c]; n < grid_begin_[c + 1]; ++n) {
         const Segment& s = segments_[std::size_t(grid_items_[std::size_t(n)])];
         // Once, though it is listed in several cells.
-        if (x != std::max(x0, cell_x(std::min(s.a.x(), s.b.x()))) ||
-            y != std::max(y0, cell_y(std::min(s.a.y(), s.b.y()))))
-          continue;
+        if (x != std::max(x0, s.x0) || y != std::max(y0, s.y0)) continue;
         const double weight = length_within(s.a, s.b, point.position, radius) * weight_of(s);
         outward += weight * s.outward;
         steepness += weight * s.steepness;

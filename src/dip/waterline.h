@@ -1,6 +1,8 @@
 // The waterline: where the water surface cuts the object, seen from above, as the water rises.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -33,18 +35,22 @@ class Waterline {
 
   bool empty() const { return segments_.empty(); }
 
-  // Seen from above, around all of the object between the last level but one and the last.
-  const Box2& swept() const { return swept_; }
+  // Whether a point that goes from a to b, seen from above, while the water rises from the last
+  // level but one to the last, may touch the object. False only if it certainly does not.
+  bool may_touch(const Vec2& a, const Vec2& b) const;
 
  private:
   struct Segment {
     Vec2 a, b;
     Vec2 outward;
     double steepness;
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // cells of the grid that it is listed in
   };
   template <class Weight>
   Point blurred(const Point& point, const Weight& weight_of) const;
   void sweep();
+  void reach(std::int32_t triangle);
+  std::array<int, 4> whole_cells(const Vec2& min, const Vec2& max) const;
   void cut(std::int32_t triangle);
   void build_grid();
   int cell_x(double x) const;
@@ -54,7 +60,12 @@ class Waterline {
   const std::vector<Triangle>& triangles_;
   double cell_;
   double level_ = -1e300;
-  Box2 swept_;
+  // Cells that triangles between the last two levels reach, seen from above: those with the present
+  // number. The box is around all of them.
+  Box2 whole_, swept_;
+  int whole_nx_ = 0, whole_ny_ = 0;
+  std::vector<std::uint32_t> reached_;
+  std::uint32_t raises_ = 0;
   std::vector<std::int32_t> by_bottom_;  // triangles by lowest corner
   std::size_t next_ = 0;                 // first of by_bottom_ that is still above the water
   std::vector<std::int32_t> active_;     // triangles that reach from below to above the level

@@ -21,16 +21,18 @@ Mat2 gradient_at(const FilmMesh& mesh, const RestTriangle& rest, std::size_t t,
 }  // namespace
 
 FilmEnergy::FilmEnergy(const FilmMesh& mesh, const std::vector<double>& modulus, double poisson)
-    : mesh_(mesh), grid_(mesh), own_corner_(mesh.incident.size()), place_(grid_.layout()) {
+    : mesh_(mesh),
+      grid_(mesh),
+      lambda_per_mu_(lame(1, poisson).lambda / lame(1, poisson).mu),
+      own_corner_(mesh.incident.size()),
+      place_(grid_.layout()) {
   for (auto& corner : gradient_)
     for (auto& component : corner) component = GridArray<double>(grid_.elements());
-  for (auto* values : {&area_, &mu_, &lambda_, &film_, &flat_area_})
+  for (auto* values : {&area_, &mu_, &film_, &flat_area_})
     *values = GridArray<double>(grid_.elements());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::size_t e = grid_.element(t);
-    const Lame material = lame(modulus.empty() ? 1.0 : modulus[t], poisson);
-    mu_[e] = material.mu;
-    lambda_[e] = material.lambda;
+    mu_[e] = lame(modulus.empty() ? 1.0 : modulus[t], poisson).mu;
     film_[e] = 1;
     const Triangle& v = mesh.triangles[t];
     const Vec2& a = mesh.u[std::size_t(v[0])];
@@ -55,7 +57,7 @@ kernels::Elements FilmEnergy::elements() const {
            {gradient_[1][0].data(), gradient_[1][1].data()}},
           area_.data(),
           mu_.data(),
-          lambda_.data()};
+          lambda_per_mu_};
 }
 
 void FilmEnergy::set_rest(std::size_t t, const RestTriangle& rest) {

@@ -43,7 +43,10 @@ class FilmEnergy {
   // The places that set_flat_rest() was given last.
   const GridField& flat_place() const { return place_; }
 
-  Lame material(std::size_t t) const { return {mu_[grid_.element(t)], lambda_[grid_.element(t)]}; }
+  Lame material(std::size_t t) const {
+    const double mu = mu_[grid_.element(t)];
+    return {mu, lambda_per_mu_ * mu};
+  }
   // All of it as arrays.
   kernels::Elements elements() const;
 
@@ -68,7 +71,8 @@ class FilmEnergy {
   const FilmMesh& mesh_;
   FilmGrid grid_;
   // Over elements (kernels::Elements).
-  GridArray<double> gradient_[2][2], area_, mu_, lambda_, film_, flat_area_;
+  GridArray<double> gradient_[2][2], area_, mu_, film_, flat_area_;
+  double lambda_per_mu_;  // Poisson's ratio is the same everywhere
   // Corner of mesh.triangles[mesh.incident[n]] that is the vertex itself.
   std::vector<std::uint8_t> own_corner_;
   GridField place_;

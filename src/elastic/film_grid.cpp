@@ -71,9 +71,9 @@ void FilmGrid::place_triangles(const FilmMesh& mesh) {
 
 void FilmGrid::for_rows(int rows,
                         const std::function<void(std::ptrdiff_t, std::ptrdiff_t)>& body) const {
-  constexpr std::ptrdiff_t kNodesPerTask = 4000;
-  parallel_for(std::size_t(rows),
-               std::size_t(std::max<std::ptrdiff_t>(4, kNodesPerTask / layout_.stride)),
+  constexpr std::ptrdiff_t kNodesPerTask = 3000;
+  const std::ptrdiff_t tasks = even_tasks(layout_.stride * rows, kNodesPerTask);
+  parallel_for(std::size_t(rows), std::size_t((rows + tasks - 1) / tasks),
                [&](std::size_t begin, std::size_t end) {
                  body(std::ptrdiff_t(begin), std::ptrdiff_t(end));
                });

@@ -34,6 +34,13 @@ struct GridLayout {
   static constexpr std::size_t kLooseEnds = 2 * kernels::kLanes;
 };
 
+// How many tasks to make of work on so many nodes, with about nodes_per_task each. Two threads
+// share an even number evenly.
+constexpr std::ptrdiff_t even_tasks(std::ptrdiff_t nodes, std::ptrdiff_t nodes_per_task) {
+  const std::ptrdiff_t pairs = (nodes + nodes_per_task) / (2 * nodes_per_task);
+  return pairs > 0 ? 2 * pairs : 1;
+}
+
 // An array over a grid, zero at first, at addresses that registers are loaded from at once.
 template <typename Real>
 class GridArray {
@@ -71,6 +78,32 @@ struct GridField {
   operator kernels::Field() { return {x.data(), y.data()}; }  // NOLINT(google-explicit-constructor)
 
   GridArray<double> x, y;
+};
+
+// A vector over a grid in single precision.
+class GridVector {
+ public:
+  GridVector() = default;
+  explicit GridVector(const GridLayout& layout) : x_(layout.entries()), y_(layout.entries()) {}
+
+  float* x() { return x_.data(); }
+  float* y() { return y_.data(); }
+  const float* x() const { return x_.data(); }
+  const float* y() const { return y_.data(); }
+  // As the kernels take it. Implicit: a view, and nothing else is meant.
+  operator kernels::Input() const { return {x(), y()}; }  // NOLINT(google-explicit-constructor)
+  operator kernels::Output() { return {x(), y()}; }       // NOLINT(google-explicit-constructor)
+  void set_zero() {
+    x_.set_zero();
+    y_.set_zero();
+  }
+  void swap(GridVector& other) {
+    x_.swap(other.x_);
+    y_.swap(other.y_);
+  }
+
+ private:
+  GridArray<float> x_, y_;
 };
 
 // How a film mesh lies on its grid.

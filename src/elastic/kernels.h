@@ -58,11 +58,17 @@ struct Elements {
   std::ptrdiff_t upper;
   const double* gradient[2][2];  // of corners 1 and 2: dN/dX [corner - 1][component], 1/mm
   const double* area;            // 0: no film
-  const double *mu, *lambda;
+  const double* mu;
+  double lambda_per_mu;
 };
 // What a triangle's part of the Hessian was computed with.
 struct Linearization {
   const float *gradient[2][2], *area, *cosine, *sine, *turning;
+};
+
+// Of a step: its product with the gradient, and the square of the longest move in it.
+struct Stride {
+  double slope, largest_square;
 };
 
 // Rows of the grid that gradient() keeps to itself.
@@ -90,6 +96,13 @@ struct Table {
   // On vector entries [begin, end), multiples of kLanes: a . b and a = scale a + b.
   double (*dot)(std::size_t begin, std::size_t end, Input a, Input b);
   void (*scale_and_add)(std::size_t begin, std::size_t end, Output a, float scale, Input b);
+
+  // On entries [begin, end) of fields, multiples of kLanes: to = from - length * way, and what that
+  // is against the gradient.
+  Stride (*go)(std::size_t begin, std::size_t end, ConstField from, Input way, double length,
+               ConstField gradient, Field to);
+  // a . b.
+  double (*dot_field)(std::size_t begin, std::size_t end, ConstField a, Input b);
 
   // Of the film's elements in the cells of rows [begin, end), at places given for all nodes:
 

@@ -164,6 +164,47 @@ void scale_and_add(std::size_t begin, std::size_t end, Output a, float scale, In
   }
 }
 
+// Sums of doubles are kept in this many parts.
+constexpr std::size_t kParts = 8;
+double sum_of_parts(const double* parts) {
+  return ((parts[0] + parts[4]) + (parts[2] + parts[6])) +
+         ((parts[1] + parts[5]) + (parts[3] + parts[7]));
+}
+
+Stride go(std::size_t begin, std::size_t end, ConstField from, Input way, double length,
+          ConstField gradient, Field to) {
+  alignas(64) double slope[kParts] = {}, largest[kParts] = {};
+  for (std::size_t n = begin; n < end; n += kParts) {
+    alignas(64) double dx[kParts], dy[kParts];
+#pragma GCC ivdep
+    for (std::size_t k = 0; k < kParts; ++k) {
+      dx[k] = length * double(way.x[n + k]);
+      dy[k] = length * double(way.y[n + k]);
+    }
+#pragma GCC ivdep
+    for (std::size_t k = 0; k < kParts; ++k) {
+      to.x[n + k] = from.x[n + k] - dx[k];
+      to.y[n + k] = from.y[n + k] - dy[k];
+    }
+    for (std::size_t k = 0; k < kParts; ++k) {
+      slope[k] += gradient.x[n + k] * dx[k] + gradient.y[n + k] * dy[k];
+      const double square = dx[k] * dx[k] + dy[k] * dy[k];
+      largest[k] = square > largest[k] ? square : largest[k];
+    }
+  }
+  double most = 0;
+  for (const double square : largest) most = square > most ? square : most;
+  return {sum_of_parts(slope), most};
+}
+
+double dot_field(std::size_t begin, std::size_t end, ConstField a, Input b) {
+  alignas(64) double sum[kParts] = {};
+  for (std::size_t n = begin; n < end; n += kParts)
+    for (std::size_t k = 0; k < kParts; ++k)
+      sum[k] += a.x[n + k] * double(b.x[n + k]) + a.y[n + k] * double(b.y[n + k]);
+  return sum_of_parts(sum);
+}
+
 // Where an array over the grid holds the first node of a row.
 inline std::ptrdiff_t first_of_row(const Elements& e, std::ptrdiff_t row) {
   return (row + 1) * e.stride + kLanes;
@@ -250,8 +291,9 @@ struct Strain {
   const double x = s.xx + s.yy, y = s.yx - s.xy;
   const double root = __builtin_sqrt(x * x + y * y);
   s.trace = root > 1e-12 ? root : 1e-12;
-  s.cosine = x / s.trace;
-  s.sine = y / s.trace;
+  const double inverse = 1 / s.trace;  // one division instead of two
+  s.cosine = x * inverse;
+  s.sine = y * inverse;
   return s;
 }
 
@@ -265,7 +307,7 @@ struct Forces {
   const Strain s = strain_of(e, at, u);
   // A P = A (2 mu (F - R) + lambda (tr S - 2) R).
   const double stiff = 2 * e.mu[at] * e.area[at];
-  const double turn = e.lambda[at] * e.area[at] * (s.trace - 2) - stiff;
+  const double turn = stiff * (0.5 * e.lambda_per_mu * (s.trace - 2) - 1);
   const double xx = stiff * s.xx + turn * s.cosine, xy = stiff * s.xy - turn * s.sine;
   const double yx = stiff * s.yx + turn * s.sine, yy = stiff * s.yy + turn * s.cosine;
   const double g1x = e.gradient[0][0][at], g1y = e.gradient[0][1][at];
@@ -282,8 +324,8 @@ struct Forces {
   const double xx = s.xx - s.cosine, xy = s.xy + s.sine, yx = s.yx - s.sine, yy = s.yy - s.cosine;
   const double dilation = s.trace - 2;
   const double density =
-      e.mu[at] * (xx * xx + xy * xy + yx * yx + yy * yy) + 0.5 * e.lambda[at] * dilation * dilation;
-  return e.area[at] * density;
+      xx * xx + xy * xy + yx * yx + yy * yy + 0.5 * e.lambda_per_mu * dilation * dilation;
+  return e.area[at] * e.mu[at] * density;
 }
 
 void energy(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
@@ -406,7 +448,7 @@ inline std::int64_t changed_of(const Elements& e, std::ptrdiff_t row, ConstField
   for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
     const std::ptrdiff_t t = first + i + (kUpper ? e.upper : 0);
     const Strain s = strain_of(e, t, corners_of<kUpper>(u.x, u.y, first + i, stride, rising[i]));
-    const double turning = (e.lambda[t] * (s.trace - 2) - 2 * e.mu[t]) / s.trace;
+    const double turning = e.mu[t] * (e.lambda_per_mu * (s.trace - 2) - 2) / s.trace;
     const double g1x = e.gradient[0][0][t], g1y = e.gradient[0][1][t];
     const double g2x = e.gradient[1][0][t], g2y = e.gradient[1][1][t];
     const double d1x = g1x - double(old.gradient[0][0][t]),
@@ -489,8 +531,9 @@ void carry(std::size_t begin, std::size_t end, const std::int32_t* const corner[
 }  // namespace
 
 extern const Table KERNELS_VARIANT;
-const Table KERNELS_VARIANT = {multiply,     residual, smooth,        precondition, restrict_rows,
-                               prolong_rows, dot,      scale_and_add, rest_shapes,  overstretched,
-                               turned_over,  changed,  carry,         energy,       gradient};
+const Table KERNELS_VARIANT = {
+    multiply,    residual,      smooth, precondition, restrict_rows, prolong_rows,
+    dot,         scale_and_add, go,     dot_field,    rest_shapes,   overstretched,
+    turned_over, changed,       carry,  energy,       gradient};
 
 }  // namespace hydrodip::kernels

@@ -3,12 +3,20 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "elastic/film_energy.h"
 
 namespace hydrodip {
 
-// Turns gradients g of the energy into steps d (u becomes u - d), zero where a vertex is held.
+// Where u should go: it becomes u - length * way. `way` is as large as u and zero where there is no
+// vertex or one that is held.
+struct SearchDirection {
+  kernels::Input way;
+  double length;
+};
+
+// Turns gradients of the energy into directions.
 // Solves with the Hessian or something close to it: what is reused from call to call (symbolic
 // analysis, unchanged rows) is the solver's own business, as every step is checked against the true
 // energy or its gradient.
@@ -24,10 +32,9 @@ class LinearSolver {
                       const std::vector<std::uint8_t>& is_free, bool definite,
                       double moved_mm = kAnyChange) = 0;
 
-  // The next step from the gradient where the last one has led; `step` is as large as the gradient
-  // and zero where there is no vertex. False if there is none because the
-  // operator turned out not to be definite.
-  virtual bool direction(const GridField& gradient, GridField& step) = 0;
+  // The next one, from the gradient where the last one has led; valid until the next call. None if
+  // the operator turned out not to be definite.
+  virtual std::optional<SearchDirection> direction(const GridField& gradient) = 0;
 };
 
 // Newton's steps, by sparse Cholesky of H itself, symbolic analysis reused. Slow: the reference.

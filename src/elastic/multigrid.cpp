@@ -18,7 +18,7 @@ constexpr double kWidest = 4;
 constexpr double kWidening = 1.25;
 constexpr int kPowerIterations = 12;
 // Grids with at most this many inner nodes are solved directly.
-constexpr std::size_t kCoarsestNodes = 40;
+constexpr std::size_t kCoarsestNodes = 12;
 
 kernels::Transfer transfer(const GridOperator& fine, const GridOperator& coarse) {
   return {fine.layout().stride, coarse.layout().stride, fine.nx(), fine.ny(), coarse.nx(),
@@ -189,7 +189,7 @@ void Multigrid::update(bool all) {
 }
 
 void Multigrid::coarsen(const Level& fine, Level& coarse) const {
-  constexpr std::size_t kRowsPerTask = 64;
+  constexpr std::size_t kRowsPerTask = 16;
   parallel_for(coarse.to_do.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const int I = coarse.to_do[n] % coarse.A.nx(), J = coarse.to_do[n] / coarse.A.nx();

@@ -16,32 +16,6 @@
 
 namespace hydrodip {
 
-// A vector over a grid in single precision.
-class GridVector {
- public:
-  GridVector() = default;
-  explicit GridVector(const GridLayout& layout) : x_(layout.entries()), y_(layout.entries()) {}
-
-  float* x() { return x_.data(); }
-  float* y() { return y_.data(); }
-  const float* x() const { return x_.data(); }
-  const float* y() const { return y_.data(); }
-  // As the kernels take it. Implicit: a view, and nothing else is meant.
-  operator kernels::Input() const { return {x(), y()}; }  // NOLINT(google-explicit-constructor)
-  operator kernels::Output() { return {x(), y()}; }       // NOLINT(google-explicit-constructor)
-  void set_zero() {
-    x_.set_zero();
-    y_.set_zero();
-  }
-  void swap(GridVector& other) {
-    x_.swap(other.x_);
-    y_.swap(other.y_);
-  }
-
- private:
-  GridArray<float> x_, y_;
-};
-
 // The operator of one level. A node that is not free has an empty row and keeps the value zero.
 class GridOperator {
  public:
@@ -70,8 +44,8 @@ class GridOperator {
   // Calls body(begin, end) over the grid's rows, in parallel where that pays.
   template <typename Body>
   void for_rows(const Body& body) const {
-    const std::ptrdiff_t tasks = (layout_.stride * ny() + kNodesPerTask / 2) / kNodesPerTask;
-    const auto rows_per_task = ny() / std::max<std::ptrdiff_t>(1, tasks) + 1;
+    const std::ptrdiff_t tasks = even_tasks(layout_.stride * ny(), kNodesPerTask);
+    const auto rows_per_task = (ny() + tasks - 1) / tasks;
     parallel_for(std::size_t(ny()), std::size_t(rows_per_task),
                  [&](std::size_t begin, std::size_t end) {
                    body(std::ptrdiff_t(begin), std::ptrdiff_t(end));

@@ -12,7 +12,7 @@ namespace hydrodip {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 64;
+constexpr std::size_t kRowsPerTask = 32;
 // A triangle's part of the operator is kept until it has changed by this much, relatively.
 constexpr double kOperatorTolerance = 0.05;
 // Vertices that have moved by less than this share of a cell have changed it by less than that.
@@ -53,21 +53,12 @@ class MultigridSolver : public LinearSolver {
     restart_ = true;
   }
 
-  bool direction(const GridField& gradient, GridField& step) override {
+  std::optional<SearchDirection> direction(const GridField& gradient) override {
     r_.swap(r_before_);
     set_right_side(gradient);
     const float length = turn();
-    if (!(length >= 0)) return false;
-    const GridLayout& layout = film_.layout();
-    grid_.finest().for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      const float *px = p_.x(), *py = p_.y();
-      double *x = step.x.data(), *y = step.y.data();
-      for (auto n = layout.place(0, int(begin)); n < layout.place(0, int(end)); ++n) {
-        x[n] = double(length) * double(px[n]);
-        y[n] = double(length) * double(py[n]);
-      }
-    });
-    return true;
+    if (!(length >= 0)) return std::nullopt;
+    return SearchDirection{p_, double(length)};
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "elastic/kernel_variants.h"
 
 namespace hydrodip {
 
@@ -20,48 +21,21 @@ constexpr double kFirstContraction = 0.2;
 
 // Entries of a field at a time, and what they add up to.
 constexpr std::size_t kGrain = 6144;
-struct Sums {
-  double slope = 0;           // dot product
-  double largest_square = 0;  // of a vector's length
-};
 
 // Calls body(first, last entry, sums) for parts of a field of this many entries; sums are added up
 // in the parts' order.
 template <typename Body>
-Sums over_parts(std::size_t entries, const Body& body) {
-  std::vector<Sums> partial((entries + kGrain - 1) / kGrain);
+kernels::Stride over_parts(std::size_t entries, const Body& body) {
+  std::vector<kernels::Stride> partial((entries + kGrain - 1) / kGrain, kernels::Stride{});
   parallel_for(entries, kGrain, [&](std::size_t begin, std::size_t end) {
     body(begin, end, partial[begin / kGrain]);
   });
-  Sums all;
-  for (const Sums& part : partial) {
+  kernels::Stride all{};
+  for (const kernels::Stride& part : partial) {
     all.slope += part.slope;
     all.largest_square = std::max(all.largest_square, part.largest_square);
   }
   return all;
-}
-
-double dot(std::size_t begin, std::size_t end, kernels::ConstField a, kernels::ConstField b) {
-  // Several sums at once: one alone would wait for itself.
-  constexpr std::size_t kSums = 8;
-  double sum[kSums] = {};
-  for (std::size_t n = begin; n < end; n += kSums)
-    for (std::size_t k = 0; k < kSums; ++k)
-      sum[k] += a.x[n + k] * b.x[n + k] + a.y[n + k] * b.y[n + k];
-  double total = 0;
-  for (const double part : sum) total += part;
-  return total;
-}
-
-double largest_square(std::size_t begin, std::size_t end, kernels::ConstField a) {
-  constexpr std::size_t kLargest = 8;
-  double largest[kLargest] = {};
-  for (std::size_t n = begin; n < end; n += kLargest)
-    for (std::size_t k = 0; k < kLargest; ++k) {
-      const double square = a.x[n + k] * a.x[n + k] + a.y[n + k] * a.y[n + k];
-      largest[k] = square > largest[k] ? square : largest[k];
-    }
-  return *std::max_element(largest, largest + kLargest);
 }
 
 }  // namespace
@@ -78,7 +52,6 @@ class Descent {
         entries_(energy_.grid().layout().entries()),
         u_(fields.u_),
         gradient_(fields.gradient_),
-        direction_(fields.direction_),
         trial_(fields.trial_),
         trial_gradient_(fields.trial_gradient_),
         mask_(fields.mask_) {}
@@ -126,24 +99,20 @@ class Descent {
 
   // The whole step is tried first, so it is taken on the way.
   bool goes_down() {
-    if (!solver_.direction(gradient_, direction_)) return false;
-    const Sums sums = move_to(1);
+    const auto direction = solver_.direction(gradient_);
+    if (!direction) return false;
+    direction_ = *direction;
+    const kernels::Stride sums = move_to(1);
     slope_ = sums.slope;
     update_ = std::sqrt(sums.largest_square);
     return slope_ >= 0;
   }
 
   // Slope and longest move along the direction are found on the way.
-  Sums move_to(double step) {
-    return over_parts(entries_, [&](std::size_t begin, std::size_t end, Sums& sums) {
-      const kernels::ConstField from = u_, way = direction_;
-      const kernels::Field to = trial_;
-      for (std::size_t n = begin; n < end; ++n) {
-        to.x[n] = from.x[n] - step * way.x[n];
-        to.y[n] = from.y[n] - step * way.y[n];
-      }
-      sums.slope = dot(begin, end, gradient_, way);
-      sums.largest_square = largest_square(begin, end, way);
+  kernels::Stride move_to(double step) {
+    return over_parts(entries_, [&](std::size_t begin, std::size_t end, kernels::Stride& sums) {
+      sums = kernels::best().go(begin, end, u_, direction_.way, step * direction_.length, gradient_,
+                                trial_);
     });
   }
 
@@ -158,9 +127,10 @@ class Descent {
   // step is taken without asking for the energy itself.
   bool take_whole_step() {
     if (energy_.gradient(trial_, mask_, trial_gradient_) > 0) return false;
-    const Sums end_of_step =
-        over_parts(entries_, [&](std::size_t begin, std::size_t end, Sums& sums) {
-          sums.slope = dot(begin, end, trial_gradient_, direction_);
+    const kernels::Stride end_of_step =
+        over_parts(entries_, [&](std::size_t begin, std::size_t end, kernels::Stride& sums) {
+          sums.slope = direction_.length *
+                       kernels::best().dot_field(begin, end, trial_gradient_, direction_.way);
         });
     if (std::abs(end_of_step.slope) > kFlattened * slope_) return false;
     u_.swap(trial_);
@@ -203,7 +173,8 @@ class Descent {
   const std::vector<std::uint8_t>& is_free_;
   const RelaxationOptions& options_;
   const std::size_t entries_;  // of fields
-  GridField &u_, &gradient_, &direction_, &trial_, &trial_gradient_;
+  GridField &u_, &gradient_, &trial_, &trial_gradient_;
+  SearchDirection direction_{};
   const GridArray<double>& mask_;
   bool definite_ = false;
   double slope_ = 0;                            // of the energy against the direction
@@ -217,19 +188,22 @@ Relaxation::Relaxation(const FilmEnergy& energy, LinearSolver& solver)
       solver_(solver),
       u_(energy.grid().layout()),
       gradient_(u_),
-      direction_(u_),
       trial_(u_),
       trial_gradient_(u_),
       mask_(energy.grid().layout().entries()) {}
 
 RelaxationResult Relaxation::run(const std::vector<std::uint8_t>& is_free,
                                  const RelaxationOptions& options, VertexVector& u) {
-  const FilmGrid& grid = energy_.grid();
-  grid.to_grid(u, u_);
-  grid.to_mask(is_free, mask_);
-  RelaxationResult result = Descent(*this, is_free, options).run();
-  grid.to_vertices(u_, u);
+  energy_.grid().to_grid(u, u_);
+  RelaxationResult result = run(is_free, options);
+  energy_.grid().to_vertices(u_, u);
   return result;
+}
+
+RelaxationResult Relaxation::run(const std::vector<std::uint8_t>& is_free,
+                                 const RelaxationOptions& options) {
+  energy_.grid().to_mask(is_free, mask_);
+  return Descent(*this, is_free, options).run();
 }
 
 }  // namespace hydrodip

@@ -37,14 +37,17 @@ class Relaxation {
   // a triangle that was not turned over, and never raises the energy.
   RelaxationResult run(const std::vector<std::uint8_t>& is_free, const RelaxationOptions& options,
                        VertexVector& u);
+  // The same from and to field().
+  RelaxationResult run(const std::vector<std::uint8_t>& is_free, const RelaxationOptions& options);
 
-  // The u of the last run.
-  const GridField& result() const { return u_; }
+  // Where the next run without u begins and the last one ended; u = 0 before the first.
+  GridField& field() { return u_; }
+  const GridField& field() const { return u_; }
 
  private:
   const FilmEnergy& energy_;
   LinearSolver& solver_;
-  GridField u_, gradient_, direction_, trial_, trial_gradient_;
+  GridField u_, gradient_, trial_, trial_gradient_;
   GridArray<double> mask_;
 
   friend class Descent;

@@ -22,14 +22,15 @@ class SparseCholeskySolver : public LinearSolver {
     energy.hessian(by_vertex, definite, H_);
     is_free_ = is_free;
     const bool first = entries_.empty();
+    if (first) way_ = GridVector(grid_->layout());
     if (first) build_pattern();
     set_values();
     if (first) cholesky_.analyzePattern(matrix_);
     cholesky_.factorize(matrix_);
   }
 
-  bool direction(const GridField& gradient, GridField& step) override {
-    if (cholesky_.info() != Eigen::Success) return false;
+  std::optional<SearchDirection> direction(const GridField& gradient) override {
+    if (cholesky_.info() != Eigen::Success) return std::nullopt;
     Eigen::VectorXd right(2 * Eigen::Index(is_free_.size()));
     for (std::size_t v = 0; v < is_free_.size(); ++v) {
       const std::size_t place = grid_->place(v);
@@ -37,11 +38,14 @@ class SparseCholeskySolver : public LinearSolver {
           is_free_[v] ? Vec2(gradient.x[place], gradient.y[place]) : Vec2(0, 0);
     }
     const Eigen::VectorXd solution = cholesky_.solve(right);
+    if (!solution.allFinite()) return std::nullopt;
+    // In single precision its longest move still fits, however far the film is from rest.
+    const double length = std::max(solution.cwiseAbs().maxCoeff(), 1e-30);
     for (std::size_t v = 0; v < is_free_.size(); ++v) {
-      step.x[grid_->place(v)] = solution[2 * Eigen::Index(v)];
-      step.y[grid_->place(v)] = solution[2 * Eigen::Index(v) + 1];
+      way_.x()[grid_->place(v)] = float(solution[2 * Eigen::Index(v)] / length);
+      way_.y()[grid_->place(v)] = float(solution[2 * Eigen::Index(v) + 1] / length);
     }
-    return solution.allFinite();
+    return SearchDirection{way_, length};
   }
 
  private:
@@ -87,6 +91,7 @@ class SparseCholeskySolver : public LinearSolver {
 
   const FilmGrid* grid_ = nullptr;
   BlockMatrix H_;
+  GridVector way_;
   std::vector<std::uint8_t> is_free_;
   std::vector<Entry> entries_;
   Eigen::SparseMatrix<double> matrix_;

@@ -79,7 +79,7 @@ class NoSolver : public LinearSolver {
  public:
   void update(const FilmEnergy&, const GridField&, const std::vector<std::uint8_t>&, bool,
               double) override {}
-  bool direction(const GridField&, GridField&) override { return false; }
+  std::optional<SearchDirection> direction(const GridField&) override { return std::nullopt; }
 };
 
 TEST(Dip, GivesUpWhereTooManyStepsFail) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "elastic/film_energy.h"
+#include "elastic/linear_solver.h"
 
 namespace hydrodip::fixtures {
 
@@ -15,6 +16,14 @@ inline VertexVector gradient_by_vertex(const FilmEnergy& energy, const VertexVec
   VertexVector result;
   grid.to_vertices(gradient, result);
   return result;
+}
+
+inline VertexVector by_vertex(const FilmGrid& grid, const SearchDirection& direction) {
+  VertexVector step(grid.vertices());
+  for (std::size_t v = 0; v < step.size(); ++v)
+    step[v] =
+        direction.length * Vec2(direction.way.x[grid.place(v)], direction.way.y[grid.place(v)]);
+  return step;
 }
 
 }  // namespace hydrodip::fixtures

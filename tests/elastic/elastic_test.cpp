@@ -208,22 +208,23 @@ TEST(LinearSolver, BothSolversFindTheMinimum) {
     const auto multigrid = make_multigrid_solver(film.mesh);
     direct->update(energy, grid.field(film.u), film.is_free, true);
     multigrid->update(energy, grid.field(film.u), film.is_free, true);
-    GridField step(grid.layout());
-    EXPECT_TRUE(direct->direction(grid.field(b), step));
-    grid.to_vertices(step, exact);
-    VertexVector iterative(b.size(), Vec2::Zero()), residual = b, way;
+    const auto exact_step = direct->direction(grid.field(b));
+    ASSERT_TRUE(exact_step);
+    exact = fixtures::by_vertex(grid, *exact_step);
+    VertexVector iterative(b.size(), Vec2::Zero()), residual = b;
     int iterations = 0;
     while (norm(residual, film.is_free) > 1e-5 * norm(b, film.is_free)) {
-      ASSERT_TRUE(multigrid->direction(grid.field(residual), step));
+      const auto step = multigrid->direction(grid.field(residual));
+      ASSERT_TRUE(step);
       ASSERT_LT(++iterations, 25);
-      grid.to_vertices(step, way);
+      const VertexVector way = fixtures::by_vertex(grid, *step);
       for (std::size_t v = 0; v < b.size(); ++v) iterative[v] += way[v];
       for (std::size_t v = 0; v < b.size(); ++v) residual[v] = b[v] - times(H, iterative, v);
     }
     double scale = 0, worst = 0;
     for (std::size_t v = 0; v < b.size(); ++v) {
       if (film.is_free[v])
-        EXPECT_LT((times(H, exact, v) - b[v]).norm(), 1e-9);
+        EXPECT_LT((times(H, exact, v) - b[v]).norm(), 1e-5);  // of 1, in single precision
       else
         EXPECT_EQ(exact[v].norm() + iterative[v].norm(), 0);
       scale = std::max(scale, exact[v].norm());

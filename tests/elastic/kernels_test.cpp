@@ -38,6 +38,15 @@ struct StrainedFilm {
   }
 };
 
+GridVector some_way(const FilmGrid& grid) {
+  GridVector way(grid.layout());
+  for (std::size_t v = 0; v < grid.vertices(); ++v) {
+    way.x()[grid.place(v)] = std::sin(float(v));
+    way.y()[grid.place(v)] = std::cos(3 * float(v));
+  }
+  return way;
+}
+
 // Everything that a table computes from one film, one after the other.
 std::vector<double> results_of(const kernels::Table& table) {
   const StrainedFilm film;
@@ -78,6 +87,15 @@ std::vector<double> results_of(const kernels::Table& table) {
   for (const auto& corner : rest)
     for (const auto& component : corner) add(component, n);
   add(area, n);
+
+  const GridVector way = some_way(grid);
+  const std::size_t entries = grid.layout().entries();
+  GridField gone(grid.layout());
+  const kernels::Stride stride = table.go(0, entries, u, way, 0.7, force, gone);
+  results.insert(results.end(), {stride.slope, stride.largest_square});
+  add(gone.x, entries);
+  add(gone.y, entries);
+  results.push_back(table.dot_field(0, entries, force, way));
   return results;
 }
 
@@ -215,6 +233,32 @@ TEST(GridOperator, RowsComeBackAndTheOperatorIsSymmetric) {
   };
   EXPECT_EQ(image(4, 4).x()[A.place(5, 5)], image(5, 5).x()[A.place(4, 4)]);
   EXPECT_EQ(image(16, 3).x()[A.place(15, 4)], image(15, 4).x()[A.place(16, 3)]);
+}
+
+TEST(Kernels, GoAlongAWay) {
+  const StrainedFilm film;
+  const FilmGrid& grid = film.energy.grid();
+  const GridField u = grid.field(film.u);
+  VertexVector gradient(film.u.size());
+  for (std::size_t v = 0; v < gradient.size(); ++v) gradient[v] = Vec2(0.01 * double(v), 1);
+  const GridField force = grid.field(gradient);
+  const GridVector way = some_way(grid);
+  GridField gone(grid.layout());
+  const kernels::Table& table = kernels::best();
+  const kernels::Stride stride = table.go(0, grid.layout().entries(), u, way, 0.7, force, gone);
+  double slope = 0, longest = 0;
+  for (std::size_t v = 0; v < film.u.size(); ++v) {
+    const std::size_t at = grid.place(v);
+    const Vec2 step = 0.7 * Vec2(way.x()[at], way.y()[at]);
+    EXPECT_NEAR(gone.x[at], film.u[v].x() - step.x(), 1e-12);
+    EXPECT_NEAR(gone.y[at], film.u[v].y() - step.y(), 1e-12);
+    slope += gradient[v].dot(step);
+    longest = std::max(longest, step.norm());
+  }
+  EXPECT_NEAR(stride.slope, slope, 1e-9 * double(film.u.size()));
+  EXPECT_NEAR(std::sqrt(stride.largest_square), longest, 1e-12);
+  EXPECT_NEAR(table.dot_field(0, grid.layout().entries(), force, way), slope / 0.7,
+              1e-9 * double(film.u.size()));
 }
 
 }  // namespace
