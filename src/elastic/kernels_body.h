@@ -164,45 +164,62 @@ void scale_and_add(std::size_t begin, std::size_t end, Output a, float scale, In
   }
 }
 
-// Sums of doubles are kept in this many parts.
+// Doubles that are summed apart from each other: as many for all register sizes.
 constexpr std::size_t kParts = 8;
-double sum_of_parts(const double* parts) {
-  return ((parts[0] + parts[4]) + (parts[2] + parts[6])) +
-         ((parts[1] + parts[5]) + (parts[3] + parts[7]));
+constexpr std::size_t kDoubles = KERNELS_WIDTH / 2;  // per register
+typedef double Doubles __attribute__((vector_size(8 * kDoubles)));
+typedef float HalfRegister __attribute__((vector_size(4 * kDoubles)));
+
+inline Doubles load(const double* from) {
+  Doubles r;
+  __builtin_memcpy(&r, from, sizeof r);
+  return r;
+}
+inline Doubles load_doubled(const float* from) {
+  HalfRegister r;
+  __builtin_memcpy(&r, from, sizeof r);
+  return __builtin_convertvector(r, Doubles);
+}
+inline void store(double* to, Doubles r) { __builtin_memcpy(to, &r, sizeof r); }
+
+// Calls body(n, register) for the registers from entry `begin` to `end`; `register` counts those of
+// kParts entries.
+template <typename Body>
+inline void for_parts(std::size_t begin, std::size_t end, const Body& body) {
+  for (std::size_t n = begin; n < end; n += kParts)
+#pragma GCC unroll 4
+    for (std::size_t part = 0; part < kParts / kDoubles; ++part) body(n + part * kDoubles, part);
+}
+
+double sum_of(const Doubles* registers) {
+  double a[kParts];
+  __builtin_memcpy(a, registers, sizeof a);
+  return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
 }
 
 Stride go(std::size_t begin, std::size_t end, ConstField from, Input way, double length,
           ConstField gradient, Field to) {
-  alignas(64) double slope[kParts] = {}, largest[kParts] = {};
-  for (std::size_t n = begin; n < end; n += kParts) {
-    alignas(64) double dx[kParts], dy[kParts];
-#pragma GCC ivdep
-    for (std::size_t k = 0; k < kParts; ++k) {
-      dx[k] = length * double(way.x[n + k]);
-      dy[k] = length * double(way.y[n + k]);
-    }
-#pragma GCC ivdep
-    for (std::size_t k = 0; k < kParts; ++k) {
-      to.x[n + k] = from.x[n + k] - dx[k];
-      to.y[n + k] = from.y[n + k] - dy[k];
-    }
-    for (std::size_t k = 0; k < kParts; ++k) {
-      slope[k] += gradient.x[n + k] * dx[k] + gradient.y[n + k] * dy[k];
-      const double square = dx[k] * dx[k] + dy[k] * dy[k];
-      largest[k] = square > largest[k] ? square : largest[k];
-    }
-  }
-  double most = 0;
-  for (const double square : largest) most = square > most ? square : most;
-  return {sum_of_parts(slope), most};
+  Doubles slope[kParts / kDoubles] = {}, largest[kParts / kDoubles] = {};
+  for_parts(begin, end, [&](std::size_t n, std::size_t part) {
+    const Doubles dx = length * load_doubled(way.x + n), dy = length * load_doubled(way.y + n);
+    store(to.x + n, load(from.x + n) - dx);
+    store(to.y + n, load(from.y + n) - dy);
+    slope[part] += load(gradient.x + n) * dx + load(gradient.y + n) * dy;
+    const Doubles square = dx * dx + dy * dy;
+    largest[part] = square > largest[part] ? square : largest[part];
+  });
+  double squares[kParts], most = 0;
+  __builtin_memcpy(squares, largest, sizeof squares);
+  for (const double square : squares) most = square > most ? square : most;
+  return {sum_of(slope), most};
 }
 
 double dot_field(std::size_t begin, std::size_t end, ConstField a, Input b) {
-  alignas(64) double sum[kParts] = {};
-  for (std::size_t n = begin; n < end; n += kParts)
-    for (std::size_t k = 0; k < kParts; ++k)
-      sum[k] += a.x[n + k] * double(b.x[n + k]) + a.y[n + k] * double(b.y[n + k]);
-  return sum_of_parts(sum);
+  Doubles sum[kParts / kDoubles] = {};
+  for_parts(begin, end, [&](std::size_t n, std::size_t part) {
+    sum[part] += load(a.x + n) * load_doubled(b.x + n) + load(a.y + n) * load_doubled(b.y + n);
+  });
+  return sum_of(sum);
 }
 
 // Where an array over the grid holds the first node of a row.
