@@ -36,6 +36,8 @@ constexpr double kFasterShare = 0.1;
 constexpr double kMaxJump = 2.5;
 // In one step a floating vertex slides by less than the step and this, in cells.
 constexpr double kLongestSlide = 10;
+// Of the film's equilibrium, 1/mm.
+constexpr double kTolerancePerStep2 = 1e-4;
 // So often in a step film that blocks the rest is released.
 constexpr int kMostReleases = 8;
 
@@ -291,6 +293,7 @@ class ContactLineScheme : public Scheme {
     put_back(is_free);
     RelaxationOptions options;
     options.otherwise = &film_.u;
+    options.tolerance_mm = tolerance_mm();
     for (int round = 0;; ++round) {
       const RelaxationResult result = relaxation_.run(is_free, options);
       if (result.blocked.empty() || round == kMostReleases) {
@@ -301,6 +304,12 @@ class ContactLineScheme : public Scheme {
       state_.statistics.iterations += result.iterations;
       release(result.blocked, level, is_free);
     }
+  }
+
+  // The error of long steps grows with their square; what is far below it need not be computed.
+  double tolerance_mm() const {
+    const double step = set_.options.step_mm;
+    return std::max(RelaxationOptions().tolerance_mm, kTolerancePerStep2 * step * step);
   }
 
   // The vertices that are not free have their own film coordinates.

@@ -41,6 +41,7 @@ void average_into(const Image& image, const Span& columns, const Span& rows, std
   for (std::size_t j = 0; j < rows.weights.size(); ++j)
     for (std::size_t i = 0; i < columns.weights.size(); ++i) {
       const std::uint8_t* p = image.pixel(columns.first + int(i), rows.first + int(j));
+      if (p[3] == 0) continue;  // most of a sheet
       const float weight = rows.weights[j] * columns.weights[i] * float(p[3]) / 255.0f;
       for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * decode[p[k]];
       alpha += weight;

@@ -182,17 +182,20 @@ Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
   SrgbColor bare;
   model.look(&none, &bare, 1);
   bare = over_base(bare, base);
+  std::array<std::uint8_t, 4> blank{};
+  store(bare, blank.data());
   for_each_row(inks.height_px, [&](int y) {
     for (int x = 0; x < inks.width_px; ++x) {
-      const std::size_t i = std::size_t(y) * std::size_t(inks.width_px) + std::size_t(x);
-      const Inks laid = from_bytes(inks.pixel(x, y));
-      SrgbColor color = bare;
-      if (laid.density() > 0) {
-        const Inks left = paled(laid, double(area_ratio[i]));
-        model.look(&left, &color, 1);
-        if (!white) color = over_base(color, base);
+      const std::uint8_t* laid = inks.pixel(x, y);
+      if (std::all_of(laid, laid + 4, [](std::uint8_t ink) { return ink == 0; })) {
+        std::copy(blank.begin(), blank.end(), image.pixel(x, y));
+        continue;
       }
-      store(color, image.pixel(x, y));
+      const std::size_t i = std::size_t(y) * std::size_t(inks.width_px) + std::size_t(x);
+      const Inks left = paled(from_bytes(laid), double(area_ratio[i]));
+      SrgbColor color;
+      model.look(&left, &color, 1);
+      store(white ? color : over_base(color, base), image.pixel(x, y));
     }
   });
   return image;

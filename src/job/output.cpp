@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -40,6 +41,9 @@ ReportInk ink_amounts(const InkImage& inks, double limit) {
   float most = 0;
   std::array<std::uint64_t, 4> sum{};
   for (std::size_t i = 0; i < inks.cmyk.size(); i += 4) {
+    std::uint32_t all = 0;
+    std::memcpy(&all, &inks.cmyk[i], sizeof all);
+    if (all == 0) continue;  // most of a sheet
     most = std::max(most, from_bytes(inks.cmyk.data() + i).density());
     for (std::size_t k = 0; k < 4; ++k) sum[k] += inks.cmyk[i + k];
   }
@@ -149,8 +153,9 @@ void write_glb(const std::filesystem::path& path, const JobRecord& record, const
                const SheetRaster& raster) {
   const DippedObject& dipped = record.dipped;
   const int texture_px = record.config.preview_texture_px;
-  write_preview_glb(path, dipped.object(), dipped.film(), shrink_to(film_image, 2 * texture_px),
-                    raster.width_mm, raster.height_mm, base_color(record.config), texture_px);
+  write_preview_glb(path, dipped.object(), *dipped.surface, dipped.film(),
+                    shrink_to(film_image, 2 * texture_px), raster.width_mm, raster.height_mm,
+                    base_color(record.config), texture_px);
 }
 
 }  // namespace

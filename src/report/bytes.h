@@ -12,7 +12,8 @@ class Bytes {
  public:
   void add_u8(std::uint8_t value) { data_.push_back(value); }
   void add_u32(std::uint32_t value) {
-    for (int shift = 0; shift < 32; shift += 8) add_u8(std::uint8_t(value >> shift));
+    data_.insert(data_.end(), {std::uint8_t(value), std::uint8_t(value >> 8U),
+                               std::uint8_t(value >> 16U), std::uint8_t(value >> 24U)});
   }
   void add_f32(float value) { add_u32(std::bit_cast<std::uint32_t>(value)); }
   void add(const std::string& text) { data_.insert(data_.end(), text.begin(), text.end()); }

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/parallel.h"
+
 namespace hydrodip {
 namespace {
 
@@ -59,6 +61,16 @@ double corner_angle(const std::vector<Vec3>& positions, const Triangle& triangle
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+std::vector<std::array<double, 3>> corner_angles(const std::vector<Vec3>& positions,
+                                                 const std::vector<Triangle>& triangles) {
+  std::vector<std::array<double, 3>> angles(triangles.size());
+  parallel_for(triangles.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      for (std::size_t k = 0; k < 3; ++k) angles[t][k] = corner_angle(positions, triangles[t], k);
+  });
+  return angles;
+}
+
 std::vector<Vec3> face_normals(const std::vector<Vec3>& positions,
                                const std::vector<Triangle>& triangles) {
   std::vector<Vec3> normals(triangles.size());
@@ -81,25 +93,28 @@ std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
   const std::vector<int> welded = weld(positions, count);
   const std::vector<std::vector<Corner>> around = corners_around(triangles, welded, count);
   const std::vector<Vec3> flat = face_normals(positions, triangles);
+  const std::vector<std::array<double, 3>> angles = corner_angles(positions, triangles);
   const double crease_cosine = std::cos(crease_deg * std::numbers::pi / 180);
 
   std::vector<CornerNormals> result(triangles.size());
-  for (const std::vector<Corner>& fan : around) {
-    for (const Corner& self : fan) {
-      const Vec3& own = flat[self.triangle];
-      Vec3 sum = Vec3::Zero();
-      if (fan.size() <= kMostFacesAround) {
-        for (const Corner& other : fan) {
-          const Vec3& normal = flat[other.triangle];
-          if (own.dot(normal) < crease_cosine) continue;
-          sum += corner_angle(positions, triangles[other.triangle], other.corner) * normal;
-        }
+  const auto smooth = [&](const std::vector<Corner>& fan, const Corner& self) {
+    const Vec3& own = flat[self.triangle];
+    Vec3 sum = Vec3::Zero();
+    if (fan.size() <= kMostFacesAround) {
+      for (const Corner& other : fan) {
+        const Vec3& normal = flat[other.triangle];
+        if (own.dot(normal) < crease_cosine) continue;
+        sum += angles[other.triangle][other.corner] * normal;
       }
-      if (sum.norm() < 1e-9) sum = own;
-      if (sum.norm() < 1e-9) sum = Vec3::UnitZ();
-      result[self.triangle][self.corner] = sum.normalized();
     }
-  }
+    if (sum.norm() < 1e-9) sum = own;
+    if (sum.norm() < 1e-9) sum = Vec3::UnitZ();
+    result[self.triangle][self.corner] = sum.normalized();
+  };
+  parallel_for(around.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n)
+      for (const Corner& self : around[n]) smooth(around[n], self);
+  });
   return result;
 }
 

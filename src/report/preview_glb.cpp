@@ -20,6 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Vec3f = std::array<float, 3>;
+using ImageFile = std::vector<std::uint8_t>;
 
 // So that film and object do not flicker through each other.
 constexpr double kFilmOffsetMm = 0.05;
@@ -64,15 +65,11 @@ std::vector<Vec3> outward_normals(const DippedFilm& film) {
 
 // How far each film vertex has to be lifted so that the object, which bulges between the film's
 // vertices, stays below.
-std::vector<double> lifts(const Object& object, const DippedFilm& film,
+std::vector<double> lifts(const Surface& surface, const DippedFilm& film,
                           const std::vector<Vec3>& normals) {
   constexpr std::array<std::array<double, 3>, 4> kPlaces = {
       {{0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {1.0 / 3, 1.0 / 3, 1.0 / 3}}};
-  const Surface surface(object.positions, object.triangles);
-  std::vector<double> lift(film.position.size(), kFilmOffsetMm);
-  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
-    if (!film.lies_on_object(t)) continue;
-    const Triangle& corners = film.mesh.triangles[t];
+  const auto bulge_over = [&](const Triangle& corners) {
     double bulge = 0;
     for (const auto& weights : kPlaces) {
       Vec3 place = Vec3::Zero(), outward = Vec3::Zero();
@@ -83,9 +80,18 @@ std::vector<double> lifts(const Object& object, const DippedFilm& film,
       const auto hit = surface.first_hit(place, outward, 0, kMostOffsetMm);
       if (hit) bulge = std::max(bulge, hit->t * outward.norm());
     }
-    for (const std::int32_t v : corners)
-      lift[std::size_t(v)] = std::max(lift[std::size_t(v)], bulge + kFilmOffsetMm);
-  }
+    return bulge;
+  };
+  const std::vector<Triangle>& triangles = film.mesh.triangles;
+  std::vector<double> bulge(triangles.size(), 0.0);
+  parallel_for(triangles.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      if (film.lies_on_object(t)) bulge[t] = bulge_over(triangles[t]);
+  });
+  std::vector<double> lift(film.position.size(), kFilmOffsetMm);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (const std::int32_t v : triangles[t])
+      lift[std::size_t(v)] = std::max(lift[std::size_t(v)], bulge[t] + kFilmOffsetMm);
   return lift;
 }
 
@@ -160,10 +166,10 @@ Image film_texture(const Image& image, const Crop& crop, const LinearColor& base
   return texture;
 }
 
-GlbMesh film_mesh(const Object& object, const DippedFilm& film, const Image& image,
+GlbMesh film_mesh(const Surface& surface, const DippedFilm& film, const Image& image,
                   const Crop& crop, double width_mm, double height_mm) {
   const std::vector<Vec3> normals = outward_normals(film);
-  const std::vector<double> lift = lifts(object, film, normals);
+  const std::vector<double> lift = lifts(surface, film, normals);
   std::vector<std::int64_t> number(film.position.size(), -1);
   GlbMesh mesh;
   const auto vertex = [&](std::size_t v) {
@@ -243,23 +249,42 @@ int gltf_wrap(Wrap wrap) {
   return wrap == Wrap::kMirror ? 33648 : kGlbClampToEdge;
 }
 
+bool is_textured(const Object& object, const Material& material) {
+  return material.texture >= 0 && !object.uvs.empty();
+}
+
+// JPEG files of the materials' textures; empty for materials without.
+std::vector<ImageFile> wanted_pictures(const Object& object, const LinearColor& base,
+                                       int texture_px) {
+  std::vector<ImageFile> pictures(object.materials.size());
+  parallel_for(pictures.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const Material& m = object.materials[n];
+      if (!is_textured(object, m)) continue;
+      const Image& texture = *object.textures[std::size_t(m.texture)];
+      pictures[n] =
+          encode_jpeg(painted(shrink_to(texture, texture_px), m.base_color, base), kJpegQuality);
+    }
+  });
+  return pictures;
+}
+
 // The model's own materials; the object's vertex colours, if any, multiply them.
 std::vector<int> add_wanted_materials(GlbWriter& glb, const Object& object, const LinearColor& base,
-                                      int texture_px) {
+                                      const std::vector<ImageFile>& pictures) {
   std::vector<int> numbers;
-  for (const Material& m : object.materials) {
+  for (std::size_t n = 0; n < pictures.size(); ++n) {
+    const Material& m = object.materials[n];
     const std::string name = "wanted " + m.name;
-    if (m.texture < 0 || object.uvs.empty()) {
+    if (!is_textured(object, m)) {
       const LinearColor white{1, 1, 1, 1};
       numbers.push_back(glb.add_material(
           plain(name, object.colors.empty() ? tinted_over(m.base_color, white, base) : white)));
       continue;
     }
-    const Image picture = painted(shrink_to(*object.textures[std::size_t(m.texture)], texture_px),
-                                  m.base_color, base);
     Json material = matte(name);
-    const int texture = glb.add_texture(encode_jpeg(picture, kJpegQuality), "image/jpeg", name,
-                                        gltf_wrap(m.wrap_u), gltf_wrap(m.wrap_v));
+    const int texture =
+        glb.add_texture(pictures[n], "image/jpeg", name, gltf_wrap(m.wrap_u), gltf_wrap(m.wrap_v));
     material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
     numbers.push_back(glb.add_material(material));
   }
@@ -272,7 +297,7 @@ void add_colors(GlbMesh& mesh, const ShownObject& shown, const Object& object,
   mesh.colors.resize(shown.vertices.size());
   for (const ShownGroup& group : shown.groups) {
     const Material& material = object.materials[std::size_t(group.material)];
-    const bool textured = material.texture >= 0 && !object.uvs.empty();
+    const bool textured = is_textured(object, material);
     for (std::size_t i = group.begin; i < group.begin + group.count; ++i) {
       const auto v = std::size_t(shown.indices[i]);
       const auto& c = shown.vertices[v].color;
@@ -285,9 +310,9 @@ void add_colors(GlbMesh& mesh, const ShownObject& shown, const Object& object,
 
 // The object: bare as predicted, in its own colours as wanted. Vertex colours cannot be switched
 // off, so that an object that has them comes twice.
-void add_object(GlbWriter& glb, const Object& object, const LinearColor& base, int bare,
-                int nothing, int texture_px) {
-  const ShownObject shown = shown_object(object, std::numeric_limits<std::size_t>::max());
+void add_object(GlbWriter& glb, const Object& object, const ShownObject& shown,
+                const std::vector<ImageFile>& pictures, const LinearColor& base, int bare,
+                int nothing) {
   GlbMesh mesh = object_vertices(shown, object);
   mesh.indices = shown.indices;
   if (mesh.indices.empty()) return;
@@ -296,7 +321,7 @@ void add_object(GlbWriter& glb, const Object& object, const LinearColor& base, i
     glb.add_mesh("object", mesh, {{0, mesh.indices.size(), bare, bare}});
     return;
   }
-  const std::vector<int> wanted = add_wanted_materials(glb, object, base, texture_px);
+  const std::vector<int> wanted = add_wanted_materials(glb, object, base, pictures);
   const bool twice = !object.colors.empty();
   std::vector<GlbPart> parts, colored;
   for (const ShownGroup& group : shown.groups) {
@@ -310,24 +335,38 @@ void add_object(GlbWriter& glb, const Object& object, const LinearColor& base, i
   glb.add_mesh("wanted", mesh, colored);
 }
 
-void add_film(GlbWriter& glb, const Object& object, const DippedFilm& film, const Image& image,
-              double width_mm, double height_mm, const LinearColor& base, int nothing,
-              int texture_px) {
-  const Crop crop = crop_to_film(film, image, width_mm, height_mm, texture_px);
-  if (crop.width == 0) return;
+void add_film(GlbWriter& glb, const GlbMesh& mesh, const ImageFile& picture, int nothing) {
+  if (picture.empty()) return;
   Json printed = matte("film");
-  const int texture =
-      glb.add_texture(encode_png(film_texture(image, crop, base)), "image/png", "film image");
+  const int texture = glb.add_texture(picture, "image/png", "film image");
   printed["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
-  const GlbMesh mesh = film_mesh(object, film, image, crop, width_mm, height_mm);
   glb.add_mesh("film", mesh, {{0, mesh.indices.size(), glb.add_material(printed), nothing}});
 }
 
 }  // namespace
 
 void write_preview_glb(const std::filesystem::path& path, const Object& object,
-                       const DippedFilm& film, const Image& film_image, double sheet_width_mm,
-                       double sheet_height_mm, const LinearColor& base, int texture_px) {
+                       const Surface& surface, const DippedFilm& film, const Image& film_image,
+                       double sheet_width_mm, double sheet_height_mm, const LinearColor& base,
+                       int texture_px) {
+  const Crop crop = crop_to_film(film, film_image, sheet_width_mm, sheet_height_mm, texture_px);
+  const bool has_film = crop.width > 0;
+  ShownObject shown;
+  std::vector<ImageFile> pictures;
+  GlbMesh laid;
+  ImageFile film_picture;
+  parallel_do({
+      [&] { shown = shown_object(object, std::numeric_limits<std::size_t>::max()); },
+      [&] { pictures = wanted_pictures(object, base, texture_px); },
+      [&] {
+        if (has_film)
+          laid = film_mesh(surface, film, film_image, crop, sheet_width_mm, sheet_height_mm);
+      },
+      [&] {
+        if (has_film) film_picture = encode_png(film_texture(film_image, crop, base));
+      },
+  });
+
   GlbWriter glb;
   const int bare = glb.add_material(plain("object", base));
   int nothing = bare;
@@ -335,9 +374,8 @@ void write_preview_glb(const std::filesystem::path& path, const Object& object,
     glb.add_variants();
     nothing = glb.add_material(hidden());
   }
-  add_object(glb, object, base, bare, nothing, texture_px);
-  add_film(glb, object, film, film_image, sheet_width_mm, sheet_height_mm, base, nothing,
-           texture_px);
+  add_object(glb, object, shown, pictures, base, bare, nothing);
+  add_film(glb, laid, film_picture, nothing);
   const std::vector<std::uint8_t> bytes = glb.finish();
   write_file(path, bytes.data(), bytes.size());
 }

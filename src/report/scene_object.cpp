@@ -1,8 +1,9 @@
 #include "report/scene_object.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <map>
+#include <unordered_map>
 
 #include "report/normals.h"
 
@@ -47,6 +48,24 @@ ShownVertex corner(const Object& object, const std::vector<Vec3>& positions,
   return vertex;
 }
 
+struct Hash {
+  std::size_t operator()(const ShownVertex& vertex) const {
+    std::uint64_t hash = 0;
+    const auto add = [&](const auto& values) {
+      for (const float value : values) {
+        // Plus 0: -0 equals 0.
+        hash = (hash ^ std::bit_cast<std::uint32_t>(value + 0.0F)) * 0x9E3779B97F4A7C15U;
+        hash ^= hash >> 32U;
+      }
+    };
+    add(vertex.position);
+    add(vertex.normal);
+    add(vertex.uv);
+    add(vertex.color);
+    return hash;
+  }
+};
+
 }  // namespace
 
 ShownObject shown_object(const Object& object, std::size_t most_triangles) {
@@ -64,7 +83,8 @@ ShownObject shown_object(const Object& object, std::size_t most_triangles) {
   });
 
   const auto normals = corner_normals(object.positions, object.triangles, kCrease_deg);
-  std::map<ShownVertex, std::uint32_t> known;
+  std::unordered_map<ShownVertex, std::uint32_t, Hash> known;
+  known.reserve(triangles.size());
   for (const std::size_t t : triangles) {
     const int material = object.material_of[t];
     if (shown.groups.empty() || shown.groups.back().material != material)

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <tuple>
 #include <vector>
 
 #include "object/object.h"
@@ -16,10 +15,7 @@ struct ShownVertex {
   std::array<float, 2> uv{};        // 0 without UVs
   std::array<float, 4> color{};     // linear, white without vertex colours
 
-  bool operator<(const ShownVertex& other) const {
-    return std::tie(position, normal, uv, color) <
-           std::tie(other.position, other.normal, other.uv, other.color);
-  }
+  bool operator==(const ShownVertex& other) const = default;
 };
 
 // Triangles of one material, as indices[begin .. begin + count).

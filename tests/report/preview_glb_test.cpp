@@ -86,9 +86,12 @@ std::vector<float> floats(const Glb& glb, int number) {
   return result;
 }
 
+Surface surface_of(const Object& object) { return {object.positions, object.triangles}; }
+
 Glb write_and_parse(const DippedFilm& film, const Image& sheet) {
   const ScratchFolder folder;
-  write_preview_glb(folder / "preview.glb", two_coloured_ball(), film, sheet, 80, 100,
+  const Object ball = two_coloured_ball();
+  write_preview_glb(folder / "preview.glb", ball, surface_of(ball), film, sheet, 80, 100,
                     {1, 1, 1, 1});
   return parse(read_file(folder / "preview.glb"));
 }
@@ -216,8 +219,8 @@ TEST(PreviewGlb, VertexColoursComeOnAMeshOfTheirOwn) {
   for (CornerColor& corners : ball.colors) corners.fill({0, 1, 0, 0.5f});
   for (Material& material : ball.materials) material.base_color = {1, 1, 1, 1};
   const ScratchFolder folder;
-  write_preview_glb(folder / "c.glb", ball, film_under_ball(), gradient_sheet(), 80, 100,
-                    {1, 1, 1, 1});
+  write_preview_glb(folder / "c.glb", ball, surface_of(ball), film_under_ball(), gradient_sheet(),
+                    80, 100, {1, 1, 1, 1});
   const Glb glb = parse(read_file(folder / "c.glb"));
   ASSERT_EQ(glb.json["meshes"].size(), 3u);
   EXPECT_FALSE(primitive(glb, 0)["attributes"].contains("COLOR_0"));
@@ -234,8 +237,8 @@ TEST(PreviewGlb, APlainModelHasNoVariants) {
   ball.materials.resize(1);
   ball.material_of.assign(ball.triangles.size(), 0);
   const ScratchFolder folder;
-  write_preview_glb(folder / "p.glb", ball, film_under_ball(), gradient_sheet(), 80, 100,
-                    {1, 1, 1, 1});
+  write_preview_glb(folder / "p.glb", ball, surface_of(ball), film_under_ball(), gradient_sheet(),
+                    80, 100, {1, 1, 1, 1});
   EXPECT_FALSE(parse(read_file(folder / "p.glb")).json.contains("extensionsUsed"));
 }
 
