@@ -58,7 +58,7 @@ void check_rim(const FilmMesh& film, const Surface& surface, double depth, RunCo
   for (std::size_t v = 0; v < film.u.size(); ++v) {
     if (!film.on_rim[v]) continue;
     const Vec3 below(film.u[v].x(), film.u[v].y(), -1);
-    if (!surface.first_hit(below, Vec3(0, 0, 1), 0, depth + 1)) continue;
+    if (!surface.is_hit(below, Vec3(0, 0, 1), 0, depth + 1)) continue;
     context.warn(
         "the object touches the film's taped rim, where the film cannot follow: use a larger film, "
         "a smaller object or another pose");

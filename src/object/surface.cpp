@@ -90,6 +90,22 @@ void build(RTCDevice device, RTCScene scene, const std::vector<Vec3>& positions,
   rtcCommitScene(scene);
 }
 
+RTCRay ray_of(const Vec3& origin, const Vec3& direction, double t_min, double t_max) {
+  RTCRay ray{};
+  // Embree wants t >= 0: start at t_min and shift.
+  const Vec3 start = origin + t_min * direction;
+  ray.org_x = float(start.x());
+  ray.org_y = float(start.y());
+  ray.org_z = float(start.z());
+  ray.dir_x = float(direction.x());
+  ray.dir_y = float(direction.y());
+  ray.dir_z = float(direction.z());
+  ray.tnear = 0;
+  ray.tfar = float(t_max - t_min);
+  ray.mask = ~0u;
+  return ray;
+}
+
 }  // namespace
 
 Surface::Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles)
@@ -116,17 +132,7 @@ Surface& Surface::operator=(Surface&&) noexcept = default;
 std::optional<SurfaceHit> Surface::first_hit(const Vec3& origin, const Vec3& direction,
                                              double t_min, double t_max) const {
   RTCRayHit ray{};
-  // Embree wants t >= 0: start at t_min and shift.
-  const Vec3 start = origin + t_min * direction;
-  ray.ray.org_x = float(start.x());
-  ray.ray.org_y = float(start.y());
-  ray.ray.org_z = float(start.z());
-  ray.ray.dir_x = float(direction.x());
-  ray.ray.dir_y = float(direction.y());
-  ray.ray.dir_z = float(direction.z());
-  ray.ray.tnear = 0;
-  ray.ray.tfar = float(t_max - t_min);
-  ray.ray.mask = ~0u;
+  ray.ray = ray_of(origin, direction, t_min, t_max);
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -155,6 +161,14 @@ std::optional<SurfaceHit> Surface::first_hit(const Vec3& origin, const Vec3& dir
   hit.u = std::clamp(hit.u, 0.0, 1.0);
   hit.v = std::clamp(hit.v, 0.0, 1.0 - hit.u);
   return hit;
+}
+
+bool Surface::is_hit(const Vec3& origin, const Vec3& direction, double t_min, double t_max) const {
+  RTCRay ray = ray_of(origin, direction, t_min, t_max);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(impl_->scene, &context, &ray);
+  return ray.tfar < 0;  // how Embree says so
 }
 
 std::optional<SurfaceHit> Surface::closest_point(const Vec3& point, double max_distance) const {

@@ -30,6 +30,9 @@ class Surface {
   std::optional<SurfaceHit> first_hit(const Vec3& origin, const Vec3& direction, double t_min,
                                       double t_max) const;
 
+  // Whether there is such a hit; found sooner than which is the first.
+  bool is_hit(const Vec3& origin, const Vec3& direction, double t_min, double t_max) const;
+
   // Closest point within max_distance; SurfaceHit::t is its distance.
   std::optional<SurfaceHit> closest_point(const Vec3& point, double max_distance) const;
 

@@ -176,7 +176,7 @@ class Renderer {
   }
 
   bool blocked(const Vec3& origin, const Vec3& direction) const {
-    return studio_.surface.first_hit(origin, direction, 0, 2 * extent_).has_value();
+    return studio_.surface.is_hit(origin, direction, 0, 2 * extent_);
   }
 
   void trace_centres() {

@@ -112,7 +112,7 @@ std::vector<std::vector<float>> clarity(const std::vector<Patch>& patches,
         const double cosine = patches[k].normal.dot(views[i].direction);
         if (cosine <= 0.05) continue;
         const Vec3 origin = patches[k].position + 0.004 * extent * patches[k].normal;
-        if (surface.first_hit(origin, views[i].direction, 0, 4 * extent)) continue;
+        if (surface.is_hit(origin, views[i].direction, 0, 4 * extent)) continue;
         result[i][k] = float(std::min(1.0, cosine / 0.7));
       }
     }
