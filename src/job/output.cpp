@@ -60,16 +60,6 @@ std::string picture_caption(const JobRecord& record) {
   return headline(concern_of(findings(make_report(record)))) + ": " + short_verdict(coverage);
 }
 
-Image draw_preview(const JobRecord& record, const Appearance& shown, const std::string& caption) {
-  const DippedObject& dipped = record.dipped;
-  PreviewOptions options;
-  options.width_px = record.config.preview_width_px;
-  options.caption = caption;
-  options.base = base_color(record.config);
-  return render_preview(dipped.object(), *dipped.surface, dipped.film(), shown, options,
-                        record.context);
-}
-
 // Grey where a colour comes out as wanted, from yellow to dark red where it cannot.
 LinearColor reach_color(float difference) {
   constexpr float kMost = 20;
@@ -79,30 +69,45 @@ LinearColor reach_color(float difference) {
 }
 
 // What comes out beside how far it is from what was wanted.
-Image draw_reach(const JobRecord& record, const Appearance& shown, const SheetRaster& raster) {
-  const DippedObject& dipped = record.dipped;
-  const Reach& reach = record.ink->reach;
-  Appearance pair;
-  pair.wanted = shown.predicted;
-  pair.predicted = [&](const SurfacePoint&, const Vec3& position, const Vec3& normal) {
-    const auto u = dipped.map->to_film(position, normal);
+PreviewPair reach_pair(const JobRecord& record, const Appearance& shown,
+                       const SheetRaster& raster) {
+  PreviewPair pair;
+  pair.shown.wanted = shown.predicted;
+  pair.shown.predicted = [&](const SurfacePoint&, const Vec3& position, const Vec3& normal) {
+    const auto u = record.dipped.map->to_film(position, normal);
     if (!u) return base_color(record.config);
     const Vec2 pixel = raster.to_pixel(*u);
     const int x = std::clamp(int(pixel.x()), 0, raster.width_px() - 1);
     const int y = std::clamp(int(pixel.y()), 0, raster.height_px() - 1);
     return reach_color(
-        reach.difference[std::size_t(y) * std::size_t(raster.width_px()) + std::size_t(x)]);
+        record.ink->reach
+            .difference[std::size_t(y) * std::size_t(raster.width_px()) + std::size_t(x)]);
   };
-  PreviewOptions options;
-  options.width_px = record.config.preview_width_px;
-  options.titles = {"predicted", "out of reach: yellow, red"};
-  options.base = base_color(record.config);
-  options.caption = fmt::format(
+  pair.titles = {"predicted", "out of reach: yellow, red"};
+  pair.caption = fmt::format(
       "{:.1f} % of the covered surface cannot have its colour; there it is off by {:.1f} "
       "(CIEDE2000)",
-      100 * reach.out_of_reach_share(), reach.mean_beyond);
-  return render_preview(dipped.object(), *dipped.surface, dipped.film(), pair, options,
-                        record.context);
+      100 * record.ink->reach.out_of_reach_share(), record.ink->reach.mean_beyond);
+  return pair;
+}
+
+// preview.png, whose bytes are returned, and gamut.png (empty: none), which shows the same views.
+std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
+                                      const std::filesystem::path& gamut_png,
+                                      const JobRecord& record, const Appearance& shown,
+                                      const SheetRaster& raster, const std::string& caption_start) {
+  const DippedObject& dipped = record.dipped;
+  PreviewOptions options;
+  options.width_px = record.config.preview_width_px;
+  options.base = base_color(record.config);
+  std::vector<PreviewPair> pairs(1);
+  pairs[0].shown = shown;
+  pairs[0].caption = caption_start + picture_caption(record);
+  if (!gamut_png.empty()) pairs.push_back(reach_pair(record, shown, raster));
+  const std::vector<Image> pictures = render_previews(
+      dipped.object(), *dipped.surface, dipped.film(), pairs, options, record.context);
+  if (!gamut_png.empty()) write_picture(gamut_png, pictures[1]);
+  return write_picture(preview_png, pictures[0]);
 }
 
 // How far each colour is from what was wanted, where there is film with ink.
@@ -176,13 +181,13 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record, const Ima
     add("maps.png", [&](const auto& path) {
       previews.pictures.maps_png = write_picture(path, draw_maps(record));
     });
-    add("preview.png", [&](const auto& path) {
+    const std::filesystem::path preview_png = folder.path("preview.png");
+    const std::filesystem::path gamut_png =
+        record.ink != nullptr ? folder.path("gamut.png") : std::filesystem::path();
+    tasks.emplace(tasks.begin(), [&, preview_png, gamut_png] {
       previews.pictures.preview_png =
-          write_picture(path, draw_preview(record, shown, caption_start + picture_caption(record)));
+          write_pairs(preview_png, gamut_png, record, shown, raster, caption_start);
     });
-    if (record.ink != nullptr)
-      add("gamut.png",
-          [&](const auto& path) { write_picture(path, draw_reach(record, shown, raster)); });
   }
   add("preview.glb", [&](const auto& path) { write_glb(path, record, film_image, raster); });
   add("film.ply", [&](const auto& path) { write_film_ply(path, dipped.film()); });

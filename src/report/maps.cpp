@@ -242,10 +242,9 @@ ViewPair render(const MapScene& scene, const Surface& surface, const View& view,
   const double hatch_mm =
       kHatch * layout.unit * mm_per_px(scene.object, view.camera, layout.cell_width);
   const Appearance appearance = map_appearance(scene, view.camera, hatch_mm);
-  const Studio studio{
-      scene.object, surface, scene.normals, appearance, std::clamp(options.samples_per_axis, 1, 8),
-      kFlatness};
-  return render_view(studio, view.camera, layout.cell_width, view.height_px, context);
+  const Studio studio{scene.object, surface, scene.normals,
+                      std::clamp(options.samples_per_axis, 1, 8), kFlatness};
+  return LitView(studio, view.camera, layout.cell_width, view.height_px, context).show(appearance);
 }
 
 bool some_stays_dry(const Object& object, double depth_mm) {

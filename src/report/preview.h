@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "base/context.h"
 #include "film/film.h"
@@ -14,17 +15,22 @@ namespace hydrodip {
 struct PreviewOptions {
   int width_px = 1600;
   int samples_per_axis = 3;  // squared per pixel, where neighbouring pixels differ
-  std::string caption;       // one line under the picture, e.g. the verdict
   LinearColor base{1, 1, 1, 1};
-  std::array<std::string, 2> titles = {"wanted", "predicted"};
 };
 
-// A ray-cast picture: wanted beside predicted, from the two most telling directions (those that see
-// most of the film-covered area and, second, most of what the first does not see), soft light,
-// neutral ground. `predicted` may be absent (no image): then predicted shows the bare object.
-Image render_preview(const Object& object, const Surface& surface, const DippedFilm& film,
-                     const Appearance& appearance, const PreviewOptions& options,
-                     RunContext& context);
+// What one picture shows side by side.
+struct PreviewPair {
+  Appearance shown;  // what is absent is the bare object
+  std::array<std::string, 2> titles = {"wanted", "predicted"};
+  std::string caption;  // one line under the picture, e.g. the verdict
+};
+
+// Ray-cast pictures, one for each pair: wanted beside predicted, from the two most telling
+// directions (those that see most of the film-covered area and, second, most of what the first does
+// not see), soft light, neutral ground.
+std::vector<Image> render_previews(const Object& object, const Surface& surface,
+                                   const DippedFilm& film, const std::vector<PreviewPair>& pairs,
+                                   const PreviewOptions& options, RunContext& context);
 
 // Binary glTF 2.0, y up, metres, the side that met the film (-z) facing the viewer (+z in glTF):
 // the object in its base colour, and over it the film that lies on it, textured with `film_image`

@@ -89,9 +89,10 @@ std::vector<Vec3> turned_to(const Vec3& axis, std::vector<Vec3> rays) {
   return rays;
 }
 
-class Renderer {
+// What is seen in every pixel, and the light there.
+class Stage {
  public:
-  Renderer(const Studio& studio, const Camera& camera, int width, int height, RunContext& context)
+  Stage(const Studio& studio, const Camera& camera, int width, int height, RunContext& context)
       : studio_(studio), camera_(camera), width_(width), height_(height), context_(context) {
     const Box3 box = studio.object.bounds();
     extent_ = box.empty() ? 1 : std::max(1e-9, box.size().norm());
@@ -101,19 +102,21 @@ class Renderer {
     lamp_rays_ = turned_to(lamp_, cone_rays(kPhases * kLampRays, kLampRadius));
     ground_sky_rays_ = turned_to(ground_normal_, hemisphere_rays(kPhases * kGroundRays));
     ground_lamp_rays_ = turned_to(lamp_, cone_rays(kPhases * kGroundRays, kLampRadius));
-  }
-
-  ViewPair run() {
     trace_centres();
     cast_light_rays();
     smooth_light();
     shadow_ground();
-    shade_centres();
-    refine_edges();
-    return {picture(&Shade::wanted), picture(&Shade::predicted)};
   }
 
- private:
+  const Studio& studio() const { return studio_; }
+  const Camera& camera() const { return camera_; }
+  const Sample& centre(int x, int y) const { return centre_[at(x, y)]; }
+  const Light& light(int x, int y) const { return light_[at(x, y)]; }
+  const Vec3& ground_normal() const { return ground_normal_; }
+  const Vec3& lamp() const { return lamp_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+
   std::size_t count() const { return std::size_t(width_) * std::size_t(height_); }
   std::size_t at(int x, int y) const {
     return std::size_t(y) * std::size_t(width_) + std::size_t(x);
@@ -124,20 +127,6 @@ class Renderer {
       context_.check_cancelled();
       for (std::size_t y = begin; y < end; ++y) row(int(y));
     });
-  }
-
-  // The ground tilts a little towards the eye, so that it shows, and touches the object.
-  void place_ground() {
-    constexpr double kTilt = 14 * std::numbers::pi / 180;
-    ground_normal_ = std::cos(kTilt) * camera_.up + std::sin(kTilt) * camera_.back;
-    ground_height_ = 1e300;
-    for (const Vec3& p : studio_.object.positions) {
-      ground_height_ = std::min(ground_height_, p.dot(ground_normal_));
-    }
-  }
-
-  Vec3 ray(double x_px, double y_px) const {
-    return camera_.ray(2 * x_px / width_ - 1, 1 - 2 * y_px / height_).normalized();
   }
 
   Sample trace(double x_px, double y_px) const {
@@ -157,6 +146,56 @@ class Renderer {
     const Vec3 n = normal_between(studio_.normals[std::size_t(s.triangle)], s.u, s.v);
     if (n.isZero()) return s.flat;
     return n.dot(s.flat) < 0 ? Vec3(-n) : n;
+  }
+
+  // The light of the nearest pixel centre that shows the surface of this sample.
+  Light light_near(const Sample& s, int x, int y) const {
+    Light best;
+    double nearest = 1e300;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
+        const Sample& other = centre_[at(x + dx, y + dy)];
+        if (other.triangle < 0) continue;
+        const double apart = std::abs(other.depth - s.depth) + 1e-5 * extent_ * (dx * dx + dy * dy);
+        if (apart < nearest) {
+          nearest = apart;
+          best = light_[at(x + dx, y + dy)];
+        }
+      }
+    }
+    return best;
+  }
+
+  Light ground_at(double x_px, double y_px) const {
+    const double x = x_px / kGroundScale;
+    const double y = y_px / kGroundScale;
+    const int x0 = std::clamp(int(x), 0, coarse_width_ - 2);
+    const int y0 = std::clamp(int(y), 0, coarse_height_ - 2);
+    const double fx = x - x0;
+    const double fy = y - y0;
+    const Light* row = ground_.data() + std::size_t(y0) * std::size_t(coarse_width_) + x0;
+    const Light* next = row + coarse_width_;
+    const auto mix = [&](double Light::*part) {
+      return (1 - fy) * ((1 - fx) * row[0].*part + fx * row[1].*part) +
+             fy * ((1 - fx) * next[0].*part + fx * next[1].*part);
+    };
+    return {mix(&Light::sky), mix(&Light::lamp)};
+  }
+
+ private:
+  // The ground tilts a little towards the eye, so that it shows, and touches the object.
+  void place_ground() {
+    constexpr double kTilt = 14 * std::numbers::pi / 180;
+    ground_normal_ = std::cos(kTilt) * camera_.up + std::sin(kTilt) * camera_.back;
+    ground_height_ = 1e300;
+    for (const Vec3& p : studio_.object.positions) {
+      ground_height_ = std::min(ground_height_, p.dot(ground_normal_));
+    }
+  }
+
+  Vec3 ray(double x_px, double y_px) const {
+    return camera_.ray(2 * x_px / width_ - 1, 1 - 2 * y_px / height_).normalized();
   }
 
   // A point on the curved surface that the triangles stand for: shadow rays from there do not
@@ -303,147 +342,8 @@ class Renderer {
     return sum;
   }
 
-  Light ground_at(double x_px, double y_px) const {
-    const double x = x_px / kGroundScale;
-    const double y = y_px / kGroundScale;
-    const int x0 = std::clamp(int(x), 0, coarse_width_ - 2);
-    const int y0 = std::clamp(int(y), 0, coarse_height_ - 2);
-    const double fx = x - x0;
-    const double fy = y - y0;
-    const Light* row = ground_.data() + std::size_t(y0) * std::size_t(coarse_width_) + x0;
-    const Light* next = row + coarse_width_;
-    const auto mix = [&](double Light::*part) {
-      return (1 - fy) * ((1 - fx) * row[0].*part + fx * row[1].*part) +
-             fy * ((1 - fx) * next[0].*part + fx * next[1].*part);
-    };
-    return {mix(&Light::sky), mix(&Light::lamp)};
-  }
-
-  // A pale grey sweep, lighter in the middle, with the object's shadow on it.
-  Shade backdrop(double x_px, double y_px) const {
-    const double x = (x_px - 0.5 * width_) / width_;
-    const double y = (y_px - 0.45 * height_) / height_;
-    const double glow = std::exp(-2.2 * (x * x + y * y));
-    const Light light = ground_at(x_px, y_px);
-    const double shadow = 0.62 * light.sky + 0.38 * (0.35 + 0.65 * light.lamp);
-    const double level = (0.50 + 0.27 * glow) * (0.25 + 0.75 * shadow);
-    Shade shade;
-    shade.wanted = {float(level * 0.985), float(level * 0.995), float(level * 1.01)};
-    shade.predicted = shade.wanted;
-    return shade;
-  }
-
-  Shade shade(const Sample& s, const Light& light) const {
-    const Vec3 n = smooth_normal(s);
-    const double sky = kSkyBelow + (kSkyAbove - kSkyBelow) * (0.5 + 0.5 * n.dot(ground_normal_));
-    const double lit_level = sky * (0.12 + 0.88 * light.sky) +
-                             kLamp * std::max(0.0, n.dot(lamp_)) * light.lamp +
-                             kFill * std::max(0.0, n.dot(camera_.back));
-    const double level = lit_level + studio_.flatness * (1 - lit_level);
-    const Vec3 p = position(s);
-    const Vec3 normal = face_normal(studio_.object, s.triangle);
-    const SurfacePoint point{s.triangle, s.u, s.v};
-    const auto lit = [&](const LinearColor& c) {
-      const float f = float(level);
-      return std::array<float, 3>{f * c.r, f * c.g, f * c.b};
-    };
-    return {lit(studio_.appearance.wanted(point, p, normal)),
-            lit(studio_.appearance.predicted(point, p, normal))};
-  }
-
-  void shade_centres() {
-    shade_.resize(count());
-    for_rows([&](int y) {
-      for (int x = 0; x < width_; ++x) {
-        const Sample& s = centre_[at(x, y)];
-        shade_[at(x, y)] = s.triangle < 0 ? backdrop(x + 0.5, y + 0.5) : shade(s, light_[at(x, y)]);
-      }
-    });
-  }
-
-  // Whether a pixel differs from a neighbour by more than a barely visible step.
-  bool busy(const std::vector<Shade>& shades, int x, int y) const {
-    const auto differs = [](const std::array<float, 3>& a, const std::array<float, 3>& b) {
-      float most = 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        most = std::max(most, std::abs(a[c] - b[c]) / (0.1f + a[c] + b[c]));
-      }
-      return most > 0.035f;
-    };
-    const std::size_t self = at(x, y);
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
-        const std::size_t other = at(x + dx, y + dy);
-        if ((centre_[self].triangle < 0) != (centre_[other].triangle < 0)) return true;
-        if (centre_[self].triangle < 0) continue;
-        if (differs(shades[self].wanted, shades[other].wanted)) return true;
-        if (differs(shades[self].predicted, shades[other].predicted)) return true;
-      }
-    }
-    return false;
-  }
-
-  void refine_edges() {
-    if (studio_.samples_per_axis < 2) return;
-    const std::vector<Shade> single = shade_;
-    for_rows([&](int y) {
-      for (int x = 0; x < width_; ++x) {
-        if (busy(single, x, y)) shade_[at(x, y)] = supersampled(x, y);
-      }
-    });
-  }
-
-  // The light of the nearest pixel centre that shows the surface of this sample.
-  Light light_near(const Sample& s, int x, int y) const {
-    Light best;
-    double nearest = 1e300;
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
-        const Sample& other = centre_[at(x + dx, y + dy)];
-        if (other.triangle < 0) continue;
-        const double apart = std::abs(other.depth - s.depth) + 1e-5 * extent_ * (dx * dx + dy * dy);
-        if (apart < nearest) {
-          nearest = apart;
-          best = light_[at(x + dx, y + dy)];
-        }
-      }
-    }
-    return best;
-  }
-
-  Shade supersampled(int x, int y) const {
-    const int n = studio_.samples_per_axis;
-    Shade sum;
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        const double x_px = x + (i + 0.5) / n;
-        const double y_px = y + (j + 0.5) / n;
-        const Sample s = trace(x_px, y_px);
-        const Shade part = s.triangle < 0 ? backdrop(x_px, y_px) : shade(s, light_near(s, x, y));
-        for (std::size_t c = 0; c < 3; ++c) {
-          sum.wanted[c] += std::clamp(part.wanted[c], 0.0f, 1.0f) / float(n * n);
-          sum.predicted[c] += std::clamp(part.predicted[c], 0.0f, 1.0f) / float(n * n);
-        }
-      }
-    }
-    return sum;
-  }
-
-  Image picture(std::array<float, 3> Shade::*part) const {
-    Image image(width_, height_);
-    for (std::size_t i = 0; i < count(); ++i) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        image.rgba[4 * i + c] = linear_to_srgb8((shade_[i].*part)[c]);
-      }
-      image.rgba[4 * i + 3] = 255;
-    }
-    return image;
-  }
-
-  const Studio& studio_;
-  const Camera& camera_;
+  const Studio studio_;
+  const Camera camera_;
   int width_;
   int height_;
   RunContext& context_;
@@ -457,14 +357,151 @@ class Renderer {
   std::vector<Light> ground_;
   int coarse_width_ = 0;
   int coarse_height_ = 0;
+};
+
+// One pair of appearances on a stage.
+class Painter {
+ public:
+  Painter(const Stage& stage, const Appearance& appearance)
+      : studio_(stage.studio()), camera_(stage.camera()), stage_(stage), appearance_(appearance) {}
+
+  ViewPair run() {
+    shade_centres();
+    refine_edges();
+    return {picture(&Shade::wanted), picture(&Shade::predicted)};
+  }
+
+ private:
+  // A pale grey sweep, lighter in the middle, with the object's shadow on it.
+  Shade backdrop(double x_px, double y_px) const {
+    const double x = (x_px - 0.5 * stage_.width()) / stage_.width();
+    const double y = (y_px - 0.45 * stage_.height()) / stage_.height();
+    const double glow = std::exp(-2.2 * (x * x + y * y));
+    const Light light = stage_.ground_at(x_px, y_px);
+    const double shadow = 0.62 * light.sky + 0.38 * (0.35 + 0.65 * light.lamp);
+    const double level = (0.50 + 0.27 * glow) * (0.25 + 0.75 * shadow);
+    Shade shade;
+    shade.wanted = {float(level * 0.985), float(level * 0.995), float(level * 1.01)};
+    shade.predicted = shade.wanted;
+    return shade;
+  }
+
+  Shade shade(const Sample& s, const Light& light) const {
+    const Vec3 n = stage_.smooth_normal(s);
+    const double sky =
+        kSkyBelow + (kSkyAbove - kSkyBelow) * (0.5 + 0.5 * n.dot(stage_.ground_normal()));
+    const double lit_level = sky * (0.12 + 0.88 * light.sky) +
+                             kLamp * std::max(0.0, n.dot(stage_.lamp())) * light.lamp +
+                             kFill * std::max(0.0, n.dot(camera_.back));
+    const double level = lit_level + studio_.flatness * (1 - lit_level);
+    const Vec3 p = stage_.position(s);
+    const Vec3 normal = face_normal(studio_.object, s.triangle);
+    const SurfacePoint point{s.triangle, s.u, s.v};
+    const auto lit = [&](const LinearColor& c) {
+      const float f = float(level);
+      return std::array<float, 3>{f * c.r, f * c.g, f * c.b};
+    };
+    return {lit(appearance_.wanted(point, p, normal)),
+            lit(appearance_.predicted(point, p, normal))};
+  }
+
+  void shade_centres() {
+    shade_.resize(stage_.count());
+    stage_.for_rows([&](int y) {
+      for (int x = 0; x < stage_.width(); ++x) {
+        const Sample& s = stage_.centre(x, y);
+        shade_[stage_.at(x, y)] =
+            s.triangle < 0 ? backdrop(x + 0.5, y + 0.5) : shade(s, stage_.light(x, y));
+      }
+    });
+  }
+
+  // Whether a pixel differs from a neighbour by more than a barely visible step.
+  bool busy(const std::vector<Shade>& shades, int x, int y) const {
+    const auto differs = [](const std::array<float, 3>& a, const std::array<float, 3>& b) {
+      float most = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        most = std::max(most, std::abs(a[c] - b[c]) / (0.1f + a[c] + b[c]));
+      }
+      return most > 0.035f;
+    };
+    const std::size_t self = stage_.at(x, y);
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= stage_.width() || y + dy >= stage_.height())
+          continue;
+        const std::size_t other = stage_.at(x + dx, y + dy);
+        if ((stage_.centre(x, y).triangle < 0) != (stage_.centre(x + dx, y + dy).triangle < 0))
+          return true;
+        if (stage_.centre(x, y).triangle < 0) continue;
+        if (differs(shades[self].wanted, shades[other].wanted)) return true;
+        if (differs(shades[self].predicted, shades[other].predicted)) return true;
+      }
+    }
+    return false;
+  }
+
+  void refine_edges() {
+    if (studio_.samples_per_axis < 2) return;
+    const std::vector<Shade> single = shade_;
+    stage_.for_rows([&](int y) {
+      for (int x = 0; x < stage_.width(); ++x) {
+        if (busy(single, x, y)) shade_[stage_.at(x, y)] = supersampled(x, y);
+      }
+    });
+  }
+
+  Shade supersampled(int x, int y) const {
+    const int n = studio_.samples_per_axis;
+    Shade sum;
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const double x_px = x + (i + 0.5) / n;
+        const double y_px = y + (j + 0.5) / n;
+        const Sample s = stage_.trace(x_px, y_px);
+        const Shade part =
+            s.triangle < 0 ? backdrop(x_px, y_px) : shade(s, stage_.light_near(s, x, y));
+        for (std::size_t c = 0; c < 3; ++c) {
+          sum.wanted[c] += std::clamp(part.wanted[c], 0.0f, 1.0f) / float(n * n);
+          sum.predicted[c] += std::clamp(part.predicted[c], 0.0f, 1.0f) / float(n * n);
+        }
+      }
+    }
+    return sum;
+  }
+
+  Image picture(std::array<float, 3> Shade::*part) const {
+    Image image(stage_.width(), stage_.height());
+    for (std::size_t i = 0; i < stage_.count(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        image.rgba[4 * i + c] = linear_to_srgb8((shade_[i].*part)[c]);
+      }
+      image.rgba[4 * i + 3] = 255;
+    }
+    return image;
+  }
+
+  const Studio& studio_;
+  const Camera& camera_;
+  const Stage& stage_;
+  const Appearance& appearance_;
   std::vector<Shade> shade_;
 };
 
 }  // namespace
 
-ViewPair render_view(const Studio& studio, const Camera& camera, int width_px, int height_px,
-                     RunContext& context) {
-  return Renderer(studio, camera, width_px, height_px, context).run();
+struct LitView::Impl {
+  Stage stage;
+};
+
+LitView::LitView(const Studio& studio, const Camera& camera, int width_px, int height_px,
+                 RunContext& context)
+    : impl_(new Impl{Stage(studio, camera, width_px, height_px, context)}) {}
+LitView::~LitView() = default;
+LitView::LitView(LitView&&) noexcept = default;
+
+ViewPair LitView::show(const Appearance& appearance) const {
+  return Painter(impl_->stage, appearance).run();
 }
 
 }  // namespace hydrodip

@@ -1,7 +1,8 @@
 // One view of the object in a small photo studio: a plain curved backdrop, a soft lamp from above
-// left, a white sky. Light and visibility are worked out once and both appearances shown in it.
+// left, a white sky. Light and visibility are worked out once, whatever is then shown in it.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "base/context.h"
@@ -15,7 +16,6 @@ struct Studio {
   const Object& object;
   const Surface& surface;
   const std::vector<CornerNormals>& normals;
-  const Appearance& appearance;
   int samples_per_axis = 3;
   // 0: lit as in the studio; 1: no light and shade at all, colours are shown as they are. Maps,
   // whose colours are to be read off, lie between.
@@ -27,9 +27,20 @@ struct ViewPair {
   Image predicted;
 };
 
-// Renders the view of `camera` at the given size. The result does not depend on the number of
-// threads. Throws Cancelled when the job was cancelled.
-ViewPair render_view(const Studio& studio, const Camera& camera, int width_px, int height_px,
-                     RunContext& context);
+// The view of a camera at a given size. Pictures do not depend on the number of threads. Both calls
+// throw Cancelled when the job was cancelled. Refers to what the studio refers to.
+class LitView {
+ public:
+  LitView(const Studio& studio, const Camera& camera, int width_px, int height_px,
+          RunContext& context);
+  ~LitView();
+  LitView(LitView&&) noexcept;
+
+  ViewPair show(const Appearance& appearance) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace hydrodip

@@ -79,8 +79,8 @@ void for_ball_pixels(const Scene& scene, const Camera& camera, const Image& imag
 ViewPair render(const Scene& scene, const Camera& camera) {
   const Appearance appearance = map_appearance(scene.maps, camera, 2);
   RunContext context;
-  const Studio studio{scene.ball, scene.surface, scene.normals, appearance, 1, 0.6};
-  return render_view(studio, camera, 200, 200, context);
+  const Studio studio{scene.ball, scene.surface, scene.normals, 1, 0.6};
+  return LitView(studio, camera, 200, 200, context).show(appearance);
 }
 
 // Although facets are tilted by more than a degree; mesh normals are least true where three cube

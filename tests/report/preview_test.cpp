@@ -26,9 +26,10 @@ Image draw(const DippedFilm& film, bool same, const std::string& caption = "capt
   if (same) appearance.predicted = appearance.wanted;
   PreviewOptions options;
   options.width_px = 320;
-  options.caption = caption;
   RunContext context;
-  return render_preview(ball, surface, film, appearance, options, context);
+  return render_previews(ball, surface, film, {{.shown = appearance, .caption = caption}}, options,
+                         context)
+      .front();
 }
 
 // Pixels in which one channel stands far above the two others.
@@ -113,7 +114,7 @@ TEST(Preview, StopsWhenCancelled) {
   const Surface surface(ball.positions, ball.triangles);
   RunContext context;
   context.cancel();
-  EXPECT_THROW(render_preview(ball, surface, film_under_ball(), {}, {}, context), Cancelled);
+  EXPECT_THROW(render_previews(ball, surface, film_under_ball(), {{}}, {}, context), Cancelled);
 }
 
 TEST(View, FirstDirectionFacesTheFilm) {
