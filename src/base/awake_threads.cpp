@@ -18,6 +18,8 @@ namespace {
 
 // Looks for a loop before a thread falls asleep: some tenths of a millisecond.
 constexpr int kLooksAwake = 20000;
+// More than share memory well, and than loops of ten microseconds have parts for.
+constexpr int kMostThreads = 8;
 
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -130,7 +132,7 @@ thread_local SharedLoops* own_loops = nullptr;
 }  // namespace
 
 AwakeThreads::AwakeThreads() {
-  const int threads = available_threads();
+  const int threads = std::min(available_threads(), kMostThreads);
   if (own_loops || threads < 2) return;
   loops_ = std::make_shared<SharedLoops>(threads);
   own_loops = loops_.get();
