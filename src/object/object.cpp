@@ -15,11 +15,20 @@ struct TexelPair {
   float weight;
 };
 
+// Texture coordinates this small fit an int.
+constexpr float kPlain = 1e6F;
+
+// std::floor of those, which need not be a call.
+float floored(float x) {
+  const auto whole = static_cast<float>(static_cast<int>(x));
+  return whole > x ? whole - 1 : whole;
+}
+
 TexelPair texels(float coordinate, int size, Wrap wrap) {
   float t = coordinate;
   switch (wrap) {
     case Wrap::kRepeat:
-      t -= std::floor(t);
+      t -= std::abs(t) < kPlain ? floored(t) : std::floor(t);
       break;
     case Wrap::kMirror:
       t -= 2 * std::floor(t / 2);
@@ -31,7 +40,7 @@ TexelPair texels(float coordinate, int size, Wrap wrap) {
       break;
   }
   const float x = t * float(size) - 0.5f;
-  const float cell = std::floor(x);
+  const float cell = floored(x);
   TexelPair pair{int(cell), int(cell) + 1, x - cell};
   if (wrap == Wrap::kRepeat) {
     if (pair.first < 0) pair.first += size;

@@ -1,7 +1,9 @@
 #include "transfer/raster.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "base/parallel.h"
@@ -58,16 +60,62 @@ bool is_bare(const FilmMap& map, const SheetRaster& raster, double bleed_mm, int
   return !map.nearest_covered(raster.to_film(x + 0.5, y + 0.5), bleed_mm + radius, cursor);
 }
 
-// One pixel of the film image: samples on a regular grid inside it.
+// A pixel's samples, on a regular grid inside it.
+struct Samples {
+  Vec2 corner;  // of the pixel, in film coordinates
+  double pixel_mm;
+  int per_axis;
+  Vec2 at(int i, int j) const {
+    const double step = pixel_mm / per_axis;
+    return {corner.x() + (i + 0.5) * step, corner.y() - (j + 0.5) * step};
+  }
+};
+
+// Where the outermost samples land (upper left, upper right, lower left, lower right), if film and
+// object are one triangle each for all of them: the others land between them then.
+std::optional<std::array<SurfacePoint, 4>> outermost(const FilmMap& map, const Samples& samples,
+                                                     FilmMap::Cursor& cursor) {
+  const int last = samples.per_axis - 1;
+  std::array<SurfacePoint, 4> points;
+  std::int32_t film_triangle = -1;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto point = map.to_object(samples.at(k % 2 == 0 ? 0 : last, k < 2 ? 0 : last), cursor);
+    if (!point) return std::nullopt;
+    if (k == 0) film_triangle = cursor.film_triangle;
+    if (cursor.film_triangle != film_triangle) return std::nullopt;
+    points[k] = *point;
+    if (points[k].triangle != points[0].triangle) return std::nullopt;
+  }
+  return points;
+}
+
+SurfacePoint between(const std::array<SurfacePoint, 4>& p, double x, double y) {
+  const auto mix = [&](double SurfacePoint::*part) {
+    return (1 - y) * ((1 - x) * p[0].*part + x * p[1].*part) +
+           y * ((1 - x) * p[2].*part + x * p[3].*part);
+  };
+  return {p[0].triangle, mix(&SurfacePoint::u), mix(&SurfacePoint::v)};
+}
+
+// One pixel of the film image.
 LinearColor pixel_color(const Object& object, const FilmMap& map, const SheetRaster& raster,
                         const InverseOptions& options, int x, int y, FilmMap::Cursor& cursor) {
   const int n = options.samples_per_axis;
-  const float weight = 1.0f / static_cast<float>(n * n);
   if (is_bare(map, raster, options.bleed_mm, x, y, cursor)) return {0, 0, 0, 0};
+  const float weight = 1.0f / static_cast<float>(n * n);
+  const Samples samples{raster.to_film(x, y), kMmPerInch / raster.dpi, n};
   ColorSum sum;
+  if (const auto corners = n > 2 ? outermost(map, samples, cursor) : std::nullopt) {
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const SurfacePoint point = between(*corners, double(i) / (n - 1), double(j) / (n - 1));
+        sum.add(color_at(object, point, options.base), weight);
+      }
+    return sum.color();
+  }
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
-      const Vec2 u = raster.to_film(x + (i + 0.5) / n, y + (j + 0.5) / n);
+      const Vec2 u = samples.at(i, j);
       auto point = map.to_object(u, cursor);
       if (!point && options.bleed_mm > 0)
         if (const auto near = map.nearest_covered(u, options.bleed_mm, cursor))

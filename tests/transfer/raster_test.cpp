@@ -84,6 +84,54 @@ TEST(FilmImage, PrintsWhatTheObjectShowsWhereItShowsIt) {
   }
 }
 
+// A ball of many triangles with film laid round it, stretched, under a texture that is finer than a
+// pixel: every sample of a pixel is where it lands by itself.
+TEST(FilmImage, EverySampleOfAPixelCounts) {
+  const double radius = 28;
+  Object object = fixtures::plain_object(shapes::sphere_bowl(radius, 24, 60, 90));
+  fixtures::map_from_above(object);
+  Image texture(1500, 1500);
+  for (int y = 0; y < 1500; ++y)
+    for (int x = 0; x < 1500; ++x)
+      fill_pixel(texture, x, y, std::uint8_t((x * 37 + y * 91) % 256), std::uint8_t((x / 9) % 256),
+                 std::uint8_t(255 * ((x + y) % 2)));
+  fixtures::set_texture(object, std::move(texture));
+  DippedFilm film = fixtures::film_on_slab(5000);
+  for (std::size_t v = 0; v < film.position.size(); ++v) {
+    const Vec2 at = 1.1 * film.mesh.u[v];
+    const double way = std::sin(std::min(at.norm() / radius, 1.0)) * radius;
+    const Vec2 plan = at.norm() > 0 ? Vec2(at * (way / at.norm())) : at;
+    film.position[v] << plan, radius - std::sqrt(radius * radius - plan.squaredNorm());
+    film.state[v] = at.norm() < 24 ? VertexState::kAttached : VertexState::kUnattached;
+  }
+  const auto dipped = fixtures::mapped(std::move(object), std::move(film));
+  const SheetRaster raster = small_sheet(200);
+  const Image image = printed(*dipped, raster, {.bleed_mm = 0});
+  long compared = 0;
+  for (int y = 0; y < image.height_px; ++y)
+    for (int x = 0; x < image.width_px; ++x) {
+      if (image.pixel(x, y)[3] != 255) continue;
+      LinearColor sum{0, 0, 0, 0};
+      int found = 0;
+      for (int k = 0; k < 9; ++k) {
+        const auto point =
+            dipped->map->to_object(raster.to_film(x + (k % 3 + 0.5) / 3, y + (k / 3 + 0.5) / 3));
+        if (!point) continue;
+        const LinearColor color = color_at(dipped->object, *point, {1, 1, 1, 1});
+        sum.r += color.r / 9;
+        sum.g += color.g / 9;
+        sum.b += color.b / 9;
+        ++found;
+      }
+      if (found < 9) continue;
+      ++compared;
+      EXPECT_NEAR(image.pixel(x, y)[0], linear_to_srgb8(sum.r), 2);
+      EXPECT_NEAR(image.pixel(x, y)[1], linear_to_srgb8(sum.g), 2);
+      EXPECT_NEAR(image.pixel(x, y)[2], linear_to_srgb8(sum.b), 2);
+    }
+  EXPECT_GT(compared, 50000);
+}
+
 TEST(FilmImage, InkEndsWhereTheBleedEnds) {
   const SheetRaster raster = small_sheet(300);
   const double pixel_mm = kMmPerInch / raster.dpi;
