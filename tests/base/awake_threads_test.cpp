@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <numeric>
@@ -77,9 +78,9 @@ TEST(AwakeThreads, RethrowAndGoOn) {
 }
 
 TEST(AwakeThreads, ServeSeveralOwners) {
-  std::vector<std::thread> owners;
-  for (int n = 0; n < 4; ++n)
-    owners.emplace_back([] {
+  std::array<std::thread, 4> owners;
+  for (std::thread& owner : owners)
+    owner = std::thread([] {
       for (int repeat = 0; repeat < 20; ++repeat) {
         const AwakeThreads awake;
         for (int loop = 0; loop < 50; ++loop) expect_whole_loop(95);

@@ -114,8 +114,9 @@ TEST(FilmImage, EverySampleOfAPixelCounts) {
       LinearColor sum{0, 0, 0, 0};
       int found = 0;
       for (int k = 0; k < 9; ++k) {
+        const int i = k % 3, j = k / 3;
         const auto point =
-            dipped->map->to_object(raster.to_film(x + (k % 3 + 0.5) / 3, y + (k / 3 + 0.5) / 3));
+            dipped->map->to_object(raster.to_film(x + (i + 0.5) / 3, y + (j + 0.5) / 3));
         if (!point) continue;
         const LinearColor color = color_at(dipped->object, *point, {1, 1, 1, 1});
         sum.r += color.r / 9;
