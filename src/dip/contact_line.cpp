@@ -36,7 +36,7 @@ constexpr double kFasterShare = 0.1;
 constexpr double kMaxJump = 2.5;
 // In one step a floating vertex slides by less than the step and this, in cells.
 constexpr double kLongestSlide = 10;
-// Of the film's equilibrium, 1/mm.
+// Tolerance of the film's equilibrium over the square of the step, 1/mm.
 constexpr double kTolerancePerStep2 = 1e-4;
 // So often in a step film that blocks the rest is released.
 constexpr int kMostReleases = 8;

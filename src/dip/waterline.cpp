@@ -23,6 +23,8 @@ constexpr double kOtherSide = -0.5;
 constexpr double kLevelSlack_mm = 0.01;
 // Ways that pass what lies between two levels further off than this do not touch it.
 constexpr double kTouchSlack_mm = 0.01;
+// Along each side of the grid over the whole object, however large that is.
+constexpr double kMostCells = 2000;
 
 double bottom(const std::vector<Vec3>& p, const Triangle& t) {
   return std::min({p[std::size_t(t[0])].z(), p[std::size_t(t[1])].z(), p[std::size_t(t[2])].z()});
@@ -54,9 +56,10 @@ Waterline::Waterline(const std::vector<Vec3>& positions, const std::vector<Trian
   for (const Triangle& t : triangles)
     for (std::int32_t v : t) whole_.add(positions[std::size_t(v)].head<2>());
   if (!triangles.empty()) {
-    const Vec2 size = (whole_.max - whole_.min) / cell_;
-    whole_nx_ = static_cast<int>(size.x()) + 1;
-    whole_ny_ = static_cast<int>(size.y()) + 1;
+    const Vec2 size = whole_.max - whole_.min;
+    whole_cell_ = std::max(cell_, size.maxCoeff() / kMostCells);
+    whole_nx_ = static_cast<int>(size.x() / whole_cell_) + 1;
+    whole_ny_ = static_cast<int>(size.y() / whole_cell_) + 1;
     reached_.resize(std::size_t(whole_nx_) * std::size_t(whole_ny_), 0);
   }
   for (std::size_t t = 0; t < triangles.size(); ++t) bottoms[t] = bottom(positions, triangles[t]);
@@ -104,7 +107,7 @@ void Waterline::reach(std::int32_t triangle) {
 // Of the grid over the whole object: first column and row, last column and row.
 std::array<int, 4> Waterline::whole_cells(const Vec2& min, const Vec2& max) const {
   const auto cell = [&](double distance, int cells) {
-    return static_cast<int>(std::clamp(std::floor(distance / cell_), 0.0, double(cells - 1)));
+    return static_cast<int>(std::clamp(std::floor(distance / whole_cell_), 0.0, double(cells - 1)));
   };
   return {cell(min.x() - whole_.min.x(), whole_nx_), cell(min.y() - whole_.min.y(), whole_ny_),
           cell(max.x() - whole_.min.x(), whole_nx_), cell(max.y() - whole_.min.y(), whole_ny_)};

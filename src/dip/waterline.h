@@ -63,6 +63,7 @@ class Waterline {
   // Cells that triangles between the last two levels reach, seen from above: those with the present
   // number. The box is around all of them.
   Box2 whole_, swept_;
+  double whole_cell_ = 0;
   int whole_nx_ = 0, whole_ny_ = 0;
   std::vector<std::uint32_t> reached_;
   std::uint32_t raises_ = 0;

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "exact/shapes.h"
+#include "object/surface.h"
 
 namespace hydrodip {
 namespace {
@@ -109,6 +112,44 @@ TEST(Waterline, KnowsOverhangs) {
   EXPECT_NEAR(exit->position.norm(), std::sqrt(75.0), 0.01);
   // Facets of 2 degrees: the slope is met within half of that, 4 / 57.3.
   EXPECT_NEAR(exit->steepness, -std::sqrt(3.0), 0.075);
+}
+
+// Points that float while the water rises: those that meet the object must not be ruled out, and
+// most of the others should be.
+TEST(Waterline, RulesOutOnlyWaysThatDoNotTouch) {
+  std::mt19937 generator(3);
+  const shapes::Shape all[] = {shapes::sphere_bowl(30, 28), shapes::cone(20, 0.7),
+                               shapes::box(Vec3(-17, -9, 0), Vec3(12, 21, 16))};
+  for (const shapes::Shape& shape : all) {
+    const Surface surface(shape.positions, shape.triangles);
+    Waterline line(shape.positions, shape.triangles, 1.5);
+    std::uniform_real_distribution<double> plan(-35, 35), slide(-2, 2);
+    long met = 0, ruled_out = 0;
+    double before = -0.1;
+    line.raise_to(before);
+    for (const double level : {0.0, 0.1, 0.4, 3.0, 3.1, 7.0, 12.0, 13.0}) {
+      line.raise_to(level);
+      for (int n = 0; n < 4000; ++n) {
+        const Vec2 a(plan(generator), plan(generator));
+        const Vec2 b = a + Vec2(slide(generator), slide(generator));
+        const Vec3 from(a.x(), a.y(), before), to(b.x(), b.y(), level);
+        const bool meets = surface.is_hit(from, to - from, 0, 1);
+        met += meets;
+        ruled_out += !line.may_touch(a, b);
+        EXPECT_TRUE(!meets || line.may_touch(a, b)) << from.transpose() << " to " << to.transpose();
+      }
+      before = level;
+    }
+    EXPECT_GT(met, 100);
+    EXPECT_GT(ruled_out, 20000);
+  }
+}
+
+// In wrong units an object can be as large as it likes.
+TEST(Waterline, OfSomethingHugeFitsIntoMemory) {
+  const shapes::Shape box = shapes::box(Vec3(-4e6, -1e6, 0), Vec3(4e6, 1e6, 6));
+  Waterline line(box.positions, box.triangles, 1);
+  EXPECT_TRUE(line.empty());
 }
 
 }  // namespace
