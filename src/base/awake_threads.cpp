@@ -129,6 +129,40 @@ namespace {
 
 thread_local SharedLoops* own_loops = nullptr;
 
+// The owners that still want threads. Tasks that call threads here hold nothing: those that find
+// none to serve, or are never run, leave nothing behind.
+class Wanted {
+ public:
+  void add(const std::shared_ptr<SharedLoops>& loops, int threads) {
+    const std::lock_guard lock(lock_);
+    for (int n = 0; n < threads; ++n) wanted_.push_back(loops);
+  }
+  void remove(const std::shared_ptr<SharedLoops>& loops) {
+    const std::lock_guard lock(lock_);
+    std::erase(wanted_, loops);
+  }
+  void serve_one() {
+    std::shared_ptr<SharedLoops> loops;
+    {
+      const std::lock_guard lock(lock_);
+      if (wanted_.empty()) return;
+      loops = std::move(wanted_.back());
+      wanted_.pop_back();
+    }
+    loops->serve();
+  }
+
+ private:
+  std::mutex lock_;
+  std::vector<std::shared_ptr<SharedLoops>> wanted_;
+};
+
+// Never destroyed: a thread may still ask while the process ends.
+Wanted& wanted() {
+  static Wanted& all = *new Wanted;
+  return all;
+}
+
 }  // namespace
 
 AwakeThreads::AwakeThreads() {
@@ -138,11 +172,13 @@ AwakeThreads::AwakeThreads() {
   own_loops = loops_.get();
   // An arena of their own: a thread that waits for other work must not begin to serve.
   tbb::task_arena arena(threads);
-  for (int n = 1; n < threads; ++n) arena.enqueue([loops = loops_] { loops->serve(); });
+  wanted().add(loops_, threads - 1);
+  for (int n = 1; n < threads; ++n) arena.enqueue([] { wanted().serve_one(); });
 }
 
 AwakeThreads::~AwakeThreads() {
   if (!loops_) return;
+  wanted().remove(loops_);
   loops_->close();
   own_loops = nullptr;
 }
