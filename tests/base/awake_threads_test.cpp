@@ -5,27 +5,17 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <thread>
-#include <vector>
 
 #include "base/parallel.h"
+#include "base/whole_loop.h"
 
 namespace hydrodip {
 namespace {
 
-// Every index of a loop, once, in the chunks that it would have without awake threads.
-void expect_whole_loop(std::size_t count) {
-  std::vector<int> visits(count, 0);
-  parallel_for(count, 10, [&](std::size_t begin, std::size_t end) {
-    EXPECT_EQ(begin % 10, 0U);
-    EXPECT_TRUE(end == count || end == begin + 10);
-    for (std::size_t i = begin; i < end; ++i) ++visits[i];
-  });
-  EXPECT_EQ(visits, std::vector<int>(count, 1));
-}
+using fixtures::expect_whole_loop;
 
 TEST(AwakeThreads, ShareManyShortLoops) {
   const AwakeThreads awake;

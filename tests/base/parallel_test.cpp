@@ -9,20 +9,13 @@
 
 #include "base/context.h"
 #include "base/error.h"
+#include "base/whole_loop.h"
 
 namespace hydrodip {
 namespace {
 
 TEST(ParallelFor, VisitsEveryIndexOnceInFixedChunks) {
-  for (const std::size_t count : {0, 1, 9, 10, 11, 1000}) {
-    std::vector<int> visits(count, 0);
-    parallel_for(count, 10, [&](std::size_t begin, std::size_t end) {
-      EXPECT_EQ(begin % 10, 0U);
-      EXPECT_TRUE(end == count || end == begin + 10);
-      for (std::size_t i = begin; i < end; ++i) ++visits[i];
-    });
-    EXPECT_EQ(visits, std::vector<int>(count, 1));
-  }
+  for (const std::size_t count : {0, 1, 9, 10, 11, 1000}) fixtures::expect_whole_loop(count);
 }
 
 TEST(ParallelDo, RunsEverythingAndRethrowsTheFirstFailureOfTheList) {
