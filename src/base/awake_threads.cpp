@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -166,7 +167,9 @@ Wanted& wanted() {
 }  // namespace
 
 AwakeThreads::AwakeThreads() {
-  const int threads = std::min(available_threads(), kMostThreads);
+  // Threads that wait awake must not take turns on a core.
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  const int threads = std::min({available_threads(), cores, kMostThreads});
   if (own_loops || threads < 2) return;
   loops_ = std::make_shared<SharedLoops>(threads);
   own_loops = loops_.get();
