@@ -53,14 +53,12 @@ Waterline::Waterline(const std::vector<Vec3>& positions, const std::vector<Trian
   by_bottom_.resize(triangles.size());
   std::iota(by_bottom_.begin(), by_bottom_.end(), 0);
   std::vector<double> bottoms(triangles.size());
+  Box2 plan;
   for (const Triangle& t : triangles)
-    for (std::int32_t v : t) whole_.add(positions[std::size_t(v)].head<2>());
+    for (std::int32_t v : t) plan.add(positions[std::size_t(v)].head<2>());
   if (!triangles.empty()) {
-    const Vec2 size = whole_.max - whole_.min;
-    whole_cell_ = std::max(cell_, size.maxCoeff() / kMostCells);
-    whole_nx_ = static_cast<int>(size.x() / whole_cell_) + 1;
-    whole_ny_ = static_cast<int>(size.y() / whole_cell_) + 1;
-    reached_.resize(std::size_t(whole_nx_) * std::size_t(whole_ny_), 0);
+    whole_ = Cells(plan, std::max(cell_, (plan.max - plan.min).maxCoeff() / kMostCells));
+    reached_.resize(whole_.count(), 0);
   }
   for (std::size_t t = 0; t < triangles.size(); ++t) bottoms[t] = bottom(positions, triangles[t]);
   std::stable_sort(by_bottom_.begin(), by_bottom_.end(), [&](std::int32_t a, std::int32_t b) {
@@ -98,30 +96,19 @@ void Waterline::reach(std::int32_t triangle) {
     box.add(positions_[std::size_t(v)].head<2>());
   swept_.add(box.min);
   swept_.add(box.max);
-  const auto [x0, y0, x1, y1] = whole_cells(box.min, box.max);
-  for (int y = y0; y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x)
-      reached_[std::size_t(y) * std::size_t(whole_nx_) + std::size_t(x)] = raises_;
-}
-
-// Of the grid over the whole object: first column and row, last column and row.
-std::array<int, 4> Waterline::whole_cells(const Vec2& min, const Vec2& max) const {
-  const auto cell = [&](double distance, int cells) {
-    return static_cast<int>(std::clamp(std::floor(distance / whole_cell_), 0.0, double(cells - 1)));
-  };
-  return {cell(min.x() - whole_.min.x(), whole_nx_), cell(min.y() - whole_.min.y(), whole_ny_),
-          cell(max.x() - whole_.min.x(), whole_nx_), cell(max.y() - whole_.min.y(), whole_ny_)};
+  const CellRange cells = whole_.around(box.min, box.max);
+  for (int y = cells.y0; y <= cells.y1; ++y)
+    for (int x = cells.x0; x <= cells.x1; ++x) reached_[whole_.number(x, y)] = raises_;
 }
 
 bool Waterline::may_touch(const Vec2& a, const Vec2& b) const {
   const Vec2 slack(kTouchSlack_mm, kTouchSlack_mm);
   const Vec2 min = a.cwiseMin(b) - slack, max = a.cwiseMax(b) + slack;
   if ((min - swept_.max).maxCoeff() > 0 || (swept_.min - max).maxCoeff() > 0) return false;
-  const auto [x0, y0, x1, y1] = whole_cells(min, max);
-  for (int y = y0; y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x)
-      if (reached_[std::size_t(y) * std::size_t(whole_nx_) + std::size_t(x)] == raises_)
-        return true;
+  const CellRange cells = whole_.around(min, max);
+  for (int y = cells.y0; y <= cells.y1; ++y)
+    for (int x = cells.x0; x <= cells.x1; ++x)
+      if (reached_[whole_.number(x, y)] == raises_) return true;
   return false;
 }
 
@@ -153,13 +140,18 @@ void Waterline::cut(std::int32_t triangle) {
   segments_.push_back(segment);
 }
 
-int Waterline::cell_x(double x) const {
-  return static_cast<int>(
-      std::clamp(std::floor((x - grid_origin_.x()) / cell_), 0.0, double(grid_nx_ - 1)));
+Waterline::Cells::Cells(const Box2& box, double cell_mm) : origin(box.min), size_mm(cell_mm) {
+  const Vec2 size = box.max - box.min;
+  nx = static_cast<int>(size.x() / size_mm) + 1;
+  ny = static_cast<int>(size.y() / size_mm) + 1;
 }
-int Waterline::cell_y(double y) const {
-  return static_cast<int>(
-      std::clamp(std::floor((y - grid_origin_.y()) / cell_), 0.0, double(grid_ny_ - 1)));
+
+Waterline::CellRange Waterline::Cells::around(const Vec2& min, const Vec2& max) const {
+  const auto cell = [&](double distance, int cells) {
+    return static_cast<int>(std::clamp(std::floor(distance / size_mm), 0.0, double(cells - 1)));
+  };
+  return {cell(min.x() - origin.x(), nx), cell(min.y() - origin.y(), ny),
+          cell(max.x() - origin.x(), nx), cell(max.y() - origin.y(), ny)};
 }
 
 void Waterline::build_grid() {
@@ -168,24 +160,15 @@ void Waterline::build_grid() {
     box.add(s.a);
     box.add(s.b);
   }
-  grid_nx_ = grid_ny_ = 0;
+  grid_ = {};
   if (segments_.empty()) return;
-  grid_origin_ = box.min;
-  const Vec2 size = box.max - box.min;
-  grid_nx_ = static_cast<int>(size.x() / cell_) + 1;
-  grid_ny_ = static_cast<int>(size.y() / cell_) + 1;
-  for (Segment& s : segments_) {
-    s.x0 = cell_x(std::min(s.a.x(), s.b.x()));
-    s.x1 = cell_x(std::max(s.a.x(), s.b.x()));
-    s.y0 = cell_y(std::min(s.a.y(), s.b.y()));
-    s.y1 = cell_y(std::max(s.a.y(), s.b.y()));
-  }
+  grid_ = Cells(box, cell_);
+  for (Segment& s : segments_) s.cells = grid_.around(s.a.cwiseMin(s.b), s.a.cwiseMax(s.b));
   const auto for_cells = [&](const Segment& s, const auto& visit) {
-    for (int y = s.y0; y <= s.y1; ++y)
-      for (int x = s.x0; x <= s.x1; ++x)
-        visit(std::size_t(y) * std::size_t(grid_nx_) + std::size_t(x));
+    for (int y = s.cells.y0; y <= s.cells.y1; ++y)
+      for (int x = s.cells.x0; x <= s.cells.x1; ++x) visit(grid_.number(x, y));
   };
-  grid_begin_.assign(std::size_t(grid_nx_) * std::size_t(grid_ny_) + 1, 0);
+  grid_begin_.assign(grid_.count() + 1, 0);
   for (const Segment& s : segments_) for_cells(s, [&](std::size_t c) { ++grid_begin_[c + 1]; });
   for (std::size_t c = 1; c < grid_begin_.size(); ++c) grid_begin_[c] += grid_begin_[c - 1];
   grid_items_.resize(std::size_t(grid_begin_.back()));
@@ -201,11 +184,10 @@ std::optional<Waterline::Point> Waterline::exit(const Vec2& from, const Vec2& to
   const Vec2 way = to - from;
   double best = 2;
   const Segment* found = nullptr;
-  const int x0 = cell_x(std::min(from.x(), to.x())), x1 = cell_x(std::max(from.x(), to.x()));
-  const int y0 = cell_y(std::min(from.y(), to.y())), y1 = cell_y(std::max(from.y(), to.y()));
-  for (int y = y0; y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x) {
-      const std::size_t c = std::size_t(y) * std::size_t(grid_nx_) + std::size_t(x);
+  const CellRange cells = grid_.around(from.cwiseMin(to), from.cwiseMax(to));
+  for (int y = cells.y0; y <= cells.y1; ++y)
+    for (int x = cells.x0; x <= cells.x1; ++x) {
+      const std::size_t c = grid_.number(x, y);
       for (auto n = grid_begin_[c]; n < grid_begin_[c + 1]; ++n) {
         const Segment& s = segments_[std::size_t(grid_items_[std::size_t(n)])];
         if (way.dot(s.outward) <= 0) continue;
@@ -231,15 +213,15 @@ Waterline::Point Waterline::blurred(const Point& point, const Weight& weight_of)
   const double radius = kBlurred * cell_;
   Vec2 outward = Vec2::Zero();
   double steepness = 0, weights = 0;
-  const int x0 = cell_x(point.position.x() - radius), x1 = cell_x(point.position.x() + radius);
-  const int y0 = cell_y(point.position.y() - radius), y1 = cell_y(point.position.y() + radius);
-  for (int y = y0; y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x) {
-      const std::size_t c = std::size_t(y) * std::size_t(grid_nx_) + std::size_t(x);
+  const Vec2 reach(radius, radius);
+  const CellRange cells = grid_.around(point.position - reach, point.position + reach);
+  for (int y = cells.y0; y <= cells.y1; ++y)
+    for (int x = cells.x0; x <= cells.x1; ++x) {
+      const std::size_t c = grid_.number(x, y);
       for (auto n = grid_begin_[c]; n < grid_begin_[c + 1]; ++n) {
         const Segment& s = segments_[std::size_t(grid_items_[std::size_t(n)])];
         // Once, though it is listed in several cells.
-        if (x != std::max(x0, s.x0) || y != std::max(y0, s.y0)) continue;
+        if (x != std::max(cells.x0, s.cells.x0) || y != std::max(cells.y0, s.cells.y0)) continue;
         const double weight = length_within(s.a, s.b, point.position, radius) * weight_of(s);
         outward += weight * s.outward;
         steepness += weight * s.steepness;
@@ -255,12 +237,12 @@ std::optional<Waterline::Point> Waterline::closest(const Vec2& point, double max
   double best = max_distance * max_distance;
   const Segment* found = nullptr;
   Vec2 position = point;
-  const int cx = static_cast<int>(std::floor((point.x() - grid_origin_.x()) / cell_));
-  const int cy = static_cast<int>(std::floor((point.y() - grid_origin_.y()) / cell_));
+  const int cx = static_cast<int>(std::floor((point.x() - grid_.origin.x()) / cell_));
+  const int cy = static_cast<int>(std::floor((point.y() - grid_.origin.y()) / cell_));
   const int rings = static_cast<int>(std::ceil(max_distance / cell_)) + 1;
   const auto visit = [&](int x, int y) {
-    if (x < 0 || y < 0 || x >= grid_nx_ || y >= grid_ny_) return;
-    const std::size_t c = std::size_t(y) * std::size_t(grid_nx_) + std::size_t(x);
+    if (x < 0 || y < 0 || x >= grid_.nx || y >= grid_.ny) return;
+    const std::size_t c = grid_.number(x, y);
     for (auto n = grid_begin_[c]; n < grid_begin_[c + 1]; ++n) {
       const Segment& s = segments_[std::size_t(grid_items_[std::size_t(n)])];
       const Vec2 edge = s.b - s.a;

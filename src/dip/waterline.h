@@ -1,7 +1,6 @@
 // The waterline: where the water surface cuts the object, seen from above, as the water rises.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -40,39 +39,52 @@ class Waterline {
   bool may_touch(const Vec2& a, const Vec2& b) const;
 
  private:
+  // Columns and rows, both ends included.
+  struct CellRange {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  };
+  // A grid over a part of the plan; what lies outside counts to the nearest cells.
+  struct Cells {
+    Vec2 origin = Vec2::Zero();
+    double size_mm = 0;
+    int nx = 0, ny = 0;
+
+    Cells() = default;
+    Cells(const Box2& box, double cell_mm);
+    CellRange around(const Vec2& min, const Vec2& max) const;
+    std::size_t number(int x, int y) const {
+      return std::size_t(y) * std::size_t(nx) + std::size_t(x);
+    }
+    std::size_t count() const { return std::size_t(nx) * std::size_t(ny); }
+  };
   struct Segment {
     Vec2 a, b;
     Vec2 outward;
     double steepness;
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // cells of the grid that it is listed in
+    CellRange cells;  // of the grid, that it is listed in
   };
   template <class Weight>
   Point blurred(const Point& point, const Weight& weight_of) const;
   void sweep();
   void reach(std::int32_t triangle);
-  std::array<int, 4> whole_cells(const Vec2& min, const Vec2& max) const;
   void cut(std::int32_t triangle);
   void build_grid();
-  int cell_x(double x) const;
-  int cell_y(double y) const;
 
   const std::vector<Vec3>& positions_;
   const std::vector<Triangle>& triangles_;
   double cell_;
   double level_ = -1e300;
-  // Cells that triangles between the last two levels reach, seen from above: those with the present
-  // number. The box is around all of them.
-  Box2 whole_, swept_;
-  double whole_cell_ = 0;
-  int whole_nx_ = 0, whole_ny_ = 0;
+  // Cells over the whole object that triangles between the last two levels reach: those with the
+  // present number. The box is around all of them.
+  Cells whole_;
+  Box2 swept_;
   std::vector<std::uint32_t> reached_;
   std::uint32_t raises_ = 0;
   std::vector<std::int32_t> by_bottom_;  // triangles by lowest corner
   std::size_t next_ = 0;                 // first of by_bottom_ that is still above the water
   std::vector<std::int32_t> active_;     // triangles that reach from below to above the level
   std::vector<Segment> segments_;
-  Vec2 grid_origin_ = Vec2::Zero();
-  int grid_nx_ = 0, grid_ny_ = 0;
+  Cells grid_;  // over the segments
   std::vector<std::int32_t> grid_begin_;
   std::vector<std::int32_t> grid_items_;
 };

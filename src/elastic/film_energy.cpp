@@ -88,7 +88,7 @@ std::vector<std::int32_t> FilmEnergy::set_flat_rest(const VertexVector& place, d
   grid_.to_grid(place, place_);
   const kernels::Elements elements = this->elements();
   std::atomic<std::int64_t> small = 0;
-  grid_.for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  grid_.layout().for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     small += kernels::best().rest_shapes(elements, begin, end, place_, film_.data(),
                                          flat_area_.data(), least_share, gradient, area_.data());
   });
@@ -102,7 +102,7 @@ std::vector<std::int32_t> FilmEnergy::overstretched(const GridField& u, double l
   const kernels::Elements elements = this->elements();
   flags_.resize(grid_.elements());
   std::atomic<bool> any = false;
-  grid_.for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  grid_.layout().for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     kernels::best().overstretched(elements, begin, end, u, limit, flags_.data());
     const auto first = grid_.layout().place(0, int(begin)),
                last = grid_.layout().place(0, int(end));
@@ -147,7 +147,7 @@ double FilmEnergy::value(const GridField& u) const {
   const kernels::Elements elements = this->elements();
   // By the first row of a part, so that they are added up in the same order on any threads.
   std::vector<double> part(std::size_t(elements.ny), 0.0);
-  grid_.for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  grid_.layout().for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     std::vector<double> columns(std::size_t(elements.nx), 0.0);
     kernels::best().energy(elements, begin, end, u, columns.data());
     for (const double column : columns) part[std::size_t(begin)] += column;
@@ -159,7 +159,7 @@ std::int64_t FilmEnergy::gradient(const GridField& u, const GridArray<double>& m
                                   GridField& out) const {
   const kernels::Elements elements = this->elements();
   std::atomic<std::int64_t> turned_over = 0;
-  grid_.for_rows(elements.ny, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  grid_.layout().for_rows(elements.ny, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     GridArray<double> scratch(std::size_t(kernels::kScratchRows * elements.stride));
     turned_over +=
         kernels::best().gradient(elements, begin, end, u, mask.data(), out, scratch.data());
@@ -215,7 +215,7 @@ void FilmEnergy::hessian(const VertexVector& u, bool definite, BlockMatrix& out)
 bool FilmEnergy::any_inverted(const GridField& u) const {
   const kernels::Elements elements = this->elements();
   std::atomic<bool> found = false;
-  grid_.for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  grid_.layout().for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     if (kernels::best().turned_over(elements, begin, end, u) > 0) found = true;
   });
   return found;

@@ -69,16 +69,6 @@ void FilmGrid::place_triangles(const FilmMesh& mesh) {
   }
 }
 
-void FilmGrid::for_rows(int rows,
-                        const std::function<void(std::ptrdiff_t, std::ptrdiff_t)>& body) const {
-  constexpr std::ptrdiff_t kNodesPerTask = 3000;
-  const std::ptrdiff_t tasks = even_tasks(layout_.stride * rows, kNodesPerTask);
-  parallel_for(std::size_t(rows), std::size_t((rows + tasks - 1) / tasks),
-               [&](std::size_t begin, std::size_t end) {
-                 body(std::ptrdiff_t(begin), std::ptrdiff_t(end));
-               });
-}
-
 void FilmGrid::to_grid(const VertexVector& from, GridField& to) const {
   parallel_for(from.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
     double *x = to.x.data(), *y = to.y.data();

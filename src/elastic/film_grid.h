@@ -4,9 +4,9 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
+#include "base/parallel.h"
 #include "elastic/kernels.h"
 #include "film/film.h"
 
@@ -25,6 +25,18 @@ struct GridLayout {
   // Of an array over the grid.
   std::size_t entries() const { return std::size_t(stride) * (std::size_t(ny) + 2) + kLooseEnds; }
 
+  // Calls body(begin, end) for parts of `rows` rows of the grid, in parallel where that pays: in an
+  // even number of parts, which two threads share evenly.
+  template <typename Body>
+  void for_rows(int rows, const Body& body) const {
+    const std::ptrdiff_t pairs = (stride * rows + kNodesPerTask) / (2 * kNodesPerTask);
+    const std::ptrdiff_t tasks = pairs > 0 ? 2 * pairs : 1;
+    parallel_for(std::size_t(rows), std::size_t((rows + tasks - 1) / tasks),
+                 [&](std::size_t begin, std::size_t end) {
+                   body(std::ptrdiff_t(begin), std::ptrdiff_t(end));
+                 });
+  }
+
   int nx, ny;
   std::ptrdiff_t groups;  // of kernels::kLanes nodes, per row
   std::ptrdiff_t stride;
@@ -32,14 +44,9 @@ struct GridLayout {
  private:
   // The nodes behind the last and before the first are asked for as well.
   static constexpr std::size_t kLooseEnds = 2 * kernels::kLanes;
+  // What is worth a thread's while.
+  static constexpr std::ptrdiff_t kNodesPerTask = 3000;
 };
-
-// How many tasks to make of work on so many nodes, with about nodes_per_task each. Two threads
-// share an even number evenly.
-constexpr std::ptrdiff_t even_tasks(std::ptrdiff_t nodes, std::ptrdiff_t nodes_per_task) {
-  const std::ptrdiff_t pairs = (nodes + nodes_per_task) / (2 * nodes_per_task);
-  return pairs > 0 ? 2 * pairs : 1;
-}
 
 // An array over a grid, zero at first, at addresses that registers are loaded from at once.
 template <typename Real>
@@ -128,9 +135,6 @@ class FilmGrid {
   // Corner 0 of the triangle's element is the triangle's corner of this number, and so on round.
   int first_corner(std::size_t t) const { return first_corner_[t]; }
   const GridArray<double>& rising(int parity) const { return rising_[std::size_t(parity)]; }
-
-  // Calls body(begin, end) for parts of `rows` rows of the grid, in parallel where that pays.
-  void for_rows(int rows, const std::function<void(std::ptrdiff_t, std::ptrdiff_t)>& body) const;
 
   // Of a loop over vertices with little to do for each.
   static constexpr std::size_t kVertexGrain = 5120;

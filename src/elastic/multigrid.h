@@ -44,12 +44,7 @@ class GridOperator {
   // Calls body(begin, end) over the grid's rows, in parallel where that pays.
   template <typename Body>
   void for_rows(const Body& body) const {
-    const std::ptrdiff_t tasks = even_tasks(layout_.stride * ny(), kNodesPerTask);
-    const auto rows_per_task = (ny() + tasks - 1) / tasks;
-    parallel_for(std::size_t(ny()), std::size_t(rows_per_task),
-                 [&](std::size_t begin, std::size_t end) {
-                   body(std::ptrdiff_t(begin), std::ptrdiff_t(end));
-                 });
+    layout_.for_rows(ny(), body);
   }
 
   void multiply(const GridVector& x, GridVector& out) const;
@@ -66,9 +61,6 @@ class GridOperator {
   const float* entry(int e) const { return entries_.data() + std::size_t(e) * layout_.entries(); }
   float* entry(int e) { return entries_.data() + std::size_t(e) * layout_.entries(); }
   kernels::Stencil stencil() const;
-
-  // What is worth a thread's while.
-  static constexpr std::ptrdiff_t kNodesPerTask = 3000;
 
   GridLayout layout_;
   const kernels::Table& kernels_;

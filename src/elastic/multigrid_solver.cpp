@@ -86,7 +86,7 @@ class MultigridSolver : public LinearSolver {
     const kernels::Elements elements = energy.elements();
     differs_.resize(film_.elements(), 0);
     std::vector<std::vector<std::int32_t>> changed(std::size_t(mesh_.ny));  // by row of cells
-    film_.for_rows(mesh_.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    film_.layout().for_rows(mesh_.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       for (auto row = begin; row < end; ++row) {
         int& wait = look_in_[std::size_t(row)];
         if (!all && !turned && --wait > 0) continue;

@@ -187,7 +187,7 @@ Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
   for_each_row(inks.height_px, [&](int y) {
     for (int x = 0; x < inks.width_px; ++x) {
       const std::uint8_t* laid = inks.pixel(x, y);
-      if (std::all_of(laid, laid + 4, [](std::uint8_t ink) { return ink == 0; })) {
+      if (is_blank(laid)) {
         std::copy(blank.begin(), blank.end(), image.pixel(x, y));
         continue;
       }

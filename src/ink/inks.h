@@ -41,5 +41,9 @@ struct InkImage {
 // To the nearest of 256 amounts; clamps.
 std::array<std::uint8_t, 4> to_bytes(const Inks& inks);
 Inks from_bytes(const std::uint8_t* cmyk);
+// Whether there is no ink in it, as on most of a sheet.
+inline bool is_blank(const std::uint8_t* cmyk) {
+  return (cmyk[0] | cmyk[1] | cmyk[2] | cmyk[3]) == 0;
+}
 
 }  // namespace hydrodip

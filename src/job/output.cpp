@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -41,11 +40,10 @@ ReportInk ink_amounts(const InkImage& inks, double limit) {
   float most = 0;
   std::array<std::uint64_t, 4> sum{};
   for (std::size_t i = 0; i < inks.cmyk.size(); i += 4) {
-    std::uint32_t all = 0;
-    std::memcpy(&all, &inks.cmyk[i], sizeof all);
-    if (all == 0) continue;  // most of a sheet
-    most = std::max(most, from_bytes(inks.cmyk.data() + i).density());
-    for (std::size_t k = 0; k < 4; ++k) sum[k] += inks.cmyk[i + k];
+    const std::uint8_t* laid = inks.cmyk.data() + i;
+    if (is_blank(laid)) continue;
+    most = std::max(most, from_bytes(laid).density());
+    for (std::size_t k = 0; k < 4; ++k) sum[k] += laid[k];
   }
   amounts.density_max = double(most);
   const double full = 255.0 * std::max(1.0, 0.25 * double(inks.cmyk.size()));

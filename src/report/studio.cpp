@@ -498,7 +498,6 @@ LitView::LitView(const Studio& studio, const Camera& camera, int width_px, int h
                  RunContext& context)
     : impl_(new Impl{Stage(studio, camera, width_px, height_px, context)}) {}
 LitView::~LitView() = default;
-LitView::LitView(LitView&&) noexcept = default;
 
 ViewPair LitView::show(const Appearance& appearance) const {
   return Painter(impl_->stage, appearance).run();

@@ -34,7 +34,6 @@ class LitView {
   LitView(const Studio& studio, const Camera& camera, int width_px, int height_px,
           RunContext& context);
   ~LitView();
-  LitView(LitView&&) noexcept;
 
   ViewPair show(const Appearance& appearance) const;
 
