@@ -36,6 +36,14 @@ constexpr double kFailedSteps = 0.02;
 // pixels to a millimetre.
 constexpr double kRoundsDpi = 150;
 
+// Flaps are foreseen on film of so many times fewer triangles, but at least so many, in steps that
+// are so many times longer, up to a length.
+constexpr int kFewer = 4;
+constexpr int kFewestElements = 2000;
+constexpr double kLonger = 4;
+constexpr double kLongestStep_mm = 1;
+constexpr double kCoarseDpi = 75;
+
 // Of the film that lies on the object in both. What floats on or has torn off leaves no trace.
 double mean_way(const DippedFilm& from, const DippedFilm& to) {
   std::vector<std::uint8_t> counts(from.position.size(), 0);
@@ -126,13 +134,8 @@ FilmInk ink_for(const DippedObject& dipped, const FilmMap& map, const ColorModel
   return ink;
 }
 
-void warn_unsettled(const InkResult& result, RunContext& context) {
-  if (result.settled || result.rounds.size() < 2) return;
-  context.warn(fmt::format(
-      "after {} rounds the ink still moves the film by {:.2g} mm on average (settled: {:g} mm); "
-      "raise ink.rounds_max, or film.elements if it does not help",
-      result.rounds.size(), result.rounds.back().change_mm, kSettled_mm));
-}
+// What a round has led to.
+enum class Outcome { kGoesOn, kSettled, kUnsettled, kHopeless, kFailed };
 
 // Dip, print, stiffen, and again.
 class InkRounds {
@@ -143,60 +146,53 @@ class InkRounds {
         film_(film),
         model_(model),
         config_(config),
-        rounds_config_(config),
         times_(times),
         context_(context),
         options_(config.dip) {
-    rounds_config_.print.dpi = std::min(config.print.dpi, kRoundsDpi);
+    config_.print.dpi = std::min(config.print.dpi, kRoundsDpi);
   }
 
-  InkResult run() {
-    while (dip()) {
-      result_.ink = times_.measure("ink", [&] { return print(rounds_config_, false); });
-      judge();
-      if (ended()) break;
-      stiffen();
-    }
-    if (is_hopeless())
-      context_.warn(fmt::format(
-          "this film tears into flaps that fall another way with every change of its ink (by "
-          "{:.1f} mm on average): colours will not land where they should; turn steep sides down "
-          "or dip less deep",
-          change(0)));
-    else
-      warn_unsettled(result_, context_);
-    finish();
-    return std::move(result_);
+  // Of the first film; blank unless told.
+  void begin_with(std::vector<double> modulus) { options_.modulus = std::move(modulus); }
+
+  Outcome next() {
+    if (number() > 0) stiffen();
+    if (!dip()) return Outcome::kFailed;
+    ink_ = times_.measure("ink", [&] { return print(config_, false); });
+    judge();
+    return outcome();
   }
 
- private:
-  int rounds() const { return int(result_.rounds.size()); }
+  const std::vector<InkRound>& rounds() const { return rounds_; }
 
-  // False if the film cannot be dipped with its ink: then the last dip stays.
-  bool dip() {
-    if (rounds() == 0) {
-      dip_again(dipped_, film_, options_, times_, context_);
-      return true;
-    }
-    before_ = dipped_.film();
-    options_.failed_share_max = kFailedSteps;
-    try {
-      dip_again(dipped_, film_, options_, times_, context_);
-    } catch (const DipError&) {
-      context_.warn(
-          "the dip could not be computed again with its ink: film torn or stretched this far finds "
-          "no equilibrium; turn steep sides down or dip less, then print anew");
-      return false;
-    }
-    return true;
+  // That the ink of the last round gives to a film.
+  std::vector<double> modulus_of(const FilmMesh& film) const {
+    return film_modulus(film, ink_.inking.inks, sheet_raster(config_, config_.print.dpi),
+                        {config_.ink.stiffness_ratio, config_.ink.filter_mm});
   }
 
   // What to print on the film as it was dipped last; `all`: wherever it lies on the object.
-  FilmInk print(const JobConfig& config, bool all) {
+  FilmInk print(const JobConfig& config, bool all) const {
     if (!outline_.is_kept()) return ink_for(dipped_, *dipped_.map, model_, config, context_);
     const DippedFilm kept = outline_.applied(dipped_.film(), *dipped_.surface, all);
     const FilmMap map(dipped_.object(), *dipped_.surface, kept);
     return ink_for(dipped_, map, model_, config, context_);
+  }
+
+ private:
+  int number() const { return int(rounds_.size()); }
+
+  // False if the film cannot be dipped with its ink: then the last dip stays.
+  bool dip() {
+    if (number() > 0) before_ = dipped_.film();
+    options_.failed_share_max = options_.modulus.empty() ? 1 : kFailedSteps;
+    try {
+      dip_again(dipped_, film_, options_, times_, context_);
+    } catch (const DipError&) {
+      if (options_.modulus.empty()) throw;
+      return false;
+    }
+    return true;
   }
 
   // Records the round.
@@ -204,41 +200,35 @@ class InkRounds {
     InkRound round;
     round.tears_kept = !options_.tear_levels.empty();
     if (before_) round.change_mm = mean_way(*before_, dipped_.film());
-    round.printed_mm2 = printed_area_mm2(result_.ink.wanted, rounds_config_.print.dpi);
+    round.printed_mm2 = printed_area_mm2(ink_.wanted, config_.print.dpi);
     round.mean_modulus = mean_of(options_.modulus);
     round.dip = dipped_.dip.statistics;
-    result_.rounds.push_back(round);
+    rounds_.push_back(round);
     if (before_)
-      context_.log(fmt::format("ink, round {}: the film moved by {:.2g} mm on average", rounds(),
+      context_.log(fmt::format("ink, round {}: the film moved by {:.2g} mm on average", number(),
                                round.change_mm));
   }
 
   double change(int rounds_ago) const {
-    return rounds() > rounds_ago ? result_.rounds.rbegin()[rounds_ago].change_mm : 0;
+    return number() > rounds_ago ? rounds_.rbegin()[rounds_ago].change_mm : 0;
   }
 
-  bool is_hopeless() const { return rounds() == kFreeRounds && change(0) > kHopeless_mm; }
-
-  bool ended() {
-    const bool iterate = ink_matters(config_) && config_.ink.rounds_max > 1;
-    result_.settled = !iterate || (before_ && change(0) < kSettled_mm);
-    if (result_.settled || rounds() >= config_.ink.rounds_max) return true;
+  Outcome outcome() const {
+    if (before_ && change(0) < kSettled_mm) return Outcome::kSettled;
+    if (number() == kFreeRounds && change(0) > kHopeless_mm) return Outcome::kHopeless;
+    if (number() >= config_.ink.rounds_max) return Outcome::kUnsettled;
     // What does not settle costs a dip each round.
-    if (is_hopeless()) return true;
-    return rounds() > kFreeRounds + 2 && change(0) > kLeastProgress * change(2);
+    const bool stands = number() > kFreeRounds + 2 && change(0) > kLeastProgress * change(2);
+    return stands ? Outcome::kUnsettled : Outcome::kGoesOn;
   }
 
   // The film to dip next.
   void stiffen() {
-    if (rounds() == kFreeRounds) {
+    if (number() == kFreeRounds) {
       options_.tear_levels = dipped_.film().tear_level;
       outline_.keep(dipped_.film());
     }
-    const SheetRaster raster = sheet_raster(rounds_config_, rounds_config_.print.dpi);
-    std::vector<double> modulus = times_.measure("stiffness", [&] {
-      return film_modulus(film_, result_.ink.inking.inks, raster,
-                          {config_.ink.stiffness_ratio, config_.ink.filter_mm});
-    });
+    std::vector<double> modulus = times_.measure("stiffness", [&] { return modulus_of(film_); });
     options_.modulus = options_.modulus.empty() ? modulus : mixed(modulus);
   }
 
@@ -261,8 +251,102 @@ class InkRounds {
     return {next.begin(), next.end()};
   }
 
-  void finish() {
-    result_.ink = times_.measure("invert", [&] { return print(config_, true); });
+  DippedObject& dipped_;
+  const FilmMesh& film_;
+  const ColorModel& model_;
+  JobConfig config_;  // with the rounds' resolution
+  StageTimes& times_;
+  RunContext& context_;
+  DipOptions options_;  // of the next dip
+  std::optional<DippedFilm> before_;
+  PrintedOutline outline_;
+  FixedPoint mixer_{kMixed};
+  FilmInk ink_;  // of the last round
+  std::vector<InkRound> rounds_;
+};
+
+// The rounds and the print that they lead to.
+class InkSettling {
+ public:
+  InkSettling(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
+              const JobConfig& config, StageTimes& times, RunContext& context)
+      : dipped_(dipped),
+        film_(film),
+        model_(model),
+        config_(config),
+        times_(times),
+        context_(context) {}
+
+  InkResult run() {
+    InkRounds rounds(dipped_, film_, model_, config_, times_, context_);
+    const Outcome outcome = settle(rounds);
+    result_.rounds = rounds.rounds();
+    result_.settled = outcome == Outcome::kSettled;
+    warn(outcome);
+    finish(rounds);
+    return std::move(result_);
+  }
+
+ private:
+  Outcome settle(InkRounds& rounds) {
+    if (!ink_matters(config_) || config_.ink.rounds_max == 1) {
+      rounds.next();
+      return Outcome::kSettled;
+    }
+    if (const auto modulus = modulus_of_flaps()) {
+      rounds.begin_with(*modulus);
+      if (rounds.next() == Outcome::kFailed) {
+        rounds.begin_with({});
+        rounds.next();
+      }
+      return Outcome::kHopeless;
+    }
+    Outcome outcome = Outcome::kGoesOn;
+    while (outcome == Outcome::kGoesOn) outcome = rounds.next();
+    return outcome;
+  }
+
+  // Two rounds on coarser film cost a small part of one dip. If they tell that the film tears into
+  // flaps that never settle: what their ink makes of the film itself.
+  std::optional<std::vector<double>> modulus_of_flaps() {
+    JobConfig config = config_;
+    config.film.elements /= kFewer;
+    if (!(config.dip.material.tear_stretch > 0) || config.film.elements < kFewestElements)
+      return std::nullopt;
+    const double step_mm = config.dip.step_mm;
+    config.dip.step_mm = std::min(kLonger * step_mm, std::max(step_mm, kLongestStep_mm));
+    config.print.dpi = std::min(config.print.dpi, kCoarseDpi);
+    const FilmMesh film = make_film_mesh(config.film);
+    InkRounds rounds(dipped_, film, model_, config, times_, context_);
+    Outcome outcome = rounds.next();
+    const std::vector<std::uint8_t>& torn = dipped_.film().torn;
+    const bool tears = std::find(torn.begin(), torn.end(), 1) != torn.end();
+    if (tears) outcome = rounds.next();
+    result_.coarse_rounds = rounds.rounds();
+    if (outcome != Outcome::kHopeless) return std::nullopt;
+    return rounds.modulus_of(film_);
+  }
+
+  void warn(Outcome outcome) {
+    if (outcome == Outcome::kFailed)
+      context_.warn(
+          "the dip could not be computed again with its ink: film torn or stretched this far finds "
+          "no equilibrium; turn steep sides down or dip less, then print anew");
+    else if (outcome == Outcome::kHopeless)
+      context_.warn(fmt::format(
+          "this film tears into flaps that fall another way with every change of its ink (by "
+          "{:.1f} mm on average): colours will not land where they should; turn steep sides down "
+          "or dip less deep",
+          result_.last_change_mm()));
+    else if (outcome != Outcome::kSettled && result_.rounds.size() > 1)
+      context_.warn(fmt::format(
+          "after {} rounds the ink still moves the film by {:.2g} mm on average (settled: {:g} "
+          "mm); raise ink.rounds_max, or film.elements if it does not help",
+          result_.rounds.size(), result_.last_change_mm(), kSettled_mm));
+  }
+
+  void finish(const InkRounds& rounds) {
+    result_.ink = times_.measure("invert", [&] { return rounds.print(config_, true); });
     FilmInk& ink = result_.ink;
     const SheetRaster raster = sheet_raster(config_, config_.print.dpi);
     ink.on_object =
@@ -274,17 +358,17 @@ class InkRounds {
   const FilmMesh& film_;
   const ColorModel& model_;
   const JobConfig& config_;
-  JobConfig rounds_config_;
   StageTimes& times_;
   RunContext& context_;
-  DipOptions options_;  // of the next dip
-  std::optional<DippedFilm> before_;
-  PrintedOutline outline_;
-  FixedPoint mixer_{kMixed};
   InkResult result_;
 };
 
 }  // namespace
+
+double InkResult::last_change_mm() const {
+  const std::vector<InkRound>& last = rounds.size() > 1 ? rounds : coarse_rounds;
+  return last.empty() ? 0 : last.back().change_mm;
+}
 
 std::unique_ptr<ColorModel> color_model(const JobConfig& config) {
   std::filesystem::path file = config.ink.profile;
@@ -307,7 +391,7 @@ std::unique_ptr<ColorModel> color_model(const JobConfig& config) {
 
 InkResult settle_ink(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
                      const JobConfig& config, StageTimes& times, RunContext& context) {
-  return InkRounds(dipped, film, model, config, times, context).run();
+  return InkSettling(dipped, film, model, config, times, context).run();
 }
 
 }  // namespace hydrodip

@@ -37,12 +37,19 @@ inline constexpr double kSettled_mm = 1e-4;
 struct InkResult {
   FilmInk ink;  // of the last round
   Reach reach;
+  std::vector<InkRound> coarse_rounds;  // on coarser film, before the others
   std::vector<InkRound> rounds;
   bool settled = false;
+
+  // The mean way that the last round moved the film; if the film itself was dipped only once, the
+  // coarse film.
+  double last_change_mm() const;
 };
 
 // Dips until ink and film agree, at most ink.rounds_max times; the last dip is left in `dipped`.
-// Warns if it does not settle.
+// Where film tears, the first two rounds are made on coarser film before: if they tell that ink and
+// film never agree, the film itself is dipped once. Warns where they do not agree. `film` is
+// config.film's.
 InkResult settle_ink(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
                      const JobConfig& config, StageTimes& times, RunContext& context);
 

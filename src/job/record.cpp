@@ -63,13 +63,14 @@ std::vector<ReportFigure> ink_figures(const InkRound& round, bool first) {
 std::vector<ReportRound> rounds(const JobRecord& record) {
   if (record.ink == nullptr) return {{"dip", 1, dip_figures(record.dipped.dip.statistics)}};
   std::vector<ReportRound> list;
-  for (const InkRound& round : record.ink->rounds)
-    list.push_back({"dip", int(list.size()) + 1, dip_figures(round.dip)});
-  int number = 0;
-  for (const InkRound& round : record.ink->rounds) {
-    ++number;
-    list.push_back({"ink", number, ink_figures(round, number == 1)});
-  }
+  const auto add = [&](const std::string& film, const std::vector<InkRound>& rounds) {
+    for (std::size_t n = 0; n < rounds.size(); ++n)
+      list.push_back({film + "dip", int(n) + 1, dip_figures(rounds[n].dip)});
+    for (std::size_t n = 0; n < rounds.size(); ++n)
+      list.push_back({film + "ink", int(n) + 1, ink_figures(rounds[n], n == 0)});
+  };
+  add("coarse ", record.ink->coarse_rounds);
+  add("", record.ink->rounds);
   return list;
 }
 
@@ -80,9 +81,10 @@ void add_ink(const JobRecord& record, std::vector<ReportFigure>& figures) {
   figures.insert(
       figures.end(),
       {{"ink_rounds", "Rounds until the ink settled", std::int64_t(record.ink->rounds.size()), ""},
+       {"ink_coarse_rounds", "Rounds on coarser film before them",
+        std::int64_t(record.ink->coarse_rounds.size()), ""},
        {"ink_settled", "Ink settled", record.ink->settled, ""},
-       {"ink_last_change_mm", "Last mean change of the film", record.ink->rounds.back().change_mm,
-        "mm"},
+       {"ink_last_change_mm", "Last mean change of the film", record.ink->last_change_mm(), "mm"},
        {"lightened", "Factor on all inks (gamut.policy=scale)", record.ink->ink.inking.lightened,
         ""},
        {"out_of_gamut_mm2", "Colours that cannot be reached", reach.out_of_reach_mm2, "mm2"},

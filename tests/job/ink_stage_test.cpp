@@ -1,0 +1,133 @@
+// Rounds of ink and film: when they settle, and when they are told never to.
+#include "job/ink_stage.h"
+
+#include <gtest/gtest.h>
+
+#include "contains.h"
+#include "job/prepare.h"
+#include "object/pose.h"
+#include "object/samples.h"
+
+namespace hydrodip {
+namespace {
+
+// Film on 120 x 120 mm, of so many triangles.
+JobConfig quick(int elements) {
+  JobConfig config;
+  config.film.width_mm = config.film.height_mm = 120;
+  config.film.elements = elements;
+  config.dip.step_mm = 0.5;
+  config.print.dpi = 72;
+  config.print.samples = 1;
+  return config;
+}
+
+// Adds the sample sphere, squeezed to these half axes, around a centre.
+void add_ball(Object& object, const Vec3& centre, const Vec3& half_axes) {
+  const Object ball = make_sample("sphere");
+  const Box3 bounds = ball.bounds();
+  const Vec3 middle = 0.5 * (bounds.min + bounds.max);
+  const auto first = std::int32_t(object.positions.size());
+  for (const Vec3& p : ball.positions)
+    object.positions.push_back(
+        centre + (2 * (p - middle)).cwiseQuotient(bounds.size()).cwiseProduct(half_axes));
+  for (const Triangle& t : ball.triangles)
+    object.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  const auto append = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  append(object.material_of, ball.material_of);
+  append(object.uvs, ball.uvs);
+  object.materials = ball.materials;
+  object.textures = ball.textures;
+}
+
+// Film that has torn between the legs hangs on the body in flaps.
+Object beast_on_four_legs() {
+  Object object;
+  for (const double x : {-14.0, 14.0})
+    for (const double y : {-7.0, 7.0}) add_ball(object, {x, y, 10}, {4, 4, 10});
+  add_ball(object, {0, 0, 26}, {24, 14, 13});
+  return object;
+}
+
+struct Settled {
+  std::unique_ptr<DippedObject> dipped;
+  InkResult result;
+  std::vector<std::string> warnings;
+};
+
+Settled settled(Object object, const JobConfig& config) {
+  RunContext context;
+  StageTimes times;
+  LoadedObject loaded;
+  apply_pose(object, pose_matrix(object, {}));
+  loaded.object = std::move(object);
+  Settled all{undipped(std::move(loaded)), {}, {}};
+  const FilmMesh film = make_film_mesh(config.film);
+  all.result = settle_ink(*all.dipped, film, *color_model(config), config, times, context);
+  all.warnings = context.warnings();
+  return all;
+}
+
+bool warned(const Settled& all, const std::string& part) {
+  for (const std::string& warning : all.warnings)
+    if (contains(warning, part)) return true;
+  return false;
+}
+
+// Film this coarse has none that is coarser to ask, so it tells by itself.
+TEST(InkRoundsSlow, FlapsAreForeseenAsTheyFall) {
+  const Settled itself = settled(beast_on_four_legs(), quick(7900));
+  EXPECT_TRUE(itself.result.coarse_rounds.empty());
+  EXPECT_EQ(itself.result.rounds.size(), 2U);
+  EXPECT_TRUE(warned(itself, "flaps"));
+
+  const Settled foreseen = settled(beast_on_four_legs(), quick(12000));
+  EXPECT_EQ(foreseen.result.coarse_rounds.size(), 2U);
+  ASSERT_EQ(foreseen.result.rounds.size(), 1U);
+  EXPECT_TRUE(warned(foreseen, "flaps"));
+  EXPECT_FALSE(foreseen.result.settled);
+  EXPECT_GT(foreseen.result.last_change_mm(), 2);
+  // The one dip knows the ink.
+  EXPECT_GT(foreseen.result.rounds.front().mean_modulus, 2);
+  EXPECT_EQ(foreseen.dipped->film().mesh.triangles.size(),
+            make_film_mesh(quick(12000).film).triangles.size());
+}
+
+TEST(InkRoundsSlow, TornFilmThatSettlesBeginsBlank) {
+  JobConfig config = quick(8000);
+  config.dip.material.tear_stretch = 1.2;
+  const Settled all = settled(make_sample("ellipsoid"), config);
+  EXPECT_EQ(all.result.coarse_rounds.size(), 2U);
+  ASSERT_GT(all.result.rounds.size(), 2U);
+  EXPECT_EQ(all.result.rounds.front().mean_modulus, 1);
+  EXPECT_TRUE(all.result.settled);
+  EXPECT_LT(all.result.last_change_mm(), kSettled_mm);
+  EXPECT_FALSE(warned(all, "flaps"));
+  // What coarser film said is about what this one does.
+  EXPECT_NEAR(all.result.coarse_rounds.back().change_mm / all.result.rounds[1].change_mm, 1, 0.7);
+}
+
+TEST(InkRounds, FilmThatNeverTearsNeedsNoForesight) {
+  JobConfig config = quick(8000);
+  config.dip.step_mm = 2;
+  config.dip.material.tear_stretch = 0;
+  config.ink.rounds_max = 2;
+  const Settled all = settled(make_sample("pyramid"), config);
+  EXPECT_TRUE(all.result.coarse_rounds.empty());
+  EXPECT_EQ(all.result.rounds.size(), 2U);
+}
+
+TEST(InkRounds, WholeFilmIsLeftAfterOneCoarseRound) {
+  JobConfig config = quick(8000);
+  config.dip.step_mm = 2;
+  config.dip.depth_mm = 8;
+  config.ink.rounds_max = 2;
+  const Settled all = settled(make_sample("sphere"), config);
+  EXPECT_EQ(all.result.coarse_rounds.size(), 1U);
+  EXPECT_EQ(all.result.rounds.size(), 2U);
+}
+
+}  // namespace
+}  // namespace hydrodip
