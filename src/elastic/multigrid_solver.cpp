@@ -50,7 +50,8 @@ class MultigridSolver : public LinearSolver {
     linearize(energy, u, turned, all);
     compute_rows(energy);
     grid_.update(all);
-    restart_ = true;
+    // Directions stay conjugate enough while it is the same film that moves.
+    if (moved_mm >= kAnyChange) restart_ = true;
   }
 
   std::optional<SearchDirection> direction(const GridField& gradient) override {

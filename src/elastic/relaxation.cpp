@@ -14,8 +14,11 @@ namespace {
 constexpr int kMaxHalvings = 30;
 // A step that still turns a triangle over after so many is blocked by it.
 constexpr int kBlockedHalvings = 8;
-// Share of the slope that may be left at the end of a whole step.
+// Share of the slope that may be left at the end of a step that is taken without further question.
 constexpr double kFlattened = 0.5;
+// Where more is left, so many other lengths are tried, each at most so many times the one before.
+constexpr int kMostSecants = 2;
+constexpr double kLongestSecant = 8;
 // What is left of an error after one iteration, until the second shows.
 constexpr double kFirstContraction = 0.2;
 
@@ -73,15 +76,21 @@ class Descent {
       }
       if (result_.iterations > 1) contraction = std::min(1.0, update_ / result_.last_update_mm);
       result_.last_update_mm = update_;
+      if (result_.iterations == 1) set_tolerance();
       // What the next iterations would still change.
-      result_.converged = update_ * contraction <= options_.tolerance_mm;
+      result_.converged = update_ * contraction <= tolerance_mm_;
       if (result_.converged && take_last_step()) return result_;
-      if (!take_whole_step() && !search()) return result_;
+      if (!take_flat_step() && !search()) return result_;
     }
     return result_;
   }
 
  private:
+  void set_tolerance() {
+    tolerance_mm_ =
+        std::max(options_.tolerance_mm, options_.tolerance_per_way2 * update_ * update_);
+  }
+
   // With the exact Hessian. With the film held at its rim that one is definite as long as no
   // triangle shrinks to about half its size (docs/model.md), although single triangles' are not;
   // where it fails, the sum of the triangles' definite parts takes its place from there on.
@@ -124,19 +133,42 @@ class Descent {
   }
 
   // The energy is convex enough along the way if its slope has become small at the end: then the
-  // step is taken without asking for the energy itself.
-  bool take_whole_step() {
-    if (energy_.gradient(trial_, mask_, trial_gradient_) > 0) return false;
-    const kernels::Stride end_of_step =
-        over_parts(entries_, [&](std::size_t begin, std::size_t end, kernels::Stride& sums) {
-          sums.slope = direction_.length *
-                       kernels::best().dot_field(begin, end, trial_gradient_, direction_.way);
-        });
-    if (std::abs(end_of_step.slope) > kFlattened * slope_) return false;
+  // step is taken without asking for the energy itself. If it has not, the slopes tell a better
+  // length: film that hangs by little is far softer or stiffer along some ways than it was when the
+  // solver looked.
+  bool take_flat_step() {
+    struct Place {
+      double step, slope;
+    };
+    Place before{0, 1}, beyond{0, 0};  // where the energy still falls, and where it rises
+    double step = 1;
+    for (int secants = 0;; ++secants) {
+      if (energy_.gradient(trial_, mask_, trial_gradient_) > 0) return false;
+      const double slope = slope_left();
+      if (std::abs(slope) <= kFlattened) break;
+      if (secants == kMostSecants) return false;
+      (slope > 0 ? before : beyond) = {step, slope};
+      if (beyond.step > 0)
+        step = before.step +
+               (beyond.step - before.step) * before.slope / (before.slope - beyond.slope);
+      else
+        step *= slope < 1 ? std::min(1 / (1 - slope), kLongestSecant) : kLongestSecant;
+      move_to(step);
+    }
     u_.swap(trial_);
     gradient_.swap(trial_gradient_);
-    moved_mm_ += update_;
+    result_.last_update_mm = step * update_;
+    moved_mm_ += result_.last_update_mm;
     return true;
+  }
+
+  // Of the energy along the direction at trial_, as a share of that at u_.
+  double slope_left() const {
+    const kernels::Stride sums =
+        over_parts(entries_, [&](std::size_t begin, std::size_t end, kernels::Stride& part) {
+          part.slope = kernels::best().dot_field(begin, end, trial_gradient_, direction_.way);
+        });
+    return direction_.length * sums.slope / slope_;
   }
 
   // Halves the step until the energy falls; far from the minimum, where the exact Hessian may
@@ -177,6 +209,7 @@ class Descent {
   SearchDirection direction_{};
   const GridArray<double>& mask_;
   bool definite_ = false;
+  double tolerance_mm_ = 0;
   double slope_ = 0;                            // of the energy against the direction
   double update_ = 0;                           // longest move in the direction, mm
   double moved_mm_ = LinearSolver::kAnyChange;  // since the solver was updated

@@ -234,29 +234,42 @@ TEST(LinearSolver, BothSolversFindTheMinimum) {
   }
 }
 
-// Uniform stretching by moving the rim: the linear map is the exact minimiser for every ratio.
-TEST(Relaxation, RecoversALinearMapFromAnyStart) {
-  for (double nu : {0.0, 0.4}) {
-    RandomFilm film(11);
+// Even film whose rim is moved: the linear map is the exact minimiser for every Poisson's ratio.
+struct StretchedFilm : RandomFilm {
+  VertexVector minimum, start;
+
+  StretchedFilm() : RandomFilm(11), minimum(mesh.u) {
     Mat2 M;
     M << 0.9, 0.05, 0.05, 0.8;
-    VertexVector expected = film.mesh.u;
-    for (Vec2& p : expected) p = M * p;
-    for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
-      const Triangle& v = film.mesh.triangles[t];
-      film.modulus[t] = 1;
-      film.rest[t] = rest_triangle(film.mesh.u[std::size_t(v[0])], film.mesh.u[std::size_t(v[1])],
-                                   film.mesh.u[std::size_t(v[2])]);
+    for (Vec2& p : minimum) p = M * p;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Triangle& v = mesh.triangles[t];
+      modulus[t] = 1;
+      rest[t] = rest_triangle(mesh.u[std::size_t(v[0])], mesh.u[std::size_t(v[1])],
+                              mesh.u[std::size_t(v[2])]);
     }
+    start = minimum;
+    for (std::size_t v = 0; v < start.size(); ++v)
+      if (is_free[v]) start[v] += 0.1 * mesh.cell_mm * Vec2(std::sin(7.0 * double(v)), 0.5);
+  }
+  double error(const VertexVector& at) const {
+    double worst = 0;
+    for (std::size_t v = 0; v < at.size(); ++v)
+      worst = std::max(worst, (at[v] - minimum[v]).norm());
+    return worst;
+  }
+};
+
+TEST(Relaxation, RecoversALinearMapFromAnyStart) {
+  for (double nu : {0.0, 0.4}) {
+    const StretchedFilm film;
     const FilmEnergy energy = film.energy(nu);
-    VertexVector u = expected;
-    for (std::size_t v = 0; v < u.size(); ++v)
-      if (film.is_free[v]) u[v] += 0.1 * film.mesh.cell_mm * Vec2(std::sin(7.0 * double(v)), 0.5);
+    VertexVector u = film.start;
     const auto solver = make_multigrid_solver(film.mesh);
     const RelaxationResult result =
         Relaxation(energy, *solver).run(film.is_free, {.tolerance_mm = 1e-10}, u);
     EXPECT_TRUE(result.converged);
-    for (std::size_t v = 0; v < u.size(); ++v) EXPECT_LT((u[v] - expected[v]).norm(), 1e-7);
+    EXPECT_LT(film.error(u), 1e-7);
   }
 }
 
@@ -295,6 +308,63 @@ TEST(Relaxation, SaysWhichFilmWouldHaveToTurnOver) {
     EXPECT_FALSE(energy.any_inverted(energy.grid().field(u)));
     EXPECT_GT(u[centre].x(), 8);
   }
+}
+
+// Newton's steps, but so many times as long.
+class Misjudging : public LinearSolver {
+ public:
+  explicit Misjudging(double factor) : factor_(factor) {}
+  void update(const FilmEnergy& energy, const GridField& u,
+              const std::vector<std::uint8_t>& is_free, bool definite, double moved_mm) override {
+    newton_->update(energy, u, is_free, definite, moved_mm);
+  }
+  std::optional<SearchDirection> direction(const GridField& gradient) override {
+    auto newton = newton_->direction(gradient);
+    if (newton) newton->length *= factor_;
+    return newton;
+  }
+
+ private:
+  std::unique_ptr<LinearSolver> newton_ = make_direct_solver();
+  double factor_;
+};
+
+// By the slopes at both ends of a step it is known how long it should have been. Without them,
+// steps of a sixth leave five sixths of the error each.
+TEST(Relaxation, MendsStepsThatAreTooShortOrTooLong) {
+  const StretchedFilm film;
+  const FilmEnergy energy = film.energy(0.2);
+  for (const double factor : {1.0 / 6, 0.4, 1.0, 2.2, 6.0}) {
+    VertexVector u = film.start;
+    Misjudging solver(factor);
+    const RelaxationResult result =
+        Relaxation(energy, solver).run(film.is_free, {.tolerance_mm = 1e-10}, u);
+    EXPECT_TRUE(result.converged) << factor;
+    EXPECT_LE(result.iterations, 8) << factor;
+    EXPECT_LT(film.error(u), 1e-6) << factor;
+  }
+}
+
+TEST(Relaxation, ToleranceGrowsWithTheWay) {
+  const StretchedFilm film;
+  const FilmEnergy energy = film.energy(0.2);
+  const auto iterations = [&](double per_way2, double* error_mm) {
+    VertexVector u = film.start;
+    const auto solver = make_multigrid_solver(film.mesh);
+    const RelaxationOptions options{.tolerance_mm = 1e-9, .tolerance_per_way2 = per_way2};
+    const RelaxationResult result = Relaxation(energy, *solver).run(film.is_free, options, u);
+    EXPECT_TRUE(result.converged);
+    *error_mm = film.error(u);
+    return result.iterations;
+  };
+  double exact = 0, rough = 0;
+  const int many = iterations(0, &exact);
+  // It has a tenth of a cell to go.
+  const double way = 0.1 * film.mesh.cell_mm, tolerance = 1e-3;
+  const int few = iterations(tolerance / (way * way), &rough);
+  EXPECT_LT(few, many);
+  EXPECT_LT(exact, 1e-7);
+  EXPECT_LT(rough, 2 * tolerance);
 }
 
 }  // namespace
