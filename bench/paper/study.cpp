@@ -24,7 +24,7 @@ Image picture_of(const DippedObject& dipped, const Appearance& look, int size_px
                  RunContext& context) {
   const Object& object = dipped.object();
   const std::vector<CornerNormals> normals = corner_normals(object.positions, object.triangles);
-  const Studio studio{object, *dipped.surface, normals, 3, 0.5};
+  const Studio studio{object, *dipped.surface, normals, true, 0.5};
   const ViewPair pair =
       LitView(studio, frame_object(object, kEye, 1, 0.9), size_px, size_px, context).show(look);
   return wanted ? pair.wanted : pair.predicted;

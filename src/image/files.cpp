@@ -213,7 +213,7 @@ bool png_encode(PngWriter& writer, const Image& image, bool drop_alpha, double d
   png_set_user_limits(png, 0x7fffffff, 0x7fffffff);
   // Film images are large and mostly flat: a low level and one filter are nearly as small and
   // several times faster.
-  png_set_compression_level(png, 4);
+  png_set_compression_level(png, 3);
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
   png_set_IHDR(png, writer.info, png_uint_32(image.width_px), png_uint_32(image.height_px), 8,
                drop_alpha ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,

@@ -13,6 +13,7 @@ namespace {
 struct Span {
   int first = 0;
   std::vector<float> weights;  // sum to 1
+  int end() const { return first + int(weights.size()); }
 };
 
 std::vector<Span> spans(int source, int target) {
@@ -34,6 +35,22 @@ std::vector<Span> spans(int source, int target) {
   return list;
 }
 
+// Columns outside of which no row of the span shows anything: most of a sheet.
+struct Range {
+  int begin = 0, end = 0;
+};
+
+Range shown(const Image& image, const Span& rows) {
+  Range all{image.width_px, 0};
+  for (int y = rows.first; y < rows.end(); ++y) {
+    int begin = 0, end = image.width_px;
+    while (begin < end && image.pixel(begin, y)[3] == 0) ++begin;
+    while (end > begin && image.pixel(end - 1, y)[3] == 0) --end;
+    if (begin < end) all = {std::min(all.begin, begin), std::max(all.end, end)};
+  }
+  return all;
+}
+
 void average_into(const Image& image, const Span& columns, const Span& rows, std::uint8_t* out) {
   const std::array<float, 256>& decode = srgb8_table();
   std::array<float, 3> sum{};
@@ -41,7 +58,7 @@ void average_into(const Image& image, const Span& columns, const Span& rows, std
   for (std::size_t j = 0; j < rows.weights.size(); ++j)
     for (std::size_t i = 0; i < columns.weights.size(); ++i) {
       const std::uint8_t* p = image.pixel(columns.first + int(i), rows.first + int(j));
-      if (p[3] == 0) continue;  // most of a sheet
+      if (p[3] == 0) continue;
       const float weight = rows.weights[j] * columns.weights[i] * float(p[3]) / 255.0f;
       for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * decode[p[k]];
       alpha += weight;
@@ -57,9 +74,12 @@ Image resize(const Image& image, int width_px, int height_px) {
   const std::vector<Span> rows = spans(image.height_px, height_px);
   Image result(width_px, height_px);
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y)
+    for (std::size_t y = begin; y < end; ++y) {
+      const Range seen = shown(image, rows[y]);
       for (std::size_t x = 0; x < columns.size(); ++x)
-        average_into(image, columns[x], rows[y], result.pixel(int(x), int(y)));
+        if (columns[x].first < seen.end && columns[x].end() > seen.begin)
+          average_into(image, columns[x], rows[y], result.pixel(int(x), int(y)));
+    }
   });
   return result;
 }

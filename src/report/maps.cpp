@@ -238,12 +238,11 @@ double mm_per_px(const Object& object, const Camera& camera, int width_px) {
 }
 
 ViewPair render(const MapScene& scene, const Surface& surface, const View& view,
-                const MapLayout& layout, const MapOptions& options, RunContext& context) {
+                const MapLayout& layout, RunContext& context) {
   const double hatch_mm =
       kHatch * layout.unit * mm_per_px(scene.object, view.camera, layout.cell_width);
   const Appearance appearance = map_appearance(scene, view.camera, hatch_mm);
-  const Studio studio{scene.object, surface, scene.normals,
-                      std::clamp(options.samples_per_axis, 1, 8), kFlatness};
+  const Studio studio{scene.object, surface, scene.normals, true, kFlatness};
   return LitView(studio, view.camera, layout.cell_width, view.height_px, context).show(appearance);
 }
 
@@ -317,7 +316,7 @@ Image render_maps(const Object& object, const Surface& surface, const DippedFilm
   for (std::size_t i = 0; i < 2; ++i) {
     context.progress(stage, 0.1 + 0.45 * double(i));
     const View view = view_from(object, directions[i], layout, layout.cell_height[i]);
-    const ViewPair pair = render(scene, surface, view, layout, options, context);
+    const ViewPair pair = render(scene, surface, view, layout, context);
     paste(page, pair.wanted, layout.cell_x(0), y);
     paste(page, pair.predicted, layout.cell_x(1), y);
     y += layout.cell_height[i] + layout.gap;
@@ -349,7 +348,7 @@ Image render_angle_map(const Object& object, const Surface& surface, double dept
   for (int i = 0; i < 2; ++i) {
     context.progress(stage, 0.1 + 0.45 * i);
     const View view = view_from(object, directions[std::size_t(i)], layout, height);
-    const ViewPair pair = render(scene, surface, view, layout, options, context);
+    const ViewPair pair = render(scene, surface, view, layout, context);
     paste(page, pair.wanted, layout.cell_x(i), layout.header);
   }
   draw_title(page, layout, "dipping angle, from two sides", 0.5 * layout.width);

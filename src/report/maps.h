@@ -19,9 +19,8 @@ namespace hydrodip {
 
 struct MapOptions {
   int width_px = 1600;
-  int samples_per_axis = 3;  // squared per pixel, where neighbouring pixels differ
-  double tear_stretch = 0;   // the film's limit, marked on the scale; 0: it never tears
-  std::string caption;       // one line under the picture
+  double tear_stretch = 0;  // the film's limit, marked on the scale; 0: it never tears
+  std::string caption;      // one line under the picture
 };
 
 // Both maps side by side, a row for each direction. `map` is the film's over the same object.

@@ -75,7 +75,7 @@ std::vector<Image> render_previews(const Object& object, const Surface& surface,
   const std::string stage = "drawing the preview";
   context.progress(stage, 0);
   const std::vector<CornerNormals> normals = corner_normals(object.positions, object.triangles);
-  const Studio studio{object, surface, normals, std::clamp(options.samples_per_axis, 1, 8)};
+  const Studio studio{object, surface, normals};
   const std::array<Vec3, 2> directions = telling_directions(object, surface, film);
 
   std::vector<PageLayout> layouts;

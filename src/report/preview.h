@@ -14,7 +14,6 @@ namespace hydrodip {
 
 struct PreviewOptions {
   int width_px = 1600;
-  int samples_per_axis = 3;  // squared per pixel, where neighbouring pixels differ
   LinearColor base{1, 1, 1, 1};
 };
 

@@ -26,6 +26,11 @@ constexpr int kSkyRays = 5;
 constexpr int kLampRays = 2;
 constexpr double kLampRadius = 0.22;  // at distance 1: how soft the shadows are
 
+// Where pixels differ, one shows besides its centre's what these places of it show: together no two
+// in the same fifth of its width or height, so that edges along either come out in five grades.
+constexpr std::array<std::array<double, 2>, 4> kRooks = {
+    {{0.3, 0.1}, {0.9, 0.3}, {0.1, 0.7}, {0.7, 0.9}}};
+
 constexpr int kGroundScale = 4;  // ground shadows are soft: computed on a coarser raster
 constexpr int kGroundRays = 10;
 
@@ -442,32 +447,31 @@ class Painter {
   }
 
   void refine_edges() {
-    if (studio_.samples_per_axis < 2) return;
+    if (!studio_.smooth_edges) return;
     const std::vector<Shade> single = shade_;
     stage_.for_rows([&](int y) {
       for (int x = 0; x < stage_.width(); ++x) {
-        if (busy(single, x, y)) shade_[stage_.at(x, y)] = supersampled(x, y);
+        if (busy(single, x, y)) refine(shade_[stage_.at(x, y)], x, y);
       }
     });
   }
 
-  Shade supersampled(int x, int y) const {
-    const int n = studio_.samples_per_axis;
+  // The shade of a pixel's centre becomes that of the pixel.
+  void refine(Shade& centre, int x, int y) const {
     Shade sum;
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        const double x_px = x + (i + 0.5) / n;
-        const double y_px = y + (j + 0.5) / n;
-        const Sample s = stage_.trace(x_px, y_px);
-        const Shade part =
-            s.triangle < 0 ? backdrop(x_px, y_px) : shade(s, stage_.light_near(s, x, y));
-        for (std::size_t c = 0; c < 3; ++c) {
-          sum.wanted[c] += std::clamp(part.wanted[c], 0.0f, 1.0f) / float(n * n);
-          sum.predicted[c] += std::clamp(part.predicted[c], 0.0f, 1.0f) / float(n * n);
-        }
+    const auto add = [&](const Shade& part) {
+      constexpr float kShare = 1.0f / (1 + kRooks.size());
+      for (std::size_t c = 0; c < 3; ++c) {
+        sum.wanted[c] += std::clamp(part.wanted[c], 0.0f, 1.0f) * kShare;
+        sum.predicted[c] += std::clamp(part.predicted[c], 0.0f, 1.0f) * kShare;
       }
+    };
+    add(centre);
+    for (const auto& [dx, dy] : kRooks) {
+      const Sample s = stage_.trace(x + dx, y + dy);
+      add(s.triangle < 0 ? backdrop(x + dx, y + dy) : shade(s, stage_.light_near(s, x, y)));
     }
-    return sum;
+    centre = sum;
   }
 
   Image picture(std::array<float, 3> Shade::*part) const {

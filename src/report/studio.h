@@ -16,7 +16,7 @@ struct Studio {
   const Object& object;
   const Surface& surface;
   const std::vector<CornerNormals>& normals;
-  int samples_per_axis = 3;
+  bool smooth_edges = true;  // more samples where neighbouring pixels differ
   // 0: lit as in the studio; 1: no light and shade at all, colours are shown as they are. Maps,
   // whose colours are to be read off, lie between.
   double flatness = 0;

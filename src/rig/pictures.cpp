@@ -55,7 +55,7 @@ Image render(const Object& object, const View& view, int width_px, int height_px
     return color_at(object, point, {1, 1, 1, 1});
   };
   appearance.predicted = appearance.wanted;
-  const Studio studio{object, surface, normals, 3};
+  const Studio studio{object, surface, normals};
   const Camera camera = frame_object(object, view.direction, double(width_px) / height_px, 0.85);
   return LitView(studio, camera, width_px, height_px, context).show(appearance).wanted;
 }

@@ -5,7 +5,7 @@
 
 namespace hydrodip {
 
-CoveredRim::CoveredRim(const DippedFilm& film) : cell_(2 * film.mesh.cell_mm) {
+CoveredRim::CoveredRim(const DippedFilm& film) : cell_(film.mesh.cell_mm) {
   const FilmMesh& mesh = film.mesh;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (!film.lies_on_object(t)) continue;
@@ -29,39 +29,42 @@ CoveredRim::CoveredRim(const DippedFilm& film) : cell_(2 * film.mesh.cell_mm) {
   nx_ = static_cast<int>(size.x() / cell_) + 1;
   ny_ = static_cast<int>(size.y() / cell_) + 1;
   buckets_.resize(std::size_t(nx_) * std::size_t(ny_));
-  for (std::size_t e = 0; e < edges_.size(); ++e) {
-    // Edges are shorter than a bucket: its middle's bucket, searched one bucket wider, will do.
-    const Vec2 middle = 0.5 * (edges_[e].a + edges_[e].b) - bounds_.min;
-    const int x = std::clamp(static_cast<int>(middle.x() / cell_), 0, nx_ - 1);
-    const int y = std::clamp(static_cast<int>(middle.y() / cell_), 0, ny_ - 1);
-    buckets_[std::size_t(y) * std::size_t(nx_) + std::size_t(x)].push_back(
-        static_cast<std::int32_t>(e));
-  }
+  for (std::size_t e = 0; e < edges_.size(); ++e)
+    for_buckets(edges_[e].a.cwiseMin(edges_[e].b), edges_[e].a.cwiseMax(edges_[e].b),
+                [&](std::size_t bucket) { buckets_[bucket].push_back(std::int32_t(e)); });
+}
+
+template <class Visit>
+void CoveredRim::for_buckets(const Vec2& min, const Vec2& max, const Visit& visit) const {
+  const auto bucket = [&](double distance, int buckets) {
+    return static_cast<int>(std::clamp(std::floor(distance / cell_), 0.0, double(buckets - 1)));
+  };
+  const Vec2 from = min - bounds_.min, to = max - bounds_.min;
+  const int x0 = bucket(from.x(), nx_), x1 = bucket(to.x(), nx_);
+  const int y0 = bucket(from.y(), ny_), y1 = bucket(to.y(), ny_);
+  for (int y = y0; y <= y1; ++y)
+    for (int x = x0; x <= x1; ++x) visit(std::size_t(y) * std::size_t(nx_) + std::size_t(x));
 }
 
 std::optional<Vec2> CoveredRim::nearest(const Vec2& u, double max_distance) const {
-  if (edges_.empty()) return std::nullopt;
-  const auto bucket = [&](double value, double origin) {
-    return static_cast<int>(std::floor((value - origin) / cell_));
-  };
-  const int x0 = std::max(0, bucket(u.x() - max_distance, bounds_.min.x()) - 1);
-  const int x1 = std::min(nx_ - 1, bucket(u.x() + max_distance, bounds_.min.x()) + 1);
-  const int y0 = std::max(0, bucket(u.y() - max_distance, bounds_.min.y()) - 1);
-  const int y1 = std::min(ny_ - 1, bucket(u.y() + max_distance, bounds_.min.y()) + 1);
+  const Vec2 reach(max_distance, max_distance);
+  const Vec2 min = u - reach, max = u + reach;
+  if (edges_.empty() || (min - bounds_.max).maxCoeff() > 0 || (bounds_.min - max).maxCoeff() > 0)
+    return std::nullopt;
   double best = max_distance * max_distance;
   std::optional<Vec2> found;
-  for (int y = y0; y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x)
-      for (std::int32_t e : buckets_[std::size_t(y) * std::size_t(nx_) + std::size_t(x)]) {
-        const Edge& edge = edges_[std::size_t(e)];
-        const Vec2 along = edge.b - edge.a;
-        const double at = std::clamp((u - edge.a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-        const Vec2 point = edge.a + at * along;
-        const double distance2 = (point - u).squaredNorm();
-        if (distance2 >= best) continue;
-        best = distance2;
-        found = point + 1e-6 * (edge.inside - point);
-      }
+  for_buckets(min, max, [&](std::size_t bucket) {
+    for (const std::int32_t e : buckets_[bucket]) {
+      const Edge& edge = edges_[std::size_t(e)];
+      const Vec2 along = edge.b - edge.a;
+      const double at = std::clamp((u - edge.a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+      const Vec2 point = edge.a + at * along;
+      const double distance2 = (point - u).squaredNorm();
+      if (distance2 >= best) continue;
+      best = distance2;
+      found = point + 1e-6 * (edge.inside - point);
+    }
+  });
   return found;
 }
 

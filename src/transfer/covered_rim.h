@@ -24,9 +24,13 @@ class CoveredRim {
     Vec2 a, b;
     Vec2 inside;  // centroid of the covered triangle at this edge
   };
+  // visit(number) for the buckets that touch a box, or the nearest to it.
+  template <class Visit>
+  void for_buckets(const Vec2& min, const Vec2& max, const Visit& visit) const;
+
   std::vector<Edge> edges_;
   Box2 covered_;
-  // Uniform buckets over the outline's bounds.
+  // Uniform buckets over the outline's bounds; each edge is in all that its box touches.
   Box2 bounds_;
   double cell_ = 1;
   int nx_ = 0, ny_ = 0;

@@ -53,13 +53,6 @@ bool may_hold_ink(const Tile& tile, const SheetRaster& raster, const FilmMap& ma
   return map.nearest_covered(centre, reach).has_value();
 }
 
-// Whether all of the pixel is out of reach of film on the object. One look for many samples.
-bool is_bare(const FilmMap& map, const SheetRaster& raster, double bleed_mm, int x, int y,
-             FilmMap::Cursor& cursor) {
-  const double radius = 0.71 * kMmPerInch / raster.dpi;
-  return !map.nearest_covered(raster.to_film(x + 0.5, y + 0.5), bleed_mm + radius, cursor);
-}
-
 // A pixel's samples, on a regular grid inside it.
 struct Samples {
   Vec2 corner;  // of the pixel, in film coordinates
@@ -101,7 +94,15 @@ SurfacePoint between(const std::array<SurfacePoint, 4>& p, double x, double y) {
 LinearColor pixel_color(const Object& object, const FilmMap& map, const SheetRaster& raster,
                         const InverseOptions& options, int x, int y, FilmMap::Cursor& cursor) {
   const int n = options.samples_per_axis;
-  if (is_bare(map, raster, options.bleed_mm, x, y, cursor)) return {0, 0, 0, 0};
+  // One look for all samples: out of reach, or in the midst of the bleed, which shows little.
+  const double radius = 0.71 * kMmPerInch / raster.dpi;
+  const Vec2 centre = raster.to_film(x + 0.5, y + 0.5);
+  const auto nearest = map.nearest_covered(centre, options.bleed_mm + radius, cursor);
+  if (!nearest) return {0, 0, 0, 0};
+  const double distance = (*nearest - centre).norm();
+  if (distance > radius && distance + radius < options.bleed_mm)
+    if (const auto point = map.to_object(*nearest, cursor))
+      return color_at(object, *point, options.base);
   const float weight = 1.0f / static_cast<float>(n * n);
   const Samples samples{raster.to_film(x, y), kMmPerInch / raster.dpi, n};
   ColorSum sum;

@@ -79,7 +79,7 @@ void for_ball_pixels(const Scene& scene, const Camera& camera, const Image& imag
 ViewPair render(const Scene& scene, const Camera& camera) {
   const Appearance appearance = map_appearance(scene.maps, camera, 2);
   RunContext context;
-  const Studio studio{scene.ball, scene.surface, scene.normals, 1, 0.6};
+  const Studio studio{scene.ball, scene.surface, scene.normals, false, 0.6};
   return LitView(studio, camera, 200, 200, context).show(appearance);
 }
 
