@@ -38,9 +38,10 @@ constexpr double kMaxJump = 2.5;
 constexpr double kLongestSlide = 10;
 // Tolerance of the film's equilibrium over the square of the step, 1/mm.
 constexpr double kTolerancePerStep2 = 1e-4;
-// The same over the square of the way that film jumps: where it hangs in flaps, a hundred times as
-// far as the step.
+// The same over the square of the way that film jumps: where it hangs in flaps, up to a hundred
+// times as far as the step. But never more than this share of the step.
 constexpr double kTolerancePerWay2 = 1e-3;
+constexpr double kLoosest = 0.03;
 // So often in a step film that blocks the rest is released.
 constexpr int kMostReleases = 8;
 
@@ -298,6 +299,7 @@ class ContactLineScheme : public Scheme {
     options.otherwise = &film_.u;
     options.tolerance_mm = tolerance_mm();
     options.tolerance_per_way2 = kTolerancePerWay2;
+    options.loosest_mm = kLoosest * set_.options.step_mm;
     for (int round = 0;; ++round) {
       const RelaxationResult result = relaxation_.run(is_free, options);
       if (result.blocked.empty() || round == kMostReleases) {

@@ -87,8 +87,8 @@ class Descent {
 
  private:
   void set_tolerance() {
-    tolerance_mm_ =
-        std::max(options_.tolerance_mm, options_.tolerance_per_way2 * update_ * update_);
+    const double loose = options_.tolerance_per_way2 * update_ * update_;
+    tolerance_mm_ = std::max(options_.tolerance_mm, std::min(loose, options_.loosest_mm));
   }
 
   // With the exact Hessian. With the film held at its rim that one is definite as long as no

@@ -13,8 +13,10 @@ namespace hydrodip {
 
 struct RelaxationOptions {
   double tolerance_mm = 1.5e-5;  // stop once no vertex would move further in the next iteration
-  // Where the first iteration would move a vertex by w, that tolerance is at least this times w^2.
+  // Where the first iteration would move a vertex by w, that tolerance is at least this times w^2,
+  // as long as that is no more than loosest_mm.
   double tolerance_per_way2 = 0;  // 1/mm
+  double loosest_mm = 0;
   int max_iterations = 200;
   const VertexVector* otherwise = nullptr;  // if given: the start, should u turn a triangle over
   const RunContext* context = nullptr;  // if given: asked between iterations, Cancelled is thrown

@@ -348,23 +348,27 @@ TEST(Relaxation, MendsStepsThatAreTooShortOrTooLong) {
 TEST(Relaxation, ToleranceGrowsWithTheWay) {
   const StretchedFilm film;
   const FilmEnergy energy = film.energy(0.2);
-  const auto iterations = [&](double per_way2, double* error_mm) {
+  const auto iterations = [&](double per_way2, double loosest_mm, double* error_mm) {
     VertexVector u = film.start;
     const auto solver = make_multigrid_solver(film.mesh);
-    const RelaxationOptions options{.tolerance_mm = 1e-9, .tolerance_per_way2 = per_way2};
+    const RelaxationOptions options{
+        .tolerance_mm = 1e-9, .tolerance_per_way2 = per_way2, .loosest_mm = loosest_mm};
     const RelaxationResult result = Relaxation(energy, *solver).run(film.is_free, options, u);
     EXPECT_TRUE(result.converged);
     *error_mm = film.error(u);
     return result.iterations;
   };
   double exact = 0, rough = 0;
-  const int many = iterations(0, &exact);
+  const int many = iterations(0, 0, &exact);
   // It has a tenth of a cell to go.
   const double way = 0.1 * film.mesh.cell_mm, tolerance = 1e-3;
-  const int few = iterations(tolerance / (way * way), &rough);
+  const int few = iterations(tolerance / (way * way), 1, &rough);
   EXPECT_LT(few, many);
   EXPECT_LT(exact, 1e-7);
   EXPECT_LT(rough, 2 * tolerance);
+  double bounded = 0;
+  iterations(1e3, 1e-8, &bounded);
+  EXPECT_LT(bounded, 1e-7);
 }
 
 }  // namespace
