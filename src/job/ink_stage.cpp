@@ -37,7 +37,7 @@ constexpr double kFailedSteps = 0.02;
 constexpr double kRoundsDpi = 150;
 
 // Flaps are foreseen on film of so many times fewer triangles, but at least so many, in steps that
-// are so many times longer, up to a length.
+// are so many times longer, up to a length; the print need not be finer than such triangles.
 constexpr int kFewer = 4;
 constexpr int kFewestElements = 2000;
 constexpr double kLonger = 4;
