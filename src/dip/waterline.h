@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/cells.h"
 #include "base/math.h"
 
 namespace hydrodip {
@@ -39,24 +40,6 @@ class Waterline {
   bool may_touch(const Vec2& a, const Vec2& b) const;
 
  private:
-  // Columns and rows, both ends included.
-  struct CellRange {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  };
-  // A grid over a part of the plan; what lies outside counts to the nearest cells.
-  struct Cells {
-    Vec2 origin = Vec2::Zero();
-    double size_mm = 0;
-    int nx = 0, ny = 0;
-
-    Cells() = default;
-    Cells(const Box2& box, double cell_mm);
-    CellRange around(const Vec2& min, const Vec2& max) const;
-    std::size_t number(int x, int y) const {
-      return std::size_t(y) * std::size_t(nx) + std::size_t(x);
-    }
-    std::size_t count() const { return std::size_t(nx) * std::size_t(ny); }
-  };
   struct Segment {
     Vec2 a, b;
     Vec2 outward;

@@ -134,22 +134,25 @@ FilmInk ink_for(const DippedObject& dipped, const FilmMap& map, const ColorModel
   return ink;
 }
 
+// What rounds of ink are about.
+struct InkSetting {
+  DippedObject& dipped;
+  const FilmMesh& film;  // config.film's
+  const ColorModel& model;
+  const JobConfig& config;
+  StageTimes& times;
+  RunContext& context;
+};
+
 // What a round has led to.
 enum class Outcome { kGoesOn, kSettled, kUnsettled, kHopeless, kFailed };
 
 // Dip, print, stiffen, and again.
 class InkRounds {
  public:
-  InkRounds(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
-            const JobConfig& config, StageTimes& times, RunContext& context)
-      : dipped_(dipped),
-        film_(film),
-        model_(model),
-        config_(config),
-        times_(times),
-        context_(context),
-        options_(config.dip) {
-    config_.print.dpi = std::min(config.print.dpi, kRoundsDpi);
+  explicit InkRounds(const InkSetting& setting)
+      : set_(setting), config_(setting.config), options_(setting.config.dip) {
+    config_.print.dpi = std::min(config_.print.dpi, kRoundsDpi);
   }
 
   // Of the first film; blank unless told.
@@ -158,7 +161,7 @@ class InkRounds {
   Outcome next() {
     if (number() > 0) stiffen();
     if (!dip()) return Outcome::kFailed;
-    ink_ = times_.measure("ink", [&] { return print(config_, false); });
+    ink_ = set_.times.measure("ink", [&] { return print(config_, false); });
     judge();
     return outcome();
   }
@@ -173,10 +176,11 @@ class InkRounds {
 
   // What to print on the film as it was dipped last; `all`: wherever it lies on the object.
   FilmInk print(const JobConfig& config, bool all) const {
-    if (!outline_.is_kept()) return ink_for(dipped_, *dipped_.map, model_, config, context_);
-    const DippedFilm kept = outline_.applied(dipped_.film(), *dipped_.surface, all);
-    const FilmMap map(dipped_.object(), *dipped_.surface, kept);
-    return ink_for(dipped_, map, model_, config, context_);
+    if (!outline_.is_kept())
+      return ink_for(set_.dipped, *set_.dipped.map, set_.model, config, set_.context);
+    const DippedFilm kept = outline_.applied(set_.dipped.film(), *set_.dipped.surface, all);
+    const FilmMap map(set_.dipped.object(), *set_.dipped.surface, kept);
+    return ink_for(set_.dipped, map, set_.model, config, set_.context);
   }
 
  private:
@@ -184,10 +188,10 @@ class InkRounds {
 
   // False if the film cannot be dipped with its ink: then the last dip stays.
   bool dip() {
-    if (number() > 0) before_ = dipped_.film();
+    if (number() > 0) before_ = set_.dipped.film();
     options_.failed_share_max = options_.modulus.empty() ? 1 : kFailedSteps;
     try {
-      dip_again(dipped_, film_, options_, times_, context_);
+      dip_again(set_.dipped, set_.film, options_, set_.times, set_.context);
     } catch (const DipError&) {
       if (options_.modulus.empty()) throw;
       return false;
@@ -199,14 +203,14 @@ class InkRounds {
   void judge() {
     InkRound round;
     round.tears_kept = !options_.tear_levels.empty();
-    if (before_) round.change_mm = mean_way(*before_, dipped_.film());
+    if (before_) round.change_mm = mean_way(*before_, set_.dipped.film());
     round.printed_mm2 = printed_area_mm2(ink_.wanted, config_.print.dpi);
     round.mean_modulus = mean_of(options_.modulus);
-    round.dip = dipped_.dip.statistics;
+    round.dip = set_.dipped.dip.statistics;
     rounds_.push_back(round);
     if (before_)
-      context_.log(fmt::format("ink, round {}: the film moved by {:.2g} mm on average", number(),
-                               round.change_mm));
+      set_.context.log(fmt::format("ink, round {}: the film moved by {:.2g} mm on average",
+                                   number(), round.change_mm));
   }
 
   double change(int rounds_ago) const {
@@ -225,10 +229,11 @@ class InkRounds {
   // The film to dip next.
   void stiffen() {
     if (number() == kFreeRounds) {
-      options_.tear_levels = dipped_.film().tear_level;
-      outline_.keep(dipped_.film());
+      options_.tear_levels = set_.dipped.film().tear_level;
+      outline_.keep(set_.dipped.film());
     }
-    std::vector<double> modulus = times_.measure("stiffness", [&] { return modulus_of(film_); });
+    std::vector<double> modulus =
+        set_.times.measure("stiffness", [&] { return modulus_of(set_.film); });
     options_.modulus = options_.modulus.empty() ? modulus : mixed(modulus);
   }
 
@@ -251,12 +256,8 @@ class InkRounds {
     return {next.begin(), next.end()};
   }
 
-  DippedObject& dipped_;
-  const FilmMesh& film_;
-  const ColorModel& model_;
-  JobConfig config_;  // with the rounds' resolution
-  StageTimes& times_;
-  RunContext& context_;
+  const InkSetting set_;
+  JobConfig config_;    // with the rounds' resolution
   DipOptions options_;  // of the next dip
   std::optional<DippedFilm> before_;
   PrintedOutline outline_;
@@ -268,17 +269,10 @@ class InkRounds {
 // The rounds and the print that they lead to.
 class InkSettling {
  public:
-  InkSettling(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
-              const JobConfig& config, StageTimes& times, RunContext& context)
-      : dipped_(dipped),
-        film_(film),
-        model_(model),
-        config_(config),
-        times_(times),
-        context_(context) {}
+  explicit InkSettling(const InkSetting& setting) : set_(setting) {}
 
   InkResult run() {
-    InkRounds rounds(dipped_, film_, model_, config_, times_, context_);
+    InkRounds rounds(set_);
     const Outcome outcome = settle(rounds);
     result_.rounds = rounds.rounds();
     result_.settled = outcome == Outcome::kSettled;
@@ -289,7 +283,7 @@ class InkSettling {
 
  private:
   Outcome settle(InkRounds& rounds) {
-    if (!ink_matters(config_) || config_.ink.rounds_max == 1) {
+    if (!ink_matters(set_.config) || set_.config.ink.rounds_max == 1) {
       rounds.next();
       return Outcome::kSettled;
     }
@@ -309,7 +303,7 @@ class InkSettling {
   // Two rounds on coarser film cost a small part of one dip. If they tell that the film tears into
   // flaps that never settle: what their ink makes of the film itself.
   std::optional<std::vector<double>> modulus_of_flaps() {
-    JobConfig config = config_;
+    JobConfig config = set_.config;
     config.film.elements /= kFewer;
     if (!(config.dip.material.tear_stretch > 0) || config.film.elements < kFewestElements)
       return std::nullopt;
@@ -317,49 +311,44 @@ class InkSettling {
     config.dip.step_mm = std::min(kLonger * step_mm, std::max(step_mm, kLongestStep_mm));
     config.print.dpi = std::min(config.print.dpi, kCoarseDpi);
     const FilmMesh film = make_film_mesh(config.film);
-    InkRounds rounds(dipped_, film, model_, config, times_, context_);
+    InkRounds rounds({set_.dipped, film, set_.model, config, set_.times, set_.context});
     Outcome outcome = rounds.next();
-    const std::vector<std::uint8_t>& torn = dipped_.film().torn;
+    const std::vector<std::uint8_t>& torn = set_.dipped.film().torn;
     const bool tears = std::find(torn.begin(), torn.end(), 1) != torn.end();
     if (tears) outcome = rounds.next();
     result_.coarse_rounds = rounds.rounds();
     if (outcome != Outcome::kHopeless) return std::nullopt;
-    return rounds.modulus_of(film_);
+    return rounds.modulus_of(set_.film);
   }
 
   void warn(Outcome outcome) {
     if (outcome == Outcome::kFailed)
-      context_.warn(
+      set_.context.warn(
           "the dip could not be computed again with its ink: film torn or stretched this far finds "
           "no equilibrium; turn steep sides down or dip less, then print anew");
     else if (outcome == Outcome::kHopeless)
-      context_.warn(fmt::format(
+      set_.context.warn(fmt::format(
           "this film tears into flaps that fall another way with every change of its ink (by "
           "{:.1f} mm on average): colours will not land where they should; turn steep sides down "
           "or dip less deep",
           result_.last_change_mm()));
     else if (outcome != Outcome::kSettled && result_.rounds.size() > 1)
-      context_.warn(fmt::format(
+      set_.context.warn(fmt::format(
           "after {} rounds the ink still moves the film by {:.2g} mm on average (settled: {:g} "
           "mm); raise ink.rounds_max, or film.elements if it does not help",
           result_.rounds.size(), result_.last_change_mm(), kSettled_mm));
   }
 
   void finish(const InkRounds& rounds) {
-    result_.ink = times_.measure("invert", [&] { return rounds.print(config_, true); });
+    result_.ink = set_.times.measure("invert", [&] { return rounds.print(set_.config, true); });
     FilmInk& ink = result_.ink;
-    const SheetRaster raster = sheet_raster(config_, config_.print.dpi);
-    ink.on_object =
-        look_on_object(ink.inking.inks, ink.stretch.area_ratio, model_, base_color(config_));
+    const SheetRaster raster = sheet_raster(set_.config, set_.config.print.dpi);
+    ink.on_object = look_on_object(ink.inking.inks, ink.stretch.area_ratio, set_.model,
+                                   base_color(set_.config));
     result_.reach = measure_reach(ink.wanted, ink.on_object, ink.stretch, raster);
   }
 
-  DippedObject& dipped_;
-  const FilmMesh& film_;
-  const ColorModel& model_;
-  const JobConfig& config_;
-  StageTimes& times_;
-  RunContext& context_;
+  const InkSetting set_;
   InkResult result_;
 };
 
@@ -391,7 +380,7 @@ std::unique_ptr<ColorModel> color_model(const JobConfig& config) {
 
 InkResult settle_ink(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
                      const JobConfig& config, StageTimes& times, RunContext& context) {
-  return InkSettling(dipped, film, model, config, times, context).run();
+  return InkSettling({dipped, film, model, config, times, context}).run();
 }
 
 }  // namespace hydrodip

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/cells.h"
 #include "film/film.h"
 
 namespace hydrodip {
@@ -24,17 +25,11 @@ class CoveredRim {
     Vec2 a, b;
     Vec2 inside;  // centroid of the covered triangle at this edge
   };
-  // visit(number) for the buckets that touch a box, or the nearest to it.
-  template <class Visit>
-  void for_buckets(const Vec2& min, const Vec2& max, const Visit& visit) const;
-
   std::vector<Edge> edges_;
   Box2 covered_;
-  // Uniform buckets over the outline's bounds; each edge is in all that its box touches.
-  Box2 bounds_;
-  double cell_ = 1;
-  int nx_ = 0, ny_ = 0;
-  std::vector<std::vector<std::int32_t>> buckets_;
+  Box2 bounds_;                                      // of the outline
+  Cells cells_;                                      // over them
+  std::vector<std::vector<std::int32_t>> edges_in_;  // by cell; each in all that its box touches
 };
 
 }  // namespace hydrodip
