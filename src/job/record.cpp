@@ -80,8 +80,8 @@ void add_ink(const JobRecord& record, std::vector<ReportFigure>& figures) {
   const Reach& reach = record.ink->reach;
   figures.insert(
       figures.end(),
-      {{"ink_rounds", "Rounds until the ink settled", std::int64_t(record.ink->rounds.size()), ""},
-       {"ink_coarse_rounds", "Rounds on coarser film before them",
+      {{"ink_rounds", "Rounds on the film itself", std::int64_t(record.ink->rounds.size()), ""},
+       {"ink_coarse_rounds", "Rounds on coarser film before",
         std::int64_t(record.ink->coarse_rounds.size()), ""},
        {"ink_settled", "Ink settled", record.ink->settled, ""},
        {"ink_last_change_mm", "Last mean change of the film", record.ink->last_change_mm(), "mm"},
