@@ -71,34 +71,39 @@ void Waterline::raise_to(double level) {
   level_ = level;
   while (next_ < by_bottom_.size() &&
          bottom(positions_, triangles_[std::size_t(by_bottom_[next_])]) < level)
-    active_.push_back(by_bottom_[next_++]);
+    active_.push_back(reach_of(by_bottom_[next_++]));
   sweep();
-  std::erase_if(
-      active_, [&](std::int32_t t) { return top(positions_, triangles_[std::size_t(t)]) < level; });
+  std::erase_if(active_, [&](const Reach& reach) {
+    return top(positions_, triangles_[std::size_t(reach.triangle)]) < level;
+  });
   segments_.clear();
-  for (std::int32_t t : active_) cut(t);
+  for (const Reach& reach : active_) cut(reach.triangle);
   build_grid();
 }
 
 void Waterline::sweep() {
   swept_ = {};
   ++raises_;
-  for (std::int32_t t : active_) reach(t);
+  for (const Reach& reach : active_) mark(reach);
   for (std::size_t n = next_; n < by_bottom_.size(); ++n) {
     if (bottom(positions_, triangles_[std::size_t(by_bottom_[n])]) > level_ + kLevelSlack_mm) break;
-    reach(by_bottom_[n]);
+    mark(reach_of(by_bottom_[n]));
   }
 }
 
-void Waterline::reach(std::int32_t triangle) {
+Waterline::Reach Waterline::reach_of(std::int32_t triangle) const {
   Box2 box;
   for (std::int32_t v : triangles_[std::size_t(triangle)])
     box.add(positions_[std::size_t(v)].head<2>());
-  swept_.add(box.min);
-  swept_.add(box.max);
-  const CellRange cells = whole_.around(box.min, box.max);
-  for (int y = cells.y0; y <= cells.y1; ++y)
-    for (int x = cells.x0; x <= cells.x1; ++x) reached_[whole_.number(x, y)] = raises_;
+  return {triangle, box, whole_.around(box.min, box.max)};
+}
+
+void Waterline::mark(const Reach& reach) {
+  swept_.add(reach.box.min);
+  swept_.add(reach.box.max);
+  for (int y = reach.cells.y0; y <= reach.cells.y1; ++y)
+    for (int x = reach.cells.x0; x <= reach.cells.x1; ++x)
+      reached_[whole_.number(x, y)] = raises_;
 }
 
 bool Waterline::may_touch(const Vec2& a, const Vec2& b) const {

@@ -49,7 +49,13 @@ class Waterline {
   template <class Weight>
   Point blurred(const Point& point, const Weight& weight_of) const;
   void sweep();
-  void reach(std::int32_t triangle);
+  struct Reach {
+    std::int32_t triangle;
+    Box2 box;         // seen from above
+    CellRange cells;  // that it touches, of the grid over the whole object
+  };
+  Reach reach_of(std::int32_t triangle) const;
+  void mark(const Reach& reach);
   void cut(std::int32_t triangle);
   void build_grid();
 
@@ -65,7 +71,7 @@ class Waterline {
   std::uint32_t raises_ = 0;
   std::vector<std::int32_t> by_bottom_;  // triangles by lowest corner
   std::size_t next_ = 0;                 // first of by_bottom_ that is still above the water
-  std::vector<std::int32_t> active_;     // triangles that reach from below to above the level
+  std::vector<Reach> active_;            // triangles that reach from below to above the level
   std::vector<Segment> segments_;
   Cells grid_;  // over the segments
   std::vector<std::int32_t> grid_begin_;
