@@ -2,6 +2,7 @@
 // triangles in every cell. What lies outside a disc is there as well, without film.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -37,15 +38,50 @@ struct GridLayout {
                  });
   }
 
+  // Calls step(stage, row) for all of the grid's rows and so many stages, in parallel where that
+  // pays. A row's stage comes after the stage before it of the same row and the two next to it, and
+  // mostly soon, while what they share is still in the cache. Rows in [begin, end) take longest.
+  template <typename Step>
+  void sweep(int stages, std::ptrdiff_t begin, std::ptrdiff_t end, const Step& step) const {
+    // Strips first, without rows that wait for a neighbouring strip; then those rows.
+    const std::ptrdiff_t strips = strips_of(end - begin), s = stages;
+    const auto seam = [&](std::size_t n) {  // before this strip
+      const auto strip = std::ptrdiff_t(n);
+      return strip == 0 ? 0 : strip == strips ? ny : begin + (end - begin) * strip / strips;
+    };
+    parallel_for(std::size_t(strips), 1, [&](std::size_t strip, std::size_t) {
+      const std::ptrdiff_t from = seam(strip), to = seam(strip + 1);
+      for (std::ptrdiff_t front = from; front < to + s - 1; ++front)
+        for (std::ptrdiff_t stage = 0; stage < s; ++stage) {
+          const std::ptrdiff_t row = front - stage;
+          if (row < (from > 0 ? from + stage : 0)) continue;
+          if (row < (to < ny ? to - stage : to)) step(int(stage), row);
+        }
+    });
+    if (strips == 1) return;
+    parallel_for(std::size_t(strips) - 1, 1, [&](std::size_t strip, std::size_t) {
+      const std::ptrdiff_t here = seam(strip + 1);
+      for (std::ptrdiff_t stage = 1; stage < s; ++stage)
+        for (std::ptrdiff_t row = here - stage; row < here + stage; ++row) step(int(stage), row);
+    });
+  }
+
   int nx, ny;
   std::ptrdiff_t groups;  // of kernels::kLanes nodes, per row
-  std::ptrdiff_t stride;
+  std::ptrdiff_t stride;  // (groups + 1) * kLanes
 
  private:
   // The nodes behind the last and before the first are asked for as well.
   static constexpr std::size_t kLooseEnds = 2 * kernels::kLanes;
   // What is worth a thread's while.
   static constexpr std::ptrdiff_t kNodesPerTask = 3000;
+  // So many that few wait for the seams, and no row waits for two of them.
+  static constexpr std::ptrdiff_t kRowsPerStrip = 16;
+
+  std::ptrdiff_t strips_of(std::ptrdiff_t rows) const {
+    const std::ptrdiff_t pairs = std::min(stride * rows / kNodesPerTask, rows / kRowsPerStrip) / 2;
+    return pairs > 0 ? 2 * pairs : 1;
+  }
 };
 
 // An array over a grid, zero at first, at addresses that registers are loaded from at once.

@@ -20,8 +20,11 @@ constexpr int kForward = 4;
 struct Stencil {
   const float *own[3], *forward[kForward][4], *inverse_own[3];
   const float* mask;
-  std::ptrdiff_t groups;  // of kLanes nodes, per grid row
-  std::ptrdiff_t stride;  // (groups + 1) * kLanes
+  std::ptrdiff_t stride;
+};
+// Of a grid: these rows, and of each of them these groups of kLanes nodes, ends not included.
+struct Part {
+  std::ptrdiff_t row_begin, row_end, group_begin, group_end;
 };
 struct Input {
   const float *x, *y;
@@ -75,15 +78,14 @@ struct Stride {
 constexpr std::ptrdiff_t kScratchRows = 16;
 
 struct Table {
-  // out = A x, r = b - A x and out = x + weight * D^-1 (b - A x) on grid rows [begin, end).
-  void (*multiply)(const Stencil&, std::ptrdiff_t begin, std::ptrdiff_t end, Input x, Output out);
-  void (*residual)(const Stencil&, std::ptrdiff_t begin, std::ptrdiff_t end, Input b, Input x,
-                   Output r);
-  void (*smooth)(const Stencil&, std::ptrdiff_t begin, std::ptrdiff_t end, Input b, Input x,
-                 float weight, Output out);
+  // On a part of the grid: out = A x, r = b - A x and out = x + weight * D^-1 (b - A x).
+  void (*multiply)(const Stencil&, const Part&, Input x, Output out);
+  void (*residual)(const Stencil&, const Part&, Input b, Input x, Output r);
+  void (*smooth)(const Stencil&, const Part&, Input b, Input x, float weight, Output out);
   // out = weight * D^-1 b.
-  void (*precondition)(const Stencil&, std::ptrdiff_t begin, std::ptrdiff_t end, Input b,
-                       float weight, Output out);
+  void (*precondition)(const Stencil&, const Part&, Input b, float weight, Output out);
+  // For each group of the part, over all its rows: the largest square of a node's D^-1 b.
+  void (*largest_squares)(const Stencil&, const Part&, Input b, float* squares);
 
   // Between a fine grid and one with every second node, on the coarse (restrict) or fine (prolong)
   // grid's rows [begin, end): b = P^T r and x += P e, P bilinear interpolation. Only where the mask

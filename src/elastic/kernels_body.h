@@ -16,13 +16,14 @@ inline Register load(const float* from) {
 }
 inline void store(float* to, Register r) { __builtin_memcpy(to, &r, sizeof r); }
 
-// Calls body(at) for the places of the nodes of grid rows [begin, end), kWidth at a time.
+// Calls body(at) for the places of a part's nodes, kWidth at a time.
 template <typename Body>
-inline void for_nodes(const Stencil& A, std::ptrdiff_t begin, std::ptrdiff_t end,
-                      const Body& body) {
-  for (std::ptrdiff_t j = begin; j < end; ++j) {
-    const std::ptrdiff_t first = (j + 1) * A.stride + kLanes;
-    for (std::ptrdiff_t at = first; at < first + A.groups * kLanes; at += kWidth) body(at);
+inline void for_nodes(const Stencil& A, const Part& part, const Body& body) {
+  for (std::ptrdiff_t j = part.row_begin; j < part.row_end; ++j) {
+    const std::ptrdiff_t row = (j + 1) * A.stride + kLanes;
+    for (std::ptrdiff_t at = row + part.group_begin * kLanes; at < row + part.group_end * kLanes;
+         at += kWidth)
+      body(at);
   }
 }
 
@@ -55,8 +56,8 @@ inline void divide(const Stencil& A, std::ptrdiff_t at, Register& x, Register& y
   x = new_x;
 }
 
-void multiply(const Stencil& A, std::ptrdiff_t begin, std::ptrdiff_t end, Input x, Output out) {
-  for_nodes(A, begin, end, [&](std::ptrdiff_t at) {
+void multiply(const Stencil& A, const Part& part, Input x, Output out) {
+  for_nodes(A, part, [&](std::ptrdiff_t at) {
     Register ax, ay;
     apply(A, at, x, ax, ay);
     store(out.x + at, ax);
@@ -64,9 +65,8 @@ void multiply(const Stencil& A, std::ptrdiff_t begin, std::ptrdiff_t end, Input 
   });
 }
 
-void residual(const Stencil& A, std::ptrdiff_t begin, std::ptrdiff_t end, Input b, Input x,
-              Output r) {
-  for_nodes(A, begin, end, [&](std::ptrdiff_t at) {
+void residual(const Stencil& A, const Part& part, Input b, Input x, Output r) {
+  for_nodes(A, part, [&](std::ptrdiff_t at) {
     Register ax, ay;
     apply(A, at, x, ax, ay);
     store(r.x + at, load(b.x + at) - ax);
@@ -74,9 +74,8 @@ void residual(const Stencil& A, std::ptrdiff_t begin, std::ptrdiff_t end, Input 
   });
 }
 
-void smooth(const Stencil& A, std::ptrdiff_t begin, std::ptrdiff_t end, Input b, Input x,
-            float weight, Output out) {
-  for_nodes(A, begin, end, [&](std::ptrdiff_t at) {
+void smooth(const Stencil& A, const Part& part, Input b, Input x, float weight, Output out) {
+  for_nodes(A, part, [&](std::ptrdiff_t at) {
     Register rx, ry;
     apply(A, at, x, rx, ry);
     rx = load(b.x + at) - rx;
@@ -87,14 +86,28 @@ void smooth(const Stencil& A, std::ptrdiff_t begin, std::ptrdiff_t end, Input b,
   });
 }
 
-void precondition(const Stencil& A, std::ptrdiff_t begin, std::ptrdiff_t end, Input b, float weight,
-                  Output out) {
-  for_nodes(A, begin, end, [&](std::ptrdiff_t at) {
+void precondition(const Stencil& A, const Part& part, Input b, float weight, Output out) {
+  for_nodes(A, part, [&](std::ptrdiff_t at) {
     Register rx = load(b.x + at), ry = load(b.y + at);
     divide(A, at, rx, ry);
     store(out.x + at, weight * rx);
     store(out.y + at, weight * ry);
   });
+}
+
+void largest_squares(const Stencil& A, const Part& part, Input b, float* squares) {
+  for (std::ptrdiff_t group = part.group_begin; group < part.group_end; ++group) {
+    Register largest = {};
+    for_nodes(A, {part.row_begin, part.row_end, group, group + 1}, [&](std::ptrdiff_t at) {
+      Register x = load(b.x + at), y = load(b.y + at);
+      divide(A, at, x, y);
+      const Register square = x * x + y * y;
+      largest = square > largest ? square : largest;
+    });
+    float most = 0;
+    for (int k = 0; k < kWidth; ++k) most = largest[k] > most ? largest[k] : most;
+    squares[group - part.group_begin] = most;
+  }
 }
 
 void restrict_rows(const Transfer& t, std::ptrdiff_t begin, std::ptrdiff_t end, Input r, Output b) {
@@ -549,8 +562,8 @@ void carry(std::size_t begin, std::size_t end, const std::int32_t* const corner[
 
 extern const Table KERNELS_VARIANT;
 const Table KERNELS_VARIANT = {
-    multiply,    residual,      smooth, precondition, restrict_rows, prolong_rows,
-    dot,         scale_and_add, go,     dot_field,    rest_shapes,   overstretched,
-    turned_over, changed,       carry,  energy,       gradient};
+    multiply,      residual,    smooth,        precondition, largest_squares, restrict_rows,
+    prolong_rows,  dot,         scale_and_add, go,           dot_field,       rest_shapes,
+    overstretched, turned_over, changed,       carry,        energy,          gradient};
 
 }  // namespace hydrodip::kernels

@@ -16,7 +16,6 @@ constexpr double kEigenvalueMargin = 1.1;
 // Of an operator that is a sum over cells, D^-1 A has no eigenvalue above the nodes in a cell.
 constexpr double kWidest = 4;
 constexpr double kWidening = 1.25;
-constexpr int kPowerIterations = 12;
 // Grids with at most this many inner nodes are solved directly.
 constexpr std::size_t kCoarsestNodes = 12;
 
@@ -28,120 +27,26 @@ kernels::Transfer transfer(const GridOperator& fine, const GridOperator& coarse)
 // Bilinear interpolation: weight of a coarse node for a fine one at this distance (fine cells).
 float hat(int distance) { return distance == 0 ? 1.0F : 0.5F; }
 
+void clear_row(const GridLayout& layout, std::ptrdiff_t j, GridVector& v) {
+  for (float* values : {v.x(), v.y()})
+    std::fill_n(values + layout.place(0, int(j)), layout.stride - kernels::kLanes, 0.0F);
+}
+
+void copy_row(const GridLayout& layout, std::ptrdiff_t j, const GridVector& from, GridVector& to) {
+  const std::size_t first = layout.place(0, int(j));
+  std::copy_n(from.x() + first, layout.stride - kernels::kLanes, to.x() + first);
+  std::copy_n(from.y() + first, layout.stride - kernels::kLanes, to.y() + first);
+}
+
 }  // namespace
 
-GridOperator::GridOperator(int nx, int ny)
-    : layout_(nx, ny),
-      kernels_(kernels::best()),
-      mask_(layout_.entries()),
-      entries_(kEntries * layout_.entries()) {}
-
-void GridOperator::set_row(int i, int j, const Row& row) {
-  const std::size_t at = place(i, j);
-  const double xx = row[4][0], xy = 0.5 * (double(row[4][1]) + double(row[4][2])), yy = row[4][3];
-  const double det = xx * yy - xy * xy;
-  const bool usable = xx > 0 && yy > 0 && det > 1e-6 * xx * yy;
-  mask_[at] = usable ? 1.0F : 0.0F;
-  const auto set = [&](int e, double value) { entry(e)[at] = usable ? float(value) : 0.0F; };
-  set(kOwn, xx);
-  set(kOwn + 1, xy);
-  set(kOwn + 2, yy);
-  set(kInverse, yy / det);
-  set(kInverse + 1, -xy / det);
-  set(kInverse + 2, xx / det);
-  for (int k = 0; k < kernels::kForward; ++k)
-    for (int e = 0; e < 4; ++e)
-      set(kForward + 4 * k + e, double(row[std::size_t(5 + k)][std::size_t(e)]));
-}
-
-GridOperator::Row GridOperator::row(int i, int j) const {
-  const std::size_t at = place(i, j);
-  Row row;
-  row[4] = {entry(kOwn)[at], entry(kOwn + 1)[at], entry(kOwn + 1)[at], entry(kOwn + 2)[at]};
-  const std::ptrdiff_t stride = layout_.stride, way[] = {1, stride - 1, stride, stride + 1};
-  for (int k = 0; k < kernels::kForward; ++k) {
-    const std::size_t behind = at - std::size_t(way[k]);
-    const float* block[4];
-    for (int e = 0; e < 4; ++e) block[e] = entry(kForward + 4 * k + e);
-    row[std::size_t(5 + k)] = {block[0][at], block[1][at], block[2][at], block[3][at]};
-    row[std::size_t(3 - k)] = {block[0][behind], block[2][behind], block[1][behind],
-                               block[3][behind]};
-  }
-  return row;
-}
-
-kernels::Stencil GridOperator::stencil() const {
-  kernels::Stencil s{};
-  for (int e = 0; e < 3; ++e) {
-    s.own[e] = entry(kOwn + e);
-    s.inverse_own[e] = entry(kInverse + e);
-  }
-  for (int k = 0; k < kernels::kForward; ++k)
-    for (int e = 0; e < 4; ++e) s.forward[k][e] = entry(kForward + 4 * k + e);
-  s.mask = mask();
-  s.groups = layout_.groups;
-  s.stride = layout_.stride;
-  return s;
-}
-
-void GridOperator::multiply(const GridVector& x, GridVector& out) const {
-  for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    kernels_.multiply(stencil(), begin, end, x, out);
-  });
-}
-
-void GridOperator::residual(const GridVector& b, const GridVector& x, GridVector& r) const {
-  for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    kernels_.residual(stencil(), begin, end, b, x, r);
-  });
-}
-
-void GridOperator::smooth(const GridVector& b, const GridVector& x, float weight,
-                          GridVector& out) const {
-  for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    kernels_.smooth(stencil(), begin, end, b, x, weight, out);
-  });
-}
-
-void GridOperator::precondition(const GridVector& b, float weight, GridVector& out) const {
-  for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    kernels_.precondition(stencil(), begin, end, b, weight, out);
-  });
-}
-
-double GridOperator::largest_eigenvalue() const {
-  GridVector x = vector(), Ax = vector();
-  std::uint32_t noise = 1;
-  for (int j = 0; j < ny(); ++j)
-    for (int i = 0; i < nx(); ++i) {
-      if (!is_free(i, j)) continue;
-      for (float* component : {x.x(), x.y()}) {
-        noise = noise * 1664525U + 1013904223U;
-        component[place(i, j)] = float(noise >> 8) / float(1 << 24) - 0.5F;
-      }
-    }
-  double norm = 0;
-  for (int n = 0; n < kPowerIterations; ++n) {
-    multiply(x, Ax);
-    precondition(Ax, 1, x);
-    double square = 0;
-    for (int j = 0; j < ny(); ++j)
-      for (std::size_t p = place(0, j); p < place(nx(), j); ++p)
-        square += double(x.x()[p]) * x.x()[p] + double(x.y()[p]) * x.y()[p];
-    norm = std::sqrt(square);
-    if (!(norm > 0)) return 0;
-    const auto scale = float(1 / norm);
-    for (int j = 0; j < ny(); ++j)
-      for (std::size_t p = place(0, j); p < place(nx(), j); ++p) {
-        x.x()[p] *= scale;
-        x.y()[p] *= scale;
-      }
-  }
-  return norm;
-}
-
 Multigrid::Level::Level(int nx, int ny)
-    : A(nx, ny), b(A.vector()), x(A.vector()), other(A.vector()), touched(A.nodes(), 0) {}
+    : A(nx, ny),
+      b(A.vector()),
+      x(A.vector()),
+      other(A.vector()),
+      touched(A.nodes(), 0),
+      active(A) {}
 
 Multigrid::Multigrid(int nx, int ny) {
   levels_.emplace_back(nx, ny);
@@ -302,17 +207,51 @@ void Multigrid::solve_coarsest(const GridVector& b, GridVector& x) const {
   }
 }
 
-// b = P^T r.
-void Multigrid::restrict_to(const Level& fine, const GridVector& r, Level& coarse) const {
-  coarse.A.for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    kernels::best().restrict_rows(transfer(fine.A, coarse.A), begin, end, r, coarse.b);
+// Smooths x from zero. What is left, restricted, is the coarse right side: b = P^T r.
+void Multigrid::go_down(Level& level, const GridVector& b, GridVector& x, Level& coarse) const {
+  const kernels::Table& run = kernels::best();
+  const GridLayout& layout = level.A.layout();
+  const kernels::Stencil A = level.A.stencil();
+  const kernels::Transfer between = transfer(level.A, coarse.A);
+  const ActivePart& active = level.active;
+  GridVector &first = level.other, &rest = level.other;  // of a row, the one after the other
+  layout.sweep(4, active.row_begin(), active.row_end(), [&](int stage, std::ptrdiff_t j) {
+    const kernels::Part smoothed = active.smoothed(j), reached = active.reached(j);
+    if (stage == 0) {
+      if (!active.whole(smoothed)) clear_row(layout, j, first);
+      run.precondition(A, smoothed, b, level.weight[0], first);
+    } else if (stage == 1) {
+      if (!active.whole(smoothed)) clear_row(layout, j, x);
+      run.smooth(A, smoothed, b, first, level.weight[1], x);
+    } else if (stage == 2) {
+      if (!active.whole(reached)) copy_row(layout, j, b, rest);
+      run.residual(A, reached, b, x, rest);
+    } else {
+      // The coarse row that lies on this one; after the last, one may lie half a cell beyond.
+      const bool beyond = j + 1 == level.A.ny() && j % 2 == 1;
+      run.restrict_rows(between, (j + 1) / 2, j / 2 + (beyond ? 2 : 1), rest, coarse.b);
+    }
   });
 }
 
-// x += P e.
-void Multigrid::prolong_and_add(const Level& coarse, const Level& fine, GridVector& x) const {
-  fine.A.for_rows([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    kernels::best().prolong_rows(transfer(fine.A, coarse.A), begin, end, coarse.x, x);
+// x += P e, smoothed.
+void Multigrid::come_up(const Level& coarse, Level& level, const GridVector& b,
+                        GridVector& x) const {
+  const kernels::Table& run = kernels::best();
+  const GridLayout& layout = level.A.layout();
+  const kernels::Stencil A = level.A.stencil();
+  const kernels::Transfer between = transfer(level.A, coarse.A);
+  const ActivePart& active = level.active;
+  layout.sweep(3, active.row_begin(), active.row_end(), [&](int stage, std::ptrdiff_t j) {
+    const kernels::Part smoothed = active.smoothed(j);
+    if (stage == 0) {
+      run.prolong_rows(between, j, j + 1, coarse.x, x);
+    } else if (stage == 1) {
+      if (!active.whole(smoothed)) copy_row(layout, j, x, level.other);
+      run.smooth(A, smoothed, b, x, level.weight[1], level.other);
+    } else {
+      run.smooth(A, smoothed, b, level.other, level.weight[0], x);
+    }
   });
 }
 
@@ -324,14 +263,10 @@ void Multigrid::cycle(std::size_t l, const GridVector& b, GridVector& x) {
     return;
   }
   Level &level = levels_[l], &coarse = levels_[l + 1];
-  level.A.precondition(b, level.weight[0], level.other);
-  level.A.smooth(b, level.other, level.weight[1], x);
-  level.A.residual(b, x, level.other);
-  restrict_to(level, level.other, coarse);
+  level.active.choose(level.A, b);
+  go_down(level, b, x, coarse);
   cycle(l + 1, coarse.b, coarse.x);
-  prolong_and_add(coarse, level, x);
-  level.A.smooth(b, x, level.weight[1], level.other);
-  level.A.smooth(b, level.other, level.weight[0], x);
+  come_up(coarse, level, b, x);
 }
 
 }  // namespace hydrodip

@@ -4,68 +4,13 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "base/math.h"
-#include "base/parallel.h"
-#include "elastic/film_grid.h"
-#include "elastic/kernels.h"
+#include "elastic/active_part.h"
+#include "elastic/grid_operator.h"
 
 namespace hydrodip {
-
-// The operator of one level. A node that is not free has an empty row and keeps the value zero.
-class GridOperator {
- public:
-  GridOperator(int nx, int ny);
-
-  const GridLayout& layout() const { return layout_; }
-  int nx() const { return layout_.nx; }
-  int ny() const { return layout_.ny; }
-  std::size_t nodes() const { return std::size_t(nx()) * std::size_t(ny()); }
-  std::size_t node(int i, int j) const {
-    return std::size_t(j) * std::size_t(nx()) + std::size_t(i);
-  }
-  std::size_t place(int i, int j) const { return layout_.place(i, j); }
-  bool is_free(int i, int j) const { return mask()[place(i, j)] > 0; }
-  // 1 on free nodes, 0 elsewhere, laid out like vectors.
-  const float* mask() const { return mask_.data(); }
-
-  GridVector vector() const { return GridVector(layout_); }
-
-  using Row = std::array<std::array<float, 4>, 9>;  // [3 * (dj + 1) + di + 1][xx, xy, yx, yy]
-  // Only blocks of nodes that follow are kept: the operator is symmetric. An empty row (or a
-  // diagonal block that is not positive definite) makes the node unfree.
-  void set_row(int i, int j, const Row& row);
-  Row row(int i, int j) const;
-
-  // Calls body(begin, end) over the grid's rows, in parallel where that pays.
-  template <typename Body>
-  void for_rows(const Body& body) const {
-    layout_.for_rows(ny(), body);
-  }
-
-  void multiply(const GridVector& x, GridVector& out) const;
-  void residual(const GridVector& b, const GridVector& x, GridVector& r) const;
-  void smooth(const GridVector& b, const GridVector& x, float weight, GridVector& out) const;
-  void precondition(const GridVector& b, float weight, GridVector& out) const;
-  // Largest eigenvalue of D^-1 A, by power iteration: from below, within a few per cent.
-  double largest_eigenvalue() const;
-
- private:
-  // Arrays over the grid (kernels::Stencil), one after the other.
-  static constexpr int kOwn = 0, kInverse = 3, kForward = 6,
-                       kEntries = kForward + 4 * kernels::kForward;
-  const float* entry(int e) const { return entries_.data() + std::size_t(e) * layout_.entries(); }
-  float* entry(int e) { return entries_.data() + std::size_t(e) * layout_.entries(); }
-  kernels::Stencil stencil() const;
-
-  GridLayout layout_;
-  const kernels::Table& kernels_;
-  GridArray<float> mask_, entries_;
-};
 
 // A hierarchy of operators that is kept up to date where the finest one changes.
 class Multigrid {
@@ -97,15 +42,16 @@ class Multigrid {
     std::vector<std::int32_t> to_do;  // touched nodes
     double largest = 0;               // eigenvalue of D^-1 A to be damped
     float weight[2] = {1, 1};         // of the two smoothing steps
+    ActivePart active;                // where they are made
   };
   void touch(Level& level, int i, int j);
   void coarsen(const Level& fine, Level& coarse) const;
   GridOperator::Row galerkin_row(const GridOperator& fine, int I, int J) const;
   static void choose_weights(Level& level);
   void factor_coarsest();
-  void restrict_to(const Level& fine, const GridVector& r, Level& coarse) const;
-  void prolong_and_add(const Level& coarse, const Level& fine, GridVector& x) const;
   void solve_coarsest(const GridVector& b, GridVector& x) const;
+  void go_down(Level& level, const GridVector& b, GridVector& x, Level& coarse) const;
+  void come_up(const Level& coarse, Level& level, const GridVector& b, GridVector& x) const;
   void cycle(std::size_t level, const GridVector& b, GridVector& x);
 
   std::vector<Level> levels_;
