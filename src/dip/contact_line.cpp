@@ -70,16 +70,14 @@ class ContactLineScheme : public Scheme {
         energy_(setting.film, setting.options.modulus, setting.options.material.poisson),
         solver_(setting.options.make_solver(setting.film)),
         relaxation_(energy_, *solver_),
-        seen_from_above_(energy_.grid().layout()),
         feet_of_corner_(3 * setting.film.triangles.size(), {-1, -1}),
         usable_(setting.film.triangles.size(), 0),
         is_free_(setting.film.u.size(), 0),
-        plan_(setting.film.u),
-        slid_(setting.film.u.size()),
+        film_at_(energy_.grid().field(setting.film.u)),
+        plan_(film_at_),
+        slid_(film_at_),
         slid_in_(setting.film.u.size(), -1),
-        carried_x_(setting.film.u.size()),
-        carried_y_(setting.film.u.size()),
-        found_(setting.film.u.size(), 0),
+        found_(plan_.entries(), 0),
         is_plain_(setting.film.triangles.size(), 0),
         touches_(setting.film.u.size(), 0) {
     for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
@@ -89,12 +87,16 @@ class ContactLineScheme : public Scheme {
           kMinArea * 0.5 * cross2(film_.u[std::size_t(v[1])] - a, film_.u[std::size_t(v[2])] - a));
       update_load(t);
     }
-    energy_.grid().to_grid(film_.u, relaxation_.field());
-    for (auto& corner : slid_in_corner_) corner.assign(film_.u.size(), 0);
-    for (const Vec2& u : film_.u) {
-      film_x_.push_back(u.x());
-      film_y_.push_back(u.y());
-    }
+    relaxation_.field() = film_at_;
+    for (auto& corner : slid_in_corner_) corner.assign(plan_.entries(), 0);
+  }
+
+  void write_positions() override {
+    parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v)
+        if (state_.state[v] == VertexState::kUnattached)
+          state_.position[v] << plan(std::int32_t(v)), state_.level;
+    });
   }
 
   // In parts where the object rises so gently at the contact line that this one runs fast: where
@@ -138,7 +140,9 @@ class ContactLineScheme : public Scheme {
     return state_.state[std::size_t(v)] == VertexState::kAttached;
   }
   double z_stretch() const { return set_.options.material.z_stretch; }
-  const Vec2& plan(std::int32_t v) const { return plan_[std::size_t(v)]; }
+  std::size_t place(std::int32_t v) const { return energy_.grid().place(std::size_t(v)); }
+  Vec2 plan(std::int32_t v) const { return plan_.at(place(v)); }
+  Vec2 slid(std::int32_t v) const { return slid_.at(place(v)); }
 
   // The contact line next to `near`. `outside` is a unit vector known to point away from the object
   // more or less; where faces are turned the wrong way, it decides.
@@ -320,14 +324,12 @@ class ContactLineScheme : public Scheme {
 
   // The vertices that are not free have their own film coordinates.
   void put_back(const std::vector<std::uint8_t>& is_free) {
-    double *x = relaxation_.field().x.data(), *y = relaxation_.field().y.data();
     parallel_for(is_free.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        if (is_free[v]) continue;
-        const std::size_t place = energy_.grid().place(v);
-        x[place] = film_x_[v];
-        y[place] = film_y_[v];
-      }
+      for (std::size_t v = begin; v < end; ++v)
+        if (!is_free[v]) {
+          const std::size_t at = energy_.grid().place(v);
+          relaxation_.field().set(at, film_at_.at(at));
+        }
     });
   }
 
@@ -372,21 +374,21 @@ class ContactLineScheme : public Scheme {
     const auto carry = kernels::best().carry;
     const std::int32_t* const corners[3] = {slid_in_corner_[0].data(), slid_in_corner_[1].data(),
                                             slid_in_corner_[2].data()};
+    // Scraps of torn film may have no place that means anything.
+    const double reach = kLongestSlide * film_.cell_mm + set_.options.step_mm;
     parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-      carry(begin, end, corners, {film_x_.data(), film_y_.data()}, relaxation_.field(),
-            energy_.flat_place(), {carried_x_.data(), carried_y_.data()}, found_.data());
+      const std::size_t first = energy_.grid().place(begin), last = energy_.grid().place(end - 1);
+      carry(first, last + 1, corners, film_at_, relaxation_.field(), plan_, reach, slid_,
+            found_.data());
       for (std::size_t v = begin; v < end; ++v) {
-        slid_[v] = plan_[v];
-        if (state_.state[v] != VertexState::kUnattached) continue;
-        Vec2 place(carried_x_[v], carried_y_[v]);
-        if (!found_[v] || !is_plain_[std::size_t(slid_in_[v])]) {
-          const auto looked_up = look_up(v);
-          if (!looked_up) continue;
-          place = *looked_up;
+        const std::size_t at = energy_.grid().place(v);
+        if (state_.state[v] != VertexState::kUnattached) {
+          slid_.set(at, plan_.at(at));
+        } else if (!found_[at] || !is_plain_[std::size_t(slid_in_[v])]) {
+          const auto to = look_up(v);
+          const bool near = to && (*to - plan_.at(at)).norm() < reach;
+          slid_.set(at, near ? *to : plan_.at(at));
         }
-        // Scraps of torn film may have no place that means anything.
-        if ((place - plan_[v]).norm() < kLongestSlide * film_.cell_mm + set_.options.step_mm)
-          slid_[v] = place;
       }
     });
     hold_back_folds();
@@ -398,10 +400,10 @@ class ContactLineScheme : public Scheme {
         locate(film_, relaxed_, usable_, static_cast<std::int32_t>(v), film_.u[v], slid_in_[v]);
     slid_in_[v] = at.triangle;
     for (std::size_t k = 0; k < 3; ++k)
-      slid_in_corner_[k][v] = at.triangle < 0
-                                  ? 0
-                                  : static_cast<std::int32_t>(energy_.grid().place(
-                                        std::size_t(film_.triangles[std::size_t(at.triangle)][k])));
+      slid_in_corner_[k][energy_.grid().place(v)] =
+          at.triangle < 0
+              ? 0
+              : static_cast<std::int32_t>(place(film_.triangles[std::size_t(at.triangle)][k]));
     if (at.triangle < 0) return std::nullopt;
     const auto t = std::size_t(at.triangle);
     return at.weight[0] * corner(t, 0) + at.weight[1] * corner(t, 1) + at.weight[2] * corner(t, 2);
@@ -416,8 +418,8 @@ class ContactLineScheme : public Scheme {
       for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
         if (!folds(t)) continue;
         for (std::int32_t w : film_.triangles[t])
-          if (floats(w) && slid_[std::size_t(w)] != plan(w)) {
-            slid_[std::size_t(w)] = plan(w);
+          if (floats(w) && slid(w) != plan(w)) {
+            slid_.set(place(w), plan(w));
             held = true;
           }
       }
@@ -426,15 +428,14 @@ class ContactLineScheme : public Scheme {
 
   bool folds(std::size_t t) const {
     const Triangle& v = film_.triangles[t];
-    const Vec2& a = slid_[std::size_t(v[0])];
     if (!usable_[t]) return false;
-    if (cross2(slid_[std::size_t(v[1])] - a, slid_[std::size_t(v[2])] - a) > 0) return false;
+    const Vec2 a = slid(v[0]);
+    if (cross2(slid(v[1]) - a, slid(v[2]) - a) > 0) return false;
     return !attached(v[0]) && !attached(v[1]) && !attached(v[2]);
   }
 
   bool any_fold() {
-    energy_.grid().to_grid(slid_, seen_from_above_);
-    if (!energy_.any_inverted(seen_from_above_)) return false;
+    if (!energy_.any_inverted(slid_)) return false;
     for (std::size_t t = 0; t < film_.triangles.size(); ++t)
       if (folds(t)) return true;
     return false;
@@ -445,7 +446,7 @@ class ContactLineScheme : public Scheme {
     std::array<Vec2, 3> x;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t v = film_.triangles[t][k];
-      x[k] = floats(v) ? slid_[std::size_t(v)] : corner(t, k);
+      x[k] = floats(v) ? slid(v) : corner(t, k);
     }
     const RestTriangle rest = rest_triangle(x[0], x[1], x[2]);
     const Triangle& v = film_.triangles[t];
@@ -502,7 +503,7 @@ class ContactLineScheme : public Scheme {
     const Vec2 centre = plan(foot.attached);
     const Vec2 out = foot.point.head<2>() - centre;
     const double c = out.norm();
-    const double r = (slid_[std::size_t(foot.floating)] - centre).norm();
+    const double r = (slid(foot.floating) - centre).norm();
     if (!(c > 0) || !(r > c)) return element;
     const Vec2 n = out / c;
     const double half_q = 0.5 * (1 - c / r);
@@ -529,13 +530,13 @@ class ContactLineScheme : public Scheme {
     const std::vector<Touch> touches = find_contacts(level);
     for (const Touch& touch : touches) touches_[std::size_t(touch.vertex)] = 1;
     const std::vector<Foot> created = created_feet(touches, level);
-    move_floating(level);
+    plan_.swap(slid_);
     for (const Touch& touch : touches) {
       const auto v = std::size_t(touch.vertex);
       touches_[v] = 0;
       state_.state[v] = VertexState::kAttached;
       state_.position[v] = touch.contact.position;
-      plan_[v] = touch.contact.position.head<2>();
+      plan_.set(place(touch.vertex), touch.contact.position.head<2>());
     }
     update_loads(touches);
     std::erase_if(feet_, [&](const Foot& foot) { return !floats(foot.floating); });
@@ -553,22 +554,15 @@ class ContactLineScheme : public Scheme {
     parallel_for(film_.u.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         if (state_.state[v] != VertexState::kUnattached) continue;
-        if (!waterline_.may_touch(plan_[v], slid_[v])) continue;
-        const Vec3 to(slid_[v].x(), slid_[v].y(), level);
-        const auto contact = first_contact(set_.surface, state_.position[v], to);
-        if (contact)
-          found[begin / kVerticesPerTask].push_back({static_cast<std::int32_t>(v), *contact});
+        const auto vertex = static_cast<std::int32_t>(v);
+        const Vec2 from = plan(vertex), to = slid(vertex);
+        if (!waterline_.may_touch(from, to)) continue;
+        const auto contact = first_contact(set_.surface, Vec3(from.x(), from.y(), state_.level),
+                                           Vec3(to.x(), to.y(), level));
+        if (contact) found[begin / kVerticesPerTask].push_back({vertex, *contact});
       }
     });
     return joined(found);
-  }
-
-  void move_floating(double level) {
-    plan_.swap(slid_);
-    parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v)
-        if (state_.state[v] == VertexState::kUnattached) state_.position[v] << plan_[v], level;
-    });
   }
 
   void update_loads(const std::vector<Touch>& touches) {
@@ -606,7 +600,7 @@ class ContactLineScheme : public Scheme {
       foot.attached = v;
       foot.floating = w;
       const Vec2 from = contact.position.head<2>();
-      const Waterline::Point to = first_on_line(from, slid_[std::size_t(w)]);
+      const Waterline::Point to = first_on_line(from, slid(w));
       const Mat2 F = gradient_at_edge(v, w, Mat2::Identity());
       foot.element = foot.line = {F, F};
       foot.way = unrolled(contact.position, contact.normal.head<2>().stableNormalized(),
@@ -645,7 +639,6 @@ class ContactLineScheme : public Scheme {
   FilmEnergy energy_;
   std::unique_ptr<LinearSolver> solver_;
   Relaxation relaxation_;
-  GridField seen_from_above_;
   double part_ = 0;       // of a step, to go at once next
   double last_rise_ = 0;  // of the level
   std::vector<Foot> feet_;
@@ -659,13 +652,12 @@ class ContactLineScheme : public Scheme {
   std::vector<std::size_t> torn_now_;  // triangles torn in this step
   bool any_torn_ = false;
   std::vector<std::uint8_t> is_free_;  // per vertex: floats and has film around it
-  // Per vertex, seen from above: now, and after relaxing.
-  VertexVector plan_, slid_;
+  // Over the film's grid: film coordinates, and vertices seen from above, now and after relaxing.
+  GridField film_at_, plan_, slid_;
   VertexVector relaxed_;  // per vertex: film coordinates after relaxing
-  // Per vertex: the triangle that it was last found in, with its corners' places on the grid; where
-  // it has been carried there, and whether it still was inside.
+  // Per vertex: the triangle that it was last found in. Over the grid: that one's corners, and
+  // whether the vertex still was inside.
   std::vector<std::int32_t> slid_in_, slid_in_corner_[3];
-  std::vector<double> film_x_, film_y_, carried_x_, carried_y_;
   std::vector<std::int64_t> found_;
   std::vector<std::uint8_t> is_plain_;  // per triangle: usable, and none of its corners attached
   std::vector<std::uint8_t> touches_;   // per vertex: attaches in this step

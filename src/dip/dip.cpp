@@ -142,6 +142,8 @@ DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
     state.statistics.failed_steps =
         std::min(state.statistics.failed_steps, before.failed_steps + 1);
     check_solved(state.statistics, steps, options);
+    if (!observe && step < steps) continue;
+    scheme->write_positions();
     if (observe) observe(step, steps, state.level, state.position, state.state);
   }
   context.progress("dipping", 1);

@@ -36,6 +36,8 @@ class Scheme {
   virtual ~Scheme() = default;
   // Raises the water to the level and brings the film to rest there.
   virtual void advance(double level) = 0;
+  // To be called before anyone looks: advance() may leave floating vertices' positions behind.
+  virtual void write_positions() {}
 };
 
 std::unique_ptr<Scheme> make_contact_line_scheme(const DipSetting& setting, DipState& state);

@@ -24,8 +24,7 @@ FilmEnergy::FilmEnergy(const FilmMesh& mesh, const std::vector<double>& modulus,
     : mesh_(mesh),
       grid_(mesh),
       lambda_per_mu_(lame(1, poisson).lambda / lame(1, poisson).mu),
-      own_corner_(mesh.incident.size()),
-      place_(grid_.layout()) {
+      own_corner_(mesh.incident.size()) {
   for (auto& corner : gradient_)
     for (auto& component : corner) component = GridArray<double>(grid_.elements());
   for (auto* values : {&area_, &mu_, &film_, &flat_area_})
@@ -82,14 +81,13 @@ RestTriangle FilmEnergy::rest(std::size_t t) const {
   return rest;
 }
 
-std::vector<std::int32_t> FilmEnergy::set_flat_rest(const VertexVector& place, double least_share) {
+std::vector<std::int32_t> FilmEnergy::set_flat_rest(const GridField& place, double least_share) {
   double* const gradient[2][2] = {{gradient_[0][0].data(), gradient_[0][1].data()},
                                   {gradient_[1][0].data(), gradient_[1][1].data()}};
-  grid_.to_grid(place, place_);
   const kernels::Elements elements = this->elements();
   std::atomic<std::int64_t> small = 0;
   grid_.layout().for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    small += kernels::best().rest_shapes(elements, begin, end, place_, film_.data(),
+    small += kernels::best().rest_shapes(elements, begin, end, place, film_.data(),
                                          flat_area_.data(), least_share, gradient, area_.data());
   });
   std::vector<std::int32_t> list;

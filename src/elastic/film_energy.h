@@ -38,10 +38,7 @@ class FilmEnergy {
   void set_film(std::size_t t, bool has_film) { film_[grid_.element(t)] = has_film ? 1 : 0; }
   // Of all triangles at once: where the vertices lie in the plane. Returns, in no useful order, the
   // triangles with film whose area comes out below least_share of that on the flat film.
-  std::vector<std::int32_t> set_flat_rest(const VertexVector& place, double least_share);
-
-  // The places that set_flat_rest() was given last.
-  const GridField& flat_place() const { return place_; }
+  std::vector<std::int32_t> set_flat_rest(const GridField& place, double least_share);
 
   Lame material(std::size_t t) const {
     const double mu = mu_[grid_.element(t)];
@@ -75,7 +72,6 @@ class FilmEnergy {
   double lambda_per_mu_;  // Poisson's ratio is the same everywhere
   // Corner of mesh.triangles[mesh.incident[n]] that is the vertex itself.
   std::vector<std::uint8_t> own_corner_;
-  GridField place_;
   mutable std::vector<std::int64_t> flags_;  // scratch of overstretched()
 
   // Of hessian(), made when it is first called.

@@ -91,6 +91,9 @@ class GridArray {
   GridArray() = default;
   explicit GridArray(std::size_t entries) : lines_((entries + kPerLine - 1) / kPerLine) {}
 
+  // At least as many as were asked for.
+  std::size_t entries() const { return lines_.size() * kPerLine; }
+
   Real* data() { return lines_.data()->value; }
   const Real* data() const { return lines_.data()->value; }
   Real& operator[](std::size_t n) { return data()[n]; }
@@ -114,6 +117,12 @@ struct GridField {
     x.swap(other.x);
     y.swap(other.y);
   }
+  Vec2 at(std::size_t place) const { return {x[place], y[place]}; }
+  void set(std::size_t place, const Vec2& value) {
+    x[place] = value.x();
+    y[place] = value.y();
+  }
+  std::size_t entries() const { return x.entries(); }
   // As the kernels take it. Implicit: a view, and nothing else is meant.
   operator kernels::ConstField() const {  // NOLINT(google-explicit-constructor)
     return {x.data(), y.data()};

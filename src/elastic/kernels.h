@@ -128,9 +128,10 @@ struct Table {
   // Where the points `target`, one for each entry in [begin, end), lie when the film whose nodes
   // are at u is laid down with its nodes at `place`: each is looked for in one element only, given
   // by the arrays' entries of its corners (clockwise ones have nothing in them). 1 in `inside`
-  // where it is found there.
+  // where it is found there and nearer to the entry's own place than `reach`.
   void (*carry)(std::size_t begin, std::size_t end, const std::int32_t* const corner[3],
-                ConstField target, ConstField u, ConstField place, Field out, std::int64_t* inside);
+                ConstField target, ConstField u, ConstField place, double reach, Field out,
+                std::int64_t* inside);
 
   // The energy at u, added to one sum for each column.
   void (*energy)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,

@@ -546,7 +546,8 @@ void overstretched(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, 
 }
 
 void carry(std::size_t begin, std::size_t end, const std::int32_t* const corner[3],
-           ConstField target, ConstField u, ConstField place, Field out, std::int64_t* inside) {
+           ConstField target, ConstField u, ConstField place, double reach, Field out,
+           std::int64_t* inside) {
   constexpr double kInside = -1e-12;
   double* __restrict to_x = out.x, * __restrict to_y = out.y;
 #pragma GCC ivdep
@@ -560,9 +561,13 @@ void carry(std::size_t begin, std::size_t end, const std::int32_t* const corner[
     const double inverse = 1 / (usable ? twice : 1.0);
     const double wb = (tx * cy - ty * cx) * inverse, wc = (bx * ty - by * tx) * inverse;
     const double wa = 1 - wb - wc;
-    to_x[n] = wa * place.x[a] + wb * place.x[b] + wc * place.x[c];
-    to_y[n] = wa * place.y[a] + wb * place.y[b] + wc * place.y[c];
-    inside[n] = usable & (wa >= kInside) & (wb >= kInside) & (wc >= kInside) ? 1 : 0;
+    const double x = wa * place.x[a] + wb * place.x[b] + wc * place.x[c];
+    const double y = wa * place.y[a] + wb * place.y[b] + wc * place.y[c];
+    const double dx = x - place.x[n], dy = y - place.y[n];
+    const bool near = dx * dx + dy * dy < reach * reach;
+    to_x[n] = x;
+    to_y[n] = y;
+    inside[n] = usable & near & (wa >= kInside) & (wb >= kInside) & (wc >= kInside) ? 1 : 0;
   }
 }
 

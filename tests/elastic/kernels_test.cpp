@@ -33,7 +33,7 @@ struct StrainedFilm {
     VertexVector place = mesh.u;
     for (Vec2& p : place) p += 0.1 * mesh.cell_mm * Vec2(unit(generator), unit(generator));
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 17) energy.set_film(t, false);
-    energy.set_flat_rest(place, 0);
+    energy.set_flat_rest(energy.grid().field(place), 0);
     for (std::uint8_t rim : mesh.on_rim) is_free.push_back(!rim);
   }
 };
@@ -158,7 +158,7 @@ TEST(FilmEnergy, IsTheSumOfTheTriangles) {
 TEST(FilmEnergy, FlatRestShapesAreThoseOfTheTriangles) {
   const StrainedFilm film;
   FilmEnergy energy(film.mesh, {}, 0.3);
-  const std::vector<std::int32_t> small = energy.set_flat_rest(film.u, 0.9);
+  const std::vector<std::int32_t> small = energy.set_flat_rest(energy.grid().field(film.u), 0.9);
   std::size_t expected_small = 0;
   for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
     const Triangle& v = film.mesh.triangles[t];
