@@ -9,8 +9,8 @@ namespace hydrodip {
 
 namespace {
 
-// Moves below this share of the longest are left to coarser grids. From 0.01 to 0.1, dips take as
-// many iterations as if everything was smoothed.
+// Moves below this share of the longest are left to coarser grids. Up to 0.1, dips take as many
+// iterations as if everything was smoothed, those of torn film too.
 constexpr float kNegligible = 0.03F;
 // Smaller grids cost little anyway.
 constexpr std::size_t kFewestNodes = 3000;

@@ -75,11 +75,13 @@ struct GridLayout {
   static constexpr std::size_t kLooseEnds = 2 * kernels::kLanes;
   // What is worth a thread's while.
   static constexpr std::ptrdiff_t kNodesPerTask = 3000;
+  // The same for all stages of a sweep together.
+  static constexpr std::ptrdiff_t kNodesPerStrip = 600;
   // So many that few wait for the seams, and no row waits for two of them.
   static constexpr std::ptrdiff_t kRowsPerStrip = 16;
 
   std::ptrdiff_t strips_of(std::ptrdiff_t rows) const {
-    const std::ptrdiff_t pairs = std::min(stride * rows / kNodesPerTask, rows / kRowsPerStrip) / 2;
+    const std::ptrdiff_t pairs = std::min(stride * rows / kNodesPerStrip, rows / kRowsPerStrip) / 2;
     return pairs > 0 ? 2 * pairs : 1;
   }
 };

@@ -263,7 +263,7 @@ class MultigridSolver : public LinearSolver {
       const float length = best_length();
       if (length > 0) return length;
     }
-    p_ = z_;
+    p_.swap(z_);
     const float length = best_length();
     if (length > 0) return length;
     return definite_ ? plainly() : -1;
