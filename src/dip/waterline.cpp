@@ -102,8 +102,7 @@ void Waterline::mark(const Reach& reach) {
   swept_.add(reach.box.min);
   swept_.add(reach.box.max);
   for (int y = reach.cells.y0; y <= reach.cells.y1; ++y)
-    for (int x = reach.cells.x0; x <= reach.cells.x1; ++x)
-      reached_[whole_.number(x, y)] = raises_;
+    for (int x = reach.cells.x0; x <= reach.cells.x1; ++x) reached_[whole_.number(x, y)] = raises_;
 }
 
 bool Waterline::may_touch(const Vec2& a, const Vec2& b) const {

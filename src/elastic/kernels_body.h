@@ -302,7 +302,7 @@ std::int64_t rest_shapes(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t
 }
 
 struct Strain {
-  double xx, xy, yx, yy;       // dU/dX
+  double xx, xy, yx, yy;                      // dU/dX
   double cosine, sine, trace, inverse_trace;  // its polar decomposition
 };
 

@@ -106,22 +106,26 @@ void Multigrid::coarsen(const Level& fine, Level& coarse) const {
 // Row (I, J) of P^T A P: the rows of the nine fine nodes that the coarse one is interpolated to,
 // gathered over the 5 x 5 fine nodes that they reach, then handed to the coarse nodes of those.
 GridOperator::Row Multigrid::galerkin_row(const GridOperator& fine, int I, int J) const {
-  std::array<std::array<std::array<float, 4>, 5>, 5> reach{};
-  const auto inside = [&](int i, int j) {
-    return i >= 0 && j >= 0 && i < fine.nx() && j < fine.ny() && fine.is_free(i, j);
+  const auto mask = [&](int i, int j) {
+    const bool inside = i >= 0 && j >= 0 && i < fine.nx() && j < fine.ny();
+    return inside ? fine.mask()[fine.place(i, j)] : 0.0F;
   };
+  std::array<std::array<std::array<float, 4>, 5>, 5> reach{};
   for (int dj = -1; dj <= 1; ++dj)
     for (int di = -1; di <= 1; ++di) {
       const int i = 2 * I + di, j = 2 * J + dj;
-      if (!inside(i, j)) continue;
+      if (!(mask(i, j) > 0)) continue;
       const GridOperator::Row row = fine.row(i, j);
       const float weight = hat(di) * hat(dj);
-      for (int k = 0; k < 9; ++k) {
-        const int ci = di + k % 3 - 1, cj = dj + k / 3 - 1;
-        if (!inside(2 * I + ci, 2 * J + cj)) continue;
-        auto& sum = reach[std::size_t(cj + 2)][std::size_t(ci + 2)];
-        for (std::size_t e = 0; e < 4; ++e) sum[e] += weight * row[std::size_t(k)][e];
+      for (std::size_t k = 0; k < 9; ++k) {
+        auto& sum = reach[std::size_t(dj + 1) + k / 3][std::size_t(di + 1) + k % 3];
+        for (std::size_t e = 0; e < 4; ++e) sum[e] += weight * row[k][e];
       }
+    }
+  for (int dj = -2; dj <= 2; ++dj)
+    for (int di = -2; di <= 2; ++di) {
+      const float free = mask(2 * I + di, 2 * J + dj);
+      for (float& e : reach[std::size_t(dj + 2)][std::size_t(di + 2)]) e *= free;
     }
   // Only the node's own block and those of the nodes that follow are kept.
   GridOperator::Row coarse{};
