@@ -21,7 +21,7 @@ struct DipSetting {
 };
 
 // The film during the dip. The object stands still, the water rises. Floating vertices have
-// position.z() == level.
+// position.z() == level, once Scheme::write_positions() was called.
 struct DipState {
   double level = 0;
   std::vector<Vec3> position;

@@ -27,8 +27,9 @@ class Multigrid {
   // ... and then once. `all`: everything has changed.
   void update(bool all);
 
-  // x = M^-1 b, one V-cycle: symmetric, and positive definite if the smoothers damp all of the
-  // operator's eigenvalues. Estimates say which those are ...
+  // x = M^-1 b, one V-cycle: for what is smoothed, which depends on b (active_part.h), symmetric,
+  // and positive definite if the smoothers damp all of the operator's eigenvalues. Estimates say
+  // which those are ...
   void cycle(const GridVector& b, GridVector& x);
   // ... and this widens them, where they turn out too low. False if they cannot be.
   bool widen();
