@@ -79,6 +79,7 @@ class ContactLineScheme : public Scheme {
         slid_in_(setting.film.u.size(), -1),
         found_(plan_.entries(), 0),
         is_plain_(setting.film.triangles.size(), 0),
+        floating_corners_(setting.film.triangles.size(), 0),
         touches_(setting.film.u.size(), 0) {
     for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
       const Triangle& v = film_.triangles[t];
@@ -225,6 +226,8 @@ class ContactLineScheme : public Scheme {
     const Triangle& v = film_.triangles[t];
     usable_[t] = carries_load(t);
     is_plain_[t] = usable_[t] && !attached(v[0]) && !attached(v[1]) && !attached(v[2]);
+    floating_corners_[t] = 0;
+    for (std::int32_t w : v) floating_corners_[t] += std::uint8_t(usable_[t] && floats(w));
     energy_.set_film(t, usable_[t]);
     for (std::int32_t w : v) {
       const auto begin = film_.incident.begin() + film_.incident_begin[std::size_t(w)],
@@ -266,17 +269,19 @@ class ContactLineScheme : public Scheme {
     // Usable film with corners that float and corners that do not.
     std::vector<std::size_t> at_edge;
     for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
-      if (!usable_[t]) continue;
+      const Triangle& corners = film_.triangles[t];
+      const auto parent = [&](std::size_t k) { return island[std::size_t(corners[k])]; };
+      if (floating_corners_[t] == 0) continue;
+      if (floating_corners_[t] == 3 && parent(0) == parent(1) && parent(1) == parent(2)) continue;
       std::int32_t first = -1;
-      int floating = 0;
-      for (std::int32_t v : film_.triangles[t]) {
+      for (std::int32_t v : corners) {
         if (!floats(v)) continue;
-        if (floating++ == 0)
+        if (first < 0)
           first = v;
         else
           island[std::size_t(root(v))] = root(first);
       }
-      if (floating > 0 && floating < 3) at_edge.push_back(t);
+      if (floating_corners_[t] < 3) at_edge.push_back(t);
     }
     // The first vertex that holds each island, and whether there is another.
     std::vector<std::int32_t> holder(film_.u.size(), -1);
@@ -660,7 +665,8 @@ class ContactLineScheme : public Scheme {
   std::vector<std::int32_t> slid_in_, slid_in_corner_[3];
   std::vector<std::int64_t> found_;
   std::vector<std::uint8_t> is_plain_;  // per triangle: usable, and none of its corners attached
-  std::vector<std::uint8_t> touches_;   // per vertex: attaches in this step
+  std::vector<std::uint8_t> floating_corners_;  // per triangle: how many float; 0 if not usable
+  std::vector<std::uint8_t> touches_;           // per vertex: attaches in this step
 };
 
 }  // namespace
