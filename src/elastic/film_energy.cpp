@@ -146,7 +146,7 @@ double FilmEnergy::value(const GridField& u) const {
   // By the first row of a part, so that they are added up in the same order on any threads.
   std::vector<double> part(std::size_t(elements.ny), 0.0);
   grid_.layout().for_rows(elements.ny - 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    std::vector<double> columns(std::size_t(elements.nx), 0.0);
+    std::vector<double> columns(std::size_t(elements.stride), 0.0);
     kernels::best().energy(elements, begin, end, u, columns.data());
     for (const double column : columns) part[std::size_t(begin)] += column;
   });

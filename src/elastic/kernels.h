@@ -53,7 +53,7 @@ struct Field {
 // (i, j) from node (i, j), the lower one has the corners a, b and c or d, the upper one c, d and a
 // or b; the former where `rising` is 1. Arrays over elements hold the lower triangle where arrays
 // over the grid hold node (i, j), and the upper one `upper` entries behind it. The shape functions'
-// gradients add up to 0, so that corner 0's is not kept.
+// gradients add up to 0, so that corner 0's is not kept. Entries behind a row's last cell are 0.
 struct Elements {
   std::ptrdiff_t stride;
   int nx, ny;               // nodes
@@ -133,9 +133,9 @@ struct Table {
                 ConstField target, ConstField u, ConstField place, double reach, Field out,
                 std::int64_t* inside);
 
-  // The energy at u, added to one sum for each column.
+  // The energy at u, added to one sum for each column; `sums` has `stride` entries.
   void (*energy)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
-                 double* columns);
+                 double* sums);
   // The energy's gradient at the nodes of rows [begin, end), times the mask. `scratch`:
   // kScratchRows rows, zero. Returns how many triangles in the cells of those rows are turned over.
   std::int64_t (*gradient)(const Elements&, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,

@@ -240,6 +240,10 @@ inline std::ptrdiff_t first_of_row(const Elements& e, std::ptrdiff_t row) {
   return (row + 1) * e.stride + kLanes;
 }
 
+// Columns that a loop over a row takes: whole registers, also behind the last node, where there is
+// no film and the mask is 0.
+inline std::ptrdiff_t columns(const Elements& e) { return (e.stride / kLanes - 1) * kLanes; }
+
 struct Corners {
   double x0, y0, x1, y1, x2, y2;
 };
@@ -260,6 +264,7 @@ template <bool kUpper>
 inline std::int64_t rest_shapes_of(const Elements& e, std::ptrdiff_t row, ConstField place,
                                    const double* film, const double* flat_area, double least_share,
                                    double* const (*gradient)[2], double* area) {
+  const std::ptrdiff_t count = columns(e);
   const std::ptrdiff_t first = first_of_row(e, row), shift = kUpper ? e.upper : 0;
   const double *x = place.x + first, *y = place.y + first, *rising = e.rising[row & 1];
   const std::ptrdiff_t stride = e.stride;
@@ -272,7 +277,7 @@ inline std::int64_t rest_shapes_of(const Elements& e, std::ptrdiff_t row, ConstF
   flat_area += first + shift;
   std::int64_t small = 0;
 #pragma GCC ivdep
-  for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
     const Corners t = corners_of<kUpper>(x, y, i, stride, rising[i]);
     const double bx = t.x1 - t.x0, by = t.y1 - t.y0, cx = t.x2 - t.x0, cy = t.y2 - t.y0;
     const double twice = bx * cy - by * cx;
@@ -367,13 +372,14 @@ struct Forces {
 }
 
 void energy(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
-            double* columns) {
-  double* __restrict sum = columns;
+            double* sums) {
+  double* __restrict sum = sums;
+  const std::ptrdiff_t count = columns(e);
   for (std::ptrdiff_t row = begin; row < end; ++row) {
     const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
     const double *x = u.x, *y = u.y, *rising = e.rising[row & 1];
 #pragma GCC ivdep
-    for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
       const std::ptrdiff_t at = first + i;
       sum[i] += energy_of(e, at, corners_of<false>(x, y, at, stride, rising[i])) +
                 energy_of(e, at + e.upper, corners_of<true>(x, y, at, stride, rising[i]));
@@ -401,6 +407,7 @@ inline CellForces cell_forces(double* scratch, std::ptrdiff_t row, std::ptrdiff_
 
 std::int64_t add_up_cells(const Elements& e, std::ptrdiff_t row, ConstField u,
                           const CellForces& to) {
+  const std::ptrdiff_t count = columns(e);
   const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
   const double *x = u.x, *y = u.y, *rising = e.rising[row & 1];
   double* __restrict ax = to.ax, * __restrict ay = to.ay, * __restrict bx = to.bx;
@@ -408,7 +415,7 @@ std::int64_t add_up_cells(const Elements& e, std::ptrdiff_t row, ConstField u,
   double* __restrict dx = to.dx, * __restrict dy = to.dy;
   std::int64_t turned_over = 0;
 #pragma GCC ivdep
-  for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
     const std::ptrdiff_t at = first + i;
     const bool up = rising[i] > 0;
     const Forces lower = forces_of(e, at, corners_of<false>(x, y, at, stride, rising[i]));
@@ -430,6 +437,7 @@ std::int64_t add_up_cells(const Elements& e, std::ptrdiff_t row, ConstField u,
 
 std::int64_t gradient(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
                       const double* mask, Field out, double* scratch) {
+  const std::ptrdiff_t count = columns(e);
   std::int64_t turned_over = 0;
   for (std::ptrdiff_t row = begin > 0 ? begin - 1 : 0; row < end; ++row) {
     const CellForces here = cell_forces(scratch, row, e.stride);
@@ -438,14 +446,15 @@ std::int64_t gradient(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t en
       const std::int64_t found = add_up_cells(e, row, u, here);
       if (row >= begin) turned_over += found;
     } else {
-      for (int i = 0; i < e.nx; ++i) here.ax[i] = here.ay[i] = here.bx[i] = here.by[i] = 0;
+      for (std::ptrdiff_t i = 0; i < count; ++i)
+        here.ax[i] = here.ay[i] = here.bx[i] = here.by[i] = 0;
     }
     if (row < begin) continue;
     const std::ptrdiff_t first = first_of_row(e, row);
     const double* free = mask + first;
     double* __restrict x = out.x + first, * __restrict y = out.y + first;
 #pragma GCC ivdep
-    for (std::ptrdiff_t i = 0; i < e.nx; ++i) {
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
       x[i] = free[i] * ((here.ax[i] + here.bx[i - 1]) + (before.cx[i - 1] + before.dx[i]));
       y[i] = free[i] * ((here.ay[i] + here.by[i - 1]) + (before.cy[i - 1] + before.dy[i]));
     }
@@ -455,35 +464,37 @@ std::int64_t gradient(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t en
 
 template <bool kUpper>
 inline std::int64_t turned_over_of(const Elements& e, std::ptrdiff_t row, ConstField u) {
+  const std::ptrdiff_t count = columns(e);
   const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
   const double *x = u.x + first, *y = u.y + first, *rising = e.rising[row & 1];
   const double* area = e.area + first + (kUpper ? e.upper : 0);
-  std::int64_t count = 0;
-  for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+  std::int64_t found = 0;
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
     const Corners t = corners_of<kUpper>(x, y, i, stride, rising[i]);
     const double twice = (t.x1 - t.x0) * (t.y2 - t.y0) - (t.y1 - t.y0) * (t.x2 - t.x0);
-    count += (area[i] > 0) & !(twice > 0) ? 1 : 0;
+    found += (area[i] > 0) & !(twice > 0) ? 1 : 0;
   }
-  return count;
+  return found;
 }
 
 std::int64_t turned_over(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end,
                          ConstField u) {
-  std::int64_t count = 0;
+  std::int64_t found = 0;
   for (std::ptrdiff_t row = begin; row < end; ++row)
-    count += turned_over_of<false>(e, row, u) + turned_over_of<true>(e, row, u);
-  return count;
+    found += turned_over_of<false>(e, row, u) + turned_over_of<true>(e, row, u);
+  return found;
 }
 
 template <bool kUpper>
 inline std::int64_t changed_of(const Elements& e, std::ptrdiff_t row, ConstField u,
                                const Linearization& old, double tolerance, std::int64_t* out) {
   const double limit = tolerance * tolerance;
-  std::int64_t count = 0;
+  std::int64_t found = 0;
+  const std::ptrdiff_t count = columns(e);
   const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
   const double* rising = e.rising[row & 1];
 #pragma GCC ivdep
-  for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
     const std::ptrdiff_t t = first + i + (kUpper ? e.upper : 0);
     const Strain s = strain_of(e, t, corners_of<kUpper>(u.x, u.y, first + i, stride, rising[i]));
     const double turning = e.mu[t] * (e.lambda_per_mu * (s.trace - 2) - 2) * s.inverse_trace;
@@ -504,29 +515,30 @@ inline std::int64_t changed_of(const Elements& e, std::ptrdiff_t row, ConstField
                          (stiffened * stiffened > limit * e.mu[t] * e.mu[t]);
     const bool emptied = old.area[t] > 0;
     out[t] = film ? (differs ? 1 : 0) : (emptied ? 1 : 0);
-    count += out[t];
+    found += out[t];
   }
-  return count;
+  return found;
 }
 
 std::int64_t changed(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, ConstField u,
                      const Linearization& old, double tolerance, std::int64_t* out) {
-  std::int64_t count = 0;
+  std::int64_t found = 0;
   for (std::ptrdiff_t row = begin; row < end; ++row) {
-    count += changed_of<false>(e, row, u, old, tolerance, out);
-    count += changed_of<true>(e, row, u, old, tolerance, out);
+    found += changed_of<false>(e, row, u, old, tolerance, out);
+    found += changed_of<true>(e, row, u, old, tolerance, out);
   }
-  return count;
+  return found;
 }
 
 // The smallest singular value s of F is below 1 / limit: det(F^T F - s^2 I) < 0, or both are.
 template <bool kUpper>
 inline void overstretched_of(const Elements& e, std::ptrdiff_t row, ConstField u, double bound,
                              std::int64_t* out) {
+  const std::ptrdiff_t count = columns(e);
   const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
   const double* rising = e.rising[row & 1];
 #pragma GCC ivdep
-  for (std::ptrdiff_t i = 0; i < e.nx - 1; ++i) {
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
     const std::ptrdiff_t t = first + i + (kUpper ? e.upper : 0);
     const Strain s = strain_of(e, t, corners_of<kUpper>(u.x, u.y, first + i, stride, rising[i]));
     const double squares = s.xx * s.xx + s.xy * s.xy + s.yx * s.yx + s.yy * s.yy;

@@ -67,7 +67,7 @@ std::vector<double> results_of(const kernels::Table& table) {
   results.push_back(double(table.gradient(elements, 0, ny, u, mask.data(), force, scratch.data())));
   add(force.x, grid.layout().entries());
   add(force.y, grid.layout().entries());
-  std::vector<double> columns(std::size_t(grid.layout().nx));
+  std::vector<double> columns(std::size_t(grid.layout().stride));
   table.energy(elements, 0, ny - 1, u, columns.data());
   results.insert(results.end(), columns.begin(), columns.end());
   results.push_back(double(table.turned_over(elements, 0, ny - 1, u)));
