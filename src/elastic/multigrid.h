@@ -40,15 +40,15 @@ class Multigrid {
     GridOperator A;
     GridVector b, x, other;
     std::vector<std::uint8_t> touched;
-    std::vector<std::int32_t> to_do;  // touched nodes
-    double largest = 0;               // eigenvalue of D^-1 A to be damped
-    float weight[2] = {1, 1};         // of the two smoothing steps
-    ActivePart active;                // where they are made
+    std::vector<std::int32_t> to_do;      // touched nodes
+    double largest = 0;                   // eigenvalue of D^-1 A to be damped
+    std::vector<float> weights = {1, 1};  // of the smoothing steps
+    ActivePart active;                    // where they are made
   };
   void touch(Level& level, int i, int j);
   void coarsen(const Level& fine, Level& coarse) const;
   GridOperator::Row galerkin_row(const GridOperator& fine, int I, int J) const;
-  static void choose_weights(Level& level);
+  void choose_weights(Level& level) const;
   void factor_coarsest();
   void solve_coarsest(const GridVector& b, GridVector& x) const;
   void go_down(Level& level, const GridVector& b, GridVector& x, Level& coarse) const;
