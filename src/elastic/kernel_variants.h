@@ -16,7 +16,8 @@ struct Variant {
 // What this processor can run, best last. The first always exists.
 const std::vector<Variant>& variants();
 
-// The best of variants(), or the one that the environment variable HYDRODIP_SIMD names.
+// The best of variants(), or the one that the environment variable HYDRODIP_SIMD names. Throws
+// InputError if there is none of that name here.
 const Table& best();
 
 }  // namespace hydrodip::kernels

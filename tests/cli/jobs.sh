@@ -57,6 +57,19 @@ for name in $print_files; do
   cmp "one/$name" "out/$name" || fail "$name depends on the run"
 done
 
+# Neither does the instruction set, on a film large enough for whatever the solver does.
+for simd in baseline avx2 avx512; do
+  for threads in 1 2; do
+    HYDRODIP_SIMD=$simd "$hydrodip" simulate samples/sphere.obj --size 60 --quality draft \
+      --threads $threads -o "$simd-$threads" --quiet > /dev/null 2> simd.txt
+    code=$?
+    if [ "$code" -ne 0 ] && grep -q 'this processor does not have it' simd.txt; then continue; fi
+    [ "$code" -eq 0 ] || fail "HYDRODIP_SIMD=$simd: exit code $code: $(cat simd.txt)"
+    cmp "$simd-$threads/film.ply" baseline-1/film.ply ||
+      fail "the film depends on the instruction set or the threads: $simd, $threads"
+  done
+done
+
 for run in one two; do grep -o 'id="scene">[^<]*' "$run/report.html" > "$run.scene"; done
 cmp one.scene two.scene || fail "the page's 3D view depends on the number of threads"
 

@@ -106,6 +106,12 @@ refused 'tetra.obj' simulate tetra.obj -o tetra.obj/out
 refused 'tetra.obj' print colored.ply -o tetra.obj
 refused 'tetra.obj' sample box -o tetra.obj/out
 
+# Instruction sets by hand.
+HYDRODIP_SIMD=sse9
+export HYDRODIP_SIMD
+refused 'HYDRODIP_SIMD=sse9: no instruction set has that name' simulate tetra.obj -o out
+unset HYDRODIP_SIMD
+
 # No command at all.
 refused 'name a command'
 refused 'name the model' print
