@@ -1,5 +1,6 @@
 // The fast solver of the film's equilibrium against the direct one, to the end of a dip.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,22 +56,35 @@ double largest_distance(const DippedFilm& a, const DippedFilm& b) {
 void expect_the_same_film(DipOptions options, const FilmMesh& film) {
   const DippedFilm fast = dipped(film, options);
   options.make_solver = [](const FilmMesh&) { return make_direct_solver(); };
-  EXPECT_LT(largest_distance(fast, dipped(film, options)), kPrecision_mm);
+  const double apart_mm = largest_distance(fast, dipped(film, options));
+  testing::Test::RecordProperty("apart_mm", fmt::format("{:.2g}", apart_mm));
+  EXPECT_LT(apart_mm, kPrecision_mm);
+}
+
+// At the default step, and with enough nodes for all that the solver does on large films. In longer
+// steps, film that touches just as a step ends makes more of a difference than either solver.
+constexpr int kElements = 10000;
+
+DipOptions usual_dip() {
+  DipOptions options;
+  options.depth_mm = 8;
+  options.material.tear_stretch = 0;
+  return options;
 }
 
 TEST(SolverSlow, MultigridGivesTheDirectSolversFilm) {
-  const FilmMesh film = coarse_film(2500);
-  DipOptions options = shallow_dip();
-  options.material.tear_stretch = 0;
-  expect_the_same_film(options, film);
+  expect_the_same_film(usual_dip(), coarse_film(kElements));
+}
+
+TEST(SolverSlow, MultigridGivesTheDirectSolversFilmWithPoissonsRatio) {
+  DipOptions options = usual_dip();
   options.material.poisson = 0.35;
-  expect_the_same_film(options, film);
+  expect_the_same_film(options, coarse_film(kElements));
 }
 
 TEST(SolverSlow, MultigridGivesTheDirectSolversFilmOnHardInk) {
-  const FilmMesh film = coarse_film(2500);
-  DipOptions options = shallow_dip();
-  options.material.tear_stretch = 0;
+  const FilmMesh film = coarse_film(kElements);
+  DipOptions options = usual_dip();
   options.modulus = checkerboard(film, 8);
   expect_the_same_film(options, film);
 }
