@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -211,7 +212,7 @@ void print_qualities() {
 }
 
 int run(int argc, char** argv) {
-  const std::string plot_file = argc > 1 ? argv[1] : "docs/work-precision.svg";
+  const std::filesystem::path plot_file = argc > 1 ? argv[1] : "out/bench/work-precision.svg";
   const int largest = argc > 2 ? std::atoi(argv[2]) : 160000;
   std::vector<Result> results;
   print_header();
@@ -224,8 +225,9 @@ int run(int argc, char** argv) {
       }
   }
   if (!results.empty()) {
+    if (plot_file.has_parent_path()) std::filesystem::create_directories(plot_file.parent_path());
     std::ofstream(plot_file) << plot(results);
-    fmt::print("plot: {}\n", plot_file);
+    fmt::print("plot: {}\n", plot_file.string());
   }
   print_qualities();
   return 0;

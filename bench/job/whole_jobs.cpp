@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include <chrono>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -92,6 +93,11 @@ void run(const std::filesystem::path& model, const std::filesystem::path& textur
 }  // namespace hydrodip
 
 int main(int argc, char** argv) {
-  hydrodip::run(argc > 1 ? argv[1] : "", argc > 2 ? argv[2] : "", argc > 3 ? argv[3] : "");
+  try {
+    hydrodip::run(argc > 1 ? argv[1] : "", argc > 2 ? argv[2] : "", argc > 3 ? argv[3] : "");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return 2;
+  }
   return 0;
 }
