@@ -94,20 +94,21 @@ void energy(int elements, int threads, const Rates& rates) {
 
 }  // namespace
 
+// Ours do not fuse additions and multiplications, for the same bytes everywhere: limits are those
+// of operations apart from each other.
 void measure_inner_loops() {
   const AwakeThreads threads_awake;  // as a dip has them
   const Rates rates = operations_per_second();
   const int threads = available_threads();
+  fmt::print("\ninner loops ({}, {} threads)\n", kernels::variants().back().name, threads);
   fmt::print(
-      "\ninner loops ({}, {} threads). A core alone, in registers: {:.0f} Gflop/s in floats "
-      "({:.0f} if "
-      "additions and\nmultiplications are fused, which ours are not, for the same bytes "
-      "everywhere), "
-      "{:.0f} in doubles ({:.0f}),\n{:.1f}e9 roots with divisions. Copying 128 MiB: {:.1f} GB/s. "
-      "Bounds "
-      "below are for arrays of the same size:\n",
-      kernels::variants().back().name, threads, 1e-9 * rates.floats, 1e-9 * rates.fused_floats,
-      1e-9 * rates.doubles, 1e-9 * rates.fused_doubles, 1e-9 * rates.roots,
+      "  a core in registers: {:.0f} Gflop/s in floats ({:.0f} fused), {:.0f} ({:.0f}) in "
+      "doubles, ",
+      1e-9 * rates.floats, 1e-9 * rates.fused_floats, 1e-9 * rates.doubles,
+      1e-9 * rates.fused_doubles);
+  fmt::print("{:.1f}e9 roots with divisions\n", 1e-9 * rates.roots);
+  fmt::print(
+      "  all cores on 128 MiB: {:.1f} GB/s; bounds below: on arrays of the loop's own size\n",
       1e-9 * bytes_per_second(128 << 20));
   stencils(60, 10, 1, rates);
   energy(1200, 1, rates);
