@@ -15,6 +15,7 @@
 #include "calibrate/subject.h"
 #include "calibrate/synthetic.h"
 #include "scan/read_scan.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
@@ -178,9 +179,8 @@ class Study {
 std::string interval(double low, double high) { return fmt::format("{:.3g} .. {:.3g}", low, high); }
 
 void run(int seeds) {
-  std::string name = (std::filesystem::temp_directory_path() / "hydrodip-noise-XXXXXX").string();
-  const std::filesystem::path folder = mkdtemp(name.data());
-  Study study(folder);
+  const TemporaryFolder folder;
+  Study study(folder.path());
   fmt::print("truth: z_stretch {}, ratio {}, poisson {}; noise {} mm\n\n", kTruth.z_stretch,
              kTruth.stiffness_ratio, kTruth.poisson, kNoise_mm);
   fmt::print(
@@ -206,7 +206,6 @@ void run(int seeds) {
       "\nThe 95 % intervals hold the truth in {} (z_stretch), {} (ratio) and {} (poisson) of "
       "{} seeds.\n",
       covered[0], covered[1], covered[2], seeds);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 // mask.
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <chrono>
 #include <exception>
@@ -13,6 +12,7 @@
 
 #include "job/jobs.h"
 #include "job/settings.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
@@ -77,16 +77,14 @@ void draft(JobConfig config) {
 
 void run(const std::filesystem::path& model, const std::filesystem::path& texture,
          const std::string& size_mm) {
-  std::string name = (std::filesystem::temp_directory_path() / "hydrodip-jobs-XXXXXX").string();
-  const std::filesystem::path folder = mkdtemp(name.data());
+  const TemporaryFolder folder;
   RunContext context;
-  if (model.empty()) sample_job("mask", folder, context);
+  if (model.empty()) sample_job("mask", folder.path(), context);
   const std::filesystem::path dipped = model.empty() ? folder / "mask.obj" : model;
   const JobConfig config = job(dipped, texture, size_mm, folder / "job");
   fmt::print("{} on A4 film\n", dipped.filename().string());
   print_at_600_dpi(config);
   draft(config);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

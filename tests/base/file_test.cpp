@@ -1,19 +1,14 @@
 #include "base/file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <string>
 
 #include "base/error.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
-
-std::filesystem::path temp_path(const std::string& name) {
-  return std::filesystem::temp_directory_path() /
-         ("hydrodip_file_" + std::to_string(::getpid()) + "_" + name);
-}
 
 std::string hash_of(const std::string& text) { return sha256_hex({text.begin(), text.end()}); }
 
@@ -30,13 +25,13 @@ TEST(Sha256, PublishedVectors) {
 TEST(File, WhatIsWrittenIsRead) {
   std::string text;
   for (int i = 0; i < 300000; ++i) text += char(i * 7);
-  const auto path = temp_path("round_trip");
+  const TemporaryFolder folder;
+  const auto path = folder / "round_trip";
   write_file(path, text);
   const auto bytes = read_file(path);
   EXPECT_EQ(std::string(bytes.begin(), bytes.end()), text);
   write_file(path, "");
   EXPECT_TRUE(read_file(path).empty());
-  std::filesystem::remove(path);
 }
 
 TEST(File, ErrorsNameThePath) {
@@ -48,10 +43,10 @@ TEST(File, ErrorsNameThePath) {
       EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
     }
   };
-  const auto missing = temp_path("missing");
+  const TemporaryFolder folder;
+  const auto missing = folder / "missing";
   check([&] { read_file(missing); }, missing.string());
-  check([&] { read_file(std::filesystem::temp_directory_path()); },
-        std::filesystem::temp_directory_path().string());
+  check([&] { read_file(folder.path()); }, folder.path().string());
   check([&] { write_file(missing / "file", "text"); }, (missing / "file").string());
   if (std::filesystem::exists("/dev/full")) {
     check([&] { write_file("/dev/full", std::string(100000, 'x')); }, "/dev/full");

@@ -1,13 +1,13 @@
 #include "base/output_folder.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <fstream>
 #include <iterator>
 #include <string>
 
 #include "base/error.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
@@ -27,13 +27,8 @@ std::ptrdiff_t entries(const fs::path& folder) {
 
 class OutputFolderTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "output_folder_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    root_ = name;
-  }
-  void TearDown() override { fs::remove_all(root_); }
-  fs::path root_;
+  const TemporaryFolder folder_;
+  const fs::path& root_ = folder_.path();
 };
 
 TEST_F(OutputFolderTest, FilesAppearAtCommitAndNothingElseRemains) {

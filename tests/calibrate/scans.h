@@ -1,7 +1,5 @@
-// Small synthetic scans for tests: quick dips, in a folder of their own.
+// Small synthetic scans for tests: quick dips.
 #pragma once
-
-#include <stdlib.h>
 
 #include <filesystem>
 #include <string>
@@ -13,18 +11,6 @@
 #include "scan/read_scan.h"
 
 namespace hydrodip::scans {
-
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "hydrodip-cal-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::filesystem::path path;
-};
 
 // A small sheet and coarse triangles: hundredths of a second for a dip.
 inline JobConfig quick_config() {

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "scans.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
@@ -21,7 +22,7 @@ class SearchSlow : public testing::Test {
                                 const std::vector<std::string>& names) {
     std::vector<std::string> texts;
     for (const std::string& name : names) {
-      const std::filesystem::path file = folder_.path / (name + ".csv");
+      const std::filesystem::path file = folder_ / (name + ".csv");
       truth(name).write(file, options);
       texts.push_back(name + "=" + file.string());
     }
@@ -38,7 +39,7 @@ class SearchSlow : public testing::Test {
   Calibration calibrate(const std::vector<Subject>& scanned, const SearchOptions& options,
                         const std::string& store_name,
                         const std::vector<std::filesystem::path>& merged = {}) {
-    SimulationStore store(folder_.path / store_name, merged);
+    SimulationStore store(folder_ / store_name, merged);
     RunContext context;
     return Search(scanned, scans::quick_config(), 5, options, store).run(context);
   }
@@ -58,7 +59,7 @@ class SearchSlow : public testing::Test {
     }
   }
 
-  scans::Folder folder_;
+  TemporaryFolder folder_;
   RunContext context_;
 };
 
@@ -75,13 +76,13 @@ class OwnFilmSlow : public SearchSlow {
   }
 
   Calibration fit(const SyntheticOptions& scan, SearchOptions options) {
-    const std::filesystem::path file = folder_.path / "own.csv";
+    const std::filesystem::path file = folder_ / "own.csv";
     write_scan_table(file, synthetic_scan(*dip_, *object_, {12, 12}, scan), kSyntheticMark);
     const std::vector<Subject> scanned =
         load_subjects({name_ + "=" + file.string()}, {}, config_, context_);
     options.elements_factor = options.step_factor = 1;
     options.correct = false;
-    SimulationStore store(folder_.path / (std::to_string(scan.seed) + ".jsonl"), {});
+    SimulationStore store(folder_ / (std::to_string(scan.seed) + ".jsonl"), {});
     return Search(scanned, config_, 5, options, store).run(context_);
   }
 
@@ -130,7 +131,7 @@ TEST_F(SearchSlow, InterruptedAnywhereItEndsTheSame) {
   const Calibration whole = calibrate(scanned, options, "whole.jsonl");
   std::size_t kept = 0;
   for (const int reports : {2, 5, 9}) {
-    SimulationStore store(folder_.path / "broken.jsonl", {});
+    SimulationStore store(folder_ / "broken.jsonl", {});
     RunContext context;
     int seen = 0;
     context.on_progress([&](const std::string&, double) {
@@ -143,8 +144,8 @@ TEST_F(SearchSlow, InterruptedAnywhereItEndsTheSame) {
   EXPECT_GT(kept, 0u);
   expect_same(calibrate(scanned, options, "broken.jsonl"), whole);
   // Nothing is computed twice.
-  EXPECT_EQ(SimulationStore(folder_.path / "broken.jsonl", {}).size(),
-            SimulationStore(folder_.path / "whole.jsonl", {}).size());
+  EXPECT_EQ(SimulationStore(folder_ / "broken.jsonl", {}).size(),
+            SimulationStore(folder_ / "whole.jsonl", {}).size());
 }
 
 TEST_F(SearchSlow, ShardsMergedAreOneRun) {
@@ -153,7 +154,7 @@ TEST_F(SearchSlow, ShardsMergedAreOneRun) {
   const Calibration whole = calibrate(scanned, options, "whole.jsonl");
   std::vector<std::filesystem::path> stores;
   for (const int number : {1, 2}) {
-    stores.push_back(folder_.path / ("shard" + std::to_string(number)));
+    stores.push_back(folder_ / ("shard" + std::to_string(number)));
     SimulationStore store(stores.back(), {});
     RunContext context;
     Search search(scanned, scans::quick_config(), 5, options, store);
@@ -161,7 +162,7 @@ TEST_F(SearchSlow, ShardsMergedAreOneRun) {
     EXPECT_EQ(search.missing(), number == 1 ? 1u : 2u);
   }
   {
-    SimulationStore store(folder_.path / "merged.jsonl", stores);
+    SimulationStore store(folder_ / "merged.jsonl", stores);
     EXPECT_EQ(Search(scanned, scans::quick_config(), 5, options, store).missing(), 0u);
   }
   expect_same(calibrate(scanned, options, "merged.jsonl", stores), whole);

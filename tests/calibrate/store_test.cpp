@@ -1,7 +1,6 @@
 #include "calibrate/store.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,19 +8,13 @@
 #include <string>
 
 #include "base/error.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
 
 class StoreTest : public testing::Test {
  protected:
-  StoreTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "hydrodip-store-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    file_ = folder_ / "simulations.jsonl";
-  }
-  ~StoreTest() override { std::filesystem::remove_all(folder_); }
-
   static SimulationKey key(double z) { return {"abc-search", {z, 600, 0.1}}; }
   static SimulationResult result(double x) {
     return WarpedGrid{Vec2(x, 1.0 / 3), std::nullopt, Vec2(-0.1, 1e-17)};
@@ -34,7 +27,8 @@ class StoreTest : public testing::Test {
     std::ofstream(file_, std::ios::binary) << content;
   }
 
-  std::filesystem::path folder_, file_;
+  const TemporaryFolder folder_;
+  const std::filesystem::path file_ = folder_ / "simulations.jsonl";
 };
 
 TEST_F(StoreTest, ResultsComeBackToTheLastBit) {
@@ -97,7 +91,7 @@ TEST_F(StoreTest, RefusesOtherFiles) {
     write(content);
     EXPECT_THROW(SimulationStore(file_, {}), InputError) << content;
   }
-  EXPECT_THROW(SimulationStore(folder_ / "no" / "folder", {}), InputError);
+  EXPECT_THROW(SimulationStore(folder_ / "no/folder", {}), InputError);
   write("");
   EXPECT_THROW(SimulationStore(file_, {folder_ / "missing"}), InputError);
 }

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <cstdio>
 
@@ -14,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
@@ -128,8 +128,8 @@ TEST(Png, RecordsDpiAndSrgb) {
 }
 
 TEST(Png, SavesToAFileAndLoads) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("hydrodip_png_" + std::to_string(::getpid()) + ".png");
+  const TemporaryFolder folder;
+  const auto path = folder / "image.png";
   const Image image = random_image(5, 4, false);
   save_png(path, image, 300);
   EXPECT_EQ(load_image(path).rgba, image.rgba);

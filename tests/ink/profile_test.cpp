@@ -1,6 +1,5 @@
 // ICC profiles: ours, and others' through ours, against Little CMS's own command, transicc.
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <cmath>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include "ink/color_model.h"
 #include "ink/difference.h"
 #include "ink/rgb_profile.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
@@ -33,13 +33,6 @@ std::string said_by(const std::string& command) {
 
 class Profiles : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "hydrodip_icc_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path save(const std::string& name, const std::vector<std::uint8_t>& bytes) {
     write_file(folder_ / name, bytes.data(), bytes.size());
     return folder_ / name;
@@ -66,7 +59,7 @@ class Profiles : public ::testing::Test {
     return result;
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 std::vector<SrgbColor> color_cube(int nodes) {

@@ -1,6 +1,5 @@
 // The whole way: a model is printed, the print is dipped, and the model's own colours come back.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -15,23 +14,10 @@
 #include "job/prepare.h"
 #include "object/samples.h"
 #include "sheet/sheet.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
-
-class ScratchFolder {
- public:
-  ScratchFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("hydrodip_round_trip_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~ScratchFolder() { std::filesystem::remove_all(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 JobConfig mask_job(const std::filesystem::path& folder) {
   write_sample("mask", folder);
@@ -196,7 +182,7 @@ Registration registration(const DippedObject& dipped, const Object& object, cons
 }
 
 TEST(RoundTripSlow, WhatIsPrintedAndDippedIsWhatWasWanted) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const JobConfig config = mask_job(folder.path());
   RunContext context;
   print_job(config, context);

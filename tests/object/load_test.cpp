@@ -18,7 +18,7 @@ namespace {
 
 using fixtures::Bytes;
 using fixtures::GlbOptions;
-using fixtures::TempFolder;
+using fixtures::ModelFolder;
 
 constexpr LinearColor kBlack{0, 0, 0, 1};
 
@@ -72,7 +72,7 @@ void expect_squares(const LoadedObject& loaded, double mm = 1) {
   for (int f = 0; f < 4; ++f) EXPECT_EQ(face_normal(loaded.object, f).z(), 1);
 }
 
-TempFolder& obj_in(TempFolder& folder) {
+ModelFolder& obj_in(ModelFolder& folder) {
   folder.write("squares.obj", fixtures::obj_text());
   folder.write("squares.mtl", fixtures::mtl_text());
   folder.write("left.png", fixtures::four_colour_png());
@@ -80,8 +80,8 @@ TempFolder& obj_in(TempFolder& folder) {
 }
 
 TEST(Load, ObjWithMaterialsAndTexture) {
-  TempFolder folder;
-  const LoadedObject loaded = load(obj_in(folder).path("squares.obj"));
+  ModelFolder folder;
+  const LoadedObject loaded = load(obj_in(folder) / "squares.obj");
   expect_squares(loaded);
   EXPECT_EQ(loaded.units, "mm");
   EXPECT_TRUE(loaded.object.has_appearance());
@@ -96,36 +96,36 @@ TEST(Load, ObjWithMaterialsAndTexture) {
 }
 
 TEST(Load, ColouredKdTintsTheTexture) {
-  TempFolder folder;
+  ModelFolder folder;
   obj_in(folder).write("squares.mtl", "newmtl left\nKd 1 0.5 0\nmap_Kd left.png\n");
-  const LoadedObject loaded = load(folder.path("squares.obj"));
+  const LoadedObject loaded = load((folder / "squares.obj"));
   expect_color(color_near(loaded.object, 0.75, 0.25), 1, srgb_to_linear(0.5f), 0);
 }
 
 TEST(Load, ObjTransparencyLetsTheObjectShow) {
-  TempFolder folder;
+  ModelFolder folder;
   obj_in(folder).write("squares.mtl", "newmtl right\nKd 1 1 1\nd 0.25\n");
-  const LoadedObject loaded = load(folder.path("squares.obj"));
+  const LoadedObject loaded = load((folder / "squares.obj"));
   expect_color(color_near(loaded.object, 1.5, 0.5, {0, 1, 0, 1}), 0.25f, 1, 0.25f);
 }
 
 TEST(Load, SeveralTextures) {
-  TempFolder folder;
+  ModelFolder folder;
   obj_in(folder).write("squares.mtl",
                        "newmtl left\nmap_Kd left.png\nnewmtl right\nmap_Kd -clamp on right.png\n");
   folder.write("right.png", fixtures::png_of(1, 1, {{0, 255, 255}}));
-  const LoadedObject loaded = load(folder.path("squares.obj"));
+  const LoadedObject loaded = load((folder / "squares.obj"));
   EXPECT_EQ(loaded.object.textures.size(), 2u);
   expect_color(color_near(loaded.object, 0.25, 0.75), 1, 0, 0);
   expect_color(color_near(loaded.object, 1.25, 0.75), 0, 1, 1);
 }
 
 TEST(Load, MissingTextureFallsBackWithAWarning) {
-  TempFolder folder;
+  ModelFolder folder;
   obj_in(folder);
-  std::filesystem::remove(folder.path("left.png"));
+  std::filesystem::remove((folder / "left.png"));
   RunContext context;
-  const LoadedObject loaded = load_object(folder.path("squares.obj"), {}, context);
+  const LoadedObject loaded = load_object((folder / "squares.obj"), {}, context);
   ASSERT_EQ(context.warnings().size(), 1u);
   EXPECT_NE(context.warnings()[0].find("left.png"), std::string::npos);
   const float kd = srgb_to_linear(0.8f);
@@ -133,19 +133,19 @@ TEST(Load, MissingTextureFallsBackWithAWarning) {
 }
 
 TEST(Load, DamagedTextureFallsBackWithAWarning) {
-  TempFolder folder;
+  ModelFolder folder;
   obj_in(folder).write("left.png", std::string("not a picture"));
   RunContext context;
-  EXPECT_TRUE(load_object(folder.path("squares.obj"), {}, context).object.textures.empty());
+  EXPECT_TRUE(load_object((folder / "squares.obj"), {}, context).object.textures.empty());
   EXPECT_EQ(context.warnings().size(), 1u);
 }
 
 TEST(Load, MissingMtlIsAWarning) {
-  TempFolder folder;
+  ModelFolder folder;
   obj_in(folder);
-  std::filesystem::remove(folder.path("squares.mtl"));
+  std::filesystem::remove((folder / "squares.mtl"));
   RunContext context;
-  const LoadedObject loaded = load_object(folder.path("squares.obj"), {}, context);
+  const LoadedObject loaded = load_object((folder / "squares.obj"), {}, context);
   expect_squares(loaded);
   ASSERT_EQ(context.warnings().size(), 1u);
   EXPECT_NE(context.warnings()[0].find("squares.mtl"), std::string::npos);
@@ -153,29 +153,29 @@ TEST(Load, MissingMtlIsAWarning) {
 }
 
 TEST(Load, TextureOptionReplacesEverything) {
-  TempFolder folder;
+  ModelFolder folder;
   obj_in(folder);
   LoadOptions options;
   options.texture = folder.write("other.png", fixtures::png_of(1, 1, {{255, 0, 255}}));
-  const LoadedObject loaded = load(folder.path("squares.obj"), options);
+  const LoadedObject loaded = load((folder / "squares.obj"), options);
   expect_color(color_near(loaded.object, 0.25, 0.75), 1, 0, 1);
   expect_color(color_near(loaded.object, 1.5, 0.5), 1, 0, 1);
   EXPECT_EQ(loaded.object.textures.size(), 1u);
 }
 
 TEST(Load, TextureOptionNeedsUvsAndAPicture) {
-  TempFolder folder;
+  ModelFolder folder;
   obj_in(folder);
   LoadOptions options;
-  options.texture = folder.path("left.png");
+  options.texture = (folder / "left.png");
   EXPECT_NE(refusal(folder.write("a.stl", fixtures::binary_stl()), options).find("UVs"),
             std::string::npos);
-  options.texture = folder.path("none.png");
-  EXPECT_NE(refusal(folder.path("squares.obj"), options).find("none.png"), std::string::npos);
+  options.texture = (folder / "none.png");
+  EXPECT_NE(refusal((folder / "squares.obj"), options).find("none.png"), std::string::npos);
 }
 
 TEST(Load, ObjContinuationsNegativeIndicesAndConcavePolygons) {
-  TempFolder folder;
+  ModelFolder folder;
   // An L shape of area 3: a fan from its first corner would cover the notch.
   const LoadedObject loaded =
       load(folder.write("l.obj",
@@ -186,7 +186,7 @@ TEST(Load, ObjContinuationsNegativeIndicesAndConcavePolygons) {
 }
 
 TEST(Load, PlyWithVertexColours) {
-  TempFolder folder;
+  ModelFolder folder;
   for (const auto& path : {folder.write("ascii.ply", fixtures::ascii_ply_text()),
                            folder.write("little.ply", fixtures::binary_ply(false)),
                            folder.write("big.PLY", fixtures::binary_ply(true))}) {
@@ -199,7 +199,7 @@ TEST(Load, PlyWithVertexColours) {
 }
 
 TEST(Load, PlyBytesAreSrgb) {
-  TempFolder folder;
+  ModelFolder folder;
   std::string text = fixtures::ascii_ply_text();
   for (std::size_t at; (at = text.find("255 0 0")) != std::string::npos;) {
     text.replace(at, 7, "128 0 64");
@@ -209,11 +209,11 @@ TEST(Load, PlyBytesAreSrgb) {
 }
 
 TEST(Load, StlAndOff) {
-  TempFolder folder;
+  ModelFolder folder;
   expect_squares(load(folder.write("ascii.stl", fixtures::ascii_stl_text())));
   expect_squares(load(folder.write("binary.stl", fixtures::binary_stl())));
   expect_squares(load(folder.write("plain.off", fixtures::off_text())));
-  const LoadedObject plain = load(folder.path("binary.stl"));
+  const LoadedObject plain = load((folder / "binary.stl"));
   EXPECT_FALSE(plain.object.has_appearance());
   expect_color(color_near(plain.object, 0.5, 0.5), 1, 1, 1);
   const LoadedObject colored = load(folder.write("colored.off", fixtures::coff_text()));
@@ -222,7 +222,7 @@ TEST(Load, StlAndOff) {
 }
 
 TEST(Load, ThreeMfUnitsTransformsAndColours) {
-  TempFolder folder;
+  ModelFolder folder;
   const std::pair<const char*, double> units[] = {
       {"", 1},         {"millimeter", 1}, {"centimeter", 10}, {"inch", 25.4},
       {"foot", 304.8}, {"meter", 1000},   {"micron", 0.001}};
@@ -234,11 +234,11 @@ TEST(Load, ThreeMfUnitsTransformsAndColours) {
   }
   LoadOptions options;
   options.units = "cm";
-  expect_squares(load(folder.path("a.3mf"), options), 10);
+  expect_squares(load((folder / "a.3mf"), options), 10);
 }
 
 TEST(Load, GlbTexturesMaterialsNodesAndMetres) {
-  TempFolder folder;
+  ModelFolder folder;
   const LoadedObject loaded = load(folder.write("a.glb", fixtures::glb()));
   EXPECT_EQ(loaded.units, "m");
   expect_squares(loaded, 1000);
@@ -254,11 +254,11 @@ TEST(Load, GlbTexturesMaterialsNodesAndMetres) {
   expect_color(color_near(loaded.object, 1500, 500), 1, 0.5f, 0);
   LoadOptions options;
   options.units = "mm";
-  expect_squares(load(folder.path("a.glb"), options));
+  expect_squares(load((folder / "a.glb"), options));
 }
 
 TEST(Load, GltfTextWithEmbeddedAndExternalData) {
-  TempFolder folder;
+  ModelFolder folder;
   expect_squares(load(folder.write("a.gltf", fixtures::gltf_text())), 1000);
   folder.write("with blank.bin", fixtures::gltf_bin({}));
   const LoadedObject loaded = load(folder.write("b.gltf", fixtures::gltf_text("with%20blank.bin")));
@@ -270,7 +270,7 @@ TEST(Load, GltfTextWithEmbeddedAndExternalData) {
 }
 
 TEST(Load, GlbWrapModes) {
-  TempFolder folder;
+  ModelFolder folder;
   GlbOptions options;
   options.wrap_s = 33648;  // mirrored
   options.wrap_t = 33071;  // clamped
@@ -285,7 +285,7 @@ TEST(Load, GlbWrapModes) {
 }
 
 TEST(Load, GlbAlphaModes) {
-  TempFolder folder;
+  ModelFolder folder;
   GlbOptions options;
   options.png = fixtures::png_of(1, 1, {{255, 255, 255, 51}});
   options.factor = "1,1,1,0.5";
@@ -302,7 +302,7 @@ TEST(Load, GlbAlphaModes) {
 }
 
 TEST(Load, GltfTextureTransform) {
-  TempFolder folder;
+  ModelFolder folder;
   GlbOptions options;
   options.uv_max = 1;
   options.texture_use =
@@ -320,7 +320,7 @@ TEST(Load, GltfTextureTransform) {
 }
 
 TEST(Load, UnitsOption) {
-  TempFolder folder;
+  ModelFolder folder;
   const auto path = folder.write("a.stl", fixtures::binary_stl());
   LoadOptions options;
   for (const auto& [name, mm] : {std::pair{"mm", 1.0}, {"cm", 10.0}, {"m", 1000.0}, {"in", 25.4}}) {
@@ -334,8 +334,8 @@ TEST(Load, UnitsOption) {
 // ---- refusals -----------------------------------------------------------------------------------
 
 TEST(LoadRefuses, MissingEmptyAndUnknownFiles) {
-  TempFolder folder;
-  EXPECT_NE(refusal(folder.path("none.obj")).find("none.obj"), std::string::npos);
+  ModelFolder folder;
+  EXPECT_NE(refusal((folder / "none.obj")).find("none.obj"), std::string::npos);
   EXPECT_NE(refusal(folder.write("a.xyz", std::string("1 2 3"))).find(".xyz"), std::string::npos);
   for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off", "a.3mf", "a.gltf", "a.glb"}) {
     EXPECT_NE(refusal(folder.write(name, std::string())).find("empty"), std::string::npos) << name;
@@ -343,7 +343,7 @@ TEST(LoadRefuses, MissingEmptyAndUnknownFiles) {
 }
 
 TEST(LoadRefuses, RandomBytesUnderEveryName) {
-  TempFolder folder;
+  ModelFolder folder;
   std::mt19937 random(1);
   for (const std::size_t size : {1u, 15u, 100u, 3000u}) {
     Bytes bytes(size);
@@ -361,7 +361,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST(LoadRefuses, FaceIndicesOutOfRange) {
-  TempFolder folder;
+  ModelFolder folder;
   const std::string obj = fixtures::obj_text();
   EXPECT_NE(refusal(folder.write("a.obj", replaced(obj, "6/3", "7/3"))).find("vertex 7"),
             std::string::npos);
@@ -397,7 +397,7 @@ TEST(LoadRefuses, FaceIndicesOutOfRange) {
 }
 
 TEST(LoadRefuses, CoordinatesThatAreNotFinite) {
-  TempFolder folder;
+  ModelFolder folder;
   for (const char* bad : {"nan", "inf", "-inf", "1e60", "abc"}) {
     EXPECT_NE(refusal(folder.write("a.obj", replaced(fixtures::obj_text(), "v 2 0 0",
                                                      std::string("v 2 ") + bad + " 0"))),
@@ -431,7 +431,7 @@ TEST(LoadRefuses, CoordinatesThatAreNotFinite) {
 }
 
 TEST(LoadRefuses, SizesThatTheFileCannotHold) {
-  TempFolder folder;
+  ModelFolder folder;
   Bytes stl = fixtures::binary_stl();
   stl.pop_back();
   EXPECT_NE(refusal(folder.write("a.stl", stl)).find("bytes"), std::string::npos);
@@ -450,7 +450,7 @@ TEST(LoadRefuses, SizesThatTheFileCannotHold) {
 }
 
 TEST(LoadRefuses, NodesThatLoop) {
-  TempFolder folder;
+  ModelFolder folder;
   EXPECT_NE(refusal(folder.write("a.gltf", replaced(fixtures::gltf_text(), "{\"mesh\": 0}",
                                                     "{\"mesh\": 0, \"children\": [0]}")))
                 .find("loop"),
@@ -513,7 +513,7 @@ Bytes damaged(Bytes bytes, std::mt19937& random) {
 }
 
 TEST(Load, DamagedFilesEndInAResultOrARefusal) {
-  TempFolder folder;
+  ModelFolder folder;
   obj_in(folder);
   std::mt19937 random(20151);
   const char* count = std::getenv("HYDRODIP_FUZZ");
@@ -536,22 +536,22 @@ TEST(Load, DamagedFilesEndInAResultOrARefusal) {
 }
 
 TEST(Load, DamagedMtlNeverStopsTheModel) {
-  TempFolder folder;
+  ModelFolder folder;
   obj_in(folder).write("squares.mtl", std::string("Kd 1 0 0\nmap_Kd left.png\nd 1\n"));
-  expect_squares(load(folder.path("squares.obj")));
+  expect_squares(load((folder / "squares.obj")));
   std::mt19937 random(7);
   for (int i = 0; i < 100; ++i) {
     folder.write("squares.mtl", damaged(bytes_of(fixtures::mtl_text()), random));
-    expect_squares(load(folder.path("squares.obj")));
+    expect_squares(load((folder / "squares.obj")));
   }
 }
 
 TEST(Load, MapOptionsAndBlanksInNames) {
-  TempFolder folder;
+  ModelFolder folder;
   obj_in(folder).write("squares.mtl",
                        "newmtl left\nmap_Kd -bm 1 -mm 0 1 -o 0 0 0 -blendu on  a picture.png \n");
   folder.write("a picture.png", fixtures::four_colour_png());
-  expect_color(color_near(load(folder.path("squares.obj")).object, 0.25, 0.75), 1, 0, 0);
+  expect_color(color_near(load((folder / "squares.obj")).object, 0.25, 0.75), 1, 0, 0);
 }
 
 }  // namespace

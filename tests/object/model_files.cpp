@@ -1,10 +1,7 @@
 #include "object/model_files.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 
 #include "base/file.h"
@@ -97,26 +94,14 @@ Bytes png_in(const GlbOptions& options) {
 
 }  // namespace
 
-TempFolder::TempFolder() {
-  static std::atomic<int> count{0};
-  folder_ = std::filesystem::temp_directory_path() /
-            fmt::format("hydrodip_object_{}_{}", ::getpid(), count++);
-  std::filesystem::create_directories(folder_);
+std::filesystem::path ModelFolder::write(const std::string& name, const std::string& text) const {
+  write_file(path() / name, text);
+  return path() / name;
 }
 
-TempFolder::~TempFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
-
-std::filesystem::path TempFolder::write(const std::string& name, const std::string& text) const {
-  write_file(folder_ / name, text);
-  return folder_ / name;
-}
-
-std::filesystem::path TempFolder::write(const std::string& name, const Bytes& bytes) const {
-  write_file(folder_ / name, bytes.data(), bytes.size());
-  return folder_ / name;
+std::filesystem::path ModelFolder::write(const std::string& name, const Bytes& bytes) const {
+  write_file(path() / name, bytes.data(), bytes.size());
+  return path() / name;
 }
 
 Bytes png_of(int width, int height, const std::vector<Rgb>& pixels) {

@@ -11,25 +11,17 @@
 #include <vector>
 
 #include "image/image.h"
+#include "temporary_folder.h"
 
 namespace hydrodip::fixtures {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// A folder that is gone after the test.
-class TempFolder {
+// A folder that files are written to.
+class ModelFolder : public TemporaryFolder {
  public:
-  TempFolder();
-  ~TempFolder();
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
   std::filesystem::path write(const std::string& name, const std::string& text) const;
   std::filesystem::path write(const std::string& name, const Bytes& bytes) const;
-  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-
- private:
-  std::filesystem::path folder_;
 };
 
 struct Rgb {

@@ -13,29 +13,10 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "image/files.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
-
-// A folder of its own, removed at the end.
-class Folder {
- public:
-  Folder() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    path_ =
-        std::filesystem::temp_directory_path() / ("hydrodip_samples_" + std::string(test->name()));
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 // The mask takes longest to paint, so it is made once.
 const Object& sample(const std::string& name) {
@@ -123,7 +104,7 @@ TEST_P(EverySample, IsNotMirroredSeenFromBelow) {
 }
 
 TEST_P(EverySample, WritesTheSameModelAndTheSameBytes) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string name = GetParam();
   const std::vector<std::string> files = write_sample(name, folder.path());
   EXPECT_EQ(files, (std::vector<std::string>{name + ".obj", name + ".mtl", name + ".png"}));

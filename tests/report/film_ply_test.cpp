@@ -9,12 +9,12 @@
 #include "base/file.h"
 #include "fixtures.h"
 #include "report/preview.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
 
 using fixtures::film_under_ball;
-using fixtures::ScratchFolder;
 
 // Reads little-endian values off the front of a byte string.
 class Reader {
@@ -53,7 +53,7 @@ Ply split(const std::vector<std::uint8_t>& bytes) {
 }
 
 TEST(FilmPly, HeaderIsTheContract) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const DippedFilm film = film_under_ball();
   write_film_ply(folder / "film.ply", film);
   const std::vector<std::string> expected = {
@@ -75,7 +75,7 @@ TEST(FilmPly, HeaderIsTheContract) {
 }
 
 TEST(FilmPly, EveryValueComesBack) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const DippedFilm film = film_under_ball();
   write_film_ply(folder / "film.ply", film);
   Reader in(split(read_file(folder / "film.ply")).body);
@@ -94,7 +94,7 @@ TEST(FilmPly, EveryValueComesBack) {
 }
 
 TEST(FilmPly, NeverHoldsWhatIsNotANumber) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   DippedFilm film = film_under_ball();
   film.stretch[7] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(write_film_ply(folder / "film.ply", film), DipError);

@@ -2,7 +2,6 @@
 // a result, and known in closed form.
 #pragma once
 
-#include <unistd.h>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -77,26 +76,5 @@ inline DippedFilm film_under_ball(double reach_mm = 16) {
   film.depth_mm = kRadius;
   return film;
 }
-
-// A folder of its own, gone afterwards.
-class ScratchFolder {
- public:
-  ScratchFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("hydrodip_report_test_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace hydrodip::fixtures

@@ -8,13 +8,13 @@
 #include "fixtures.h"
 #include "image/files.h"
 #include "report/preview.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
 
 using fixtures::film_under_ball;
 using fixtures::kRadius;
-using fixtures::ScratchFolder;
 using fixtures::two_coloured_ball;
 using Json = nlohmann::json;
 
@@ -89,7 +89,7 @@ std::vector<float> floats(const Glb& glb, int number) {
 Surface surface_of(const Object& object) { return {object.positions, object.triangles}; }
 
 Glb write_and_parse(const DippedFilm& film, const Image& sheet) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const Object ball = two_coloured_ball();
   write_preview_glb(folder / "preview.glb", ball, surface_of(ball), film, sheet, 80, 100,
                     {1, 1, 1, 1});
@@ -218,7 +218,7 @@ TEST(PreviewGlb, VertexColoursComeOnAMeshOfTheirOwn) {
   ball.colors.assign(ball.triangles.size(), CornerColor{});
   for (CornerColor& corners : ball.colors) corners.fill({0, 1, 0, 0.5f});
   for (Material& material : ball.materials) material.base_color = {1, 1, 1, 1};
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   write_preview_glb(folder / "c.glb", ball, surface_of(ball), film_under_ball(), gradient_sheet(),
                     80, 100, {1, 1, 1, 1});
   const Glb glb = parse(read_file(folder / "c.glb"));
@@ -236,7 +236,7 @@ TEST(PreviewGlb, APlainModelHasNoVariants) {
   Object ball = two_coloured_ball(4);
   ball.materials.resize(1);
   ball.material_of.assign(ball.triangles.size(), 0);
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   write_preview_glb(folder / "p.glb", ball, surface_of(ball), film_under_ball(), gradient_sheet(),
                     80, 100, {1, 1, 1, 1});
   EXPECT_FALSE(parse(read_file(folder / "p.glb")).json.contains("extensionsUsed"));

@@ -10,13 +10,13 @@
 #include "base/file.h"
 #include "fixtures.h"
 #include "report/viewer_assets.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
 
 using fixtures::film_under_ball;
 using fixtures::kRadius;
-using fixtures::ScratchFolder;
 using fixtures::two_coloured_ball;
 using Json = nlohmann::json;
 
@@ -110,7 +110,7 @@ TEST(Report, HtmlTagsAreBalanced) {
 }
 
 TEST(Report, InputsCarryTheirHash) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   write_file(folder / "abc.txt", std::string("abc"));
   const ReportInput input = describe_input("model", folder / "abc.txt");
   EXPECT_EQ(input.bytes, 3u);

@@ -1,25 +1,19 @@
 #include "scan/read_scan.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <string>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
 
 class ReadScanTest : public testing::Test {
  protected:
-  ReadScanTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "hydrodip-scan-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~ReadScanTest() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path file(const std::string& name, const std::string& text) const {
     write_file(folder_ / name, text);
     return folder_ / name;
@@ -35,7 +29,7 @@ class ReadScanTest : public testing::Test {
     return "";
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 CornerGrid bent_board(int columns, int rows, double mm = 1) {

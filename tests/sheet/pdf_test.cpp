@@ -25,7 +25,7 @@ using fixtures::rasterised;
 using fixtures::run_tool;
 using fixtures::sheet;
 
-class PrintPdf : public fixtures::ScratchFolder {
+class PrintPdf : public fixtures::InFolder {
  protected:
   std::filesystem::path write(const Image& image, const SheetOptions& options) {
     const std::filesystem::path path = folder_ / "print.pdf";
@@ -375,7 +375,7 @@ TEST_F(PrintPdf, FilesThatCannotBeWrittenAreNamed) {
   const Image image = patterned_image(options);
   std::ofstream(folder_ / "file") << "x";
   for (const std::filesystem::path& path :
-       {folder_ / "missing" / "print.pdf", folder_ / "file" / "print.pdf", folder_}) {
+       {folder_ / "missing" / "print.pdf", folder_ / "file" / "print.pdf", folder_.path()}) {
     try {
       write_print_pdf(path, image, srgb_profile(), options, context_);
       FAIL() << path;

@@ -21,7 +21,7 @@ using fixtures::patterned_inks;
 using fixtures::run_tool;
 using fixtures::sheet;
 
-class PrintRaster : public fixtures::ScratchFolder {};
+class PrintRaster : public fixtures::InFolder {};
 
 // Every byte of a CMYK file, rows from the top.
 std::vector<std::uint8_t> read_tiff(const std::filesystem::path& path, const InkImage& image,
@@ -159,7 +159,7 @@ TEST_F(PrintRaster, FilesThatCannotBeWrittenAreNamed) {
   };
   std::ofstream(folder_ / "file") << "x";
   for (const std::filesystem::path& path :
-       {folder_ / "missing" / "print", folder_ / "file" / "print", folder_}) {
+       {folder_ / "missing" / "print", folder_ / "file" / "print", folder_.path()}) {
     for (const std::function<void(const std::filesystem::path&)>& writer :
          {std::function<void(const std::filesystem::path&)>(tiff),
           std::function<void(const std::filesystem::path&)>(png)}) {

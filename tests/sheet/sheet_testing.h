@@ -2,8 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
-
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,18 +13,13 @@
 #include "image/files.h"
 #include "ink/color_model.h"
 #include "sheet/sheet.h"
+#include "temporary_folder.h"
 
 namespace hydrodip::fixtures {
 
-class ScratchFolder : public ::testing::Test {
+class InFolder : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "hydrodip_sheet_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 inline bool has_tool(const std::string& name) {
