@@ -10,12 +10,12 @@ namespace hydrodip {
 
 JobResult sample_job(const std::string& name, const std::filesystem::path& folder,
                      RunContext& context) {
-  make_sample(name);  // refuses unknown names before a folder is made
+  const Object sample = make_sample(name);  // refuses unknown names before a folder is made
   OutputFolder output(folder);
   const std::string model = name + ".obj";
   JobResult result;
   result.folder = folder;
-  result.files = write_sample(name, output.path(model).parent_path());
+  result.files = write_sample(name, sample, output.path(model).parent_path());
   for (const std::string& file : result.files)
     if (file != model) output.path(file);
   context.check_cancelled();

@@ -122,12 +122,11 @@ const std::vector<SampleInfo>& samples() {
 
 Object make_sample(const std::string& name) { return find_sample(name).make(); }
 
-std::vector<std::string> write_sample(const std::string& name,
+std::vector<std::string> write_sample(const std::string& name, const Object& sample,
                                       const std::filesystem::path& folder) {
-  const Object object = make_sample(name);
-  write_file(folder / (name + ".obj"), obj_text(object, name));
+  write_file(folder / (name + ".obj"), obj_text(sample, name));
   write_file(folder / (name + ".mtl"), mtl_text(name));
-  save_png(folder / (name + ".png"), *object.textures.front());
+  save_png(folder / (name + ".png"), *sample.textures.front());
   return {name + ".obj", name + ".mtl", name + ".png"};
 }
 

@@ -22,7 +22,9 @@ const std::vector<SampleInfo>& samples();
 // Throws InputError for an unknown name, naming the nearest known one.
 Object make_sample(const std::string& name);
 
-// Writes NAME.obj, NAME.mtl, NAME.png and returns their names. Texture v = 0 is the bottom row.
-std::vector<std::string> write_sample(const std::string& name, const std::filesystem::path& folder);
+// Writes what make_sample(name) made as NAME.obj, NAME.mtl, NAME.png and returns their names.
+// Texture v = 0 is the bottom row.
+std::vector<std::string> write_sample(const std::string& name, const Object& sample,
+                                      const std::filesystem::path& folder);
 
 }  // namespace hydrodip

@@ -93,7 +93,7 @@ TEST(LoadPosed, ScalesAreaAndVolumeWithTheObjectAndWarnsWhenItIsTiny) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / "hydrodip_load_posed";
   std::filesystem::create_directories(folder);
-  write_sample("box", folder);
+  write_sample("box", make_sample("box"), folder);
   JobConfig config;
   config.model = folder / "box.obj";
   RunContext context;

@@ -20,7 +20,7 @@ namespace hydrodip {
 namespace {
 
 JobConfig mask_job(const std::filesystem::path& folder) {
-  write_sample("mask", folder);
+  write_sample("mask", make_sample("mask"), folder);
   JobConfig config;
   config.model = folder / "mask.obj";
   config.output = folder / "out";

@@ -106,7 +106,7 @@ TEST_P(EverySample, IsNotMirroredSeenFromBelow) {
 TEST_P(EverySample, WritesTheSameModelAndTheSameBytes) {
   const TemporaryFolder folder;
   const std::string name = GetParam();
-  const std::vector<std::string> files = write_sample(name, folder.path());
+  const std::vector<std::string> files = write_sample(name, make_sample(name), folder.path());
   EXPECT_EQ(files, (std::vector<std::string>{name + ".obj", name + ".mtl", name + ".png"}));
 
   const Object& object = sample(name);
