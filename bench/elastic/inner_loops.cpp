@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "base/awake_threads.h"
@@ -28,9 +29,9 @@ constexpr Need kSmooth = {4 * 29, 86, 0};
 // triangle (strain 29, forces 34), 12 to add up a cell, 8 to gather a node.
 constexpr Need kGradient = {8 * 17, 2 * 63 + 12 + 8, 2};
 
+// What the machine can do of it in a second, all threads together.
 struct Best {
-  int threads;
-  double bandwidth, flops, roots;  // a second, of all threads together
+  double bandwidth, flops, roots;
 };
 
 void print_line(const char* name, std::size_t nodes, const Need& need, const Best& best,
@@ -39,13 +40,20 @@ void print_line(const char* name, std::size_t nodes, const Need& need, const Bes
   const double reading = count * need.bytes / best.bandwidth,
                computing = count * std::max(need.flops / best.flops, need.roots / best.roots);
   const double limit = std::max(reading, computing);
-  fmt::print(
-      "{:>9} {:>8} nodes: {:.4f} ms, {:>3.0f} % of the limit ({}, {:.4f} ms); {:>5.1f} of {:>5.1f} "
-      "GB/s, {:>5.1f} of {:>5.1f} Gflop/s\n",
-      name, nodes, 1e3 * seconds, 100 * limit / seconds,
-      reading > computing ? "memory" : "arithmetic", 1e3 * limit,
-      1e-9 * count * need.bytes / seconds, 1e-9 * best.bandwidth,
-      1e-9 * count * need.flops / seconds, 1e-9 * best.flops);
+  fmt::print("{:>9} {:>8} nodes, {:>3.0f} bytes and {:>3.0f} operations each: {:.4f} ms; ", name,
+             nodes, need.bytes, need.flops, 1e3 * seconds);
+  fmt::print("{:>5.1f} of {:>5.1f} GB/s, {:>5.1f} of {:>5.1f} Gflop/s: ",
+             1e-9 * count * need.bytes / seconds, 1e-9 * best.bandwidth,
+             1e-9 * count * need.flops / seconds, 1e-9 * best.flops);
+  fmt::print("{:.0f} % of the limit ({}, {:.4f} ms)\n", 100 * limit / seconds,
+             reading > computing ? "memory" : "arithmetic", 1e3 * limit);
+}
+
+std::string_view instruction_set() {
+  const auto& all = kernels::variants();
+  return std::find_if(all.begin(), all.end(),
+                      [](const kernels::Variant& v) { return v.table == &kernels::best(); })
+      ->name;
 }
 
 // A stencil with something in it everywhere.
@@ -64,8 +72,8 @@ void stencils(int nx, int ny, int threads, const Rates& rates) {
   GridVector b = A.vector(), x = A.vector(), out = A.vector();
   const auto line = [&](const char* name, const Need& need, double seconds) {
     const double bandwidth = bytes_per_second(need.bytes * double(A.nodes()));
-    print_line(name, A.nodes(), need,
-               {threads, bandwidth, threads * rates.floats, threads * rates.roots}, seconds);
+    print_line(name, A.nodes(), need, {bandwidth, threads * rates.floats, threads * rates.roots},
+               seconds);
   };
   line("multiply", kMultiply, fastest_seconds([&] { A.multiply(x, out); }));
   line("smooth", kSmooth, fastest_seconds([&] {
@@ -88,7 +96,7 @@ void energy(int elements, int threads, const Rates& rates) {
   grid.to_mask(std::vector<std::uint8_t>(mesh.u.size(), 1), mask);
   const double bandwidth = bytes_per_second(kGradient.bytes * double(mesh.u.size()));
   print_line("gradient", mesh.u.size(), kGradient,
-             {threads, bandwidth, threads * rates.doubles, threads * rates.roots},
+             {bandwidth, threads * rates.doubles, threads * rates.roots},
              fastest_seconds([&] { energy.gradient(u, mask, out); }));
 }
 
@@ -100,7 +108,7 @@ void measure_inner_loops() {
   const AwakeThreads threads_awake;  // as a dip has them
   const Rates rates = operations_per_second();
   const int threads = available_threads();
-  fmt::print("\ninner loops ({}, {} threads)\n", kernels::variants().back().name, threads);
+  fmt::print("\ninner loops ({}, {} threads)\n", instruction_set(), threads);
   fmt::print(
       "  a core in registers: {:.0f} Gflop/s in floats ({:.0f} fused), {:.0f} ({:.0f}) in "
       "doubles, ",
