@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "calibrate_commands.h"
-#include "job/params.h"
 #include "rig_commands.h"
+#include "settings/params.h"
 
 namespace hydrodip {
 namespace {

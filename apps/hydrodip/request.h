@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calibrate/calibrate.h"
-#include "job/settings.h"
+#include "settings/settings.h"
 
 namespace CLI {
 class App;

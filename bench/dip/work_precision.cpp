@@ -18,8 +18,8 @@
 #include "dip/dip.h"
 #include "exact/shapes.h"
 #include "exact/solutions.h"
-#include "job/config.h"
-#include "job/settings.h"
+#include "settings/config.h"
+#include "settings/settings.h"
 
 namespace hydrodip {
 namespace {

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "job/jobs.h"
-#include "job/settings.h"
+#include "settings/settings.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {

@@ -7,7 +7,7 @@
 #include "figures.h"
 #include "image/color_difference.h"
 #include "image/files.h"
-#include "object/samples.h"
+#include "samples/samples.h"
 #include "study.h"
 
 namespace hydrodip::paper {

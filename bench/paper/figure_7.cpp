@@ -3,7 +3,7 @@
 
 #include "figures.h"
 #include "image/files.h"
-#include "object/samples.h"
+#include "samples/samples.h"
 #include "study.h"
 
 namespace hydrodip::paper {

@@ -9,7 +9,7 @@
 #include "calibrate/resolution.h"
 #include "figures.h"
 #include "image/files.h"
-#include "object/samples.h"
+#include "samples/samples.h"
 #include "study.h"
 
 namespace hydrodip::paper {

@@ -7,10 +7,10 @@
 #include "ink/stiffness.h"
 #include "job/prepare.h"
 #include "object/pose.h"
-#include "report/canvas.h"
-#include "report/normals.h"
-#include "report/studio.h"
-#include "report/text.h"
+#include "render/canvas.h"
+#include "render/normals.h"
+#include "render/studio.h"
+#include "render/text.h"
 
 namespace hydrodip::paper {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "ink/color_model.h"
-#include "job/config.h"
 #include "job/dip_stage.h"
 #include "job/ink_stage.h"
+#include "settings/config.h"
 
 namespace hydrodip::paper {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/context.h"
-#include "job/config.h"
 #include "job/jobs.h"
+#include "settings/config.h"
 
 namespace hydrodip {
 

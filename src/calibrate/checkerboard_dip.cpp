@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "ink/stiffness.h"
 #include "job/prepare.h"
-#include "object/samples.h"
+#include "samples/samples.h"
 
 namespace hydrodip {
 namespace {

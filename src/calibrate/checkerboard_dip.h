@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "ink/inks.h"
-#include "job/config.h"
 #include "object/surface.h"
 #include "scan/registration.h"
+#include "settings/config.h"
 #include "transfer/film_map.h"
 #include "transfer/raster.h"
 

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "object/samples.h"
+#include "samples/samples.h"
 
 namespace hydrodip {
 namespace {

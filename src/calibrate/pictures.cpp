@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "report/canvas.h"
-#include "report/color_ramp.h"
+#include "render/canvas.h"
+#include "render/color_ramp.h"
 
 namespace hydrodip {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "job/config.h"
+#include "settings/config.h"
 
 namespace hydrodip {
 

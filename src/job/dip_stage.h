@@ -4,14 +4,14 @@
 #include <memory>
 
 #include "base/context.h"
+#include "dip/dip_history.h"
 #include "ink/inks.h"
-#include "job/config.h"
 #include "job/stage_times.h"
 #include "object/dip_angles.h"
 #include "object/surface.h"
-#include "report/appearance.h"
-#include "report/coverage.h"
-#include "report/dip_history.h"
+#include "render/appearance.h"
+#include "settings/config.h"
+#include "transfer/coverage.h"
 #include "transfer/film_map.h"
 #include "transfer/raster.h"
 

@@ -8,9 +8,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "coupling/fixed_point.h"
 #include "ink/rgb_profile.h"
 #include "ink/stiffness.h"
-#include "job/fixed_point.h"
 #include "job/prepare.h"
 
 namespace hydrodip {

@@ -9,11 +9,11 @@
 #include "image/files.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
-#include "job/settings.h"
 #include "object/dip_angles.h"
 #include "object/surface.h"
-#include "report/maps.h"
+#include "render/maps.h"
 #include "report/report.h"
+#include "settings/settings.h"
 
 namespace hydrodip {
 namespace {

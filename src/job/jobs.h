@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/context.h"
-#include "job/config.h"
+#include "settings/config.h"
 
 namespace hydrodip {
 

@@ -8,14 +8,16 @@
 #include <utility>
 
 #include "base/file.h"
+#include "export/film_ply.h"
+#include "export/preview_glb.h"
+#include "export/scene.h"
 #include "image/files.h"
 #include "image/resize.h"
 #include "job/prepare.h"
+#include "render/maps.h"
+#include "render/preview.h"
 #include "report/findings.h"
-#include "report/maps.h"
-#include "report/preview.h"
 #include "report/report.h"
-#include "report/scene.h"
 
 namespace hydrodip {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/context.h"
-#include "job/config.h"
-#include "object/load.h"
+#include "model_io/load.h"
+#include "settings/config.h"
 
 namespace hydrodip {
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "job/params.h"
+#include "settings/params.h"
 
 namespace hydrodip {
 namespace {

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "base/context.h"
-#include "job/config.h"
 #include "job/dip_stage.h"
 #include "job/ink_stage.h"
 #include "job/jobs.h"
 #include "job/stage_times.h"
 #include "report/report.h"
+#include "settings/config.h"
 
 namespace hydrodip {
 

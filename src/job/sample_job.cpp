@@ -4,7 +4,7 @@
 
 #include "base/output_folder.h"
 #include "job/jobs.h"
-#include "object/samples.h"
+#include "samples/samples.h"
 
 namespace hydrodip {
 

@@ -13,7 +13,7 @@
 
 #include "object/dip_angles.h"
 #include "object/health.h"
-#include "report/coverage.h"
+#include "transfer/coverage.h"
 
 namespace hydrodip {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "export/packer.h"
 #include "report/findings.h"
-#include "report/packer.h"
 #include "report/report.h"
 #include "report/viewer_assets.h"
 

@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "job/prepare.h"
-#include "object/load.h"
+#include "model_io/load.h"
 #include "object/surface.h"
+#include "render/studio.h"
 #include "report/report.h"
-#include "report/studio.h"
 
 namespace hydrodip {
 namespace {

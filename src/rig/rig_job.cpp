@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "job/params.h"
+#include "settings/params.h"
 
 namespace hydrodip {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/math.h"
-#include "job/config.h"
-#include "job/settings.h"
+#include "settings/config.h"
+#include "settings/settings.h"
 
 namespace hydrodip {
 

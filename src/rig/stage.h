@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "job/config.h"
 #include "rig/link.h"
+#include "settings/config.h"
 
 namespace hydrodip {
 

@@ -11,8 +11,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "object/load.h"
-#include "object/text_checks.h"
+#include "model_io/load.h"
+#include "model_io/text_checks.h"
 
 namespace hydrodip {
 

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "calibrate/kit_shapes.h"
 #include "object/health.h"
-#include "object/samples.h"
+#include "samples/samples.h"
 #include "scans.h"
 
 namespace hydrodip {

@@ -6,7 +6,7 @@
 #include "contains.h"
 #include "job/prepare.h"
 #include "object/pose.h"
-#include "object/samples.h"
+#include "samples/samples.h"
 
 namespace hydrodip {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "contains.h"
-#include "object/samples.h"
+#include "samples/samples.h"
 
 namespace hydrodip {
 namespace {

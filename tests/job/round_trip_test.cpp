@@ -12,7 +12,7 @@
 #include "job/dip_stage.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
-#include "object/samples.h"
+#include "samples/samples.h"
 #include "sheet/sheet.h"
 #include "temporary_folder.h"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "object/samples.h"
+#include "samples/samples.h"
 
 namespace hydrodip {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "fixtures.h"
+#include "laid_film.h"
 #include "report/viewer_assets.h"
 #include "temporary_folder.h"
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "object/samples.h"
+#include "samples/samples.h"
 
 namespace hydrodip {
 namespace {

@@ -1,0 +1,129 @@
+#include "export/film_layer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "image/color_difference.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr int kLongestSide = 400;                         // cells: about half a millimetre on A4
+constexpr std::array<double, 2> kSamples = {0.25, 0.75};  // per cell and axis
+
+FilmLayer empty_layer(const std::string& key, const Box2& extent) {
+  FilmLayer layer;
+  layer.key = key;
+  if (extent.empty()) return layer;
+  layer.extent = extent;
+  const Vec2 size = extent.max - extent.min;
+  const double cell = std::max(1e-6, size.maxCoeff() / kLongestSide);
+  layer.width = std::max(1, int(std::ceil(size.x() / cell - 1e-9)));
+  layer.height = std::max(1, int(std::ceil(size.y() / cell - 1e-9)));
+  layer.values.assign(std::size_t(layer.width) * std::size_t(layer.height),
+                      std::numeric_limits<float>::quiet_NaN());
+  return layer;
+}
+
+struct Mean {
+  Vec3 sum = Vec3::Zero();
+  void add(const LinearColor& c) { sum += Vec3(double(c.r), double(c.g), double(c.b)); }
+  LinearColor over(int count) const {
+    return {float(sum[0] / count), float(sum[1] / count), float(sum[2] / count), 1};
+  }
+};
+
+class ColorError {
+ public:
+  ColorError(const Object& object, const FilmMap& map, const Appearance& appearance)
+      : object_(object), map_(map), appearance_(appearance) {}
+
+  void fill_row(FilmLayer& layer, int row) const {
+    FilmMap::Cursor cursor;
+    for (int x = 0; x < layer.width; ++x) {
+      layer.values[std::size_t(row) * std::size_t(layer.width) + std::size_t(x)] =
+          at(layer, x, row, cursor);
+    }
+  }
+
+ private:
+  float at(const FilmLayer& layer, int x, int row, FilmMap::Cursor& cursor) const {
+    Mean wanted, predicted;
+    int count = 0;
+    for (const double dy : kSamples) {
+      for (const double dx : kSamples) {
+        const Vec2 size = layer.extent.max - layer.extent.min;
+        const Vec2 u(layer.extent.min.x() + size.x() * (x + dx) / layer.width,
+                     layer.extent.max.y() - size.y() * (row + dy) / layer.height);
+        const auto point = map_.to_object(u, cursor);
+        if (!point) continue;
+        const Vec3 position = position_at(object_, *point);
+        const Vec3 normal = face_normal(object_, point->triangle);
+        wanted.add(appearance_.wanted(*point, position, normal));
+        predicted.add(appearance_.predicted(*point, position, normal));
+        ++count;
+      }
+    }
+    if (count == 0) return std::numeric_limits<float>::quiet_NaN();
+    return float(ciede2000(to_cielab(wanted.over(count)), to_cielab(predicted.over(count))));
+  }
+
+  const Object& object_;
+  const FilmMap& map_;
+  const Appearance& appearance_;
+};
+
+}  // namespace
+
+FilmLayer color_error_layer(const Object& object, const FilmMap& map, const Appearance& appearance,
+                            RunContext& context) {
+  FilmLayer layer = empty_layer("color_error", map.covered());
+  const ColorError error(object, map, appearance);
+  parallel_for(std::size_t(layer.height), 4, [&](std::size_t begin, std::size_t end) {
+    context.check_cancelled();
+    for (std::size_t row = begin; row < end; ++row) error.fill_row(layer, int(row));
+  });
+  return layer;
+}
+
+FilmLayer pixel_layer(const std::string& key, const std::vector<float>& values, int width_px,
+                      int height_px, const Vec2& sheet_mm, const Box2& extent) {
+  FilmLayer layer = empty_layer(key, extent);
+  std::vector<double> sum(layer.values.size(), 0);
+  std::vector<int> count(layer.values.size(), 0);
+  const Vec2 size = layer.extent.max - layer.extent.min;
+  for (int y = 0; y < height_px && !layer.values.empty(); ++y) {
+    for (int x = 0; x < width_px; ++x) {
+      const float value = values[std::size_t(y) * std::size_t(width_px) + std::size_t(x)];
+      if (std::isnan(value)) continue;
+      const Vec2 u((x + 0.5) / width_px * sheet_mm.x() - 0.5 * sheet_mm.x(),
+                   0.5 * sheet_mm.y() - (y + 0.5) / height_px * sheet_mm.y());
+      const double column = (u.x() - layer.extent.min.x()) / size.x() * layer.width;
+      const double row = (layer.extent.max.y() - u.y()) / size.y() * layer.height;
+      if (!(column >= 0 && row >= 0 && column < layer.width && row < layer.height)) continue;
+      const auto cell = std::size_t(int(row)) * std::size_t(layer.width) + std::size_t(int(column));
+      sum[cell] += double(value);
+      ++count[cell];
+    }
+  }
+  for (std::size_t i = 0; i < layer.values.size(); ++i) {
+    if (count[i] > 0) layer.values[i] = float(sum[i] / count[i]);
+  }
+  return layer;
+}
+
+LayerSummary summarize(const FilmLayer& layer) {
+  std::vector<float> there;
+  std::copy_if(layer.values.begin(), layer.values.end(), std::back_inserter(there),
+               [](float value) { return !std::isnan(value); });
+  if (there.empty()) return {};
+  std::sort(there.begin(), there.end());
+  double sum = 0;
+  for (const float value : there) sum += double(value);
+  return {sum / double(there.size()), double(there[(there.size() - 1) * 95 / 100])};
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,375 @@
+#include "render/maps.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "render/canvas.h"
+#include "render/color_ramp.h"
+#include "render/studio.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr double kCrease_deg = 30;
+constexpr double kFlatness = 0.6;
+constexpr double kHatch = 17;  // from stripe to stripe, in lengths of the layout
+
+constexpr LinearColor kNeutral{0.36f, 0.36f, 0.36f, 1};
+constexpr LinearColor kTornDark{0.50f, 0.0f, 0.025f, 1};
+constexpr LinearColor kTornLight{1, 1, 1, 1};
+
+const ColorRamp& gentle_ramp() {
+  static const ColorRamp ramp({0.34, 0.13, 268}, {0.64, 0.12, 235}, {0.93, 0.05, 195});
+  return ramp;
+}
+
+const ColorRamp& steep_ramp() {
+  static const ColorRamp ramp({0.74, 0.16, 60}, {0.54, 0.17, 36}, {0.32, 0.11, 22});
+  return ramp;
+}
+
+const ColorRamp& stretch_ramp() {
+  static const ColorRamp ramp({0.30, 0.13, 288}, {0.61, 0.10, 195}, {0.93, 0.17, 104});
+  return ramp;
+}
+
+// --- Page ---
+
+// Lengths are given for a picture 1600 wide.
+struct MapLayout {
+  double unit = 1;
+  int width = 0, height = 0;
+  int margin = 0, gap = 0, header = 0, legend = 0, footer = 0;
+  int cell_width = 0;
+  std::array<int, 2> cell_height{};  // per direction
+
+  int px(double length) const { return int(std::lround(length * unit)); }
+  int cell_x(int column) const { return margin + column * (cell_width + gap); }
+};
+
+MapLayout make_layout(const Object& object, const std::array<Vec3, 2>& directions,
+                      const MapOptions& options) {
+  MapLayout layout;
+  layout.width = std::clamp(options.width_px, 64, kWidestPicture_px);
+  layout.unit = layout.width / 1600.0;
+  layout.margin = layout.px(28);
+  layout.gap = layout.px(12);
+  layout.header = layout.px(86);
+  layout.legend = layout.px(205);
+  layout.footer = options.caption.empty() ? layout.margin : layout.px(72);
+  layout.cell_width = (layout.width - 2 * layout.margin - layout.gap) / 2;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double share = std::clamp(1 / projected_aspect(object, directions[i]), 0.55, 0.95);
+    layout.cell_height[i] = std::max(8, int(std::lround(share * layout.cell_width)));
+  }
+  return layout;
+}
+
+TextStyle style(const MapLayout& layout, double size, const LinearColor& color) {
+  TextStyle result;
+  result.size_px = size * layout.unit;
+  result.color = color;
+  return result;
+}
+
+void draw_title(Image& page, const MapLayout& layout, const std::string& text, double center_px) {
+  draw_centered(page, text, center_px, layout.header - 31 * layout.unit,
+                style(layout, 25, kTitleInk));
+}
+
+void draw_caption(Image& page, const MapLayout& layout, const std::string& caption) {
+  const TextStyle line = style(layout, 17, kLabelInk);
+  const std::string shown = fit_text(caption, line, layout.width - 2.0 * layout.margin);
+  draw_centered(page, shown, 0.5 * layout.width, page.height_px - 30 * layout.unit, line);
+}
+
+// --- Legends ---
+
+bool on_dark_stripe(double along, double period) {
+  return along - period * std::floor(along / period) < 0.5 * period;
+}
+
+// A legend in the making: a bar, ticks below it, patches beside it. Starts at (x, y), in pixels;
+// lengths in those of the layout.
+class Legend {
+ public:
+  Legend(Image& page, const MapLayout& layout, double x, double y)
+      : page_(page), layout_(layout), x_(x), y_(y) {}
+
+  static constexpr double kBarTop = 84, kBarHeight = 30;
+
+  void label(const std::string& text, double center) {
+    draw_centered(page_, text, at(center), y_ + 36 * layout_.unit, style(layout_, 17, kLabelInk));
+  }
+
+  template <typename ColorAt>
+  void bar(double from, double to, ColorAt color_at) {
+    const int x0 = column(from), x1 = column(to);
+    for (int x = x0; x < x1; ++x) {
+      fill(page_, x, row(kBarTop), x + 1, row(kBarTop + kBarHeight),
+           color_at((x + 0.5 - x0) / (x1 - x0)));
+    }
+    outline(from, to);
+  }
+
+  void hatched(double from, double to) {
+    for (int y = row(kBarTop); y < row(kBarTop + kBarHeight); ++y) {
+      for (int x = column(from); x < column(to); ++x) {
+        const bool dark = on_dark_stripe((x + y) * std::sqrt(0.5), kHatch * layout_.unit);
+        fill(page_, x, y, x + 1, y + 1, dark ? kTornDark : kTornLight);
+      }
+    }
+    outline(from, to);
+  }
+
+  void tick(double place, const std::string& text) {
+    line_down(place, kBarTop + kBarHeight, kBarTop + kBarHeight + 8);
+    note(text, place, 0);
+  }
+
+  // A limit: a line through the bar, named above it.
+  void limit(double place, const std::string& text) {
+    line_down(place, kBarTop - 8, kBarTop + kBarHeight + 8);
+    draw_centered(page_, text, at(place), y_ + (kBarTop - 13) * layout_.unit,
+                  style(layout_, 15, kTitleInk));
+  }
+
+  // Text under the bar, in line 0 or 1.
+  void note(const std::string& text, double center, int line) {
+    draw_centered(page_, text, at(center),
+                  y_ + (kBarTop + kBarHeight + 28 + 23 * line) * layout_.unit,
+                  style(layout_, 15, kLabelInk));
+  }
+
+ private:
+  double at(double x) const { return x_ + x * layout_.unit; }
+  int column(double x) const { return int(std::lround(at(x))); }
+  int row(double y) const { return int(std::lround(y_ + y * layout_.unit)); }
+
+  void line_down(double x, double top, double bottom) {
+    const int thick = std::max(1, layout_.px(2));
+    const int left = column(x) - thick / 2;
+    fill(page_, left, row(top), left + thick, row(bottom), kTitleInk);
+  }
+
+  void outline(double from, double to) {
+    const int x0 = column(from), x1 = column(to), y0 = row(kBarTop), y1 = row(kBarTop + kBarHeight);
+    fill(page_, x0, y0, x1, y0 + 1, kLabelInk);
+    fill(page_, x0, y1 - 1, x1, y1, kLabelInk);
+    fill(page_, x0, y0, x0 + 1, y1, kLabelInk);
+    fill(page_, x1 - 1, y0, x1, y1, kLabelInk);
+  }
+
+  Image& page_;
+  const MapLayout& layout_;
+  double x_, y_;
+};
+
+LinearColor neutral(double) { return kNeutral; }
+
+// 700 wide.
+void draw_angle_legend(Legend legend, bool some_stays_dry) {
+  constexpr double kFrom = 20, kTo = 540;
+  const auto place = [](double angle_deg) { return kFrom + (kTo - kFrom) * angle_deg / 90; };
+  legend.label("angle between surface normal and dipping direction", 350);
+  legend.bar(kFrom, kTo, [](double t) { return angle_color(std::min(90 * t, 89.8)); });
+  for (int angle = 0; angle <= 90; angle += 15) {
+    legend.tick(place(angle), fmt::format("{}\u00b0", angle));
+  }
+  legend.limit(place(kDipAngleLimit_deg), fmt::format("limit {:.0f}\u00b0", kDipAngleLimit_deg));
+  legend.note("flat to the water", place(0) + 52, 1);
+  legend.note("steeper: film may tear", place(67.5), 1);
+  legend.bar(600, 670, neutral);
+  legend.note("upright or", 635, 0);
+  legend.note(some_stays_dry ? "up, or dry" : "facing up", 635, 1);
+}
+
+double tick_spacing(double range) {
+  for (const double step : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0}) {
+    if (range / step <= 5.5) return step;
+  }
+  return range / 4;
+}
+
+// 700 wide.
+void draw_stretch_legend(Legend legend, double largest, bool tears) {
+  constexpr double kFrom = 20;
+  const double to = tears ? 440 : 540;
+  const auto place = [&](double stretch) {
+    return kFrom + (to - kFrom) * (stretch - 1) / (largest - 1);
+  };
+  legend.label("largest stretch of the film, times its flat length", 350);
+  legend.bar(kFrom, to, [&](double t) { return stretch_color(1 + t * (largest - 1), largest); });
+  const double spacing = tick_spacing(largest - 1);
+  for (int i = 0; 1 + i * spacing <= largest + 1e-9; ++i) {
+    legend.tick(place(1 + i * spacing),
+                fmt::format("{:.{}f}", 1 + i * spacing, spacing < 0.1 ? 2 : 1));
+  }
+  legend.note("unstretched", place(1) + 45, 1);
+  if (tears) {
+    legend.hatched(to, 540);
+    legend.limit(to, fmt::format("limit {:.2f}", largest));
+    legend.note("torn", 0.5 * (to + 540), 0);
+    legend.note("no print", 0.5 * (to + 540), 1);
+  }
+  legend.bar(600, 670, neutral);
+  legend.note("no film", 635, 0);
+}
+
+// --- Views ---
+
+struct View {
+  Camera camera;
+  int height_px;
+};
+
+View view_from(const Object& object, const Vec3& direction, const MapLayout& layout,
+               int height_px) {
+  return {frame_object(object, direction, double(layout.cell_width) / height_px, 0.80), height_px};
+}
+
+double mm_per_px(const Object& object, const Camera& camera, int width_px) {
+  const double distance = (camera.eye - object.bounds().center()).dot(camera.back);
+  return 2 * camera.half_width * distance / width_px;
+}
+
+ViewPair render(const MapScene& scene, const Surface& surface, const View& view,
+                const MapLayout& layout, RunContext& context) {
+  const double hatch_mm =
+      kHatch * layout.unit * mm_per_px(scene.object, view.camera, layout.cell_width);
+  const Appearance appearance = map_appearance(scene, view.camera, hatch_mm);
+  const Studio studio{scene.object, surface, scene.normals, true, kFlatness};
+  return LitView(studio, view.camera, layout.cell_width, view.height_px, context).show(appearance);
+}
+
+bool some_stays_dry(const Object& object, double depth_mm) {
+  return object.bounds().max.z() > depth_mm + 1e-6;
+}
+
+}  // namespace
+
+std::vector<CornerNormals> map_normals(const Object& object) {
+  return corner_normals(object.positions, object.triangles, kCrease_deg);
+}
+
+double angle_at(const Object& object, const std::vector<CornerNormals>& normals,
+                const SurfacePoint& point) {
+  const Vec3 smooth = normal_between(normals[std::size_t(point.triangle)], point.u, point.v);
+  return dip_angle_deg(smooth.isZero() ? face_normal(object, point.triangle) : smooth);
+}
+
+LinearColor angle_color(double angle_deg) {
+  if (!faces_down(angle_deg)) return kNeutral;
+  if (!beyond_dip_limit(angle_deg)) return gentle_ramp().at(angle_deg / kDipAngleLimit_deg);
+  return steep_ramp().at((angle_deg - kDipAngleLimit_deg) / (90 - kDipAngleLimit_deg));
+}
+
+LinearColor stretch_color(double stretch, double largest) {
+  return stretch_ramp().at((stretch - 1) / (largest - 1));
+}
+
+double stretch_scale_end(const DippedFilm& film, double tear_stretch) {
+  if (tear_stretch > 0) return std::max(tear_stretch, 1.01);
+  double most = 1.1;
+  for (std::size_t v = 0; v < film.stretch.size(); ++v) {
+    if (film.state[v] == VertexState::kAttached) most = std::max(most, film.stretch[v]);
+  }
+  return std::ceil(10 * most - 1e-9) / 10;
+}
+
+Appearance map_appearance(const MapScene& scene, const Camera& camera, double hatch_mm) {
+  const Vec3 diagonal = (camera.right - camera.up) * std::sqrt(0.5);
+  Appearance appearance;
+  appearance.wanted = [&scene](const SurfacePoint& point, const Vec3& position, const Vec3&) {
+    if (position.z() > scene.depth_mm + 1e-6) return kNeutral;
+    return angle_color(angle_at(scene.object, scene.normals, point));
+  };
+  appearance.predicted = [&scene, diagonal, hatch_mm](const SurfacePoint&, const Vec3& position,
+                                                      const Vec3& normal) {
+    if (!scene.map) return kNeutral;
+    if (const auto u = scene.map->to_film(position, normal))
+      return stretch_color(scene.map->stretch(*u), scene.largest_stretch);
+    if (!scene.map->torn_at(position, normal)) return kNeutral;
+    return on_dark_stripe(position.dot(diagonal), hatch_mm) ? kTornDark : kTornLight;
+  };
+  return appearance;
+}
+
+Image render_maps(const Object& object, const Surface& surface, const DippedFilm& film,
+                  const FilmMap& map, const MapOptions& options, RunContext& context) {
+  const std::string stage = "drawing the maps";
+  context.progress(stage, 0);
+  const std::vector<CornerNormals> normals = map_normals(object);
+  const MapScene scene{object, normals, film.depth_mm, &map,
+                       stretch_scale_end(film, options.tear_stretch)};
+  const std::array<Vec3, 2> directions = telling_directions(object, surface, film);
+  const MapLayout layout = make_layout(object, directions, options);
+
+  const int views_height = layout.cell_height[0] + layout.gap + layout.cell_height[1];
+  Image page =
+      blank_page(layout.width, layout.header + views_height + layout.legend + layout.footer);
+  int y = layout.header;
+  for (std::size_t i = 0; i < 2; ++i) {
+    context.progress(stage, 0.1 + 0.45 * double(i));
+    const View view = view_from(object, directions[i], layout, layout.cell_height[i]);
+    const ViewPair pair = render(scene, surface, view, layout, context);
+    paste(page, pair.wanted, layout.cell_x(0), y);
+    paste(page, pair.predicted, layout.cell_x(1), y);
+    y += layout.cell_height[i] + layout.gap;
+  }
+  const auto center = [&](int column) { return layout.cell_x(column) + 0.5 * layout.cell_width; };
+  draw_title(page, layout, "dipping angle", center(0));
+  draw_title(page, layout, "film: stretch and tears", center(1));
+  const auto legend = [&](int column) {
+    return Legend(page, layout, center(column) - 350 * layout.unit, y);
+  };
+  draw_angle_legend(legend(0), some_stays_dry(object, film.depth_mm));
+  draw_stretch_legend(legend(1), scene.largest_stretch, options.tear_stretch > 0);
+  draw_caption(page, layout, options.caption);
+  context.progress(stage, 1);
+  return page;
+}
+
+Image render_angle_map(const Object& object, const Surface& surface, double depth_mm,
+                       const MapOptions& options, RunContext& context) {
+  const std::string stage = "drawing the angle map";
+  context.progress(stage, 0);
+  const std::vector<CornerNormals> normals = map_normals(object);
+  const MapScene scene{object, normals, depth_mm};
+  const std::array<Vec3, 2> directions = telling_directions(object, surface, DippedFilm{});
+  const MapLayout layout = make_layout(object, directions, options);
+
+  const int height = std::max(layout.cell_height[0], layout.cell_height[1]);
+  Image page = blank_page(layout.width, layout.header + height + layout.legend + layout.footer);
+  for (int i = 0; i < 2; ++i) {
+    context.progress(stage, 0.1 + 0.45 * i);
+    const View view = view_from(object, directions[std::size_t(i)], layout, height);
+    const ViewPair pair = render(scene, surface, view, layout, context);
+    paste(page, pair.wanted, layout.cell_x(i), layout.header);
+  }
+  draw_title(page, layout, "dipping angle, from two sides", 0.5 * layout.width);
+  draw_angle_legend(
+      Legend(page, layout, 0.5 * layout.width - 350 * layout.unit, layout.header + height),
+      some_stays_dry(object, depth_mm));
+  draw_caption(page, layout, options.caption);
+  context.progress(stage, 1);
+  return page;
+}
+
+std::string map_caption(const DipAngles& angles, const Coverage* coverage) {
+  std::string text =
+      fmt::format("{:.1f} % of the surface that faces down is steeper than {:.0f}\u00b0",
+                  100 * angles.over_limit_share(), kDipAngleLimit_deg);
+  if (coverage && coverage->torn_mm2 > 0)
+    text += fmt::format("; {:.1f} % of the film that meets the object is torn",
+                        100 * coverage->torn_share());
+  else if (coverage)
+    text += "; no film is torn";
+  return text;
+}
+
+}  // namespace hydrodip

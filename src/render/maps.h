@@ -1,0 +1,66 @@
+// maps.png and angles.png: where the film has a hard time. Colours on the object, from the two
+// directions that the preview takes: the dipping angle with its limit; the film's stretch, and
+// where it tears.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "film/film.h"
+#include "object/dip_angles.h"
+#include "render/appearance.h"
+#include "render/normals.h"
+#include "render/view.h"
+#include "transfer/coverage.h"
+#include "transfer/film_map.h"
+
+namespace hydrodip {
+
+struct MapOptions {
+  int width_px = 1600;
+  double tear_stretch = 0;  // the film's limit, marked on the scale; 0: it never tears
+  std::string caption;      // one line under the picture
+};
+
+// Both maps side by side, a row for each direction. `map` is the film's over the same object.
+Image render_maps(const Object& object, const Surface& surface, const DippedFilm& film,
+                  const FilmMap& map, const MapOptions& options, RunContext& context);
+
+// The angle map alone, of an object to be dipped `depth_mm` deep; no film is needed.
+Image render_angle_map(const Object& object, const Surface& surface, double depth_mm,
+                       const MapOptions& options, RunContext& context);
+
+// One line under the maps: shares beyond the limits. `coverage` may be null.
+std::string map_caption(const DipAngles& angles, const Coverage* coverage);
+
+// --- What the maps are made of ---
+
+// Of the curved surface that the triangles stand for; edges sharper than 30 degrees stay edges.
+std::vector<CornerNormals> map_normals(const Object& object);
+
+// Dipping angle at a point, degrees: 0 faces straight down, 180 straight up.
+double angle_at(const Object& object, const std::vector<CornerNormals>& normals,
+                const SurfacePoint& point);
+
+// Blue to pale up to the limit, orange to dark red beyond it, grey for what does not face down.
+LinearColor angle_color(double angle_deg);
+
+// Linear from 1 to the largest value on the scale; dark violet over green to yellow.
+LinearColor stretch_color(double stretch, double largest);
+
+// The end of the stretch scale: the film's limit, or without one what was measured, rounded up.
+double stretch_scale_end(const DippedFilm& film, double tear_stretch);
+
+// The maps as the two appearances of one view: `wanted` the angle, `predicted` the film; bare
+// surface is grey, torn film hatched along the camera's diagonal. Keeps references.
+struct MapScene {
+  const Object& object;
+  const std::vector<CornerNormals>& normals;
+  double depth_mm = 0;           // surface above stays dry
+  const FilmMap* map = nullptr;  // null: no film
+  double largest_stretch = 1;    // end of the scale
+};
+Appearance map_appearance(const MapScene& scene, const Camera& camera, double hatch_mm);
+
+}  // namespace hydrodip

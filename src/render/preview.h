@@ -1,0 +1,33 @@
+// preview.png: what the dipped object will look like beside what was asked for.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "film/film.h"
+#include "render/appearance.h"
+
+namespace hydrodip {
+
+struct PreviewOptions {
+  int width_px = 1600;
+  LinearColor base{1, 1, 1, 1};
+};
+
+// What one picture shows side by side.
+struct PreviewPair {
+  Appearance shown;  // what is absent is the bare object
+  std::array<std::string, 2> titles = {"wanted", "predicted"};
+  std::string caption;  // one line under the picture, e.g. the verdict
+};
+
+// Ray-cast pictures, one for each pair: wanted beside predicted, from the two most telling
+// directions (those that see most of the film-covered area and, second, most of what the first does
+// not see), soft light, neutral ground.
+std::vector<Image> render_previews(const Object& object, const Surface& surface,
+                                   const DippedFilm& film, const std::vector<PreviewPair>& pairs,
+                                   const PreviewOptions& options, RunContext& context);
+
+}  // namespace hydrodip

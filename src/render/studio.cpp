@@ -1,0 +1,510 @@
+#include "render/studio.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace hydrodip {
+namespace {
+
+// Light levels are chosen so that a white surface facing the lamp comes out just below white.
+constexpr double kSkyAbove = 0.56;
+constexpr double kSkyBelow = 0.30;
+constexpr double kLamp = 0.46;
+constexpr double kFill = 0.07;
+
+// Each pixel of a 4 x 4 block casts its own few rays of one common set; the filter afterwards
+// gathers the whole set at every pixel.
+constexpr int kPhases = 16;
+constexpr int kSkyRays = 5;
+constexpr int kLampRays = 2;
+constexpr double kLampRadius = 0.22;  // at distance 1: how soft the shadows are
+
+// Where pixels differ, one shows besides its centre's what these places of it show: together no two
+// in the same fifth of its width or height, so that edges along either come out in five grades.
+constexpr std::array<std::array<double, 2>, 4> kRooks = {
+    {{0.3, 0.1}, {0.9, 0.3}, {0.1, 0.7}, {0.7, 0.9}}};
+
+constexpr int kGroundScale = 4;  // ground shadows are soft: computed on a coarser raster
+constexpr int kGroundRays = 10;
+
+struct Light {
+  double sky = 1;   // share of the sky that is not hidden
+  double lamp = 1;  // share of the lamp
+};
+
+struct Sample {
+  int triangle = -1;  // -1: the backdrop
+  double u = 0, v = 0, depth = 0;
+  Vec3 flat = Vec3::Zero();  // unit normal of the triangle, turned to the eye
+};
+
+struct Shade {
+  std::array<float, 3> wanted{};
+  std::array<float, 3> predicted{};
+};
+
+double radical_inverse(unsigned i) {
+  double result = 0;
+  for (double digit = 0.5; i > 0; i /= 2, digit /= 2) result += digit * (i & 1u);
+  return result;
+}
+
+// The phase of a pixel: neighbours get phases that lie far apart.
+int phase_of(int x, int y) {
+  static constexpr std::array<int, 16> kOrder = {0, 8,  2, 10, 12, 4, 14, 6,
+                                                 3, 11, 1, 9,  15, 7, 13, 5};
+  return kOrder[std::size_t((y & 3) * 4 + (x & 3))];
+}
+
+// Two unit vectors that complete a unit vector to a right-handed frame.
+std::array<Vec3, 2> frame_around(const Vec3& n) {
+  const Vec3 helper = std::abs(n.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY();
+  const Vec3 a = helper.cross(n).normalized();
+  return {a, n.cross(a)};
+}
+
+// Directions over the hemisphere around z, denser where they count more, and in a disc's cone.
+std::vector<Vec3> hemisphere_rays(int count) {
+  std::vector<Vec3> rays;
+  for (int i = 0; i < count; ++i) {
+    const double u = (i + 0.5) / count;
+    const double angle = 2 * std::numbers::pi * radical_inverse(unsigned(i));
+    rays.emplace_back(std::sqrt(u) * std::cos(angle), std::sqrt(u) * std::sin(angle),
+                      std::sqrt(1 - u));
+  }
+  return rays;
+}
+
+std::vector<Vec3> cone_rays(int count, double radius) {
+  std::vector<Vec3> rays = hemisphere_rays(count);
+  for (Vec3& d : rays) d = Vec3(radius * d.x(), radius * d.y(), 1).normalized();
+  return rays;
+}
+
+std::vector<Vec3> turned_to(const Vec3& axis, std::vector<Vec3> rays) {
+  const auto [a, b] = frame_around(axis);
+  for (Vec3& d : rays) d = (d.x() * a + d.y() * b + d.z() * axis).eval();
+  return rays;
+}
+
+// What is seen in every pixel, and the light there.
+class Stage {
+ public:
+  Stage(const Studio& studio, const Camera& camera, int width, int height, RunContext& context)
+      : studio_(studio), camera_(camera), width_(width), height_(height), context_(context) {
+    const Box3 box = studio.object.bounds();
+    extent_ = box.empty() ? 1 : std::max(1e-9, box.size().norm());
+    place_ground();
+    lamp_ = (-0.5 * camera.right + 0.8 * camera.up + 0.75 * camera.back).normalized();
+    sky_rays_ = hemisphere_rays(kPhases * kSkyRays);
+    lamp_rays_ = turned_to(lamp_, cone_rays(kPhases * kLampRays, kLampRadius));
+    ground_sky_rays_ = turned_to(ground_normal_, hemisphere_rays(kPhases * kGroundRays));
+    ground_lamp_rays_ = turned_to(lamp_, cone_rays(kPhases * kGroundRays, kLampRadius));
+    trace_centres();
+    cast_light_rays();
+    smooth_light();
+    shadow_ground();
+  }
+
+  const Studio& studio() const { return studio_; }
+  const Camera& camera() const { return camera_; }
+  const Sample& centre(int x, int y) const { return centre_[at(x, y)]; }
+  const Light& light(int x, int y) const { return light_[at(x, y)]; }
+  const Vec3& ground_normal() const { return ground_normal_; }
+  const Vec3& lamp() const { return lamp_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  std::size_t count() const { return std::size_t(width_) * std::size_t(height_); }
+  std::size_t at(int x, int y) const {
+    return std::size_t(y) * std::size_t(width_) + std::size_t(x);
+  }
+
+  void for_rows(const std::function<void(int y)>& row) const {
+    parallel_for(std::size_t(height_), 8, [&](std::size_t begin, std::size_t end) {
+      context_.check_cancelled();
+      for (std::size_t y = begin; y < end; ++y) row(int(y));
+    });
+  }
+
+  Sample trace(double x_px, double y_px) const {
+    const Vec3 along = ray(x_px, y_px);
+    const auto hit = studio_.surface.first_hit(camera_.eye, along, 0, 1e6 * extent_);
+    if (!hit) return {};
+    // Turned to the eye: inside and outside of an open surface look alike.
+    const Vec3 n = face_normal(studio_.object, hit->triangle);
+    return {hit->triangle, hit->u, hit->v, hit->t, n.dot(along) > 0 ? Vec3(-n) : n};
+  }
+
+  Vec3 position(const Sample& s) const {
+    return position_at(studio_.object, {s.triangle, s.u, s.v});
+  }
+
+  Vec3 smooth_normal(const Sample& s) const {
+    const Vec3 n = normal_between(studio_.normals[std::size_t(s.triangle)], s.u, s.v);
+    if (n.isZero()) return s.flat;
+    return n.dot(s.flat) < 0 ? Vec3(-n) : n;
+  }
+
+  // The light of the nearest pixel centre that shows the surface of this sample.
+  Light light_near(const Sample& s, int x, int y) const {
+    Light best;
+    double nearest = 1e300;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
+        const Sample& other = centre_[at(x + dx, y + dy)];
+        if (other.triangle < 0) continue;
+        const double apart = std::abs(other.depth - s.depth) + 1e-5 * extent_ * (dx * dx + dy * dy);
+        if (apart < nearest) {
+          nearest = apart;
+          best = light_[at(x + dx, y + dy)];
+        }
+      }
+    }
+    return best;
+  }
+
+  Light ground_at(double x_px, double y_px) const {
+    const double x = x_px / kGroundScale;
+    const double y = y_px / kGroundScale;
+    const int x0 = std::clamp(int(x), 0, coarse_width_ - 2);
+    const int y0 = std::clamp(int(y), 0, coarse_height_ - 2);
+    const double fx = x - x0;
+    const double fy = y - y0;
+    const Light* row = ground_.data() + std::size_t(y0) * std::size_t(coarse_width_) + x0;
+    const Light* next = row + coarse_width_;
+    const auto mix = [&](double Light::*part) {
+      return (1 - fy) * ((1 - fx) * row[0].*part + fx * row[1].*part) +
+             fy * ((1 - fx) * next[0].*part + fx * next[1].*part);
+    };
+    return {mix(&Light::sky), mix(&Light::lamp)};
+  }
+
+ private:
+  // The ground tilts a little towards the eye, so that it shows, and touches the object.
+  void place_ground() {
+    constexpr double kTilt = 14 * std::numbers::pi / 180;
+    ground_normal_ = std::cos(kTilt) * camera_.up + std::sin(kTilt) * camera_.back;
+    ground_height_ = 1e300;
+    for (const Vec3& p : studio_.object.positions) {
+      ground_height_ = std::min(ground_height_, p.dot(ground_normal_));
+    }
+  }
+
+  Vec3 ray(double x_px, double y_px) const {
+    return camera_.ray(2 * x_px / width_ - 1, 1 - 2 * y_px / height_).normalized();
+  }
+
+  // A point on the curved surface that the triangles stand for: shadow rays from there do not
+  // show where the triangles' edges are.
+  Vec3 rounded_position(const Sample& s) const {
+    const Vec3 p = position(s);
+    const CornerNormals& normal = studio_.normals[std::size_t(s.triangle)];
+    const Triangle& triangle = studio_.object.triangles[std::size_t(s.triangle)];
+    const std::array<double, 3> weight = {1 - s.u - s.v, s.u, s.v};
+    Vec3 lifted = p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 n = normal[k].dot(s.flat) < 0 ? Vec3(-normal[k]) : normal[k];
+      const Vec3& corner = studio_.object.positions[std::size_t(triangle[k])];
+      lifted += weight[k] * std::max(0.0, (corner - p).dot(n)) * n;
+    }
+    return lifted;
+  }
+
+  bool blocked(const Vec3& origin, const Vec3& direction) const {
+    return studio_.surface.is_hit(origin, direction, 0, 2 * extent_);
+  }
+
+  void trace_centres() {
+    centre_.resize(count());
+    for_rows([&](int y) {
+      for (int x = 0; x < width_; ++x) centre_[at(x, y)] = trace(x + 0.5, y + 0.5);
+    });
+  }
+
+  Light cast_from(const Sample& s, int phase) const {
+    const Vec3 origin = rounded_position(s) + 2e-4 * extent_ * s.flat;
+    const auto frame = frame_around(s.flat);
+    Light light{0, 0};
+    for (int k = 0; k < kSkyRays; ++k) {
+      const Vec3& d = sky_rays_[std::size_t(phase + kPhases * k)];
+      if (!blocked(origin, d.x() * frame[0] + d.y() * frame[1] + d.z() * s.flat)) {
+        light.sky += 1.0 / kSkyRays;
+      }
+    }
+    if (smooth_normal(s).dot(lamp_) < -kLampRadius) return light;  // turned away: no shadow to know
+    for (int k = 0; k < kLampRays; ++k) {
+      const Vec3& d = lamp_rays_[std::size_t(phase + kPhases * k)];
+      if (!blocked(origin, d)) light.lamp += 1.0 / kLampRays;
+    }
+    return light;
+  }
+
+  void cast_light_rays() {
+    light_.resize(count());
+    for_rows([&](int y) {
+      for (int x = 0; x < width_; ++x) {
+        const Sample& s = centre_[at(x, y)];
+        if (s.triangle < 0) continue;
+        light_[at(x, y)] = cast_from(s, phase_of(x, y));
+      }
+    });
+  }
+
+  // Gathers the 4 x 4 phases (a 5 x 5 window with half weight on its rim) among pixels that show
+  // the same piece of surface.
+  void smooth_light() {
+    const std::vector<Light> raw = light_;
+    for_rows([&](int y) {
+      for (int x = 0; x < width_; ++x) {
+        if (centre_[at(x, y)].triangle >= 0) light_[at(x, y)] = gathered(raw, x, y);
+      }
+    });
+  }
+
+  Light gathered(const std::vector<Light>& raw, int x, int y) const {
+    const Sample& self = centre_[at(x, y)];
+    const double pixel = 2 * camera_.half_width * self.depth / width_;
+    Light sum{0, 0};
+    double total = 0;
+    for (int dy = -2; dy <= 2; ++dy) {
+      for (int dx = -2; dx <= 2; ++dx) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
+        const Sample& other = centre_[at(x + dx, y + dy)];
+        if (other.triangle < 0 || std::abs(other.depth - self.depth) > 12 * pixel) continue;
+        const double weight = (std::abs(dx) == 2 ? 0.5 : 1) * (std::abs(dy) == 2 ? 0.5 : 1);
+        if (self.flat.dot(other.flat) < 0.5) continue;  // round a corner
+        const Light& light = raw[at(x + dx, y + dy)];
+        sum.sky += weight * light.sky;
+        sum.lamp += weight * light.lamp;
+        total += weight;
+      }
+    }
+    return {sum.sky / total, sum.lamp / total};
+  }
+
+  // How dark the object makes the ground, on a coarse raster over the whole picture.
+  void shadow_ground() {
+    coarse_width_ = width_ / kGroundScale + 2;
+    coarse_height_ = height_ / kGroundScale + 2;
+    const auto cells = std::size_t(coarse_width_) * std::size_t(coarse_height_);
+    std::vector<Light> raw(cells);
+    for_coarse([&](int x, int y) {
+      raw[coarse_at(x, y)] = ground_light(x * kGroundScale, y * kGroundScale, phase_of(x, y));
+    });
+    ground_.resize(cells);
+    for_coarse([&](int x, int y) { ground_[coarse_at(x, y)] = gathered_ground(raw, x, y); });
+  }
+
+  std::size_t coarse_at(int x, int y) const {
+    return std::size_t(y) * std::size_t(coarse_width_) + std::size_t(x);
+  }
+
+  void for_coarse(const std::function<void(int x, int y)>& cell) const {
+    parallel_for(std::size_t(coarse_height_), 4, [&](std::size_t begin, std::size_t end) {
+      context_.check_cancelled();
+      for (std::size_t y = begin; y < end; ++y) {
+        for (int x = 0; x < coarse_width_; ++x) cell(x, int(y));
+      }
+    });
+  }
+
+  Light ground_light(double x_px, double y_px, int phase) const {
+    const Vec3 d = ray(x_px, y_px);
+    const double fall = d.dot(ground_normal_);
+    if (fall > -1e-6) return {};
+    const double t = (ground_height_ - camera_.eye.dot(ground_normal_)) / fall;
+    const Vec3 origin = camera_.eye + t * d + 1e-4 * extent_ * ground_normal_;
+    Light light{0, 0};
+    for (int k = 0; k < kGroundRays; ++k) {
+      const auto i = std::size_t(phase + kPhases * k);
+      if (!blocked(origin, ground_sky_rays_[i])) light.sky += 1;
+      if (!blocked(origin, ground_lamp_rays_[i])) light.lamp += 1;
+    }
+    return {light.sky / kGroundRays, light.lamp / kGroundRays};
+  }
+
+  Light gathered_ground(const std::vector<Light>& raw, int x, int y) const {
+    Light sum{0, 0};
+    for (int dy = -2; dy <= 2; ++dy) {
+      for (int dx = -2; dx <= 2; ++dx) {
+        const double weight =
+            (std::abs(dx) == 2 ? 0.125 : 0.25) * (std::abs(dy) == 2 ? 0.125 : 0.25);
+        const Light& light = raw[coarse_at(std::clamp(x + dx, 0, coarse_width_ - 1),
+                                           std::clamp(y + dy, 0, coarse_height_ - 1))];
+        sum.sky += weight * light.sky;
+        sum.lamp += weight * light.lamp;
+      }
+    }
+    return sum;
+  }
+
+  const Studio studio_;
+  const Camera camera_;
+  int width_;
+  int height_;
+  RunContext& context_;
+  double extent_ = 1;
+  Vec3 ground_normal_, lamp_;
+  std::vector<Vec3> sky_rays_;  // around z
+  std::vector<Vec3> lamp_rays_, ground_sky_rays_, ground_lamp_rays_;
+  double ground_height_ = 0;
+  std::vector<Sample> centre_;
+  std::vector<Light> light_;
+  std::vector<Light> ground_;
+  int coarse_width_ = 0;
+  int coarse_height_ = 0;
+};
+
+// One pair of appearances on a stage.
+class Painter {
+ public:
+  Painter(const Stage& stage, const Appearance& appearance)
+      : studio_(stage.studio()), camera_(stage.camera()), stage_(stage), appearance_(appearance) {}
+
+  ViewPair run() {
+    shade_centres();
+    refine_edges();
+    return {picture(&Shade::wanted), picture(&Shade::predicted)};
+  }
+
+ private:
+  // A pale grey sweep, lighter in the middle, with the object's shadow on it.
+  Shade backdrop(double x_px, double y_px) const {
+    const double x = (x_px - 0.5 * stage_.width()) / stage_.width();
+    const double y = (y_px - 0.45 * stage_.height()) / stage_.height();
+    const double glow = std::exp(-2.2 * (x * x + y * y));
+    const Light light = stage_.ground_at(x_px, y_px);
+    const double shadow = 0.62 * light.sky + 0.38 * (0.35 + 0.65 * light.lamp);
+    const double level = (0.50 + 0.27 * glow) * (0.25 + 0.75 * shadow);
+    Shade shade;
+    shade.wanted = {float(level * 0.985), float(level * 0.995), float(level * 1.01)};
+    shade.predicted = shade.wanted;
+    return shade;
+  }
+
+  Shade shade(const Sample& s, const Light& light) const {
+    const Vec3 n = stage_.smooth_normal(s);
+    const double sky =
+        kSkyBelow + (kSkyAbove - kSkyBelow) * (0.5 + 0.5 * n.dot(stage_.ground_normal()));
+    const double lit_level = sky * (0.12 + 0.88 * light.sky) +
+                             kLamp * std::max(0.0, n.dot(stage_.lamp())) * light.lamp +
+                             kFill * std::max(0.0, n.dot(camera_.back));
+    const double level = lit_level + studio_.flatness * (1 - lit_level);
+    const Vec3 p = stage_.position(s);
+    const Vec3 normal = face_normal(studio_.object, s.triangle);
+    const SurfacePoint point{s.triangle, s.u, s.v};
+    const auto lit = [&](const LinearColor& c) {
+      const float f = float(level);
+      return std::array<float, 3>{f * c.r, f * c.g, f * c.b};
+    };
+    return {lit(appearance_.wanted(point, p, normal)),
+            lit(appearance_.predicted(point, p, normal))};
+  }
+
+  void shade_centres() {
+    shade_.resize(stage_.count());
+    stage_.for_rows([&](int y) {
+      for (int x = 0; x < stage_.width(); ++x) {
+        const Sample& s = stage_.centre(x, y);
+        shade_[stage_.at(x, y)] =
+            s.triangle < 0 ? backdrop(x + 0.5, y + 0.5) : shade(s, stage_.light(x, y));
+      }
+    });
+  }
+
+  // Whether a pixel differs from a neighbour by more than a barely visible step.
+  bool busy(const std::vector<Shade>& shades, int x, int y) const {
+    const auto differs = [](const std::array<float, 3>& a, const std::array<float, 3>& b) {
+      float most = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        most = std::max(most, std::abs(a[c] - b[c]) / (0.1f + a[c] + b[c]));
+      }
+      return most > 0.035f;
+    };
+    const std::size_t self = stage_.at(x, y);
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= stage_.width() || y + dy >= stage_.height())
+          continue;
+        const std::size_t other = stage_.at(x + dx, y + dy);
+        if ((stage_.centre(x, y).triangle < 0) != (stage_.centre(x + dx, y + dy).triangle < 0))
+          return true;
+        if (stage_.centre(x, y).triangle < 0) continue;
+        if (differs(shades[self].wanted, shades[other].wanted)) return true;
+        if (differs(shades[self].predicted, shades[other].predicted)) return true;
+      }
+    }
+    return false;
+  }
+
+  void refine_edges() {
+    if (!studio_.smooth_edges) return;
+    const std::vector<Shade> single = shade_;
+    stage_.for_rows([&](int y) {
+      for (int x = 0; x < stage_.width(); ++x) {
+        if (busy(single, x, y)) refine(shade_[stage_.at(x, y)], x, y);
+      }
+    });
+  }
+
+  // The shade of a pixel's centre becomes that of the pixel.
+  void refine(Shade& centre, int x, int y) const {
+    Shade sum;
+    const auto add = [&](const Shade& part) {
+      constexpr float kShare = 1.0f / (1 + kRooks.size());
+      for (std::size_t c = 0; c < 3; ++c) {
+        sum.wanted[c] += std::clamp(part.wanted[c], 0.0f, 1.0f) * kShare;
+        sum.predicted[c] += std::clamp(part.predicted[c], 0.0f, 1.0f) * kShare;
+      }
+    };
+    add(centre);
+    for (const auto& [dx, dy] : kRooks) {
+      const Sample s = stage_.trace(x + dx, y + dy);
+      add(s.triangle < 0 ? backdrop(x + dx, y + dy) : shade(s, stage_.light_near(s, x, y)));
+    }
+    centre = sum;
+  }
+
+  Image picture(std::array<float, 3> Shade::*part) const {
+    Image image(stage_.width(), stage_.height());
+    for (std::size_t i = 0; i < stage_.count(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        image.rgba[4 * i + c] = linear_to_srgb8((shade_[i].*part)[c]);
+      }
+      image.rgba[4 * i + 3] = 255;
+    }
+    return image;
+  }
+
+  const Studio& studio_;
+  const Camera& camera_;
+  const Stage& stage_;
+  const Appearance& appearance_;
+  std::vector<Shade> shade_;
+};
+
+}  // namespace
+
+struct LitView::Impl {
+  Stage stage;
+};
+
+LitView::LitView(const Studio& studio, const Camera& camera, int width_px, int height_px,
+                 RunContext& context)
+    : impl_(new Impl{Stage(studio, camera, width_px, height_px, context)}) {}
+LitView::~LitView() = default;
+
+ViewPair LitView::show(const Appearance& appearance) const {
+  return Painter(impl_->stage, appearance).run();
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,113 @@
+// Everything a job needs to know, one struct per stage. Filled from parameter records
+// (job/params.h) or by hand.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "dip/dip.h"
+#include "film/film.h"
+#include "ink/discoloration.h"
+#include "model_io/load.h"
+#include "object/pose.h"
+
+namespace hydrodip {
+
+struct ObjectOptions {
+  LoadOptions load;                    // units, texture
+  PoseOptions pose;                    // size, down, rotation
+  std::string base_color = "#ffffff";  // of the bare object, sRGB
+};
+
+// The tank of the paper's appendix A.
+struct BathOptions {
+  double width_mm = 370;
+  double height_mm = 270;
+  double depth_mm = 150;
+};
+
+enum class InkModel { kDevice, kProfile };
+
+struct InkOptions {
+  double stiffness_ratio = 600;  // modulus of fully inked over blank film
+  double filter_mm = 1.016;      // the ink's stiffness is smeared over a square of this side
+  int rounds_max = 10;           // simulate, invert, stiffen, repeat: at most this often
+  InkModel model = InkModel::kDevice;
+  std::filesystem::path profile;  // the printer's; not empty: kProfile. Empty with kProfile: the
+                                  // installed one
+  RenderingIntent intent = RenderingIntent::kRelative;
+  double limit = 3;  // largest sum of inks
+  bool compensate = true;
+};
+
+enum class InkSide { kUp, kDown };
+enum class PrintColor { kRgb, kCmyk };
+
+struct PrintOptions {
+  double dpi = 300;
+  double bleed_mm = 1;
+  int samples = 3;  // per axis and pixel
+  InkSide ink_side = InkSide::kUp;
+  PrintColor color = PrintColor::kRgb;  // of print.pdf
+  std::string job_name;                 // in the sheet's margin; empty: the model's file name
+};
+
+// What the operator keeps to at the bath; the paper's section 2 and appendix A.
+struct ProcessOptions {
+  double water_min_c = 27, water_max_c = 30;
+  double soak_min_s = 60, soak_max_s = 80;  // from laying the film until it lies flat again
+  double activator_g = 3.5;                 // per letter sheet
+  double activator_tolerance_g = 0.5;       // per letter sheet
+  double activator_wait_s = 30;
+  double speed_mm_per_min = 100;  // of the dip
+  double dwell_s = 10;            // at depth, at least
+  double lift_mm_per_min = 300;
+  double dry_min_h = 2, dry_max_h = 3;
+};
+
+enum class StageDriver { kZaber, kMarlin };
+enum class StageDown { kPlus, kMinus };
+
+// The linear stage that carries the object. Positions count as the stage counts them, from home.
+// The defaults are the paper's: Zaber A-LST0750B-E01, 750 mm, 6.35 mm of travel per turn of 12800
+// microsteps.
+struct StageOptions {
+  StageDriver driver = StageDriver::kZaber;
+  std::string port;  // "/dev/ttyUSB0"
+  int baud = 115200;
+  int address = 1;  // in a chain of Zaber devices
+  double microstep_um = 0.49609375;
+  double travel_mm = 750;             // 0: not checked
+  StageDown down = StageDown::kPlus;  // which way the object goes down
+  double lowest_mm = 0;      // position beyond which it never goes down; 0: the stage's own limit
+  double water_mm = 0;       // position where the object's lowest point meets the water; 0: unknown
+  double clearance_mm = 40;  // between object and water while people work
+  double approach_mm = 5;    // above the water, where the dip's constant speed begins
+  double travel_mm_per_min = 600;  // where no water is near
+};
+
+struct JobConfig {
+  std::filesystem::path model;
+  std::filesystem::path film_image;  // simulate: the image that was printed; may be empty
+  std::filesystem::path output;      // folder
+  // For the report only.
+  std::vector<std::filesystem::path> settings_files;  // profiles and configs that were read
+  std::vector<std::string> command_line;
+
+  ObjectOptions object;
+  FilmOptions film;
+  BathOptions bath;
+  DipOptions dip;  // with the film's material
+  InkOptions ink;
+  GamutPolicy gamut_policy = GamutPolicy::kClip;
+  PrintOptions print;
+  ProcessOptions process;
+  StageOptions stage;
+  int preview_width_px = 1600;
+  int preview_texture_px = 2048;
+  bool pictures = true;  // preview.png, maps.png, gamut.png and the 3D view of report.html
+  int threads = 0;       // 0: all cores
+};
+
+}  // namespace hydrodip

@@ -1,0 +1,412 @@
+// The parameter tables, one per options struct. A new parameter is one line here.
+#include <utility>
+
+#include "settings/params.h"
+
+namespace hydrodip {
+namespace {
+
+// How a record reaches its member: a stateless function from the config to the member.
+template <class Member>
+using Access = Member& (*)(JobConfig&);
+
+template <class Member>
+const Member& read(Access<Member> access, const JobConfig& config) {
+  return access(const_cast<JobConfig&>(config));  // access only forms a reference
+}
+
+Parameter number(std::string name, std::string unit, double min, double max, Access<double> access,
+                 std::string help, std::string zero = "") {
+  Parameter p{std::move(name),
+              std::move(unit),
+              ParameterType::kNumber,
+              min,
+              max,
+              std::move(zero),
+              {},
+              std::move(help),
+              {},
+              {}};
+  p.get = [access](const JobConfig& c) { return ParameterValue(read(access, c)); };
+  p.set = [access](JobConfig& c, const ParameterValue& v) { access(c) = std::get<double>(v); };
+  return p;
+}
+
+Parameter integer(std::string name, std::string unit, int min, int max, Access<int> access,
+                  std::string help, std::string zero = "") {
+  Parameter p{std::move(name),
+              std::move(unit),
+              ParameterType::kInteger,
+              double(min),
+              double(max),
+              std::move(zero),
+              {},
+              std::move(help),
+              {},
+              {}};
+  p.get = [access](const JobConfig& c) { return ParameterValue(double(read(access, c))); };
+  p.set = [access](JobConfig& c, const ParameterValue& v) { access(c) = int(std::get<double>(v)); };
+  return p;
+}
+
+Parameter text(std::string name, ParameterType type, Access<std::string> access, std::string help) {
+  Parameter p{std::move(name), "", type, 0, 0, "", {}, std::move(help), {}, {}};
+  p.get = [access](const JobConfig& c) { return ParameterValue(read(access, c)); };
+  p.set = [access](JobConfig& c, const ParameterValue& v) { access(c) = std::get<std::string>(v); };
+  return p;
+}
+
+Parameter path(std::string name, Access<std::filesystem::path> access, std::string help) {
+  Parameter p{std::move(name), "", ParameterType::kPath, 0, 0, "", {}, std::move(help), {}, {}};
+  p.get = [access](const JobConfig& c) { return ParameterValue(read(access, c).string()); };
+  p.set = [access](JobConfig& c, const ParameterValue& v) { access(c) = std::get<std::string>(v); };
+  return p;
+}
+
+Parameter vector(std::string name, std::string unit, double min, double max, Access<Vec3> access,
+                 std::string help) {
+  Parameter p{std::move(name),
+              std::move(unit),
+              ParameterType::kVector,
+              min,
+              max,
+              "",
+              {},
+              std::move(help),
+              {},
+              {}};
+  p.get = [access](const JobConfig& c) {
+    const Vec3& v = read(access, c);
+    return ParameterValue(std::array<double, 3>{v.x(), v.y(), v.z()});
+  };
+  p.set = [access](JobConfig& c, const ParameterValue& v) {
+    const auto& xyz = std::get<std::array<double, 3>>(v);
+    access(c) = Vec3(xyz[0], xyz[1], xyz[2]);
+  };
+  return p;
+}
+
+// The choices are the enumerators' names in order.
+template <class Enum>
+Parameter choice(std::string name, std::vector<std::pair<std::string, Enum>> values,
+                 Access<Enum> access, std::string help) {
+  Parameter p{std::move(name), "", ParameterType::kChoice, 0, 0, "", {}, std::move(help), {}, {}};
+  for (const auto& [label, value] : values) p.choices.push_back(label);
+  p.get = [access, values](const JobConfig& c) {
+    for (const auto& [label, value] : values)
+      if (value == read(access, c)) return ParameterValue(label);
+    return ParameterValue(std::string());
+  };
+  p.set = [access, values](JobConfig& c, const ParameterValue& v) {
+    for (const auto& [label, value] : values)
+      if (label == std::get<std::string>(v)) access(c) = value;
+  };
+  return p;
+}
+
+Parameter choice(std::string name, const std::vector<std::string>& values,
+                 Access<std::string> access, std::string help) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  pairs.reserve(values.size());
+  for (const std::string& value : values) pairs.emplace_back(value, value);
+  return choice<std::string>(std::move(name), std::move(pairs), access, std::move(help));
+}
+
+using C = JobConfig;
+
+std::vector<Parameter> object_records() {
+  return {
+      choice(
+          "object.units", {"", "mm", "cm", "m", "in"},
+          [](C& c) -> std::string& { return c.object.load.units; },
+          "unit of the model's coordinates; empty: what the format says, else mm"),
+      number(
+          "object.size_mm", "mm", 0.1, 5000, [](C& c) -> double& { return c.object.pose.size_mm; },
+          "scale the model so that its largest extent is this", "the model's own size"),
+      choice(
+          "object.down", {"-z", "+z", "-y", "+y", "-x", "+x"},
+          [](C& c) -> std::string& { return c.object.pose.down; },
+          "the model's side that enters the water first"),
+      vector(
+          "object.rotate_deg", "deg", -3600, 3600,
+          [](C& c) -> Vec3& { return c.object.pose.rotate_deg; },
+          "then turn about the fixed axes x, y, z, in that order"),
+      path(
+          "object.texture", [](C& c) -> std::filesystem::path& { return c.object.load.texture; },
+          "image that replaces the model's textures; in a file: relative to that file"),
+      text(
+          "object.base_color", ParameterType::kColor,
+          [](C& c) -> std::string& { return c.object.base_color; },
+          "colour of the bare object, sRGB, #rrggbb"),
+  };
+}
+
+std::vector<Parameter> film_records() {
+  return {
+      number(
+          "film.width_mm", "mm", 10, 3000, [](C& c) -> double& { return c.film.width_mm; },
+          "width of the whole sheet (x)"),
+      number(
+          "film.height_mm", "mm", 10, 3000, [](C& c) -> double& { return c.film.height_mm; },
+          "height of the whole sheet (y)"),
+      choice<FilmShape>(
+          "film.shape", {{"rectangle", FilmShape::kRectangle}, {"disc", FilmShape::kDisc}},
+          [](C& c) -> FilmShape& { return c.film.shape; },
+          "outline of the film; disc: inscribed in the smaller extent"),
+      number(
+          "film.margin_mm", "mm", 0, 500, [](C& c) -> double& { return c.film.margin_mm; },
+          "width of the taped, clamped rim"),
+      integer(
+          "film.elements", "", 8, 4000000, [](C& c) -> int& { return c.film.elements; },
+          "triangles of the simulated film"),
+      number(
+          "film.grading", "", 1, 20, [](C& c) -> double& { return c.film.grading; },
+          "cell size at the rim over that at the centre; with dip.scheme=paper: 1"),
+  };
+}
+
+std::vector<Parameter> bath_records() {
+  return {
+      number(
+          "bath.width_mm", "mm", 10, 5000, [](C& c) -> double& { return c.bath.width_mm; },
+          "longer or shorter side of the bath"),
+      number(
+          "bath.height_mm", "mm", 10, 5000, [](C& c) -> double& { return c.bath.height_mm; },
+          "the bath's other side"),
+      number(
+          "bath.depth_mm", "mm", 1, 5000, [](C& c) -> double& { return c.bath.depth_mm; },
+          "depth of the water"),
+  };
+}
+
+std::vector<Parameter> dip_records() {
+  return {
+      number(
+          "dip.step_mm", "mm", 0.001, 10, [](C& c) -> double& { return c.dip.step_mm; },
+          "how far the object is lowered in one step of the simulation"),
+      number(
+          "dip.depth_mm", "mm", 0.001, 5000, [](C& c) -> double& { return c.dip.depth_mm; },
+          "how deep the object is dipped", "the whole object"),
+      choice<DipMethod>(
+          "dip.method",
+          {{"full", DipMethod::kFull},
+           {"single-step", DipMethod::kSingleStep},
+           {"projection", DipMethod::kProjection}},
+          [](C& c) -> DipMethod& { return c.dip.method; },
+          "full; single-step: draped at once, never glued; projection: straight up"),
+      choice<DipScheme>(
+          "dip.scheme", {{"contact-line", DipScheme::kContactLine}, {"paper", DipScheme::kPaper}},
+          [](C& c) -> DipScheme& { return c.dip.scheme; },
+          "of dip.method=full: contact line resolved inside triangles, or the paper's literal "
+          "steps"),
+  };
+}
+
+std::vector<Parameter> material_records() {
+  return {
+      number(
+          "material.z_stretch", "", 0, 5, [](C& c) -> double& { return c.dip.material.z_stretch; },
+          "vertical scale of the film's rest shape: how it follows slopes"),
+      number(
+          "material.tear_stretch", "", 1, 100,
+          [](C& c) -> double& { return c.dip.material.tear_stretch; },
+          "largest principal stretch that the film bears", "the film never tears"),
+      number(
+          "material.poisson", "", 0, 0.499, [](C& c) -> double& { return c.dip.material.poisson; },
+          "Poisson's ratio of the film"),
+      number(
+          "material.ink_stiffness_ratio", "", 1, 1e6,
+          [](C& c) -> double& { return c.ink.stiffness_ratio; },
+          "modulus of film at ink density 1 over that of blank film; 1: ink does not stiffen"),
+  };
+}
+
+std::vector<Parameter> ink_records() {
+  return {
+      integer(
+          "ink.rounds_max", "", 1, 100, [](C& c) -> int& { return c.ink.rounds_max; },
+          "most rounds of simulating with the ink's stiffness; 1: even stiffness"),
+      number(
+          "ink.filter_mm", "mm", 0.01, 20, [](C& c) -> double& { return c.ink.filter_mm; },
+          "ink stiffens the film evenly over a square of this side"),
+      choice<InkModel>(
+          "ink.model", {{"device", InkModel::kDevice}, {"profile", InkModel::kProfile}},
+          [](C& c) -> InkModel& { return c.ink.model; },
+          "colours to inks: plain formula, or ICC profile (ink.profile or an installed one)"),
+      path(
+          "ink.profile", [](C& c) -> std::filesystem::path& { return c.ink.profile; },
+          "the printer's ICC profile, CMYK or RGB; in a file: relative to that file"),
+      choice<RenderingIntent>(
+          "ink.intent",
+          {{"relative", RenderingIntent::kRelative},
+           {"perceptual", RenderingIntent::kPerceptual},
+           {"saturation", RenderingIntent::kSaturation},
+           {"absolute", RenderingIntent::kAbsolute}},
+          [](C& c) -> RenderingIntent& { return c.ink.intent; },
+          "how the profile brings colours into the printer's range"),
+      number(
+          "ink.limit", "", 0.1, 4, [](C& c) -> double& { return c.ink.limit; },
+          "largest sum of inks at a point that film and printer bear; 4: no limit"),
+      choice<bool>(
+          "ink.compensation", {{"on", true}, {"off", false}},
+          [](C& c) -> bool& { return c.ink.compensate; },
+          "print more ink where the film will stretch"),
+      choice<GamutPolicy>(
+          "gamut.policy",
+          {{"clip", GamutPolicy::kClip},
+           {"scale", GamutPolicy::kScale},
+           {"soft", GamutPolicy::kSoft}},
+          [](C& c) -> GamutPolicy& { return c.gamut_policy; },
+          "where more ink is needed than fits: cut, lighten the whole image, or hold back "
+          "smoothly"),
+  };
+}
+
+std::vector<Parameter> print_records() {
+  return {
+      number(
+          "print.dpi", "dpi", 36, 1200, [](C& c) -> double& { return c.print.dpi; },
+          "resolution of the film image"),
+      number(
+          "print.bleed_mm", "mm", 0, 50, [](C& c) -> double& { return c.print.bleed_mm; },
+          "colour extended around the region that touches the object"),
+      integer(
+          "print.samples", "", 1, 8, [](C& c) -> int& { return c.print.samples; },
+          "samples per pixel along each axis"),
+      choice<InkSide>(
+          "print.ink_side", {{"up", InkSide::kUp}, {"down", InkSide::kDown}},
+          [](C& c) -> InkSide& { return c.print.ink_side; },
+          "which side of the film carries the ink on the water; down: mirrored"),
+      choice<PrintColor>(
+          "print.color", {{"rgb", PrintColor::kRgb}, {"cmyk", PrintColor::kCmyk}},
+          [](C& c) -> PrintColor& { return c.print.color; },
+          "colours of print.pdf: rgb for desktop printers, cmyk for print shops"),
+      text(
+          "print.job_name", ParameterType::kText,
+          [](C& c) -> std::string& { return c.print.job_name; },
+          "name in the sheet's margin; empty: the model's file name"),
+  };
+}
+
+std::vector<Parameter> process_records() {
+  return {
+      number(
+          "process.water_min_c", "C", 0, 100, [](C& c) -> double& { return c.process.water_min_c; },
+          "coolest the water may be, through the whole process"),
+      number(
+          "process.water_max_c", "C", 0, 100, [](C& c) -> double& { return c.process.water_max_c; },
+          "warmest the water may be"),
+      number(
+          "process.soak_min_s", "s", 0, 3600, [](C& c) -> double& { return c.process.soak_min_s; },
+          "from laying the film on the water until it lies flat again, at least"),
+      number(
+          "process.soak_max_s", "s", 0, 3600, [](C& c) -> double& { return c.process.soak_max_s; },
+          "the same, at most"),
+      number(
+          "process.activator_g", "g", 0, 1000,
+          [](C& c) -> double& { return c.process.activator_g; },
+          "activator per letter sheet of film; scaled to the job's film"),
+      number(
+          "process.activator_tolerance_g", "g", 0, 1000,
+          [](C& c) -> double& { return c.process.activator_tolerance_g; },
+          "how far that may be off, per letter sheet"),
+      number(
+          "process.activator_wait_s", "s", 0, 3600,
+          [](C& c) -> double& { return c.process.activator_wait_s; },
+          "from spraying the activator to the dip"),
+      number(
+          "process.speed_mm_per_min", "mm/min", 1, 6000,
+          [](C& c) -> double& { return c.process.speed_mm_per_min; }, "speed of the dip"),
+      number(
+          "process.dwell_s", "s", 0, 3600, [](C& c) -> double& { return c.process.dwell_s; },
+          "how long the object stays down, at least"),
+      number(
+          "process.lift_mm_per_min", "mm/min", 1, 6000,
+          [](C& c) -> double& { return c.process.lift_mm_per_min; },
+          "speed of lifting the object out"),
+      number(
+          "process.dry_min_h", "h", 0, 1000, [](C& c) -> double& { return c.process.dry_min_h; },
+          "drying, at least"),
+      number(
+          "process.dry_max_h", "h", 0, 1000, [](C& c) -> double& { return c.process.dry_max_h; },
+          "drying, at most"),
+  };
+}
+
+std::vector<Parameter> stage_records() {
+  return {
+      choice<StageDriver>(
+          "stage.driver", {{"zaber", StageDriver::kZaber}, {"marlin", StageDriver::kMarlin}},
+          [](C& c) -> StageDriver& { return c.stage.driver; },
+          "what moves the object: a Zaber stage, or the Z axis of a printer with Marlin"),
+      text(
+          "stage.port", ParameterType::kText, [](C& c) -> std::string& { return c.stage.port; },
+          "serial port, as in /dev/ttyUSB0"),
+      integer(
+          "stage.baud", "", 1200, 1000000, [](C& c) -> int& { return c.stage.baud; },
+          "serial speed"),
+      integer(
+          "stage.address", "", 1, 99, [](C& c) -> int& { return c.stage.address; },
+          "number of the device in a chain of Zaber devices"),
+      number(
+          "stage.microstep_um", "um", 0.0001, 1000,
+          [](C& c) -> double& { return c.stage.microstep_um; },
+          "Zaber: travel per microstep, from the stage's data sheet"),
+      number(
+          "stage.travel_mm", "mm", 1, 5000, [](C& c) -> double& { return c.stage.travel_mm; },
+          "Zaber: length of travel from the data sheet, to check the stage by", "not checked"),
+      choice<StageDown>(
+          "stage.down", {{"plus", StageDown::kPlus}, {"minus", StageDown::kMinus}},
+          [](C& c) -> StageDown& { return c.stage.down; },
+          "the way the object goes down: plus is away from home on a Zaber stage"),
+      number(
+          "stage.lowest_mm", "mm", 0.001, 5000, [](C& c) -> double& { return c.stage.lowest_mm; },
+          "position beyond which it never goes down", "the stage's own limit"),
+      number(
+          "stage.water_mm", "mm", 0.001, 5000, [](C& c) -> double& { return c.stage.water_mm; },
+          "position at which the object's lowest point meets the water", "unknown"),
+      number(
+          "stage.clearance_mm", "mm", 1, 2000, [](C& c) -> double& { return c.stage.clearance_mm; },
+          "between object and water while people work"),
+      number(
+          "stage.approach_mm", "mm", 1, 500, [](C& c) -> double& { return c.stage.approach_mm; },
+          "above the water, where the dip's constant speed begins"),
+      number(
+          "stage.travel_mm_per_min", "mm/min", 1, 6000,
+          [](C& c) -> double& { return c.stage.travel_mm_per_min; },
+          "speed where no water is near"),
+  };
+}
+
+std::vector<Parameter> run_records() {
+  return {
+      integer(
+          "preview.width_px", "px", 64, 8192, [](C& c) -> int& { return c.preview_width_px; },
+          "width of preview.png"),
+      integer(
+          "preview.texture_px", "px", 64, 8192, [](C& c) -> int& { return c.preview_texture_px; },
+          "longest side of the textures in preview.glb"),
+      choice<bool>(
+          "preview.pictures", {{"on", true}, {"off", false}},
+          [](C& c) -> bool& { return c.pictures; },
+          "preview.png, maps.png, gamut.png and the 3D view of report.html, which take seconds"),
+      integer(
+          "run.threads", "", 1, 1024, [](C& c) -> int& { return c.threads; },
+          "processor threads; the result does not depend on it", "all cores"),
+  };
+}
+
+}  // namespace
+
+const std::vector<Parameter>& parameters() {
+  static const std::vector<Parameter> all = [] {
+    std::vector<Parameter> list;
+    for (auto table : {object_records, film_records, bath_records, dip_records, material_records,
+                       ink_records, print_records, process_records, stage_records, run_records})
+      for (Parameter& p : table()) list.push_back(std::move(p));
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,261 @@
+#include "settings/params.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "base/error.h"
+#include "base/nearest_name.h"
+
+namespace hydrodip {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+// The whole text as a finite number.
+std::optional<double> parse_number(const std::string& untrimmed) {
+  std::string text = trimmed(untrimmed);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.erase(0, 1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+std::optional<std::vector<double>> parse_numbers(const std::string& text) {
+  std::vector<double> values;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const auto value = parse_number(text.substr(begin, end - begin));
+    if (!value || values.size() == 3) return {};
+    values.push_back(*value);
+    begin = end + 1;
+  }
+  return values;
+}
+
+bool is_color(const std::string& text) {
+  return text.size() == 7 && text[0] == '#' &&
+         text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+}
+
+std::string with_unit(const std::string& text, const Parameter& p) {
+  return p.unit.empty() ? text : text + " " + p.unit;
+}
+
+std::string quoted_list(const std::vector<std::string>& items) {
+  std::string list;
+  for (const std::string& item : items)
+    list += (list.empty() ? "" : ", ") + (item.empty() ? std::string("\"\"") : item);
+  return list;
+}
+
+// What the value has to be, to follow "must be".
+std::string expectation(const Parameter& p) {
+  const std::string range = with_unit(fmt::format("{} to {}", p.min, p.max), p);
+  const std::string or_zero = p.zero.empty() ? "" : fmt::format(", or 0 ({})", p.zero);
+  switch (p.type) {
+    case ParameterType::kNumber:
+      return "a number from " + range + or_zero;
+    case ParameterType::kInteger:
+      return "a whole number from " + range + or_zero;
+    case ParameterType::kChoice:
+      return "one of " + quoted_list(p.choices);
+    case ParameterType::kText:
+      return "text";
+    case ParameterType::kPath:
+      return "a file name";
+    case ParameterType::kColor:
+      return "a colour such as #ffcc00";
+    case ParameterType::kVector:
+      return "three numbers X,Y,Z, each from " + range;
+  }
+  return "";
+}
+
+[[noreturn]] void refuse(const Parameter& p, const Setting& setting) {
+  throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, p.name, expectation(p),
+                               setting.shown.empty() ? "empty" : setting.shown));
+}
+
+bool in_range(const Parameter& p, double value) {
+  return std::isfinite(value) &&
+         ((value >= p.min && value <= p.max) || (value == 0 && !p.zero.empty()));
+}
+
+double checked_number(const Parameter& p, const Setting& setting) {
+  std::optional<double> value;
+  if (const double* number = std::get_if<double>(&setting.value))
+    value = *number;
+  else if (const std::string* text = std::get_if<std::string>(&setting.value);
+           text && !setting.typed)
+    value = parse_number(*text);
+  if (!value || !in_range(p, *value)) refuse(p, setting);
+  if (p.type == ParameterType::kInteger && *value != std::floor(*value)) refuse(p, setting);
+  return *value + 0.0;  // -0 becomes 0
+}
+
+std::array<double, 3> checked_vector(const Parameter& p, const Setting& setting) {
+  std::optional<std::vector<double>> values;
+  if (const auto* array = std::get_if<std::vector<double>>(&setting.value))
+    values = *array;
+  else if (const auto* text = std::get_if<std::string>(&setting.value))
+    values = parse_numbers(*text);
+  if (!values || values->size() != 3) refuse(p, setting);
+  for (const double value : *values)
+    if (!in_range(p, value)) refuse(p, setting);
+  return {(*values)[0] + 0.0, (*values)[1] + 0.0, (*values)[2] + 0.0};
+}
+
+std::string checked_text(const Parameter& p, const Setting& setting) {
+  const std::string* text = std::get_if<std::string>(&setting.value);
+  if (!text) refuse(p, setting);
+  if (text->find('\0') != std::string::npos) refuse(p, setting);
+  if (p.type == ParameterType::kChoice &&
+      std::find(p.choices.begin(), p.choices.end(), *text) == p.choices.end())
+    refuse(p, setting);
+  if (p.type == ParameterType::kColor && !is_color(*text)) refuse(p, setting);
+  return *text;
+}
+
+ParameterValue checked(const Parameter& p, const Setting& setting) {
+  switch (p.type) {
+    case ParameterType::kNumber:
+    case ParameterType::kInteger:
+      return checked_number(p, setting);
+    case ParameterType::kVector:
+      return checked_vector(p, setting);
+    default:
+      return checked_text(p, setting);
+  }
+}
+
+const char* type_name(ParameterType type) {
+  switch (type) {
+    case ParameterType::kNumber:
+      return "number";
+    case ParameterType::kInteger:
+      return "integer";
+    case ParameterType::kChoice:
+      return "choice";
+    case ParameterType::kText:
+      return "text";
+    case ParameterType::kPath:
+      return "path";
+    case ParameterType::kColor:
+      return "color";
+    case ParameterType::kVector:
+      return "vector";
+  }
+  return "";
+}
+
+std::string plain_value(const ParameterValue& value) {
+  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  const auto& v = std::get<std::array<double, 3>>(value);
+  return fmt::format("{},{},{}", v[0], v[1], v[2]);
+}
+
+}  // namespace
+
+const Parameter& find_parameter(const std::string& name, const std::string& origin) {
+  std::vector<std::string> names;
+  for (const Parameter& p : parameters()) {
+    if (p.name == name) return p;
+    names.push_back(p.name);
+  }
+  const std::string hint = did_you_mean(name, names);
+  throw InputError(fmt::format("{}: unknown parameter '{}'{}", origin, name,
+                               hint.empty() ? "; 'hydrodip params' lists them all" : hint));
+}
+
+void apply_settings(JobConfig& config, const std::vector<Setting>& settings) {
+  for (const Setting& setting : settings) {
+    const Parameter& p = find_parameter(setting.name, setting.origin);
+    p.set(config, checked(p, setting));
+  }
+}
+
+std::string show_value(const Parameter& p, const ParameterValue& value) {
+  const double* number = std::get_if<double>(&value);
+  if (number && *number == 0 && !p.zero.empty()) return "0 (" + p.zero + ")";
+  return with_unit(plain_value(value), p);
+}
+
+std::string show_range(const Parameter& p) {
+  switch (p.type) {
+    case ParameterType::kNumber:
+    case ParameterType::kInteger:
+    case ParameterType::kVector:
+      return with_unit(fmt::format("{} to {}", p.min, p.max), p) +
+             (p.zero.empty() ? "" : fmt::format(", or 0 ({})", p.zero));
+    case ParameterType::kChoice: {
+      std::string list;
+      for (const std::string& choice : p.choices)
+        list += (list.empty() ? "" : " | ") + (choice.empty() ? std::string("\"\"") : choice);
+      return list;
+    }
+    default:
+      return type_name(p.type);
+  }
+}
+
+std::string parameters_table() {
+  std::size_t name_width = 0, value_width = 0;
+  for (const Parameter& p : parameters()) {
+    name_width = std::max(name_width, p.name.size());
+    value_width = std::max(value_width, with_unit(plain_value(p.default_value()), p).size());
+  }
+  std::string table, group;
+  for (const Parameter& p : parameters()) {
+    const std::string this_group = p.name.substr(0, p.name.find('.'));
+    if (!group.empty() && group != this_group) table += '\n';
+    group = this_group;
+    std::string value = plain_value(p.default_value());
+    if (value.empty()) value = "\"\"";
+    table += fmt::format("{:<{}}  {:<{}}  {}\n{:<{}}  {:<{}}  [{}]\n", p.name, name_width,
+                         with_unit(value, p), value_width, p.help, "", name_width, "", value_width,
+                         show_range(p));
+  }
+  return table;
+}
+
+std::string parameters_json() {
+  using json = nlohmann::ordered_json;
+  json list = json::array();
+  for (const Parameter& p : parameters()) {
+    json entry;
+    entry["name"] = p.name;
+    entry["type"] = type_name(p.type);
+    entry["unit"] = p.unit;
+    const ParameterValue value = p.default_value();
+    if (p.type == ParameterType::kInteger)
+      entry["default"] = static_cast<long>(std::get<double>(value));
+    else
+      std::visit([&](const auto& v) { entry["default"] = v; }, value);
+    if (p.type == ParameterType::kNumber || p.type == ParameterType::kVector) {
+      entry["min"] = p.min;
+      entry["max"] = p.max;
+    } else if (p.type == ParameterType::kInteger) {
+      entry["min"] = static_cast<long>(p.min);
+      entry["max"] = static_cast<long>(p.max);
+    } else if (p.type == ParameterType::kChoice) {
+      entry["choices"] = p.choices;
+    }
+    if (!p.zero.empty()) entry["zero_means"] = p.zero;
+    entry["help"] = p.help;
+    list.push_back(std::move(entry));
+  }
+  return json{{"schema_version", 1}, {"parameters", std::move(list)}}.dump(2) + "\n";
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,115 @@
+#include "settings/settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/nearest_name.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr const char* kLandscape = "-landscape";
+
+std::string without_suffix(const std::string& text, const std::string& suffix) {
+  if (text.size() < suffix.size() || !text.ends_with(suffix)) return text;
+  return text.substr(0, text.size() - suffix.size());
+}
+
+Setting option_setting(const std::string& name, const std::string& value,
+                       const std::string& shown) {
+  return {name, value, false, shown, "--film"};
+}
+
+// The paper's film is a regular grid.
+void apply_dependent_defaults(JobConfig& config, const std::vector<Setting>& given) {
+  const bool graded = std::any_of(given.begin(), given.end(), [](const Setting& setting) {
+    return setting.name == "film.grading";
+  });
+  if (config.dip.scheme == DipScheme::kPaper && !graded) config.film.grading = 1;
+}
+
+}  // namespace
+
+Setting parse_set(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw InputError(
+        fmt::format("--set: write NAME=VALUE, as in film.elements=40000, not '{}'", text));
+  const std::string value = text.substr(equals + 1);
+  return {text.substr(0, equals), value, false, "'" + value + "'", "--set"};
+}
+
+const std::vector<FilmFormat>& film_formats() {
+  static const std::vector<FilmFormat> formats = {
+      {"letter", 215.9, 279.4}, {"a4", 210, 297}, {"a3", 297, 420}};
+  return formats;
+}
+
+std::vector<Setting> film_settings(const std::string& film) {
+  const std::string name = without_suffix(film, kLandscape);
+  const bool landscape = name != film;
+  for (const FilmFormat& format : film_formats()) {
+    if (format.name != name) continue;
+    std::string width = fmt::format("{}", format.width_mm);
+    std::string height = fmt::format("{}", format.height_mm);
+    if (landscape) std::swap(width, height);
+    return {option_setting("film.width_mm", width, film),
+            option_setting("film.height_mm", height, film)};
+  }
+  const std::size_t cross = film.find('x');
+  const bool starts_like_a_size =
+      !film.empty() && (film[0] == '-' || (film[0] >= '0' && film[0] <= '9'));
+  if (cross == std::string::npos || !starts_like_a_size) {
+    std::vector<std::string> names;
+    for (const FilmFormat& format : film_formats()) {
+      names.push_back(format.name);
+      names.push_back(format.name + kLandscape);
+    }
+    throw InputError(fmt::format(
+        "--film: '{}' is neither letter, a4, a3 (or -landscape) nor WxH in mm, as in 200x150{}",
+        film, did_you_mean(film, names)));
+  }
+  const std::string width = film.substr(0, cross), height = film.substr(cross + 1);
+  return {option_setting("film.width_mm", width, "'" + width + "'"),
+          option_setting("film.height_mm", height, "'" + height + "'")};
+}
+
+std::vector<Setting> quality_settings(const std::string& quality) {
+  const auto settings = [](std::initializer_list<std::pair<const char*, const char*>> values) {
+    std::vector<Setting> list;
+    for (const auto& [name, value] : values)
+      list.push_back({name, value, false, value, "--quality"});
+    return list;
+  };
+  if (quality == "draft")
+    return settings({{"film.elements", "10000"},
+                     {"dip.step_mm", "1.0"},
+                     {"ink.rounds_max", "1"},
+                     {"preview.texture_px", "512"},
+                     {"preview.pictures", "off"}});
+  if (quality == "normal") return {};
+  if (quality == "fine") return settings({{"film.elements", "160000"}, {"dip.step_mm", "0.05"}});
+  throw InputError(fmt::format("--quality: '{}' is none of draft, normal, fine{}", quality,
+                               did_you_mean(quality, {"draft", "normal", "fine"})));
+}
+
+void apply_sources(JobConfig& config, const SettingSources& sources) {
+  std::vector<Setting> all;
+  const auto add = [&](const std::vector<Setting>& settings) {
+    apply_settings(config, settings);
+    all.insert(all.end(), settings.begin(), settings.end());
+  };
+  add(sources.quality);
+  for (const auto* files : {&sources.profiles, &sources.configs})
+    for (const auto& file : *files) {
+      add(read_settings(file));
+      config.settings_files.push_back(file);
+    }
+  add(sources.options);
+  add(sources.sets);
+  apply_dependent_defaults(config, all);
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,160 @@
+// Settings from TOML: the only place that knows toml++.
+//
+// toml++ 3.3 trusts an assertion where a table header does not start with a key ("[=]"), and
+// without it reads on in undefined territory. Here its assertions stay on, and throw.
+#undef NDEBUG
+namespace hydrodip::toml_assertion {
+struct Failed {};
+constexpr void check(bool holds) {
+  if (!holds) throw Failed();
+}
+}  // namespace hydrodip::toml_assertion
+#define TOML_ASSERT(expr) ::hydrodip::toml_assertion::check(static_cast<bool>(expr))
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "settings/settings.h"
+
+namespace hydrodip {
+namespace {
+
+// A configuration is a page of text; anything larger is the wrong file.
+constexpr std::size_t kLargestFile = 1 << 20;
+
+struct Located {
+  Setting setting;
+  std::uint32_t line = 0;
+  std::uint32_t column = 0;
+};
+
+class SettingReader {
+ public:
+  explicit SettingReader(const std::filesystem::path& file) : file_(file) {}
+
+  std::vector<Setting> read() {
+    const std::vector<std::uint8_t> bytes = read_file(file_);
+    if (bytes.size() > kLargestFile)
+      throw InputError(fmt::format("{}: too large for a configuration file", file_.string()));
+    collect(parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size())), "");
+    // toml++ keeps keys sorted by name; the file's own order decides which error comes first.
+    std::stable_sort(found_.begin(), found_.end(), [](const Located& a, const Located& b) {
+      return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+    });
+    std::vector<Setting> settings;
+    for (Located& located : found_) settings.push_back(std::move(located.setting));
+    return settings;
+  }
+
+ private:
+  toml::table parse(std::string_view text) const {
+    try {
+      return toml::parse(text, file_.string());
+    } catch (const toml::parse_error& error) {
+      const auto& at = error.source().begin;
+      throw InputError(fmt::format("{}:{}:{}: not valid TOML: {}", file_.string(), at.line,
+                                   at.column, error.description()));
+    } catch (const toml_assertion::Failed&) {
+      throw InputError(fmt::format("{}:{}:1: not valid TOML: a table's name must follow '['",
+                                   file_.string(), line_of_failed_assertion(text)));
+    }
+  }
+
+  // The assertion does not say where it failed: looks for the shortest run of lines that fails it.
+  static std::size_t line_of_failed_assertion(std::string_view text) {
+    std::vector<std::size_t> ends;  // of each line
+    for (std::size_t at = 0; at < text.size(); ++at)
+      if (text[at] == '\n' || at + 1 == text.size()) ends.push_back(at + 1);
+    const auto fails = [&](std::size_t end) {
+      try {
+        static_cast<void>(toml::parse(text.substr(0, end)));
+      } catch (const toml::parse_error&) {
+      } catch (const toml_assertion::Failed&) {
+        return true;
+      }
+      return false;
+    };
+    const auto first = std::partition_point(ends.begin(), ends.end(),
+                                            [&](std::size_t end) { return !fails(end); });
+    return static_cast<std::size_t>(first - ends.begin()) + 1;
+  }
+
+  void collect(const toml::table& table, const std::string& prefix) {
+    for (const auto& [key, node] : table) {
+      const std::string name = prefix + std::string(key.str());
+      if (const toml::table* inner = node.as_table())
+        collect(*inner, name + ".");
+      else
+        add(name, key.source().begin, node);
+    }
+  }
+
+  void add(const std::string& name, const toml::source_position& at, const toml::node& node) {
+    const std::string origin = fmt::format("{}:{}", file_.string(), at.line);
+    const Parameter& parameter = find_parameter(name, origin);
+    Located located;
+    located.line = at.line;
+    located.column = at.column;
+    Setting& setting = located.setting;
+    setting = {name, std::string(), true, shown(node), origin};
+    if (const auto number = as_number(node))
+      setting.value = *number;
+    else if (const auto text = node.value_exact<std::string>())
+      setting.value = parameter.type == ParameterType::kPath ? beside_file(*text) : *text;
+    else
+      setting.value = as_numbers(node);
+    found_.push_back(std::move(located));
+  }
+
+  // Only TOML's own numbers: true is not 1.
+  static std::optional<double> as_number(const toml::node& node) {
+    if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
+    if (const auto* real = node.as_floating_point()) return real->get();
+    return {};
+  }
+
+  // Empty, which no parameter accepts, for anything but an array of numbers.
+  static std::vector<double> as_numbers(const toml::node& node) {
+    std::vector<double> numbers;
+    const toml::array* array = node.as_array();
+    if (!array) return {};
+    for (const toml::node& element : *array) {
+      const auto number = as_number(element);
+      if (!number) return {};
+      numbers.push_back(*number);
+    }
+    return numbers;
+  }
+
+  std::string beside_file(const std::string& path) const {
+    return path.empty() ? path : (file_.parent_path() / path).string();
+  }
+
+  static std::string shown(const toml::node& node) {
+    std::ostringstream text;
+    node.visit([&](const auto& value) {
+      if constexpr (toml::is_value<decltype(value)>)
+        text << value.get();
+      else if constexpr (toml::is_array<decltype(value)>)
+        text << value;
+    });
+    return fmt::format("'{}'", text.str());
+  }
+
+  std::filesystem::path file_;
+  std::vector<Located> found_;
+};
+
+}  // namespace
+
+std::vector<Setting> read_settings(const std::filesystem::path& file) {
+  return SettingReader(file).read();
+}
+
+}  // namespace hydrodip

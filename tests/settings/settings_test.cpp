@@ -1,0 +1,279 @@
+#include "settings/settings.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "base/error.h"
+#include "contains.h"
+
+namespace hydrodip {
+namespace {
+
+class Settings : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("settings_") + info->name());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path file(const std::string& text, const std::string& name = "job.toml") {
+    const auto path = folder_ / name;
+    std::ofstream(path, std::ios::binary) << text;
+    return path;
+  }
+
+  JobConfig from_toml(const std::string& text) {
+    JobConfig config;
+    apply_settings(config, read_settings(file(text)));
+    return config;
+  }
+
+  std::string toml_error(const std::string& text) {
+    try {
+      from_toml(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  static std::string set_error(const std::string& text) {
+    JobConfig config;
+    try {
+      apply_settings(config, {parse_set(text)});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(Settings, TablesAndDottedKeysMeanTheSame) {
+  const JobConfig nested =
+      from_toml("[film]\nwidth_mm = 200\nelements = 5000\n[dip]\nscheme = 'paper'\n");
+  const JobConfig dotted =
+      from_toml("film.width_mm = 200.0\nfilm.elements = 5000\ndip.scheme = 'paper'\n");
+  for (const JobConfig& config : {nested, dotted}) {
+    EXPECT_EQ(config.film.width_mm, 200);
+    EXPECT_EQ(config.film.elements, 5000);
+    EXPECT_EQ(config.dip.scheme, DipScheme::kPaper);
+    EXPECT_EQ(config.film.height_mm, JobConfig{}.film.height_mm);
+  }
+}
+
+TEST_F(Settings, EveryParameterRoundTripsItsDefault) {
+  for (const Parameter& p : parameters()) {
+    const ParameterValue value = p.default_value();
+    Setting setting{p.name, std::string(), true, "", "test"};
+    if (const double* number = std::get_if<double>(&value)) setting.value = *number;
+    if (const auto* text = std::get_if<std::string>(&value)) setting.value = *text;
+    if (const auto* v = std::get_if<std::array<double, 3>>(&value))
+      setting.value = std::vector<double>(v->begin(), v->end());
+    JobConfig config;
+    ASSERT_NO_THROW(apply_settings(config, {setting})) << p.name;
+    EXPECT_EQ(p.get(config), value) << p.name;
+    EXPECT_FALSE(p.help.empty()) << p.name;
+  }
+}
+
+TEST_F(Settings, TheContractsNamesAndDefaultsExist) {
+  const auto number = [](const char* name) {
+    return std::get<double>(find_parameter(name, "test").default_value());
+  };
+  EXPECT_EQ(number("film.elements"), 40000);
+  EXPECT_EQ(number("film.margin_mm"), 10);
+  EXPECT_EQ(number("dip.step_mm"), 0.1);
+  EXPECT_EQ(number("dip.depth_mm"), 0);
+  EXPECT_EQ(number("material.z_stretch"), 0.65);
+  EXPECT_EQ(number("material.poisson"), 0);
+  EXPECT_EQ(number("material.ink_stiffness_ratio"), 600);
+  EXPECT_EQ(number("print.dpi"), 300);
+  EXPECT_EQ(number("print.bleed_mm"), 1);
+  for (const char* name : {"film.width_mm", "film.height_mm", "film.shape", "dip.scheme",
+                           "material.tear_stretch", "ink.rounds_max"})
+    EXPECT_NO_THROW(find_parameter(name, "test")) << name;
+}
+
+TEST_F(Settings, QualityGivesWayToEverythingElse) {
+  SettingSources sources;
+  sources.quality = quality_settings("draft");
+  JobConfig draft;
+  apply_sources(draft, sources);
+  EXPECT_EQ(draft.film.elements, 10000);
+  EXPECT_FALSE(draft.pictures);
+  sources.sets = {parse_set("film.elements=2000")};
+  JobConfig own;
+  apply_sources(own, sources);
+  EXPECT_EQ(own.film.elements, 2000);
+  EXPECT_EQ(own.dip.step_mm, draft.dip.step_mm);
+  EXPECT_TRUE(quality_settings("normal").empty());
+  EXPECT_THROW(quality_settings("finer"), InputError);
+}
+
+TEST_F(Settings, UnknownNamesSayTheNearestOneAndWhereTheyStand) {
+  EXPECT_EQ(set_error("film.elemnts=5"),
+            "--set: unknown parameter 'film.elemnts'; did you mean 'film.elements'?");
+  const std::string message = toml_error("\n[film]\nelemnts = 5\n");
+  EXPECT_TRUE(contains(message, "job.toml:3: unknown parameter 'film.elemnts'")) << message;
+  EXPECT_TRUE(contains(toml_error("[[film]]\nwidth_mm = 3\n"), "unknown parameter 'film'"));
+}
+
+TEST_F(Settings, ValuesOutOfRangeNameParameterValueAndRange) {
+  EXPECT_EQ(set_error("print.dpi=5000"),
+            "--set: print.dpi must be a number from 36 to 1200 dpi, not '5000'");
+  const std::string message = toml_error("print.dpi = -1\n");
+  EXPECT_TRUE(contains(message, "job.toml:1: print.dpi must be")) << message;
+  EXPECT_TRUE(contains(message, "not '-1'")) << message;
+  EXPECT_TRUE(contains(set_error("material.poisson=0.5"), "0 to 0.499"));
+}
+
+TEST_F(Settings, WhatIsNotANumberIsRefused) {
+  for (const char* value : {"abc", "", "nan", "inf", "-inf", "1e999", "3mm", "0x10", "1,5", "--3"})
+    EXPECT_TRUE(contains(set_error(std::string("film.width_mm=") + value), "must be a number"))
+        << value;
+  for (const char* value : {"nan", "inf", "true", "'210'", "[1]", "1979-05-27"})
+    EXPECT_TRUE(contains(toml_error(std::string("film.width_mm = ") + value), "must be a number"))
+        << value;
+  EXPECT_TRUE(contains(set_error("film.elements=1000.5"), "a whole number"));
+  EXPECT_TRUE(contains(set_error("film.elements=1e30"), "a whole number"));
+}
+
+TEST_F(Settings, WrongChoicesListTheRightOnes) {
+  EXPECT_EQ(set_error("film.shape=oval"),
+            "--set: film.shape must be one of rectangle, disc, not 'oval'");
+  EXPECT_TRUE(contains(toml_error("film.shape = 3"), "one of rectangle, disc"));
+  EXPECT_TRUE(contains(set_error("object.base_color=red"), "a colour such as"));
+  EXPECT_TRUE(contains(set_error("object.base_color=#12345g"), "a colour such as"));
+}
+
+TEST_F(Settings, ZeroStandsBesideTheRangeOnlyWhereItMeansSomething) {
+  EXPECT_EQ(set_error("material.tear_stretch=0"), "accepted");
+  EXPECT_TRUE(contains(set_error("material.tear_stretch=0.5"), "or 0 (the film never tears)"));
+  EXPECT_EQ(set_error("dip.depth_mm=0"), "accepted");
+  EXPECT_NE(set_error("dip.step_mm=0"), "accepted");
+}
+
+TEST_F(Settings, AnglesComeAsTextOrArray) {
+  EXPECT_EQ(from_toml("object.rotate_deg = [0, 90, -45.5]").object.pose.rotate_deg,
+            Vec3(0, 90, -45.5));
+  EXPECT_EQ(from_toml("object.rotate_deg = '0, 90, -45.5'").object.pose.rotate_deg,
+            Vec3(0, 90, -45.5));
+  for (const char* value : {"1,2", "1,2,3,4", "1,2,", ",,", "a,b,c", "1,2,nan"})
+    EXPECT_TRUE(contains(set_error(std::string("object.rotate_deg=") + value), "X,Y,Z")) << value;
+  EXPECT_TRUE(contains(toml_error("object.rotate_deg = [1, 'a', 3]"), "X,Y,Z"));
+}
+
+TEST_F(Settings, BrokenTomlSaysFileLineAndColumn) {
+  const std::string message = toml_error("[film]\nwidth_mm = = 3\n");
+  EXPECT_TRUE(contains(message, "job.toml:2:")) << message;
+  EXPECT_TRUE(contains(message, "not valid TOML")) << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+  EXPECT_TRUE(contains(toml_error("film.width_mm = 1\nfilm.width_mm = 2\n"), "job.toml:2:"));
+  EXPECT_TRUE(contains(toml_error(std::string("a = '\xff\xfe\x00'", 9)), "not valid TOML"));
+  EXPECT_TRUE(contains(toml_error(std::string(5000, '[')), "not valid TOML"));
+  EXPECT_TRUE(contains(toml_error("a = \"\"\"\n[=]\n\"\"\"\n[=]\nb = 1\n"), "job.toml:4:1"));
+}
+
+TEST_F(Settings, MissingFileIsRefused) {
+  EXPECT_THROW(read_settings(folder_ / "nowhere.toml"), InputError);
+  EXPECT_THROW(read_settings(folder_), InputError);
+}
+
+TEST_F(Settings, LaterSourcesWin) {
+  SettingSources sources;
+  sources.profiles = {
+      file("print.dpi = 100\nprint.bleed_mm = 2\nprint.samples = 2\n"
+           "film.width_mm = 111\n",
+           "profile.toml")};
+  sources.configs = {file("print.dpi = 200\nfilm.width_mm = 222\nprint.bleed_mm = 3\n")};
+  sources.options = film_settings("a4");
+  sources.sets = {parse_set("print.dpi=400")};
+  JobConfig config;
+  apply_sources(config, sources);
+  EXPECT_EQ(config.print.samples, 2);    // profile over default
+  EXPECT_EQ(config.print.bleed_mm, 3);   // config over profile
+  EXPECT_EQ(config.film.width_mm, 210);  // option over config
+  EXPECT_EQ(config.print.dpi, 400);      // --set over all
+}
+
+TEST_F(Settings, ThePapersSchemeHasARegularGridUnlessAskedOtherwise) {
+  const auto grading = [&](const std::string& toml, const std::vector<Setting>& sets) {
+    SettingSources sources;
+    sources.configs = {file(toml)};
+    sources.sets = sets;
+    JobConfig config;
+    apply_sources(config, sources);
+    return config.film.grading;
+  };
+  const Setting paper = parse_set("dip.scheme=paper");
+  EXPECT_EQ(grading("", {}), FilmOptions{}.grading);
+  EXPECT_EQ(grading("", {paper}), 1);
+  EXPECT_EQ(grading("film.grading = 4\n", {paper}), 4);
+  EXPECT_EQ(grading("dip.scheme = 'paper'\n", {parse_set("film.grading=3")}), 3);
+  EXPECT_EQ(grading("dip.scheme = 'paper'\n", {parse_set("dip.scheme=contact-line")}),
+            FilmOptions{}.grading);
+}
+
+TEST_F(Settings, MethodsHaveNames) {
+  EXPECT_EQ(from_toml("").dip.method, DipMethod::kFull);
+  EXPECT_EQ(from_toml("dip.method = 'single-step'").dip.method, DipMethod::kSingleStep);
+  EXPECT_EQ(from_toml("dip.method = 'projection'").dip.method, DipMethod::kProjection);
+  EXPECT_TRUE(contains(toml_error("dip.method = 'project'"), "projection"));
+}
+
+TEST_F(Settings, PathsInAFileAreRelativeToIt) {
+  const JobConfig config = from_toml("object.texture = 'skin.png'\n");
+  EXPECT_EQ(config.object.load.texture, folder_ / "skin.png");
+  EXPECT_EQ(from_toml("object.texture = '/abs/skin.png'").object.load.texture, "/abs/skin.png");
+  EXPECT_TRUE(from_toml("object.texture = ''").object.load.texture.empty());
+}
+
+TEST_F(Settings, SetNeedsNameAndValue) {
+  for (const char* text : {"film.width_mm", "=3", ""}) EXPECT_THROW(parse_set(text), InputError);
+  EXPECT_EQ(std::get<std::string>(parse_set("print.job_name=a=b").value), "a=b");
+}
+
+std::pair<double, double> film_size(const std::string& film) {
+  JobConfig config;
+  apply_settings(config, film_settings(film));
+  return {config.film.width_mm, config.film.height_mm};
+}
+
+TEST(Film, NamesAndSizes) {
+  EXPECT_EQ(film_size("a4"), std::pair(210.0, 297.0));
+  EXPECT_EQ(film_size("a4-landscape"), std::pair(297.0, 210.0));
+  EXPECT_EQ(film_size("letter"), std::pair(215.9, 279.4));
+  EXPECT_EQ(film_size("a3"), std::pair(297.0, 420.0));
+  EXPECT_EQ(film_size("200x150.5"), std::pair(200.0, 150.5));
+}
+
+TEST(Film, WhatIsNoFilmIsRefused) {
+  for (const char* film : {"", "a5", "lettre", "200", "200x", "x200", "axb", "-3x200", "1x1",
+                           "200x300x400", "nanxnan", "-landscape"})
+    EXPECT_THROW(film_size(film), InputError) << film;
+}
+
+TEST(Parameters, NamesAreUniqueAndGrouped) {
+  std::vector<std::string> names;
+  for (const Parameter& p : parameters()) {
+    EXPECT_NE(p.name.find('.'), std::string::npos);
+    EXPECT_EQ(std::count(names.begin(), names.end(), p.name), 0) << p.name;
+    names.push_back(p.name);
+  }
+}
+
+TEST(Parameters, TheTableShowsThemAll) {
+  const std::string table = parameters_table(), json = parameters_json();
+  for (const Parameter& p : parameters()) {
+    EXPECT_TRUE(contains(table, p.name));
+    EXPECT_TRUE(contains(json, "\"" + p.name + "\""));
+  }
+}
+
+}  // namespace
+}  // namespace hydrodip
