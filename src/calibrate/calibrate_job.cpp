@@ -215,8 +215,8 @@ Json calibration_json(const Calibration& calibration, const std::vector<Subject>
           {"command", "calibrate"},
           {"folder", config.output.string()},
           {"square_mm", square_mm},
-          {"film_elements", config.film.elements},
-          {"step_mm", config.dip.step_mm},
+          {"film_elements", config.design.film.elements},
+          {"step_mm", config.design.dip.step_mm},
           {"result", json_of(calibration.all)},
           {"average_of_each", json_of(calibration.average)},
           {"scans", scans},
@@ -292,7 +292,7 @@ JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& reque
   const ThreadLimit threads(config.threads);
   const SearchOptions options = search_options(request);
   const Shard shard = parse_shard(request.shard);
-  if (config.dip.method != DipMethod::kFull)
+  if (config.design.dip.method != DipMethod::kFull)
     throw InputError("calibrate: only --method full has parameters to calibrate");
   const ScanSettings settings = {{request.scan_units, request.square_mm, request.mirrored},
                                  request.aligned};
@@ -300,7 +300,7 @@ JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& reque
 
   make_folder(config.output);
   SimulationStore store(config.output / kStoreName, store_files(request.merged));
-  Search search(subjects, config, request.square_mm, options, store);
+  Search search(subjects, config.design, request.square_mm, options, store);
   if (!request.shard.empty()) {
     search.simulate_grid(shard, context);
     return shard_result(config, shard, search, grid_points(options).size() * subjects.size());

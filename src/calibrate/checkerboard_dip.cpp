@@ -44,8 +44,8 @@ std::pair<std::string, double> split_depth(const std::string& text) {
 
 }  // namespace
 
-FilmParameters film_parameters(const JobConfig& config) {
-  return {config.dip.material.z_stretch, config.ink.stiffness_ratio, config.dip.material.poisson};
+FilmParameters film_parameters(const DesignOptions& design) {
+  return {design.dip.material.z_stretch, design.stiffness.ratio, design.dip.material.poisson};
 }
 
 Checkerboard checkerboard_to_print(const FilmOptions& film, double square_mm) {
@@ -79,25 +79,22 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
     result.object = make_sample(name);
     result.depth_mm = depth > 0 ? depth : kit_depth_mm(name);
   } else {
-    JobConfig loading = config;
-    loading.model = name;
-    result.object = load_posed(loading, context).object;
+    result.object = prepare_object(name, config.object, context).posed.mesh();
     result.name = std::filesystem::path(name).stem().string();
-    result.depth_mm = depth > 0 ? depth : dip_depth_mm(result.object, config);
+    result.depth_mm = depth_of_dip_mm(result.object, depth > 0 ? depth : config.design.depth_mm);
   }
-  JobConfig fitting = config;
-  fitting.dip.depth_mm = result.depth_mm;
-  require_fit(result.object, fitting, context);
+  require_fit(result.object, result.depth_mm, config.design.film, config.bath, context);
   return result;
 }
 
-CheckeredFilm checkered_film(const JobConfig& config, double square_mm) {
+CheckeredFilm checkered_film(const DesignOptions& design, double square_mm) {
   CheckeredFilm film;
   film.square_mm = square_mm;
-  film.mesh = make_film_mesh(config.film);
-  const Checkerboard board = checkerboard_to_print(config.film, square_mm);
+  film.mesh = make_film_mesh(design.film);
+  const Checkerboard board = checkerboard_to_print(design.film, square_mm);
   // A ratio of 2 makes the modulus 1 more than the density.
-  film.ink_density = film_modulus(film.mesh, board.inks, board.raster, {2, config.ink.filter_mm});
+  film.ink_density =
+      film_modulus(film.mesh, board.inks, board.raster, {2, design.stiffness.filter_mm});
   for (double& density : film.ink_density) density -= 1;
   return film;
 }

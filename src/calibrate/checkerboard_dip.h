@@ -17,11 +17,11 @@ namespace hydrodip {
 
 // What a calibration finds out about a film.
 struct FilmParameters {
-  double z_stretch = 0.65;
-  double stiffness_ratio = 600;
-  double poisson = 0;
+  double z_stretch = FilmMaterial().z_stretch;
+  double stiffness_ratio = StiffnessOptions().ratio;
+  double poisson = FilmMaterial().poisson;
 };
-FilmParameters film_parameters(const JobConfig& config);
+FilmParameters film_parameters(const DesignOptions& design);
 
 // Printed black over the whole sheet inside the taped margin, in squares of square_mm; one corner
 // is at the film's centre, and the square between +x and +y is black.
@@ -34,7 +34,7 @@ Checkerboard checkerboard_to_print(const FilmOptions& film, double square_mm);
 // What is dipped, in the posed-object frame, and how deep.
 struct CalibrationObject {
   std::string name;
-  Object object;
+  TriangleMesh object;
   double depth_mm = 0;
 };
 
@@ -55,7 +55,7 @@ struct CheckeredFilm {
   std::vector<double> ink_density;  // per triangle, after the stiffness filter
   double square_mm = 5;
 };
-CheckeredFilm checkered_film(const JobConfig& config, double square_mm);
+CheckeredFilm checkered_film(const DesignOptions& design, double square_mm);
 
 // One simulated dip with what is asked of it. Refers to the object and its surface.
 struct CheckerboardDip {

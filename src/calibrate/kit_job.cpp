@@ -34,12 +34,12 @@ Image as_image(const InkImage& inks) {
 
 void write_film(const std::filesystem::path& path, const JobConfig& config, double square_mm,
                 RunContext& context) {
-  const Checkerboard board = checkerboard_to_print(config.film, square_mm);
+  const Checkerboard board = checkerboard_to_print(config.design.film, square_mm);
   SheetOptions sheet;
-  sheet.width_mm = config.film.width_mm;
-  sheet.height_mm = config.film.height_mm;
-  sheet.margin_mm = config.film.margin_mm;
-  sheet.disc = config.film.shape == FilmShape::kDisc;
+  sheet.width_mm = config.design.film.width_mm;
+  sheet.height_mm = config.design.film.height_mm;
+  sheet.margin_mm = config.design.film.margin_mm;
+  sheet.disc = config.design.film.shape == FilmShape::kDisc;
   sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
   sheet.dpi = board.raster.dpi;
   sheet.job_name = fmt::format("calibration, {:g} mm squares", square_mm);
@@ -60,7 +60,7 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
   const ProcessOptions& process = config.process;
   PdfDocument pdf;
   pdf.set_title("Calibrating a film");
-  PageWriter page(pdf, paper_for(config.film));
+  PageWriter page(pdf, paper_for(config.design.film));
   const auto say = [&](const std::string& words) {
     page.paragraph(page.left(), page.width(), words, PageWriter::kBody_pt);
     page.y -= 1.5;
@@ -88,7 +88,7 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
                   4 * square_mm),
       {"Four squares, mm"});
   page.task(fmt::format("Tape {:g} mm around all four edges. Dry for as long as your ink needs.",
-                        config.film.margin_mm));
+                        config.design.film.margin_mm));
 
   page.heading("Dip");
   for (const std::string& text : objects) {

@@ -33,12 +33,12 @@ struct Measurement {
   ErrorMap map;
 };
 
-Measurement measure(const Subject& subject, const CheckeredFilm& film, const JobConfig& config,
+Measurement measure(const Subject& subject, const CheckeredFilm& film, const DesignOptions& design,
                     const Method& method, double square_mm, RunContext& context) {
-  DipOptions options = config.dip;
+  DipOptions options = design.dip;
   options.method = method.method;
   const CheckerboardDip dip = dip_checkerboard(film, subject.object, *subject.surface,
-                                               film_parameters(config), options, context);
+                                               film_parameters(design), options, context);
   Comparison comparison = compare(subject, dip);
   Measurement result;
   result.method = method.name;
@@ -108,7 +108,7 @@ JobResult measure_job(const JobConfig& config, const CalibrationRequest& request
   const ScanSettings settings = {{request.scan_units, request.square_mm, request.mirrored},
                                  request.aligned};
   const std::vector<Subject> subjects = load_subjects(request.scans, settings, config, context);
-  const CheckeredFilm film = checkered_film(config, request.square_mm);
+  const CheckeredFilm film = checkered_film(config.design, request.square_mm);
 
   JobResult result;
   Json scans = Json::array();
@@ -116,7 +116,8 @@ JobResult measure_job(const JobConfig& config, const CalibrationRequest& request
   for (const Subject& subject : subjects) {
     std::vector<Measurement> measurements;
     for (const Method& method : kMethods)
-      measurements.push_back(measure(subject, film, config, method, request.square_mm, context));
+      measurements.push_back(
+          measure(subject, film, config.design, method, request.square_mm, context));
     if (measurements.front().error.edges == 0)
       throw InputError(fmt::format(
           "{}: the simulated dip lays no film on any two neighbouring corners; check the depth "
@@ -130,7 +131,7 @@ JobResult measure_job(const JobConfig& config, const CalibrationRequest& request
   }
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
-  const FilmParameters parameters = film_parameters(config);
+  const FilmParameters parameters = film_parameters(config.design);
   result.json = Json{{"schema_version", 1},
                      {"command", "measure"},
                      {"folder", config.output.string()},

@@ -10,10 +10,10 @@ constexpr int kMostElements = 1000000;
 
 }  // namespace
 
-JobConfig finer_film(const JobConfig& config) {
-  JobConfig fine = config;
-  fine.film.elements = std::min(config.film.elements, kMostElements) * kFiner * kFiner;
-  fine.dip.step_mm = config.dip.step_mm / kFiner;
+DesignOptions finer_film(const DesignOptions& design) {
+  DesignOptions fine = design;
+  fine.film.elements = std::min(design.film.elements, kMostElements) * kFiner * kFiner;
+  fine.dip.step_mm = design.dip.step_mm / kFiner;
   return fine;
 }
 

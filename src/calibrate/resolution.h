@@ -3,12 +3,12 @@
 
 #include <Eigen/Core>
 
-#include "settings/config.h"
+#include "coat/design.h"
 
 namespace hydrodip {
 
 // Cells half as wide, steps half as high.
-JobConfig finer_film(const JobConfig& config);
+DesignOptions finer_film(const DesignOptions& design);
 
 // What to add to length errors on a film, up to the continuum, and by how much that may be wrong,
 // all together. Empty: nothing.

@@ -22,10 +22,10 @@ constexpr int kMostCorrections = 3;
 // Widest stencil of the refinement.
 const FitPoint kWidestStep(0.03, 0.1, 0.06);
 
-JobConfig search_config(const JobConfig& config, const SearchOptions& options) {
-  JobConfig result = config;
-  result.film.elements = std::max(8, int(config.film.elements * options.elements_factor));
-  result.dip.step_mm = std::min(10.0, config.dip.step_mm * options.step_factor);
+DesignOptions search_design(const DesignOptions& design, const SearchOptions& options) {
+  DesignOptions result = design;
+  result.film.elements = std::max(8, int(design.film.elements * options.elements_factor));
+  result.dip.step_mm = std::min(10.0, design.dip.step_mm * options.step_factor);
   return result;
 }
 
@@ -96,17 +96,17 @@ std::vector<FilmParameters> grid_points(const SearchOptions& options) {
   return points;
 }
 
-Search::Search(const std::vector<Subject>& subjects, const JobConfig& config, double square_mm,
+Search::Search(const std::vector<Subject>& subjects, const DesignOptions& design, double square_mm,
                const SearchOptions& options, SimulationStore& store)
     : subjects_(subjects),
       options_(options),
       square_mm_(square_mm),
       store_(store),
-      search_film_(subjects, search_config(config, options), square_mm,
+      search_film_(subjects, search_design(design, options), square_mm,
                    fmt::format("search-{:g}-{:g}", options.elements_factor, options.step_factor),
                    store),
-      fine_film_(subjects, config, square_mm, "fine", store),
-      finest_film_(subjects, finer_film(config), square_mm, "finest", store) {}
+      fine_film_(subjects, design, square_mm, "fine", store),
+      finest_film_(subjects, finer_film(design), square_mm, "finest", store) {}
 
 namespace {
 

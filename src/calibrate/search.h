@@ -61,7 +61,7 @@ struct Calibration {
 class Search {
  public:
   // Refers to all but the options.
-  Search(const std::vector<Subject>& subjects, const JobConfig& config, double square_mm,
+  Search(const std::vector<Subject>& subjects, const DesignOptions& design, double square_mm,
          const SearchOptions& options, SimulationStore& store);
 
   // Simulates the grid, or a shard of it, and keeps the results.

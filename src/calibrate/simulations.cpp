@@ -88,11 +88,11 @@ class Crew {
 
 }  // namespace
 
-Simulations::Simulations(const std::vector<Subject>& subjects, const JobConfig& config,
+Simulations::Simulations(const std::vector<Subject>& subjects, const DesignOptions& design,
                          double square_mm, const std::string& level, SimulationStore& store)
     : subjects_(subjects),
-      options_(config.dip),
-      film_(checkered_film(config, square_mm)),
+      options_(design.dip),
+      film_(checkered_film(design, square_mm)),
       level_(level),
       store_(store) {}
 

@@ -20,7 +20,7 @@ struct SimulationRequest {
 class Simulations {
  public:
   // Refers to all. `level` tells films apart in the store ("search", "fine").
-  Simulations(const std::vector<Subject>& subjects, const JobConfig& config, double square_mm,
+  Simulations(const std::vector<Subject>& subjects, const DesignOptions& design, double square_mm,
               const std::string& level, SimulationStore& store);
 
   // In the order of the requests. Computes what the store does not have, as many at once as there

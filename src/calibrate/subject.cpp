@@ -76,23 +76,23 @@ void judge_match(const Subject& subject, const GridMatch& match, bool told_mirro
 
 void find_how_it_lies(Subject& subject, const ScanSettings& settings, const JobConfig& config,
                       RunContext& context) {
-  const Object& object = subject.object.object;
+  const TriangleMesh& object = subject.object.object;
   subject.surface = std::make_unique<Surface>(object.positions, object.triangles);
   if (settings.aligned) {
     judge(subject, as_it_lies(subject.scan.grid, *subject.surface), true, context);
     return;
   }
-  JobConfig coarse = config;
-  coarse.film.elements = std::min(config.film.elements, kCoarseElements);
-  coarse.dip.step_mm = std::max(config.dip.step_mm, kCoarseStep_mm);
+  DesignOptions coarse = config.design;
+  coarse.film.elements = std::min(config.design.film.elements, kCoarseElements);
+  coarse.dip.step_mm = std::max(config.design.dip.step_mm, kCoarseStep_mm);
   coarse.dip.method = DipMethod::kFull;
   const double square_mm = settings.file.square_mm;
   RunContext quiet;
   const CheckerboardDip dip =
       dip_checkerboard(checkered_film(coarse, square_mm), subject.object, *subject.surface,
-                       film_parameters(config), coarse.dip, quiet);
+                       film_parameters(config.design), coarse.dip, quiet);
   const GridLanding landing = dip.landing(subject.object);
-  GridMatch match = match_grid(subject.scan.grid, landing, reach_of(config.film, square_mm),
+  GridMatch match = match_grid(subject.scan.grid, landing, reach_of(config.design.film, square_mm),
                                square_mm, subject.file.string());
   judge_match(subject, match, settings.file.mirrored, context);
   const Alignment alignment = align(subject.scan.grid, match, *subject.surface, landing);
@@ -116,7 +116,7 @@ class Fingerprint {
 };
 
 std::string fingerprint_of(const Subject& subject, const ScanSettings& settings,
-                           const JobConfig& config) {
+                           const DesignOptions& design) {
   Fingerprint print;
   for (const Vec3& p : subject.scan.grid.position)
     for (int k = 0; k < 3; ++k) print.add(p[k]);
@@ -128,9 +128,9 @@ std::string fingerprint_of(const Subject& subject, const ScanSettings& settings,
     for (int k = 0; k < 3; ++k) print.add(p[k]);
   for (const double value :
        {subject.object.depth_mm, settings.file.square_mm, double(settings.aligned),
-        config.film.width_mm, config.film.height_mm, config.film.margin_mm,
-        double(config.film.elements), config.film.grading, double(config.film.shape),
-        config.dip.step_mm, double(config.dip.scheme), config.ink.filter_mm})
+        design.film.width_mm, design.film.height_mm, design.film.margin_mm,
+        double(design.film.elements), design.film.grading, double(design.film.shape),
+        design.dip.step_mm, double(design.dip.scheme), design.stiffness.filter_mm})
     print.add(value);
   // The search begins to look for the pose where the given parameters laid it.
   if (subject.match)
@@ -232,7 +232,7 @@ std::vector<Subject> load_subjects(const std::vector<std::string>& texts,
     subject.object = calibration_object(text.object, config, context);
     subject.lengths = grid_lengths(subject.scan.grid);
     find_how_it_lies(subject, settings, config, context);
-    subject.fingerprint = fingerprint_of(subject, settings, config);
+    subject.fingerprint = fingerprint_of(subject, settings, config.design);
     subjects.push_back(std::move(subject));
   }
   number_namesakes(subjects);

@@ -35,13 +35,13 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
   check(request);
   const ThreadLimit threads(config.threads);
   // Finer than any film that calibrate dips with the same configuration.
-  const JobConfig fine = finer_film(finer_film(config));
-  const FilmParameters truth = film_parameters(config);
+  const DesignOptions fine = finer_film(finer_film(config.design));
+  const FilmParameters truth = film_parameters(config.design);
   const CheckeredFilm film = checkered_film(fine, request.square_mm);
   OutputFolder folder(config.output);
   JobResult result;
-  const GridPlace reach = {int(0.5 * config.film.width_mm / request.square_mm),
-                           int(0.5 * config.film.height_mm / request.square_mm)};
+  const GridPlace reach = {int(0.5 * config.design.film.width_mm / request.square_mm),
+                           int(0.5 * config.design.film.height_mm / request.square_mm)};
   nlohmann::ordered_json scans = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < request.scans.size(); ++i) {
     const CalibrationObject object = calibration_object(request.scans[i], config, context);

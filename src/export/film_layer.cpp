@@ -38,7 +38,7 @@ struct Mean {
 
 class ColorError {
  public:
-  ColorError(const Object& object, const FilmMap& map, const Appearance& appearance)
+  ColorError(const TriangleMesh& object, const FilmMap& map, const Appearance& appearance)
       : object_(object), map_(map), appearance_(appearance) {}
 
   void fill_row(FilmLayer& layer, int row) const {
@@ -71,15 +71,15 @@ class ColorError {
     return float(ciede2000(to_cielab(wanted.over(count)), to_cielab(predicted.over(count))));
   }
 
-  const Object& object_;
+  const TriangleMesh& object_;
   const FilmMap& map_;
   const Appearance& appearance_;
 };
 
 }  // namespace
 
-FilmLayer color_error_layer(const Object& object, const FilmMap& map, const Appearance& appearance,
-                            RunContext& context) {
+FilmLayer color_error_layer(const TriangleMesh& object, const FilmMap& map,
+                            const Appearance& appearance, RunContext& context) {
   FilmLayer layer = empty_layer("color_error", map.covered());
   const ColorError error(object, map, appearance);
   parallel_for(std::size_t(layer.height), 4, [&](std::size_t begin, std::size_t end) {

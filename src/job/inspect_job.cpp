@@ -33,7 +33,7 @@ struct FilmChoice {
 
 struct Inspection {
   const JobConfig& config;
-  const LoadedObject& posed;
+  const PreparedObject& prepared;
   double depth_mm = 0;
   std::vector<RoomFit> fit;  // film and bath of this job
   std::vector<FilmChoice> films;
@@ -47,21 +47,21 @@ double worst_excess_mm(const std::vector<RoomFit>& list) {
   return worst;
 }
 
-FilmChoice try_film(const Object& posed, JobConfig config, const std::string& name, double width_mm,
-                    double height_mm) {
-  config.film.width_mm = width_mm;
-  config.film.height_mm = height_mm;
-  // The film's own limits: the bath is the same for every film.
-  config.bath = {1e9, 1e9, 1e9};
-  return {name, width_mm, height_mm, worst_excess_mm(fits(posed, config))};
+// The film's own limits: the bath is the same for every film.
+FilmChoice try_film(const TriangleMesh& posed, double depth_mm, FilmOptions film,
+                    const std::string& name, double width_mm, double height_mm) {
+  film.width_mm = width_mm;
+  film.height_mm = height_mm;
+  return {name, width_mm, height_mm, worst_excess_mm(film_fits(posed, depth_mm, film))};
 }
 
-std::vector<FilmChoice> film_choices(const Object& posed, const JobConfig& config) {
+std::vector<FilmChoice> film_choices(const TriangleMesh& posed, double depth_mm,
+                                     const FilmOptions& film) {
   std::vector<FilmChoice> list;
   for (const FilmFormat& format : film_formats()) {
-    list.push_back(try_film(posed, config, format.name, format.width_mm, format.height_mm));
-    list.push_back(
-        try_film(posed, config, format.name + "-landscape", format.height_mm, format.width_mm));
+    list.push_back(try_film(posed, depth_mm, film, format.name, format.width_mm, format.height_mm));
+    list.push_back(try_film(posed, depth_mm, film, format.name + "-landscape", format.height_mm,
+                            format.width_mm));
   }
   return list;
 }
@@ -71,11 +71,11 @@ std::string share(double part, double whole) {
 }
 
 std::string describe_size(const Inspection& i) {
-  const Vec3 size = i.posed.object.bounds().size();
+  const Vec3 size = i.prepared.posed.mesh().bounds().size();
   return fmt::format(
       "size         {:.2f} x {:.2f} x {:.2f} mm (x, y, z as posed; read as {})\n"
       "dipped       {:.2f} mm deep\n",
-      size.x(), size.y(), size.z(), i.posed.units, i.depth_mm);
+      size.x(), size.y(), size.z(), i.prepared.units, i.depth_mm);
 }
 
 std::string describe_appearance(const Object& object) {
@@ -85,12 +85,12 @@ std::string describe_appearance(const Object& object) {
 }
 
 std::string describe_mesh(const Inspection& i) {
-  const MeshHealth& h = i.posed.health;
+  const MeshHealth& h = i.prepared.health;
   std::string text = fmt::format(
       "mesh         {} triangles, {} vertices, {} {}, {}; area {:.0f} mm2, volume {:.0f} mm3\n",
       h.triangles, h.vertices, h.shells, h.shells == 1 ? "shell" : "shells",
       h.closed() ? "closed" : "open", h.area_mm2, h.volume_mm3);
-  text += "appearance   " + describe_appearance(i.posed.object) + "\n";
+  text += "appearance   " + describe_appearance(i.prepared.posed.object()) + "\n";
   return text;
 }
 
@@ -169,15 +169,15 @@ json films_json(const std::vector<FilmChoice>& films) {
 }
 
 std::string machine_readable(const Inspection& i) {
-  const Vec3 size = i.posed.object.bounds().size();
+  const Vec3 size = i.prepared.posed.mesh().bounds().size();
   const json all = {{"schema_version", 1},
                     {"command", "inspect"},
                     {"model", i.config.model.string()},
-                    {"units", i.posed.units},
+                    {"units", i.prepared.units},
                     {"size_mm", {size.x(), size.y(), size.z()}},
                     {"depth_mm", i.depth_mm},
-                    {"has_appearance", i.posed.object.has_appearance()},
-                    {"mesh", health_json(i.posed.health)},
+                    {"has_appearance", i.prepared.posed.object().has_appearance()},
+                    {"mesh", health_json(i.prepared.health)},
                     {"fit", fit_json(i.fit)},
                     {"films", films_json(i.films)},
                     {"dip_angles", json::parse(dip_angles_json(i.angles))},
@@ -186,13 +186,11 @@ std::string machine_readable(const Inspection& i) {
 }
 
 void write_angle_map(const std::filesystem::path& path, const Inspection& i, RunContext& context) {
-  const Object& object = i.posed.object;
   MapOptions options;
   options.width_px = i.config.preview_width_px;
   options.caption = map_caption(i.angles, nullptr);
-  const Surface surface(object.positions, object.triangles);
-  const std::vector<std::uint8_t> png =
-      encode_png(render_angle_map(object, surface, i.depth_mm, options, context));
+  const std::vector<std::uint8_t> png = encode_png(render_angle_map(
+      i.prepared.posed.mesh(), i.prepared.posed.surface(), i.depth_mm, options, context));
   write_file(path, png.data(), png.size());
 }
 
@@ -208,14 +206,16 @@ void write_files(const Inspection& i, const std::string& report, RunContext& con
 
 JobResult inspect_job(const JobConfig& config, RunContext& context) {
   const ThreadLimit threads(config.threads);
-  const LoadedObject posed = load_posed(config, context);
-  const double depth_mm = dip_depth_mm(posed.object, config);
+  const PreparedObject prepared = prepare_object(config.model, config.object, context);
+  const TriangleMesh& mesh = prepared.posed.mesh();
+  const FilmOptions& film = config.design.film;
+  const double depth_mm = depth_of_dip_mm(mesh, config.design.depth_mm);
   const Inspection inspection{config,
-                              posed,
+                              prepared,
                               depth_mm,
-                              fits(posed.object, config),
-                              film_choices(posed.object, config),
-                              dip_angles(posed.object, depth_mm),
+                              fits(mesh, depth_mm, film, config.bath),
+                              film_choices(mesh, depth_mm, film),
+                              dip_angles(mesh, depth_mm),
                               context.warnings()};
   JobResult result;
   result.text = describe(inspection);

@@ -13,7 +13,7 @@
 #include "export/scene.h"
 #include "image/files.h"
 #include "image/resize.h"
-#include "job/prepare.h"
+#include "object/bake.h"
 #include "render/maps.h"
 #include "render/preview.h"
 #include "report/findings.h"
@@ -68,6 +68,22 @@ LinearColor reach_color(float difference) {
   return {1 - 0.65F * t * t, 0.75F * (1 - t) * (1 - t), 0.05F * (1 - t), 1};
 }
 
+// Wanted: the paint; predicted: `film_image`, which shows every pixel of the film as it looks on
+// the object. Refers to all three.
+Appearance appearance(const JobRecord& record, const Image& film_image, const SheetRaster& raster) {
+  const Paint& paint = *record.prepared.paint;
+  Appearance result;
+  result.wanted = [&paint, says = paint.says_anything()](const SurfacePoint& point, const Vec3&,
+                                                         const Vec3&) {
+    return says ? paint.color_at(point) : paint.base();
+  };
+  result.predicted = [&paint, &record, &film_image, raster](
+                         const SurfacePoint&, const Vec3& position, const Vec3& normal) {
+    return predicted_color(film_image, raster, *record.dipped.map, position, normal, paint.base());
+  };
+  return result;
+}
+
 // What comes out beside how far it is from what was wanted.
 PreviewPair reach_pair(const JobRecord& record, const Appearance& shown,
                        const SheetRaster& raster) {
@@ -75,7 +91,7 @@ PreviewPair reach_pair(const JobRecord& record, const Appearance& shown,
   pair.shown.wanted = shown.predicted;
   pair.shown.predicted = [&](const SurfacePoint&, const Vec3& position, const Vec3& normal) {
     const auto u = record.dipped.map->to_film(position, normal);
-    if (!u) return base_color(record.config);
+    if (!u) return record.prepared.paint->base();
     const Vec2 pixel = raster.to_pixel(*u);
     const int x = std::clamp(int(pixel.x()), 0, raster.width_px() - 1);
     const int y = std::clamp(int(pixel.y()), 0, raster.height_px() - 1);
@@ -99,13 +115,13 @@ std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
   const DippedObject& dipped = record.dipped;
   PreviewOptions options;
   options.width_px = record.config.preview_width_px;
-  options.base = base_color(record.config);
+  options.base = record.prepared.paint->base();
   std::vector<PreviewPair> pairs(1);
   pairs[0].shown = shown;
   pairs[0].caption = caption_start + picture_caption(record);
   if (!gamut_png.empty()) pairs.push_back(reach_pair(record, shown, raster));
-  const std::vector<Image> pictures = render_previews(
-      dipped.object(), *dipped.surface, dipped.film(), pairs, options, record.context);
+  const std::vector<Image> pictures = render_previews(dipped.posed.mesh(), dipped.posed.surface(),
+                                                      *dipped.film, pairs, options, record.context);
   if (!gamut_png.empty()) write_picture(gamut_png, pictures[1]);
   return write_picture(preview_png, pictures[0]);
 }
@@ -125,42 +141,43 @@ Image draw_maps(const JobRecord& record) {
   const DippedObject& dipped = record.dipped;
   MapOptions options;
   options.width_px = record.config.preview_width_px;
-  options.tear_stretch = record.config.dip.material.tear_stretch;
+  options.tear_stretch = record.config.design.dip.material.tear_stretch;
   options.caption = map_caption(dipped.angles, &dipped.coverage);
-  return render_maps(dipped.object(), *dipped.surface, dipped.film(), *dipped.map, options,
-                     record.context);
+  return render_maps(dipped.posed.mesh(), dipped.posed.surface(), *dipped.film, *dipped.map,
+                     options, record.context);
 }
 
 // What the 3D view shows, and what is learnt on the way.
-void make_page(const JobRecord& record, const Appearance& shown, const Image& film_image,
-               const SheetRaster& raster, Previews& previews) {
+void make_page(const JobRecord& record, const Object& looks, const Appearance& shown,
+               const Image& film_image, const SheetRaster& raster, Previews& previews) {
   const DippedObject& dipped = record.dipped;
   const Image sheet = shrink_to(film_image, kPageTextureSide_px);
-  SceneSource scene{dipped.object(), dipped.film(), dipped.history, sheet};
+  SceneSource scene{looks, *dipped.film, *dipped.history, sheet};
   scene.sheet_width_mm = raster.width_mm;
   scene.sheet_height_mm = raster.height_mm;
   scene.bath_width_mm = record.config.bath.width_mm;
   scene.bath_height_mm = record.config.bath.height_mm;
-  scene.tear_stretch = record.config.dip.material.tear_stretch;
-  scene.base = base_color(record.config);
-  if (dipped.object().has_appearance()) {
-    scene.layers.push_back(color_error_layer(dipped.object(), *dipped.map, shown, record.context));
+  scene.tear_stretch = record.config.design.dip.material.tear_stretch;
+  scene.base = record.prepared.paint->base();
+  if (record.prepared.paint->says_anything()) {
+    scene.layers.push_back(
+        color_error_layer(dipped.posed.mesh(), *dipped.map, shown, record.context));
     previews.colors = colors_of(scene.layers.back());
   }
   if (record.ink != nullptr) {
     scene.layers.push_back(reach_layer(record, raster));
-    previews.ink = ink_amounts(record.ink->ink.inking.inks, record.config.ink.limit);
+    previews.ink = ink_amounts(record.ink->ink.inking.inks, record.config.design.inking.limit);
   }
   previews.pictures.scene = scene_json(scene, record.context);
 }
 
-void write_glb(const std::filesystem::path& path, const JobRecord& record, const Image& film_image,
-               const SheetRaster& raster) {
+void write_glb(const std::filesystem::path& path, const JobRecord& record, const Object& looks,
+               const Image& film_image, const SheetRaster& raster) {
   const DippedObject& dipped = record.dipped;
   const int texture_px = record.config.preview_texture_px;
-  write_preview_glb(path, dipped.object(), *dipped.surface, dipped.film(),
+  write_preview_glb(path, looks, dipped.posed.surface(), *dipped.film,
                     shrink_to(film_image, 2 * texture_px), raster.width_mm, raster.height_mm,
-                    base_color(record.config), texture_px);
+                    record.prepared.paint->base(), texture_px);
 }
 
 }  // namespace
@@ -173,11 +190,11 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record, const Ima
   const auto add = [&](const std::string& name, const auto& write) {
     tasks.emplace_back([path = folder.path(name), write] { write(path); });
   };
+  const Object looks = painted_object(dipped.posed.mesh(), *record.prepared.paint);
+  const Appearance shown = appearance(record, film_image, raster);
   // The longest first.
-  Appearance shown;
   if (record.config.pictures) {
-    shown = appearance(dipped, film_image, raster, base_color(record.config));
-    tasks.emplace_back([&] { make_page(record, shown, film_image, raster, previews); });
+    tasks.emplace_back([&] { make_page(record, looks, shown, film_image, raster, previews); });
     add("maps.png", [&](const auto& path) {
       previews.pictures.maps_png = write_picture(path, draw_maps(record));
     });
@@ -189,8 +206,8 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record, const Ima
           write_pairs(preview_png, gamut_png, record, shown, raster, caption_start);
     });
   }
-  add("preview.glb", [&](const auto& path) { write_glb(path, record, film_image, raster); });
-  add("film.ply", [&](const auto& path) { write_film_ply(path, dipped.film()); });
+  add("preview.glb", [&](const auto& path) { write_glb(path, record, looks, film_image, raster); });
+  add("film.ply", [&](const auto& path) { write_film_ply(path, *dipped.film); });
   record.context.side_by_side("drawing the previews", tasks);
   return previews;
 }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/output_folder.h"
+#include "job/job_record.h"
 #include "job/jobs.h"
-#include "job/record.h"
 #include "report/report.h"
 
 namespace hydrodip {

@@ -1,43 +1,32 @@
-// The start of every job: the object, loaded and posed, and whether it fits film and bath.
+// The start of every job: the object, loaded and hung over the bath, and what is wanted on it.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/context.h"
 #include "model_io/load.h"
+#include "object/paint.h"
+#include "object/posed_object.h"
 #include "settings/config.h"
 
 namespace hydrodip {
 
-// Loads config.model and brings it to the posed-object frame. Health findings become warnings.
-LoadedObject load_posed(const JobConfig& config, RunContext& context);
+struct PreparedObject {
+  PosedObject posed;
+  std::shared_ptr<const Paint> paint;
+  MeshHealth health;                         // in posed size
+  std::string units;                         // the unit that was applied
+  std::vector<std::filesystem::path> files;  // every file that was read
+};
+
+// Loads a model and poses it. Health findings become warnings.
+PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOptions& options,
+                              RunContext& context);
 
 // Throws InputError saying what is missing, and how to mend it, if the model does not say which
 // colour goes where.
 void require_appearance(const Object& object, const std::filesystem::path& model);
-
-// config.object.base_color in linear light.
-LinearColor base_color(const JobConfig& config);
-
-// How deep the object will be dipped: dip.depth_mm, or its height.
-double dip_depth_mm(const Object& object, const JobConfig& config);
-
-// Room that the dipped part of a posed object takes and has, per direction.
-struct RoomFit {
-  std::string what;  // "wide (x)"
-  std::string room;  // "free film between the taped rims"
-  double needed_mm = 0;
-  double available_mm = 0;
-  std::string remedy;  // "shrink it with --size 71, ..."
-  double excess_mm() const { return needed_mm - available_mm; }
-};
-
-// Every direction that the job has to fit, film first. Only the part that gets wet counts.
-std::vector<RoomFit> fits(const Object& posed, const JobConfig& config);
-
-// Throws InputError for the first that does not fit, saying by how much and how to mend it. Warns
-// about a sheet larger than the bath and about little film around the object.
-void require_fit(const Object& posed, const JobConfig& config, RunContext& context);
 
 }  // namespace hydrodip

@@ -1,13 +1,10 @@
-#include "base/file.h"
 #include "base/output_folder.h"
 #include "base/parallel.h"
 #include "ink/rgb_profile.h"
-#include "job/dip_stage.h"
-#include "job/ink_stage.h"
+#include "job/job_record.h"
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
-#include "job/record.h"
 #include "sheet/sheet.h"
 
 namespace hydrodip {
@@ -15,11 +12,11 @@ namespace {
 
 SheetOptions sheet_options(const JobConfig& config) {
   SheetOptions sheet;
-  sheet.width_mm = config.film.width_mm;
-  sheet.height_mm = config.film.height_mm;
-  sheet.margin_mm = config.film.margin_mm;
-  sheet.dpi = config.print.dpi;
-  sheet.disc = config.film.shape == FilmShape::kDisc;
+  sheet.width_mm = config.design.film.width_mm;
+  sheet.height_mm = config.design.film.height_mm;
+  sheet.margin_mm = config.design.film.margin_mm;
+  sheet.dpi = config.design.dpi;
+  sheet.disc = config.design.film.shape == FilmShape::kDisc;
   sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
   sheet.job_name =
       config.print.job_name.empty() ? config.model.filename().string() : config.print.job_name;
@@ -27,20 +24,19 @@ SheetOptions sheet_options(const JobConfig& config) {
 }
 
 // For the printer's own RGB where its profile is given, else in sRGB.
-void write_rgb_pdf(const std::filesystem::path& path, const Image& look, const JobConfig& config,
-                   RunContext& context) {
-  const std::filesystem::path& file = config.ink.profile;
-  const std::vector<std::uint8_t> profile =
-      file.empty() ? std::vector<std::uint8_t>() : read_file(file);
-  if (!is_rgb_profile(profile))
+void write_rgb_pdf(const std::filesystem::path& path, const Image& look, const Printer& printer,
+                   const JobConfig& config, RunContext& context) {
+  if (!printer.is_rgb)
     return write_print_pdf(path, look, srgb_profile(), sheet_options(config), context);
-  write_print_pdf(path, in_printer_rgb(look, profile, file.string(), config.ink.intent), profile,
-                  sheet_options(config), context);
+  const Image in_rgb = in_printer_rgb(look, printer.profile_bytes, printer.profile_file.string(),
+                                      config.printer.intent);
+  write_print_pdf(path, in_rgb, printer.profile_bytes, sheet_options(config), context);
 }
 
-void compose(OutputFolder& folder, const FilmInk& ink, const ColorModel& model,
+void compose(OutputFolder& folder, const FilmInk& ink, const Printer& printer,
              const JobConfig& config, RunContext& context) {
   const SheetOptions sheet = sheet_options(config);
+  const ColorModel& model = *printer.model;
   const InkImage& inks = ink.inking.inks;
   const Image look = look_on_film(inks, ink.wanted, model);
   const auto png = folder.path("print.png"), tiff = folder.path("print.tif"),
@@ -48,10 +44,10 @@ void compose(OutputFolder& folder, const FilmInk& ink, const ColorModel& model,
   context.side_by_side("writing the sheet",
                        {[&] { write_print_tiff(tiff, inks, model.profile(), sheet); },
                         [&] {
-                          if (config.print.color == PrintColor::kCmyk)
+                          if (config.printer.color == PrintColor::kCmyk)
                             write_print_pdf(pdf, inks, model.profile(), sheet, context);
                           else
-                            write_rgb_pdf(pdf, look, config, context);
+                            write_rgb_pdf(pdf, look, printer, config, context);
                         },
                         [&] { write_print_png(png, look, sheet); }});
 }
@@ -61,25 +57,28 @@ void compose(OutputFolder& folder, const FilmInk& ink, const ColorModel& model,
 JobResult print_job(const JobConfig& config, RunContext& context) {
   const ThreadLimit threads(config.threads);
   OutputFolder folder(config.output);
-  StageTimes times;
+  Timings times;
 
-  const FilmMesh film = make_film_mesh(config.film);
-  LoadedObject posed = times.measure("load", [&] { return load_posed(config, context); });
-  const std::vector<ReportInput> inputs = describe_inputs(config, posed);
-  require_appearance(posed.object, config.model);
-  require_fit(posed.object, config, context);
+  const PreparedObject prepared =
+      times.measure("load", [&] { return prepare_object(config.model, config.object, context); });
+  require_appearance(prepared.posed.object(), config.model);
+  DesignOptions options = config.design;
+  options.depth_mm = depth_of_dip_mm(prepared.posed.mesh(), config.design.depth_mm);
+  require_fit(prepared.posed.mesh(), options.depth_mm, options.film, config.bath, context);
+  const Printer printer = make_printer(config.printer);
+  const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
 
-  const auto model = color_model(config);
+  const Designed designed = design(
+      {prepared.posed, *prepared.paint, Allotment(), *printer.model, options}, times, context);
+  times.measure("sheet", [&] { compose(folder, designed.ink.ink, printer, config, context); });
 
-  const auto dipped = undipped(std::move(posed));
-  const InkResult result = settle_ink(*dipped, film, *model, config, times, context);
-  times.measure("sheet", [&] { compose(folder, result.ink, *model, config, context); });
-
-  const JobRecord record{"print", config, inputs, *dipped, times, context, &result, model->name()};
-  const SheetRaster raster = sheet_raster(config, config.print.dpi);
-  const Image& image = result.ink.on_object;
-  const Previews previews =
-      times.measure("preview", [&] { return write_previews(folder, record, image, raster); });
+  const JobRecord record{"print", config,          prepared,
+                         inputs,  designed.dipped, times,
+                         context, &designed.ink,   printer.model->name()};
+  const Previews previews = times.measure("preview", [&] {
+    return write_previews(folder, record, designed.ink.ink.on_object,
+                          raster_of(options.film, options.dpi));
+  });
   return finish(folder, record, previews);
 }
 

@@ -11,12 +11,10 @@
 #include "image/files.h"
 #include "image/resize.h"
 #include "ink/stiffness.h"
-#include "job/dip_stage.h"
-#include "job/ink_stage.h"
+#include "job/job_record.h"
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
-#include "job/record.h"
 #include "sheet/sheet.h"
 
 namespace hydrodip {
@@ -25,6 +23,7 @@ namespace {
 // Image and sheet may differ this much in shape: rounding to whole pixels, a cut edge.
 constexpr double kAspectTolerance = 0.01;
 constexpr double kCheckerboardDpi = 100, kDraftDpi = 50;
+constexpr double kCheckerCell_mm = 10;
 
 struct PrintedFilm {
   InkImage inks;  // as seen from above, exactly raster's size
@@ -33,25 +32,50 @@ struct PrintedFilm {
 
 void require_aspect(int width_px, int height_px, const JobConfig& config) {
   const double image_aspect = double(width_px) / height_px;
-  const double sheet_aspect = config.film.width_mm / config.film.height_mm;
+  const double sheet_aspect = config.design.film.width_mm / config.design.film.height_mm;
   if (std::abs(image_aspect / sheet_aspect - 1) <= kAspectTolerance) return;
   throw InputError(fmt::format(
       "{}: the image's {} x {} px do not have the shape of the {} x {} mm film; --film-image must "
       "show the whole sheet: choose the sheet with --film",
-      config.film_image.string(), width_px, height_px, config.film.width_mm,
-      config.film.height_mm));
+      config.film_image.string(), width_px, height_px, config.design.film.width_mm,
+      config.design.film.height_mm));
 }
 
 // The resolution that gives the sheet the image's width; the recorded one if that does.
 double image_dpi(int width_px, double recorded, const JobConfig& config) {
   const double rounded = std::round(recorded);
-  if (rounded > 0 && sheet_raster(config, rounded).width_px() == width_px) return rounded;
-  return width_px * kMmPerInch / config.film.width_mm;
+  if (rounded > 0 && raster_of(config.design.film, rounded).width_px() == width_px) return rounded;
+  return width_px * kMmPerInch / config.design.film.width_mm;
 }
 
 bool is_tiff(const std::vector<std::uint8_t>& bytes) {
   return bytes.size() > 4 &&
          ((bytes[0] == 'I' && bytes[1] == 'I') || (bytes[0] == 'M' && bytes[1] == 'M'));
+}
+
+// Left and right changed: the film as seen from above, when the ink lies on its underside. Both
+// kinds of image have 4 bytes a pixel.
+template <class Pixels>
+Pixels mirrored(const Pixels& image) {
+  Pixels result(image.width_px, image.height_px);
+  for (int y = 0; y < image.height_px; ++y)
+    for (int x = 0; x < image.width_px; ++x)
+      std::copy_n(image.pixel(image.width_px - 1 - x, y), 4, result.pixel(x, y));
+  return result;
+}
+
+// Over the whole sheet: makes the film's stretch visible.
+Image checkerboard(const SheetRaster& raster) {
+  constexpr std::uint8_t kDark[4] = {38, 84, 124, 255};
+  constexpr std::uint8_t kLight[4] = {255, 255, 255, 255};
+  Image image(raster.width_px(), raster.height_px());
+  for (int y = 0; y < image.height_px; ++y)
+    for (int x = 0; x < image.width_px; ++x) {
+      const Vec2 u = raster.to_film(x + 0.5, y + 0.5) / kCheckerCell_mm;
+      const bool dark = (long(std::floor(u.x())) + long(std::floor(u.y()))) % 2 != 0;
+      std::copy_n(dark ? kDark : kLight, 4, image.pixel(x, y));
+    }
+  return image;
 }
 
 // Cut or filled up with blank rows: rounding may cost or give one.
@@ -65,7 +89,7 @@ PrintedFilm read_ink_image(const JobConfig& config) {
   CmykFile file = read_cmyk_tiff(config.film_image);
   require_aspect(file.inks.width_px, file.inks.height_px, config);
   PrintedFilm film;
-  film.raster = sheet_raster(config, image_dpi(file.inks.width_px, file.dpi, config));
+  film.raster = raster_of(config.design.film, image_dpi(file.inks.width_px, file.dpi, config));
   film.inks = std::move(file.inks);
   fit_height(film.inks, film.raster.height_px());
   if (config.print.ink_side == InkSide::kDown) film.inks = mirrored(film.inks);
@@ -78,7 +102,8 @@ PrintedFilm read_film_image(const JobConfig& config, const ColorModel& model) {
   PrintedFilm film;
   Image image = decode_image(bytes, config.film_image.string());
   require_aspect(image.width_px, image.height_px, config);
-  film.raster = sheet_raster(config, image_dpi(image.width_px, recorded_dpi(bytes), config));
+  film.raster =
+      raster_of(config.design.film, image_dpi(image.width_px, recorded_dpi(bytes), config));
   if (image.width_px != film.raster.width_px() || image.height_px != film.raster.height_px())
     image = resize(image, film.raster.width_px(), film.raster.height_px());
   if (config.print.ink_side == InkSide::kDown) image = mirrored(image);
@@ -88,26 +113,25 @@ PrintedFilm read_film_image(const JobConfig& config, const ColorModel& model) {
 
 PrintedFilm printed_film(const JobConfig& config, const ColorModel& model) {
   if (!config.film_image.empty()) return read_film_image(config, model);
-  const SheetRaster raster = sheet_raster(config, config.pictures ? kCheckerboardDpi : kDraftDpi);
+  const SheetRaster raster =
+      raster_of(config.design.film, config.pictures ? kCheckerboardDpi : kDraftDpi);
   return {inks_of_film(checkerboard(raster), model), raster};
 }
 
 // The checkerboard is there to show the stretch: it stiffens nothing, and does not pale.
-void dip_with_ink(DippedObject& dipped, const FilmMesh& film, const PrintedFilm& printed,
-                  const JobConfig& config, StageTimes& times, RunContext& context) {
-  DipOptions options = config.dip;
-  if (!config.film_image.empty() && config.ink.rounds_max > 1)
-    options.modulus = film_modulus(film, printed.inks, printed.raster,
-                                   {config.ink.stiffness_ratio, config.ink.filter_mm});
-  dip_again(dipped, film, options, times, context);
+DipOptions dip_options(const FilmMesh& film, const PrintedFilm& printed, const JobConfig& config) {
+  DipOptions options = config.design.dip;
+  if (!config.film_image.empty() && config.design.rounds_max > 1)
+    options.modulus = film_modulus(film, printed.inks, printed.raster, config.design.stiffness);
+  return options;
 }
 
 Image seen_on_object(const DippedObject& dipped, const PrintedFilm& printed,
-                     const ColorModel& model, const JobConfig& config, RunContext& context) {
+                     const ColorModel& model, const LinearColor& base, bool pales,
+                     RunContext& context) {
   FilmStretch stretch = film_stretch(*dipped.map, printed.raster, 0, context);
-  if (config.film_image.empty())
-    std::fill(stretch.area_ratio.begin(), stretch.area_ratio.end(), 1.0F);
-  return look_on_object(printed.inks, stretch.area_ratio, model, base_color(config));
+  if (!pales) std::fill(stretch.area_ratio.begin(), stretch.area_ratio.end(), 1.0F);
+  return look_on_object(printed.inks, stretch.area_ratio, model, base);
 }
 
 }  // namespace
@@ -115,23 +139,28 @@ Image seen_on_object(const DippedObject& dipped, const PrintedFilm& printed,
 JobResult simulate_job(const JobConfig& config, RunContext& context) {
   const ThreadLimit threads(config.threads);
   OutputFolder folder(config.output);
-  StageTimes times;
+  Timings times;
 
-  const FilmMesh film = make_film_mesh(config.film);
-  LoadedObject posed = times.measure("load", [&] { return load_posed(config, context); });
-  const std::vector<ReportInput> inputs = describe_inputs(config, posed);
-  require_fit(posed.object, config, context);
-  const auto model = color_model(config);
+  const FilmMesh film = make_film_mesh(config.design.film);
+  const PreparedObject prepared =
+      times.measure("load", [&] { return prepare_object(config.model, config.object, context); });
+  const TriangleMesh& mesh = prepared.posed.mesh();
+  const double depth_mm = depth_of_dip_mm(mesh, config.design.depth_mm);
+  require_fit(mesh, depth_mm, config.design.film, config.bath, context);
+  const Printer printer = make_printer(config.printer);
+  const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
   const PrintedFilm printed =
-      times.measure("film image", [&] { return printed_film(config, *model); });
+      times.measure("film image", [&] { return printed_film(config, *printer.model); });
 
-  const auto dipped = undipped(std::move(posed));
-  dip_with_ink(*dipped, film, printed, config, times, context);
+  const DippedObject dipped = dip_object(prepared.posed, film, depth_mm,
+                                         dip_options(film, printed, config), times, context);
 
-  const JobRecord record{"simulate", config,  inputs,  *dipped,
-                         times,      context, nullptr, model->name()};
-  const Image seen = times.measure(
-      "look", [&] { return seen_on_object(*dipped, printed, *model, config, context); });
+  const JobRecord record{
+      "simulate", config, prepared, inputs, dipped, times, context, nullptr, printer.model->name()};
+  const Image seen = times.measure("look", [&] {
+    return seen_on_object(dipped, printed, *printer.model, prepared.paint->base(),
+                          !config.film_image.empty(), context);
+  });
   const Previews previews = times.measure("preview", [&] {
     return write_previews(folder, record, seen, printed.raster,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");

@@ -11,7 +11,7 @@ double dip_angle_deg(const Vec3& normal) {
   return std::acos(std::clamp(-normal.z(), -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-DipAngles dip_angles(const Object& posed, double depth_mm) {
+DipAngles dip_angles(const TriangleMesh& posed, double depth_mm) {
   DipAngles angles;
   for (const Triangle& triangle : posed.triangles) {
     const Vec3& a = posed.positions[static_cast<std::size_t>(triangle[0])];

@@ -36,6 +36,6 @@ constexpr bool beyond_dip_limit(double angle_deg) {
 }
 
 // `posed` in the posed-object frame. Faces count by the position of their centre.
-DipAngles dip_angles(const Object& posed, double depth_mm);
+DipAngles dip_angles(const TriangleMesh& posed, double depth_mm);
 
 }  // namespace hydrodip

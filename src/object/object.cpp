@@ -122,24 +122,23 @@ bool Object::has_appearance() const {
   return false;
 }
 
-Box3 Object::bounds() const {
+Box3 TriangleMesh::bounds() const {
   Box3 box;
   for (const Vec3& p : positions) box.add(p);
   return box;
 }
 
-Vec3 position_at(const Object& object, const SurfacePoint& point) {
-  const Triangle& t = object.triangles[std::size_t(point.triangle)];
-  return (1 - point.u - point.v) * object.positions[std::size_t(t[0])] +
-         point.u * object.positions[std::size_t(t[1])] +
-         point.v * object.positions[std::size_t(t[2])];
+Vec3 position_at(const TriangleMesh& mesh, const SurfacePoint& point) {
+  const Triangle& t = mesh.triangles[std::size_t(point.triangle)];
+  return (1 - point.u - point.v) * mesh.positions[std::size_t(t[0])] +
+         point.u * mesh.positions[std::size_t(t[1])] + point.v * mesh.positions[std::size_t(t[2])];
 }
 
-Vec3 face_normal(const Object& object, int triangle) {
-  const Triangle& t = object.triangles[std::size_t(triangle)];
-  const Vec3& a = object.positions[std::size_t(t[0])];
+Vec3 face_normal(const TriangleMesh& mesh, int triangle) {
+  const Triangle& t = mesh.triangles[std::size_t(triangle)];
+  const Vec3& a = mesh.positions[std::size_t(t[0])];
   const Vec3 normal =
-      (object.positions[std::size_t(t[1])] - a).cross(object.positions[std::size_t(t[2])] - a);
+      (mesh.positions[std::size_t(t[1])] - a).cross(mesh.positions[std::size_t(t[2])] - a);
   const double length = normal.norm();
   return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
 }

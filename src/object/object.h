@@ -1,4 +1,4 @@
-// What is dipped: a triangle mesh with its wanted appearance.
+// What is dipped: a triangle mesh, and what a model file says of its colours.
 #pragma once
 
 #include <array>
@@ -26,9 +26,15 @@ struct Material {
 using CornerUv = std::array<Eigen::Vector2f, 3>;
 using CornerColor = std::array<LinearColor, 3>;
 
-struct Object {
-  std::vector<Vec3> positions;      // mm once loaded; see object/pose.h for the frame
+struct TriangleMesh {
+  std::vector<Vec3> positions;      // mm
   std::vector<Triangle> triangles;  // outward orientation where it could be established
+
+  Box3 bounds() const;
+};
+
+// In the model's own frame. How it hangs over the bath is a PosedObject's matter.
+struct Object : TriangleMesh {
   std::vector<int> material_of;     // per triangle, index into materials
   std::vector<CornerUv> uvs;        // per triangle, or empty: the model has no UVs
   std::vector<CornerColor> colors;  // per triangle, or empty: no vertex colours
@@ -38,8 +44,6 @@ struct Object {
   // Whether the model says which colour goes where (texture with UVs, vertex colours, or more than
   // a single plain material). Without it `print` has nothing to print.
   bool has_appearance() const;
-
-  Box3 bounds() const;
 };
 
 // A point on the surface: barycentric weights (1 - u - v, u, v) of a triangle's corners.
@@ -49,9 +53,9 @@ struct SurfacePoint {
   double v = 0;
 };
 
-Vec3 position_at(const Object& object, const SurfacePoint& point);
+Vec3 position_at(const TriangleMesh& mesh, const SurfacePoint& point);
 // Unit face normal; zero for a degenerate triangle.
-Vec3 face_normal(const Object& object, int triangle);
+Vec3 face_normal(const TriangleMesh& mesh, int triangle);
 
 // The wanted colour there, in linear light, composited over `base` (the bare object's colour) by
 // its alpha; the result is opaque. Textures are sampled bilinearly in linear light at their full

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -36,37 +37,49 @@ Mat3 axis_rotation(int axis, double degrees) {
   return rotation;
 }
 
-Mat3 down_rotation(const std::string& down) {
-  if (down == "-z") return Mat3::Identity();
-  if (down == "+z") return axis_rotation(0, 180);
-  if (down == "-x") return axis_rotation(1, -90);
-  if (down == "+x") return axis_rotation(1, 90);
-  if (down == "-y") return axis_rotation(0, 90);
-  if (down == "+y") return axis_rotation(0, -90);
-  throw InputError(
-      fmt::format("--down {}: not a side of the model; use +x, -x, +y, -y, +z or -z.", down));
+Mat3 down_rotation(ModelSide down) {
+  switch (down) {
+    case ModelSide::kPlusZ:
+      return axis_rotation(0, 180);
+    case ModelSide::kMinusX:
+      return axis_rotation(1, -90);
+    case ModelSide::kPlusX:
+      return axis_rotation(1, 90);
+    case ModelSide::kMinusY:
+      return axis_rotation(0, 90);
+    case ModelSide::kPlusY:
+      return axis_rotation(0, -90);
+    case ModelSide::kMinusZ:
+      break;
+  }
+  return Mat3::Identity();
 }
 
-double size_scale(const Object& object, double size_mm) {
+double size_scale(const TriangleMesh& mesh, double size_mm) {
   if (size_mm == 0) return 1;
   if (!std::isfinite(size_mm) || size_mm < 0) {
     throw InputError(fmt::format("--size {}: must be a positive length in mm.", size_mm));
   }
-  const double extent = object.bounds().size().maxCoeff();
+  const double extent = mesh.bounds().size().maxCoeff();
   if (!(extent > 0)) throw InputError("--size: the model has no extent that could be scaled.");
   return size_mm / extent;
 }
 
 }  // namespace
 
-Eigen::Matrix4d pose_matrix(const Object& object, const PoseOptions& options) {
+const char* side_name(ModelSide side) {
+  constexpr std::array<const char*, 6> kNames = {"-x", "+x", "-y", "+y", "-z", "+z"};
+  return kNames[std::size_t(side)];
+}
+
+Eigen::Matrix4d pose_matrix(const TriangleMesh& mesh, const PoseOptions& options) {
   if (!options.rotate_deg.allFinite()) throw InputError("--rotate: the angles must be numbers.");
   const Mat3 turn = axis_rotation(2, options.rotate_deg.z()) *
                     axis_rotation(1, options.rotate_deg.y()) *
                     axis_rotation(0, options.rotate_deg.x()) * down_rotation(options.down);
-  const Mat3 linear = size_scale(object, options.size_mm) * turn;
+  const Mat3 linear = size_scale(mesh, options.size_mm) * turn;
   Box3 box;
-  for (const Vec3& p : object.positions) box.add(linear * p);
+  for (const Vec3& p : mesh.positions) box.add(linear * p);
   Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
   pose.topLeftCorner<3, 3>() = linear;
   if (!box.empty()) {
@@ -76,10 +89,10 @@ Eigen::Matrix4d pose_matrix(const Object& object, const PoseOptions& options) {
   return pose;
 }
 
-void apply_pose(Object& object, const Eigen::Matrix4d& pose) {
+void apply_pose(TriangleMesh& mesh, const Eigen::Matrix4d& pose) {
   const Mat3 linear = pose.topLeftCorner<3, 3>();
   const Vec3 offset = pose.topRightCorner<3, 1>();
-  for (Vec3& p : object.positions) p = linear * p + offset;
+  for (Vec3& p : mesh.positions) p = linear * p + offset;
 }
 
 }  // namespace hydrodip

@@ -3,25 +3,28 @@
 // point first.
 #pragma once
 
-#include <string>
-
 #include "object/object.h"
 
 namespace hydrodip {
 
+enum class ModelSide { kMinusX, kPlusX, kMinusY, kPlusY, kMinusZ, kPlusZ };
+
+// "-x"
+const char* side_name(ModelSide side);
+
 struct PoseOptions {
-  double size_mm = 0;              // scale so that the largest extent is this; 0: keep
-  std::string down = "-z";         // model side that enters first: +x -x +y -y +z -z
-  Vec3 rotate_deg = Vec3::Zero();  // then about fixed x, y, z, in that order
+  double size_mm = 0;                   // scale so that the largest extent is this; 0: keep
+  ModelSide down = ModelSide::kMinusZ;  // model side that enters first
+  Vec3 rotate_deg = Vec3::Zero();       // then about fixed x, y, z, in that order
 };
 
 // 4x4 that takes model coordinates (mm) to the posed-object frame. Largest extent: of the model's
-// own bounding box, before turning. --down is the smallest rotation that brings that side to -z
+// own bounding box, before turning. `down` is the smallest rotation that brings that side to -z
 // (for +z: half a turn about x).
-// Throws InputError for an unknown `down` or a size that is not positive and finite.
-Eigen::Matrix4d pose_matrix(const Object& object, const PoseOptions& options);
+// Throws InputError for a size that is not positive and finite, or angles that are no numbers.
+Eigen::Matrix4d pose_matrix(const TriangleMesh& mesh, const PoseOptions& options);
 
 // Applies it to every vertex.
-void apply_pose(Object& object, const Eigen::Matrix4d& pose);
+void apply_pose(TriangleMesh& mesh, const Eigen::Matrix4d& pose);
 
 }  // namespace hydrodip

@@ -52,8 +52,7 @@ Closest closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
 struct Surface::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  std::vector<Vec3> positions;
-  std::vector<Triangle> triangles;
+  std::shared_ptr<const TriangleMesh> mesh;
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
@@ -61,8 +60,8 @@ struct Surface::Impl {
   }
 
   const Vec3& corner(int triangle, int k) const {
-    return positions[static_cast<std::size_t>(
-        triangles[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(k)])];
+    return mesh->positions[static_cast<std::size_t>(
+        mesh->triangles[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(k)])];
   }
 };
 
@@ -109,9 +108,10 @@ RTCRay ray_of(const Vec3& origin, const Vec3& direction, double t_min, double t_
 }  // namespace
 
 Surface::Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles)
-    : impl_(std::make_unique<Impl>()) {
-  impl_->positions = positions;
-  impl_->triangles = triangles;
+    : Surface(std::make_shared<const TriangleMesh>(TriangleMesh{positions, triangles})) {}
+
+Surface::Surface(std::shared_ptr<const TriangleMesh> mesh) : impl_(std::make_unique<Impl>()) {
+  impl_->mesh = std::move(mesh);
   impl_->device = rtcNewDevice(kDeviceOptions);
   if (!impl_->device) throw std::runtime_error("Embree could not be started");
   impl_->scene = rtcNewScene(impl_->device);
@@ -119,8 +119,8 @@ Surface::Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>
   // among triangles hit exactly on their common edge. (Its own option "threads=1" would hold back
   // the whole process for as long as the device lives.)
   const ThreadLimit one_thread(1);
-  if (!triangles.empty())
-    build(impl_->device, impl_->scene, positions, triangles);
+  if (!impl_->mesh->triangles.empty())
+    build(impl_->device, impl_->scene, impl_->mesh->positions, impl_->mesh->triangles);
   else
     rtcCommitScene(impl_->scene);
 }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/math.h"
+#include "object/object.h"
 
 namespace hydrodip {
 
@@ -20,7 +20,9 @@ struct SurfaceHit {
 // on the surface to about 1e-9 mm.
 class Surface {
  public:
-  // Keeps references to neither array. Degenerate triangles are never hit.
+  // Degenerate triangles are never hit.
+  explicit Surface(std::shared_ptr<const TriangleMesh> mesh);
+  // Of copies.
   Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
   ~Surface();
   Surface(Surface&&) noexcept;

@@ -51,7 +51,7 @@ struct MapLayout {
   int cell_x(int column) const { return margin + column * (cell_width + gap); }
 };
 
-MapLayout make_layout(const Object& object, const std::array<Vec3, 2>& directions,
+MapLayout make_layout(const TriangleMesh& object, const std::array<Vec3, 2>& directions,
                       const MapOptions& options) {
   MapLayout layout;
   layout.width = std::clamp(options.width_px, 64, kWidestPicture_px);
@@ -227,12 +227,12 @@ struct View {
   int height_px;
 };
 
-View view_from(const Object& object, const Vec3& direction, const MapLayout& layout,
+View view_from(const TriangleMesh& object, const Vec3& direction, const MapLayout& layout,
                int height_px) {
   return {frame_object(object, direction, double(layout.cell_width) / height_px, 0.80), height_px};
 }
 
-double mm_per_px(const Object& object, const Camera& camera, int width_px) {
+double mm_per_px(const TriangleMesh& object, const Camera& camera, int width_px) {
   const double distance = (camera.eye - object.bounds().center()).dot(camera.back);
   return 2 * camera.half_width * distance / width_px;
 }
@@ -246,17 +246,17 @@ ViewPair render(const MapScene& scene, const Surface& surface, const View& view,
   return LitView(studio, view.camera, layout.cell_width, view.height_px, context).show(appearance);
 }
 
-bool some_stays_dry(const Object& object, double depth_mm) {
+bool some_stays_dry(const TriangleMesh& object, double depth_mm) {
   return object.bounds().max.z() > depth_mm + 1e-6;
 }
 
 }  // namespace
 
-std::vector<CornerNormals> map_normals(const Object& object) {
+std::vector<CornerNormals> map_normals(const TriangleMesh& object) {
   return corner_normals(object.positions, object.triangles, kCrease_deg);
 }
 
-double angle_at(const Object& object, const std::vector<CornerNormals>& normals,
+double angle_at(const TriangleMesh& object, const std::vector<CornerNormals>& normals,
                 const SurfacePoint& point) {
   const Vec3 smooth = normal_between(normals[std::size_t(point.triangle)], point.u, point.v);
   return dip_angle_deg(smooth.isZero() ? face_normal(object, point.triangle) : smooth);
@@ -299,7 +299,7 @@ Appearance map_appearance(const MapScene& scene, const Camera& camera, double ha
   return appearance;
 }
 
-Image render_maps(const Object& object, const Surface& surface, const DippedFilm& film,
+Image render_maps(const TriangleMesh& object, const Surface& surface, const DippedFilm& film,
                   const FilmMap& map, const MapOptions& options, RunContext& context) {
   const std::string stage = "drawing the maps";
   context.progress(stage, 0);
@@ -334,7 +334,7 @@ Image render_maps(const Object& object, const Surface& surface, const DippedFilm
   return page;
 }
 
-Image render_angle_map(const Object& object, const Surface& surface, double depth_mm,
+Image render_angle_map(const TriangleMesh& object, const Surface& surface, double depth_mm,
                        const MapOptions& options, RunContext& context) {
   const std::string stage = "drawing the angle map";
   context.progress(stage, 0);

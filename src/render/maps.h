@@ -24,11 +24,11 @@ struct MapOptions {
 };
 
 // Both maps side by side, a row for each direction. `map` is the film's over the same object.
-Image render_maps(const Object& object, const Surface& surface, const DippedFilm& film,
+Image render_maps(const TriangleMesh& object, const Surface& surface, const DippedFilm& film,
                   const FilmMap& map, const MapOptions& options, RunContext& context);
 
 // The angle map alone, of an object to be dipped `depth_mm` deep; no film is needed.
-Image render_angle_map(const Object& object, const Surface& surface, double depth_mm,
+Image render_angle_map(const TriangleMesh& object, const Surface& surface, double depth_mm,
                        const MapOptions& options, RunContext& context);
 
 // One line under the maps: shares beyond the limits. `coverage` may be null.
@@ -37,10 +37,10 @@ std::string map_caption(const DipAngles& angles, const Coverage* coverage);
 // --- What the maps are made of ---
 
 // Of the curved surface that the triangles stand for; edges sharper than 30 degrees stay edges.
-std::vector<CornerNormals> map_normals(const Object& object);
+std::vector<CornerNormals> map_normals(const TriangleMesh& object);
 
 // Dipping angle at a point, degrees: 0 faces straight down, 180 straight up.
-double angle_at(const Object& object, const std::vector<CornerNormals>& normals,
+double angle_at(const TriangleMesh& object, const std::vector<CornerNormals>& normals,
                 const SurfacePoint& point);
 
 // Blue to pale up to the limit, orange to dark red beyond it, grey for what does not face down.
@@ -55,7 +55,7 @@ double stretch_scale_end(const DippedFilm& film, double tear_stretch);
 // The maps as the two appearances of one view: `wanted` the angle, `predicted` the film; bare
 // surface is grey, torn film hatched along the camera's diagonal. Keeps references.
 struct MapScene {
-  const Object& object;
+  const TriangleMesh& object;
   const std::vector<CornerNormals>& normals;
   double depth_mm = 0;           // surface above stays dry
   const FilmMap* map = nullptr;  // null: no film

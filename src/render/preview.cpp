@@ -21,8 +21,8 @@ struct PageLayout {
   double unit = 1;
 };
 
-PageLayout make_layout(const Object& object, const std::array<Vec3, 2>& directions, int width_px,
-                       bool has_caption) {
+PageLayout make_layout(const TriangleMesh& object, const std::array<Vec3, 2>& directions,
+                       int width_px, bool has_caption) {
   PageLayout layout;
   layout.width = std::clamp(width_px, 64, kWidestPicture_px);
   layout.unit = layout.width / 1600.0;
@@ -69,7 +69,7 @@ Appearance completed(const Appearance& appearance, const LinearColor& base) {
 
 }  // namespace
 
-std::vector<Image> render_previews(const Object& object, const Surface& surface,
+std::vector<Image> render_previews(const TriangleMesh& object, const Surface& surface,
                                    const DippedFilm& film, const std::vector<PreviewPair>& pairs,
                                    const PreviewOptions& options, RunContext& context) {
   const std::string stage = "drawing the preview";

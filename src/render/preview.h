@@ -26,7 +26,7 @@ struct PreviewPair {
 // Ray-cast pictures, one for each pair: wanted beside predicted, from the two most telling
 // directions (those that see most of the film-covered area and, second, most of what the first does
 // not see), soft light, neutral ground.
-std::vector<Image> render_previews(const Object& object, const Surface& surface,
+std::vector<Image> render_previews(const TriangleMesh& object, const Surface& surface,
                                    const DippedFilm& film, const std::vector<PreviewPair>& pairs,
                                    const PreviewOptions& options, RunContext& context);
 

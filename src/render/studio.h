@@ -13,7 +13,7 @@
 namespace hydrodip {
 
 struct Studio {
-  const Object& object;
+  const TriangleMesh& object;
   const Surface& surface;
   const std::vector<CornerNormals>& normals;
   bool smooth_edges = true;  // more samples where neighbouring pixels differ

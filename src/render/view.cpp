@@ -55,7 +55,7 @@ std::vector<Patch> film_patches(const DippedFilm& film) {
   return patches;
 }
 
-std::vector<Patch> object_patches(const Object& object) {
+std::vector<Patch> object_patches(const TriangleMesh& object) {
   std::vector<Patch> patches;
   for (const Triangle& triangle : object.triangles) {
     const Vec3 area = area_vector(object.positions, triangle);
@@ -142,7 +142,7 @@ std::size_t best_view(const std::vector<Candidate>& views,
   return best;
 }
 
-double extent_of(const Object& object) {
+double extent_of(const TriangleMesh& object) {
   const Box3 box = object.bounds();
   return box.empty() ? 1 : std::max(1e-9, box.size().norm());
 }
@@ -157,7 +157,7 @@ void aim(Camera& camera, const Vec3& direction) {
   camera.right = camera.up.cross(camera.back);
 }
 
-Box3 in_camera(const Object& object, const Camera& camera) {
+Box3 in_camera(const TriangleMesh& object, const Camera& camera) {
   Box3 box;
   for (const Vec3& p : object.positions) {
     box.add({p.dot(camera.right), p.dot(camera.up), p.dot(camera.back)});
@@ -167,7 +167,7 @@ Box3 in_camera(const Object& object, const Camera& camera) {
 
 }  // namespace
 
-std::array<Vec3, 2> telling_directions(const Object& object, const Surface& surface,
+std::array<Vec3, 2> telling_directions(const TriangleMesh& object, const Surface& surface,
                                        const DippedFilm& film) {
   std::vector<Patch> patches = film_patches(film);
   if (patches.empty()) patches = facing_down(object_patches(object));
@@ -188,14 +188,14 @@ Vec3 Camera::ray(double x, double y) const {
   return x * half_width * right + (y * half_height + shift_y) * up - back;
 }
 
-double projected_aspect(const Object& object, const Vec3& direction) {
+double projected_aspect(const TriangleMesh& object, const Vec3& direction) {
   Camera camera;
   aim(camera, direction);
   const Vec3 size = in_camera(object, camera).size();
   return std::clamp(size.x() / std::max(size.y(), 1e-9), 1e-3, 1e3);
 }
 
-Camera frame_object(const Object& object, const Vec3& direction, double aspect, double fill) {
+Camera frame_object(const TriangleMesh& object, const Vec3& direction, double aspect, double fill) {
   constexpr double kHalfFieldDeg = 9;
   Camera camera;
   aim(camera, direction);

@@ -13,7 +13,7 @@ namespace hydrodip {
 // lies on the object, the second most of what the first does not see. Without any such film
 // what faces down counts, and without that the whole surface. Looking from below (-z, the side that
 // meets the film) is the front.
-std::array<Vec3, 2> telling_directions(const Object& object, const Surface& surface,
+std::array<Vec3, 2> telling_directions(const TriangleMesh& object, const Surface& surface,
                                        const DippedFilm& film);
 
 // A perspective camera. Screen coordinates: x right and y up, both in [-1, 1].
@@ -29,10 +29,10 @@ struct Camera {
 };
 
 // The object's extent across the picture over its extent up, as seen along `direction`.
-double projected_aspect(const Object& object, const Vec3& direction);
+double projected_aspect(const TriangleMesh& object, const Vec3& direction);
 
 // The camera that sees the whole object from `direction`, filling `fill` of a picture of the given
 // aspect (width over height) in the tighter extent. +y is up wherever it can be.
-Camera frame_object(const Object& object, const Vec3& direction, double aspect, double fill);
+Camera frame_object(const TriangleMesh& object, const Vec3& direction, double aspect, double fill);
 
 }  // namespace hydrodip

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "job/prepare.h"
 #include "model_io/load.h"
+#include "object/bake.h"
 #include "object/surface.h"
 #include "render/studio.h"
 #include "report/report.h"
@@ -40,7 +41,10 @@ bool is_as_printed(const RigJob& job) {
 Object hanging_object(const RigJob& job) {
   // What there is to say about the model was said when it was printed.
   RunContext unheard;
-  if (is_as_printed(job)) return load_posed(job.config, unheard).object;
+  if (is_as_printed(job)) {
+    const PreparedObject prepared = prepare_object(job.config.model, job.config.object, unheard);
+    return painted_object(prepared.posed.mesh(), *prepared.paint);
+  }
   Object object = load_object(job.folder / "preview.glb", {}, unheard).object;
   for (Vec3& p : object.positions) p = posed(p);
   return object;

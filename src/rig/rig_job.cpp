@@ -125,7 +125,7 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
 }
 
 Activator activator_for(const JobConfig& config) {
-  const double share = film_area_mm2(config.film) / letter_area_mm2();
+  const double share = film_area_mm2(config.design.film) / letter_area_mm2();
   return {share * config.process.activator_g, share * config.process.activator_tolerance_g};
 }
 

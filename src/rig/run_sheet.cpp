@@ -36,8 +36,6 @@ PaperSize choose_paper(const std::string& name, const FilmOptions& film) {
   return {find(wanted)->width_mm, find(wanted)->height_mm};
 }
 
-std::string side_name(const std::string& down) { return "the model's " + down + " side"; }
-
 class RunSheet {
  public:
   RunSheet(PdfDocument& pdf, const PaperSize& paper, const RigJob& job,
@@ -93,7 +91,9 @@ class RunSheet {
     const Vec3& size = job_.object_size_mm;
     const PoseOptions& pose = job_.config.object.pose;
     std::string words = fmt::format(
-        "{:.1f} mm wide (x), {:.1f} mm deep (y), {:.1f} mm high (z); {} enters the water first",
+        "{:.1f} mm wide (x), {:.1f} mm deep (y), {:.1f} mm high (z); the model's {} side enters "
+        "the "
+        "water first",
         size.x(), size.y(), size.z(), side_name(pose.down));
     if (pose.rotate_deg.norm() > 0)
       words += fmt::format(", turned by {:g}, {:g}, {:g} degrees about x, y, z",
@@ -113,7 +113,7 @@ class RunSheet {
 
   // The sheet as it floats, from above.
   void draw_film(double x, double top, double width, double height) {
-    const FilmOptions& film = job_.config.film;
+    const FilmOptions& film = job_.config.design.film;
     PdfDocument& pdf = page_.pdf();
     const double scale = std::min(width / film.width_mm, std::min(height, 86.0) / film.height_mm);
     const Vec2 size(scale * film.width_mm, scale * film.height_mm);
@@ -169,9 +169,9 @@ class RunSheet {
     const Activator activator = activator_for(config);
     const std::vector<PlannedMove> plan = plan_dip(job_);
     return {
-        {"Film", fmt::format("{:g} x {:g} mm, ink side {}", config.film.width_mm,
-                             config.film.height_mm, ink_side())},
-        {"Tape", fmt::format("{:g} mm all around, no slits", config.film.margin_mm)},
+        {"Film", fmt::format("{:g} x {:g} mm, ink side {}", config.design.film.width_mm,
+                             config.design.film.height_mm, ink_side())},
+        {"Tape", fmt::format("{:g} mm all around, no slits", config.design.film.margin_mm)},
         {"Water", fmt::format("{:g} to {:g} °C, {:.1f} l", process_.water_min_c,
                               process_.water_max_c, bath_litres(config.bath))},
         {"Soak", fmt::format("{:g} to {:g} s", process_.soak_min_s, process_.soak_max_s)},
@@ -218,7 +218,7 @@ class RunSheet {
     page_.task(
         fmt::format("Tape {:g} mm around all four edges, flat and without gaps; no slits. "
                     "Take the protective layer off the film.",
-                    config.film.margin_mm));
+                    config.design.film.margin_mm));
     page_.task("Object clean, dry and free of grease; hung as on page 1, over the film's middle.");
     page_.task("Stage homed; water level found without film on the water; object lifted clear.",
                {"Level, mm"});
@@ -272,7 +272,7 @@ class RunSheet {
 
 JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
                     const std::filesystem::path& file, RunContext& context) {
-  const PaperSize paper = choose_paper(paper_name, job.config.film);
+  const PaperSize paper = choose_paper(paper_name, job.config.design.film);
   const std::filesystem::path path = file.empty() ? job.folder / "run-sheet.pdf" : file;
   const std::vector<PosePicture> pictures = pose_pictures(
       job, kPictureWidth_px, static_cast<int>(kPictureWidth_px / kPictureAspect), context);

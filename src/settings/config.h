@@ -1,56 +1,32 @@
-// Everything a job needs to know, one struct per stage. Filled from parameter records
-// (job/params.h) or by hand.
+// What a job's parameters say, as the options of the rooms that it goes through. Filled from
+// parameter records (settings/params.h) or by hand. Only pipelines see all of it: whoever does the
+// work takes its own options.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "dip/dip.h"
-#include "film/film.h"
-#include "ink/discoloration.h"
+#include "coat/design.h"
+#include "ink/printer.h"
 #include "model_io/load.h"
 #include "object/pose.h"
+#include "plan/fit.h"
 
 namespace hydrodip {
 
 struct ObjectOptions {
-  LoadOptions load;                    // units, texture
-  PoseOptions pose;                    // size, down, rotation
-  std::string base_color = "#ffffff";  // of the bare object, sRGB
-};
-
-// The tank of the paper's appendix A.
-struct BathOptions {
-  double width_mm = 370;
-  double height_mm = 270;
-  double depth_mm = 150;
-};
-
-enum class InkModel { kDevice, kProfile };
-
-struct InkOptions {
-  double stiffness_ratio = 600;  // modulus of fully inked over blank film
-  double filter_mm = 1.016;      // the ink's stiffness is smeared over a square of this side
-  int rounds_max = 10;           // simulate, invert, stiffen, repeat: at most this often
-  InkModel model = InkModel::kDevice;
-  std::filesystem::path profile;  // the printer's; not empty: kProfile. Empty with kProfile: the
-                                  // installed one
-  RenderingIntent intent = RenderingIntent::kRelative;
-  double limit = 3;  // largest sum of inks
-  bool compensate = true;
+  LoadOptions load;              // units, texture
+  PoseOptions pose;              // size, down, rotation
+  LinearColor base{1, 1, 1, 1};  // of the bare object
 };
 
 enum class InkSide { kUp, kDown };
-enum class PrintColor { kRgb, kCmyk };
 
+// The sheet's page.
 struct PrintOptions {
-  double dpi = 300;
-  double bleed_mm = 1;
-  int samples = 3;  // per axis and pixel
   InkSide ink_side = InkSide::kUp;
-  PrintColor color = PrintColor::kRgb;  // of print.pdf
-  std::string job_name;                 // in the sheet's margin; empty: the model's file name
+  std::string job_name;  // in the sheet's margin; empty: the model's file name
 };
 
 // What the operator keeps to at the bath; the paper's section 2 and appendix A.
@@ -96,11 +72,9 @@ struct JobConfig {
   std::vector<std::string> command_line;
 
   ObjectOptions object;
-  FilmOptions film;
   BathOptions bath;
-  DipOptions dip;  // with the film's material
-  InkOptions ink;
-  GamutPolicy gamut_policy = GamutPolicy::kClip;
+  DesignOptions design;  // film, dip, ink
+  PrinterOptions printer;
   PrintOptions print;
   ProcessOptions process;
   StageOptions stage;

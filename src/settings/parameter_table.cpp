@@ -1,4 +1,6 @@
 // The parameter tables, one per options struct. A new parameter is one line here.
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "settings/params.h"
@@ -53,6 +55,24 @@ Parameter text(std::string name, ParameterType type, Access<std::string> access,
   Parameter p{std::move(name), "", type, 0, 0, "", {}, std::move(help), {}, {}};
   p.get = [access](const JobConfig& c) { return ParameterValue(read(access, c)); };
   p.set = [access](JobConfig& c, const ParameterValue& v) { access(c) = std::get<std::string>(v); };
+  return p;
+}
+
+// In files and options sRGB, "#rrggbb"; inside linear light.
+Parameter color(std::string name, Access<LinearColor> access, std::string help) {
+  Parameter p{std::move(name), "", ParameterType::kColor, 0, 0, "", {}, std::move(help), {}, {}};
+  p.get = [access](const JobConfig& c) {
+    const LinearColor& color = read(access, c);
+    return ParameterValue(fmt::format("#{:02x}{:02x}{:02x}", linear_to_srgb8(color.r),
+                                      linear_to_srgb8(color.g), linear_to_srgb8(color.b)));
+  };
+  p.set = [access](JobConfig& c, const ParameterValue& v) {
+    const auto& hex = std::get<std::string>(v);
+    const auto channel = [&](std::size_t at) {
+      return srgb8_to_linear(std::uint8_t(std::stoi(hex.substr(at, 2), nullptr, 16)));
+    };
+    access(c) = {channel(1), channel(3), channel(5), 1};
+  };
   return p;
 }
 
@@ -112,6 +132,15 @@ Parameter choice(std::string name, const std::vector<std::string>& values,
   return choice<std::string>(std::move(name), std::move(pairs), access, std::move(help));
 }
 
+// Choices that have names already.
+template <class Enum>
+std::vector<std::pair<std::string, Enum>> named(const char* (*name)(Enum),
+                                                const std::vector<Enum>& values) {
+  std::vector<std::pair<std::string, Enum>> pairs;
+  for (const Enum value : values) pairs.emplace_back(name(value), value);
+  return pairs;
+}
+
 using C = JobConfig;
 
 std::vector<Parameter> object_records() {
@@ -123,9 +152,11 @@ std::vector<Parameter> object_records() {
       number(
           "object.size_mm", "mm", 0.1, 5000, [](C& c) -> double& { return c.object.pose.size_mm; },
           "scale the model so that its largest extent is this", "the model's own size"),
-      choice(
-          "object.down", {"-z", "+z", "-y", "+y", "-x", "+x"},
-          [](C& c) -> std::string& { return c.object.pose.down; },
+      choice<ModelSide>(
+          "object.down",
+          named(side_name, {ModelSide::kMinusZ, ModelSide::kPlusZ, ModelSide::kMinusY,
+                            ModelSide::kPlusY, ModelSide::kMinusX, ModelSide::kPlusX}),
+          [](C& c) -> ModelSide& { return c.object.pose.down; },
           "the model's side that enters the water first"),
       vector(
           "object.rotate_deg", "deg", -3600, 3600,
@@ -134,9 +165,8 @@ std::vector<Parameter> object_records() {
       path(
           "object.texture", [](C& c) -> std::filesystem::path& { return c.object.load.texture; },
           "image that replaces the model's textures; in a file: relative to that file"),
-      text(
-          "object.base_color", ParameterType::kColor,
-          [](C& c) -> std::string& { return c.object.base_color; },
+      color(
+          "object.base_color", [](C& c) -> LinearColor& { return c.object.base; },
           "colour of the bare object, sRGB, #rrggbb"),
   };
 }
@@ -144,23 +174,23 @@ std::vector<Parameter> object_records() {
 std::vector<Parameter> film_records() {
   return {
       number(
-          "film.width_mm", "mm", 10, 3000, [](C& c) -> double& { return c.film.width_mm; },
+          "film.width_mm", "mm", 10, 3000, [](C& c) -> double& { return c.design.film.width_mm; },
           "width of the whole sheet (x)"),
       number(
-          "film.height_mm", "mm", 10, 3000, [](C& c) -> double& { return c.film.height_mm; },
+          "film.height_mm", "mm", 10, 3000, [](C& c) -> double& { return c.design.film.height_mm; },
           "height of the whole sheet (y)"),
       choice<FilmShape>(
           "film.shape", {{"rectangle", FilmShape::kRectangle}, {"disc", FilmShape::kDisc}},
-          [](C& c) -> FilmShape& { return c.film.shape; },
+          [](C& c) -> FilmShape& { return c.design.film.shape; },
           "outline of the film; disc: inscribed in the smaller extent"),
       number(
-          "film.margin_mm", "mm", 0, 500, [](C& c) -> double& { return c.film.margin_mm; },
+          "film.margin_mm", "mm", 0, 500, [](C& c) -> double& { return c.design.film.margin_mm; },
           "width of the taped, clamped rim"),
       integer(
-          "film.elements", "", 8, 4000000, [](C& c) -> int& { return c.film.elements; },
+          "film.elements", "", 8, 4000000, [](C& c) -> int& { return c.design.film.elements; },
           "triangles of the simulated film"),
       number(
-          "film.grading", "", 1, 20, [](C& c) -> double& { return c.film.grading; },
+          "film.grading", "", 1, 20, [](C& c) -> double& { return c.design.film.grading; },
           "cell size at the rim over that at the centre; with dip.scheme=paper: 1"),
   };
 }
@@ -182,21 +212,21 @@ std::vector<Parameter> bath_records() {
 std::vector<Parameter> dip_records() {
   return {
       number(
-          "dip.step_mm", "mm", 0.001, 10, [](C& c) -> double& { return c.dip.step_mm; },
+          "dip.step_mm", "mm", 0.001, 10, [](C& c) -> double& { return c.design.dip.step_mm; },
           "how far the object is lowered in one step of the simulation"),
       number(
-          "dip.depth_mm", "mm", 0.001, 5000, [](C& c) -> double& { return c.dip.depth_mm; },
+          "dip.depth_mm", "mm", 0.001, 5000, [](C& c) -> double& { return c.design.depth_mm; },
           "how deep the object is dipped", "the whole object"),
       choice<DipMethod>(
           "dip.method",
           {{"full", DipMethod::kFull},
            {"single-step", DipMethod::kSingleStep},
            {"projection", DipMethod::kProjection}},
-          [](C& c) -> DipMethod& { return c.dip.method; },
+          [](C& c) -> DipMethod& { return c.design.dip.method; },
           "full; single-step: draped at once, never glued; projection: straight up"),
       choice<DipScheme>(
           "dip.scheme", {{"contact-line", DipScheme::kContactLine}, {"paper", DipScheme::kPaper}},
-          [](C& c) -> DipScheme& { return c.dip.scheme; },
+          [](C& c) -> DipScheme& { return c.design.dip.scheme; },
           "of dip.method=full: contact line resolved inside triangles, or the paper's literal "
           "steps"),
   };
@@ -205,18 +235,20 @@ std::vector<Parameter> dip_records() {
 std::vector<Parameter> material_records() {
   return {
       number(
-          "material.z_stretch", "", 0, 5, [](C& c) -> double& { return c.dip.material.z_stretch; },
+          "material.z_stretch", "", 0, 5,
+          [](C& c) -> double& { return c.design.dip.material.z_stretch; },
           "vertical scale of the film's rest shape: how it follows slopes"),
       number(
           "material.tear_stretch", "", 1, 100,
-          [](C& c) -> double& { return c.dip.material.tear_stretch; },
+          [](C& c) -> double& { return c.design.dip.material.tear_stretch; },
           "largest principal stretch that the film bears", "the film never tears"),
       number(
-          "material.poisson", "", 0, 0.499, [](C& c) -> double& { return c.dip.material.poisson; },
+          "material.poisson", "", 0, 0.499,
+          [](C& c) -> double& { return c.design.dip.material.poisson; },
           "Poisson's ratio of the film"),
       number(
           "material.ink_stiffness_ratio", "", 1, 1e6,
-          [](C& c) -> double& { return c.ink.stiffness_ratio; },
+          [](C& c) -> double& { return c.design.stiffness.ratio; },
           "modulus of film at ink density 1 over that of blank film; 1: ink does not stiffen"),
   };
 }
@@ -224,17 +256,18 @@ std::vector<Parameter> material_records() {
 std::vector<Parameter> ink_records() {
   return {
       integer(
-          "ink.rounds_max", "", 1, 100, [](C& c) -> int& { return c.ink.rounds_max; },
+          "ink.rounds_max", "", 1, 100, [](C& c) -> int& { return c.design.rounds_max; },
           "most rounds of simulating with the ink's stiffness; 1: even stiffness"),
       number(
-          "ink.filter_mm", "mm", 0.01, 20, [](C& c) -> double& { return c.ink.filter_mm; },
+          "ink.filter_mm", "mm", 0.01, 20,
+          [](C& c) -> double& { return c.design.stiffness.filter_mm; },
           "ink stiffens the film evenly over a square of this side"),
       choice<InkModel>(
           "ink.model", {{"device", InkModel::kDevice}, {"profile", InkModel::kProfile}},
-          [](C& c) -> InkModel& { return c.ink.model; },
+          [](C& c) -> InkModel& { return c.printer.model; },
           "colours to inks: plain formula, or ICC profile (ink.profile or an installed one)"),
       path(
-          "ink.profile", [](C& c) -> std::filesystem::path& { return c.ink.profile; },
+          "ink.profile", [](C& c) -> std::filesystem::path& { return c.printer.profile; },
           "the printer's ICC profile, CMYK or RGB; in a file: relative to that file"),
       choice<RenderingIntent>(
           "ink.intent",
@@ -242,21 +275,21 @@ std::vector<Parameter> ink_records() {
            {"perceptual", RenderingIntent::kPerceptual},
            {"saturation", RenderingIntent::kSaturation},
            {"absolute", RenderingIntent::kAbsolute}},
-          [](C& c) -> RenderingIntent& { return c.ink.intent; },
+          [](C& c) -> RenderingIntent& { return c.printer.intent; },
           "how the profile brings colours into the printer's range"),
       number(
-          "ink.limit", "", 0.1, 4, [](C& c) -> double& { return c.ink.limit; },
+          "ink.limit", "", 0.1, 4, [](C& c) -> double& { return c.design.inking.limit; },
           "largest sum of inks at a point that film and printer bear; 4: no limit"),
       choice<bool>(
           "ink.compensation", {{"on", true}, {"off", false}},
-          [](C& c) -> bool& { return c.ink.compensate; },
+          [](C& c) -> bool& { return c.design.inking.compensate; },
           "print more ink where the film will stretch"),
       choice<GamutPolicy>(
           "gamut.policy",
           {{"clip", GamutPolicy::kClip},
            {"scale", GamutPolicy::kScale},
            {"soft", GamutPolicy::kSoft}},
-          [](C& c) -> GamutPolicy& { return c.gamut_policy; },
+          [](C& c) -> GamutPolicy& { return c.design.inking.policy; },
           "where more ink is needed than fits: cut, lighten the whole image, or hold back "
           "smoothly"),
   };
@@ -265,13 +298,13 @@ std::vector<Parameter> ink_records() {
 std::vector<Parameter> print_records() {
   return {
       number(
-          "print.dpi", "dpi", 36, 1200, [](C& c) -> double& { return c.print.dpi; },
+          "print.dpi", "dpi", 36, 1200, [](C& c) -> double& { return c.design.dpi; },
           "resolution of the film image"),
       number(
-          "print.bleed_mm", "mm", 0, 50, [](C& c) -> double& { return c.print.bleed_mm; },
+          "print.bleed_mm", "mm", 0, 50, [](C& c) -> double& { return c.design.inverse.bleed_mm; },
           "colour extended around the region that touches the object"),
       integer(
-          "print.samples", "", 1, 8, [](C& c) -> int& { return c.print.samples; },
+          "print.samples", "", 1, 8, [](C& c) -> int& { return c.design.inverse.samples_per_axis; },
           "samples per pixel along each axis"),
       choice<InkSide>(
           "print.ink_side", {{"up", InkSide::kUp}, {"down", InkSide::kDown}},
@@ -279,7 +312,7 @@ std::vector<Parameter> print_records() {
           "which side of the film carries the ink on the water; down: mirrored"),
       choice<PrintColor>(
           "print.color", {{"rgb", PrintColor::kRgb}, {"cmyk", PrintColor::kCmyk}},
-          [](C& c) -> PrintColor& { return c.print.color; },
+          [](C& c) -> PrintColor& { return c.printer.color; },
           "colours of print.pdf: rgb for desktop printers, cmyk for print shops"),
       text(
           "print.job_name", ParameterType::kText,

@@ -27,7 +27,7 @@ void apply_dependent_defaults(JobConfig& config, const std::vector<Setting>& giv
   const bool graded = std::any_of(given.begin(), given.end(), [](const Setting& setting) {
     return setting.name == "film.grading";
   });
-  if (config.dip.scheme == DipScheme::kPaper && !graded) config.film.grading = 1;
+  if (config.design.dip.scheme == DipScheme::kPaper && !graded) config.design.film.grading = 1;
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ double flat_area(const FilmMesh& mesh, const Triangle& triangle) {
                                mesh.u[std::size_t(triangle[2])] - a));
 }
 
-void add_object(Coverage& sum, const Object& object, double depth_mm) {
+void add_object(Coverage& sum, const TriangleMesh& object, double depth_mm) {
   for (const Triangle& triangle : object.triangles) {
     const Vec3 area = area_vector(object.positions, triangle);
     double height = 0;
@@ -56,7 +56,7 @@ void add_film(Coverage& sum, const DippedFilm& film) {
 
 }  // namespace
 
-Coverage measure_coverage(const Object& object, const DippedFilm& film) {
+Coverage measure_coverage(const TriangleMesh& object, const DippedFilm& film) {
   Coverage sum;
   add_object(sum, object, film.depth_mm);
   add_film(sum, film);

@@ -29,6 +29,6 @@ struct Coverage {
 
 // Everything from the triangles of object and film alone: covered_mm2 is the area of the film as
 // it lies on the object, which is the object's to the accuracy of the film's mesh. Never NaN.
-Coverage measure_coverage(const Object& object, const DippedFilm& film);
+Coverage measure_coverage(const TriangleMesh& object, const DippedFilm& film);
 
 }  // namespace hydrodip

@@ -49,7 +49,7 @@ bool weights_in(const FilmMesh& mesh, std::int32_t triangle, const Vec2& target,
 }  // namespace
 
 struct FilmMap::Impl {
-  const Object& object;
+  const TriangleMesh& object;
   const Surface& surface;
   const DippedFilm& film;
   std::vector<std::uint8_t> lies;           // per film triangle
@@ -60,7 +60,7 @@ struct FilmMap::Impl {
   CoveredRim rim;
   double reach_mm;  // how far apart film and object may be: chords against curved surface
 
-  Impl(const Object& o, const Surface& s, const DippedFilm& f)
+  Impl(const TriangleMesh& o, const Surface& s, const DippedFilm& f)
       : object(o),
         surface(s),
         film(f),
@@ -143,7 +143,7 @@ struct FilmMap::Impl {
   }
 };
 
-FilmMap::FilmMap(const Object& object, const Surface& surface, const DippedFilm& film)
+FilmMap::FilmMap(const TriangleMesh& object, const Surface& surface, const DippedFilm& film)
     : impl_(std::make_unique<Impl>(object, surface, film)) {}
 FilmMap::~FilmMap() = default;
 FilmMap::FilmMap(FilmMap&&) noexcept = default;

@@ -13,7 +13,7 @@ namespace hydrodip {
 // Immutable once built, safe to query from many threads; keeps references to all three arguments.
 class FilmMap {
  public:
-  FilmMap(const Object& object, const Surface& surface, const DippedFilm& film);
+  FilmMap(const TriangleMesh& object, const Surface& surface, const DippedFilm& film);
   ~FilmMap();
   FilmMap(FilmMap&&) noexcept;
   FilmMap& operator=(FilmMap&&) noexcept;

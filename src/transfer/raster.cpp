@@ -90,8 +90,24 @@ SurfacePoint between(const std::array<SurfacePoint, 4>& p, double x, double y) {
   return {p[0].triangle, mix(&SurfacePoint::u), mix(&SurfacePoint::v)};
 }
 
+// What is printed of a point of the object.
+class Printed {
+ public:
+  Printed(const Paint& paint, const Allotment& allotment) : paint_(paint), allotment_(allotment) {}
+
+  LinearColor at(const SurfacePoint& point) const {
+    LinearColor color = paint_.color_at(point);
+    if (!allotment_.is_full()) color.a *= allotment_.at(point);
+    return color;
+  }
+
+ private:
+  const Paint& paint_;
+  const Allotment& allotment_;
+};
+
 // One pixel of the film image.
-LinearColor pixel_color(const Object& object, const FilmMap& map, const SheetRaster& raster,
+LinearColor pixel_color(const Printed& printed, const FilmMap& map, const SheetRaster& raster,
                         const InverseOptions& options, int x, int y, FilmMap::Cursor& cursor) {
   const int n = options.samples_per_axis;
   // One look for all samples: out of reach, or in the midst of the bleed, which shows little.
@@ -101,8 +117,7 @@ LinearColor pixel_color(const Object& object, const FilmMap& map, const SheetRas
   if (!nearest) return {0, 0, 0, 0};
   const double distance = (*nearest - centre).norm();
   if (distance > radius && distance + radius < options.bleed_mm)
-    if (const auto point = map.to_object(*nearest, cursor))
-      return color_at(object, *point, options.base);
+    if (const auto point = map.to_object(*nearest, cursor)) return printed.at(*point);
   const float weight = 1.0f / static_cast<float>(n * n);
   const Samples samples{raster.to_film(x, y), kMmPerInch / raster.dpi, n};
   ColorSum sum;
@@ -110,7 +125,7 @@ LinearColor pixel_color(const Object& object, const FilmMap& map, const SheetRas
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i) {
         const SurfacePoint point = between(*corners, double(i) / (n - 1), double(j) / (n - 1));
-        sum.add(color_at(object, point, options.base), weight);
+        sum.add(printed.at(point), weight);
       }
     return sum.color();
   }
@@ -121,7 +136,7 @@ LinearColor pixel_color(const Object& object, const FilmMap& map, const SheetRas
       if (!point && options.bleed_mm > 0)
         if (const auto near = map.nearest_covered(u, options.bleed_mm, cursor))
           point = map.to_object(*near, cursor);
-      if (point) sum.add(color_at(object, *point, options.base), weight);
+      if (point) sum.add(printed.at(*point), weight);
     }
   return sum.color();
 }
@@ -178,12 +193,17 @@ void for_each_inked(const FilmMap& map, const SheetRaster& raster, double bleed_
 
 }  // namespace
 
-Image film_image(const Object& object, const FilmMap& map, const SheetRaster& raster,
-                 const InverseOptions& options, RunContext& context) {
+SheetRaster raster_of(const FilmOptions& film, double dpi) {
+  return {film.width_mm, film.height_mm, dpi};
+}
+
+Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& raster,
+                 const InverseOptions& options, const Allotment& allotment, RunContext& context) {
   Image image(raster.width_px(), raster.height_px());
+  const Printed printed(paint, allotment);
   for_each_inked(map, raster, options.bleed_mm, "rastering", context,
                  [&](int x, int y, FilmMap::Cursor& cursor) {
-                   store(pixel_color(object, map, raster, options, x, y, cursor),
+                   store(pixel_color(printed, map, raster, options, x, y, cursor),
                          image.pixel(x, y));
                  });
   return image;

@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "base/context.h"
+#include "film/film.h"
 #include "image/image.h"
+#include "object/paint.h"
+#include "transfer/allotment.h"
 #include "transfer/film_map.h"
 
 namespace hydrodip {
@@ -26,15 +29,18 @@ struct SheetRaster {
   Vec2 to_pixel(const Vec2& u) const;
 };
 
+// The whole sheet of that film.
+SheetRaster raster_of(const FilmOptions& film, double dpi);
+
 struct InverseOptions {
-  double bleed_mm = 1;           // extended colour around the touched region
-  int samples_per_axis = 3;      // supersampling: squared per pixel
-  LinearColor base{1, 1, 1, 1};  // the bare object's colour
+  double bleed_mm = 1;       // extended colour around the touched region
+  int samples_per_axis = 3;  // supersampling: squared per pixel
 };
 
-// The image to print: opaque where ink goes, transparent elsewhere (partial alpha along edges).
-Image film_image(const Object& object, const FilmMap& map, const SheetRaster& raster,
-                 const InverseOptions& options, RunContext& context);
+// The image to print: opaque where ink goes, transparent elsewhere (partial alpha along edges, and
+// where the allotment gives this film a part of the ink only).
+Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& raster,
+                 const InverseOptions& options, const Allotment& allotment, RunContext& context);
 
 // How far the film of every pixel ends up stretched.
 struct FilmStretch {

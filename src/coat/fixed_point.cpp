@@ -1,4 +1,4 @@
-#include "coupling/fixed_point.h"
+#include "coat/fixed_point.h"
 
 #include <Eigen/QR>
 

@@ -1,4 +1,4 @@
-// How long each stage of a job took, and the memory at its highest.
+// How long each part of a job took, and the memory at its highest.
 #pragma once
 
 #include <chrono>
@@ -8,21 +8,21 @@
 
 namespace hydrodip {
 
-struct StageTime {
-  std::string stage;
+struct Timing {
+  std::string what;
   double seconds = 0;
 };
 
-class StageTimes {
+class Timings {
  public:
   // Runs work() and records how long it took; returns what it returns.
   template <class Work>
-  auto measure(const std::string& stage, Work&& work) {
-    const Timer timer(*this, stage);
+  auto measure(const std::string& what, Work&& work) {
+    const Timer timer(*this, what);
     return std::forward<Work>(work)();
   }
 
-  const std::vector<StageTime>& list() const { return list_; }
+  const std::vector<Timing>& list() const { return list_; }
   double total_s() const { return seconds_since(start_); }
 
  private:
@@ -34,19 +34,19 @@ class StageTimes {
 
   class Timer {
    public:
-    Timer(StageTimes& times, std::string stage)
-        : times_(times), stage_(std::move(stage)), start_(Clock::now()) {}
-    ~Timer() { times_.list_.push_back({std::move(stage_), seconds_since(start_)}); }
+    Timer(Timings& times, std::string what)
+        : times_(times), what_(std::move(what)), start_(Clock::now()) {}
+    ~Timer() { times_.list_.push_back({std::move(what_), seconds_since(start_)}); }
     Timer(const Timer&) = delete;
     Timer& operator=(const Timer&) = delete;
 
    private:
-    StageTimes& times_;
-    std::string stage_;
+    Timings& times_;
+    std::string what_;
     Clock::time_point start_;
   };
 
-  std::vector<StageTime> list_;
+  std::vector<Timing> list_;
   Clock::time_point start_ = Clock::now();
 };
 

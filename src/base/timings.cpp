@@ -1,4 +1,4 @@
-#include "job/stage_times.h"
+#include "base/timings.h"
 
 #include <sys/resource.h>
 

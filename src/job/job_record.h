@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "base/context.h"
-#include "job/dip_stage.h"
-#include "job/ink_stage.h"
+#include "base/timings.h"
+#include "coat/design.h"
 #include "job/jobs.h"
-#include "job/stage_times.h"
+#include "job/prepare.h"
 #include "report/report.h"
 #include "settings/config.h"
 
@@ -19,16 +19,18 @@ namespace hydrodip {
 struct JobRecord {
   std::string command;  // "print"
   const JobConfig& config;
+  const PreparedObject& prepared;
   const std::vector<ReportInput>& inputs;
   const DippedObject& dipped;
-  const StageTimes& times;
+  const Timings& times;
   RunContext& context;
   const InkResult* ink = nullptr;  // of print
   std::string ink_model;           // how colours became inks
 };
 
 // Every file that the job reads, with its hash as it was read. Call it next to reading them.
-std::vector<ReportInput> describe_inputs(const JobConfig& config, const LoadedObject& loaded);
+std::vector<ReportInput> describe_inputs(const JobConfig& config, const PreparedObject& prepared,
+                                         const Printer& printer);
 
 Report make_report(const JobRecord& record);
 

@@ -1,9 +1,10 @@
-#include "job/record.h"
+#include "job/job_record.h"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
+#include "base/file.h"
 #include "settings/params.h"
 
 namespace hydrodip {
@@ -61,7 +62,7 @@ std::vector<ReportFigure> ink_figures(const InkRound& round, bool first) {
 }
 
 std::vector<ReportRound> rounds(const JobRecord& record) {
-  if (record.ink == nullptr) return {{"dip", 1, dip_figures(record.dipped.dip.statistics)}};
+  if (record.ink == nullptr) return {{"dip", 1, dip_figures(record.dipped.statistics)}};
   std::vector<ReportRound> list;
   const auto add = [&](const std::string& film, const std::vector<InkRound>& rounds) {
     for (std::size_t n = 0; n < rounds.size(); ++n)
@@ -97,8 +98,8 @@ void add_ink(const JobRecord& record, std::vector<ReportFigure>& figures) {
 }
 
 std::vector<ReportFigure> figures(const DippedObject& dipped) {
-  const Vec3 size = dipped.object().bounds().size();
-  const DippedFilm& film = dipped.film();
+  const Vec3 size = dipped.posed.mesh().bounds().size();
+  const DippedFilm& film = *dipped.film;
   return {{"object_size_mm", "Object as posed (x, y, z)",
            std::array<double, 3>{size.x(), size.y(), size.z()}, "mm"},
           {"depth_mm", "Depth of the dip", film.depth_mm, "mm"},
@@ -115,13 +116,15 @@ std::string role_of(const std::filesystem::path& file, const JobConfig& config) 
 
 }  // namespace
 
-std::vector<ReportInput> describe_inputs(const JobConfig& config, const LoadedObject& loaded) {
+std::vector<ReportInput> describe_inputs(const JobConfig& config, const PreparedObject& prepared,
+                                         const Printer& printer) {
   std::vector<ReportInput> inputs;
-  for (const auto& file : loaded.files)
+  for (const auto& file : prepared.files)
     inputs.push_back(describe_input(role_of(file, config), file));
   if (!config.film_image.empty()) inputs.push_back(describe_input("film image", config.film_image));
-  if (!config.ink.profile.empty())
-    inputs.push_back(describe_input("printer profile", config.ink.profile));
+  if (!printer.profile_file.empty())
+    inputs.push_back({"printer profile", printer.profile_file.string(),
+                      sha256_hex(printer.profile_bytes), printer.profile_bytes.size()});
   for (const auto& file : config.settings_files) inputs.push_back(describe_input("settings", file));
   return inputs;
 }
@@ -136,15 +139,14 @@ Report make_report(const JobRecord& record) {
   report.inputs = record.inputs;
   for (const Parameter& parameter : parameters())
     report.parameters.push_back(describe_parameter(parameter, record.config));
-  for (const StageTime& time : record.times.list())
-    report.stages.push_back({time.stage, time.seconds});
+  for (const Timing& time : record.times.list()) report.stages.push_back({time.what, time.seconds});
   report.total_seconds = record.times.total_s();
   report.rounds = rounds(record);
   report.coverage = record.dipped.coverage;
   report.angles = record.dipped.angles;
-  report.mesh = record.dipped.loaded.health;
-  report.tear_stretch = record.config.dip.material.tear_stretch;
-  if (record.command == "print") report.bleed_mm = record.config.print.bleed_mm;
+  report.mesh = record.prepared.health;
+  report.tear_stretch = record.config.design.dip.material.tear_stretch;
+  if (record.command == "print") report.bleed_mm = record.config.design.inverse.bleed_mm;
   report.figures = figures(record.dipped);
   add_ink(record, report.figures);
   report.warnings = record.context.warnings();

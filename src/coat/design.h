@@ -1,0 +1,80 @@
+// What is printed for one dip, and how its ink changes the dip: simulate, invert, stiffen, and
+// again until the film stays where it is (paper section 3.4).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "coat/dipped_object.h"
+#include "film/film.h"
+#include "ink/discoloration.h"
+#include "ink/stiffness.h"
+#include "object/paint.h"
+#include "transfer/allotment.h"
+#include "transfer/raster.h"
+
+namespace hydrodip {
+
+struct DesignOptions {
+  FilmOptions film;
+  double depth_mm = 0;  // 0: the whole object
+  DipOptions dip;       // with the film's material
+  StiffnessOptions stiffness;
+  int rounds_max = 10;  // simulate, invert, stiffen, repeat: at most this often
+  double dpi = 300;     // of what is printed
+  InverseOptions inverse;
+  InkingOptions inking;  // its base is the paint's
+};
+
+// What lies on the film, and what comes of it on the object.
+struct FilmInk {
+  Image wanted;  // per pixel of the film, what shall appear on the object; transparent: no ink
+  FilmStretch stretch;
+  Inking inking;
+  Image on_object;  // what will appear
+};
+
+// One round of the iteration.
+struct InkRound {
+  bool tears_kept = false;  // torn as in an earlier round
+  double change_mm = 0;     // mean way of the film on the object since the round before
+  double printed_mm2 = 0;   // area of the film image that carries colour
+  double mean_modulus = 1;  // of the film that was dipped, over blank film
+  DipStatistics dip;
+};
+
+// A loop is settled when the film on the object moved less than this on average.
+inline constexpr double kSettled_mm = 1e-4;
+
+struct InkResult {
+  FilmInk ink;  // of the last round
+  Reach reach;
+  std::vector<InkRound> coarse_rounds;  // on coarser film, before the others
+  std::vector<InkRound> rounds;
+  bool settled = false;
+
+  // The mean way that the last round moved the film; if the film itself was dipped only once, the
+  // coarse film.
+  double last_change_mm() const;
+};
+
+struct Designed {
+  DippedObject dipped;  // with its ink
+  InkResult ink;
+};
+
+// What a design is made for. Refers to all of it.
+struct DesignTask {
+  const PosedObject& posed;
+  const Paint& paint;
+  const Allotment& allotment;  // what of the paint this film brings
+  const ColorModel& model;
+  const DesignOptions& options;
+};
+
+// Dips until ink and film agree, at most rounds_max times. Where film tears, the first two rounds
+// are made on coarser film before: if they tell that ink and film never agree, the film itself is
+// dipped once. Warns where they do not agree.
+Designed design(const DesignTask& task, Timings& timings, RunContext& context);
+
+}  // namespace hydrodip

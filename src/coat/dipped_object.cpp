@@ -1,0 +1,31 @@
+#include "coat/dipped_object.h"
+
+#include <utility>
+
+namespace hydrodip {
+
+DippedObject dip_object(const PosedObject& posed, const FilmMesh& film, double depth_mm,
+                        const DipOptions& options, Timings& timings, RunContext& context) {
+  DippedObject result{.posed = posed};
+  const TriangleMesh& mesh = posed.mesh();
+  timings.measure("dip", [&] {
+    auto history = std::make_shared<DipHistory>();
+    DipOptions to_depth = options;
+    to_depth.depth_mm = depth_mm;
+    DipResult dipped = dip(film, mesh.positions, mesh.triangles, posed.surface(), to_depth, context,
+                           [&](auto&&... state) { history->record(state...); });
+    result.film = std::make_shared<const DippedFilm>(std::move(dipped.film));
+    result.statistics = dipped.statistics;
+    result.history = std::move(history);
+  });
+  timings.measure("map", [&] {
+    context.progress("mapping", 0);
+    result.map = std::make_shared<const FilmMap>(mesh, posed.surface(), *result.film);
+    result.coverage = measure_coverage(mesh, *result.film);
+    result.angles = dip_angles(mesh, result.film->depth_mm);
+    context.progress("mapping", 1);
+  });
+  return result;
+}
+
+}  // namespace hydrodip

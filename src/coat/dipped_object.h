@@ -1,0 +1,32 @@
+// One dip of an object, and what everybody asks of it afterwards.
+#pragma once
+
+#include <memory>
+
+#include "base/context.h"
+#include "base/timings.h"
+#include "dip/dip.h"
+#include "dip/dip_history.h"
+#include "object/dip_angles.h"
+#include "object/posed_object.h"
+#include "transfer/coverage.h"
+#include "transfer/film_map.h"
+
+namespace hydrodip {
+
+// A value: copies share what is large, and none of it changes.
+struct DippedObject {
+  PosedObject posed;
+  std::shared_ptr<const DippedFilm> film = {};
+  DipStatistics statistics = {};
+  std::shared_ptr<const DipHistory> history = {};
+  std::shared_ptr<const FilmMap> map = {};
+  Coverage coverage = {};
+  DipAngles angles = {};
+};
+
+// Simulates the dip of an object on film that it fits. Throws as dip().
+DippedObject dip_object(const PosedObject& posed, const FilmMesh& film, double depth_mm,
+                        const DipOptions& options, Timings& timings, RunContext& context);
+
+}  // namespace hydrodip

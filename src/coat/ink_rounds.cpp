@@ -1,0 +1,172 @@
+#include "coat/ink_rounds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+// Whether film tears, and whether the last triangle at the rim touches, is yes or no: where that is
+// undecided, two rounds can disagree forever. After so many rounds, of which the last knew the ink
+// all but in its place, film tears where and when it did, and what is printed keeps its outline.
+// Then a dip changes smoothly with its ink.
+constexpr int kFreeRounds = 2;
+// And then the next ink can be guessed from so many rounds and the last one.
+constexpr int kMixed = 2;
+// All four inks at once make film so many times as stiff as one alone.
+constexpr double kMostInks = 4;
+// From there on two rounds have to bring the change below this share.
+constexpr double kLeastProgress = 0.5;
+// Film that its first ink moves so far on average hangs in flaps that fall another way every time.
+constexpr double kHopeless_mm = 2;
+// Film torn to flaps or stretched too far may have no equilibrium that can be found once ink
+// stiffens it. A dip that fails in more than this share of its steps is to be planned anew.
+constexpr double kFailedSteps = 0.02;
+// While ink and film settle, the film image need only be as fine as stiffness can tell: several
+// pixels to a millimetre.
+constexpr double kRoundsDpi = 150;
+
+// Of the film that lies on the object in both. What floats on or has torn off leaves no trace.
+double mean_way(const DippedFilm& from, const DippedFilm& to) {
+  std::vector<std::uint8_t> counts(from.position.size(), 0);
+  for (std::size_t t = 0; t < from.mesh.triangles.size(); ++t)
+    if (from.lies_on_object(t) && to.lies_on_object(t))
+      for (const std::int32_t v : from.mesh.triangles[t]) counts[std::size_t(v)] = 1;
+  double sum = 0, count = 0;
+  for (std::size_t v = 0; v < counts.size(); ++v) {
+    if (!counts[v]) continue;
+    sum += (to.position[v] - from.position[v]).norm();
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+double printed_area_mm2(const Image& wanted, double dpi) {
+  double pixels = 0;
+  for (std::size_t i = 3; i < wanted.rgba.size(); i += 4) pixels += wanted.rgba[i] / 255.0;
+  return pixels * (kMmPerInch / dpi) * (kMmPerInch / dpi);
+}
+
+double mean_of(const std::vector<double>& values) {
+  if (values.empty()) return 1;
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / double(values.size());
+}
+
+}  // namespace
+
+InkRounds::InkRounds(const DesignTask& task, const DesignOptions& options, const FilmMesh& film,
+                     Timings& timings, RunContext& context)
+    : task_(task),
+      options_(options),
+      film_(film),
+      timings_(timings),
+      context_(context),
+      rounds_dpi_(std::min(options.dpi, kRoundsDpi)),
+      dip_options_(options.dip),
+      mixer_(kMixed) {}
+
+Outcome InkRounds::next() {
+  if (number() > 0) stiffen();
+  if (!dip()) return Outcome::kFailed;
+  ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
+  judge();
+  return outcome();
+}
+
+std::vector<double> InkRounds::modulus_of(const FilmMesh& film) const {
+  return film_modulus(film, ink_.inking.inks, raster_of(options_.film, rounds_dpi_),
+                      options_.stiffness);
+}
+
+FilmInk InkRounds::print(double dpi, bool all) const {
+  if (!outline_.is_kept()) return print_by(*dipped_->map, dpi);
+  const Surface& surface = dipped_->posed.surface();
+  const DippedFilm kept = outline_.applied(*dipped_->film, surface, all);
+  return print_by(FilmMap(dipped_->posed.mesh(), surface, kept), dpi);
+}
+
+FilmInk InkRounds::print_by(const FilmMap& map, double dpi) const {
+  const SheetRaster raster = raster_of(options_.film, dpi);
+  InkingOptions inking = options_.inking;
+  inking.base = task_.paint.base();
+  FilmInk ink;
+  ink.wanted = film_image(task_.paint, map, raster, options_.inverse, task_.allotment, context_);
+  ink.stretch = film_stretch(map, raster, options_.inverse.bleed_mm, context_);
+  ink.inking = ink_film(ink.wanted, ink.stretch.area_ratio, task_.model, inking, context_);
+  return ink;
+}
+
+// False if the film cannot be dipped with its ink: then the last dip stays.
+bool InkRounds::dip() {
+  if (number() > 0) before_ = dipped_;
+  dip_options_.failed_share_max = dip_options_.modulus.empty() ? 1 : kFailedSteps;
+  try {
+    dipped_ = dip_object(task_.posed, film_, options_.depth_mm, dip_options_, timings_, context_);
+  } catch (const DipError&) {
+    if (dip_options_.modulus.empty()) throw;
+    return false;
+  }
+  return true;
+}
+
+void InkRounds::judge() {
+  InkRound round;
+  round.tears_kept = !dip_options_.tear_levels.empty();
+  if (before_) round.change_mm = mean_way(*before_->film, *dipped_->film);
+  round.printed_mm2 = printed_area_mm2(ink_.wanted, rounds_dpi_);
+  round.mean_modulus = mean_of(dip_options_.modulus);
+  round.dip = dipped_->statistics;
+  rounds_.push_back(round);
+  if (before_)
+    context_.log(fmt::format("ink, round {}: the film moved by {:.2g} mm on average", number(),
+                             round.change_mm));
+}
+
+double InkRounds::change(int rounds_ago) const {
+  return number() > rounds_ago ? rounds_.rbegin()[rounds_ago].change_mm : 0;
+}
+
+Outcome InkRounds::outcome() const {
+  if (before_ && change(0) < kSettled_mm) return Outcome::kSettled;
+  if (number() == kFreeRounds && change(0) > kHopeless_mm) return Outcome::kHopeless;
+  if (number() >= options_.rounds_max) return Outcome::kUnsettled;
+  // What does not settle costs a dip each round.
+  const bool stands = number() > kFreeRounds + 2 && change(0) > kLeastProgress * change(2);
+  return stands ? Outcome::kUnsettled : Outcome::kGoesOn;
+}
+
+// The film to dip next.
+void InkRounds::stiffen() {
+  if (number() == kFreeRounds) {
+    dip_options_.tear_levels = dipped_->film->tear_level;
+    outline_.keep(*dipped_->film);
+  }
+  std::vector<double> modulus = timings_.measure("stiffness", [&] { return modulus_of(film_); });
+  dip_options_.modulus = dip_options_.modulus.empty() ? modulus : mixed(modulus);
+}
+
+// In the measure in which stiffness matters: next to soft film, hard ink and harder ink act alike.
+std::vector<double> InkRounds::mixed(const std::vector<double>& modulus) {
+  const auto compliance = [](const std::vector<double>& values) {
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(values.data(), Eigen::Index(values.size()))
+            .array()
+            .rsqrt());
+  };
+  const double least = 1 / std::sqrt(kMostInks * options_.stiffness.ratio);
+  const Eigen::VectorXd next = mixer_.next(compliance(dip_options_.modulus), compliance(modulus))
+                                   .cwiseMax(least)
+                                   .cwiseMin(1.0)
+                                   .array()
+                                   .square()
+                                   .inverse();
+  return {next.begin(), next.end()};
+}
+
+}  // namespace hydrodip

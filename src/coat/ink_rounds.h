@@ -1,0 +1,62 @@
+// The rounds in which ink and film come to agree: dip, print, stiffen, and again.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "coat/design.h"
+#include "coat/fixed_point.h"
+#include "coat/printed_outline.h"
+
+namespace hydrodip {
+
+// What a round has led to.
+enum class Outcome { kGoesOn, kSettled, kUnsettled, kHopeless, kFailed };
+
+class InkRounds {
+ public:
+  // Refers to all of them. `film` is that of options.film.
+  InkRounds(const DesignTask& task, const DesignOptions& options, const FilmMesh& film,
+            Timings& timings, RunContext& context);
+
+  // The modulus of the first film; blank unless told.
+  void begin_with(std::vector<double> modulus) { dip_options_.modulus = std::move(modulus); }
+
+  Outcome next();
+
+  const std::vector<InkRound>& rounds() const { return rounds_; }
+  // As dipped last.
+  const DippedObject& dipped() const { return *dipped_; }
+
+  // That the ink of the last round gives to a film.
+  std::vector<double> modulus_of(const FilmMesh& film) const;
+
+  // What to print at `dpi` on the film as it was dipped last; `all`: wherever it lies on the
+  // object.
+  FilmInk print(double dpi, bool all) const;
+
+ private:
+  int number() const { return int(rounds_.size()); }
+  double change(int rounds_ago) const;
+  bool dip();
+  void judge();
+  Outcome outcome() const;
+  void stiffen();
+  std::vector<double> mixed(const std::vector<double>& modulus);
+  FilmInk print_by(const FilmMap& map, double dpi) const;
+
+  const DesignTask task_;
+  const DesignOptions& options_;
+  const FilmMesh& film_;
+  Timings& timings_;
+  RunContext& context_;
+  double rounds_dpi_;
+  DipOptions dip_options_;  // of the next dip
+  std::optional<DippedObject> before_, dipped_;
+  PrintedOutline outline_;
+  FixedPoint mixer_;
+  FilmInk ink_;  // of the last round
+  std::vector<InkRound> rounds_;
+};
+
+}  // namespace hydrodip

@@ -1,0 +1,167 @@
+#include "plan/fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+// Rounding in a model's coordinates must not refuse an object that just fits.
+constexpr double kFitTolerance_mm = 1e-6;
+// Film needs room to stretch between the object and the tape.
+constexpr double kComfortableClearance_mm = 5;
+
+// A unit mistaken (metres read as inches, ...) shows as a misfit of this factor.
+constexpr double kSuspiciousMisfit = 9;
+
+// Millimetres to a hundredth, without trailing zeros.
+std::string mm(double length_mm) {
+  std::string text = fmt::format("{:.2f}", length_mm);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text + " mm";
+}
+
+// Extent of the part of the object that gets wet, as seen from the film's centre.
+struct Footprint {
+  double half_width_mm = 0;   // largest |x|
+  double half_height_mm = 0;  // largest |y|
+  double radius_mm = 0;
+
+  void add(const Vec3& p) {
+    half_width_mm = std::max(half_width_mm, std::abs(p.x()));
+    half_height_mm = std::max(half_height_mm, std::abs(p.y()));
+    radius_mm = std::max(radius_mm, std::hypot(p.x(), p.y()));
+  }
+};
+
+// Triangles are cut at the water line: a partly dipped funnel may be wider above it.
+Footprint wet_footprint(const TriangleMesh& posed, double depth_mm) {
+  Footprint footprint;
+  for (const Triangle& triangle : posed.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const Vec3& a =
+          posed.positions[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
+      const Vec3& b =
+          posed
+              .positions[static_cast<std::size_t>(triangle[static_cast<std::size_t>((k + 1) % 3)])];
+      if (a.z() <= depth_mm) footprint.add(a);
+      if ((a.z() <= depth_mm) != (b.z() <= depth_mm))
+        footprint.add(a + (b - a) * ((depth_mm - a.z()) / (b.z() - a.z())));
+    }
+  return footprint;
+}
+
+// "--size 71": the largest extent at which the object would just fit; "" if size cannot help.
+std::string shrunk_size(const TriangleMesh& posed, double needed_mm, double available_mm) {
+  const double size = std::floor(posed.bounds().size().maxCoeff() * available_mm / needed_mm);
+  return size >= 1 ? fmt::format("--size {:.0f} or less", size) : "--size";
+}
+
+RoomFit film_fit(const TriangleMesh& posed, const std::string& what, double needed_mm,
+                 double available_mm) {
+  const std::string remedy =
+      fmt::format("shrink it with {}, turn it with --rotate, or take a larger --film",
+                  shrunk_size(posed, needed_mm, available_mm));
+  return {what, "the free film inside the taped rim", needed_mm, available_mm, remedy};
+}
+
+RoomFit bath_fit(const TriangleMesh& posed, const std::string& what, double needed_mm,
+                 double available_mm) {
+  const std::string remedy = fmt::format(
+      "shrink it with {}, turn it with --rotate or --down, or give the size of your bath with "
+      "--set bath.{}_mm=...",
+      shrunk_size(posed, needed_mm, available_mm),
+      what.starts_with("wide") ? "width" : (what.starts_with("long") ? "height" : "depth"));
+  return {what, "the bath", needed_mm, available_mm, remedy};
+}
+
+// The bath lies under the sheet with its longer side along the sheet's longer side.
+Vec2 bath_along_film(const FilmOptions& film, const BathOptions& bath) {
+  const double longer = std::max(bath.width_mm, bath.height_mm);
+  const double shorter = std::min(bath.width_mm, bath.height_mm);
+  return film.width_mm > film.height_mm ? Vec2(longer, shorter) : Vec2(shorter, longer);
+}
+
+void add_film_fits(std::vector<RoomFit>& list, const TriangleMesh& posed,
+                   const Footprint& footprint, const FilmOptions& film) {
+  if (film.shape == FilmShape::kDisc) {
+    const double diameter = std::min(film.width_mm, film.height_mm) - 2 * film.margin_mm;
+    list.push_back(film_fit(posed, "across", 2 * footprint.radius_mm, diameter));
+    return;
+  }
+  list.push_back(
+      film_fit(posed, "wide (x)", 2 * footprint.half_width_mm, film.width_mm - 2 * film.margin_mm));
+  list.push_back(film_fit(posed, "long (y)", 2 * footprint.half_height_mm,
+                          film.height_mm - 2 * film.margin_mm));
+}
+
+void add_bath_fits(std::vector<RoomFit>& list, const TriangleMesh& posed, double depth_mm,
+                   const Footprint& footprint, const FilmOptions& film, const BathOptions& tank) {
+  const Vec2 bath = bath_along_film(film, tank);
+  list.push_back(bath_fit(posed, "wide (x)", 2 * footprint.half_width_mm, bath.x()));
+  list.push_back(bath_fit(posed, "long (y)", 2 * footprint.half_height_mm, bath.y()));
+  RoomFit depth = bath_fit(posed, "deep in the water", depth_mm, tank.depth_mm);
+  depth.remedy = "dip less of it with --depth, " + depth.remedy;
+  list.push_back(depth);
+}
+
+void warn_if_sheet_exceeds_bath(const FilmOptions& film, const BathOptions& tank,
+                                RunContext& context) {
+  const Vec2 bath = bath_along_film(film, tank);
+  if (film.width_mm <= bath.x() && film.height_mm <= bath.y()) return;
+  context.warn(fmt::format(
+      "The film of {} by {} is larger than the bath of {} by {}: cut it, or give the size of your "
+      "bath (bath.width_mm, bath.height_mm).",
+      mm(film.width_mm), mm(film.height_mm), mm(bath.x()), mm(bath.y())));
+}
+
+void warn_if_tight(const std::vector<RoomFit>& list, RunContext& context) {
+  for (const RoomFit& fit : list) {
+    if (fit.room == "the bath" || -fit.excess_mm() >= 2 * kComfortableClearance_mm) continue;
+    context.warn(fmt::format(
+        "Only {} of free film is left beside the object where it is {} {}: the film there will "
+        "stretch strongly; a larger --film helps.",
+        mm(-0.5 * fit.excess_mm()), mm(fit.needed_mm), fit.what));
+  }
+}
+
+}  // namespace
+
+double depth_of_dip_mm(const TriangleMesh& posed, double wanted_mm) {
+  const double height_mm = posed.bounds().max.z();
+  return wanted_mm > 0 ? std::min(wanted_mm, height_mm) : height_mm;
+}
+
+std::vector<RoomFit> film_fits(const TriangleMesh& posed, double depth_mm,
+                               const FilmOptions& film) {
+  std::vector<RoomFit> list;
+  add_film_fits(list, posed, wet_footprint(posed, depth_mm), film);
+  return list;
+}
+
+std::vector<RoomFit> fits(const TriangleMesh& posed, double depth_mm, const FilmOptions& film,
+                          const BathOptions& bath) {
+  std::vector<RoomFit> list = film_fits(posed, depth_mm, film);
+  add_bath_fits(list, posed, depth_mm, wet_footprint(posed, depth_mm), film, bath);
+  return list;
+}
+
+void require_fit(const TriangleMesh& posed, double depth_mm, const FilmOptions& film,
+                 const BathOptions& bath, RunContext& context) {
+  const std::vector<RoomFit> list = fits(posed, depth_mm, film, bath);
+  for (const RoomFit& fit : list)
+    if (fit.excess_mm() > kFitTolerance_mm)
+      throw InputError(fmt::format(
+          "the object is {} {}, {} more than the {} of {}: {}{}", mm(fit.needed_mm), fit.what,
+          mm(fit.excess_mm()), mm(fit.available_mm), fit.room, fit.remedy,
+          fit.needed_mm > kSuspiciousMisfit * fit.available_mm ? "; are its --units right?" : ""));
+  warn_if_sheet_exceeds_bath(film, bath, context);
+  warn_if_tight(list, context);
+}
+
+}  // namespace hydrodip
