@@ -21,7 +21,7 @@ std::unique_ptr<DippedObject> undipped(LoadedObject posed) {
   return object;
 }
 
-void dip_again(DippedObject& dipped, const FilmMesh& film, const DipOptions& options,
+void dip_again(DippedObject& dipped, const SharedFilmMesh& film, const DipOptions& options,
                StageTimes& times, RunContext& context) {
   const Object& object = dipped.object();
   times.measure("dip", [&] {

@@ -47,9 +47,9 @@ constexpr double kCoarseDpi = 75;
 // Of the film that lies on the object in both. What floats on or has torn off leaves no trace.
 double mean_way(const DippedFilm& from, const DippedFilm& to) {
   std::vector<std::uint8_t> counts(from.position.size(), 0);
-  for (std::size_t t = 0; t < from.mesh.triangles.size(); ++t)
+  for (std::size_t t = 0; t < from.mesh().triangles.size(); ++t)
     if (from.lies_on_object(t) && to.lies_on_object(t))
-      for (const std::int32_t v : from.mesh.triangles[t]) counts[std::size_t(v)] = 1;
+      for (const std::int32_t v : from.mesh().triangles[t]) counts[std::size_t(v)] = 1;
   double sum = 0, count = 0;
   for (std::size_t v = 0; v < counts.size(); ++v) {
     if (!counts[v]) continue;
@@ -79,7 +79,7 @@ class PrintedOutline {
   bool is_kept() const { return !kept_.empty(); }
 
   void keep(const DippedFilm& film) {
-    for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t)
+    for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t)
       kept_.push_back(film.lies_on_object(t));
   }
 
@@ -89,9 +89,9 @@ class PrintedOutline {
     DippedFilm result = film;
     for (std::size_t t = 0; t < kept_.size(); ++t) {
       if (!kept_[t] || film.torn[t]) continue;
-      for (const std::int32_t v : film.mesh.triangles[t])
+      for (const std::int32_t v : film.mesh().triangles[t])
         if (film.state[std::size_t(v)] == VertexState::kUnattached &&
-            surface.closest_point(film.position[std::size_t(v)], film.mesh.cell_mm))
+            surface.closest_point(film.position[std::size_t(v)], film.mesh().cell_mm))
           result.state[std::size_t(v)] = VertexState::kAttached;
     }
     for (std::size_t t = 0; t < kept_.size(); ++t)
@@ -137,7 +137,7 @@ FilmInk ink_for(const DippedObject& dipped, const FilmMap& map, const ColorModel
 // What rounds of ink are about.
 struct InkSetting {
   DippedObject& dipped;
-  const FilmMesh& film;  // config.film's
+  const SharedFilmMesh& film;  // config.film's
   const ColorModel& model;
   const JobConfig& config;
   StageTimes& times;
@@ -233,7 +233,7 @@ class InkRounds {
       outline_.keep(set_.dipped.film());
     }
     std::vector<double> modulus =
-        set_.times.measure("stiffness", [&] { return modulus_of(set_.film); });
+        set_.times.measure("stiffness", [&] { return modulus_of(*set_.film); });
     options_.modulus = options_.modulus.empty() ? modulus : mixed(modulus);
   }
 
@@ -310,7 +310,7 @@ class InkSettling {
     const double step_mm = config.dip.step_mm;
     config.dip.step_mm = std::min(kLonger * step_mm, std::max(step_mm, kLongestStep_mm));
     config.print.dpi = std::min(config.print.dpi, kCoarseDpi);
-    const FilmMesh film = make_film_mesh(config.film);
+    const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
     InkRounds rounds({set_.dipped, film, set_.model, config, set_.times, set_.context});
     Outcome outcome = rounds.next();
     const std::vector<std::uint8_t>& torn = set_.dipped.film().torn;
@@ -318,7 +318,7 @@ class InkSettling {
     if (tears) outcome = rounds.next();
     result_.coarse_rounds = rounds.rounds();
     if (outcome != Outcome::kHopeless) return std::nullopt;
-    return rounds.modulus_of(set_.film);
+    return rounds.modulus_of(*set_.film);
   }
 
   void warn(Outcome outcome) {
@@ -378,7 +378,7 @@ std::unique_ptr<ColorModel> color_model(const JobConfig& config) {
   return make_device_model();
 }
 
-InkResult settle_ink(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
+InkResult settle_ink(DippedObject& dipped, const SharedFilmMesh& film, const ColorModel& model,
                      const JobConfig& config, StageTimes& times, RunContext& context) {
   return InkSettling({dipped, film, model, config, times, context}).run();
 }

@@ -50,7 +50,7 @@ struct InkResult {
 // Where film tears, the first two rounds are made on coarser film before: if they tell that ink and
 // film never agree, the film itself is dipped once. Warns where they do not agree. `film` is
 // config.film's.
-InkResult settle_ink(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
+InkResult settle_ink(DippedObject& dipped, const SharedFilmMesh& film, const ColorModel& model,
                      const JobConfig& config, StageTimes& times, RunContext& context);
 
 }  // namespace hydrodip

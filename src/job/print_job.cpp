@@ -63,7 +63,7 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
   OutputFolder folder(config.output);
   StageTimes times;
 
-  const FilmMesh film = make_film_mesh(config.film);
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
   LoadedObject posed = times.measure("load", [&] { return load_posed(config, context); });
   const std::vector<ReportInput> inputs = describe_inputs(config, posed);
   require_appearance(posed.object, config.model);

@@ -93,11 +93,11 @@ PrintedFilm printed_film(const JobConfig& config, const ColorModel& model) {
 }
 
 // The checkerboard is there to show the stretch: it stiffens nothing, and does not pale.
-void dip_with_ink(DippedObject& dipped, const FilmMesh& film, const PrintedFilm& printed,
+void dip_with_ink(DippedObject& dipped, const SharedFilmMesh& film, const PrintedFilm& printed,
                   const JobConfig& config, StageTimes& times, RunContext& context) {
   DipOptions options = config.dip;
   if (!config.film_image.empty() && config.ink.rounds_max > 1)
-    options.modulus = film_modulus(film, printed.inks, printed.raster,
+    options.modulus = film_modulus(*film, printed.inks, printed.raster,
                                    {config.ink.stiffness_ratio, config.ink.filter_mm});
   dip_again(dipped, film, options, times, context);
 }
@@ -117,7 +117,7 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
   OutputFolder folder(config.output);
   StageTimes times;
 
-  const FilmMesh film = make_film_mesh(config.film);
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
   LoadedObject posed = times.measure("load", [&] { return load_posed(config, context); });
   const std::vector<ReportInput> inputs = describe_inputs(config, posed);
   require_fit(posed.object, config, context);
