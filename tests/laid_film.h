@@ -60,19 +60,19 @@ inline DippedFilm film_under_ball(double reach_mm = 16) {
   options.height_mm = 100;
   options.elements = 3000;
   DippedFilm film;
-  film.mesh = make_film_mesh(options);
-  for (std::size_t v = 0; v < film.mesh.u.size(); ++v) {
-    const Vec2& u = film.mesh.u[v];
+  film.shared_mesh = std::make_shared<const FilmMesh>(make_film_mesh(options));
+  for (std::size_t v = 0; v < film.mesh().u.size(); ++v) {
+    const Vec2& u = film.mesh().u[v];
     const bool lies = u.norm() <= reach_mm;
     const double cosine = lies ? std::sqrt(1 - u.squaredNorm() / (kRadius * kRadius)) : 1;
     film.position.emplace_back(u.x(), u.y(), kRadius * (1 - cosine));
-    film.state.push_back(film.mesh.on_rim[v] ? VertexState::kClamped
-                         : lies              ? VertexState::kAttached
-                                             : VertexState::kUnattached);
+    film.state.push_back(film.mesh().on_rim[v] ? VertexState::kClamped
+                         : lies                ? VertexState::kAttached
+                                               : VertexState::kUnattached);
     film.area_ratio.push_back(1 / cosine);
     film.stretch.push_back(1 / cosine);
   }
-  film.torn.assign(film.mesh.triangles.size(), 0);
+  film.torn.assign(film.mesh().triangles.size(), 0);
   film.depth_mm = kRadius;
   return film;
 }

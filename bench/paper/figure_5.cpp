@@ -74,7 +74,7 @@ struct Outcome {
 Outcome print_and_dip(JobConfig config, bool compensate, const Study& study) {
   config.ink.compensate = compensate;
   const auto model = make_device_model();
-  const FilmMesh film = make_film_mesh(config.film);
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
   const SheetRaster raster = sheet_raster(config, config.print.dpi);
   const auto sphere = to_dip(blue_sphere());
   const InkResult print =

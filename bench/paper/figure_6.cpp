@@ -109,8 +109,8 @@ struct Forward {
   Image film, even_picture, inked_picture;
 };
 
-Forward dip_checkerboard(const JobConfig& config, const FilmMesh& film, const ColorModel& model,
-                         const Study& study) {
+Forward dip_checkerboard(const JobConfig& config, const SharedFilmMesh& film,
+                         const ColorModel& model, const Study& study) {
   const SheetRaster raster = sheet_raster(config, config.print.dpi);
   const Image board = checkerboard(raster);
   const auto even = to_dip(make_sample("pyramid")), inked = to_dip(make_sample("pyramid"));
@@ -153,7 +153,7 @@ struct Printed {
   Image object;
 };
 
-Printed print_and_dip(int rounds, const JobConfig& config, const FilmMesh& film,
+Printed print_and_dip(int rounds, const JobConfig& config, const SharedFilmMesh& film,
                       const ColorModel& model, const Study& study) {
   const SheetRaster raster = sheet_raster(config, config.print.dpi);
   const auto design = to_dip(make_sample("pyramid")), dip = to_dip(make_sample("pyramid"));
@@ -171,7 +171,7 @@ Printed print_and_dip(int rounds, const JobConfig& config, const FilmMesh& film,
 std::string figure_6(const Study& study) {
   const JobConfig config = paper_config();
   const auto model = make_device_model();
-  const FilmMesh film = make_film_mesh(config.film);
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
 
   const Forward forward = dip_checkerboard(config, film, *model, study);
   const Printed without = print_and_dip(1, config, film, *model, study);

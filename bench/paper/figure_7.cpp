@@ -17,7 +17,7 @@ struct Growth {
 
 Growth follow(const std::string& sample, const JobConfig& config, const Study& study) {
   const auto model = make_device_model();
-  const FilmMesh film = make_film_mesh(config.film);
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
   const SheetRaster raster = sheet_raster(config, config.print.dpi);
   const auto object = to_dip(make_sample(sample));
   const double side_mm = 1.25 * object->object().bounds().size().head<2>().maxCoeff();

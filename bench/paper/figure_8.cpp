@@ -27,7 +27,8 @@ Image as_image(const InkImage& inks) {
 std::unique_ptr<DippedObject> dipped(const std::string& name, const JobConfig& config,
                                      const Checkerboard& board, RunContext& context) {
   auto object = to_dip(make_sample(name));
-  dip_printed(*object, make_film_mesh(config.film), board.inks, config, context);
+  dip_printed(*object, std::make_shared<const FilmMesh>(make_film_mesh(config.film)), board.inks,
+              config, context);
   return object;
 }
 

@@ -47,22 +47,22 @@ std::unique_ptr<DippedObject> to_dip(Object object) {
   return undipped(std::move(loaded));
 }
 
-void dip_printed(DippedObject& dipped, const FilmMesh& film, const InkImage& inks,
+void dip_printed(DippedObject& dipped, const SharedFilmMesh& film, const InkImage& inks,
                  const JobConfig& config, RunContext& context) {
   StageTimes times;
   DipOptions options = config.dip;
-  options.modulus = film_modulus(film, inks, sheet_raster(config, config.print.dpi),
+  options.modulus = film_modulus(*film, inks, sheet_raster(config, config.print.dpi),
                                  {config.ink.stiffness_ratio, config.ink.filter_mm});
   dip_again(dipped, film, options, times, context);
 }
 
-void dip_blank(DippedObject& dipped, const FilmMesh& film, const JobConfig& config,
+void dip_blank(DippedObject& dipped, const SharedFilmMesh& film, const JobConfig& config,
                RunContext& context) {
   StageTimes times;
   dip_again(dipped, film, config.dip, times, context);
 }
 
-InkResult designed(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
+InkResult designed(DippedObject& dipped, const SharedFilmMesh& film, const ColorModel& model,
                    JobConfig config, int rounds, RunContext& context) {
   StageTimes times;
   config.ink.rounds_max = rounds;

@@ -22,14 +22,14 @@ JobConfig paper_config();
 std::unique_ptr<DippedObject> to_dip(Object object);
 
 // Dips a film with these inks on it; they stiffen it.
-void dip_printed(DippedObject& dipped, const FilmMesh& film, const InkImage& inks,
+void dip_printed(DippedObject& dipped, const SharedFilmMesh& film, const InkImage& inks,
                  const JobConfig& config, RunContext& context);
 // Dips blank film, or what is the same, film that ink does not stiffen.
-void dip_blank(DippedObject& dipped, const FilmMesh& film, const JobConfig& config,
+void dip_blank(DippedObject& dipped, const SharedFilmMesh& film, const JobConfig& config,
                RunContext& context);
 
 // The print that the job makes of an object, with `rounds` rounds at most.
-InkResult designed(DippedObject& dipped, const FilmMesh& film, const ColorModel& model,
+InkResult designed(DippedObject& dipped, const SharedFilmMesh& film, const ColorModel& model,
                    JobConfig config, int rounds, RunContext& context);
 
 // ---- pictures ----

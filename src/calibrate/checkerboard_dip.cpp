@@ -90,11 +90,11 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
 CheckeredFilm checkered_film(const DesignOptions& design, double square_mm) {
   CheckeredFilm film;
   film.square_mm = square_mm;
-  film.mesh = make_film_mesh(design.film);
+  film.mesh = std::make_shared<const FilmMesh>(make_film_mesh(design.film));
   const Checkerboard board = checkerboard_to_print(design.film, square_mm);
   // A ratio of 2 makes the modulus 1 more than the density.
   film.ink_density =
-      film_modulus(film.mesh, board.inks, board.raster, {2, design.stiffness.filter_mm});
+      film_modulus(*film.mesh, board.inks, board.raster, {2, design.stiffness.filter_mm});
   for (double& density : film.ink_density) density -= 1;
   return film;
 }

@@ -51,7 +51,7 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
 
 // Everything about a film that its parameters leave alone. Immutable.
 struct CheckeredFilm {
-  FilmMesh mesh;
+  SharedFilmMesh mesh;
   std::vector<double> ink_density;  // per triangle, after the stiffness filter
   double square_mm = 5;
 };

@@ -26,7 +26,7 @@ bool ink_matters(const DesignOptions& options) {
 class Settling {
  public:
   Settling(const DesignTask& task, Timings& timings, RunContext& context)
-      : task_(task), timings_(timings), context_(context), film_(make_film_mesh(options().film)) {}
+      : task_(task), timings_(timings), context_(context), film_(std::make_shared<const FilmMesh>(make_film_mesh(task.options.film))) {}
 
   Designed run() {
     InkRounds rounds(task_, options(), film_, timings_, context_);
@@ -66,7 +66,7 @@ class Settling {
         options().film.elements / kFewer < kFewestElements)
       return std::nullopt;
     const DesignOptions coarse = coarser(options());
-    const FilmMesh film = make_film_mesh(coarse.film);
+    const auto film = std::make_shared<const FilmMesh>(make_film_mesh(coarse.film));
     InkRounds rounds(task_, coarse, film, timings_, context_);
     Outcome outcome = rounds.next();
     const std::vector<std::uint8_t>& torn = rounds.dipped().film->torn;
@@ -74,7 +74,7 @@ class Settling {
     if (tears) outcome = rounds.next();
     result_.coarse_rounds = rounds.rounds();
     if (outcome != Outcome::kHopeless) return std::nullopt;
-    return rounds.modulus_of(film_);
+    return rounds.modulus_of(*film_);
   }
 
   static DesignOptions coarser(DesignOptions options) {
@@ -115,7 +115,7 @@ class Settling {
   const DesignTask task_;
   Timings& timings_;
   RunContext& context_;
-  const FilmMesh film_;
+  const SharedFilmMesh film_;
   InkResult result_;
 };
 

@@ -4,7 +4,7 @@
 
 namespace hydrodip {
 
-DippedObject dip_object(const PosedObject& posed, const FilmMesh& film, double depth_mm,
+DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film, double depth_mm,
                         const DipOptions& options, Timings& timings, RunContext& context) {
   DippedObject result{.posed = posed};
   const TriangleMesh& mesh = posed.mesh();

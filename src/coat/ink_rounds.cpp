@@ -33,9 +33,9 @@ constexpr double kRoundsDpi = 150;
 // Of the film that lies on the object in both. What floats on or has torn off leaves no trace.
 double mean_way(const DippedFilm& from, const DippedFilm& to) {
   std::vector<std::uint8_t> counts(from.position.size(), 0);
-  for (std::size_t t = 0; t < from.mesh.triangles.size(); ++t)
+  for (std::size_t t = 0; t < from.mesh().triangles.size(); ++t)
     if (from.lies_on_object(t) && to.lies_on_object(t))
-      for (const std::int32_t v : from.mesh.triangles[t]) counts[std::size_t(v)] = 1;
+      for (const std::int32_t v : from.mesh().triangles[t]) counts[std::size_t(v)] = 1;
   double sum = 0, count = 0;
   for (std::size_t v = 0; v < counts.size(); ++v) {
     if (!counts[v]) continue;
@@ -60,7 +60,7 @@ double mean_of(const std::vector<double>& values) {
 
 }  // namespace
 
-InkRounds::InkRounds(const DesignTask& task, const DesignOptions& options, const FilmMesh& film,
+InkRounds::InkRounds(const DesignTask& task, const DesignOptions& options, const SharedFilmMesh& film,
                      Timings& timings, RunContext& context)
     : task_(task),
       options_(options),
@@ -147,7 +147,7 @@ void InkRounds::stiffen() {
     dip_options_.tear_levels = dipped_->film->tear_level;
     outline_.keep(*dipped_->film);
   }
-  std::vector<double> modulus = timings_.measure("stiffness", [&] { return modulus_of(film_); });
+  std::vector<double> modulus = timings_.measure("stiffness", [&] { return modulus_of(*film_); });
   dip_options_.modulus = dip_options_.modulus.empty() ? modulus : mixed(modulus);
 }
 

@@ -16,7 +16,7 @@ enum class Outcome { kGoesOn, kSettled, kUnsettled, kHopeless, kFailed };
 class InkRounds {
  public:
   // Refers to all of them. `film` is that of options.film.
-  InkRounds(const DesignTask& task, const DesignOptions& options, const FilmMesh& film,
+  InkRounds(const DesignTask& task, const DesignOptions& options, const SharedFilmMesh& film,
             Timings& timings, RunContext& context);
 
   // The modulus of the first film; blank unless told.
@@ -47,7 +47,7 @@ class InkRounds {
 
   const DesignTask task_;
   const DesignOptions& options_;
-  const FilmMesh& film_;
+  const SharedFilmMesh film_;
   Timings& timings_;
   RunContext& context_;
   double rounds_dpi_;

@@ -3,7 +3,7 @@
 namespace hydrodip {
 
 void PrintedOutline::keep(const DippedFilm& film) {
-  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t)
+  for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t)
     kept_.push_back(film.lies_on_object(t));
 }
 
@@ -12,9 +12,9 @@ DippedFilm PrintedOutline::applied(const DippedFilm& film, const Surface& surfac
   DippedFilm result = film;
   for (std::size_t t = 0; t < kept_.size(); ++t) {
     if (!kept_[t] || film.torn[t]) continue;
-    for (const std::int32_t v : film.mesh.triangles[t])
+    for (const std::int32_t v : film.mesh().triangles[t])
       if (film.state[std::size_t(v)] == VertexState::kUnattached &&
-          surface.closest_point(film.position[std::size_t(v)], film.mesh.cell_mm))
+          surface.closest_point(film.position[std::size_t(v)], film.mesh().cell_mm))
         result.state[std::size_t(v)] = VertexState::kAttached;
   }
   for (std::size_t t = 0; t < kept_.size(); ++t)

@@ -119,9 +119,10 @@ std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, c
   return Contact{surface.position(*hit), surface.normal(*hit)};
 }
 
-DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
+DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
               const std::vector<Triangle>& triangles, const Surface& surface,
               const DipOptions& options, RunContext& context, const DipObserver& observe) {
+  const FilmMesh& film = *mesh;
   check(options, film);
   const double depth = depth_of(positions, options);
   check_rim(film, surface, depth, context);
@@ -152,7 +153,7 @@ DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
     context.warn(fmt::format("in {} of {} steps the film's equilibrium was found only to {:.2g} mm",
                              state.statistics.unconverged_steps, steps,
                              state.statistics.largest_residual_mm));
-  return {measured(film, state, options, surface), state.statistics};
+  return {measured(mesh, state, options, surface), state.statistics};
 }
 
 }  // namespace hydrodip

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/context.h"
@@ -70,8 +71,17 @@ using DipObserver =
 // `positions` and `triangles` are the object's, in the posed-object frame, and `surface` queries
 // the same triangles. Throws DipError (exit code 3) if a step cannot be computed, InputError for
 // options out of range, Cancelled.
-DipResult dip(const FilmMesh& film, const std::vector<Vec3>& positions,
+DipResult dip(const SharedFilmMesh& film, const std::vector<Vec3>& positions,
               const std::vector<Triangle>& triangles, const Surface& surface,
               const DipOptions& options, RunContext& context, const DipObserver& observe = {});
+
+// The same on a mesh that nobody else holds.
+inline DipResult dip(FilmMesh film, const std::vector<Vec3>& positions,
+                     const std::vector<Triangle>& triangles, const Surface& surface,
+                     const DipOptions& options, RunContext& context,
+                     const DipObserver& observe = {}) {
+  return dip(std::make_shared<const FilmMesh>(std::move(film)), positions, triangles, surface,
+             options, context, observe);
+}
 
 }  // namespace hydrodip

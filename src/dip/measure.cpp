@@ -79,10 +79,11 @@ double tear_limit(const DipOptions& options) {
   return options.material.tear_stretch * (options.tear_levels.empty() ? 1 : kToldMargin);
 }
 
-DippedFilm measured(const FilmMesh& film, const DipState& state, const DipOptions& options,
+DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const DipOptions& options,
                     const Surface& surface) {
+  const FilmMesh& film = *mesh;
   DippedFilm result;
-  result.mesh = film;
+  result.shared_mesh = mesh;
   result.position = state.position;
   result.state = state.state;
   result.torn = state.torn;

@@ -28,7 +28,7 @@ std::string ply_header(const DippedFilm& film) {
       "element face {}\n"
       "property list uchar int vertex_indices\n"
       "end_header\n",
-      film.position.size(), film.mesh.triangles.size());
+      film.position.size(), film.mesh().triangles.size());
 }
 
 // A reader of the file should never have to ask whether a number is one.
@@ -45,7 +45,7 @@ float finite(double value, std::size_t vertex) {
 
 void add_vertex(Bytes& out, const DippedFilm& film, std::size_t v) {
   for (int k = 0; k < 3; ++k) out.add_f32(finite(film.position[v][k], v));
-  for (int k = 0; k < 2; ++k) out.add_f32(finite(film.mesh.u[v][k], v));
+  for (int k = 0; k < 2; ++k) out.add_f32(finite(film.mesh().u[v][k], v));
   out.add_u8(static_cast<std::uint8_t>(film.state[v]));
   out.add_f32(finite(film.area_ratio[v], v));
   out.add_f32(finite(film.stretch[v], v));
@@ -57,7 +57,7 @@ void write_film_ply(const std::filesystem::path& path, const DippedFilm& film) {
   Bytes out;
   out.add(ply_header(film));
   for (std::size_t v = 0; v < film.position.size(); ++v) add_vertex(out, film, v);
-  for (const Triangle& triangle : film.mesh.triangles) {
+  for (const Triangle& triangle : film.mesh().triangles) {
     out.add_u8(3);
     for (const std::int32_t v : triangle) out.add_u32(static_cast<std::uint32_t>(v));
   }

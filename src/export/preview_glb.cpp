@@ -49,9 +49,9 @@ GlbMesh object_vertices(const ShownObject& shown, const Object& object) {
 // film lies.
 std::vector<Vec3> outward_normals(const DippedFilm& film) {
   std::vector<Vec3> normals(film.position.size(), Vec3::Zero());
-  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
     if (!film.lies_on_object(t)) continue;
-    const Triangle& triangle = film.mesh.triangles[t];
+    const Triangle& triangle = film.mesh().triangles[t];
     const Vec3& a = film.position[std::size_t(triangle[0])];
     const Vec3 area = (film.position[std::size_t(triangle[1])] - a)
                           .cross(film.position[std::size_t(triangle[2])] - a);
@@ -83,7 +83,7 @@ std::vector<double> lifts(const Surface& surface, const DippedFilm& film,
     }
     return bulge;
   };
-  const std::vector<Triangle>& triangles = film.mesh.triangles;
+  const std::vector<Triangle>& triangles = film.mesh().triangles;
   std::vector<double> bulge(triangles.size(), 0.0);
   parallel_for(triangles.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
@@ -107,9 +107,9 @@ Crop crop_to_film(const DippedFilm& film, const Image& image, double width_mm, d
                   int texture_px) {
   constexpr double kRimMm = 1;
   Box2 box;
-  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
     if (!film.lies_on_object(t)) continue;
-    for (const std::int32_t v : film.mesh.triangles[t]) box.add(film.mesh.u[std::size_t(v)]);
+    for (const std::int32_t v : film.mesh().triangles[t]) box.add(film.mesh().u[std::size_t(v)]);
   }
   if (box.empty() || image.empty()) return {};
   const auto column = [&](double x_mm) {
@@ -177,7 +177,7 @@ GlbMesh film_mesh(const Surface& surface, const DippedFilm& film, const Image& i
     if (number[v] < 0) {
       number[v] = std::int64_t(mesh.positions.size());
       const Vec3 normal = normals[v].squaredNorm() > 0.5 ? normals[v] : Vec3(-Vec3::UnitZ());
-      const Vec2& u = film.mesh.u[v];
+      const Vec2& u = film.mesh().u[v];
       const double x = (u.x() / width_mm + 0.5) * image.width_px;
       const double y = (0.5 - u.y() / height_mm) * image.height_px;
       mesh.positions.push_back(to_gltf_metres(film.position[v] + lift[v] * normal));
@@ -187,10 +187,10 @@ GlbMesh film_mesh(const Surface& surface, const DippedFilm& film, const Image& i
     }
     return std::uint32_t(number[v]);
   };
-  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
     if (!film.lies_on_object(t)) continue;
     for (const std::size_t k : {0, 2, 1}) {  // seen from its underside
-      mesh.indices.push_back(vertex(std::size_t(film.mesh.triangles[t][k])));
+      mesh.indices.push_back(vertex(std::size_t(film.mesh().triangles[t][k])));
     }
   }
   return mesh;

@@ -189,8 +189,8 @@ Json film_json(const SceneSource& source, Packer& packer) {
   const DippedFilm& film = source.film;
   Json json;
   json["u"] = add_quantized(
-      packer, film.mesh.u, 2, [](const Vec2& u) -> const auto& { return u; });
-  json["index"] = place_json(packer.add(flat_indices(film.mesh.triangles), 3));
+      packer, film.mesh().u, 2, [](const Vec2& u) -> const auto& { return u; });
+  json["index"] = place_json(packer.add(flat_indices(film.mesh().triangles), 3));
   json["position"] = add_quantized(
       packer, film.position, 3, [](const Vec3& p) -> const auto& { return p; });
   json["frames"] = frames_json(source.history, packer);
@@ -283,7 +283,7 @@ std::string scene_json(const SceneSource& source, RunContext& context) {
   json["base"] = {source.base.r, source.base.g, source.base.b};
   json["depth_mm"] = source.film.depth_mm;
   json["tear_stretch"] = source.tear_stretch;
-  json["cell_mm"] = source.film.mesh.cell_mm;
+  json["cell_mm"] = source.film.mesh().cell_mm;
   json["bath"] = {{"width_mm", source.bath_width_mm}, {"height_mm", source.bath_height_mm}};
   json["sheet"] = sheet_json(source);
   context.progress(stage, 0.3);

@@ -192,7 +192,7 @@ FilmMesh make_film_mesh(const FilmOptions& options) {
 
 bool DippedFilm::lies_on_object(std::size_t triangle) const {
   if (!torn.empty() && torn[triangle]) return false;
-  for (std::int32_t v : mesh.triangles[triangle])
+  for (std::int32_t v : shared_mesh->triangles[triangle])
     if (state[std::size_t(v)] != VertexState::kAttached) return false;
   return true;
 }

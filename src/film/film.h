@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -48,12 +49,15 @@ struct FilmMesh {
 // Throws InputError if the margin leaves no film or there are fewer than 8 triangles.
 FilmMesh make_film_mesh(const FilmOptions& options);
 
+// A mesh that its dips share; never null.
+using SharedFilmMesh = std::shared_ptr<const FilmMesh>;
+
 // Film state over a mesh after (or during) a dip.
 enum class VertexState : std::uint8_t { kUnattached = 0, kAttached = 1, kClamped = 2 };
 
 // The result of a dip: where the film is. Posed-object frame (mm).
 struct DippedFilm {
-  FilmMesh mesh;
+  SharedFilmMesh shared_mesh = std::make_shared<const FilmMesh>();
   std::vector<Vec3> position;      // per vertex
   std::vector<VertexState> state;  // per vertex
   std::vector<double> area_ratio;  // per vertex: deformed area over flat area (Voronoi areas)
@@ -62,6 +66,7 @@ struct DippedFilm {
   std::vector<double> tear_level;  // per triangle: the depth at which it tore; infinity: it did not
   double depth_mm = 0;             // immersion reached
 
+  const FilmMesh& mesh() const { return *shared_mesh; }
   // A triangle whose corners are all attached and that is not torn: film that lies on the object.
   bool lies_on_object(std::size_t triangle) const;
 };

@@ -103,8 +103,8 @@ std::vector<ReportFigure> figures(const DippedObject& dipped) {
   return {{"object_size_mm", "Object as posed (x, y, z)",
            std::array<double, 3>{size.x(), size.y(), size.z()}, "mm"},
           {"depth_mm", "Depth of the dip", film.depth_mm, "mm"},
-          {"film_triangles", "Film triangles", std::int64_t(film.mesh.triangles.size()), ""},
-          {"film_cell_mm", "Film grid spacing", film.mesh.cell_mm, "mm"}};
+          {"film_triangles", "Film triangles", std::int64_t(film.mesh().triangles.size()), ""},
+          {"film_cell_mm", "Film grid spacing", film.mesh().cell_mm, "mm"}};
 }
 
 std::string role_of(const std::filesystem::path& file, const JobConfig& config) {

@@ -141,7 +141,7 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
   OutputFolder folder(config.output);
   Timings times;
 
-  const FilmMesh film = make_film_mesh(config.design.film);
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.design.film));
   const PreparedObject prepared =
       times.measure("load", [&] { return prepare_object(config.model, config.object, context); });
   const TriangleMesh& mesh = prepared.posed.mesh();
@@ -153,7 +153,7 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
       times.measure("film image", [&] { return printed_film(config, *printer.model); });
 
   const DippedObject dipped = dip_object(prepared.posed, film, depth_mm,
-                                         dip_options(film, printed, config), times, context);
+                                         dip_options(*film, printed, config), times, context);
 
   const JobRecord record{
       "simulate", config, prepared, inputs, dipped, times, context, nullptr, printer.model->name()};

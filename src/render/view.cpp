@@ -42,10 +42,10 @@ Vec3 area_vector(const std::vector<Vec3>& positions, const Triangle& triangle) {
 // Film lies with its underside out: outward is against the film's own normal.
 std::vector<Patch> film_patches(const DippedFilm& film) {
   std::vector<Vec3> outward(film.position.size(), Vec3::Zero());
-  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
     if (!film.lies_on_object(t)) continue;
-    const Vec3 area = area_vector(film.position, film.mesh.triangles[t]);
-    for (const std::int32_t v : film.mesh.triangles[t]) outward[std::size_t(v)] -= area / 3;
+    const Vec3 area = area_vector(film.position, film.mesh().triangles[t]);
+    for (const std::int32_t v : film.mesh().triangles[t]) outward[std::size_t(v)] -= area / 3;
   }
   std::vector<Patch> patches;
   for (std::size_t v = 0; v < outward.size(); ++v) {

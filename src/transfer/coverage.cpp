@@ -32,9 +32,9 @@ void add_object(Coverage& sum, const TriangleMesh& object, double depth_mm) {
 void add_film(Coverage& sum, const DippedFilm& film) {
   double stretch = 0;
   double area_ratio = 0;
-  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
-    const Triangle& triangle = film.mesh.triangles[t];
-    const double flat = flat_area(film.mesh, triangle);
+  for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
+    const Triangle& triangle = film.mesh().triangles[t];
+    const double flat = flat_area(film.mesh(), triangle);
     if (film.torn[t]) sum.torn_mm2 += flat;
     if (!film.lies_on_object(t)) continue;
     const Vec3 area = area_vector(film.position, triangle);

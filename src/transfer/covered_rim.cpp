@@ -5,7 +5,7 @@
 namespace hydrodip {
 
 CoveredRim::CoveredRim(const DippedFilm& film) {
-  const FilmMesh& mesh = film.mesh;
+  const FilmMesh& mesh = film.mesh();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (!film.lies_on_object(t)) continue;
     const Triangle& v = mesh.triangles[t];
@@ -24,7 +24,7 @@ CoveredRim::CoveredRim(const DippedFilm& film) {
     }
   }
   if (edges_.empty()) return;
-  cells_ = Cells(bounds_, film.mesh.cell_mm);
+  cells_ = Cells(bounds_, film.mesh().cell_mm);
   edges_in_.resize(cells_.count());
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     const Edge& edge = edges_[e];

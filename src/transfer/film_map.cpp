@@ -16,16 +16,16 @@ constexpr double kInside = -1e-9;
 
 std::vector<Triangle> triangles_on_object(const DippedFilm& film) {
   std::vector<Triangle> lying;
-  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t)
-    if (film.lies_on_object(t)) lying.push_back(film.mesh.triangles[t]);
+  for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t)
+    if (film.lies_on_object(t)) lying.push_back(film.mesh().triangles[t]);
   return lying;
 }
 
 // What would lie on the object had it not torn.
 std::vector<Triangle> torn_triangles_on_object(const DippedFilm& film) {
   std::vector<Triangle> torn;
-  for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
-    const Triangle& corners = film.mesh.triangles[t];
+  for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
+    const Triangle& corners = film.mesh().triangles[t];
     const bool attached = std::all_of(corners.begin(), corners.end(), [&](std::int32_t v) {
       return film.state[std::size_t(v)] == VertexState::kAttached;
     });
@@ -68,8 +68,8 @@ struct FilmMap::Impl {
         torn_surface(f.position, torn_triangles_on_object(f)),
         normal(f.position.size(), Vec3::Zero()),
         rim(f),
-        reach_mm(f.mesh.cell_mm) {
-    for (std::size_t t = 0; t < film.mesh.triangles.size(); ++t) {
+        reach_mm(f.mesh().cell_mm) {
+    for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
       lies.push_back(film.lies_on_object(t));
       if (lies.back()) film_triangle.push_back(static_cast<std::int32_t>(t));
     }
@@ -83,8 +83,8 @@ struct FilmMap::Impl {
   }
 
   bool locate_on_object(const Vec2& u, Cursor& cursor, Vec3& weight) const {
-    if (cursor.film_triangle < 0 || !weights_in(film.mesh, cursor.film_triangle, u, weight)) {
-      const FilmLocation at = locate_flat(film.mesh, u);
+    if (cursor.film_triangle < 0 || !weights_in(film.mesh(), cursor.film_triangle, u, weight)) {
+      const FilmLocation at = locate_flat(film.mesh(), u);
       if (!at.inside) return false;
       cursor.film_triangle = at.triangle;
       weight = at.weight;
@@ -136,7 +136,7 @@ struct FilmMap::Impl {
   double interpolated(const std::vector<double>& value, const Vec2& u, Cursor& cursor) const {
     Vec3 weight;
     if (!locate_on_object(u, cursor, weight)) return 1;
-    const Triangle& t = film.mesh.triangles[std::size_t(cursor.film_triangle)];
+    const Triangle& t = film.mesh().triangles[std::size_t(cursor.film_triangle)];
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k) sum += weight[Eigen::Index(k)] * value[std::size_t(t[k])];
     return sum;
@@ -152,7 +152,7 @@ FilmMap& FilmMap::operator=(FilmMap&&) noexcept = default;
 std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u, Cursor& cursor) const {
   Vec3 weight;
   if (!impl_->locate_on_object(u, cursor, weight)) return std::nullopt;
-  const Triangle& t = impl_->film.mesh.triangles[std::size_t(cursor.film_triangle)];
+  const Triangle& t = impl_->film.mesh().triangles[std::size_t(cursor.film_triangle)];
   Vec3 point = Vec3::Zero(), direction = Vec3::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
     point += weight[Eigen::Index(k)] * impl_->film.position[std::size_t(t[k])];
@@ -185,8 +185,8 @@ std::optional<Vec2> FilmMap::to_film(const Vec3& position, const Vec3& normal) c
   const auto hit = impl_->lying_at(impl_->film_surface, position, normal);
   if (!hit) return std::nullopt;
   const std::int32_t film_triangle = impl_->film_triangle[std::size_t(hit->triangle)];
-  const Triangle& t = impl_->film.mesh.triangles[std::size_t(film_triangle)];
-  const auto& u = impl_->film.mesh.u;
+  const Triangle& t = impl_->film.mesh().triangles[std::size_t(film_triangle)];
+  const auto& u = impl_->film.mesh().u;
   return Vec2((1 - hit->u - hit->v) * u[std::size_t(t[0])] + hit->u * u[std::size_t(t[1])] +
               hit->v * u[std::size_t(t[2])]);
 }

@@ -32,7 +32,7 @@ DippedFilm measured_on_plane(const FilmMesh& film, const DipState& state, double
   const Surface surface(slab.positions, slab.triangles);
   DipOptions options;
   options.material.tear_stretch = tear_stretch;
-  return measured(film, state, options, surface);
+  return measured(std::make_shared<const FilmMesh>(film), state, options, surface);
 }
 
 TEST(Measure, KnowsUniformStretchExactly) {

@@ -80,7 +80,7 @@ inline std::vector<VertexError> revolution_errors(const DippedFilm& film,
     const double a = place.norm();
     if (a < a_min || a > a_max) continue;
     const Vec2 out = place / a;
-    const Vec2& u = film.mesh.u[v];
+    const Vec2& u = film.mesh().u[v];
     errors.push_back({std::int32_t(v), a, Vec2(u.dot(out) - exact(a), cross2(out, u))});
   }
   return errors;

@@ -64,7 +64,7 @@ TEST(RingsSlow, InkRingsOnASphereLandWhereTheContinuumHasThem) {
       if (std::abs(a - radii[i]) > 0.4) continue;
       const double slope = std::hypot(1.0, kZStretch * sphere_slope(radii[i])) *
                            exact::ringed_slope(radii[i], ringed[i], exact::kClampRadius, modulus);
-      const double error = dipped.mesh.u[v].norm() - ringed[i] - slope * (a - radii[i]);
+      const double error = dipped.mesh().u[v].norm() - ringed[i] - slope * (a - radii[i]);
       sum += error;
       ++count;
     }

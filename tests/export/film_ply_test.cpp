@@ -68,7 +68,7 @@ TEST(FilmPly, HeaderIsTheContract) {
       "property uchar state",
       "property float area_ratio",
       "property float stretch",
-      "element face " + std::to_string(film.mesh.triangles.size()),
+      "element face " + std::to_string(film.mesh().triangles.size()),
       "property list uchar int vertex_indices",
       "end_header"};
   EXPECT_EQ(split(read_file(folder / "film.ply")).header, expected);
@@ -81,12 +81,12 @@ TEST(FilmPly, EveryValueComesBack) {
   Reader in(split(read_file(folder / "film.ply")).body);
   for (std::size_t v = 0; v < film.position.size(); ++v) {
     for (int k = 0; k < 3; ++k) ASSERT_EQ(in.f32(), float(film.position[v][k]));
-    for (int k = 0; k < 2; ++k) ASSERT_EQ(in.f32(), float(film.mesh.u[v][k]));
+    for (int k = 0; k < 2; ++k) ASSERT_EQ(in.f32(), float(film.mesh().u[v][k]));
     ASSERT_EQ(in.u8(), std::uint8_t(film.state[v]));
     ASSERT_EQ(in.f32(), float(film.area_ratio[v]));
     ASSERT_EQ(in.f32(), float(film.stretch[v]));
   }
-  for (const Triangle& triangle : film.mesh.triangles) {
+  for (const Triangle& triangle : film.mesh().triangles) {
     ASSERT_EQ(in.u8(), 3);
     for (const std::int32_t v : triangle) ASSERT_EQ(in.u32(), std::uint32_t(v));
   }

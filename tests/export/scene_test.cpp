@@ -75,7 +75,7 @@ class Unpacked {
 DipHistory some_history(const DippedFilm& film) {
   DipHistory history;
   std::vector<Vec3> flat;
-  for (const Vec2& u : film.mesh.u) flat.emplace_back(u.x(), u.y(), 0);
+  for (const Vec2& u : film.mesh().u) flat.emplace_back(u.x(), u.y(), 0);
   history.record(0, 1, 0, flat, std::vector<VertexState>(flat.size(), VertexState::kUnattached));
   history.record(1, 1, film.depth_mm, film.position, film.state);
   return history;
@@ -125,11 +125,11 @@ TEST(Scene, EverythingComesBack) {
   const std::vector<double> stretch = data.lengths(scene["film"]["stretch"]);
   ASSERT_EQ(frames.size(), 2 * 3 * film.position.size());
   for (std::size_t v = 0; v < film.position.size(); ++v) {
-    ASSERT_NEAR(u[2 * v], film.mesh.u[v].x(), 0.002);
-    ASSERT_NEAR(u[2 * v + 1], film.mesh.u[v].y(), 0.002);
+    ASSERT_NEAR(u[2 * v], film.mesh().u[v].x(), 0.002);
+    ASSERT_NEAR(u[2 * v + 1], film.mesh().u[v].y(), 0.002);
     ASSERT_NEAR(frames[3 * v + 2], 0, 0.002);
     const std::size_t last = 3 * (film.position.size() + v);
-    const double z = film.mesh.on_rim[v] ? film.depth_mm : film.position[v].z();
+    const double z = film.mesh().on_rim[v] ? film.depth_mm : film.position[v].z();
     ASSERT_NEAR(frames[last + 2], z, 0.002);
     ASSERT_NEAR(stretch[v], film.stretch[v], 1e-4);
   }

@@ -64,7 +64,7 @@ Settled settled(Object object, const JobConfig& config) {
   apply_pose(object, pose_matrix(object, {}));
   loaded.object = std::move(object);
   Settled all{undipped(std::move(loaded)), {}, {}};
-  const FilmMesh film = make_film_mesh(config.film);
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
   all.result = settle_ink(*all.dipped, film, *color_model(config), config, times, context);
   all.warnings = context.warnings();
   return all;
@@ -91,7 +91,7 @@ TEST(InkRoundsSlow, FlapsAreForeseenAsTheyFall) {
   EXPECT_GT(foreseen.result.last_change_mm(), 2);
   // The one dip knows the ink.
   EXPECT_GT(foreseen.result.rounds.front().mean_modulus, 2);
-  EXPECT_EQ(foreseen.dipped->film().mesh.triangles.size(),
+  EXPECT_EQ(foreseen.dipped->film().mesh().triangles.size(),
             make_film_mesh(quick(12000).film).triangles.size());
 }
 

@@ -36,9 +36,9 @@ JobConfig mask_job(const std::filesystem::path& folder) {
 std::unique_ptr<DippedObject> dipped_again(const JobConfig& config, const InkImage& inks,
                                            RunContext& context) {
   StageTimes times;
-  const FilmMesh film = make_film_mesh(config.film);
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
   DipOptions options = config.dip;
-  options.modulus = film_modulus(film, inks, sheet_raster(config, config.print.dpi),
+  options.modulus = film_modulus(*film, inks, sheet_raster(config, config.print.dpi),
                                  {config.ink.stiffness_ratio, config.ink.filter_mm});
   auto dipped = undipped(load_posed(config, context));
   dip_again(*dipped, film, options, times, context);

@@ -32,8 +32,8 @@ DippedFilm film_torn_on_one_side() {
   DippedFilm film = film_under_ball();
   for (std::size_t t = 0; t < film.torn.size(); ++t) {
     double least = 1e300;
-    for (const std::int32_t v : film.mesh.triangles[t])
-      least = std::min(least, film.mesh.u[std::size_t(v)].x());
+    for (const std::int32_t v : film.mesh().triangles[t])
+      least = std::min(least, film.mesh().u[std::size_t(v)].x());
     film.torn[t] = film.lies_on_object(t) && least > 4 ? 1 : 0;
   }
   return film;
@@ -152,7 +152,7 @@ TEST(Maps, TornMarksStandOnlyWhereFilmIsTorn) {
   const Scene scene;
   const Camera camera = frame_object(scene.ball, Vec3(0, 0, -1), 1, 0.9);
   const Image image = render(scene, camera).predicted;
-  const double cell = scene.film.mesh.cell_mm;
+  const double cell = scene.film.mesh().cell_mm;
   long red = 0, light = 0;
   for_ball_pixels(scene, camera, image, [&](const Pixel& pixel) {
     const int r = pixel.rgb[0], g = pixel.rgb[1], b = pixel.rgb[2];

@@ -125,7 +125,7 @@ TEST(Coverage, CapOfABall) {
   EXPECT_NEAR(c.object_mm2, ball, 0.003 * ball);
   EXPECT_NEAR(c.downward_mm2, ball / 2, 0.003 * ball);
   // The film is cut off along whole triangles: the reach is uncertain by about a cell.
-  const double cell = film_under_ball(reach).mesh.cell_mm;
+  const double cell = film_under_ball(reach).mesh().cell_mm;
   const auto cap = [](double r) {
     return 2 * std::numbers::pi * kRadius * (kRadius - std::sqrt(kRadius * kRadius - r * r));
   };

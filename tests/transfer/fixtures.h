@@ -49,19 +49,19 @@ inline FilmMesh small_film(int elements) {
 // exactly where it lies within the square.
 inline DippedFilm film_on_slab(int elements) {
   DippedFilm film;
-  film.mesh = small_film(elements);
-  const std::size_t vertices = film.mesh.u.size();
+  film.shared_mesh = std::make_shared<const FilmMesh>(small_film(elements));
+  const std::size_t vertices = film.mesh().u.size();
   for (std::size_t v = 0; v < vertices; ++v) {
-    const Vec2& u = film.mesh.u[v];
+    const Vec2& u = film.mesh().u[v];
     const bool inside = u.cwiseAbs().maxCoeff() <= kHalfSide_mm + 1e-9;
     film.position.emplace_back(u.x(), u.y(), inside ? 0.0 : 3.0);
     film.state.push_back(
         inside ? VertexState::kAttached
-               : (film.mesh.on_rim[v] ? VertexState::kClamped : VertexState::kUnattached));
+               : (film.mesh().on_rim[v] ? VertexState::kClamped : VertexState::kUnattached));
   }
   film.area_ratio.assign(vertices, 1);
   film.stretch.assign(vertices, 1);
-  film.torn.assign(film.mesh.triangles.size(), 0);
+  film.torn.assign(film.mesh().triangles.size(), 0);
   film.depth_mm = 3;
   return film;
 }

@@ -98,7 +98,7 @@ TEST(FilmImage, EverySampleOfAPixelCounts) {
   fixtures::set_texture(object, std::move(texture));
   DippedFilm film = fixtures::film_on_slab(5000);
   for (std::size_t v = 0; v < film.position.size(); ++v) {
-    const Vec2 at = 1.1 * film.mesh.u[v];
+    const Vec2 at = 1.1 * film.mesh().u[v];
     const double way = std::sin(std::min(at.norm() / radius, 1.0)) * radius;
     const Vec2 plan = at.norm() > 0 ? Vec2(at * (way / at.norm())) : at;
     film.position[v] << plan, radius - std::sqrt(radius * radius - plan.squaredNorm());
