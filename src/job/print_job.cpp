@@ -1,6 +1,6 @@
 #include "base/file.h"
 #include "base/output_folder.h"
-#include "base/parallel.h"
+#include "base/run_scope.h"
 #include "ink/rgb_profile.h"
 #include "job/dip_stage.h"
 #include "job/ink_stage.h"
@@ -59,7 +59,7 @@ void compose(OutputFolder& folder, const FilmInk& ink, const ColorModel& model,
 }  // namespace
 
 JobResult print_job(const JobConfig& config, RunContext& context) {
-  const ThreadLimit threads(config.threads);
+  const RunScope scope(context.with_threads(config.threads));
   OutputFolder folder(config.output);
   StageTimes times;
 

@@ -20,7 +20,8 @@ struct SurfaceHit {
 // on the surface to about 1e-9 mm.
 class Surface {
  public:
-  // Keeps references to neither array. Degenerate triangles are never hit.
+  // Keeps references to neither array. Degenerate triangles are never hit. Throws Cancelled, as
+  // check_cancelled() does.
   Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
   ~Surface();
   Surface(Surface&&) noexcept;
