@@ -1,26 +1,40 @@
 #include "base/awake_threads.h"
 
-#include <tbb/task_arena.h>
+#include <pthread.h>
+#include <time.h>
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
-#include <exception>
-#include <mutex>
+#include <system_error>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/thread_budget.h"
+#include "base/work.h"
 
 namespace hydrodip {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+using Time = std::chrono::nanoseconds;
+
 // Looks for a loop before a thread falls asleep: some tenths of a millisecond.
 constexpr int kLooksAwake = 20000;
 // More than share memory well, and than loops of ten microseconds have parts for.
 constexpr int kMostThreads = 8;
+// Looks for the last chunk of a loop before its owner asks what holds it up: some tens of
+// microseconds.
+constexpr int kLooksForStragglers = 1000;
+// A thread that was without a core for so long while others waited for it had lost it to another
+// process.
+constexpr Time kLostCore = std::chrono::microseconds(100);
+// After such a loss, loops run without others for so many times its length: at most a tenth of the
+// time is lost that way, however busy the machine is.
+constexpr int kAlonePerLoss = 10;
 
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -35,11 +49,26 @@ void pause() {
 // One loop at a time, shared by the thread that owns it and those that serve it.
 class SharedLoops {
  public:
-  explicit SharedLoops(int threads) : parts_(std::size_t(threads)) {}
+  explicit SharedLoops(int threads) : parts_(std::size_t(threads)) {
+    try {
+      for (std::size_t part = 1; part < parts_.size(); ++part)
+        servers_.emplace_back([this, part] { serve(parts_[part], part); });
+    } catch (const std::system_error&) {  // the system gives no more threads: fewer will do
+    }
+  }
 
-  // By the owner. False if a loop is running: this one is inside it.
-  bool run(std::size_t chunks, const std::function<void(std::size_t)>& body) {
-    if (body_) return false;
+  ~SharedLoops() {
+    open_loop_ = kClosed;
+    open_loop_.notify_all();
+    for (std::thread& server : servers_) server.join();
+  }
+
+  // By the owner, outside of any loop.
+  void run(std::size_t chunks, const std::function<void(std::size_t)>& body) {
+    if (is_alone()) {
+      for (std::size_t chunk = 0; chunk < chunks; ++chunk) body(chunk);
+      return;
+    }
     body_ = &body;
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       parts_[p].next.store(chunks * p / parts_.size(), std::memory_order_relaxed);
@@ -50,30 +79,9 @@ class SharedLoops {
     if (asleep_ > 0) open_loop_.notify_all();
     work(0);
     open_loop_ = kNone;
-    while (inside_ > 0) pause();
-    body_ = nullptr;
-    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
-    return true;
-  }
-
-  // By the owner: threads that serve leave, and none begins to.
-  void close() {
-    open_loop_ = kClosed;
-    open_loop_.notify_all();
-  }
-
-  // By any other thread, until the owner closes.
-  void serve() {
-    const std::size_t part = ++servers_;
-    std::uint32_t done = kNone;
-    while (true) {
-      const std::uint32_t loop = wait_for_loop(done);
-      if (loop == kClosed) return;
-      ++inside_;
-      // The owner waits for those inside only after it has closed the loop.
-      if (open_loop_ == loop) work(part);
-      --inside_;
-      done = loop;
+    for (int look = 0; inside_ > 0; ++look) {
+      if (look == kLooksForStragglers) return wait_for_stragglers();
+      pause();
     }
   }
 
@@ -84,7 +92,23 @@ class SharedLoops {
   struct alignas(64) Part {
     std::atomic<std::size_t> next = 0;
     std::size_t end = 0;
+    std::atomic<bool> inside = false;  // whether its thread is in a loop
   };
+
+  void serve(Part& own, std::size_t part) {
+    std::uint32_t done = kNone;
+    while (true) {
+      const std::uint32_t loop = wait_for_loop(done);
+      if (loop == kClosed) return;
+      own.inside.store(true, std::memory_order_relaxed);
+      ++inside_;
+      // The owner waits for those inside only after it has closed the loop.
+      if (open_loop_ == loop) work(part);
+      own.inside.store(false, std::memory_order_relaxed);
+      if (--inside_ == 0 && owner_sleeps_) inside_.notify_one();
+      done = loop;
+    }
+  }
 
   std::uint32_t wait_for_loop(std::uint32_t done) {
     for (int look = 0;; ++look) {
@@ -104,90 +128,73 @@ class SharedLoops {
   void work(std::size_t first) {
     for (std::size_t n = 0; n < parts_.size(); ++n) {
       Part& part = parts_[(first + n) % parts_.size()];
-      for (std::size_t chunk = part.next++; chunk < part.end; chunk = part.next++) {
-        try {
-          (*body_)(chunk);
-        } catch (...) {
-          const std::lock_guard lock(failure_lock_);
-          if (!failure_) failure_ = std::current_exception();
-        }
-      }
+      for (std::size_t chunk = part.next++; chunk < part.end; chunk = part.next++) (*body_)(chunk);
     }
   }
 
-  std::vector<Part> parts_;
+  bool is_alone() {
+    if (alone_until_ == Clock::time_point()) return false;
+    if (Clock::now() < alone_until_) return true;
+    alone_until_ = {};
+    return false;
+  }
+
+  // Sleeps, so that others may have this core, and finds out whether those it waits for had theirs.
+  void wait_for_stragglers() {
+    const std::vector<Time> had = processor_times();
+    std::vector<std::uint8_t> inside;
+    for (std::size_t s = 0; s < servers_.size(); ++s) inside.push_back(parts_[s + 1].inside);
+    const Clock::time_point start = Clock::now();
+    owner_sleeps_ = true;
+    for (int n = inside_; n > 0; n = inside_) inside_.wait(n);
+    owner_sleeps_ = false;
+    const Clock::time_point end = Clock::now();
+    const std::vector<Time> have = processor_times();
+    Time lost{0};
+    for (std::size_t s = 0; s < servers_.size(); ++s)
+      if (inside[s]) lost = std::max(lost, end - start - (have[s] - had[s]));
+    if (lost > kLostCore) alone_until_ = end + kAlonePerLoss * lost;
+  }
+
+  // That each server has used so far.
+  std::vector<Time> processor_times() {
+    std::vector<Time> times;
+    for (std::thread& server : servers_) {
+      clockid_t clock{};
+      timespec time{};
+      if (pthread_getcpuclockid(server.native_handle(), &clock) == 0) clock_gettime(clock, &time);
+      times.push_back(std::chrono::seconds(time.tv_sec) + Time(time.tv_nsec));
+    }
+    return times;
+  }
+
+  std::vector<Part> parts_;  // the first is the owner's, the others those of servers_
   const std::function<void(std::size_t)>* body_ = nullptr;
   std::uint32_t last_loop_ = kClosed;
+  Clock::time_point alone_until_;  // zero: loops are shared
   alignas(64) std::atomic<std::uint32_t> open_loop_ = kNone;
   alignas(64) std::atomic<int> inside_ = 0;
+  std::atomic<bool> owner_sleeps_ = false;
   std::atomic<int> asleep_ = 0;
-  std::atomic<std::size_t> servers_ = 0;
-  std::mutex failure_lock_;
-  std::exception_ptr failure_;
+  std::vector<std::thread> servers_;
 };
-
-namespace {
-
-thread_local SharedLoops* own_loops = nullptr;
-
-// The owners that still want threads. Tasks that call threads here hold nothing: those that find
-// none to serve, or are never run, leave nothing behind.
-class Wanted {
- public:
-  void add(const std::shared_ptr<SharedLoops>& loops, int threads) {
-    const std::lock_guard lock(lock_);
-    for (int n = 0; n < threads; ++n) wanted_.push_back(loops);
-  }
-  void remove(const std::shared_ptr<SharedLoops>& loops) {
-    const std::lock_guard lock(lock_);
-    std::erase(wanted_, loops);
-  }
-  void serve_one() {
-    std::shared_ptr<SharedLoops> loops;
-    {
-      const std::lock_guard lock(lock_);
-      if (wanted_.empty()) return;
-      loops = std::move(wanted_.back());
-      wanted_.pop_back();
-    }
-    loops->serve();
-  }
-
- private:
-  std::mutex lock_;
-  std::vector<std::shared_ptr<SharedLoops>> wanted_;
-};
-
-// Never destroyed: a thread may still ask while the process ends.
-Wanted& wanted() {
-  static Wanted& all = *new Wanted;
-  return all;
-}
-
-}  // namespace
 
 AwakeThreads::AwakeThreads() {
   // Threads that wait awake must not take turns on a core.
-  const int cores = static_cast<int>(std::thread::hardware_concurrency());
-  const int threads = std::min({available_threads(), cores, kMostThreads});
-  if (own_loops || threads < 2) return;
-  loops_ = std::make_shared<SharedLoops>(threads);
-  own_loops = loops_.get();
-  // An arena of their own: a thread that waits for other work must not begin to serve.
-  tbb::task_arena arena(threads);
-  wanted().add(loops_, threads - 1);
-  for (int n = 1; n < threads; ++n) arena.enqueue([] { wanted().serve_one(); });
+  const int threads = std::min({available_threads(), processor_threads(), kMostThreads});
+  if (work_here.in_loop || work_here.awake != nullptr || threads < 2) return;
+  loops_ = std::make_unique<SharedLoops>(threads);
+  work_here.awake = loops_.get();
 }
 
 AwakeThreads::~AwakeThreads() {
-  if (!loops_) return;
-  wanted().remove(loops_);
-  loops_->close();
-  own_loops = nullptr;
+  if (loops_) work_here.awake = nullptr;
 }
 
 bool run_awake(std::size_t chunks, const std::function<void(std::size_t)>& run) {
-  return own_loops && own_loops->run(chunks, run);
+  if (work_here.awake == nullptr) return false;
+  work_here.awake->run(chunks, run);
+  return true;
 }
 
 }  // namespace hydrodip

@@ -9,10 +9,12 @@ namespace hydrodip {
 
 class SharedLoops;
 
-// While it lives, threads wait for parallel_for's loops on the thread that made it. Each begins
-// with the part of a loop with which it began the loop before: what belongs to one part of a field
-// stays in one core's cache. For long successions of short loops. Threads that find nothing to do
-// for a while sleep; while none is to be had, loops run without them.
+// While it lives, threads of its own wait for parallel_for's loops on the thread that made it, as
+// many as the job there may use. Each begins with the part of a loop with which it began the loop
+// before: what belongs to one part of a field stays in one core's cache. For long successions of
+// short loops. Threads that find nothing to do for a while sleep. Where other processes want the
+// cores too, loops run without them for most of the time: a thread that has lost its core in the
+// midst of a chunk holds up all others.
 class AwakeThreads {
  public:
   AwakeThreads();
@@ -21,11 +23,11 @@ class AwakeThreads {
   AwakeThreads& operator=(const AwakeThreads&) = delete;
 
  private:
-  std::shared_ptr<SharedLoops> loops_;  // none: there is one thread, or another's are used
+  std::unique_ptr<SharedLoops> loops_;  // none: one thread, in a loop, or there are some already
 };
 
-// Calls run(chunk) for all of [0, chunks) with this thread's awake threads, and returns true, or
-// false if it has none or they are at work. The first exception is rethrown.
+// Calls run(chunk), which throws nothing, for all of [0, chunks) with this thread's awake threads,
+// and returns true, or false if it has none.
 bool run_awake(std::size_t chunks, const std::function<void(std::size_t chunk)>& run);
 
 }  // namespace hydrodip

@@ -1,15 +1,20 @@
-// The run context that every long stage takes: progress, cancellation, warnings and log. It holds
-// no global state, so two jobs can run in one process.
+// The run context that every long step takes: progress, cancellation, warnings, log and a share of
+// the processor's threads. It holds no global state, so several jobs can run in one process.
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
-#include <mutex>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace hydrodip {
 
+class ThreadBudget;
+
+// A handle: cheap to copy, and copies stand for the same job. Everything may be called from any
+// thread, also through a const reference.
 class RunContext {
  public:
   // stage: what is being done, in words ("dipping"); fraction in [0, 1] of that stage.
@@ -17,53 +22,74 @@ class RunContext {
   // One line for people who follow along; never needed to understand the result.
   using LogSink = std::function<void(const std::string& line)>;
 
-  RunContext() = default;
-  RunContext(const RunContext&) = delete;
-  RunContext& operator=(const RunContext&) = delete;
+  // A job of its own, with all of the processor's threads.
+  RunContext();
 
-  void on_progress(ProgressSink sink) { progress_sink_ = std::move(sink); }
-  void on_log(LogSink sink) { log_sink_ = std::move(sink); }
+  // ---- what is told ----
 
-  // Reports progress and throws Cancelled if the job was cancelled. Callable from any thread; the
-  // sink is called by one at a time.
-  void progress(const std::string& stage, double fraction);
+  // A sink is called by one thread at a time, and calls neither of these two.
+  void on_progress(ProgressSink sink) const;
+  void on_log(LogSink sink) const;
+
+  // Reports progress and throws Cancelled if the job was cancelled.
+  void progress(const std::string& stage, double fraction) const;
+
+  void log(const std::string& line) const;
+
+  // A sentence for the user about something tolerated; collected for the report. Repeating a
+  // sentence is ignored.
+  void warn(const std::string& sentence) const;
+  std::vector<std::string> warnings() const;
+
+  // ---- cancellation ----
+
+  // Async-signal-safe: may be called from a signal handler.
+  void cancel() const;
+  bool cancelled() const { return cancel_requests() > 0; }
+  // More than one: the user is in a hurry. A job that drives a machine stops it at once then.
+  int cancel_requests() const;
+
+  // Throws Cancelled if the job was cancelled. Cheap. Loops and files do this by themselves: see
+  // run_scope.h.
+  void check_cancelled() const;
+
+  // A job that has to act on the second request as well says so; else the program ends there.
+  void expect_second_cancel() const;
+  bool expects_second_cancel() const;
+
+  // For tests, which find out so that a job can be stopped wherever it looks: the n-th check from
+  // now on (n > 0) finds it cancelled. How many there are can depend on the number of threads.
+  void cancel_at_check(std::int64_t n) const;
+  // Since cancel_at_check().
+  std::int64_t checks() const;
+
+  // ---- parts of a job ----
+
+  // The same job, of whose threads at most so many are used. 0: no fewer.
+  RunContext with_threads(int threads) const;
+  // How many its loops may use.
+  int threads() const;
+
+  // For a part of the job that nobody has to hear of. It is cancelled when the job is, and can be
+  // cancelled alone; progress and log end there, and it keeps its warnings to itself.
+  RunContext quiet() const;
 
   // Runs the tasks side by side as one stage, whose progress is how many are done: that of the
   // tasks' own stages is not shown. Exceptions as by parallel_do().
-  void side_by_side(const std::string& stage, const std::vector<std::function<void()>>& tasks);
-
-  // Throws Cancelled if the job was cancelled. Cheap, callable from any thread.
-  void check_cancelled() const;
-
-  // Async-signal-safe: may be called from a signal handler.
-  void cancel() { cancel_requests_.fetch_add(1, std::memory_order_relaxed); }
-  bool cancelled() const { return cancel_requests() > 0; }
-  // More than one: the user is in a hurry. A job that drives a machine stops it at once then.
-  int cancel_requests() const { return cancel_requests_.load(std::memory_order_relaxed); }
-
-  // A job that has to act on the second request as well says so; else the program ends there.
-  void expect_second_cancel() { expects_second_.store(true, std::memory_order_relaxed); }
-  bool expects_second_cancel() const { return expects_second_.load(std::memory_order_relaxed); }
-
-  void log(const std::string& line);
-
-  // A sentence for the user about something tolerated; collected for the report, thread-safe.
-  // Repeating a sentence is ignored.
-  void warn(const std::string& sentence);
-  std::vector<std::string> warnings() const;
+  void side_by_side(const std::string& stage,
+                    const std::vector<std::function<void()>>& tasks) const;
 
  private:
-  void show_progress(const std::string& stage, double fraction);
+  struct Cancellation;
+  struct Voice;
 
-  static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
-  std::atomic<int> cancel_requests_{0};
-  std::atomic<bool> expects_second_{false};
-  std::mutex progress_mutex_;
-  std::atomic<bool> side_by_side_{false};
-  ProgressSink progress_sink_;
-  LogSink log_sink_;
-  mutable std::mutex mutex_;
-  std::vector<std::string> warnings_;
+  void show_progress(const std::string& stage, double fraction) const;
+
+  std::shared_ptr<Cancellation> cancellation_;
+  std::shared_ptr<Voice> voice_;
+  std::shared_ptr<ThreadBudget> budget_;  // none: all threads
+
+  friend class RunScope;
 };
 
 }  // namespace hydrodip

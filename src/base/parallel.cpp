@@ -1,32 +1,99 @@
 #include "base/parallel.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+#include <atomic>
 #include <exception>
+#include <limits>
+#include <mutex>
+#include <utility>
 
 #include "base/awake_threads.h"
+#include "base/thread_budget.h"
 
 namespace hydrodip {
+
+namespace {
+
+// A loop's chunks as other threads see them.
+class SharedLoop : public ChunkLoop {
+ public:
+  SharedLoop(std::size_t count, std::size_t grain,
+             const std::function<void(std::size_t, std::size_t)>& body)
+      : ChunkLoop{&SharedLoop::run_handed_over, (count + grain - 1) / grain},
+        count_(count),
+        grain_(grain),
+        body_(body),
+        work_{work_here.context, work_here.budget, nullptr, true} {}
+
+  // On any thread.
+  void run_chunk(std::size_t chunk) {
+    // What comes after the first failure would change nothing. What comes before it may fail first.
+    if (chunk >= first_failed_.load(std::memory_order_relaxed)) return;
+    const AtWork at_work(work_);
+    try {
+      check_cancelled();
+      body_(chunk * grain_, std::min(count_, (chunk + 1) * grain_));
+    } catch (...) {
+      const std::lock_guard lock(failing_);
+      if (chunk >= first_failed_) return;
+      first_failed_ = chunk;
+      failure_ = std::current_exception();
+    }
+  }
+
+  void run_on_the_budget() {
+    handed_over_.store(0, std::memory_order_release);
+    if (work_here.budget != nullptr)
+      work_here.budget->run(*this);
+    else
+      run_on_all_threads(*this);
+    handed_over_.load(std::memory_order_acquire);
+  }
+
+  void rethrow() {
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  }
+
+ private:
+  // TBB orders the caller, the chunks and what follows the loop. It is said here once more, for
+  // ThreadSanitizer, which cannot see into TBB; next to a chunk it costs nothing.
+  static void run_handed_over(const ChunkLoop& loop, std::size_t chunk) {
+    auto& self = const_cast<SharedLoop&>(static_cast<const SharedLoop&>(loop));
+    self.handed_over_.load(std::memory_order_acquire);
+    self.run_chunk(chunk);
+    self.handed_over_.fetch_add(1, std::memory_order_release);
+  }
+
+  const std::size_t count_, grain_;
+  const std::function<void(std::size_t, std::size_t)>& body_;
+  const Work work_;
+  std::atomic<std::size_t> handed_over_{0};
+  std::atomic<std::size_t> first_failed_{std::numeric_limits<std::size_t>::max()};
+  std::mutex failing_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
 
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body) {
   if (count == 0) return;
-  const std::size_t chunks = (count + grain - 1) / grain;
-  if (chunks == 1) {
+  if (count <= grain) {
+    check_cancelled();
     body(0, count);
     return;
   }
-  const auto run = [&](std::size_t c) { body(c * grain, std::min(count, (c + 1) * grain)); };
-  if (run_awake(chunks, std::cref(run))) return;
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, chunks, 1),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t c = range.begin(); c != range.end(); ++c) run(c);
-      },
-      tbb::simple_partitioner());
+  if (available_threads() == 1) {
+    for (std::size_t begin = 0; begin < count; begin += grain) {
+      check_cancelled();
+      body(begin, std::min(count, begin + grain));
+    }
+    return;
+  }
+  SharedLoop loop(count, grain, body);
+  const auto run = [&](std::size_t chunk) { loop.run_chunk(chunk); };
+  if (!run_awake(loop.chunks, std::cref(run))) loop.run_on_the_budget();
+  loop.rethrow();
 }
 
 void parallel_do(const std::vector<std::function<void()>>& tasks) {
@@ -45,16 +112,11 @@ void parallel_do(const std::vector<std::function<void()>>& tasks) {
 }
 
 int available_threads() {
-  return static_cast<int>(
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  return work_here.budget != nullptr ? work_here.budget->threads() : processor_threads();
 }
 
-ThreadLimit::ThreadLimit(int threads) {
-  if (threads > 0)
-    control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism,
-                                       static_cast<std::size_t>(threads));
-}
-
-ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
+ThreadLimit::ThreadLimit(int threads)
+    : scope_((work_here.context != nullptr ? *work_here.context : RunContext())
+                 .with_threads(threads)) {}
 
 }  // namespace hydrodip

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/output_folder.h"
-#include "base/parallel.h"
+#include "base/run_scope.h"
 #include "calibrate/calibrate.h"
 #include "calibrate/pictures.h"
 #include "calibrate/search.h"
@@ -289,7 +289,7 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
 
 JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& request,
                         RunContext& context) {
-  const ThreadLimit threads(config.threads);
+  const RunScope scope(context.with_threads(config.threads));
   const SearchOptions options = search_options(request);
   const Shard shard = parse_shard(request.shard);
   if (config.design.dip.method != DipMethod::kFull)

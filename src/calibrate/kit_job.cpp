@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/output_folder.h"
+#include "base/run_scope.h"
 #include "calibrate/calibrate.h"
 #include "calibrate/checkerboard_dip.h"
 #include "calibrate/kit_shapes.h"
@@ -56,7 +57,8 @@ std::string scans_of(const std::vector<std::string>& objects) {
 }
 
 void write_instructions(const std::filesystem::path& path, const JobConfig& config,
-                        const std::vector<std::string>& objects, double square_mm) {
+                        const std::vector<std::string>& objects, double square_mm,
+                        const RunContext& context) {
   const ProcessOptions& process = config.process;
   PdfDocument pdf;
   pdf.set_title("Calibrating a film");
@@ -92,7 +94,7 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
 
   page.heading("Dip");
   for (const std::string& text : objects) {
-    RunContext quiet;
+    RunContext quiet = context.quiet();
     const CalibrationObject object = calibration_object(text, config, quiet);
     page.task(fmt::format("{}: its tip {:g} mm below the water, {:g} mm/min, over the middle of "
                           "the film, no turn.",
@@ -129,6 +131,7 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
 }  // namespace
 
 JobResult kit_job(const JobConfig& config, const CalibrationRequest& request, RunContext& context) {
+  const RunScope scope(context.with_threads(config.threads));
   for (const std::string& text : request.scans)
     calibration_object(text, config, context);  // refuses what does not fit the film
   OutputFolder folder(config.output);
@@ -139,7 +142,8 @@ JobResult kit_job(const JobConfig& config, const CalibrationRequest& request, Ru
     result.files.push_back(name);
   }
   write_film(folder.path("checkerboard.pdf"), config, request.square_mm, context);
-  write_instructions(folder.path("instructions.pdf"), config, request.scans, request.square_mm);
+  write_instructions(folder.path("instructions.pdf"), config, request.scans, request.square_mm,
+                     context);
   result.files.insert(result.files.end(), {"checkerboard.pdf", "instructions.pdf"});
   context.check_cancelled();
   folder.commit();

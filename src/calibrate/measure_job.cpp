@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/output_folder.h"
-#include "base/parallel.h"
+#include "base/run_scope.h"
 #include "calibrate/calibrate.h"
 #include "calibrate/pictures.h"
 #include "calibrate/subject.h"
@@ -104,7 +104,7 @@ void warn_of_bare_corners(const Subject& subject, const Measurement& full, RunCo
 
 JobResult measure_job(const JobConfig& config, const CalibrationRequest& request,
                       RunContext& context) {
-  const ThreadLimit threads(config.threads);
+  const RunScope scope(context.with_threads(config.threads));
   const ScanSettings settings = {{request.scan_units, request.square_mm, request.mirrored},
                                  request.aligned};
   const std::vector<Subject> subjects = load_subjects(request.scans, settings, config, context);

@@ -215,9 +215,8 @@ Eigen::MatrixXd Search::noise_gradient(const std::vector<std::size_t>& subjects,
   Eigen::Index row = 0, column = 0;
   for (const std::size_t s : subjects) {
     const Subject& subject = subjects_[s];
-    RunContext quiet;
+    RunContext quiet = context.quiet();
     const CheckerboardDip dip = search_film_.dip({s, from_fit(point)}, quiet);
-    context.check_cancelled();
     const Comparison comparison = compare(subject, dip);
     gradient.block(row, column, Eigen::Index(compared_[s].size()),
                    3 * Eigen::Index(subject.scan.grid.position.size())) =

@@ -15,12 +15,15 @@
 namespace hydrodip {
 namespace {
 
-constexpr std::chrono::milliseconds kLookEvery{100};
+// Whether the job was cancelled.
+constexpr std::chrono::milliseconds kLookEvery{20};
 
-// Runs tasks 0 .. count - 1 on threads of their own, each with a quiet context that the job's
-// cancellation reaches. `done` is called for each on the calling thread.
+// Runs tasks 0 .. count - 1 on so many threads of its own, each a quiet part of the job. `done` is
+// called for each on the calling thread.
 class Crew {
  public:
+  explicit Crew(const RunContext& context) : workers_context_(context.with_threads(1).quiet()) {}
+
   using Task = std::function<void(std::size_t index, RunContext& context)>;
   using Done = std::function<void(std::size_t index)>;
 
@@ -43,6 +46,7 @@ class Crew {
 
  private:
   void work(std::size_t count, const Task& task) {
+    const RunScope scope(workers_context_);
     for (std::size_t i = next_++; i < count; i = next_++) {
       try {
         task(i, workers_context_);
@@ -63,7 +67,7 @@ class Crew {
       std::vector<std::size_t> batch;
       {
         std::unique_lock lock(mutex_);
-        changed_.wait_for(lock, kLookEvery);
+        changed_.wait_for(lock, kLookEvery, [&] { return failure_ || !finished_.empty(); });
         if (failure_) return;
         batch.swap(finished_);
       }
@@ -131,11 +135,10 @@ std::vector<SimulationResult> Simulations::get(const std::vector<SimulationReque
 
   if (!todo.empty()) {
     const int threads = available_threads();
-    const ThreadLimit one_each(1);
     std::vector<SimulationResult> computed(todo.size());
     std::size_t done = 0;
     context.progress(stage, 0);
-    Crew().run(
+    Crew(context).run(
         todo.size(), threads,
         [&](std::size_t i, RunContext& quiet) { computed[i] = compute(todo[i], quiet); },
         [&](std::size_t i) {

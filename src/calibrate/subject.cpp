@@ -87,7 +87,7 @@ void find_how_it_lies(Subject& subject, const ScanSettings& settings, const JobC
   coarse.dip.step_mm = std::max(config.design.dip.step_mm, kCoarseStep_mm);
   coarse.dip.method = DipMethod::kFull;
   const double square_mm = settings.file.square_mm;
-  RunContext quiet;
+  RunContext quiet = context.quiet();
   const CheckerboardDip dip =
       dip_checkerboard(checkered_film(coarse, square_mm), subject.object, *subject.surface,
                        film_parameters(config.design), coarse.dip, quiet);

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/output_folder.h"
-#include "base/parallel.h"
+#include "base/run_scope.h"
 #include "calibrate/calibrate.h"
 #include "calibrate/resolution.h"
 #include "calibrate/synthetic.h"
@@ -33,7 +33,7 @@ std::string truth_toml(const FilmParameters& truth) {
 JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
                     RunContext& context) {
   check(request);
-  const ThreadLimit threads(config.threads);
+  const RunScope scope(context.with_threads(config.threads));
   // Finer than any film that calibrate dips with the same configuration.
   const DesignOptions fine = finer_film(finer_film(config.design));
   const FilmParameters truth = film_parameters(config.design);

@@ -122,6 +122,7 @@ std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, c
 DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
               const std::vector<Triangle>& triangles, const Surface& surface,
               const DipOptions& options, RunContext& context, const DipObserver& observe) {
+  const RunScope scope(context);
   const FilmMesh& film = *mesh;
   check(options, film);
   const double depth = depth_of(positions, options);

@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "base/output_folder.h"
-#include "base/parallel.h"
+#include "base/run_scope.h"
 #include "image/files.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
@@ -205,7 +205,7 @@ void write_files(const Inspection& i, const std::string& report, RunContext& con
 }  // namespace
 
 JobResult inspect_job(const JobConfig& config, RunContext& context) {
-  const ThreadLimit threads(config.threads);
+  const RunScope scope(context.with_threads(config.threads));
   const PreparedObject prepared = prepare_object(config.model, config.object, context);
   const TriangleMesh& mesh = prepared.posed.mesh();
   const FilmOptions& film = config.design.film;

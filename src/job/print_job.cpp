@@ -1,5 +1,5 @@
 #include "base/output_folder.h"
-#include "base/parallel.h"
+#include "base/run_scope.h"
 #include "ink/rgb_profile.h"
 #include "job/job_record.h"
 #include "job/jobs.h"
@@ -55,7 +55,7 @@ void compose(OutputFolder& folder, const FilmInk& ink, const Printer& printer,
 }  // namespace
 
 JobResult print_job(const JobConfig& config, RunContext& context) {
-  const ThreadLimit threads(config.threads);
+  const RunScope scope(context.with_threads(config.threads));
   OutputFolder folder(config.output);
   Timings times;
 

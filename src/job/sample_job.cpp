@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/output_folder.h"
+#include "base/run_scope.h"
 #include "job/jobs.h"
 #include "samples/samples.h"
 
@@ -10,6 +11,7 @@ namespace hydrodip {
 
 JobResult sample_job(const std::string& name, const std::filesystem::path& folder,
                      RunContext& context) {
+  const RunScope scope(context);
   const Object sample = make_sample(name);  // refuses unknown names before a folder is made
   OutputFolder output(folder);
   const std::string model = name + ".obj";

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/output_folder.h"
-#include "base/parallel.h"
+#include "base/run_scope.h"
 #include "image/files.h"
 #include "image/resize.h"
 #include "ink/stiffness.h"
@@ -137,7 +137,7 @@ Image seen_on_object(const DippedObject& dipped, const PrintedFilm& printed,
 }  // namespace
 
 JobResult simulate_job(const JobConfig& config, RunContext& context) {
-  const ThreadLimit threads(config.threads);
+  const RunScope scope(context.with_threads(config.threads));
   OutputFolder folder(config.output);
   Timings times;
 

@@ -9,7 +9,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/parallel.h"
+#include "base/error.h"
+#include "base/run_scope.h"
+#include "base/thread_budget.h"
 
 namespace hydrodip {
 
@@ -50,13 +52,11 @@ Closest closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
 }  // namespace
 
 struct Surface::Impl {
-  RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   std::shared_ptr<const TriangleMesh> mesh;
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
   }
 
   const Vec3& corner(int triangle, int k) const {
@@ -67,17 +67,26 @@ struct Surface::Impl {
 
 namespace {
 
-constexpr const char* kDeviceOptions = "set_affinity=0";
+// One device for all surfaces of the process: it holds Embree's settings and is never changed.
+// Begun by whoever comes first; never ended, for a surface may live as long as the process.
+RTCDevice device() {
+  static const RTCDevice shared = rtcNewDevice("set_affinity=0");
+  if (!shared) throw std::runtime_error("Embree could not be started");
+  return shared;
+}
 
-void build(RTCDevice device, RTCScene scene, const std::vector<Vec3>& positions,
-           const std::vector<Triangle>& triangles) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+void add_triangles(RTCScene scene, const std::vector<Vec3>& positions,
+                   const std::vector<Triangle>& triangles) {
+  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
   auto* indices = static_cast<unsigned*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               3 * sizeof(unsigned), triangles.size()));
-  if (!vertices || !indices) throw std::bad_alloc();
+  if (!vertices || !indices) {
+    rtcReleaseGeometry(geometry);
+    throw std::bad_alloc();
+  }
   for (std::size_t i = 0; i < positions.size(); ++i)
     for (int k = 0; k < 3; ++k) vertices[3 * i + std::size_t(k)] = float(positions[i][k]);
   for (std::size_t i = 0; i < triangles.size(); ++i)
@@ -85,8 +94,33 @@ void build(RTCDevice device, RTCScene scene, const std::vector<Vec3>& positions,
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  rtcCommitScene(scene);
+}
+
+// Embree's parallel build may order triangles differently from run to run, and with it the choice
+// among triangles hit exactly on their common edge. So this thread builds, alone. (Embree's own
+// option "threads=1" and a limit set for TBB would hold back the whole process.)
+void build(RTCScene scene) {
+  struct Build : ChunkLoop {
+    RTCScene scene;
+    bool stopped = false;
+  } build{{[](const ChunkLoop& loop, std::size_t) {
+             rtcJoinCommitScene(static_cast<const Build&>(loop).scene);
+           },
+           1},
+          scene};
+  const auto go_on = [](void* stopped, double) {
+    try {
+      check_cancelled();
+    } catch (const Cancelled&) {
+      *static_cast<bool*>(stopped) = true;
+    }
+    return !*static_cast<bool*>(stopped);
+  };
+  rtcSetSceneProgressMonitorFunction(scene, go_on, &build.stopped);
+  run_alone(build);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+  if (build.stopped) throw Cancelled();
+  if (rtcGetDeviceError(device()) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
 }
 
 RTCRay ray_of(const Vec3& origin, const Vec3& direction, double t_min, double t_max) {
@@ -112,17 +146,11 @@ Surface::Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>
 
 Surface::Surface(std::shared_ptr<const TriangleMesh> mesh) : impl_(std::make_unique<Impl>()) {
   impl_->mesh = std::move(mesh);
-  impl_->device = rtcNewDevice(kDeviceOptions);
-  if (!impl_->device) throw std::runtime_error("Embree could not be started");
-  impl_->scene = rtcNewScene(impl_->device);
-  // Embree's parallel build may order triangles differently from run to run, and with it the choice
-  // among triangles hit exactly on their common edge. (Its own option "threads=1" would hold back
-  // the whole process for as long as the device lives.)
-  const ThreadLimit one_thread(1);
+  impl_->scene = rtcNewScene(device());
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   if (!impl_->mesh->triangles.empty())
-    build(impl_->device, impl_->scene, impl_->mesh->positions, impl_->mesh->triangles);
-  else
-    rtcCommitScene(impl_->scene);
+    add_triangles(impl_->scene, impl_->mesh->positions, impl_->mesh->triangles);
+  build(impl_->scene);
 }
 
 Surface::~Surface() = default;

@@ -20,7 +20,7 @@ struct SurfaceHit {
 // on the surface to about 1e-9 mm.
 class Surface {
  public:
-  // Degenerate triangles are never hit.
+  // Degenerate triangles are never hit. Throws Cancelled, as check_cancelled() does.
   explicit Surface(std::shared_ptr<const TriangleMesh> mesh);
   // Of copies.
   Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);

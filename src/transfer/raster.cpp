@@ -172,6 +172,7 @@ namespace {
 template <class Paint>
 void for_each_inked(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
                     const std::string& stage, RunContext& context, const Paint& paint) {
+  const RunScope scope(context);
   std::vector<Tile> tiles = tiles_of(raster.width_px(), raster.height_px());
   std::erase_if(tiles, [&](const Tile& t) { return !may_hold_ink(t, raster, map, bleed_mm); });
   const auto paint_tile = [&](const Tile& tile) {
@@ -184,8 +185,7 @@ void for_each_inked(const FilmMap& map, const SheetRaster& raster, double bleed_
     context.progress(stage, double(first) / double(tiles.size()));
     const std::size_t count = std::min(kTilesPerRound, tiles.size() - first);
     parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        if (!context.cancelled()) paint_tile(tiles[first + i]);
+      for (std::size_t i = begin; i < end; ++i) paint_tile(tiles[first + i]);
     });
   }
   context.progress(stage, 1);

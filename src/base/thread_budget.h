@@ -1,0 +1,43 @@
+// So many threads of the processor for one job: the only place that knows TBB.
+#pragma once
+
+#include <cstddef>
+
+namespace hydrodip {
+
+// How many threads the processor runs at once, as far as this process may use them.
+int processor_threads();
+
+// A loop over chunks, in plain types: thread_budget.cpp is compiled apart (see there).
+struct ChunkLoop {
+  // Throws nothing.
+  void (*run)(const ChunkLoop& loop, std::size_t chunk);
+  std::size_t chunks;
+};
+
+class ThreadBudget {
+ public:
+  // threads > 0.
+  explicit ThreadBudget(int threads);
+  ~ThreadBudget();
+  ThreadBudget(const ThreadBudget&) = delete;
+  ThreadBudget& operator=(const ThreadBudget&) = delete;
+
+  int threads() const { return threads_; }
+
+  // Runs each chunk once, on these threads, the caller among them. Callable from any thread, also
+  // inside a loop.
+  void run(const ChunkLoop& loop);
+
+ private:
+  int threads_;
+  void* arena_;  // a tbb::task_arena
+};
+
+// The same with all of the processor's threads.
+void run_on_all_threads(const ChunkLoop& loop);
+
+// Runs the loop on the calling thread, and loops that a library runs on TBB inside it as well.
+void run_alone(const ChunkLoop& loop);
+
+}  // namespace hydrodip
