@@ -26,7 +26,10 @@ bool ink_matters(const DesignOptions& options) {
 class Settling {
  public:
   Settling(const DesignTask& task, Timings& timings, RunContext& context)
-      : task_(task), timings_(timings), context_(context), film_(std::make_shared<const FilmMesh>(make_film_mesh(task.options.film))) {}
+      : task_(task),
+        timings_(timings),
+        context_(context),
+        film_(std::make_shared<const FilmMesh>(make_film_mesh(task.options.film))) {}
 
   Designed run() {
     InkRounds rounds(task_, options(), film_, timings_, context_);

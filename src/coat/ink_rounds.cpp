@@ -60,8 +60,8 @@ double mean_of(const std::vector<double>& values) {
 
 }  // namespace
 
-InkRounds::InkRounds(const DesignTask& task, const DesignOptions& options, const SharedFilmMesh& film,
-                     Timings& timings, RunContext& context)
+InkRounds::InkRounds(const DesignTask& task, const DesignOptions& options,
+                     const SharedFilmMesh& film, Timings& timings, RunContext& context)
     : task_(task),
       options_(options),
       film_(film),

@@ -62,7 +62,7 @@ std::vector<ReportFigure> ink_figures(const InkRound& round, bool first) {
 }
 
 std::vector<ReportRound> rounds(const JobRecord& record) {
-  if (record.ink == nullptr) return {{"dip", 1, dip_figures(record.dipped.statistics)}};
+  if (record.ink == nullptr) return {{"dip", 1, dip_figures(record.dipped().statistics)}};
   std::vector<ReportRound> list;
   const auto add = [&](const std::string& film, const std::vector<InkRound>& rounds) {
     for (std::size_t n = 0; n < rounds.size(); ++n)
@@ -135,19 +135,19 @@ Report make_report(const JobRecord& record) {
   report.command = record.command;
   report.command_line = record.config.command_line;
   report.title = record.config.print.job_name;
-  report.verdict = plain_verdict(record.dipped.coverage);
+  report.verdict = plain_verdict(record.dipped().coverage);
   report.inputs = record.inputs;
   for (const Parameter& parameter : parameters())
     report.parameters.push_back(describe_parameter(parameter, record.config));
   for (const Timing& time : record.times.list()) report.stages.push_back({time.what, time.seconds});
   report.total_seconds = record.times.total_s();
   report.rounds = rounds(record);
-  report.coverage = record.dipped.coverage;
-  report.angles = record.dipped.angles;
+  report.coverage = record.dipped().coverage;
+  report.angles = record.dipped().angles;
   report.mesh = record.prepared.health;
   report.tear_stretch = record.config.design.dip.material.tear_stretch;
   if (record.command == "print") report.bleed_mm = record.config.design.inverse.bleed_mm;
-  report.figures = figures(record.dipped);
+  report.figures = figures(record.dipped());
   add_ink(record, report.figures);
   report.warnings = record.context.warnings();
   report.outputs = outputs(record.command, record.config);

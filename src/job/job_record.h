@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "base/timings.h"
 #include "coat/design.h"
+#include "coat/finish.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
 #include "report/report.h"
@@ -21,11 +22,14 @@ struct JobRecord {
   const JobConfig& config;
   const PreparedObject& prepared;
   const std::vector<ReportInput>& inputs;
-  const DippedObject& dipped;
+  const Finish& finish;
   const Timings& times;
   RunContext& context;
   const InkResult* ink = nullptr;  // of print
   std::string ink_model;           // how colours became inks
+
+  const DippedObject& dipped() const { return finish.coats().front().dipped; }
+  const Paint& paint() const { return finish.paint(); }
 };
 
 // Every file that the job reads, with its hash as it was read. Call it next to reading them.

@@ -55,7 +55,7 @@ ReportInk ink_amounts(const InkImage& inks, double limit) {
 
 // The verdict in one line.
 std::string picture_caption(const JobRecord& record) {
-  const Coverage& coverage = record.dipped.coverage;
+  const Coverage& coverage = record.dipped().coverage;
   if (!(coverage.film_on_object_mm2 > 0)) return short_verdict(coverage);
   return headline(concern_of(findings(make_report(record)))) + ": " + short_verdict(coverage);
 }
@@ -68,18 +68,15 @@ LinearColor reach_color(float difference) {
   return {1 - 0.65F * t * t, 0.75F * (1 - t) * (1 - t), 0.05F * (1 - t), 1};
 }
 
-// Wanted: the paint; predicted: `film_image`, which shows every pixel of the film as it looks on
-// the object. Refers to all three.
-Appearance appearance(const JobRecord& record, const Image& film_image, const SheetRaster& raster) {
-  const Paint& paint = *record.prepared.paint;
+// Wanted: the paint; predicted: the finish. Refers to it.
+Appearance appearance(const Finish& finish) {
   Appearance result;
-  result.wanted = [&paint, says = paint.says_anything()](const SurfacePoint& point, const Vec3&,
-                                                         const Vec3&) {
+  result.wanted = [&paint = finish.paint(), says = finish.paint().says_anything()](
+                      const SurfacePoint& point, const Vec3&, const Vec3&) {
     return says ? paint.color_at(point) : paint.base();
   };
-  result.predicted = [&paint, &record, &film_image, raster](
-                         const SurfacePoint&, const Vec3& position, const Vec3& normal) {
-    return predicted_color(film_image, raster, *record.dipped.map, position, normal, paint.base());
+  result.predicted = [&finish](const SurfacePoint& point, const Vec3&, const Vec3&) {
+    return finish.color_at(point);
   };
   return result;
 }
@@ -90,8 +87,8 @@ PreviewPair reach_pair(const JobRecord& record, const Appearance& shown,
   PreviewPair pair;
   pair.shown.wanted = shown.predicted;
   pair.shown.predicted = [&](const SurfacePoint&, const Vec3& position, const Vec3& normal) {
-    const auto u = record.dipped.map->to_film(position, normal);
-    if (!u) return record.prepared.paint->base();
+    const auto u = record.dipped().map->to_film(position, normal);
+    if (!u) return record.paint().base();
     const Vec2 pixel = raster.to_pixel(*u);
     const int x = std::clamp(int(pixel.x()), 0, raster.width_px() - 1);
     const int y = std::clamp(int(pixel.y()), 0, raster.height_px() - 1);
@@ -112,10 +109,10 @@ std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
                                       const std::filesystem::path& gamut_png,
                                       const JobRecord& record, const Appearance& shown,
                                       const SheetRaster& raster, const std::string& caption_start) {
-  const DippedObject& dipped = record.dipped;
+  const DippedObject& dipped = record.dipped();
   PreviewOptions options;
   options.width_px = record.config.preview_width_px;
-  options.base = record.prepared.paint->base();
+  options.base = record.paint().base();
   std::vector<PreviewPair> pairs(1);
   pairs[0].shown = shown;
   pairs[0].caption = caption_start + picture_caption(record);
@@ -134,11 +131,11 @@ FilmLayer reach_layer(const JobRecord& record, const SheetRaster& raster) {
     if (ink.ink.wanted.rgba[4 * i + 3] == 0)
       difference[i] = std::numeric_limits<float>::quiet_NaN();
   return pixel_layer("out_of_gamut", difference, raster.width_px(), raster.height_px(),
-                     Vec2(raster.width_mm, raster.height_mm), record.dipped.map->covered());
+                     Vec2(raster.width_mm, raster.height_mm), record.dipped().map->covered());
 }
 
 Image draw_maps(const JobRecord& record) {
-  const DippedObject& dipped = record.dipped;
+  const DippedObject& dipped = record.dipped();
   MapOptions options;
   options.width_px = record.config.preview_width_px;
   options.tear_stretch = record.config.design.dip.material.tear_stretch;
@@ -150,7 +147,7 @@ Image draw_maps(const JobRecord& record) {
 // What the 3D view shows, and what is learnt on the way.
 void make_page(const JobRecord& record, const Object& looks, const Appearance& shown,
                const Image& film_image, const SheetRaster& raster, Previews& previews) {
-  const DippedObject& dipped = record.dipped;
+  const DippedObject& dipped = record.dipped();
   const Image sheet = shrink_to(film_image, kPageTextureSide_px);
   SceneSource scene{looks, *dipped.film, *dipped.history, sheet};
   scene.sheet_width_mm = raster.width_mm;
@@ -158,8 +155,8 @@ void make_page(const JobRecord& record, const Object& looks, const Appearance& s
   scene.bath_width_mm = record.config.bath.width_mm;
   scene.bath_height_mm = record.config.bath.height_mm;
   scene.tear_stretch = record.config.design.dip.material.tear_stretch;
-  scene.base = record.prepared.paint->base();
-  if (record.prepared.paint->says_anything()) {
+  scene.base = record.paint().base();
+  if (record.paint().says_anything()) {
     scene.layers.push_back(
         color_error_layer(dipped.posed.mesh(), *dipped.map, shown, record.context));
     previews.colors = colors_of(scene.layers.back());
@@ -173,25 +170,27 @@ void make_page(const JobRecord& record, const Object& looks, const Appearance& s
 
 void write_glb(const std::filesystem::path& path, const JobRecord& record, const Object& looks,
                const Image& film_image, const SheetRaster& raster) {
-  const DippedObject& dipped = record.dipped;
+  const DippedObject& dipped = record.dipped();
   const int texture_px = record.config.preview_texture_px;
   write_preview_glb(path, looks, dipped.posed.surface(), *dipped.film,
                     shrink_to(film_image, 2 * texture_px), raster.width_mm, raster.height_mm,
-                    record.prepared.paint->base(), texture_px);
+                    record.paint().base(), texture_px);
 }
 
 }  // namespace
 
-Previews write_previews(OutputFolder& folder, const JobRecord& record, const Image& film_image,
-                        const SheetRaster& raster, const std::string& caption_start) {
-  const DippedObject& dipped = record.dipped;
+Previews write_previews(OutputFolder& folder, const JobRecord& record,
+                        const std::string& caption_start) {
+  const DippedObject& dipped = record.dipped();
+  const Image& film_image = *record.finish.coats().front().look;
+  const SheetRaster& raster = record.finish.coats().front().raster;
   Previews previews;
   std::vector<std::function<void()>> tasks;
   const auto add = [&](const std::string& name, const auto& write) {
     tasks.emplace_back([path = folder.path(name), write] { write(path); });
   };
-  const Object looks = painted_object(dipped.posed.mesh(), *record.prepared.paint);
-  const Appearance shown = appearance(record, film_image, raster);
+  const Object looks = painted_object(dipped.posed.mesh(), record.paint());
+  const Appearance shown = appearance(record.finish);
   // The longest first.
   if (record.config.pictures) {
     tasks.emplace_back([&] { make_page(record, looks, shown, film_image, raster, previews); });
@@ -212,7 +211,7 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record, const Ima
   return previews;
 }
 
-JobResult finish(OutputFolder& folder, const JobRecord& record, const Previews& previews) {
+JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previews& previews) {
   Report report = make_report(record);
   report.colors = previews.colors;
   report.ink = previews.ink;

@@ -23,11 +23,11 @@ struct Previews {
 // Writes film.ply, preview.glb, preview.png, maps.png, and gamut.png if there is ink, for a film
 // that carries `film_image` (as seen from above, over the whole sheet). Without config.pictures
 // only the first two. The picture's caption is a short verdict after `caption_start`.
-Previews write_previews(OutputFolder& folder, const JobRecord& record, const Image& film_image,
-                        const SheetRaster& raster, const std::string& caption_start = "");
+Previews write_previews(OutputFolder& folder, const JobRecord& record,
+                        const std::string& caption_start = "");
 
 // Writes report.json and report.html, then moves all files to their final names, unless the job was
 // cancelled.
-JobResult finish(OutputFolder& folder, const JobRecord& record, const Previews& previews);
+JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previews& previews);
 
 }  // namespace hydrodip

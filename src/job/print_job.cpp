@@ -72,14 +72,15 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
       {prepared.posed, *prepared.paint, Allotment(), *printer.model, options}, times, context);
   times.measure("sheet", [&] { compose(folder, designed.ink.ink, printer, config, context); });
 
-  const JobRecord record{"print", config,          prepared,
-                         inputs,  designed.dipped, times,
-                         context, &designed.ink,   printer.model->name()};
-  const Previews previews = times.measure("preview", [&] {
-    return write_previews(folder, record, designed.ink.ink.on_object,
-                          raster_of(options.film, options.dpi));
-  });
-  return finish(folder, record, previews);
+  const Finish finish(prepared.paint,
+                      {{designed.dipped, raster_of(options.film, options.dpi),
+                        std::make_shared<const Image>(designed.ink.ink.on_object)}});
+  const JobRecord record{"print", config,        prepared,
+                         inputs,  finish,        times,
+                         context, &designed.ink, printer.model->name()};
+  const Previews previews =
+      times.measure("preview", [&] { return write_previews(folder, record); });
+  return finish_job(folder, record, previews);
 }
 
 }  // namespace hydrodip

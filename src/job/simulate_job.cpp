@@ -155,17 +155,19 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
   const DippedObject dipped = dip_object(prepared.posed, film, depth_mm,
                                          dip_options(*film, printed, config), times, context);
 
-  const JobRecord record{
-      "simulate", config, prepared, inputs, dipped, times, context, nullptr, printer.model->name()};
-  const Image seen = times.measure("look", [&] {
+  Image seen = times.measure("look", [&] {
     return seen_on_object(dipped, printed, *printer.model, prepared.paint->base(),
                           !config.film_image.empty(), context);
   });
+  const Finish finish(prepared.paint,
+                      {{dipped, printed.raster, std::make_shared<const Image>(std::move(seen))}});
+  const JobRecord record{
+      "simulate", config, prepared, inputs, finish, times, context, nullptr, printer.model->name()};
   const Previews previews = times.measure("preview", [&] {
-    return write_previews(folder, record, seen, printed.raster,
+    return write_previews(folder, record,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");
   });
-  return finish(folder, record, previews);
+  return finish_job(folder, record, previews);
 }
 
 }  // namespace hydrodip

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <filesystem>
 
+#include "coat/dipped_object.h"
 #include "image/files.h"
 #include "ink/discoloration.h"
 #include "ink/stiffness.h"
-#include "job/dip_stage.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
 #include "samples/samples.h"
@@ -24,30 +24,28 @@ JobConfig mask_job(const std::filesystem::path& folder) {
   JobConfig config;
   config.model = folder / "mask.obj";
   config.output = folder / "out";
-  config.film.elements = 20000;
-  config.dip.step_mm = 0.2;
+  config.design.film.elements = 20000;
+  config.design.dip.step_mm = 0.2;
   // The mask's texture has edges sharper than a pixel of 300 dpi, which alone keep it at 34 dB.
-  config.print.dpi = 600;
+  config.design.dpi = 600;
   config.pictures = false;
   return config;
 }
 
 // The film that carries the inks of print.tif, dipped as it will be.
-std::unique_ptr<DippedObject> dipped_again(const JobConfig& config, const InkImage& inks,
-                                           RunContext& context) {
-  StageTimes times;
-  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
-  DipOptions options = config.dip;
-  options.modulus = film_modulus(*film, inks, sheet_raster(config, config.print.dpi),
-                                 {config.ink.stiffness_ratio, config.ink.filter_mm});
-  auto dipped = undipped(load_posed(config, context));
-  dip_again(*dipped, film, options, times, context);
-  return dipped;
+DippedObject dipped_again(const JobConfig& config, const PosedObject& posed, const InkImage& inks,
+                          RunContext& context) {
+  Timings timings;
+  const DesignOptions& design = config.design;
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(design.film));
+  DipOptions options = design.dip;
+  options.modulus = film_modulus(*film, inks, raster_of(design.film, design.dpi), design.stiffness);
+  return dip_object(posed, film, 0, options, timings, context);
 }
 
 // Evenly over the surface and always the same: equal shares of area, and in each triangle the
 // points of a low-discrepancy sequence.
-std::vector<SurfacePoint> evenly_spread(const Object& object, int count) {
+std::vector<SurfacePoint> evenly_spread(const TriangleMesh& object, int count) {
   std::vector<double> area_up_to;
   double total = 0;
   for (const Triangle& t : object.triangles) {
@@ -83,15 +81,17 @@ struct Likeness {
 };
 
 // Wanted against predicted colours wherever film lies on the object.
-Likeness likeness(const DippedObject& dipped, const Image& film, const SheetRaster& raster) {
+Likeness likeness(const DippedObject& dipped, const Paint& paint, const Image& film,
+                  const SheetRaster& raster) {
   const LinearColor base{1, 1, 1, 1};
+  const TriangleMesh& mesh = dipped.posed.mesh();
   double squares = 0;
   Likeness result;
-  for (const SurfacePoint& point : evenly_spread(dipped.object(), 200000)) {
-    const Vec3 position = position_at(dipped.object(), point);
-    const Vec3 normal = face_normal(dipped.object(), point.triangle);
+  for (const SurfacePoint& point : evenly_spread(mesh, 200000)) {
+    const Vec3 position = position_at(mesh, point);
+    const Vec3 normal = face_normal(mesh, point.triangle);
     if (!dipped.map->to_film(position, normal)) continue;
-    const auto wanted = srgb(color_at(dipped.object(), point, base));
+    const auto wanted = srgb(paint.color_at(point));
     const auto found = srgb(predicted_color(film, raster, *dipped.map, position, normal, base));
     for (std::size_t k = 0; k < 3; ++k) squares += std::pow(wanted[k] - found[k], 2) / 3;
     ++result.compared;
@@ -103,7 +103,7 @@ Likeness likeness(const DippedObject& dipped, const Image& film, const SheetRast
 constexpr double kDotSpacing_mm = 10, kDotRadius_mm = 0.8;
 
 // Black dots on white every 10 mm as seen from below, put on with texture coordinates to match.
-Object dotted(const Object& object) {
+std::shared_ptr<const Object> dotted(const TriangleMesh& mesh) {
   constexpr int kPixels = 1600;
   constexpr double kSize_mm = 160;
   Image image(kPixels, kPixels);
@@ -118,7 +118,9 @@ Object dotted(const Object& object) {
       std::fill_n(pixel, 3, value);
       pixel[3] = 255;
     }
-  Object result = object;
+  Object result;
+  result.positions = mesh.positions;
+  result.triangles = mesh.triangles;
   result.materials.assign(1, Material{});
   result.materials[0].texture = 0;
   result.material_of.assign(result.triangles.size(), 0);
@@ -133,7 +135,7 @@ Object dotted(const Object& object) {
     }
     result.uvs.push_back(uv);
   }
-  return result;
+  return std::make_shared<const Object>(std::move(result));
 }
 
 struct Registration {
@@ -156,13 +158,13 @@ Registration registration(const DippedObject& dipped, const Object& object, cons
       for (double dx = -1.5; dx <= 1.5 && covered; dx += 0.06)
         for (double dy = -1.5; dy <= 1.5 && covered; dy += 0.06) {
           const Vec3 below(i * kDotSpacing_mm + dx, j * kDotSpacing_mm + dy, -1);
-          const auto hit = dipped.surface->first_hit(below, Vec3(0, 0, 1), 0, 1e3);
+          const auto hit = dipped.posed.surface().first_hit(below, Vec3(0, 0, 1), 0, 1e3);
           if (!hit) {
             covered = false;
             break;
           }
-          const Vec3 position = dipped.surface->position(*hit);
-          const Vec3 normal = dipped.surface->normal(*hit);
+          const Vec3 position = dipped.posed.surface().position(*hit);
+          const Vec3 normal = dipped.posed.surface().normal(*hit);
           covered = dipped.map->to_film(position, normal).has_value();
           const double w = 1 - double(color_at(object, {hit->triangle, hit->u, hit->v}, base).g);
           const double f =
@@ -187,23 +189,26 @@ TEST(RoundTripSlow, WhatIsPrintedAndDippedIsWhatWasWanted) {
   RunContext context;
   print_job(config, context);
   const InkImage inks = read_cmyk_tiff(config.output / "print.tif").inks;
-  const SheetRaster raster = sheet_raster(config, config.print.dpi);
+  const SheetRaster raster = raster_of(config.design.film, config.design.dpi);
   ASSERT_EQ(inks.width_px, raster.width_px());
   ASSERT_EQ(inks.height_px, raster.height_px());
 
   // Stiffened by its ink and paled by its stretch.
-  const auto dipped = dipped_again(config, inks, context);
-  const FilmStretch stretch = film_stretch(*dipped->map, raster, config.print.bleed_mm, context);
+  const PreparedObject prepared = prepare_object(config.model, config.object, context);
+  const DippedObject dipped = dipped_again(config, prepared.posed, inks, context);
+  const FilmStretch stretch =
+      film_stretch(*dipped.map, raster, config.design.inverse.bleed_mm, context);
   const auto model = make_device_model();
   const Image seen = look_on_object(inks, stretch.area_ratio, *model, {1, 1, 1, 1});
-  const Likeness colors = likeness(*dipped, seen, raster);
+  const Likeness colors = likeness(dipped, *prepared.paint, seen, raster);
   EXPECT_GT(colors.compared, 50000);
   EXPECT_GE(colors.psnr_db, 35);
   RecordProperty("psnr_db", std::to_string(colors.psnr_db));
 
-  const Object dots = dotted(dipped->object());
-  const Image dots_film = film_image(dots, *dipped->map, raster, InverseOptions{}, context);
-  const Registration features = registration(*dipped, dots, dots_film, raster);
+  const auto dots = dotted(dipped.posed.mesh());
+  const Image dots_film =
+      film_image(*model_paint(dots), *dipped.map, raster, InverseOptions{}, Allotment(), context);
+  const Registration features = registration(dipped, *dots, dots_film, raster);
   EXPECT_GT(features.dots, 60);
   EXPECT_LT(features.largest_mm, 0.05);
   RecordProperty("largest_mm", std::to_string(features.largest_mm));

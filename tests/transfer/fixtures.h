@@ -30,6 +30,21 @@ inline std::unique_ptr<Dipped> mapped(Object object, DippedFilm film) {
   return result;
 }
 
+// The object's own colours, on white.
+class ObjectPaint : public Paint {
+ public:
+  explicit ObjectPaint(const Object& object) : Paint({1, 1, 1, 1}), object_(object) {}
+  LinearColor color_at(const SurfacePoint& point) const override {
+    return hydrodip::color_at(object_, point, base());
+  }
+  bool says_anything() const override { return object_.has_appearance(); }
+
+ private:
+  const Object& object_;
+};
+
+inline ObjectPaint paint_of(const Dipped& dipped) { return ObjectPaint(dipped.object); }
+
 inline Object plain_object(const shapes::Shape& shape) {
   Object object;
   object.positions = shape.positions;

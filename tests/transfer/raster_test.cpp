@@ -19,7 +19,7 @@ SheetRaster small_sheet(double dpi) { return {60, 60, dpi}; }
 Image printed(const fixtures::Dipped& dipped, const SheetRaster& raster,
               const InverseOptions& options = {}) {
   RunContext context;
-  return film_image(dipped.object, *dipped.map, raster, options, context);
+  return film_image(fixtures::paint_of(dipped), *dipped.map, raster, options, Allotment(), context);
 }
 
 // How far a point lies outside the square that the slab's bottom covers.
@@ -243,11 +243,34 @@ TEST(FilmImage, ThreadsDoNotChangeAByte) {
   EXPECT_EQ(with_threads(1), with_threads(2));
 }
 
+TEST(FilmImage, PrintsTheShareThatIsAllotted) {
+  const auto dipped = textured_slab(plain_texture(10, 200, 30));
+  RunContext context;
+  const SheetRaster raster = small_sheet(100);
+  const auto image_of = [&](const Allotment& allotment) {
+    return film_image(fixtures::paint_of(*dipped), *dipped->map, raster, {}, allotment, context);
+  };
+  const Image whole = image_of(Allotment());
+  // The same as saying so of every point.
+  EXPECT_EQ(image_of(Allotment([](const SurfacePoint&) { return 1.0F; })).rgba, whole.rgba);
+  // On one half of the slab a quarter, on the other half nothing.
+  const TriangleMesh& mesh = dipped->object;
+  const Image part = image_of(Allotment(
+      [&](const SurfacePoint& point) { return position_at(mesh, point).x() > 0 ? 0.25F : 0.0F; }));
+  const Vec2 right = raster.to_pixel({10, 3}), left = raster.to_pixel({-10, 3});
+  const std::uint8_t* pixel = part.pixel(int(right.x()), int(right.y()));
+  EXPECT_EQ(int(pixel[3]), 64);
+  EXPECT_EQ(int(pixel[1]), 200);  // the colour itself stays
+  EXPECT_EQ(int(part.pixel(int(left.x()), int(left.y()))[3]), 0);
+}
+
 TEST(FilmImage, CanBeCancelled) {
   const auto dipped = textured_slab(plain_texture(1, 2, 3));
   RunContext context;
   context.cancel();
-  EXPECT_THROW(film_image(dipped->object, *dipped->map, small_sheet(300), {}, context), Cancelled);
+  EXPECT_THROW(film_image(fixtures::paint_of(*dipped), *dipped->map, small_sheet(300), {},
+                          Allotment(), context),
+               Cancelled);
 }
 
 TEST(SampleFilmImage, IsBilinearAndTransparentOutside) {

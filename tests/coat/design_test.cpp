@@ -1,25 +1,23 @@
 // Rounds of ink and film: when they settle, and when they are told never to.
-#include "job/ink_stage.h"
+#include "coat/design.h"
 
 #include <gtest/gtest.h>
 
 #include "contains.h"
-#include "job/prepare.h"
-#include "object/pose.h"
 #include "samples/samples.h"
 
 namespace hydrodip {
 namespace {
 
 // Film on 120 x 120 mm, of so many triangles.
-JobConfig quick(int elements) {
-  JobConfig config;
-  config.film.width_mm = config.film.height_mm = 120;
-  config.film.elements = elements;
-  config.dip.step_mm = 0.5;
-  config.print.dpi = 72;
-  config.print.samples = 1;
-  return config;
+DesignOptions quick(int elements) {
+  DesignOptions options;
+  options.film.width_mm = options.film.height_mm = 120;
+  options.film.elements = elements;
+  options.dip.step_mm = 0.5;
+  options.dpi = 72;
+  options.inverse.samples_per_axis = 1;
+  return options;
 }
 
 // Adds the sample sphere, squeezed to these half axes, around a centre.
@@ -52,22 +50,19 @@ Object beast_on_four_legs() {
 }
 
 struct Settled {
-  std::unique_ptr<DippedObject> dipped;
+  DippedObject dipped;
   InkResult result;
   std::vector<std::string> warnings;
 };
 
-Settled settled(Object object, const JobConfig& config) {
+Settled settled(Object object, const DesignOptions& options) {
   RunContext context;
-  StageTimes times;
-  LoadedObject loaded;
-  apply_pose(object, pose_matrix(object, {}));
-  loaded.object = std::move(object);
-  Settled all{undipped(std::move(loaded)), {}, {}};
-  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
-  all.result = settle_ink(*all.dipped, film, *color_model(config), config, times, context);
-  all.warnings = context.warnings();
-  return all;
+  Timings timings;
+  const auto shared = std::make_shared<const Object>(std::move(object));
+  const PosedObject posed(shared, {});
+  Designed made = design({posed, *model_paint(shared), Allotment(), *make_device_model(), options},
+                         timings, context);
+  return {std::move(made.dipped), std::move(made.ink), context.warnings()};
 }
 
 bool warned(const Settled& all, const std::string& part) {
@@ -91,14 +86,14 @@ TEST(InkRoundsSlow, FlapsAreForeseenAsTheyFall) {
   EXPECT_GT(foreseen.result.last_change_mm(), 2);
   // The one dip knows the ink.
   EXPECT_GT(foreseen.result.rounds.front().mean_modulus, 2);
-  EXPECT_EQ(foreseen.dipped->film().mesh().triangles.size(),
+  EXPECT_EQ(foreseen.dipped.film->mesh().triangles.size(),
             make_film_mesh(quick(12000).film).triangles.size());
 }
 
 TEST(InkRoundsSlow, TornFilmThatSettlesBeginsBlank) {
-  JobConfig config = quick(8000);
-  config.dip.material.tear_stretch = 1.2;
-  const Settled all = settled(make_sample("ellipsoid"), config);
+  DesignOptions options = quick(8000);
+  options.dip.material.tear_stretch = 1.2;
+  const Settled all = settled(make_sample("ellipsoid"), options);
   EXPECT_EQ(all.result.coarse_rounds.size(), 2U);
   ASSERT_GT(all.result.rounds.size(), 2U);
   EXPECT_EQ(all.result.rounds.front().mean_modulus, 1);
@@ -110,21 +105,21 @@ TEST(InkRoundsSlow, TornFilmThatSettlesBeginsBlank) {
 }
 
 TEST(InkRounds, FilmThatNeverTearsNeedsNoForesight) {
-  JobConfig config = quick(8000);
-  config.dip.step_mm = 2;
-  config.dip.material.tear_stretch = 0;
-  config.ink.rounds_max = 2;
-  const Settled all = settled(make_sample("pyramid"), config);
+  DesignOptions options = quick(8000);
+  options.dip.step_mm = 2;
+  options.dip.material.tear_stretch = 0;
+  options.rounds_max = 2;
+  const Settled all = settled(make_sample("pyramid"), options);
   EXPECT_TRUE(all.result.coarse_rounds.empty());
   EXPECT_EQ(all.result.rounds.size(), 2U);
 }
 
 TEST(InkRounds, WholeFilmIsLeftAfterOneCoarseRound) {
-  JobConfig config = quick(8000);
-  config.dip.step_mm = 2;
-  config.dip.depth_mm = 8;
-  config.ink.rounds_max = 2;
-  const Settled all = settled(make_sample("sphere"), config);
+  DesignOptions options = quick(8000);
+  options.dip.step_mm = 2;
+  options.depth_mm = 8;
+  options.rounds_max = 2;
+  const Settled all = settled(make_sample("sphere"), options);
   EXPECT_EQ(all.result.coarse_rounds.size(), 1U);
   EXPECT_EQ(all.result.rounds.size(), 2U);
 }

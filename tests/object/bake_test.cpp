@@ -1,0 +1,81 @@
+#include "object/bake.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+namespace hydrodip {
+namespace {
+
+// Red and green run with the place in space, so that neighbouring triangles agree.
+class GradientPaint : public Paint {
+ public:
+  explicit GradientPaint(const TriangleMesh& mesh) : Paint({1, 1, 1, 1}), mesh_(mesh) {}
+  LinearColor color_at(const SurfacePoint& point) const override {
+    const Vec3 p = position_at(mesh_, point);
+    return {float(p.x()), float(p.y()), 0.25F, 1};
+  }
+  bool says_anything() const override { return true; }
+
+ private:
+  const TriangleMesh& mesh_;
+};
+
+// The unit square in the plane, in 2 n^2 triangles and one that covers half of it once more.
+TriangleMesh square(int n) {
+  TriangleMesh mesh;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) mesh.positions.emplace_back(double(i) / n, double(j) / n, 0);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const std::int32_t a = j * (n + 1) + i, b = a + n + 1;
+      mesh.triangles.push_back({a, a + 1, b});
+      mesh.triangles.push_back({a + 1, b + 1, b});
+    }
+  mesh.triangles.push_back({0, n, n * (n + 1)});
+  return mesh;
+}
+
+TEST(Bake, ShowsThePaintEverywhere) {
+  const TriangleMesh mesh = square(9);
+  const GradientPaint paint(mesh);
+  const Object object = painted_object(mesh, paint, 512);
+  ASSERT_EQ(object.uvs.size(), mesh.triangles.size());
+  EXPECT_LE(object.textures.at(0)->width_px, 512);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const auto& [u, v] :
+         {std::pair(0.0, 0.0), {1.0, 0.0}, {0.0, 1.0}, {0.3, 0.3}, {0.1, 0.7}}) {
+      const SurfacePoint point{int(t), u, v};
+      const LinearColor wanted = paint.color_at(point);
+      const LinearColor shown = color_at(object, point, {0, 0, 0, 1});
+      EXPECT_NEAR(shown.r, wanted.r, 0.01) << t;
+      EXPECT_NEAR(shown.g, wanted.g, 0.01) << t;
+      EXPECT_NEAR(shown.b, wanted.b, 0.005) << t;
+    }
+}
+
+TEST(Bake, MoreTrianglesThanTexelsGrowTheTexture) {
+  const TriangleMesh mesh = square(60);
+  const Object object = painted_object(mesh, GradientPaint(mesh), 64);
+  EXPECT_GE(object.textures.at(0)->width_px * object.textures.at(0)->height_px,
+            4 * int(mesh.triangles.size()));
+}
+
+TEST(Bake, WhatAModelSaysIsPassedOn) {
+  auto model = std::make_shared<Object>();
+  model->positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  model->triangles = {{0, 1, 2}};
+  model->material_of = {0};
+  model->materials.resize(1);
+  model->colors = {{LinearColor{1, 0, 0, 1}, LinearColor{0, 1, 0, 1}, LinearColor{0, 0, 1, 1}}};
+  TriangleMesh posed = *model;
+  for (Vec3& p : posed.positions) p *= 2;
+  const Object object = painted_object(posed, *model_paint(model));
+  EXPECT_EQ(object.positions[1], Vec3(2, 0, 0));
+  EXPECT_EQ(object.colors.size(), 1U);
+  EXPECT_TRUE(object.textures.empty());
+}
+
+}  // namespace
+}  // namespace hydrodip

@@ -1,0 +1,102 @@
+#include "plan/fit.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "contains.h"
+
+namespace hydrodip {
+namespace {
+
+// A funnel: point down, 10 mm deep per 10 mm of half width, 100 mm square on top at z = 50.
+TriangleMesh funnel() {
+  TriangleMesh object;
+  object.positions = {{0, 0, 0}, {-50, -50, 50}, {50, -50, 50}, {50, 50, 50}, {-50, 50, 50}};
+  object.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {1, 2, 3}, {1, 3, 4}};
+  return object;
+}
+
+struct Room {
+  FilmOptions film = {};
+  BathOptions bath = {};
+  double depth_mm = 50;
+};
+
+std::string fit_error(const TriangleMesh& object, const Room& room) {
+  RunContext context;
+  try {
+    require_fit(object, room.depth_mm, room.film, room.bath, context);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "fits";
+}
+
+TEST(Fit, SaysByHowMuchAndHowToMend) {
+  Room room;
+  room.film = {100, 300, FilmShape::kRectangle, 10, 1000};
+  const std::string message = fit_error(funnel(), room);
+  EXPECT_TRUE(contains(message, "100 mm wide (x), 20 mm more than the 80 mm")) << message;
+  EXPECT_TRUE(contains(message, "--size 80 or less")) << message;
+}
+
+TEST(Fit, OnlyTheWetPartCounts) {
+  Room room;
+  room.film = {100, 100, FilmShape::kRectangle, 10, 1000};
+  EXPECT_NE(fit_error(funnel(), room), "fits");
+  room.depth_mm = 40;  // there the funnel is 80 mm wide
+  EXPECT_EQ(fit_error(funnel(), room), "fits");
+  room.depth_mm = 41;
+  EXPECT_TRUE(contains(fit_error(funnel(), room), "82 mm wide (x), 2 mm more"));
+}
+
+TEST(Fit, TheDiscIsMeasuredAcrossTheDiagonal) {
+  Room room;
+  room.film = {162, 162, FilmShape::kDisc, 10, 1000};
+  EXPECT_EQ(fit_error(funnel(), room), "fits");  // 141.42 of 142 mm
+  room.film.width_mm = 161;                      // the smaller extent counts
+  EXPECT_TRUE(contains(fit_error(funnel(), room), "141.42 mm across, 0.42 mm more"));
+}
+
+TEST(Fit, TheBathHasWidthLengthAndDepth) {
+  Room room;
+  room.film = {400, 300, FilmShape::kRectangle, 10, 1000};
+  room.bath = {90, 300, 150};  // turned with the sheet: 300 along x
+  EXPECT_TRUE(contains(fit_error(funnel(), room), "100 mm long (y), 10 mm more than the 90 mm"));
+  room.bath = {300, 300, 45};
+  const std::string message = fit_error(funnel(), room);
+  EXPECT_TRUE(contains(message, "50 mm deep in the water, 5 mm more than the 45 mm")) << message;
+  EXPECT_TRUE(contains(message, "--depth")) << message;
+  room.depth_mm = 45;
+  EXPECT_EQ(fit_error(funnel(), room), "fits");
+}
+
+TEST(Fit, WarnsAboutAFilmLargerThanTheBathAndAboutATightOne) {
+  Room room;
+  RunContext context;
+  room.film = {297, 420, FilmShape::kRectangle, 10, 1000};
+  require_fit(funnel(), room.depth_mm, room.film, room.bath, context);
+  ASSERT_EQ(context.warnings().size(), 1u);
+  EXPECT_TRUE(contains(context.warnings()[0], "larger than the bath"));
+
+  RunContext tight;
+  room.film = {122, 297, FilmShape::kRectangle, 10, 1000};
+  require_fit(funnel(), room.depth_mm, room.film, room.bath, tight);
+  ASSERT_EQ(tight.warnings().size(), 1u);
+  EXPECT_TRUE(contains(tight.warnings()[0], "Only 1 mm of free film"));
+}
+
+TEST(Fit, AHugeMisfitAsksForTheUnits) {
+  TriangleMesh object = funnel();
+  for (Vec3& p : object.positions) p *= 1000;
+  EXPECT_TRUE(contains(fit_error(object, {.depth_mm = 50000}), "--units"));
+}
+
+TEST(Fit, DeeperThanItIsHighIsAsDeepAsItIsHigh) {
+  EXPECT_EQ(depth_of_dip_mm(funnel(), 0), 50);
+  EXPECT_EQ(depth_of_dip_mm(funnel(), 20), 20);
+  EXPECT_EQ(depth_of_dip_mm(funnel(), 80), 50);
+}
+
+}  // namespace
+}  // namespace hydrodip
