@@ -86,7 +86,7 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
     result.depth_mm = depth > 0 ? depth : dip_depth_mm(result.object, config);
   }
   JobConfig fitting = config;
-  fitting.dip.depth_mm = result.depth_mm;
+  fitting.trajectory.depth_mm = result.depth_mm;
   require_fit(result.object, fitting, context);
   return result;
 }
@@ -114,7 +114,6 @@ CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObj
                                  const Surface& surface, const FilmParameters& parameters,
                                  const DipOptions& options, RunContext& context) {
   DipOptions dip_options = options;
-  dip_options.depth_mm = object.depth_mm;
   dip_options.material.z_stretch = parameters.z_stretch;
   dip_options.material.poisson = parameters.poisson;
   dip_options.material.tear_stretch = 0;
@@ -124,10 +123,10 @@ CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObj
   }
   CheckerboardDip result;
   result.square_mm = film.square_mm;
-  result.film =
-      std::make_unique<DippedFilm>(dip(film.mesh, object.object.positions, object.object.triangles,
-                                       surface, dip_options, context)
-                                       .film);
+  result.film = std::make_unique<DippedFilm>(
+      dip(film.mesh, object.object.positions, object.object.triangles, surface,
+          make_trajectory({object.depth_mm}, object.object.positions), dip_options, context)
+          .film);
   result.map = std::make_unique<FilmMap>(object.object, surface, *result.film);
   return result;
 }

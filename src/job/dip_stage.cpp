@@ -21,13 +21,13 @@ std::unique_ptr<DippedObject> undipped(LoadedObject posed) {
   return object;
 }
 
-void dip_again(DippedObject& dipped, const SharedFilmMesh& film, const DipOptions& options,
-               StageTimes& times, RunContext& context) {
+void dip_again(DippedObject& dipped, const SharedFilmMesh& film, const Trajectory& trajectory,
+               const DipOptions& options, StageTimes& times, RunContext& context) {
   const Object& object = dipped.object();
   times.measure("dip", [&] {
     DipHistory history;
-    DipResult result = dip(film, object.positions, object.triangles, *dipped.surface, options,
-                           context, [&](auto&&... state) { history.record(state...); });
+    DipResult result = dip(film, object.positions, object.triangles, *dipped.surface, trajectory,
+                           options, context, [&](auto&&... state) { history.record(state...); });
     dipped.map.reset();  // refers to the film that goes
     dipped.dip = std::move(result);
     dipped.history = std::move(history);

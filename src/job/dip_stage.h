@@ -37,8 +37,8 @@ std::unique_ptr<DippedObject> undipped(LoadedObject posed);
 
 // Simulates its dip on film that it fits; everything but the object is made anew. If that throws,
 // the last dip stays.
-void dip_again(DippedObject& dipped, const SharedFilmMesh& film, const DipOptions& options,
-               StageTimes& times, RunContext& context);
+void dip_again(DippedObject& dipped, const SharedFilmMesh& film, const Trajectory& trajectory,
+               const DipOptions& options, StageTimes& times, RunContext& context);
 
 // Where the sheet's pixels lie at `dpi`.
 SheetRaster sheet_raster(const JobConfig& config, double dpi);

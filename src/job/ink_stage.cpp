@@ -191,7 +191,8 @@ class InkRounds {
     if (number() > 0) before_ = set_.dipped.film();
     options_.failed_share_max = options_.modulus.empty() ? 1 : kFailedSteps;
     try {
-      dip_again(set_.dipped, set_.film, options_, set_.times, set_.context);
+      dip_again(set_.dipped, set_.film, trajectory(set_.dipped.object(), config_), options_,
+                set_.times, set_.context);
     } catch (const DipError&) {
       if (options_.modulus.empty()) throw;
       return false;
@@ -202,7 +203,7 @@ class InkRounds {
   // Records the round.
   void judge() {
     InkRound round;
-    round.tears_kept = !options_.tear_levels.empty();
+    round.tears_kept = !options_.tears_at_mm.empty();
     if (before_) round.change_mm = mean_way(*before_, set_.dipped.film());
     round.printed_mm2 = printed_area_mm2(ink_.wanted, config_.print.dpi);
     round.mean_modulus = mean_of(options_.modulus);
@@ -229,7 +230,7 @@ class InkRounds {
   // The film to dip next.
   void stiffen() {
     if (number() == kFreeRounds) {
-      options_.tear_levels = set_.dipped.film().tear_level;
+      options_.tears_at_mm = set_.dipped.film().torn_at_mm;
       outline_.keep(set_.dipped.film());
     }
     std::vector<double> modulus =

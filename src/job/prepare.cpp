@@ -184,8 +184,12 @@ LinearColor base_color(const JobConfig& config) {
   return {channel(1), channel(3), channel(5), 1};
 }
 
+Trajectory trajectory(const Object& object, const JobConfig& config) {
+  return make_trajectory(config.trajectory, object.positions);
+}
+
 double dip_depth_mm(const Object& object, const JobConfig& config) {
-  return config.dip.depth_mm > 0 ? config.dip.depth_mm : object.bounds().size().z();
+  return trajectory(object, config).depth_mm();
 }
 
 std::vector<RoomFit> fits(const Object& posed, const JobConfig& config) {

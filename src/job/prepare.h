@@ -20,7 +20,10 @@ void require_appearance(const Object& object, const std::filesystem::path& model
 // config.object.base_color in linear light.
 LinearColor base_color(const JobConfig& config);
 
-// How deep the object will be dipped: dip.depth_mm, or its height.
+// The way on which the object will be dipped.
+Trajectory trajectory(const Object& object, const JobConfig& config);
+
+// How deep that will take it: dip.depth_mm, or its height if that is less.
 double dip_depth_mm(const Object& object, const JobConfig& config);
 
 // Room that the dipped part of a posed object takes and has, per direction.

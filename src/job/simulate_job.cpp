@@ -99,7 +99,7 @@ void dip_with_ink(DippedObject& dipped, const SharedFilmMesh& film, const Printe
   if (!config.film_image.empty() && config.ink.rounds_max > 1)
     options.modulus = film_modulus(*film, printed.inks, printed.raster,
                                    {config.ink.stiffness_ratio, config.ink.filter_mm});
-  dip_again(dipped, film, options, times, context);
+  dip_again(dipped, film, trajectory(dipped.object(), config), options, times, context);
 }
 
 Image seen_on_object(const DippedObject& dipped, const PrintedFilm& printed,

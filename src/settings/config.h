@@ -98,6 +98,7 @@ struct JobConfig {
   ObjectOptions object;
   FilmOptions film;
   BathOptions bath;
+  TrajectoryOptions trajectory;
   DipOptions dip;  // with the film's material
   InkOptions ink;
   GamutPolicy gamut_policy = GamutPolicy::kClip;

@@ -122,7 +122,7 @@ TEST(InkRounds, FilmThatNeverTearsNeedsNoForesight) {
 TEST(InkRounds, WholeFilmIsLeftAfterOneCoarseRound) {
   JobConfig config = quick(8000);
   config.dip.step_mm = 2;
-  config.dip.depth_mm = 8;
+  config.trajectory.depth_mm = 8;
   config.ink.rounds_max = 2;
   const Settled all = settled(make_sample("sphere"), config);
   EXPECT_EQ(all.result.coarse_rounds.size(), 1U);

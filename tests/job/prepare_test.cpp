@@ -41,9 +41,9 @@ TEST(Fit, OnlyTheWetPartCounts) {
   JobConfig config;
   config.film = {100, 100, FilmShape::kRectangle, 10, 1000};
   EXPECT_NE(fit_error(funnel(), config), "fits");
-  config.dip.depth_mm = 40;  // there the funnel is 80 mm wide
+  config.trajectory.depth_mm = 40;  // there the funnel is 80 mm wide
   EXPECT_EQ(fit_error(funnel(), config), "fits");
-  config.dip.depth_mm = 41;
+  config.trajectory.depth_mm = 41;
   EXPECT_TRUE(contains(fit_error(funnel(), config), "82 mm wide (x), 2 mm more"));
 }
 
@@ -64,7 +64,7 @@ TEST(Fit, TheBathHasWidthLengthAndDepth) {
   const std::string message = fit_error(funnel(), config);
   EXPECT_TRUE(contains(message, "50 mm deep in the water, 5 mm more than the 45 mm")) << message;
   EXPECT_TRUE(contains(message, "--depth")) << message;
-  config.dip.depth_mm = 45;
+  config.trajectory.depth_mm = 45;
   EXPECT_EQ(fit_error(funnel(), config), "fits");
 }
 

@@ -41,7 +41,7 @@ std::unique_ptr<DippedObject> dipped_again(const JobConfig& config, const InkIma
   options.modulus = film_modulus(*film, inks, sheet_raster(config, config.print.dpi),
                                  {config.ink.stiffness_ratio, config.ink.filter_mm});
   auto dipped = undipped(load_posed(config, context));
-  dip_again(*dipped, film, options, times, context);
+  dip_again(*dipped, film, trajectory(dipped->object(), config), options, times, context);
   return dipped;
 }
 
