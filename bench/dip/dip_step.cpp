@@ -36,7 +36,6 @@ Run dip_sphere(int elements, int steps, DipOptions options, double checker_mm = 
       make_film_mesh({.width_mm = 215.9, .height_mm = 279.4, .elements = elements});
   const Surface surface(sphere.positions, sphere.triangles);
   options.step_mm = 0.1;
-  options.depth_mm = options.step_mm * steps;
   options.material.tear_stretch = 0;
   if (checker_mm > 0)
     for (const Triangle& t : film.triangles) {
@@ -48,7 +47,8 @@ Run dip_sphere(int elements, int steps, DipOptions options, double checker_mm = 
   std::vector<Clock::time_point> times;
   RunContext context;
   context.on_progress([&](const std::string&, double) { times.push_back(Clock::now()); });
-  DipResult result = dip(film, sphere.positions, sphere.triangles, surface, options, context);
+  DipResult result = dip(film, sphere.positions, sphere.triangles, surface,
+                         Trajectory::straight_down(options.step_mm * steps), options, context);
 
   std::vector<double> ms;
   for (std::size_t n = 1; n < times.size(); ++n)

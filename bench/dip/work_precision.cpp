@@ -81,8 +81,8 @@ Result measure(const Case& c, const ExactTable& exact, DipScheme scheme, int ele
   dip_options.material.tear_stretch = 0;
   RunContext context;
   const auto start = std::chrono::steady_clock::now();
-  const DipResult result =
-      dip(film, c.shape.positions, c.shape.triangles, surface, dip_options, context);
+  const DipResult result = dip(film, c.shape.positions, c.shape.triangles, surface,
+                               make_trajectory({}, c.shape.positions), dip_options, context);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 

@@ -105,7 +105,7 @@ void add_rows(Table& table, const std::string& film, const Outcome& before, cons
 
 std::string figure_5(const Study& study) {
   JobConfig config = paper_config();
-  config.dip.depth_mm = kDepth_mm;
+  config.trajectory.depth_mm = kDepth_mm;
   Table table({"film", "printed", "covered mm2", "of it in gamut", "CIEDE2000 in gamut (largest)",
                "CIEDE2000 over all (largest)"});
   const Outcome before = print_and_dip(config, false, study);

@@ -72,7 +72,7 @@ std::string figure_8(const Study& study) {
   Table table(
       {"object", "depth (mm)", "steps", "simulated in (s)", "pixels recovered rightly (%)"});
   for (const KitShape& shape : kit_shapes()) {
-    config.dip.depth_mm = shape.depth_mm;
+    config.trajectory.depth_mm = shape.depth_mm;
     const auto truth = dipped(shape.name, finer_film(config), board, study.context);
     const auto begin = std::chrono::steady_clock::now();
     const auto simulated = dipped(shape.name, config, board, study.context);

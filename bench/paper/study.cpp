@@ -53,13 +53,13 @@ void dip_printed(DippedObject& dipped, const SharedFilmMesh& film, const InkImag
   DipOptions options = config.dip;
   options.modulus = film_modulus(*film, inks, sheet_raster(config, config.print.dpi),
                                  {config.ink.stiffness_ratio, config.ink.filter_mm});
-  dip_again(dipped, film, options, times, context);
+  dip_again(dipped, film, trajectory(dipped.object(), config), options, times, context);
 }
 
 void dip_blank(DippedObject& dipped, const SharedFilmMesh& film, const JobConfig& config,
                RunContext& context) {
   StageTimes times;
-  dip_again(dipped, film, config.dip, times, context);
+  dip_again(dipped, film, trajectory(dipped.object(), config), config.dip, times, context);
 }
 
 InkResult designed(DippedObject& dipped, const SharedFilmMesh& film, const ColorModel& model,

@@ -81,7 +81,9 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
   } else {
     result.object = prepare_object(name, config.object, context).posed.mesh();
     result.name = std::filesystem::path(name).stem().string();
-    result.depth_mm = depth_of_dip_mm(result.object, depth > 0 ? depth : config.design.depth_mm);
+    TrajectoryOptions way = config.design.trajectory;
+    if (depth > 0) way.depth_mm = depth;
+    result.depth_mm = make_trajectory(way, result.object.positions).depth_mm();
   }
   require_fit(result.object, result.depth_mm, config.design.film, config.bath, context);
   return result;
@@ -111,7 +113,6 @@ CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObj
                                  const Surface& surface, const FilmParameters& parameters,
                                  const DipOptions& options, RunContext& context) {
   DipOptions dip_options = options;
-  dip_options.depth_mm = object.depth_mm;
   dip_options.material.z_stretch = parameters.z_stretch;
   dip_options.material.poisson = parameters.poisson;
   dip_options.material.tear_stretch = 0;
@@ -121,10 +122,10 @@ CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObj
   }
   CheckerboardDip result;
   result.square_mm = film.square_mm;
-  result.film =
-      std::make_unique<DippedFilm>(dip(film.mesh, object.object.positions, object.object.triangles,
-                                       surface, dip_options, context)
-                                       .film);
+  result.film = std::make_unique<DippedFilm>(
+      dip(film.mesh, object.object.positions, object.object.triangles, surface,
+          make_trajectory({object.depth_mm}, object.object.positions), dip_options, context)
+          .film);
   result.map = std::make_unique<FilmMap>(object.object, surface, *result.film);
   return result;
 }

@@ -17,8 +17,8 @@ namespace hydrodip {
 
 struct DesignOptions {
   FilmOptions film;
-  double depth_mm = 0;  // 0: the whole object
-  DipOptions dip;       // with the film's material
+  TrajectoryOptions trajectory;
+  DipOptions dip;  // with the film's material
   StiffnessOptions stiffness;
   int rounds_max = 10;  // simulate, invert, stiffen, repeat: at most this often
   double dpi = 300;     // of what is printed

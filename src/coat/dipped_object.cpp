@@ -4,16 +4,15 @@
 
 namespace hydrodip {
 
-DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film, double depth_mm,
-                        const DipOptions& options, Timings& timings, RunContext& context) {
+DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
+                        const Trajectory& trajectory, const DipOptions& options, Timings& timings,
+                        RunContext& context) {
   DippedObject result{.posed = posed};
   const TriangleMesh& mesh = posed.mesh();
   timings.measure("dip", [&] {
     auto history = std::make_shared<DipHistory>();
-    DipOptions to_depth = options;
-    to_depth.depth_mm = depth_mm;
-    DipResult dipped = dip(film, mesh.positions, mesh.triangles, posed.surface(), to_depth, context,
-                           [&](auto&&... state) { history->record(state...); });
+    DipResult dipped = dip(film, mesh.positions, mesh.triangles, posed.surface(), trajectory,
+                           options, context, [&](auto&&... state) { history->record(state...); });
     result.film = std::make_shared<const DippedFilm>(std::move(dipped.film));
     result.statistics = dipped.statistics;
     result.history = std::move(history);

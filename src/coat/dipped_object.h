@@ -26,7 +26,8 @@ struct DippedObject {
 };
 
 // Simulates the dip of an object on film that it fits. Throws as dip().
-DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film, double depth_mm,
-                        const DipOptions& options, Timings& timings, RunContext& context);
+DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
+                        const Trajectory& trajectory, const DipOptions& options, Timings& timings,
+                        RunContext& context);
 
 }  // namespace hydrodip

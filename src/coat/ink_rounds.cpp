@@ -67,6 +67,7 @@ InkRounds::InkRounds(const DesignTask& task, const DesignOptions& options,
       film_(film),
       timings_(timings),
       context_(context),
+      trajectory_(make_trajectory(options.trajectory, task.posed.mesh().positions)),
       rounds_dpi_(std::min(options.dpi, kRoundsDpi)),
       dip_options_(options.dip),
       mixer_(kMixed) {}
@@ -107,7 +108,7 @@ bool InkRounds::dip() {
   if (number() > 0) before_ = dipped_;
   dip_options_.failed_share_max = dip_options_.modulus.empty() ? 1 : kFailedSteps;
   try {
-    dipped_ = dip_object(task_.posed, film_, options_.depth_mm, dip_options_, timings_, context_);
+    dipped_ = dip_object(task_.posed, film_, trajectory_, dip_options_, timings_, context_);
   } catch (const DipError&) {
     if (dip_options_.modulus.empty()) throw;
     return false;
@@ -117,7 +118,7 @@ bool InkRounds::dip() {
 
 void InkRounds::judge() {
   InkRound round;
-  round.tears_kept = !dip_options_.tear_levels.empty();
+  round.tears_kept = !dip_options_.tears_at_mm.empty();
   if (before_) round.change_mm = mean_way(*before_->film, *dipped_->film);
   round.printed_mm2 = printed_area_mm2(ink_.wanted, rounds_dpi_);
   round.mean_modulus = mean_of(dip_options_.modulus);
@@ -144,7 +145,7 @@ Outcome InkRounds::outcome() const {
 // The film to dip next.
 void InkRounds::stiffen() {
   if (number() == kFreeRounds) {
-    dip_options_.tear_levels = dipped_->film->tear_level;
+    dip_options_.tears_at_mm = dipped_->film->torn_at_mm;
     outline_.keep(*dipped_->film);
   }
   std::vector<double> modulus = timings_.measure("stiffness", [&] { return modulus_of(*film_); });

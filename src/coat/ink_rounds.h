@@ -50,6 +50,7 @@ class InkRounds {
   const SharedFilmMesh film_;
   Timings& timings_;
   RunContext& context_;
+  const Trajectory trajectory_;
   double rounds_dpi_;
   DipOptions dip_options_;  // of the next dip
   std::optional<DippedObject> before_, dipped_;

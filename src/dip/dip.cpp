@@ -27,14 +27,21 @@ constexpr double kVisible_mm = 0.02;
 void check(const DipOptions& options, const FilmMesh& film) {
   const auto refuse = [](const std::string& what) { throw InputError(what); };
   if (!(options.step_mm > 0)) refuse("dip.step_mm must be above 0");
-  if (!(options.depth_mm >= 0)) refuse("dip.depth_mm must not be negative");
   if (!(options.material.poisson > -1 && options.material.poisson < 0.5))
     refuse("material.poisson must be above -1 and below 0.5");
   if (!(options.material.z_stretch >= 0)) refuse("material.z_stretch must not be negative");
   if (!options.modulus.empty() && options.modulus.size() != film.triangles.size())
     refuse("the stiffness field does not fit the film's mesh");
-  if (!options.tear_levels.empty() && options.tear_levels.size() != film.triangles.size())
+  if (!options.tears_at_mm.empty() && options.tears_at_mm.size() != film.triangles.size())
     refuse("the given tears do not fit the film's mesh");
+}
+
+void check(const Trajectory& trajectory, const DipOptions& options) {
+  if (trajectory.is_straight_down()) return;
+  if (options.method != DipMethod::kFull || options.scheme != DipScheme::kContactLine)
+    throw InputError(
+        "dip.method=single-step, dip.method=projection and dip.scheme=paper only know the way "
+        "straight down: leave out the path, or take the default method and scheme");
 }
 
 DipState floating_film(const FilmMesh& film) {
@@ -44,21 +51,16 @@ DipState floating_film(const FilmMesh& film) {
     state.state.push_back(film.on_rim[v] ? VertexState::kClamped : VertexState::kUnattached);
   }
   state.torn.assign(film.triangles.size(), 0);
-  state.tear_level.assign(film.triangles.size(), std::numeric_limits<double>::infinity());
+  state.torn_at_mm.assign(film.triangles.size(), std::numeric_limits<double>::infinity());
   return state;
 }
 
-double depth_of(const std::vector<Vec3>& positions, const DipOptions& options) {
-  double top = 0;
-  for (const Vec3& p : positions) top = std::max(top, p.z());
-  return options.depth_mm > 0 ? std::min(options.depth_mm, top) : top;
-}
-
-void check_rim(const FilmMesh& film, const Surface& surface, double depth, RunContext& context) {
+void check_rim(const FilmMesh& film, const Surface& surface, const Travel& travel,
+               RunContext& context) {
   for (std::size_t v = 0; v < film.u.size(); ++v) {
     if (!film.on_rim[v]) continue;
     const Vec3 below(film.u[v].x(), film.u[v].y(), -1);
-    if (!surface.is_hit(below, Vec3(0, 0, 1), 0, depth + 1)) continue;
+    if (!surface.is_hit(below, Vec3(0, 0, 1), 0, travel.length_mm() + 1)) continue;
     context.warn(
         "the object touches the film's taped rim, where the film cannot follow: use a larger film, "
         "a smaller object or another pose");
@@ -85,9 +87,9 @@ void check_solved(const DipStatistics& statistics, int steps, const DipOptions& 
                              statistics.failed_steps, steps));
 }
 
-int number_of_steps(double depth, const DipOptions& options) {
+int number_of_steps(double length_mm, const DipOptions& options) {
   if (options.method != DipMethod::kFull) return 1;
-  return std::max(1, static_cast<int>(std::ceil(depth / options.step_mm - 1e-9)));
+  return std::max(1, static_cast<int>(std::ceil(length_mm / options.step_mm - 1e-9)));
 }
 
 }  // namespace
@@ -121,23 +123,26 @@ std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, c
 
 DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
               const std::vector<Triangle>& triangles, const Surface& surface,
-              const DipOptions& options, RunContext& context, const DipObserver& observe) {
+              const Trajectory& trajectory, const DipOptions& options, RunContext& context,
+              const DipObserver& observe) {
   const RunScope scope(context);
   const FilmMesh& film = *mesh;
   check(options, film);
-  const double depth = depth_of(positions, options);
-  check_rim(film, surface, depth, context);
+  check(trajectory, options);
+  const Travel travel(trajectory, positions, triangles);
+  check_rim(film, surface, travel, context);
   DipState state = floating_film(film);
-  const DipSetting setting{film, positions, triangles, surface, options, context};
+  state.moment = travel.at(0);
+  const DipSetting setting{film, positions, triangles, surface, options, travel, context};
   const auto scheme = make_scheme(setting, state);
   const AwakeThreads awake;  // a step is some hundred short loops
 
-  const int steps = number_of_steps(depth, options);
-  if (observe) observe(0, steps, 0, state.position, state.state);
+  const int steps = number_of_steps(travel.length_mm(), options);
+  if (observe) observe(0, steps, state.moment, state.position, state.state);
   for (int step = 1; step <= steps; ++step) {
     context.progress("dipping", double(step - 1) / steps);
     const DipStatistics before = state.statistics;
-    scheme->advance(depth * step / steps);
+    scheme->advance(travel.at(travel.length_mm() * step / steps));
     // In however many parts.
     state.statistics.unconverged_steps =
         std::min(state.statistics.unconverged_steps, before.unconverged_steps + 1);
@@ -146,7 +151,7 @@ DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
     check_solved(state.statistics, steps, options);
     if (!observe && step < steps) continue;
     scheme->write_positions();
-    if (observe) observe(step, steps, state.level, state.position, state.state);
+    if (observe) observe(step, steps, state.moment, state.position, state.state);
   }
   context.progress("dipping", 1);
   state.statistics.steps = steps;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "dip/travel.h"
 #include "elastic/linear_solver.h"
 #include "film/film.h"
 #include "object/surface.h"
@@ -34,17 +35,16 @@ struct FilmMaterial {
 
 struct DipOptions {
   double step_mm = 0.1;
-  double depth_mm = 0;  // 0: until the object is completely below the water
   DipMethod method = DipMethod::kFull;
   DipScheme scheme = DipScheme::kContactLine;  // of kFull
   FilmMaterial material;
   std::vector<double> modulus;  // per film triangle, relative; empty: uniform
   // Of the film's equilibrium; multigrid by default, others to compare with.
   std::function<std::unique_ptr<LinearSolver>(const FilmMesh&)> make_solver = make_multigrid_solver;
-  // Per film triangle: the depth at which it tears, whatever its stretch; infinity: only when it is
-  // stretched well beyond tear_stretch. Empty: tear_stretch alone decides. What another dip found,
-  // so that two dips can be compared smoothly.
-  std::vector<double> tear_levels;
+  // Per film triangle: how far the object has travelled when it tears, whatever its stretch;
+  // infinity: only when it is stretched well beyond tear_stretch. Empty: tear_stretch alone
+  // decides. What another dip found, so that two dips can be compared smoothly.
+  std::vector<double> tears_at_mm;
   // Where more steps than this share fail, dip() gives up.
   double failed_share_max = 1;
 };
@@ -65,23 +65,24 @@ struct DipResult {
 
 // Sees the film after each of `steps` steps, and before the first one as step 0.
 using DipObserver =
-    std::function<void(int step, int steps, double level_mm, const std::vector<Vec3>& position,
+    std::function<void(int step, int steps, const Moment& moment, const std::vector<Vec3>& position,
                        const std::vector<VertexState>& state)>;
 
 // `positions` and `triangles` are the object's, in the posed-object frame, and `surface` queries
-// the same triangles. Throws DipError (exit code 3) if a step cannot be computed, InputError for
-// options out of range, Cancelled.
+// the same triangles. Other ways than straight down need the contact-line scheme. Throws DipError
+// (exit code 3) if a step cannot be computed, InputError for options out of range, Cancelled.
 DipResult dip(const SharedFilmMesh& film, const std::vector<Vec3>& positions,
               const std::vector<Triangle>& triangles, const Surface& surface,
-              const DipOptions& options, RunContext& context, const DipObserver& observe = {});
+              const Trajectory& trajectory, const DipOptions& options, RunContext& context,
+              const DipObserver& observe = {});
 
 // The same on a mesh that nobody else holds.
 inline DipResult dip(FilmMesh film, const std::vector<Vec3>& positions,
                      const std::vector<Triangle>& triangles, const Surface& surface,
-                     const DipOptions& options, RunContext& context,
+                     const Trajectory& trajectory, const DipOptions& options, RunContext& context,
                      const DipObserver& observe = {}) {
   return dip(std::make_shared<const FilmMesh>(std::move(film)), positions, triangles, surface,
-             options, context, observe);
+             trajectory, options, context, observe);
 }
 
 }  // namespace hydrodip

@@ -23,8 +23,8 @@ bool DipHistory::is_kept(int step, int steps) const {
   return frame(step) != frame(step - 1);
 }
 
-void DipHistory::record(int step, int steps, double level_mm, const std::vector<Vec3>& position,
-                        const std::vector<VertexState>& state) {
+void DipHistory::record(int step, int steps, const Moment& moment,
+                        const std::vector<Vec3>& position, const std::vector<VertexState>& state) {
   if (step == 0) {
     kept_.clear();
     limit_ = frame_limit(frames_, position.size());
@@ -32,12 +32,13 @@ void DipHistory::record(int step, int steps, double level_mm, const std::vector<
   }
   if (!is_kept(step, steps)) return;
   DipFrame frame;
-  frame.level_mm = level_mm;
+  frame.level_mm = moment.level_mm;
   frame.position.reserve(position.size());
   for (std::size_t v = 0; v < position.size(); ++v) {
-    const Vec3& p = position[v];
-    const double z = state[v] == VertexState::kClamped ? level_mm : p.z();
-    frame.position.push_back({float(p.x()), float(p.y()), float(z)});
+    Vec3 p = position[v];
+    if (state[v] == VertexState::kClamped)
+      p = moment.to_object(Vec3(p.x(), p.y(), moment.level_mm));
+    frame.position.push_back({float(p.x()), float(p.y()), float(p.z())});
   }
   kept_.push_back(std::move(frame));
   for (std::size_t v = 0; v < state.size(); ++v) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dip/travel.h"
 #include "film/film.h"
 
 namespace hydrodip {
@@ -23,7 +24,7 @@ class DipHistory {
 
   // The film after `step` of `steps`; step 0 is the flat film. Steps must ascend. The clamped rim
   // is kept at the water's level, where the bath holds it.
-  void record(int step, int steps, double level_mm, const std::vector<Vec3>& position,
+  void record(int step, int steps, const Moment& moment, const std::vector<Vec3>& position,
               const std::vector<VertexState>& state);
 
   const std::vector<DipFrame>& frames() const { return kept_; }

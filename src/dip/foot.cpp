@@ -35,7 +35,7 @@ bool usable_gradient(const Mat2& F) {
 }
 
 Vec2 unrolled(const Vec3& from, const Vec2& first_outward, double first_slope,
-              const Waterline::Point& to, double level, double z_stretch) {
+              const Waterline::Point& to, double to_z, double z_stretch) {
   const Vec2 way = to.position - from.head<2>();
   // Across the line in the middle of the way; around a corner, more and more as at its end.
   const double turn = first_outward.dot(to.outward);
@@ -45,8 +45,8 @@ Vec2 unrolled(const Vec3& from, const Vec2& first_outward, double first_slope,
   // A way along the line must not seem to lead back.
   if (way.dot(across) < 0 && way.dot(to.outward) > 0) across = to.outward;
   const Vec2 tangent(-across.y(), across.x());
-  const double run = way.dot(across), rise = level - from.z();
-  // A point that touched just above the level, beyond the line, has its way back to it.
+  const double run = way.dot(across), rise = to_z - from.z();
+  // A point that touched just above the water, beyond the line, has its way back to it.
   const double length = run < 0 && rise < 0 ? -std::hypot(run, z_stretch * rise)
                                             : scaled_length(run, std::max(0.0, rise), first_slope,
                                                             to.steepness, z_stretch);
@@ -66,7 +66,7 @@ void place_ghost(Foot& foot, const Mat2& F) {
     const double limit = 0.5 * foot.way.norm();
     back += change.norm() > limit ? Vec2(change * (limit / change.norm())) : change;
   }
-  foot.ghost = foot.point.head<2>() - back;
+  foot.ghost = foot.place - back;
 }
 
 }  // namespace hydrodip

@@ -5,9 +5,6 @@
 
 namespace hydrodip {
 
-// Steepness that stands for a vertical wall.
-constexpr double kWall = 1e6;
-
 // A gradient du/dX that is followed over the steps.
 struct Gradient {
   Mat2 now = Mat2::Identity(), before = Mat2::Identity();
@@ -22,7 +19,8 @@ struct Gradient {
 // Of the edge from an attached vertex to a floating one (docs/model.md, section 4).
 struct Foot {
   std::int32_t attached = -1, floating = -1;
-  Vec3 point = Vec3::Zero();    // on the contact line, between the two
+  Vec3 point = Vec3::Zero();    // on the contact line, between the two; posed-object frame
+  Vec2 place = Vec2::Zero();    // the same, seen from above, now
   Vec2 outward = Vec2::Zero();  // from the object, unit, normal to the contact line
   double steepness = 0;         // of the object there
   Vec2 laid = Vec2::Zero();  // film between the attached vertex and the point, in film coordinates
@@ -37,11 +35,11 @@ struct Foot {
 // Whether a gradient can be inverted and means something.
 bool usable_gradient(const Mat2& F);
 
-// The way from a point on the object to the contact line at `to` (on the given level), unrolled
+// The way from a point on the object to the contact line at `to` (at the height to_z), unrolled
 // into the water plane with the vertical scaled by z_stretch. At the point the object faces
 // first_outward (unit, in the water plane; zero where it is flat) and rises at first_slope.
 Vec2 unrolled(const Vec3& from, const Vec2& first_outward, double first_slope,
-              const Waterline::Point& to, double level, double z_stretch);
+              const Waterline::Point& to, double to_z, double z_stretch);
 
 // Rise over run of a surface with this normal, in a direction of the water plane; kWall at most.
 double steepness_along(const Vec3& normal, const Vec2& direction);

@@ -76,7 +76,7 @@ constexpr double kToldMargin = 1.25;
 }  // namespace
 
 double tear_limit(const DipOptions& options) {
-  return options.material.tear_stretch * (options.tear_levels.empty() ? 1 : kToldMargin);
+  return options.material.tear_stretch * (options.tears_at_mm.empty() ? 1 : kToldMargin);
 }
 
 DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const DipOptions& options,
@@ -87,8 +87,8 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
   result.position = state.position;
   result.state = state.state;
   result.torn = state.torn;
-  result.tear_level = state.tear_level;
-  result.depth_mm = state.level;
+  result.torn_at_mm = state.torn_at_mm;
+  result.depth_mm = state.moment.level_mm;
 
   const std::size_t vertices = film.u.size();
   // Vertices on the object are measured on the film that lies there; others on all around them.
@@ -104,13 +104,13 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
       return state.state[std::size_t(i)] == VertexState::kAttached;
     });
     if (!on_object) continue;
-    const bool told = !options.tear_levels.empty();
+    const bool told = !options.tears_at_mm.empty();
     const bool tears = (limit > 0 && measures.back().stretch > limit) ||
-                       (told && state.level >= options.tear_levels[t]) ||
+                       (told && state.moment.travelled_mm >= options.tears_at_mm[t]) ||
                        (!told && folded(film, state, surface, t));
     if (!tears || result.torn[t]) continue;
     result.torn[t] = 1;
-    result.tear_level[t] = state.level;
+    result.torn_at_mm[t] = state.moment.travelled_mm;
   }
   std::vector<std::uint8_t> done(vertices, 0);
   const auto gather = [&](auto counts) {

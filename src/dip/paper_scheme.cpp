@@ -19,14 +19,15 @@ class PaperScheme : public Scheme {
         solver_(setting.options.make_solver(setting.film)),
         relaxation_(energy_, *solver_) {}
 
-  void advance(double level) override {
+  void advance(const Moment& to) override {
+    const double level = to.level_mm;
     // Steps 1 and 2, collide and lower.
     attaching_ = rise_to(level, set_, state_);
     const std::vector<std::uint8_t> is_free = not_glued();
     const VertexVector u = relaxed(is_free);
     slide(mapped_back(film_, state_.position, is_free, u), level);
     update_labels();
-    state_.level = level;
+    state_.moment = to;
   }
 
  private:
@@ -57,7 +58,7 @@ class PaperScheme : public Scheme {
           position = on_object(mapped[v]);
           continue;
         }
-        const Vec3 before(position.x(), position.y(), state_.level);
+        const Vec3 before(position.x(), position.y(), state_.moment.level_mm);
         const Vec3 afloat(mapped[v].x(), mapped[v].y(), level);
         const auto contact = first_contact(set_.surface, before, afloat);
         attaching_[v] = contact.has_value();

@@ -11,11 +11,11 @@ class Projection : public Scheme {
  public:
   Projection(const DipSetting& setting, DipState& state) : set_(setting), state_(state) {}
 
-  void advance(double level) override {
-    const std::vector<std::uint8_t> meets = rise_to(level, set_, state_);
+  void advance(const Moment& to) override {
+    const std::vector<std::uint8_t> meets = rise_to(to.level_mm, set_, state_);
     for (std::size_t v = 0; v < meets.size(); ++v)
       if (meets[v]) state_.state[v] = VertexState::kAttached;
-    state_.level = level;
+    state_.moment = to;
   }
 
  private:

@@ -6,6 +6,7 @@
 
 #include "base/context.h"
 #include "dip/dip.h"
+#include "dip/travel.h"
 #include "elastic/relaxation.h"
 
 namespace hydrodip {
@@ -17,25 +18,27 @@ struct DipSetting {
   const std::vector<Triangle>& triangles;
   const Surface& surface;
   const DipOptions& options;
+  const Travel& travel;
   RunContext& context;
 };
 
-// The film during the dip. The object stands still, the water rises. Floating vertices have
-// position.z() == level, once Scheme::write_positions() was called.
+// The film during the dip, in the posed-object frame: the object stands still, a plane of water
+// moves through it. Floating vertices are in that plane once Scheme::write_positions() was called;
+// the clamped rim's have their film coordinates, wherever the water is.
 struct DipState {
-  double level = 0;
+  Moment moment;
   std::vector<Vec3> position;
   std::vector<VertexState> state;
   std::vector<std::uint8_t> torn;  // per triangle
-  std::vector<double> tear_level;  // per triangle: when it tore; infinity: not yet
+  std::vector<double> torn_at_mm;  // per triangle: travelled when it tore; infinity: not yet
   DipStatistics statistics;
 };
 
 class Scheme {
  public:
   virtual ~Scheme() = default;
-  // Raises the water to the level and brings the film to rest there.
-  virtual void advance(double level) = 0;
+  // Brings object and water to the moment, and the film to rest there.
+  virtual void advance(const Moment& to) = 0;
   // To be called before anyone looks: advance() may leave floating vertices' positions behind.
   virtual void write_positions() {}
 };

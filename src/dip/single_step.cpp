@@ -23,12 +23,12 @@ class SingleStep : public Scheme {
         state_(state),
         energy_(setting.film, setting.options.modulus, setting.options.material.poisson) {}
 
-  void advance(double level) override {
-    rise_to(level, set_, state_);
+  void advance(const Moment& to) override {
+    rise_to(to.level_mm, set_, state_);
     const std::vector<std::uint8_t> is_free = all_but_the_rim();
     const VertexVector u = relaxed(is_free);
-    lay_down(mapped_back(film_, state_.position, is_free, u), level);
-    state_.level = level;
+    lay_down(mapped_back(film_, state_.position, is_free, u), to.level_mm);
+    state_.moment = to;
   }
 
  private:

@@ -3,14 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "base/parallel.h"
 
 namespace hydrodip {
 
 namespace {
 
-// Steeper than this counts as a vertical wall; keeps slopes finite.
-constexpr double kMaxSteepness = 1e6;
 // Share of its length by which a segment reaches beyond its ends, so that nothing slips out between
 // two segments.
 constexpr double kEndSlack = 1e-6;
@@ -20,17 +19,24 @@ constexpr double kBlurred = 0.1;
 // Cosine of directions that belong to the other side of a wall.
 constexpr double kOtherSide = -0.5;
 // What lies this little above the water counts as reached by it.
-constexpr double kLevelSlack_mm = 0.01;
-// Ways that pass what lies between two levels further off than this do not touch it.
+constexpr double kNearSlack_mm = 0.01;
+// What is below the water by rounding only is not below it.
+constexpr double kRounding_mm = 1e-6;
+// Triangles near the water are gathered for so many moves like the last one.
+constexpr double kNearMoves = 16;
+// Nothing is known of what was below the water before the first moment.
+constexpr double kEverBelow = 1e300;
+// Ways that pass what lies between two moments further off than this do not touch it.
 constexpr double kTouchSlack_mm = 0.01;
 // Along each side of the grid over the whole object, however large that is.
 constexpr double kMostCells = 2000;
 
-double bottom(const std::vector<Vec3>& p, const Triangle& t) {
-  return std::min({p[std::size_t(t[0])].z(), p[std::size_t(t[1])].z(), p[std::size_t(t[2])].z()});
-}
-double top(const std::vector<Vec3>& p, const Triangle& t) {
-  return std::max({p[std::size_t(t[0])].z(), p[std::size_t(t[1])].z(), p[std::size_t(t[2])].z()});
+std::array<Vec3, 8> corners_of(const Box3& box) {
+  std::array<Vec3, 8> corners;
+  for (std::size_t k = 0; k < 8; ++k)
+    corners[k] = Vec3((k & 1 ? box.max : box.min).x(), (k & 2 ? box.max : box.min).y(),
+                      (k & 4 ? box.max : box.min).z());
+  return corners;
 }
 
 // Of the part of a segment in a circle.
@@ -50,59 +56,95 @@ double length_within(const Vec2& a, const Vec2& b, const Vec2& centre, double ra
 Waterline::Waterline(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                      double cell_mm)
     : positions_(positions), triangles_(triangles), cell_(cell_mm) {
-  by_bottom_.resize(triangles.size());
-  std::iota(by_bottom_.begin(), by_bottom_.end(), 0);
-  std::vector<double> bottoms(triangles.size());
-  Box2 plan;
   for (const Triangle& t : triangles)
-    for (std::int32_t v : t) plan.add(positions[std::size_t(v)].head<2>());
-  if (!triangles.empty()) {
-    whole_ = Cells(plan, std::max(cell_, (plan.max - plan.min).maxCoeff() / kMostCells));
-    reached_.resize(whole_.count(), 0);
-  }
-  for (std::size_t t = 0; t < triangles.size(); ++t) bottoms[t] = bottom(positions, triangles[t]);
-  std::stable_sort(by_bottom_.begin(), by_bottom_.end(), [&](std::int32_t a, std::int32_t b) {
-    return bottoms[std::size_t(a)] < bottoms[std::size_t(b)];
-  });
+    for (std::int32_t v : t) box_.add(positions[std::size_t(v)]);
 }
 
-// A corner at exactly the level counts as above it, so every triangle is cut in 0 or 2 edges.
-void Waterline::raise_to(double level) {
-  level_ = level;
-  while (next_ < by_bottom_.size() &&
-         bottom(positions_, triangles_[std::size_t(by_bottom_[next_])]) < level)
-    active_.push_back(reach_of(by_bottom_[next_++]));
-  sweep();
-  std::erase_if(active_, [&](const Reach& reach) {
-    return top(positions_, triangles_[std::size_t(reach.triangle)]) < level;
-  });
+void Waterline::move_to(const Moment& to) {
   segments_.clear();
-  for (const Reach& reach : active_) cut(reach.triangle);
+  swept_ = {};
+  ++moves_;
+  if (triangles_.empty()) return;
+  Rise before = rise_;
+  if (gathered_) rise_ = rise_since_gathered(to);
+  if (!gathered_ || rise_.least < -margin_ || rise_.most > margin_) {
+    gather(to);
+    before = now_ ? rise_since_gathered(*now_) : Rise{0, kEverBelow};
+    rise_ = {};
+  }
+  const double least = std::min(before.least, rise_.least);
+  const double most = std::max(before.most, rise_.most);
+  for (const Near& near : near_) {
+    if (near.bottom + least > gathered_->level_mm + kNearSlack_mm ||
+        near.top + most < gathered_->level_mm - kRounding_mm)
+      continue;
+    const std::array<Vec3, 3> corners_now = corners(near.triangle, to);
+    mark(to.moved && now_ ? corners(near.triangle, *now_) : corners_now, corners_now);
+    cut(corners_now, to.level_mm);
+  }
+  now_ = to;
   build_grid();
 }
 
-void Waterline::sweep() {
-  swept_ = {};
-  ++raises_;
-  for (const Reach& reach : active_) mark(reach);
-  for (std::size_t n = next_; n < by_bottom_.size(); ++n) {
-    if (bottom(positions_, triangles_[std::size_t(by_bottom_[n])]) > level_ + kLevelSlack_mm) break;
-    mark(reach_of(by_bottom_[n]));
+// The height of a point over the water is linear in the point: the box's corners bound its change.
+Waterline::Rise Waterline::rise_since_gathered(const Moment& to) const {
+  Rise rise{1e300, -1e300};
+  for (const Vec3& corner : corners_of(box_)) {
+    const double change = to.height(corner) - gathered_->height(corner);
+    rise.least = std::min(rise.least, change);
+    rise.most = std::max(rise.most, change);
   }
+  return rise;
 }
 
-Waterline::Reach Waterline::reach_of(std::int32_t triangle) const {
+// Everything that may be at the water until the next time, and that has been since the last moment.
+void Waterline::gather(const Moment& to) {
+  gathered_ = to;
+  const Rise since = now_ ? rise_since_gathered(*now_) : Rise{0, kEverBelow};
+  const double last = now_ ? std::max(-since.least, since.most) : cell_ / kNearMoves;
+  margin_ = kNearMoves * last;
+  constexpr std::size_t kTrianglesPerTask = 1 << 14;
+  std::vector<std::vector<Near>> found((triangles_.size() + kTrianglesPerTask - 1) /
+                                       kTrianglesPerTask);
+  parallel_for(triangles_.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto z = [&](std::size_t k) {
+        return to.sinking_z(positions_[std::size_t(triangles_[t][k])]);
+      };
+      const double a = z(0), b = z(1), c = z(2);
+      const Near near{std::int32_t(t), std::min({a, b, c}), std::max({a, b, c})};
+      if (near.bottom <= to.level_mm + margin_ + kNearSlack_mm &&
+          near.top + std::max(margin_, since.most) >= to.level_mm - kRounding_mm)
+        found[begin / kTrianglesPerTask].push_back(near);
+    }
+  });
+  near_.clear();
+  for (const std::vector<Near>& part : found) near_.insert(near_.end(), part.begin(), part.end());
+  std::ranges::stable_sort(near_, {}, &Near::bottom);
+  Box2 plan;
+  for (const Vec3& corner : corners_of(box_)) plan.add(to.to_sinking(corner).head<2>());
+  whole_ = Cells(plan, std::max(cell_, (plan.max - plan.min).maxCoeff() / kMostCells));
+  reached_.assign(whole_.count(), 0);
+}
+
+std::array<Vec3, 3> Waterline::corners(std::int32_t triangle, const Moment& moment) const {
+  const Triangle& t = triangles_[std::size_t(triangle)];
+  return {moment.to_sinking(positions_[std::size_t(t[0])]),
+          moment.to_sinking(positions_[std::size_t(t[1])]),
+          moment.to_sinking(positions_[std::size_t(t[2])])};
+}
+
+void Waterline::mark(const std::array<Vec3, 3>& before, const std::array<Vec3, 3>& now) {
   Box2 box;
-  for (std::int32_t v : triangles_[std::size_t(triangle)])
-    box.add(positions_[std::size_t(v)].head<2>());
-  return {triangle, box, whole_.around(box.min, box.max)};
-}
-
-void Waterline::mark(const Reach& reach) {
-  swept_.add(reach.box.min);
-  swept_.add(reach.box.max);
-  for (int y = reach.cells.y0; y <= reach.cells.y1; ++y)
-    for (int x = reach.cells.x0; x <= reach.cells.x1; ++x) reached_[whole_.number(x, y)] = raises_;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.add(before[k].head<2>());
+    box.add(now[k].head<2>());
+  }
+  swept_.add(box.min);
+  swept_.add(box.max);
+  const CellRange cells = whole_.around(box.min, box.max);
+  for (int y = cells.y0; y <= cells.y1; ++y)
+    for (int x = cells.x0; x <= cells.x1; ++x) reached_[whole_.number(x, y)] = moves_;
 }
 
 bool Waterline::may_touch(const Vec2& a, const Vec2& b) const {
@@ -112,26 +154,24 @@ bool Waterline::may_touch(const Vec2& a, const Vec2& b) const {
   const CellRange cells = whole_.around(min, max);
   for (int y = cells.y0; y <= cells.y1; ++y)
     for (int x = cells.x0; x <= cells.x1; ++x)
-      if (reached_[whole_.number(x, y)] == raises_) return true;
+      if (reached_[whole_.number(x, y)] == moves_) return true;
   return false;
 }
 
-void Waterline::cut(std::int32_t triangle) {
-  const Triangle& t = triangles_[std::size_t(triangle)];
-  const Vec3* p[3] = {&positions_[std::size_t(t[0])], &positions_[std::size_t(t[1])],
-                      &positions_[std::size_t(t[2])]};
+// A corner at exactly the level counts as above it, so every triangle is cut in 0 or 2 edges.
+void Waterline::cut(const std::array<Vec3, 3>& p, double level) {
   Vec2 ends[2];
   int found = 0;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 *a = p[k], *b = p[(k + 1) % 3];
-    if ((a->z() >= level_) == (b->z() >= level_)) continue;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 *a = &p[k], *b = &p[(k + 1) % 3];
+    if ((a->z() >= level) == (b->z() >= level)) continue;
     // From the lower end, so that both triangles of an edge cut it at the same point.
     if (a->z() > b->z()) std::swap(a, b);
-    const double s = (level_ - a->z()) / (b->z() - a->z());
+    const double s = (level - a->z()) / (b->z() - a->z());
     if (found < 2) ends[found++] = a->head<2>() + s * (b->head<2>() - a->head<2>());
   }
   if (found < 2) return;
-  const Vec3 n = (*p[1] - *p[0]).cross(*p[2] - *p[0]);
+  const Vec3 n = (p[1] - p[0]).cross(p[2] - p[0]);
   const double horizontal = n.head<2>().norm();
   if (!(horizontal > 0)) return;
   Segment segment;
@@ -139,8 +179,7 @@ void Waterline::cut(std::int32_t triangle) {
   segment.b = ends[1];
   segment.outward = n.head<2>() / horizontal;
   // On the surface n . (run * outward, dz) = 0.
-  segment.steepness =
-      std::abs(n.z()) * kMaxSteepness > horizontal ? -horizontal / n.z() : kMaxSteepness;
+  segment.steepness = std::abs(n.z()) * kWall > horizontal ? -horizontal / n.z() : kWall;
   segments_.push_back(segment);
 }
 

@@ -1,4 +1,4 @@
-// The waterline: where the water surface cuts the object, seen from above, as the water rises.
+// The waterline: where the water surface cuts the object, seen from above, moment by moment.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,16 @@
 
 #include "base/cells.h"
 #include "base/math.h"
+#include "dip/travel.h"
 
 namespace hydrodip {
 
-// Segments of the object's cross-section at one level, with a grid over them for local queries.
-// Needs no connectivity: any set of triangles has a waterline, even if it is not closed.
+// Steepness that stands for a vertical wall.
+constexpr double kWall = 1e6;
+
+// Segments of the object's cross-section in the water plane, in the sinking frame, with a grid over
+// them for local queries. Needs no connectivity: any set of triangles has a waterline, even if it
+// is not closed.
 class Waterline {
  public:
   struct Point {
@@ -24,8 +29,9 @@ class Waterline {
   Waterline(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
             double cell_mm);
 
-  // Cuts at a new level, not below the last one. Costs in proportion to the triangles at it.
-  void raise_to(double level);
+  // Cuts at a new moment. Costs in proportion to the triangles near the water, as long as the
+  // object moves little from call to call; once in a while, to all of them.
+  void move_to(const Moment& to);
 
   // Where the straight way from `from` to `to` leaves the object first.
   std::optional<Point> exit(const Vec2& from, const Vec2& to) const;
@@ -35,8 +41,8 @@ class Waterline {
 
   bool empty() const { return segments_.empty(); }
 
-  // Whether a point that goes from a to b, seen from above, while the water rises from the last
-  // level but one to the last, may touch the object. False only if it certainly does not.
+  // Whether a point that goes from a to b in the water plane, from the last moment but one to the
+  // last, may touch the object. False only if it certainly does not.
   bool may_touch(const Vec2& a, const Vec2& b) const;
 
  private:
@@ -48,30 +54,40 @@ class Waterline {
   };
   template <class Weight>
   Point blurred(const Point& point, const Weight& weight_of) const;
-  void sweep();
-  struct Reach {
+  // A triangle that may come to the water soon, and how high it was when that was found.
+  struct Near {
     std::int32_t triangle;
-    Box2 box;         // seen from above
-    CellRange cells;  // that it touches, of the grid over the whole object
+    double bottom, top;  // then, in the sinking frame
   };
-  Reach reach_of(std::int32_t triangle) const;
-  void mark(const Reach& reach);
-  void cut(std::int32_t triangle);
+  // How much higher above the water the object's points are than when the triangles near the water
+  // were gathered: least and most.
+  struct Rise {
+    double least = 0, most = 0;
+  };
+  Rise rise_since_gathered(const Moment& to) const;
+  void gather(const Moment& to);
+  void mark(const std::array<Vec3, 3>& before, const std::array<Vec3, 3>& now);
+  std::array<Vec3, 3> corners(std::int32_t triangle, const Moment& moment) const;
+  void cut(const std::array<Vec3, 3>& corners, double level);
   void build_grid();
 
   const std::vector<Vec3>& positions_;
   const std::vector<Triangle>& triangles_;
   double cell_;
-  double level_ = -1e300;
-  // Cells over the whole object that triangles between the last two levels reach: those with the
-  // present number. The box is around all of them.
+  Box3 box_;  // the object's
+  std::optional<Moment> now_;
+  // Triangles that may come to the water until its height over the object, as it was when they were
+  // gathered, has changed by more than the margin; lowest first.
+  std::vector<Near> near_;
+  std::optional<Moment> gathered_;
+  double margin_ = 0;
+  Rise rise_;  // now
+  // Cells over the whole object that triangles at the water between the last two moments reach:
+  // those with the present number. The box is around all of them.
   Cells whole_;
   Box2 swept_;
   std::vector<std::uint32_t> reached_;
-  std::uint32_t raises_ = 0;
-  std::vector<std::int32_t> by_bottom_;  // triangles by lowest corner
-  std::size_t next_ = 0;                 // first of by_bottom_ that is still above the water
-  std::vector<Reach> active_;            // triangles that reach from below to above the level
+  std::uint32_t moves_ = 0;
   std::vector<Segment> segments_;
   Cells grid_;  // over the segments
   std::vector<std::int32_t> grid_begin_;

@@ -63,8 +63,10 @@ struct DippedFilm {
   std::vector<double> area_ratio;  // per vertex: deformed area over flat area (Voronoi areas)
   std::vector<double> stretch;     // per vertex: largest principal stretch around it
   std::vector<std::uint8_t> torn;  // per triangle: torn, or on the object upside down
-  std::vector<double> tear_level;  // per triangle: the depth at which it tore; infinity: it did not
-  double depth_mm = 0;             // immersion reached
+  // Per triangle: how far the object had travelled (straight down: its depth) when it tore;
+  // infinity: it did not.
+  std::vector<double> torn_at_mm;
+  double depth_mm = 0;  // immersion reached
 
   const FilmMesh& mesh() const { return *shared_mesh; }
   // A triangle whose corners are all attached and that is not torn: film that lies on the object.

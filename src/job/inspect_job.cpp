@@ -209,7 +209,7 @@ JobResult inspect_job(const JobConfig& config, RunContext& context) {
   const PreparedObject prepared = prepare_object(config.model, config.object, context);
   const TriangleMesh& mesh = prepared.posed.mesh();
   const FilmOptions& film = config.design.film;
-  const double depth_mm = depth_of_dip_mm(mesh, config.design.depth_mm);
+  const double depth_mm = make_trajectory(config.design.trajectory, mesh.positions).depth_mm();
   const Inspection inspection{config,
                               prepared,
                               depth_mm,

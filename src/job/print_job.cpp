@@ -62,9 +62,10 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
   const PreparedObject prepared =
       times.measure("load", [&] { return prepare_object(config.model, config.object, context); });
   require_appearance(prepared.posed.object(), config.model);
-  DesignOptions options = config.design;
-  options.depth_mm = depth_of_dip_mm(prepared.posed.mesh(), config.design.depth_mm);
-  require_fit(prepared.posed.mesh(), options.depth_mm, options.film, config.bath, context);
+  const DesignOptions& options = config.design;
+  const TriangleMesh& mesh = prepared.posed.mesh();
+  const Trajectory trajectory = make_trajectory(options.trajectory, mesh.positions);
+  require_fit(mesh, trajectory.depth_mm(), options.film, config.bath, context);
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
 

@@ -145,14 +145,14 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
   const PreparedObject prepared =
       times.measure("load", [&] { return prepare_object(config.model, config.object, context); });
   const TriangleMesh& mesh = prepared.posed.mesh();
-  const double depth_mm = depth_of_dip_mm(mesh, config.design.depth_mm);
-  require_fit(mesh, depth_mm, config.design.film, config.bath, context);
+  const Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
+  require_fit(mesh, trajectory.depth_mm(), config.design.film, config.bath, context);
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
   const PrintedFilm printed =
       times.measure("film image", [&] { return printed_film(config, *printer.model); });
 
-  const DippedObject dipped = dip_object(prepared.posed, film, depth_mm,
+  const DippedObject dipped = dip_object(prepared.posed, film, trajectory,
                                          dip_options(*film, printed, config), times, context);
 
   Image seen = times.measure("look", [&] {

@@ -9,6 +9,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/disjoint_sets.h"
+
 namespace hydrodip {
 
 namespace {
@@ -158,25 +160,6 @@ void for_each_edge(const std::vector<Side>& sides, Visit visit) {
     visit(begin, end);
   }
 }
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    for (std::size_t i = 0; i < count; ++i) parent_[i] = std::uint32_t(i);
-  }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::int32_t a, std::int32_t b) {
-    const std::uint32_t root_a = find(std::uint32_t(a)), root_b = find(std::uint32_t(b));
-    if (root_a != root_b) parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
-  }
-  bool is_root(std::size_t i) const { return parent_[i] == i; }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 void count_edges(const Object& object, const std::vector<Side>& sides, MeshHealth& health) {
   DisjointSets rims(object.positions.size());

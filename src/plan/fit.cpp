@@ -132,11 +132,6 @@ void warn_if_tight(const std::vector<RoomFit>& list, RunContext& context) {
 
 }  // namespace
 
-double depth_of_dip_mm(const TriangleMesh& posed, double wanted_mm) {
-  const double height_mm = posed.bounds().max.z();
-  return wanted_mm > 0 ? std::min(wanted_mm, height_mm) : height_mm;
-}
-
 std::vector<RoomFit> film_fits(const TriangleMesh& posed, double depth_mm,
                                const FilmOptions& film) {
   std::vector<RoomFit> list;

@@ -17,10 +17,6 @@ struct BathOptions {
   double depth_mm = 150;
 };
 
-// How deep a posed object is dipped if `wanted_mm` is wanted (0: all of it): never deeper than it
-// is high.
-double depth_of_dip_mm(const TriangleMesh& posed, double wanted_mm);
-
 // Room that the dipped part of a posed object takes and has, per direction.
 struct RoomFit {
   std::string what;  // "wide (x)"

@@ -117,7 +117,7 @@ TEST(InkRounds, FilmThatNeverTearsNeedsNoForesight) {
 TEST(InkRounds, WholeFilmIsLeftAfterOneCoarseRound) {
   DesignOptions options = quick(8000);
   options.dip.step_mm = 2;
-  options.depth_mm = 8;
+  options.trajectory.depth_mm = 8;
   options.rounds_max = 2;
   const Settled all = settled(make_sample("sphere"), options);
   EXPECT_EQ(all.result.coarse_rounds.size(), 1U);

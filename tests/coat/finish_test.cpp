@@ -19,7 +19,7 @@ class TwoCoats : public testing::Test {
     DesignOptions options;
     options.film.width_mm = options.film.height_mm = 120;
     options.film.elements = 4000;
-    options.depth_mm = 3;
+    options.trajectory.depth_mm = 3;
     options.dip.step_mm = 1;
     options.dpi = 72;
     options.rounds_max = 1;

@@ -44,16 +44,16 @@ TEST(DipOptions, OutOfRangeAreRefused) {
   const shapes::Shape box = shapes::box(Vec3(-10, -10, 0), Vec3(10, 10, 5));
   const FilmMesh film = exact::disc_film(200);
   const auto refused = [&](const auto& change) {
-    DipOptions options;
+    exact::StraightDip options;
     change(options);
     EXPECT_THROW(exact::dip_shape(box, film, options), InputError);
   };
-  refused([](DipOptions& o) { o.step_mm = 0; });
-  refused([](DipOptions& o) { o.step_mm = std::nan(""); });
-  refused([](DipOptions& o) { o.depth_mm = -1; });
-  refused([](DipOptions& o) { o.material.poisson = 0.5; });
-  refused([](DipOptions& o) { o.material.z_stretch = -0.1; });
-  refused([](DipOptions& o) { o.modulus = {1, 2, 3}; });
+  refused([](exact::StraightDip& o) { o.step_mm = 0; });
+  refused([](exact::StraightDip& o) { o.step_mm = std::nan(""); });
+  refused([](exact::StraightDip& o) { o.depth_mm = -1; });
+  refused([](exact::StraightDip& o) { o.material.poisson = 0.5; });
+  refused([](exact::StraightDip& o) { o.material.z_stretch = -0.1; });
+  refused([](exact::StraightDip& o) { o.modulus = {1, 2, 3}; });
 }
 
 TEST(Dip, CanBeCancelled) {
@@ -61,9 +61,9 @@ TEST(Dip, CanBeCancelled) {
   const Surface surface(box.positions, box.triangles);
   RunContext context;
   context.cancel();
-  EXPECT_THROW(
-      dip(exact::disc_film(200), box.positions, box.triangles, surface, DipOptions{}, context),
-      Cancelled);
+  EXPECT_THROW(dip(exact::disc_film(200), box.positions, box.triangles, surface,
+                   Trajectory::straight_down(5), DipOptions{}, context),
+               Cancelled);
 }
 
 TEST(Dip, ReachesTheAskedDepth) {
@@ -86,11 +86,13 @@ TEST(Dip, GivesUpWhereTooManyStepsFail) {
   const shapes::Shape box = shapes::box(Vec3(-10, -10, 0), Vec3(10, 10, 5));
   const FilmMesh film = exact::disc_film(200);
   const Surface surface(box.positions, box.triangles);
-  DipOptions options = exact::untearing(0.5, 3);
+  auto options = exact::untearing(0.5, 3);
   options.make_solver = [](const FilmMesh&) { return std::make_unique<NoSolver>(); };
   RunContext context;
   const auto dip_box = [&] {
-    return dip(film, box.positions, box.triangles, surface, options, context).statistics;
+    return dip(film, box.positions, box.triangles, surface, Trajectory::straight_down(3), options,
+               context)
+        .statistics;
   };
   const DipStatistics all_failed = dip_box();
   EXPECT_EQ(all_failed.failed_steps, all_failed.steps);

@@ -11,7 +11,7 @@ DipHistory watched(int frames, int steps, int contact) {
   for (int step = 0; step <= steps; ++step) {
     const double level = 0.1 * step;
     const bool attached = step >= contact;
-    history.record(step, steps, level,
+    history.record(step, steps, Moment::at_depth(level),
                    {{9, 0, 0}, {1, 0, level}, {2, 0, attached ? 0.1 * contact : level}},
                    {VertexState::kClamped, VertexState::kUnattached,
                     attached ? VertexState::kAttached : VertexState::kUnattached});
@@ -48,7 +48,7 @@ TEST(DipHistory, TheRimStaysAtTheWater) {
 
 TEST(DipHistory, ANewDipReplacesTheOld) {
   DipHistory history = watched(5, 100, 50);
-  history.record(0, 2, 0, {{0, 0, 0}}, {VertexState::kUnattached});
+  history.record(0, 2, Moment{}, {{0, 0, 0}}, {VertexState::kUnattached});
   EXPECT_EQ(history.frames().size(), 1u);
   EXPECT_EQ(history.attached_from().size(), 1u);
 }
@@ -57,7 +57,7 @@ TEST(DipHistory, ALargeFilmGetsFewerFrames) {
   DipHistory history(32);
   const std::size_t vertices = 100000;
   for (int step = 0; step <= 100; ++step) {
-    history.record(step, 100, step, std::vector<Vec3>(vertices, Vec3::Zero()),
+    history.record(step, 100, Moment::at_depth(step), std::vector<Vec3>(vertices, Vec3::Zero()),
                    std::vector<VertexState>(vertices, VertexState::kUnattached));
   }
   EXPECT_LE(history.frames().size(), 7u);

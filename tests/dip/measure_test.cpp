@@ -23,7 +23,7 @@ DipState laid_flat(const FilmMesh& film, const Mat2& stretch) {
   }
   state.state.assign(film.u.size(), VertexState::kAttached);
   state.torn.assign(film.triangles.size(), 0);
-  state.tear_level.assign(film.triangles.size(), 1e300);
+  state.torn_at_mm.assign(film.triangles.size(), 1e300);
   return state;
 }
 

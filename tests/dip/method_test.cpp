@@ -13,8 +13,8 @@ namespace {
 
 using shapes::Shape;
 
-DipOptions with_method(DipMethod method, double depth_mm) {
-  DipOptions options = exact::untearing(0.5, depth_mm);
+exact::StraightDip with_method(DipMethod method, double depth_mm) {
+  exact::StraightDip options = exact::untearing(0.5, depth_mm);
   options.method = method;
   return options;
 }
@@ -208,9 +208,10 @@ TEST(SingleStep, CanBeCancelled) {
   const Surface surface(shape.positions, shape.triangles);
   RunContext context;
   context.cancel();
-  EXPECT_THROW(dip(film, shape.positions, shape.triangles, surface,
-                   with_method(DipMethod::kSingleStep, 0), context),
-               Cancelled);
+  EXPECT_THROW(
+      dip(film, shape.positions, shape.triangles, surface, make_trajectory({}, shape.positions),
+          with_method(DipMethod::kSingleStep, 0), context),
+      Cancelled);
 }
 
 // Mean error at radius a on a sphere R = 30, with as many cells across the sheet of 220 mm.
@@ -222,7 +223,7 @@ double paper_error(int cells, double a) {
                                         .margin_mm = 10,
                                         .elements = int(1.3 * cells * cells),
                                         .grading = 1});
-  DipOptions options = exact::untearing(0.4, 21);
+  exact::StraightDip options = exact::untearing(0.4, 21);
   options.scheme = DipScheme::kPaper;
   const DippedFilm result = exact::dip_shape(shapes::sphere_bowl(radius, 29.9), film, options);
   const exact::RevolutionTable exact(28.8, options.material.z_stretch, [=](double r) {
@@ -245,7 +246,7 @@ TEST(PaperScheme, FallsShortOfTheExactSphereByTenthsOfAMillimetre) {
 
 TEST(PaperScheme, FilmDoesNotSlipIntoAWall) {
   const FilmMesh film = square_film(2000);
-  DipOptions options = exact::untearing(0.5, 12);
+  exact::StraightDip options = exact::untearing(0.5, 12);
   options.scheme = DipScheme::kPaper;
   const Shape box = shapes::box(Vec3(-20.3, -20.3, 0), Vec3(20.3, 20.3, 15));
   const DippedFilm result = exact::dip_shape(box, film, options);

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "dip/dip.h"
+#include "exact/dipping.h"
 #include "exact/shapes.h"
 
 namespace hydrodip {
@@ -18,8 +19,8 @@ FilmMesh coarse_film(int elements) {
   return make_film_mesh({.width_mm = 150, .height_mm = 180, .elements = elements});
 }
 
-DipOptions shallow_dip() {
-  DipOptions options;
+exact::StraightDip shallow_dip() {
+  exact::StraightDip options;
   options.step_mm = 0.25;
   options.depth_mm = 12;
   return options;
@@ -37,11 +38,13 @@ std::vector<double> checkerboard(const FilmMesh& film, double square_mm) {
   return modulus;
 }
 
-DippedFilm dipped(const FilmMesh& film, const DipOptions& options, DipStatistics* statistics = {}) {
+DippedFilm dipped(const FilmMesh& film, const exact::StraightDip& options,
+                  DipStatistics* statistics = {}) {
   const shapes::Shape sphere = shapes::sphere_bowl(30, 28);
   const Surface surface(sphere.positions, sphere.triangles);
   RunContext context;
-  const DipResult result = dip(film, sphere.positions, sphere.triangles, surface, options, context);
+  const DipResult result = dip(film, sphere.positions, sphere.triangles, surface,
+                               Trajectory::straight_down(options.depth_mm), options, context);
   if (statistics) *statistics = result.statistics;
   return result.film;
 }
@@ -53,7 +56,7 @@ double largest_distance(const DippedFilm& a, const DippedFilm& b) {
   return largest;
 }
 
-void expect_the_same_film(DipOptions options, const FilmMesh& film) {
+void expect_the_same_film(exact::StraightDip options, const FilmMesh& film) {
   const DippedFilm fast = dipped(film, options);
   options.make_solver = [](const FilmMesh&) { return make_direct_solver(); };
   const double apart_mm = largest_distance(fast, dipped(film, options));
@@ -65,8 +68,8 @@ void expect_the_same_film(DipOptions options, const FilmMesh& film) {
 // steps, film that touches just as a step ends makes more of a difference than either solver.
 constexpr int kElements = 10000;
 
-DipOptions usual_dip() {
-  DipOptions options;
+exact::StraightDip usual_dip() {
+  exact::StraightDip options;
   options.depth_mm = 8;
   options.material.tear_stretch = 0;
   return options;
@@ -77,20 +80,20 @@ TEST(SolverSlow, MultigridGivesTheDirectSolversFilm) {
 }
 
 TEST(SolverSlow, MultigridGivesTheDirectSolversFilmWithPoissonsRatio) {
-  DipOptions options = usual_dip();
+  exact::StraightDip options = usual_dip();
   options.material.poisson = 0.35;
   expect_the_same_film(options, coarse_film(kElements));
 }
 
 TEST(SolverSlow, MultigridGivesTheDirectSolversFilmOnHardInk) {
   const FilmMesh film = coarse_film(kElements);
-  DipOptions options = usual_dip();
+  exact::StraightDip options = usual_dip();
   options.modulus = checkerboard(film, 8);
   expect_the_same_film(options, film);
 }
 
 TEST(SolverSlow, IterationsDoNotGrowWithTheMesh) {
-  DipOptions options = shallow_dip();
+  exact::StraightDip options = shallow_dip();
   options.depth_mm = 3;
   DipStatistics coarse, fine;
   dipped(coarse_film(2000), options, &coarse);

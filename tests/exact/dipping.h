@@ -25,20 +25,26 @@ inline FilmMesh disc_film(int elements) {
                          .elements = elements});
 }
 
+struct StraightDip : DipOptions {
+  double depth_mm = 0;  // 0: the whole shape
+};
+
 // Exact solutions know no tears.
-inline DipOptions untearing(double step_mm, double depth_mm) {
-  DipOptions options;
-  options.step_mm = step_mm;
+inline StraightDip untearing(double step_mm, double depth_mm) {
+  StraightDip options;
   options.depth_mm = depth_mm;
+  options.step_mm = step_mm;
   options.material.tear_stretch = 0;
   return options;
 }
 
 inline DippedFilm dip_shape(const shapes::Shape& shape, const FilmMesh& film,
-                            const DipOptions& options) {
+                            const StraightDip& options) {
   const Surface surface(shape.positions, shape.triangles);
   RunContext context;
-  return dip(film, shape.positions, shape.triangles, surface, options, context).film;
+  return dip(film, shape.positions, shape.triangles, surface,
+             make_trajectory({options.depth_mm}, shape.positions), options, context)
+      .film;
 }
 
 // exact::revolution for many radii: tabulated once, then interpolated (cubic, error below 1e-6 mm

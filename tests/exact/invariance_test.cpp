@@ -110,7 +110,7 @@ TEST(Invariance, ThreadsDoNotChangeABit) {
 // Only ratios of moduli matter. Newton stops within 1e-5 mm, which then decides nothing that shows.
 TEST(Invariance, StiffeningAllFilmAlikeChangesNothing) {
   const FilmMesh film = square_film(2000);
-  DipOptions options = untearing(0.25, 11);
+  auto options = untearing(0.25, 11);
   options.modulus.assign(film.triangles.size(), 1.0);
   const DippedFilm soft = dip_shape(lopsided(), film, options);
   options.modulus.assign(film.triangles.size(), 7.0);
@@ -144,7 +144,7 @@ TEST(Invariance, RefiningTheObjectsMeshChangesNothing) {
 // With its rest shape's height taken away, the film does not know that it is lifted.
 TEST(KnownDips, WithoutZStretchFilmIsProjectedVertically) {
   const FilmMesh film = disc_film(4000);
-  DipOptions options = untearing(0.2, 11);
+  auto options = untearing(0.2, 11);
   options.material.z_stretch = 0;
   for (const Shape& shape : {shapes::sphere_bowl(30, 29), shapes::cone(32, 2), lopsided()}) {
     const DippedFilm dipped = dip_shape(shape, film, options);

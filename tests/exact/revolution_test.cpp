@@ -53,7 +53,7 @@ exact::RevolutionTable solution(const Body& body) {
 }
 
 DippedFilm dip_body(const Body& body, int elements, double step_mm, double poisson = 0) {
-  DipOptions options = exact::untearing(step_mm, body.height(kContact_mm));
+  auto options = exact::untearing(step_mm, body.height(kContact_mm));
   options.material.poisson = poisson;
   return exact::dip_shape(body.shape, exact::disc_film(elements), options);
 }

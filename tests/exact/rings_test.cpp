@@ -42,7 +42,7 @@ TEST(Rings, WithoutRingsTheSolutionIsTheKnownOne) {
 TEST(RingsSlow, InkRingsOnASphereLandWhereTheContinuumHasThem) {
   const FilmMesh film = exact::disc_film(20000);
   const SheetRaster raster{2 * exact::kClampRadius + 20, 2 * exact::kClampRadius + 20, 150};
-  DipOptions options = exact::untearing(0.2, kRadius - std::sqrt(kRadius * kRadius - 28.4 * 28.4));
+  auto options = exact::untearing(0.2, kRadius - std::sqrt(kRadius * kRadius - 28.4 * 28.4));
   options.modulus = film_modulus(film, rings(raster), raster, {.ratio = kRatio, .filter_mm = 0.5});
   const DippedFilm dipped = exact::dip_shape(shapes::sphere_bowl(kRadius, 29.5), film, options);
 

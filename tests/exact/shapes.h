@@ -79,6 +79,21 @@ inline Shape wedge(double half_width, double half_length, double tan_theta) {
   return shape;
 }
 
+// The lower part of a circular cylinder along y, up to `angle` from straight down on both sides.
+inline Shape trough(double radius, double half_length, double angle, int facets) {
+  Shape shape;
+  for (int n = 0; n <= facets; ++n) {
+    const double at = angle * (2.0 * n / facets - 1);
+    for (const double y : {-half_length, half_length})
+      shape.add(radius * std::sin(at), y, radius * (1 - std::cos(at)));
+  }
+  for (std::int32_t a = 0; a < 2 * facets; a += 2) {
+    shape.triangles.push_back({a, a + 1, a + 3});
+    shape.triangles.push_back({a, a + 3, a + 2});
+  }
+  return shape;
+}
+
 inline Shape box(const Vec3& low, const Vec3& high) {
   Shape shape;
   for (int k = 0; k < 8; ++k)

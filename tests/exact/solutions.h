@@ -1,6 +1,7 @@
 // Exact solutions of the continuum model (docs/model.md): what the dip must converge to.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -102,6 +103,85 @@ inline std::vector<double> ringed_revolution(const std::vector<double>& radii, d
       a += h;
     }
     result.push_back(u);
+  }
+  return result;
+}
+
+// A circular cylinder along y that is lowered, shifted along x and turned about y, evenly and all
+// at once, through a film clamped at x = +-L. The pivot is its lowest line.
+struct RolledCylinder {
+  double radius = 30, L = 95, z_stretch = 0.65;
+  double lower = 20, shift = 6, turn = M_PI / 18;  // in the end; turn in radians
+
+  // Film coordinates that attach at angles psi from the lowest line in the body's frame: to the
+  // right, positive angles ascending, and to the left, negative angles descending.
+  struct Side {
+    std::vector<double> psi, u;
+    // Linear between so many entries is exact to 1e-6 mm. Not beyond the last.
+    double at(double angle) const {
+      const bool rising = psi.back() > 0;
+      const auto n =
+          std::size_t(std::lower_bound(psi.begin() + 1, psi.end() - 1, angle,
+                                       [&](double a, double b) { return rising ? a < b : a > b; }) -
+                      psi.begin());
+      const double s = (angle - psi[n - 1]) / (psi[n] - psi[n - 1]);
+      return u[n - 1] + s * (u[n] - u[n - 1]);
+    }
+  };
+
+  // The floating film on one side is strained evenly, u' = (L -+ u) / (L -+ x). On the circle,
+  // which meets the water at the angle chi from straight down as the bath sees it, the water line
+  // gains d chi +- d theta. With s = sqrt(t) nothing is singular at the touch. side: +1 right, -1
+  // left.
+  Side solved(double side) const {
+    constexpr int kSteps = 40000;
+    // chi, and where the water line is in the bath.
+    const auto chi = [&](double t) {
+      return std::acos(std::clamp(std::cos(turn * t) - lower * t / radius, -1.0, 1.0));
+    };
+    const auto gained = [&](double t) { return chi(t) + side * turn * t; };
+    const auto rate = [&](double t, double u) {
+      const double x = side * (radius * std::sin(turn * t) + shift * t) + radius * std::sin(chi(t));
+      return (L - u) / (L - x);
+    };
+    Side result{{0}, {0}};
+    double u = 0;
+    for (int n = 1; n <= kSteps; ++n) {
+      const auto t_at = [&](double step) { return std::pow(step / kSteps, 2); };
+      const double t0 = t_at(n - 1), t1 = t_at(n - 0.5), t2 = t_at(n);
+      const double arc = radius * (gained(t2) - gained(t0));
+      const double middle = chi(t1);
+      const double sigma = arc * std::hypot(std::cos(middle), z_stretch * std::sin(middle));
+      const double half = u + 0.5 * sigma * rate(t0, u);
+      u += sigma * rate(t1, half);
+      result.psi.push_back(side * gained(t2));
+      result.u.push_back(side * u);
+    }
+    return result;
+  }
+};
+
+// The tangential film coordinate v that attaches at radius a, to first order in phi, of a body of
+// revolution that has been turned by phi(a) when its water line is there: film point
+// (u + i v) exp(i (Theta + phi)) at the body's angle Theta. u(a) solves revolution().
+inline std::vector<double> twisted(const std::vector<double>& radii, double L, double z_stretch,
+                                   const std::function<double(double)>& tan_theta,
+                                   const std::function<double(double)>& u,
+                                   const std::function<double(double)>& phi) {
+  std::vector<double> result;
+  double a = 1e-3, v = 0;
+  for (const double radius : radii) {
+    const int steps = std::max(1, int((radius - a) / 0.005));
+    const double h = (radius - a) / steps;
+    for (int n = 0; n < steps; ++n, a += h) {
+      // What the film's own slope takes back is stiff near the axis: implicit midpoint rule.
+      const double m = a + h / 2;
+      const double decay = std::hypot(1.0, z_stretch * tan_theta(m)) * (1 / (L * L) + 1 / (m * m)) /
+                           (1 / m - m / (L * L));
+      const double turned = (phi(a + h) - phi(a)) * u(m);
+      v = (v * (1 - 0.5 * h * decay) - turned) / (1 + 0.5 * h * decay);
+    }
+    result.push_back(v);
   }
   return result;
 }

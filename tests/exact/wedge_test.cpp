@@ -35,7 +35,7 @@ struct WedgeError {
 WedgeError wedge_error(double degrees, const FilmMesh& film, double step_mm,
                        DipScheme scheme = DipScheme::kContactLine) {
   const double tan_theta = std::tan(degrees * kDegree);
-  DipOptions options = exact::untearing(step_mm, 30 * tan_theta);
+  auto options = exact::untearing(step_mm, 30 * tan_theta);
   options.scheme = scheme;
   const DippedFilm dipped = exact::dip_shape(shapes::wedge(40, 200, tan_theta), film, options);
   WedgeError error;

@@ -76,8 +76,9 @@ DipHistory some_history(const DippedFilm& film) {
   DipHistory history;
   std::vector<Vec3> flat;
   for (const Vec2& u : film.mesh().u) flat.emplace_back(u.x(), u.y(), 0);
-  history.record(0, 1, 0, flat, std::vector<VertexState>(flat.size(), VertexState::kUnattached));
-  history.record(1, 1, film.depth_mm, film.position, film.state);
+  history.record(0, 1, Moment{}, flat,
+                 std::vector<VertexState>(flat.size(), VertexState::kUnattached));
+  history.record(1, 1, Moment::at_depth(film.depth_mm), film.position, film.state);
   return history;
 }
 

@@ -40,7 +40,8 @@ DippedObject dipped_again(const JobConfig& config, const PosedObject& posed, con
   const auto film = std::make_shared<const FilmMesh>(make_film_mesh(design.film));
   DipOptions options = design.dip;
   options.modulus = film_modulus(*film, inks, raster_of(design.film, design.dpi), design.stiffness);
-  return dip_object(posed, film, 0, options, timings, context);
+  return dip_object(posed, film, make_trajectory({}, posed.mesh().positions), options, timings,
+                    context);
 }
 
 // Evenly over the surface and always the same: equal shares of area, and in each triangle the

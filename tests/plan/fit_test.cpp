@@ -92,11 +92,5 @@ TEST(Fit, AHugeMisfitAsksForTheUnits) {
   EXPECT_TRUE(contains(fit_error(object, {.depth_mm = 50000}), "--units"));
 }
 
-TEST(Fit, DeeperThanItIsHighIsAsDeepAsItIsHigh) {
-  EXPECT_EQ(depth_of_dip_mm(funnel(), 0), 50);
-  EXPECT_EQ(depth_of_dip_mm(funnel(), 20), 20);
-  EXPECT_EQ(depth_of_dip_mm(funnel(), 80), 50);
-}
-
 }  // namespace
 }  // namespace hydrodip

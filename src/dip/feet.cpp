@@ -1,0 +1,220 @@
+#include "dip/feet.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace hydrodip {
+
+namespace {
+
+// Share of the contact line that may go faster: a scan has flat spots everywhere.
+constexpr double kFasterShare = 0.1;
+// A foot that jumps further than this in one step, in cells, has lost its contact line (the object
+// is submerged there, or a shelf begins) and goes on straight up.
+constexpr double kMaxJump = 2.5;
+
+// Finds places on the contact line.
+struct LineSearch {
+  const Waterline& line;
+  double cell_mm;
+
+  // The contact line next to `near`. `outside` is a unit vector known to point away from the object
+  // more or less; where faces are turned the wrong way, it decides.
+  Waterline::Point line_near(const Vec2& near, const Vec2& outside) const {
+    const auto found = line.closest(near, kMaxJump * cell_mm);
+    if (!found) return {near, outside, kWall};
+    Waterline::Point point = *found;
+    if (point.outward.dot(outside) < -0.7) {
+      point.outward = -point.outward;
+      point.steepness = -point.steepness;
+    }
+    return point;
+  }
+
+  // Where the edge from a vertex that attaches now leaves the object; next to the vertex where it
+  // does not (on walls and overhangs), but never on the far side of it.
+  Waterline::Point first_on_line(const Vec2& from, const Vec2& to) const {
+    if (const auto leaving = line.exit(from, to)) return *leaving;
+    const Vec2 outside = (to - from).normalized();
+    const Waterline::Point near = line_near(from, outside);
+    const bool behind = (near.position - from).dot(outside) < -0.1 * cell_mm;
+    return behind ? line_near(to, outside) : near;
+  }
+
+  // Towards the floating vertex, so that the foot stays by the edge whose strain it uses; straight
+  // up where the water does not gain on it that way: on walls and overhangs, or just before
+  // contact.
+  Waterline::Point next_on_line(const Vec2& from, const Vec2& floating, const Vec2& outward) const {
+    if (const auto ahead = line.exit(from, floating))
+      if ((ahead->position - from).norm() < kMaxJump * cell_mm) return *ahead;
+    return line_near(from, outward);
+  }
+};
+
+// How the object turns in the water plane from one moment to another.
+Mat2 spin_between(const Moment& from, const Moment& to) {
+  const Mat3 turn = to.turn * from.turn.transpose();
+  const double cosine = turn(0, 0) + turn(1, 1), sine = turn(1, 0) - turn(0, 1);
+  Mat2 spin;
+  spin << cosine, -sine, sine, cosine;
+  return spin / std::hypot(cosine, sine);
+}
+
+}  // namespace
+
+double Feet::gentlest_rise() const {
+  std::vector<double> rises;
+  for (const Foot& foot : feet_) rises.push_back(std::abs(foot.steepness));
+  if (rises.empty()) return kWall;
+  const auto gentle = rises.begin() + std::ptrdiff_t(kFasterShare * double(rises.size()));
+  std::nth_element(rises.begin(), gentle, rises.end());
+  return *gentle;
+}
+
+// The way is unrolled as the object is in the middle of it: between two moments it turns a little.
+// Where the water falls back from laid film, the film's edge stays where it is.
+void Feet::climb(const FloatingSheet& sheet, const Waterline& line, const Moment& to) {
+  const Moment& from = state_.moment;
+  const double travel = to.travelled_mm - from.travelled_mm;
+  const double ratio = last_travel_ > 0 ? travel / last_travel_ : 1.0;
+  last_travel_ = travel;
+  now_ = to;
+  const Moment between = set_.travel.at(0.5 * (from.travelled_mm + to.travelled_mm));
+  const Mat2 spin = spin_between(from, to);
+  const LineSearch search{line, film_.cell_mm};
+  for_feet([&](Foot& foot) {
+    if (to.moved) foot.way = spin * foot.way;
+    const Vec3 start = to.to_sinking(foot.point);
+    foot.laid_before = foot.laid;
+    if (start.z() > to.level_mm) {
+      foot.last_way = Vec2::Zero();
+      foot.place = start.head<2>();
+    } else {
+      const Waterline::Point end =
+          search.next_on_line(start.head<2>(), sheet.plan(foot.floating), foot.outward);
+      const Vec3 point = to.to_object(Vec3(end.position.x(), end.position.y(), to.level_mm));
+      const Vec3 point_between = between.to_sinking(point);
+      foot.last_way = unrolled(between.to_sinking(foot.point), foot.outward, foot.steepness,
+                               {point_between.head<2>(), end.outward, end.steepness},
+                               point_between.z(), z_stretch());
+      foot.laid += 0.5 * (foot.line.now + foot.line.next(ratio)) * foot.last_way;
+      foot.way += foot.last_way;
+      foot.point = point;
+      foot.place = end.position;
+      foot.outward = end.outward;
+      foot.steepness = end.steepness;
+    }
+    place_ghost(foot, foot.element.next(ratio));
+  });
+}
+
+void Feet::correct(const FloatingSheet& sheet) {
+  std::vector<Mat2> element(feet_.size());
+  for_feet([&](const Foot& foot) {
+    element[number(foot)] =
+        sheet.gradient_at_edge(foot.attached, foot.floating, foot.element.now, *this);
+  });
+  for_feet([&](Foot& foot) {
+    const Mat2& floating = element[number(foot)];
+    const Mat2 line = gradient_on_line(foot, floating, sheet);
+    foot.laid = foot.laid_before + 0.5 * (foot.line.now + line) * foot.last_way;
+    foot.line.advance(line);
+    foot.element.advance(floating);
+  });
+}
+
+// Around a vertex that is attached alone, the contact line is a circle smaller than the triangles
+// around it, and the floating film strains as around a hole: u = A r + B / r. Of that, triangles
+// know the mean slope from the circle (radius c) out to the floating vertex (r), and the foot
+// knows u / c; the slope at the circle follows.
+Mat2 Feet::gradient_on_line(const Foot& foot, const Mat2& element,
+                            const FloatingSheet& sheet) const {
+  if (!sheet.stands_alone(foot.attached)) return element;
+  const Vec2 centre = now_.to_sinking(state_.position[std::size_t(foot.attached)]).head<2>();
+  const Vec2 out = foot.place - centre;
+  const double c = out.norm();
+  const double r = (sheet.slid(foot.floating) - centre).norm();
+  if (!(c > 0) || !(r > c)) return element;
+  const Vec2 n = out / c;
+  const double half_q = 0.5 * (1 - c / r);
+  const double around = n.dot(foot.laid) / c;
+  const double mean = n.dot(element * n);
+  const double slope = (mean - half_q * around) / (1 - half_q);
+  return element + (slope - mean) * n * n.transpose();
+}
+
+std::vector<Foot> Feet::created_for(const std::vector<Touch>& touches, const FloatingSheet& sheet,
+                                    const Waterline& line, const Moment& to) {
+  for (const Touch& touch : touches) touches_[std::size_t(touch.vertex)] = 1;
+  constexpr std::size_t kTouchesPerTask = 2;
+  std::vector<std::vector<Foot>> created(touches.size());
+  parallel_for(touches.size(), kTouchesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) create(touches[n], sheet, line, to, created[n]);
+  });
+  for (const Touch& touch : touches) touches_[std::size_t(touch.vertex)] = 0;
+  std::vector<Foot> all;
+  for (const std::vector<Foot>& part : created) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+void Feet::create(const Touch& touch, const FloatingSheet& sheet, const Waterline& line,
+                  const Moment& to, std::vector<Foot>& created) const {
+  const std::int32_t v = touch.vertex;
+  const Vec3 touched = to.to_sinking(touch.contact.position);
+  const Vec3 normal = to.direction_to_sinking(touch.contact.normal);
+  std::vector<std::int32_t> around;
+  for (auto n = film_.incident_begin[std::size_t(v)]; n < film_.incident_begin[std::size_t(v) + 1];
+       ++n)
+    for (std::int32_t w : film_.triangles[std::size_t(film_.incident[std::size_t(n)])])
+      if (w != v && sheet.floats(w) && !touches_[std::size_t(w)]) around.push_back(w);
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  const LineSearch search{line, film_.cell_mm};
+  for (std::int32_t w : around) {
+    Foot foot;
+    foot.attached = v;
+    foot.floating = w;
+    const Vec2 from = touched.head<2>();
+    const Waterline::Point end = search.first_on_line(from, sheet.slid(w));
+    const Mat2 F = sheet.gradient_at_edge(v, w, Mat2::Identity(), *this);
+    foot.element = foot.line = {F, F};
+    foot.way = unrolled(touched, normal.head<2>().stableNormalized(),
+                        steepness_along(normal, end.outward), end, to.level_mm, z_stretch());
+    foot.laid = F * foot.way;
+    foot.point = to.to_object(Vec3(end.position.x(), end.position.y(), to.level_mm));
+    foot.place = end.position;
+    foot.outward = end.outward;
+    foot.steepness = end.steepness;
+    created.push_back(foot);
+  }
+}
+
+void Feet::replace(const std::vector<Foot>& created, const FloatingSheet& sheet) {
+  std::erase_if(feet_, [&](const Foot& foot) { return !sheet.floats(foot.floating); });
+  feet_.insert(feet_.end(), created.begin(), created.end());
+  for_feet([](Foot& foot) { place_ghost(foot, foot.element.now); });
+  index(sheet);
+}
+
+void Feet::index(const FloatingSheet& sheet) {
+  for (std::size_t c : indexed_corners_) feet_of_corner_[c] = {-1, -1};
+  indexed_corners_.clear();
+  line_triangles_.clear();
+  for (std::size_t f = 0; f < feet_.size(); ++f)
+    sheet.for_triangles_at_edge(feet_[f].attached, feet_[f].floating, [&](std::size_t t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (film_.triangles[t][k] != feet_[f].attached) continue;
+        auto& slots = feet_of_corner_[3 * t + k];
+        slots[slots[0] < 0 ? 0 : 1] = static_cast<std::int32_t>(f);
+        indexed_corners_.push_back(3 * t + k);
+        line_triangles_.push_back(t);
+      }
+    });
+  std::sort(line_triangles_.begin(), line_triangles_.end());
+  line_triangles_.erase(std::unique(line_triangles_.begin(), line_triangles_.end()),
+                        line_triangles_.end());
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,58 @@
+// The object's way into the water: a rigid motion in the bath. docs/model.md, section 1.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "base/math.h"
+
+namespace hydrodip {
+
+// Where the object is in the bath: X = R (P - pivot) + pivot + (shift_x, shift_y, -lower) with
+// R = Rz Ry Rx, for a point P in the posed-object frame. The water surface is X.z = 0.
+struct Keyframe {
+  double lower_mm = 0;
+  double shift_x_mm = 0, shift_y_mm = 0;
+  double turn_x_deg = 0, turn_y_deg = 0, turn_z_deg = 0;
+};
+
+// An immutable value. The parameter t runs from 0 to 1 and has no meaning in time: film is in
+// equilibrium at every moment, so how fast an object goes does not matter. Keyframes are evenly
+// spread over t. (By the way that they cover, the same trajectory would run otherwise for every
+// object.)
+class Trajectory {
+ public:
+  // From the first touch of an object in the posed-object frame.
+  static Trajectory straight_down(double depth_mm);
+  // Linear between the keyframes. Throws InputError for fewer than two of them, and for numbers
+  // that are not finite.
+  static Trajectory through(std::vector<Keyframe> keyframes, const Vec3& pivot_mm = Vec3::Zero());
+
+  Keyframe at(double t) const;
+  Eigen::Isometry3d bath_from_object(double t) const;
+
+  // Only ever down, without any shift or turn, from a start at or above the water.
+  bool is_straight_down() const { return straight_; }
+  // How far the pivot is lowered in the end.
+  double depth_mm() const { return keyframes_.back().lower_mm; }
+  const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+  const Vec3& pivot_mm() const { return pivot_; }
+
+ private:
+  Trajectory(std::vector<Keyframe> keyframes, const Vec3& pivot_mm);
+
+  std::vector<Keyframe> keyframes_;
+  Vec3 pivot_;
+  bool straight_;
+};
+
+// What is asked of the way in.
+struct TrajectoryOptions {
+  double depth_mm = 0;  // straight down; 0: until the object is completely below the water
+};
+
+// For an object with these vertices. It is never lowered further than until its top is below the
+// water. Throws InputError.
+Trajectory make_trajectory(const TrajectoryOptions& options, const std::vector<Vec3>& positions);
+
+}  // namespace hydrodip
