@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "base/error.h"
+#include "base/run_scope.h"
 #include "ink/color_model.h"
 #include "ink/profiles.h"
 #include "ink/rgb_profile.h"
