@@ -18,8 +18,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/run_scope.h"
 #include "base/math.h"
+#include "base/run_scope.h"
 
 namespace hydrodip {
 
