@@ -2,10 +2,13 @@
 
 #include <utility>
 
+#include "base/run_scope.h"
+
 namespace hydrodip {
 
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film, double depth_mm,
                         const DipOptions& options, Timings& timings, RunContext& context) {
+  const RunScope scope(context);
   DippedObject result{.posed = posed};
   const TriangleMesh& mesh = posed.mesh();
   timings.measure("dip", [&] {
