@@ -32,9 +32,14 @@ constexpr int kLooksForStragglers = 1000;
 // A thread that was without a core for so long while others waited for it had lost it to another
 // process.
 constexpr Time kLostCore = std::chrono::microseconds(100);
-// After such a loss, loops run without others for so many times its length: at most a tenth of the
-// time is lost that way, however busy the machine is.
+// Where more than so much of a window is lost that way, sharing loops costs more than it gains: two
+// threads are at most twice as fast as one.
+constexpr Time kWindow = std::chrono::milliseconds(30), kMostLost = kWindow / 3;
+// Then loops run without others for so many times what was lost; and for twice as long as before
+// where sharing does not last longer than that in between. So busy machines cost little, and one
+// that is busy no longer is found out within a second.
 constexpr int kAlonePerLoss = 10;
+constexpr Time kLongestAlone = std::chrono::milliseconds(500);
 
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -114,7 +119,7 @@ class SharedLoops {
     for (int look = 0;; ++look) {
       const std::uint32_t loop = open_loop_;
       if (loop != kNone && loop != done) return loop;
-      if (look < kLooksAwake) {
+      if (look < kLooksAwake && !alone_.load(std::memory_order_relaxed)) {
         pause();
         continue;
       }
@@ -133,10 +138,27 @@ class SharedLoops {
   }
 
   bool is_alone() {
-    if (alone_until_ == Clock::time_point()) return false;
-    if (Clock::now() < alone_until_) return true;
-    alone_until_ = {};
+    if (!alone_.load(std::memory_order_relaxed)) return false;
+    const Clock::time_point now = Clock::now();
+    if (now < alone_until_) return true;
+    alone_ = false;
+    shared_since_ = window_ = now;
+    lost_ = Time(0);
     return false;
+  }
+
+  void note_loss(Clock::time_point begin, Clock::time_point end, Time lost) {
+    if (lost < kLostCore) return;
+    if (begin - window_ > kWindow) {
+      window_ = begin;
+      lost_ = Time(0);
+    }
+    lost_ += lost;
+    if (lost_ < kMostLost) return;
+    const bool again = begin - shared_since_ < alone_for_;
+    alone_for_ = std::min(again ? 2 * alone_for_ : kAlonePerLoss * lost_, kLongestAlone);
+    alone_until_ = end + alone_for_;
+    alone_ = true;
   }
 
   // Sleeps, so that others may have this core, and finds out whether those it waits for had theirs.
@@ -153,7 +175,7 @@ class SharedLoops {
     Time lost{0};
     for (std::size_t s = 0; s < servers_.size(); ++s)
       if (inside[s]) lost = std::max(lost, end - start - (have[s] - had[s]));
-    if (lost > kLostCore) alone_until_ = end + kAlonePerLoss * lost;
+    note_loss(start, end, lost);
   }
 
   // That each server has used so far.
@@ -171,11 +193,16 @@ class SharedLoops {
   std::vector<Part> parts_;  // the first is the owner's, the others those of servers_
   const std::function<void(std::size_t)>* body_ = nullptr;
   std::uint32_t last_loop_ = kClosed;
-  Clock::time_point alone_until_;  // zero: loops are shared
+  // Of the owner's: when loops began to be shared, and in a window since then, how much was lost.
+  Clock::time_point shared_since_ = Clock::now(), window_ = shared_since_;
+  Time lost_{0};
+  Time alone_for_{0};  // the last time
+  Clock::time_point alone_until_;
   alignas(64) std::atomic<std::uint32_t> open_loop_ = kNone;
   alignas(64) std::atomic<int> inside_ = 0;
   std::atomic<bool> owner_sleeps_ = false;
   std::atomic<int> asleep_ = 0;
+  std::atomic<bool> alone_ = false;  // the owner, and so nobody has to stay awake
   std::vector<std::thread> servers_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -10,10 +11,14 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/run_scope.h"
 
 namespace hydrodip {
 
 namespace {
+
+// Between two looks whether the job was cancelled: a millisecond.
+constexpr std::size_t kPiece = std::size_t(1) << 20;
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -46,6 +51,7 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path) {
   // Reads to the end rather than trusting the size: pipes have none.
   std::uint8_t chunk[1 << 16];
   while (const std::size_t count = std::fread(chunk, 1, sizeof chunk, file.get())) {
+    check_cancelled();
     bytes.insert(bytes.end(), chunk, chunk + count);
   }
   if (std::ferror(file.get())) refuse_read(path, reason(errno));
@@ -55,7 +61,12 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path) {
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size) {
   File file(std::fopen(path.c_str(), "wb"));
   if (!file) refuse_write(path, errno);
-  if (std::fwrite(data, 1, size, file.get()) != size) refuse_write(path, errno);
+  for (std::size_t begin = 0; begin < size; begin += kPiece) {
+    check_cancelled();
+    const std::size_t count = std::min(kPiece, size - begin);
+    if (std::fwrite(static_cast<const char*>(data) + begin, 1, count, file.get()) != count)
+      refuse_write(path, errno);
+  }
   // A full disk may only show when the last buffer goes out.
   if (std::fclose(file.release()) != 0) refuse_write(path, errno);
 }
@@ -67,9 +78,15 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
 std::string sha256_hex(const std::vector<std::uint8_t>& bytes) {
   unsigned char digest[EVP_MAX_MD_SIZE];
   unsigned int size = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest, &size, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("SHA-256 is not available in this OpenSSL");
+  const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> hash(EVP_MD_CTX_new(), EVP_MD_CTX_free);
+  bool fine = hash && EVP_DigestInit_ex(hash.get(), EVP_sha256(), nullptr) == 1;
+  for (std::size_t begin = 0; fine && begin < bytes.size(); begin += kPiece) {
+    check_cancelled();
+    const std::size_t count = std::min(kPiece, bytes.size() - begin);
+    fine = EVP_DigestUpdate(hash.get(), bytes.data() + begin, count) == 1;
   }
+  if (!fine || EVP_DigestFinal_ex(hash.get(), digest, &size) != 1)
+    throw std::runtime_error("SHA-256 is not available in this OpenSSL");
   std::string hex;
   for (unsigned int i = 0; i < size; ++i) hex += fmt::format("{:02x}", digest[i]);
   return hex;

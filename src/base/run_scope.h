@@ -2,6 +2,8 @@
 // here, so that a job can be cancelled at any moment without a parameter through every function.
 #pragma once
 
+#include <algorithm>
+
 #include "base/context.h"
 #include "base/work.h"
 
@@ -40,5 +42,15 @@ class CheckEvery {
  private:
   int turns_, left_;
 };
+
+// std::sort that looks on its way. What was sorted is left in disorder if it throws.
+template <typename Iterator, typename Less>
+void sort_unless_cancelled(Iterator begin, Iterator end, Less less) {
+  CheckEvery check(1 << 15);
+  std::sort(begin, end, [&](const auto& a, const auto& b) {
+    check();
+    return less(a, b);
+  });
+}
 
 }  // namespace hydrodip

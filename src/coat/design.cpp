@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/run_scope.h"
 #include "coat/ink_rounds.h"
 
 namespace hydrodip {
@@ -130,6 +131,7 @@ double InkResult::last_change_mm() const {
 }
 
 Designed design(const DesignTask& task, Timings& timings, RunContext& context) {
+  const RunScope scope(context);
   return Settling(task, timings, context).run();
 }
 

@@ -2,11 +2,14 @@
 
 #include <utility>
 
+#include "base/run_scope.h"
+
 namespace hydrodip {
 
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
                         const Trajectory& trajectory, const DipOptions& options, Timings& timings,
                         RunContext& context) {
+  const RunScope scope(context);
   DippedObject result{.posed = posed};
   const TriangleMesh& mesh = posed.mesh();
   timings.measure("dip", [&] {

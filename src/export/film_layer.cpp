@@ -80,6 +80,7 @@ class ColorError {
 
 FilmLayer color_error_layer(const TriangleMesh& object, const FilmMap& map,
                             const Appearance& appearance, RunContext& context) {
+  const RunScope scope(context);
   FilmLayer layer = empty_layer("color_error", map.covered());
   const ColorError error(object, map, appearance);
   parallel_for(std::size_t(layer.height), 4, [&](std::size_t begin, std::size_t end) {

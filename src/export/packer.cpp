@@ -2,7 +2,12 @@
 
 #include <zlib.h>
 
+#include <algorithm>
+#include <memory>
+#include <new>
 #include <stdexcept>
+
+#include "base/run_scope.h"
 
 namespace hydrodip {
 
@@ -10,7 +15,9 @@ template <class Value>
 Packer::Place Packer::add_planes(const std::vector<Value>& values, std::size_t delta) {
   const Place place{data_.size(), values.size(), sizeof(Value), delta};
   data_.resize(data_.size() + sizeof(Value) * values.size());
+  CheckEvery check(1 << 16);
   for (std::size_t i = 0; i < values.size(); ++i) {
+    check();
     const auto difference = Value(values[i] - (i < delta ? Value(0) : values[i - delta]));
     for (std::size_t plane = 0; plane < sizeof(Value); ++plane) {
       data_[place.offset + plane * values.size() + i] = std::uint8_t(difference >> (8 * plane));
@@ -32,12 +39,25 @@ Packer::Place Packer::add(const std::vector<std::uint32_t>& values, std::size_t 
 }
 
 std::string Packer::finish() const {
-  uLongf size = compressBound(uLong(data_.size()));
-  std::vector<std::uint8_t> packed(size);
-  if (compress2(packed.data(), &size, data_.data(), uLong(data_.size()), 6) != Z_OK) {
-    throw std::runtime_error("zlib could not compress the report's scene");
+  constexpr std::size_t kPiece = std::size_t(1) << 18;  // some milliseconds
+  std::vector<std::uint8_t> packed(compressBound(uLong(data_.size())));
+  z_stream stream{};
+  if (deflateInit(&stream, 6) != Z_OK) throw std::bad_alloc();
+  const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, deflateEnd);
+  stream.next_out = packed.data();
+  int result = Z_OK;
+  for (std::size_t begin = 0; result == Z_OK; begin += kPiece) {
+    check_cancelled();
+    const std::size_t count = std::min(kPiece, data_.size() - begin);
+    stream.next_in = const_cast<std::uint8_t*>(data_.data() + begin);  // zlib's, which reads it
+    stream.avail_in = uInt(count);
+    // Never more than 4 GB at once.
+    stream.avail_out = uInt(std::min<std::size_t>(packed.size() - stream.total_out, 1U << 31));
+    result = deflate(&stream, begin + count == data_.size() ? Z_FINISH : Z_NO_FLUSH);
   }
-  packed.resize(size);
+  if (result != Z_STREAM_END)
+    throw std::runtime_error("zlib could not compress the report's scene");
+  packed.resize(stream.total_out);
   return base64(packed);
 }
 
@@ -46,7 +66,9 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;
   out.reserve((bytes.size() + 2) / 3 * 4);
+  CheckEvery check(1 << 16);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    check();
     const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
     unsigned group = 0;
     for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0u);

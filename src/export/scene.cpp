@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/run_scope.h"
 #include "export/packer.h"
 #include "export/scene_object.h"
 #include "image/files.h"
@@ -276,6 +277,7 @@ std::string without_tags(const std::string& text) {
 }  // namespace
 
 std::string scene_json(const SceneSource& source, RunContext& context) {
+  const RunScope scope(context);
   const std::string stage = "packing the 3D view";
   context.progress(stage, 0);
   Packer packer;

@@ -19,6 +19,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/math.h"
+#include "base/run_scope.h"
 
 namespace hydrodip {
 
@@ -101,9 +102,14 @@ static void png_no_flush(png_structp) {}
 }  // extern "C"
 
 // Everything becomes 8-bit RGBA; sample values are taken as sRGB, whatever gamma the file states.
-bool png_decode_rows(png_structp png, png_infop info, png_bytepp rows) {
+bool png_decode_rows(png_structp png, png_infop info, Image& image) {
   if (setjmp(png_jmpbuf(png))) return false;
-  png_read_image(png, rows);
+  const int passes = png_set_interlace_handling(png);
+  for (int pass = 0; pass < passes; ++pass)
+    for (int y = 0; y < image.height_px; ++y) {
+      check_cancelled();
+      png_read_row(png, image.pixel(0, y), nullptr);
+    }
   png_read_end(png, info);
   return true;
 }
@@ -156,9 +162,7 @@ Image decode_png(const Bytes& bytes, const std::string& name) {
     refuse(name, "PNG", "unusual pixel layout");
   }
   Image image{int(width), int(height)};
-  std::vector<png_bytep> rows(height);
-  for (std::uint32_t y = 0; y < height; ++y) rows[y] = image.pixel(0, int(y));
-  if (!png_decode_rows(reader.png, reader.info, rows.data())) refuse(name, "PNG", source.message);
+  if (!png_decode_rows(reader.png, reader.info, image)) refuse(name, "PNG", source.message);
   return image;
 }
 
@@ -225,7 +229,10 @@ bool png_encode(PngWriter& writer, const Image& image, bool drop_alpha, double d
   }
   png_write_info(png, writer.info);
   if (drop_alpha) png_set_filler(png, 0, PNG_FILLER_AFTER);
-  for (int y = 0; y < image.height_px; ++y) png_write_row(png, image.pixel(0, y));
+  for (int y = 0; y < image.height_px; ++y) {
+    check_cancelled();
+    png_write_row(png, image.pixel(0, y));
+  }
   png_write_end(png, nullptr);
   return true;
 }
@@ -296,6 +303,7 @@ bool JpegReader::read_rows(Image& image, std::uint8_t* row) {
   jpeg_start_decompress(&info);
   const bool four_inks = info.out_color_space == JCS_CMYK;
   while (info.output_scanline < info.output_height) {
+    check_cancelled();
     std::uint8_t* out = image.pixel(0, int(info.output_scanline));
     jpeg_read_scanlines(&info, &row, 1);
     const std::uint8_t* in = row;
@@ -356,6 +364,7 @@ struct JpegWriter {
     jpeg_set_quality(&info, quality, TRUE);
     jpeg_start_compress(&info, TRUE);
     while (info.next_scanline < info.image_height) {
+      check_cancelled();
       const std::uint8_t* in = image.pixel(0, int(info.next_scanline));
       for (int x = 0; x < image.width_px; ++x) std::copy_n(in + 4 * x, 3, row + 3 * x);
       jpeg_write_scanlines(&info, &row, 1);

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "base/error.h"
+#include "base/run_scope.h"
 #include "ink/color_model.h"
 #include "ink/profiles.h"
 #include "ink/rgb_profile.h"
@@ -256,8 +257,12 @@ Image in_printer_rgb(const Image& image, const std::vector<std::uint8_t>& profil
         "--printer-profile out",
         name));
   Image result(image.width_px, image.height_px);
-  cmsDoTransform(transform.get(), image.rgba.data(), result.rgba.data(),
-                 static_cast<cmsUInt32Number>(image.rgba.size() / 4));
+  const std::size_t row = 4 * std::size_t(image.width_px);
+  for (std::size_t at = 0; at < image.rgba.size(); at += row) {
+    check_cancelled();
+    cmsDoTransform(transform.get(), &image.rgba[at], &result.rgba[at],
+                   static_cast<cmsUInt32Number>(image.width_px));
+  }
   return result;
 }
 

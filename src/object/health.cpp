@@ -6,14 +6,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <tuple>
 #include <utility>
 
 #include "base/disjoint_sets.h"
+#include "base/run_scope.h"
 
 namespace hydrodip {
 
 namespace {
+
+// Turns of a loop over triangles between two looks whether the job was cancelled.
+constexpr int kTurns = 1 << 14;
 
 // ---- welding ------------------------------------------------------------------------------------
 
@@ -49,7 +54,9 @@ void weld(Object& object) {
     }
     return name = table[slot];
   };
+  CheckEvery check(kTurns);
   for (Triangle& triangle : object.triangles) {
+    check();
     for (std::int32_t& vertex : triangle) vertex = rename(vertex);
   }
   object.positions = std::move(kept);
@@ -111,7 +118,7 @@ long drop_duplicates(Object& object) {
     keys[i] = {object.triangles[i], std::int32_t(i)};
     std::sort(keys[i].corners.begin(), keys[i].corners.end());
   }
-  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+  sort_unless_cancelled(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
     return std::tie(a.corners, a.face) < std::tie(b.corners, b.face);
   });
   std::vector<char> drop(keys.size(), 0);
@@ -148,14 +155,16 @@ std::vector<Side> sorted_sides(const Object& object) {
     const auto a = std::uint64_t(t[place % 3]), b = std::uint64_t(t[(place + 1) % 3]);
     sides[place] = {std::min(a, b) << 32 | std::max(a, b), std::uint32_t(place)};
   }
-  std::sort(sides.begin(), sides.end());
+  sort_unless_cancelled(sides.begin(), sides.end(), std::less<>());
   return sides;
 }
 
 // Calls visit(begin, end) for the sides of every edge, in edge order.
 template <typename Visit>
 void for_each_edge(const std::vector<Side>& sides, Visit visit) {
+  CheckEvery check(kTurns);
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    check();
     while (end < sides.size() && sides[end].edge == sides[begin].edge) ++end;
     visit(begin, end);
   }
@@ -172,7 +181,7 @@ void count_edges(const Object& object, const std::vector<Side>& sides, MeshHealt
     rim_vertices.push_back(sides[begin].high_vertex());
     rims.join(sides[begin].low_vertex(), sides[begin].high_vertex());
   });
-  std::sort(rim_vertices.begin(), rim_vertices.end());
+  sort_unless_cancelled(rim_vertices.begin(), rim_vertices.end(), std::less<>());
   rim_vertices.erase(std::unique(rim_vertices.begin(), rim_vertices.end()), rim_vertices.end());
   for (const std::int32_t vertex : rim_vertices) health.holes += rims.is_root(std::size_t(vertex));
 }
@@ -227,6 +236,7 @@ Patches agree_within_patches(const Object& object, const std::vector<Side>& side
   patches.patch_of.assign(object.triangles.size(), -1);
   patches.turn.assign(object.triangles.size(), 0);
   std::vector<std::int32_t> queue;
+  CheckEvery check(kTurns);
   for (std::size_t seed = 0; seed < object.triangles.size(); ++seed) {
     if (patches.patch_of[seed] >= 0) continue;
     const auto patch = std::int32_t(patches.count());
@@ -234,6 +244,7 @@ Patches agree_within_patches(const Object& object, const std::vector<Side>& side
     patches.patch_of[seed] = patch;
     queue.assign(1, std::int32_t(seed));
     while (!queue.empty()) {
+      check();
       const std::int32_t face = queue.back();
       queue.pop_back();
       for (std::int32_t place = 3 * face; place < 3 * face + 3; ++place) {
@@ -318,7 +329,7 @@ class CrossingCounter {
     const Vec3 size = box.size();
     scale_ = Vec2(size.x() > 0 ? cells_ / size.x() : 0, size.y() > 0 ? cells_ / size.y() : 0);
     for (const std::int32_t face : faces) file(face);
-    std::sort(entries_.begin(), entries_.end());
+    sort_unless_cancelled(entries_.begin(), entries_.end(), std::less<>());
   }
 
   bool inside(const Vec3& p) const {
@@ -340,6 +351,7 @@ class CrossingCounter {
       box.add(object_.positions[std::size_t(v)]);
     }
     for (int i = column(box.min.x(), 0); i <= column(box.max.x(), 0); ++i) {
+      check_cancelled();
       for (int j = column(box.min.y(), 1); j <= column(box.max.y(), 1); ++j) {
         entries_.emplace_back(std::int64_t(i) * cells_ + j, face);
       }
@@ -397,6 +409,7 @@ std::vector<int> nesting_depth(const Object& object, const Patches& patches,
     return std::abs(shapes[std::size_t(a)].volume6) > std::abs(shapes[std::size_t(b)].volume6);
   });
   for (std::size_t outer = 0; outer < by_volume.size(); ++outer) {
+    check_cancelled();
     const auto container = std::size_t(by_volume[outer]);
     std::vector<std::size_t> candidates;
     for (std::size_t inner = outer + 1; inner < by_volume.size(); ++inner) {
@@ -406,6 +419,7 @@ std::vector<int> nesting_depth(const Object& object, const Patches& patches,
     if (candidates.empty()) continue;
     const CrossingCounter counter(object, members[container], shapes[container].box);
     for (const std::size_t candidate : candidates) {
+      check_cancelled();
       const Triangle& t = object.triangles[std::size_t(shapes[candidate].first_face)];
       const Vec3 probe =
           (object.positions[std::size_t(t[0])] + object.positions[std::size_t(t[1])] +

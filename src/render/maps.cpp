@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/run_scope.h"
 #include "render/canvas.h"
 #include "render/color_ramp.h"
 #include "render/studio.h"
@@ -301,6 +302,7 @@ Appearance map_appearance(const MapScene& scene, const Camera& camera, double ha
 
 Image render_maps(const TriangleMesh& object, const Surface& surface, const DippedFilm& film,
                   const FilmMap& map, const MapOptions& options, RunContext& context) {
+  const RunScope scope(context);
   const std::string stage = "drawing the maps";
   context.progress(stage, 0);
   const std::vector<CornerNormals> normals = map_normals(object);
@@ -336,6 +338,7 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
 
 Image render_angle_map(const TriangleMesh& object, const Surface& surface, double depth_mm,
                        const MapOptions& options, RunContext& context) {
+  const RunScope scope(context);
   const std::string stage = "drawing the angle map";
   context.progress(stage, 0);
   const std::vector<CornerNormals> normals = map_normals(object);

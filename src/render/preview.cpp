@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/run_scope.h"
 #include "render/canvas.h"
 #include "render/studio.h"
 #include "render/text.h"
@@ -72,6 +73,7 @@ Appearance completed(const Appearance& appearance, const LinearColor& base) {
 std::vector<Image> render_previews(const TriangleMesh& object, const Surface& surface,
                                    const DippedFilm& film, const std::vector<PreviewPair>& pairs,
                                    const PreviewOptions& options, RunContext& context) {
+  const RunScope scope(context);
   const std::string stage = "drawing the preview";
   context.progress(stage, 0);
   const std::vector<CornerNormals> normals = corner_normals(object.positions, object.triangles);

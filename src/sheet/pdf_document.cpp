@@ -84,6 +84,7 @@ class PixelStream {
  private:
   bool load_next_row() {
     if (next_row_ == box_.y_end) return false;
+    context_.check_cancelled();
     if (next_row_ % 64 == 0) {
       context_.progress("writing the PDF", double(next_row_ - box_.y_begin) / box_.height());
     }

@@ -1,5 +1,6 @@
 #include <cstring>
 
+#include "base/run_scope.h"
 #include "image/files.h"
 #include "sheet/page.h"
 #include "sheet/sheet.h"
@@ -11,6 +12,7 @@ namespace {
 Image mirrored_image(const Image& image) {
   Image result(image.width_px, image.height_px);
   for (int y = 0; y < image.height_px; ++y) {
+    check_cancelled();
     for (int x = 0; x < image.width_px; ++x) {
       std::memcpy(result.pixel(image.width_px - 1 - x, y), image.pixel(x, y), 4);
     }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/run_scope.h"
 #include "sheet/page.h"
 #include "sheet/sheet.h"
 
@@ -79,6 +80,7 @@ void fill_row(const InkImage& image, int y, bool mirror, std::vector<std::uint8_
 bool write_rows(TIFF* tiff, const InkImage& image, bool mirror) {
   std::vector<std::uint8_t> row(std::size_t(4) * std::size_t(image.width_px));
   for (int y = 0; y < image.height_px; ++y) {
+    check_cancelled();
     fill_row(image, y, mirror, row);
     if (TIFFWriteScanline(tiff, row.data(), static_cast<std::uint32_t>(y), 0) != 1) return false;
   }
@@ -129,6 +131,7 @@ CmykFile read_cmyk_tiff(const std::filesystem::path& path) {
   std::vector<std::uint8_t> row(std::size_t(TIFFScanlineSize64(tiff.get())));
   if (row.size() < std::size_t(4) * width) refuse(path, message);
   for (std::uint32_t y = 0; y < height; ++y) {
+    check_cancelled();
     if (TIFFReadScanline(tiff.get(), row.data(), y, 0) != 1) refuse(path, message);
     // Row by row, so that a header alone makes nobody reserve much memory.
     file.inks.cmyk.insert(file.inks.cmyk.end(), row.begin(),
