@@ -39,7 +39,7 @@ class Settling {
     result_.settled = outcome == Outcome::kSettled;
     warn(outcome);
     finish(rounds);
-    return {rounds.dipped(), std::move(result_)};
+    return {rounds.dipped(), std::move(result_), raster_of(options().film, options().dpi)};
   }
 
  private:

@@ -61,6 +61,7 @@ struct InkResult {
 struct Designed {
   DippedObject dipped;  // with its ink
   InkResult ink;
+  SheetRaster raster;  // of ink's pixels
 };
 
 // What a design is made for. Refers to all of it.

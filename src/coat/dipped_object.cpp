@@ -8,14 +8,17 @@ namespace hydrodip {
 
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
                         const Trajectory& trajectory, const DipOptions& options, Timings& timings,
-                        RunContext& context) {
+                        RunContext& context, const DipObserver& observe) {
   const RunScope scope(context);
   DippedObject result{.posed = posed};
   const TriangleMesh& mesh = posed.mesh();
   timings.measure("dip", [&] {
     auto history = std::make_shared<DipHistory>();
     DipResult dipped = dip(film, mesh.positions, mesh.triangles, posed.surface(), trajectory,
-                           options, context, [&](auto&&... state) { history->record(state...); });
+                           options, context, [&](auto&&... state) {
+                             history->record(state...);
+                             if (observe) observe(state...);
+                           });
     result.film = std::make_shared<const DippedFilm>(std::move(dipped.film));
     result.statistics = dipped.statistics;
     result.history = std::move(history);

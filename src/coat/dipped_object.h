@@ -25,9 +25,9 @@ struct DippedObject {
   DipAngles angles = {};
 };
 
-// Simulates the dip of an object on film that it fits. Throws as dip().
+// Simulates the dip of an object on film that it fits; `observe` sees every step. Throws as dip().
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
                         const Trajectory& trajectory, const DipOptions& options, Timings& timings,
-                        RunContext& context);
+                        RunContext& context, const DipObserver& observe = {});
 
 }  // namespace hydrodip

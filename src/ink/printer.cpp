@@ -10,6 +10,7 @@ namespace hydrodip {
 
 Printer make_printer(const PrinterOptions& options) {
   Printer printer;
+  printer.options = options;
   printer.profile_file = options.profile;
   if (printer.profile_file.empty() && options.model == InkModel::kDevice) {
     printer.model = make_device_model();

@@ -23,6 +23,7 @@ struct PrinterOptions {
 
 // Immutable. Its profile was read once.
 struct Printer {
+  PrinterOptions options;
   std::shared_ptr<const ColorModel> model;
   std::filesystem::path profile_file;       // empty: by formula
   std::vector<std::uint8_t> profile_bytes;  // that file's

@@ -1,11 +1,10 @@
 #include "base/output_folder.h"
 #include "base/run_scope.h"
-#include "ink/rgb_profile.h"
 #include "job/job_record.h"
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
-#include "sheet/sheet.h"
+#include "session/sheet_files.h"
 
 namespace hydrodip {
 namespace {
@@ -21,35 +20,6 @@ SheetOptions sheet_options(const JobConfig& config) {
   sheet.job_name =
       config.print.job_name.empty() ? config.model.filename().string() : config.print.job_name;
   return sheet;
-}
-
-// For the printer's own RGB where its profile is given, else in sRGB.
-void write_rgb_pdf(const std::filesystem::path& path, const Image& look, const Printer& printer,
-                   const JobConfig& config, RunContext& context) {
-  if (!printer.is_rgb)
-    return write_print_pdf(path, look, srgb_profile(), sheet_options(config), context);
-  const Image in_rgb = in_printer_rgb(look, printer.profile_bytes, printer.profile_file.string(),
-                                      config.printer.intent);
-  write_print_pdf(path, in_rgb, printer.profile_bytes, sheet_options(config), context);
-}
-
-void compose(OutputFolder& folder, const FilmInk& ink, const Printer& printer,
-             const JobConfig& config, RunContext& context) {
-  const SheetOptions sheet = sheet_options(config);
-  const ColorModel& model = *printer.model;
-  const InkImage& inks = ink.inking.inks;
-  const Image look = look_on_film(inks, ink.wanted, model);
-  const auto png = folder.path("print.png"), tiff = folder.path("print.tif"),
-             pdf = folder.path("print.pdf");
-  context.side_by_side("writing the sheet",
-                       {[&] { write_print_tiff(tiff, inks, model.profile(), sheet); },
-                        [&] {
-                          if (config.printer.color == PrintColor::kCmyk)
-                            write_print_pdf(pdf, inks, model.profile(), sheet, context);
-                          else
-                            write_rgb_pdf(pdf, look, printer, config, context);
-                        },
-                        [&] { write_print_png(png, look, sheet); }});
 }
 
 }  // namespace
@@ -71,10 +41,12 @@ JobResult print_job(const JobConfig& config, RunContext& context) {
 
   const Designed designed = design(
       {prepared.posed, *prepared.paint, Allotment(), *printer.model, options}, times, context);
-  times.measure("sheet", [&] { compose(folder, designed.ink.ink, printer, config, context); });
+  times.measure("sheet", [&] {
+    write_sheet_files(folder, designed.ink.ink, printer, sheet_options(config), context);
+  });
 
   const Finish finish(prepared.paint,
-                      {{designed.dipped, raster_of(options.film, options.dpi),
+                      {{designed.dipped, designed.raster,
                         std::make_shared<const Image>(designed.ink.ink.on_object)}});
   const JobRecord record{"print", config,        prepared,
                          inputs,  finish,        times,

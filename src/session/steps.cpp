@@ -1,0 +1,147 @@
+// The steps of the public library, each in terms of the rooms that do the work.
+#include <cmath>
+#include <utility>
+
+#include "base/file.h"
+#include "base/output_folder.h"
+#include "base/run_scope.h"
+#include "export/film_ply.h"
+#include "hydrodip/hydrodip.h"
+#include "image/files.h"
+#include "render/preview.h"
+#include "samples/samples.h"
+#include "session/sheet_files.h"
+
+namespace hydrodip {
+namespace {
+
+void require_sound(const Object& object) {
+  const auto refuse = [](const std::string& what) { throw InputError("the mesh " + what); };
+  const std::size_t triangles = object.triangles.size();
+  const auto vertices = std::int32_t(object.positions.size());
+  if (triangles == 0) refuse("has no triangles");
+  for (const Vec3& p : object.positions)
+    if (!p.allFinite()) refuse("has a vertex that is not finite");
+  for (const Triangle& t : object.triangles)
+    for (const std::int32_t v : t)
+      if (v < 0 || v >= vertices) refuse("has a triangle whose vertex does not exist");
+  if (object.material_of.size() != triangles) refuse("needs a material number per triangle");
+  for (const int m : object.material_of)
+    if (m < 0 || std::size_t(m) >= object.materials.size())
+      refuse("has a triangle whose material does not exist");
+  if (!object.uvs.empty() && object.uvs.size() != triangles)
+    refuse("needs texture coordinates for every triangle or none");
+  if (!object.colors.empty() && object.colors.size() != triangles)
+    refuse("needs colours for every triangle or none");
+  for (const Material& m : object.materials)
+    if (m.texture >= int(object.textures.size())) refuse("has a material without its texture");
+}
+
+// As wanted, or bare where nothing is.
+Appearance appearance_of(const Finish& finish) {
+  Appearance shown;
+  shown.wanted = [&paint = finish.paint()](const SurfacePoint& point, const Vec3&, const Vec3&) {
+    return paint.says_anything() ? paint.color_at(point) : paint.base();
+  };
+  shown.predicted = [&finish](const SurfacePoint& point, const Vec3&, const Vec3&) {
+    return finish.color_at(point);
+  };
+  return shown;
+}
+
+}  // namespace
+
+Model load(const std::filesystem::path& file, const LoadOptions& options,
+           const RunContext& context) {
+  const RunScope scope(context);
+  RunContext job = context;
+  LoadedObject loaded = load_object(file, options, job);
+  return {std::make_shared<const Object>(std::move(loaded.object)), loaded.health,
+          std::move(loaded.units), std::move(loaded.files)};
+}
+
+Model model_from(Object object) {
+  if (object.materials.empty()) object.materials.resize(1);
+  if (object.material_of.empty()) object.material_of.assign(object.triangles.size(), 0);
+  require_sound(object);
+  const MeshHealth health = check_and_repair(object);
+  return {std::make_shared<const Object>(std::move(object)), health, "mm", {}};
+}
+
+Model sample(const std::string& name) { return model_from(make_sample(name)); }
+
+std::shared_ptr<const Paint> paint_of(const Model& model, const LinearColor& base) {
+  return model_paint(model.object, base);
+}
+
+PosedObject pose(const Model& model, const PoseOptions& options) {
+  return PosedObject(model.object, options);
+}
+
+DippedObject simulate(const PosedObject& posed, const SimulationOptions& options,
+                      const RunContext& context, const DipObserver& observe) {
+  const RunScope scope(context);
+  RunContext job = context;
+  Timings timings;
+  return dip_object(posed, std::make_shared<const FilmMesh>(make_film_mesh(options.film)),
+                    make_trajectory(options.trajectory, posed.mesh().positions), options.dip,
+                    timings, job, observe);
+}
+
+Designed design(const PosedObject& posed, const Paint& paint, const DesignOptions& options,
+                const Printer& printer, const RunContext& context, const Allotment& allotment) {
+  const RunScope scope(context);
+  RunContext job = context;
+  Timings timings;
+  return design({posed, paint, allotment, *printer.model, options}, timings, job);
+}
+
+Finish finish(std::shared_ptr<const Paint> paint, const std::vector<Designed>& designs,
+              const Printer& printer) {
+  std::vector<Coat> coats;
+  for (const Designed& made : designs) {
+    const FilmInk& ink = made.ink.ink;
+    // Only the first lies on the bare object: of the others, what they do to light from below.
+    auto look = std::make_shared<const Image>(
+        coats.empty() ? ink.on_object
+                      : look_on_object(ink.inking.inks, ink.stretch.area_ratio, *printer.model,
+                                       {1, 1, 1, 1}));
+    coats.push_back({made.dipped, made.raster, std::move(look)});
+  }
+  return Finish(std::move(paint), std::move(coats));
+}
+
+Image render(const Finish& finish, int width_px, const RunContext& context) {
+  if (finish.coats().empty()) throw InputError("a finish without coats has nothing to show");
+  const RunScope scope(context);
+  RunContext job = context;
+  const DippedObject& dipped = finish.coats().front().dipped;
+  PreviewOptions options;
+  options.width_px = width_px;
+  options.base = finish.paint().base();
+  std::vector<PreviewPair> pairs(1);
+  pairs[0].shown = appearance_of(finish);
+  return render_previews(dipped.posed.mesh(), dipped.posed.surface(), *dipped.film, pairs, options,
+                         job)
+      .front();
+}
+
+void write_sheet(const std::filesystem::path& folder, const Designed& designed,
+                 const Printer& printer, const SheetOptions& options, const RunContext& context) {
+  const RunScope scope(context);
+  OutputFolder output(folder);
+  write_sheet_files(output, designed.ink.ink, printer, options, context);
+  context.check_cancelled();
+  output.commit();
+}
+
+void write_png(const std::filesystem::path& file, const Image& image) {
+  const std::vector<std::uint8_t> png = encode_png(image);
+  write_file(file, png.data(), png.size());
+}
+
+void write_film(const std::filesystem::path& file, const DippedFilm& film) {
+  write_film_ply(file, film);
+}
+
+}  // namespace hydrodip
