@@ -83,16 +83,16 @@ JobConfig print_config(const TemporaryFolder& folder, const std::string& sample)
   apply_settings(config, film_settings("a4"));
   config.model = folder / (sample + ".obj");
   config.output = folder / "out";
-  config.print.dpi = 600;
+  config.design.dpi = 600;
   return config;
 }
 
 // A small grid of quick dips, as the tests have it.
 JobConfig calibration_config(const std::filesystem::path& output) {
   JobConfig config;
-  config.film.width_mm = config.film.height_mm = 110;
-  config.film.elements = 6000;
-  config.dip.step_mm = 0.4;
+  config.design.film.width_mm = config.design.film.height_mm = 110;
+  config.design.film.elements = 6000;
+  config.design.dip.step_mm = 0.4;
   config.output = output;
   return config;
 }

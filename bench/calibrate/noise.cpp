@@ -32,38 +32,38 @@ struct Shape {
   Surface surface;
   CheckerboardDip truth;
 
-  Shape(const std::string& name, const CheckeredFilm& film, const JobConfig& config,
-        RunContext& context)
+  Shape(const std::string& name, const CheckeredFilm& film, const DipOptions& dip,
+        const JobConfig& config, RunContext& context)
       : object(calibration_object(name, config, context)),
         surface(object.object.positions, object.object.triangles),
-        truth(dip_checkerboard(film, object, surface, kTruth, config.dip, context)) {}
+        truth(dip_checkerboard(film, object, surface, kTruth, dip, context)) {}
 };
 
 JobConfig search_config() {
   JobConfig config;
-  config.film.width_mm = config.film.height_mm = 130;
-  config.film.elements = 10000;
-  config.dip.step_mm = 0.2;
+  config.design.film.width_mm = config.design.film.height_mm = 130;
+  config.design.film.elements = 10000;
+  config.design.dip.step_mm = 0.2;
   return config;
 }
 
 // Dips at points of the fit, each computed once.
 class Dips {
  public:
-  Dips(const JobConfig& config, RunContext& context)
-      : config_(config), film_(checkered_film(config, kSquare_mm)), context_(context) {}
+  Dips(const DesignOptions& design, RunContext& context)
+      : options_(design.dip), film_(checkered_film(design, kSquare_mm)), context_(context) {}
 
   const CheckerboardDip& at(const std::string& name, const CalibrationObject& object,
                             const Surface& surface, const FitPoint& point) {
     auto& dip = dips_[{name, {point[0], point[1], point[2]}}];
     if (!dip)
       dip = std::make_unique<CheckerboardDip>(
-          dip_checkerboard(film_, object, surface, from_fit(point), config_.dip, context_));
+          dip_checkerboard(film_, object, surface, from_fit(point), options_, context_));
     return *dip;
   }
 
  private:
-  JobConfig config_;
+  DipOptions options_;
   CheckeredFilm film_;
   RunContext& context_;
   std::map<std::pair<std::string, std::array<double, 3>>, std::unique_ptr<CheckerboardDip>> dips_;
@@ -74,13 +74,13 @@ class Study {
   explicit Study(const std::filesystem::path& folder)
       : folder_(folder),
         config_(search_config()),
-        search_(config_, context_),
-        fine_(finer_film(config_), context_),
-        finest_(finer_film(finer_film(config_)), context_) {
-    const JobConfig truth = finer_film(finer_film(finer_film(config_)));
+        search_(config_.design, context_),
+        fine_(finer_film(config_.design), context_),
+        finest_(finer_film(finer_film(config_.design)), context_) {
+    const DesignOptions truth = finer_film(finer_film(finer_film(config_.design)));
     const CheckeredFilm film = checkered_film(truth, kSquare_mm);
     for (const KitShape& kit : kit_shapes())
-      shapes_.push_back(std::make_unique<Shape>(kit.name, film, truth, context_));
+      shapes_.push_back(std::make_unique<Shape>(kit.name, film, truth.dip, config_, context_));
   }
 
   std::vector<Subject> scan(std::uint64_t seed) {

@@ -202,10 +202,10 @@ void print_qualities() {
     for (const char* quality : {"draft", "normal", "fine"}) {
       JobConfig config;
       apply_settings(config, quality_settings(quality));
-      const Result r =
-          measure(c, exact, DipScheme::kContactLine, config.film.elements, config.dip.step_mm);
+      const Result r = measure(c, exact, DipScheme::kContactLine, config.design.film.elements,
+                               config.design.dip.step_mm);
       fmt::print("| {} | {} | {} | {} | {:.2f} | {:.4f} | {:.4f} |\n", quality, c.name, r.triangles,
-                 config.dip.step_mm, r.seconds, r.worst, r.mean);
+                 config.design.dip.step_mm, r.seconds, r.worst, r.mean);
       std::fflush(stdout);
     }
   }

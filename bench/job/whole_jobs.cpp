@@ -53,7 +53,7 @@ JobConfig job(const std::filesystem::path& model, const std::filesystem::path& t
 }
 
 void print_at_600_dpi(JobConfig config) {
-  config.print.dpi = 600;
+  config.design.dpi = 600;
   const Timed timed = run(print_job, config);
   int rounds = 0;
   for (const auto& round : timed.report["rounds"]) rounds += round["process"] == "ink" ? 1 : 0;

@@ -28,11 +28,11 @@ Object blue_sphere() {
 }
 
 // How far the film may stretch before a printer cannot lay down enough ink for the blue.
-double largest_ratio_in_gamut(const ColorModel& model, const JobConfig& config) {
+double largest_ratio_in_gamut(const ColorModel& model, double limit) {
   Inks inks;
   model.separate(&kBlue, &inks, 1);
   const double most = double(std::max({inks.c, inks.m, inks.y, inks.k}));
-  return std::min(1 / most, config.ink.limit / double(inks.density()));
+  return std::min(1 / most, limit / double(inks.density()));
 }
 
 struct Difference {
@@ -71,24 +71,23 @@ struct Outcome {
   Image film, object;  // pictures
 };
 
-Outcome print_and_dip(JobConfig config, bool compensate, const Study& study) {
-  config.ink.compensate = compensate;
+Outcome print_and_dip(DesignOptions options, bool compensate, const Study& study) {
+  options.inking.compensate = compensate;
   const auto model = make_device_model();
-  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
-  const SheetRaster raster = sheet_raster(config, config.print.dpi);
-  const auto sphere = to_dip(blue_sphere());
-  const InkResult print =
-      designed(*sphere, film, *model, config, config.ink.rounds_max, study.context);
-  const InkImage& inks = print.ink.inking.inks;
+  const SheetRaster raster = raster_of(options.film, options.dpi);
+  const PosedObject sphere = posed(blue_sphere());
+  const FilmInk print =
+      designed(sphere, *model, options, options.rounds_max, study.context).ink.ink;
+  const InkImage& inks = print.inking.inks;
 
-  dip_printed(*sphere, film, inks, config, study.context);
-  const FilmStretch stretch = film_stretch(*sphere->map, raster, 0, study.context);
+  const DippedObject dipped = dip_printed(sphere, inks, options, study.context);
+  const FilmStretch stretch = film_stretch(*dipped.map, raster, 0, study.context);
   const Image on_object = look_on_object(inks, stretch.area_ratio, *model, {1, 1, 1, 1});
   Outcome outcome;
-  outcome.difference =
-      measure(on_object, stretch, largest_ratio_in_gamut(*model, config), config.print.dpi);
-  outcome.film = film_square(look_on_film(inks, print.ink.wanted, *model), raster, 90, kPicture_px);
-  outcome.object = dipped_picture(*sphere, on_object, raster, kPicture_px, study.context);
+  outcome.difference = measure(on_object, stretch,
+                               largest_ratio_in_gamut(*model, options.inking.limit), options.dpi);
+  outcome.film = film_square(look_on_film(inks, print.wanted, *model), raster, 90, kPicture_px);
+  outcome.object = dipped_picture(dipped, on_object, raster, kPicture_px, study.context);
   return outcome;
 }
 
@@ -104,21 +103,21 @@ void add_rows(Table& table, const std::string& film, const Outcome& before, cons
 }  // namespace
 
 std::string figure_5(const Study& study) {
-  JobConfig config = paper_config();
-  config.trajectory.depth_mm = kDepth_mm;
+  DesignOptions options = paper_config().design;
+  options.trajectory.depth_mm = kDepth_mm;
   Table table({"film", "printed", "covered mm2", "of it in gamut", "CIEDE2000 in gamut (largest)",
                "CIEDE2000 over all (largest)"});
-  const Outcome before = print_and_dip(config, false, study);
-  const Outcome after = print_and_dip(config, true, study);
+  const Outcome before = print_and_dip(options, false, study);
+  const Outcome after = print_and_dip(options, true, study);
   add_rows(table, "never tears", before, after);
   save_png(study.folder / "figure_5.png", panels({{"evenly blue film", before.film},
                                                   {"the sphere: it pales", before.object},
                                                   {"more ink where film stretches", after.film},
                                                   {"the sphere: even", after.object}},
                                                  2));
-  config.dip.material.tear_stretch = JobConfig{}.dip.material.tear_stretch;
-  add_rows(table, fmt::format("tears at {:g}", config.dip.material.tear_stretch),
-           print_and_dip(config, false, study), print_and_dip(config, true, study));
+  options.dip.material.tear_stretch = FilmMaterial{}.tear_stretch;
+  add_rows(table, fmt::format("tears at {:g}", options.dip.material.tear_stretch),
+           print_and_dip(options, false, study), print_and_dip(options, true, study));
   return table.text();
 }
 

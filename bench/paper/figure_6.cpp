@@ -65,11 +65,12 @@ struct Landed {
   int face;
 };
 std::optional<Landed> land(const DippedObject& dipped, const Vec2& u) {
+  const TriangleMesh& mesh = dipped.posed.mesh();
   const auto at = dipped.map->to_object(u);
   if (!at) return std::nullopt;
-  const auto face = face_of(face_normal(dipped.object(), at->triangle));
+  const auto face = face_of(face_normal(mesh, at->triangle));
   if (!face) return std::nullopt;
-  return Landed{position_at(dipped.object(), *at), *face};
+  return Landed{position_at(mesh, *at), *face};
 }
 
 // From the straight line that fits points on a plane best.
@@ -104,25 +105,39 @@ Deviation apart(const DippedObject& a, const DippedObject& b) {
   return result;
 }
 
+// Over the whole sheet.
+Image checkerboard(const SheetRaster& raster) {
+  constexpr std::uint8_t kDark[4] = {38, 84, 124, 255};
+  constexpr std::uint8_t kLight[4] = {255, 255, 255, 255};
+  Image image(raster.width_px(), raster.height_px());
+  for (int y = 0; y < image.height_px; ++y)
+    for (int x = 0; x < image.width_px; ++x) {
+      const Vec2 u = raster.to_film(x + 0.5, y + 0.5) / kFilmCell_mm;
+      const bool dark = (long(std::floor(u.x())) + long(std::floor(u.y()))) % 2 != 0;
+      std::copy_n(dark ? kDark : kLight, 4, image.pixel(x, y));
+    }
+  return image;
+}
+
 struct Forward {
   Deviation even, inked, apart;
   Image film, even_picture, inked_picture;
 };
 
-Forward dip_checkerboard(const JobConfig& config, const SharedFilmMesh& film,
+Forward dip_checkerboard(const PosedObject& pyramid, const DesignOptions& options,
                          const ColorModel& model, const Study& study) {
-  const SheetRaster raster = sheet_raster(config, config.print.dpi);
+  const SheetRaster raster = raster_of(options.film, options.dpi);
   const Image board = checkerboard(raster);
-  const auto even = to_dip(make_sample("pyramid")), inked = to_dip(make_sample("pyramid"));
-  dip_blank(*even, film, config, study.context);
-  dip_printed(*inked, film, inks_of_film(board, model), config, study.context);
+  const DippedObject even = dip_blank(pyramid, options, study.context);
+  const DippedObject inked =
+      dip_printed(pyramid, inks_of_film(board, model), options, study.context);
   Forward result;
-  result.even = bending(*even);
-  result.inked = bending(*inked);
-  result.apart = apart(*even, *inked);
+  result.even = bending(even);
+  result.inked = bending(inked);
+  result.apart = apart(even, inked);
   result.film = film_square(board, raster, 90, kPicture_px);
-  result.even_picture = dipped_picture(*even, board, raster, kPicture_px, study.context);
-  result.inked_picture = dipped_picture(*inked, board, raster, kPicture_px, study.context);
+  result.even_picture = dipped_picture(even, board, raster, kPicture_px, study.context);
+  result.inked_picture = dipped_picture(inked, board, raster, kPicture_px, study.context);
   return result;
 }
 
@@ -132,16 +147,17 @@ Forward dip_checkerboard(const JobConfig& config, const SharedFilmMesh& film,
 // which bit of film was given the colour of a point, `dip` where that bit ends up.
 Deviation misplaced(const DippedObject& design, const DippedObject& dip) {
   Deviation result;
-  const double top = design.object().bounds().max.z() + 1;
+  const Surface& surface = design.posed.surface();
+  const double top = design.posed.mesh().bounds().max.z() + 1;
   for_grid_points(kWantedCell_mm, 30, [&](const Vec2& plan, int axis, int) {
-    const auto hit = design.surface->first_hit(Vec3(plan.x(), plan.y(), -1), Vec3(0, 0, 1), 0, top);
+    const auto hit = surface.first_hit(Vec3(plan.x(), plan.y(), -1), Vec3(0, 0, 1), 0, top);
     if (!hit) return;
-    const Vec3 normal = design.surface->normal(*hit), wanted = design.surface->position(*hit);
+    const Vec3 normal = surface.normal(*hit), wanted = surface.position(*hit);
     const auto u = design.map->to_film(wanted, normal);
     const auto at = u ? dip.map->to_object(*u) : std::nullopt;
     if (!at) return;
     const Vec3 along = normal.cross(axis == 0 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
-    const Vec3 off = position_at(dip.object(), *at) - wanted;
+    const Vec3 off = position_at(dip.posed.mesh(), *at) - wanted;
     result.add((off - off.dot(along) * along).norm());
   });
   return result;
@@ -153,35 +169,33 @@ struct Printed {
   Image object;
 };
 
-Printed print_and_dip(int rounds, const JobConfig& config, const SharedFilmMesh& film,
+Printed print_and_dip(int rounds, const PosedObject& pyramid, const DesignOptions& options,
                       const ColorModel& model, const Study& study) {
-  const SheetRaster raster = sheet_raster(config, config.print.dpi);
-  const auto design = to_dip(make_sample("pyramid")), dip = to_dip(make_sample("pyramid"));
-  const InkResult print = designed(*design, film, model, config, rounds, study.context);
-  const InkImage& inks = print.ink.inking.inks;
-  dip_printed(*dip, film, inks, config, study.context);
-  const FilmStretch stretch = film_stretch(*dip->map, raster, 0, study.context);
+  const SheetRaster raster = raster_of(options.film, options.dpi);
+  const Designed design = designed(pyramid, model, options, rounds, study.context);
+  const InkImage& inks = design.ink.ink.inking.inks;
+  const DippedObject dip = dip_printed(pyramid, inks, options, study.context);
+  const FilmStretch stretch = film_stretch(*dip.map, raster, 0, study.context);
   const Image look = look_on_object(inks, stretch.area_ratio, model, {1, 1, 1, 1});
-  return {misplaced(*design, *dip), int(print.rounds.size()),
-          dipped_picture(*dip, look, raster, kPicture_px, study.context)};
+  return {misplaced(design.dipped, dip), int(design.ink.rounds.size()),
+          dipped_picture(dip, look, raster, kPicture_px, study.context)};
 }
 
 }  // namespace
 
 std::string figure_6(const Study& study) {
-  const JobConfig config = paper_config();
+  const DesignOptions options = paper_config().design;
   const auto model = make_device_model();
-  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
+  const PosedObject pyramid = posed(make_sample("pyramid"));
 
-  const Forward forward = dip_checkerboard(config, film, *model, study);
-  const Printed without = print_and_dip(1, config, film, *model, study);
-  const Printed with = print_and_dip(config.ink.rounds_max, config, film, *model, study);
-  const auto bare = to_dip(make_sample("pyramid"));
+  const Forward forward = dip_checkerboard(pyramid, options, *model, study);
+  const Printed without = print_and_dip(1, pyramid, options, *model, study);
+  const Printed with = print_and_dip(options.rounds_max, pyramid, options, *model, study);
   save_png(study.folder / "figure_6.png",
            panels({{"checkerboard on film", forward.film},
                    {"stiffness even", forward.even_picture},
                    {"stiffness by ink", forward.inked_picture},
-                   {"wanted on the object", wanted_picture(*bare, kPicture_px, study.context)},
+                   {"wanted on the object", wanted_picture(pyramid, kPicture_px, study.context)},
                    {"printed without regard to ink", without.object},
                    {"printed with regard to ink", with.object}},
                   3));

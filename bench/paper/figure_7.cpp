@@ -15,19 +15,18 @@ struct Growth {
   Image first, last;  // the film image of the first round and of the last
 };
 
-Growth follow(const std::string& sample, const JobConfig& config, const Study& study) {
+Growth follow(const std::string& sample, const DesignOptions& options, const Study& study) {
   const auto model = make_device_model();
-  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.film));
-  const SheetRaster raster = sheet_raster(config, config.print.dpi);
-  const auto object = to_dip(make_sample(sample));
-  const double side_mm = 1.25 * object->object().bounds().size().head<2>().maxCoeff();
+  const SheetRaster raster = raster_of(options.film, options.dpi);
+  const PosedObject object = posed(make_sample(sample));
+  const double side_mm = 1.25 * object.mesh().bounds().size().head<2>().maxCoeff();
   const auto picture = [&](const FilmInk& ink) {
     return film_square(look_on_film(ink.inking.inks, ink.wanted, *model), raster, side_mm,
                        kPicture_px);
   };
   Growth growth;
-  growth.first = picture(designed(*object, film, *model, config, 1, study.context).ink);
-  InkResult result = designed(*object, film, *model, config, config.ink.rounds_max, study.context);
+  growth.first = picture(designed(object, *model, options, 1, study.context).ink.ink);
+  const InkResult result = designed(object, *model, options, options.rounds_max, study.context).ink;
   growth.last = picture(result.ink);
   growth.rounds = result.rounds;
   growth.settled = result.settled;
@@ -37,13 +36,13 @@ Growth follow(const std::string& sample, const JobConfig& config, const Study& s
 }  // namespace
 
 std::string figure_7(const Study& study) {
-  JobConfig config = paper_config();
+  DesignOptions options = paper_config().design;
   // Full spheres and ellipsoids are dipped here: the film tears on their upper sides.
-  config.dip.material.tear_stretch = JobConfig{}.dip.material.tear_stretch;
+  options.dip.material.tear_stretch = FilmMaterial{}.tear_stretch;
   Table table({"object", "round", "printed mm2", "film moved by (mm, mean)"});
   std::vector<Panel> pictures;
   for (const std::string name : {"sphere", "pyramid", "ellipsoid", "mask"}) {
-    const Growth growth = follow(name, config, study);
+    const Growth growth = follow(name, options, study);
     for (std::size_t i = 0; i < growth.rounds.size(); ++i) {
       const InkRound& round = growth.rounds[i];
       const bool last = i + 1 == growth.rounds.size();

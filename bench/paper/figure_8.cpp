@@ -24,18 +24,16 @@ Image as_image(const InkImage& inks) {
   return image;
 }
 
-std::unique_ptr<DippedObject> dipped(const std::string& name, const JobConfig& config,
-                                     const Checkerboard& board, RunContext& context) {
-  auto object = to_dip(make_sample(name));
-  dip_printed(*object, std::make_shared<const FilmMesh>(make_film_mesh(config.film)), board.inks,
-              config, context);
-  return object;
+DippedObject dipped(const std::string& name, const DesignOptions& options,
+                    const Checkerboard& board, RunContext& context) {
+  return dip_printed(posed(make_sample(name)), board.inks, options, context);
 }
 
 // Every point of the film gets the colour that lies on the true object where the simulation takes
 // the point. In a perfect simulation that is the printed image.
 Image recovered(const DippedObject& truth, const DippedObject& simulated, const Checkerboard& board,
                 double& share_right) {
+  const TriangleMesh& mesh = truth.posed.mesh();
   const Image printed = as_image(board.inks);
   Image image = printed;
   double right = 0, count = 0;
@@ -46,8 +44,8 @@ Image recovered(const DippedObject& truth, const DippedObject& simulated, const 
       std::fill_n(pixel, 4, std::uint8_t{255});
       const auto point = simulated.map->to_object(board.raster.to_film(x + 0.5, y + 0.5), cursor);
       if (!point) continue;
-      const auto u = truth.map->to_film(position_at(truth.object(), *point),
-                                        face_normal(truth.object(), point->triangle));
+      const auto u =
+          truth.map->to_film(position_at(mesh, *point), face_normal(mesh, point->triangle));
       if (!u) continue;
       const Vec2 from = board.raster.to_pixel(*u);
       const int fx = std::clamp(int(from.x()), 0, image.width_px - 1);
@@ -64,30 +62,30 @@ Image recovered(const DippedObject& truth, const DippedObject& simulated, const 
 }  // namespace
 
 std::string figure_8(const Study& study) {
-  JobConfig config = paper_config();
-  const Checkerboard board = checkerboard_to_print(config.film, kSquare_mm);
-  config.print.dpi = board.raster.dpi;
+  DesignOptions options = paper_config().design;
+  const Checkerboard board = checkerboard_to_print(options.film, kSquare_mm);
+  options.dpi = board.raster.dpi;
   const Image printed = as_image(board.inks);
   std::vector<Panel> pictures;
   Table table(
       {"object", "depth (mm)", "steps", "simulated in (s)", "pixels recovered rightly (%)"});
   for (const KitShape& shape : kit_shapes()) {
-    config.trajectory.depth_mm = shape.depth_mm;
-    const auto truth = dipped(shape.name, finer_film(config), board, study.context);
+    options.trajectory.depth_mm = shape.depth_mm;
+    const DippedObject truth = dipped(shape.name, finer_film(options), board, study.context);
     const auto begin = std::chrono::steady_clock::now();
-    const auto simulated = dipped(shape.name, config, board, study.context);
+    const DippedObject simulated = dipped(shape.name, options, board, study.context);
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
     double share = 0;
-    const Image image = recovered(*truth, *simulated, board, share);
+    const Image image = recovered(truth, simulated, board, share);
     const std::string name = shape.name;
     pictures.push_back({name + ", computed 'scan'",
-                        dipped_picture(*truth, printed, board.raster, kPicture_px, study.context)});
-    pictures.push_back({name + ", simulated", dipped_picture(*simulated, printed, board.raster,
+                        dipped_picture(truth, printed, board.raster, kPicture_px, study.context)});
+    pictures.push_back({name + ", simulated", dipped_picture(simulated, printed, board.raster,
                                                              kPicture_px, study.context)});
     pictures.push_back(
         {name + ", recovered image", film_square(image, board.raster, 80, kPicture_px)});
     table.add({name, fmt::format("{:g}", shape.depth_mm),
-               std::to_string(simulated->dip.statistics.steps), fmt::format("{:.1f}", time.count()),
+               std::to_string(simulated.statistics.steps), fmt::format("{:.1f}", time.count()),
                fmt::format("{:.2f}", 100 * share)});
   }
   save_png(study.folder / "figure_8.png", panels(pictures, 3));

@@ -24,10 +24,10 @@ constexpr Method kMethods[] = {{"projection", DipMethod::kProjection},
                                {"full", DipMethod::kFull}};
 
 CornerGrid true_corners(const CalibrationObject& object, const Surface& surface,
-                        const JobConfig& config, RunContext& context) {
-  const JobConfig fine = finer_film(config);
+                        const DesignOptions& design, RunContext& context) {
+  const DesignOptions fine = finer_film(design);
   const CheckerboardDip dip = dip_checkerboard(checkered_film(fine, kSquare_mm), object, surface,
-                                               film_parameters(config), fine.dip, context);
+                                               film_parameters(design), fine.dip, context);
   return synthetic_scan(dip, object, {30, 30}, {.aligned = true});
 }
 
@@ -35,21 +35,21 @@ CornerGrid true_corners(const CalibrationObject& object, const Surface& surface,
 
 std::string figure_9(const Study& study) {
   const JobConfig config = paper_config();
-  const CheckeredFilm film = checkered_film(config, kSquare_mm);
+  const CheckeredFilm film = checkered_film(config.design, kSquare_mm);
   std::vector<std::vector<ErrorMap>> maps;
   Table table({"object", "projection (mm)", "single step (mm)", "full (mm)", "lengths"});
   for (const KitShape& shape : kit_shapes()) {
     const CalibrationObject object = calibration_object(shape.name, config, study.context);
     const Surface surface(object.object.positions, object.object.triangles);
-    const CornerGrid grid = true_corners(object, surface, config, study.context);
+    const CornerGrid grid = true_corners(object, surface, config.design, study.context);
     std::vector<std::string> cells = {shape.name};
     maps.emplace_back();
     GridError error;
     for (const Method& method : kMethods) {
-      DipOptions options = config.dip;
+      DipOptions options = config.design.dip;
       options.method = method.method;
-      const CheckerboardDip dip =
-          dip_checkerboard(film, object, surface, film_parameters(config), options, study.context);
+      const CheckerboardDip dip = dip_checkerboard(
+          film, object, surface, film_parameters(config.design), options, study.context);
       ErrorMap map;
       map.warped = warp(grid, surface, *dip.map, kReach_mm);
       map.errors = length_errors(grid_lengths(grid), map.warped, kSquare_mm);

@@ -5,8 +5,6 @@
 
 #include "image/resize.h"
 #include "ink/stiffness.h"
-#include "job/prepare.h"
-#include "object/pose.h"
 #include "render/canvas.h"
 #include "render/normals.h"
 #include "render/studio.h"
@@ -20,53 +18,63 @@ constexpr int kGap_px = 12, kTitle_px = 34;
 // From below and a little from the side, so that edges and slopes show.
 const Vec3 kEye = Vec3(0.25, -0.45, -1).normalized();
 
-Image picture_of(const DippedObject& dipped, const Appearance& look, int size_px, bool wanted,
-                 RunContext& context) {
-  const Object& object = dipped.object();
-  const std::vector<CornerNormals> normals = corner_normals(object.positions, object.triangles);
-  const Studio studio{object, *dipped.surface, normals, true, 0.5};
-  const ViewPair pair =
-      LitView(studio, frame_object(object, kEye, 1, 0.9), size_px, size_px, context).show(look);
-  return wanted ? pair.wanted : pair.predicted;
+ViewPair pictures_of(const PosedObject& object, const Appearance& look, int size_px,
+                     RunContext& context) {
+  const TriangleMesh& mesh = object.mesh();
+  const std::vector<CornerNormals> normals = corner_normals(mesh.positions, mesh.triangles);
+  const Studio studio{mesh, object.surface(), normals, true, 0.5};
+  return LitView(studio, frame_object(mesh, kEye, 1, 0.9), size_px, size_px, context).show(look);
+}
+
+DippedObject dip_film(const PosedObject& object, const SharedFilmMesh& film, const DipOptions& dip,
+                      const DesignOptions& options, RunContext& context) {
+  Timings timings;
+  const Trajectory trajectory = make_trajectory(options.trajectory, object.mesh().positions);
+  return dip_object(object, film, trajectory, dip, timings, context);
+}
+
+// The wanted side of an appearance. Refers to the paint.
+auto colors_of(const Paint& paint) {
+  const bool says = paint.says_anything();
+  return [&paint, says](const SurfacePoint& point, const Vec3&, const Vec3&) {
+    return says ? paint.color_at(point) : paint.base();
+  };
 }
 
 }  // namespace
 
 JobConfig paper_config() {
   JobConfig config;
-  config.film.width_mm = 215.9;
-  config.film.height_mm = 279.4;
-  config.dip.material.tear_stretch = 0;
+  config.design.film.width_mm = 215.9;
+  config.design.film.height_mm = 279.4;
+  config.design.dip.material.tear_stretch = 0;
   return config;
 }
 
-std::unique_ptr<DippedObject> to_dip(Object object) {
-  LoadedObject loaded;
-  apply_pose(object, pose_matrix(object, {}));
-  loaded.object = std::move(object);
-  return undipped(std::move(loaded));
+PosedObject posed(Object object) {
+  return {std::make_shared<const Object>(std::move(object)), PoseOptions()};
 }
 
-void dip_printed(DippedObject& dipped, const SharedFilmMesh& film, const InkImage& inks,
-                 const JobConfig& config, RunContext& context) {
-  StageTimes times;
-  DipOptions options = config.dip;
-  options.modulus = film_modulus(*film, inks, sheet_raster(config, config.print.dpi),
-                                 {config.ink.stiffness_ratio, config.ink.filter_mm});
-  dip_again(dipped, film, trajectory(dipped.object(), config), options, times, context);
+DippedObject dip_printed(const PosedObject& object, const InkImage& inks,
+                         const DesignOptions& options, RunContext& context) {
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(options.film));
+  DipOptions dip = options.dip;
+  dip.modulus = film_modulus(*film, inks, raster_of(options.film, options.dpi), options.stiffness);
+  return dip_film(object, film, dip, options, context);
 }
 
-void dip_blank(DippedObject& dipped, const SharedFilmMesh& film, const JobConfig& config,
-               RunContext& context) {
-  StageTimes times;
-  dip_again(dipped, film, trajectory(dipped.object(), config), config.dip, times, context);
+DippedObject dip_blank(const PosedObject& object, const DesignOptions& options,
+                       RunContext& context) {
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(options.film));
+  return dip_film(object, film, options.dip, options, context);
 }
 
-InkResult designed(DippedObject& dipped, const SharedFilmMesh& film, const ColorModel& model,
-                   JobConfig config, int rounds, RunContext& context) {
-  StageTimes times;
-  config.ink.rounds_max = rounds;
-  return settle_ink(dipped, film, model, config, times, context);
+Designed designed(const PosedObject& object, const ColorModel& model, DesignOptions options,
+                  int rounds, RunContext& context) {
+  Timings timings;
+  options.rounds_max = rounds;
+  const auto paint = model_paint(object.shared_object());
+  return design({object, *paint, Allotment(), model, options}, timings, context);
 }
 
 Image panels(const std::vector<Panel>& list, int columns) {
@@ -108,17 +116,17 @@ Image film_square(const Image& film_image, const SheetRaster& raster, double sid
 
 Image dipped_picture(const DippedObject& dipped, const Image& film_image, const SheetRaster& raster,
                      int size_px, RunContext& context) {
-  const Appearance look = appearance(dipped, film_image, raster, {1, 1, 1, 1});
-  return picture_of(dipped, look, size_px, false, context);
+  const auto paint = model_paint(dipped.posed.shared_object());
+  const auto predicted = [&](const SurfacePoint&, const Vec3& position, const Vec3& normal) {
+    return predicted_color(film_image, raster, *dipped.map, position, normal, paint->base());
+  };
+  return pictures_of(dipped.posed, {colors_of(*paint), predicted}, size_px, context).predicted;
 }
 
-Image wanted_picture(const DippedObject& dipped, int size_px, RunContext& context) {
-  Appearance look;
-  look.wanted = [&](const SurfacePoint& point, const Vec3&, const Vec3&) {
-    return color_at(dipped.object(), point, {1, 1, 1, 1});
-  };
-  look.predicted = look.wanted;
-  return picture_of(dipped, look, size_px, true, context);
+Image wanted_picture(const PosedObject& object, int size_px, RunContext& context) {
+  const auto paint = model_paint(object.shared_object());
+  const auto wanted = colors_of(*paint);
+  return pictures_of(object, {wanted, wanted}, size_px, context).wanted;
 }
 
 Table::Table(const std::vector<std::string>& header) {

@@ -1,13 +1,11 @@
 // What the figures share: the paper's setup, dips of printed film, and pictures side by side.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "coat/design.h"
 #include "ink/color_model.h"
-#include "job/dip_stage.h"
-#include "job/ink_stage.h"
 #include "settings/config.h"
 
 namespace hydrodip::paper {
@@ -18,19 +16,19 @@ constexpr double kSquare_mm = 5;  // of checkerboards
 // Letter film, and as in the paper it never tears; everything else as hydrodip has it by default.
 JobConfig paper_config();
 
-// An object in its pose, centred over the film.
-std::unique_ptr<DippedObject> to_dip(Object object);
+// An object as it is, centred over the film.
+PosedObject posed(Object object);
 
-// Dips a film with these inks on it; they stiffen it.
-void dip_printed(DippedObject& dipped, const SharedFilmMesh& film, const InkImage& inks,
-                 const JobConfig& config, RunContext& context);
+// Dips a film with these inks on it, at options.dpi; they stiffen it.
+DippedObject dip_printed(const PosedObject& object, const InkImage& inks,
+                         const DesignOptions& options, RunContext& context);
 // Dips blank film, or what is the same, film that ink does not stiffen.
-void dip_blank(DippedObject& dipped, const SharedFilmMesh& film, const JobConfig& config,
-               RunContext& context);
+DippedObject dip_blank(const PosedObject& object, const DesignOptions& options,
+                       RunContext& context);
 
-// The print that the job makes of an object, with `rounds` rounds at most.
-InkResult designed(DippedObject& dipped, const SharedFilmMesh& film, const ColorModel& model,
-                   JobConfig config, int rounds, RunContext& context);
+// The print that the job makes of an object's own colours, with `rounds` rounds at most.
+Designed designed(const PosedObject& object, const ColorModel& model, DesignOptions options,
+                  int rounds, RunContext& context);
 
 // ---- pictures ----
 
@@ -49,7 +47,7 @@ Image film_square(const Image& film_image, const SheetRaster& raster, double sid
 Image dipped_picture(const DippedObject& dipped, const Image& film_image, const SheetRaster& raster,
                      int size_px, RunContext& context);
 // The object with its own colours.
-Image wanted_picture(const DippedObject& dipped, int size_px, RunContext& context);
+Image wanted_picture(const PosedObject& object, int size_px, RunContext& context);
 
 // ---- tables ----
 

@@ -22,14 +22,14 @@ constexpr double kNoise_mm = 0.05;
 constexpr const char* kPaper[] = {"0.020", "0.052", "0.032"};
 
 std::vector<Subject> scans(const JobConfig& config, const Study& study) {
-  const JobConfig fine = finer_film(finer_film(config));  // as `calibrate synth`
+  const DesignOptions fine = finer_film(finer_film(config.design));  // as `calibrate synth`
   const CheckeredFilm film = checkered_film(fine, kSquare_mm);
   std::vector<std::string> texts;
   for (const KitShape& shape : kit_shapes()) {
     const CalibrationObject object = calibration_object(shape.name, config, study.context);
     const Surface surface(object.object.positions, object.object.triangles);
-    const CheckerboardDip dip =
-        dip_checkerboard(film, object, surface, film_parameters(config), fine.dip, study.context);
+    const CheckerboardDip dip = dip_checkerboard(
+        film, object, surface, film_parameters(config.design), fine.dip, study.context);
     const std::filesystem::path file = study.folder / fmt::format("table_1_{}.csv", shape.name);
     write_scan_table(
         file,
@@ -59,7 +59,8 @@ std::string table_1(const Study& study) {
   options.stiffness_ratio = {10, 100, 1000, 10000};
   options.poisson = {0, 0.15, 0.3};
   SimulationStore store(study.folder / "table_1.jsonl", {});
-  const Calibration found = Search(subjects, config, kSquare_mm, options, store).run(study.context);
+  const Calibration found =
+      Search(subjects, config.design, kSquare_mm, options, store).run(study.context);
   save_png(study.folder / "table_1.png",
            draw_error_surface(options, found.grid, found.all.parameters,
                               "Synthetic scans with 0.05 mm of noise"));

@@ -32,10 +32,10 @@ TEST(CorrectionTest, DoubtReachesTheLimitOfErrorsThatFallAsTheCells) {
 }
 
 TEST(FinerFilmTest, HalvesCellsAndSteps) {
-  JobConfig config;
-  config.film.elements = 10000;
-  config.dip.step_mm = 0.2;
-  const JobConfig finer = finer_film(config);
+  DesignOptions design;
+  design.film.elements = 10000;
+  design.dip.step_mm = 0.2;
+  const DesignOptions finer = finer_film(design);
   EXPECT_EQ(finer.film.elements, 40000);
   EXPECT_DOUBLE_EQ(finer.dip.step_mm, 0.1);
 }

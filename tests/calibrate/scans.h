@@ -15,9 +15,9 @@ namespace hydrodip::scans {
 // A small sheet and coarse triangles: hundredths of a second for a dip.
 inline JobConfig quick_config() {
   JobConfig config;
-  config.film.width_mm = config.film.height_mm = 110;
-  config.film.elements = 6000;
-  config.dip.step_mm = 0.4;
+  config.design.film.width_mm = config.design.film.height_mm = 110;
+  config.design.film.elements = 6000;
+  config.design.dip.step_mm = 0.4;
   return config;
 }
 
@@ -30,8 +30,8 @@ struct Truth {
   Truth(const std::string& name, const FilmParameters& parameters, RunContext& context)
       : object(calibration_object(name, quick_config(), context)),
         surface(object.object.positions, object.object.triangles),
-        dip(dip_checkerboard(checkered_film(finer_film(quick_config()), 5), object, surface,
-                             parameters, finer_film(quick_config()).dip, context)) {}
+        dip(dip_checkerboard(checkered_film(finer_film(quick_config().design), 5), object, surface,
+                             parameters, finer_film(quick_config().design).dip, context)) {}
 
   void write(const std::filesystem::path& file, const SyntheticOptions& options) const {
     write_scan_table(file, synthetic_scan(dip, object, {12, 12}, options), kSyntheticMark);

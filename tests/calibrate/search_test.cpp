@@ -41,7 +41,7 @@ class SearchSlow : public testing::Test {
                         const std::vector<std::filesystem::path>& merged = {}) {
     SimulationStore store(folder_ / store_name, merged);
     RunContext context;
-    return Search(scanned, scans::quick_config(), 5, options, store).run(context);
+    return Search(scanned, scans::quick_config().design, 5, options, store).run(context);
   }
 
   static void expect_same(const Calibration& a, const Calibration& b) {
@@ -67,12 +67,12 @@ class SearchSlow : public testing::Test {
 class OwnFilmSlow : public SearchSlow {
  protected:
   explicit OwnFilmSlow(const std::string& name = "pyramid") : name_(name) {
-    config_.film.elements = 2000;
-    config_.dip.step_mm = 0.5;
+    config_.design.film.elements = 2000;
+    config_.design.dip.step_mm = 0.5;
     object_ = calibration_object(name_, config_, context_);
     surface_.emplace(object_->object.positions, object_->object.triangles);
-    dip_ = dip_checkerboard(checkered_film(config_, 5), *object_, *surface_, kTruth, config_.dip,
-                            context_);
+    dip_ = dip_checkerboard(checkered_film(config_.design, 5), *object_, *surface_, kTruth,
+                            config_.design.dip, context_);
   }
 
   Calibration fit(const SyntheticOptions& scan, SearchOptions options) {
@@ -83,7 +83,7 @@ class OwnFilmSlow : public SearchSlow {
     options.elements_factor = options.step_factor = 1;
     options.correct = false;
     SimulationStore store(folder_ / (std::to_string(scan.seed) + ".jsonl"), {});
-    return Search(scanned, config_, 5, options, store).run(context_);
+    return Search(scanned, config_.design, 5, options, store).run(context_);
   }
 
   std::string name_;
@@ -137,7 +137,8 @@ TEST_F(SearchSlow, InterruptedAnywhereItEndsTheSame) {
     context.on_progress([&](const std::string&, double) {
       if (++seen >= reports) context.cancel();
     });
-    EXPECT_THROW(Search(scanned, scans::quick_config(), 5, options, store).run(context), Cancelled);
+    EXPECT_THROW(Search(scanned, scans::quick_config().design, 5, options, store).run(context),
+                 Cancelled);
     EXPECT_GE(store.size(), kept);
     kept = store.size();
   }
@@ -157,13 +158,13 @@ TEST_F(SearchSlow, ShardsMergedAreOneRun) {
     stores.push_back(folder_ / ("shard" + std::to_string(number)));
     SimulationStore store(stores.back(), {});
     RunContext context;
-    Search search(scanned, scans::quick_config(), 5, options, store);
+    Search search(scanned, scans::quick_config().design, 5, options, store);
     search.simulate_grid({number, 2}, context);
     EXPECT_EQ(search.missing(), number == 1 ? 1u : 2u);
   }
   {
     SimulationStore store(folder_ / "merged.jsonl", stores);
-    EXPECT_EQ(Search(scanned, scans::quick_config(), 5, options, store).missing(), 0u);
+    EXPECT_EQ(Search(scanned, scans::quick_config().design, 5, options, store).missing(), 0u);
   }
   expect_same(calibrate(scanned, options, "merged.jsonl", stores), whole);
 }

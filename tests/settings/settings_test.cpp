@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "base/error.h"
@@ -59,10 +60,10 @@ TEST_F(Settings, TablesAndDottedKeysMeanTheSame) {
   const JobConfig dotted =
       from_toml("film.width_mm = 200.0\nfilm.elements = 5000\ndip.scheme = 'paper'\n");
   for (const JobConfig& config : {nested, dotted}) {
-    EXPECT_EQ(config.film.width_mm, 200);
-    EXPECT_EQ(config.film.elements, 5000);
-    EXPECT_EQ(config.dip.scheme, DipScheme::kPaper);
-    EXPECT_EQ(config.film.height_mm, JobConfig{}.film.height_mm);
+    EXPECT_EQ(config.design.film.width_mm, 200);
+    EXPECT_EQ(config.design.film.elements, 5000);
+    EXPECT_EQ(config.design.dip.scheme, DipScheme::kPaper);
+    EXPECT_EQ(config.design.film.height_mm, FilmOptions{}.height_mm);
   }
 }
 
@@ -104,13 +105,13 @@ TEST_F(Settings, QualityGivesWayToEverythingElse) {
   sources.quality = quality_settings("draft");
   JobConfig draft;
   apply_sources(draft, sources);
-  EXPECT_EQ(draft.film.elements, 10000);
+  EXPECT_EQ(draft.design.film.elements, 10000);
   EXPECT_FALSE(draft.pictures);
   sources.sets = {parse_set("film.elements=2000")};
   JobConfig own;
   apply_sources(own, sources);
-  EXPECT_EQ(own.film.elements, 2000);
-  EXPECT_EQ(own.dip.step_mm, draft.dip.step_mm);
+  EXPECT_EQ(own.design.film.elements, 2000);
+  EXPECT_EQ(own.design.dip.step_mm, draft.design.dip.step_mm);
   EXPECT_TRUE(quality_settings("normal").empty());
   EXPECT_THROW(quality_settings("finer"), InputError);
 }
@@ -149,6 +150,19 @@ TEST_F(Settings, WrongChoicesListTheRightOnes) {
   EXPECT_TRUE(contains(toml_error("film.shape = 3"), "one of rectangle, disc"));
   EXPECT_TRUE(contains(set_error("object.base_color=red"), "a colour such as"));
   EXPECT_TRUE(contains(set_error("object.base_color=#12345g"), "a colour such as"));
+}
+
+TEST_F(Settings, ColoursAreSrgbInTextAndLinearInside) {
+  const LinearColor base = from_toml("object.base_color = '#ff8000'").object.base;
+  EXPECT_EQ(base.r, 1);
+  EXPECT_EQ(base.g, srgb8_to_linear(128));
+  EXPECT_NEAR(base.g, std::pow((128 / 255.0 + 0.055) / 1.055, 2.4), 1e-6);  // IEC 61966-2-1
+  EXPECT_EQ(base.b, 0);
+  EXPECT_EQ(base.a, 1);
+  JobConfig config;
+  config.object.base = base;
+  const Parameter& parameter = find_parameter("object.base_color", "test");
+  EXPECT_EQ(parameter.get(config), ParameterValue("#ff8000"));
 }
 
 TEST_F(Settings, ZeroStandsBesideTheRangeOnlyWhereItMeansSomething) {
@@ -195,10 +209,10 @@ TEST_F(Settings, LaterSourcesWin) {
   sources.sets = {parse_set("print.dpi=400")};
   JobConfig config;
   apply_sources(config, sources);
-  EXPECT_EQ(config.print.samples, 2);    // profile over default
-  EXPECT_EQ(config.print.bleed_mm, 3);   // config over profile
-  EXPECT_EQ(config.film.width_mm, 210);  // option over config
-  EXPECT_EQ(config.print.dpi, 400);      // --set over all
+  EXPECT_EQ(config.design.inverse.samples_per_axis, 2);  // profile over default
+  EXPECT_EQ(config.design.inverse.bleed_mm, 3);          // config over profile
+  EXPECT_EQ(config.design.film.width_mm, 210);           // option over config
+  EXPECT_EQ(config.design.dpi, 400);                     // --set over all
 }
 
 TEST_F(Settings, ThePapersSchemeHasARegularGridUnlessAskedOtherwise) {
@@ -208,7 +222,7 @@ TEST_F(Settings, ThePapersSchemeHasARegularGridUnlessAskedOtherwise) {
     sources.sets = sets;
     JobConfig config;
     apply_sources(config, sources);
-    return config.film.grading;
+    return config.design.film.grading;
   };
   const Setting paper = parse_set("dip.scheme=paper");
   EXPECT_EQ(grading("", {}), FilmOptions{}.grading);
@@ -220,9 +234,9 @@ TEST_F(Settings, ThePapersSchemeHasARegularGridUnlessAskedOtherwise) {
 }
 
 TEST_F(Settings, MethodsHaveNames) {
-  EXPECT_EQ(from_toml("").dip.method, DipMethod::kFull);
-  EXPECT_EQ(from_toml("dip.method = 'single-step'").dip.method, DipMethod::kSingleStep);
-  EXPECT_EQ(from_toml("dip.method = 'projection'").dip.method, DipMethod::kProjection);
+  EXPECT_EQ(from_toml("").design.dip.method, DipMethod::kFull);
+  EXPECT_EQ(from_toml("dip.method = 'single-step'").design.dip.method, DipMethod::kSingleStep);
+  EXPECT_EQ(from_toml("dip.method = 'projection'").design.dip.method, DipMethod::kProjection);
   EXPECT_TRUE(contains(toml_error("dip.method = 'project'"), "projection"));
 }
 
@@ -241,7 +255,7 @@ TEST_F(Settings, SetNeedsNameAndValue) {
 std::pair<double, double> film_size(const std::string& film) {
   JobConfig config;
   apply_settings(config, film_settings(film));
-  return {config.film.width_mm, config.film.height_mm};
+  return {config.design.film.width_mm, config.design.film.height_mm};
 }
 
 TEST(Film, NamesAndSizes) {
