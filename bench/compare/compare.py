@@ -8,6 +8,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import shutil
 import statistics
 import struct
@@ -295,45 +296,79 @@ def timed(command, folder, log):
     return usage.ru_utime + usage.ru_stime, time.monotonic() - start
 
 
+def dip_step_figures(text):
+    """What bench_dip_step says, by name, in ms."""
+    figures = {}
+    for line in text.splitlines():
+        whole = re.match(r"dip_step_40k: ours ([\d.]+) ms, direct ([\d.]+) ms", line)
+        growth = re.match(r" +(\d+) +([\d.]+) +[\d.]+$", line)
+        hard = re.match(r" +squares of +([\d.]+) mm: ([\d.]+) against", line)
+        if whole:
+            figures["step, 40k triangles"] = float(whole[1])
+            figures["the same, direct solver"] = float(whole[2])
+        elif growth:
+            figures["step, %s triangles" % growth[1]] = float(growth[2])
+        elif hard:
+            figures["step, hard ink, squares of %s mm" % hard[1]] = float(hard[2])
+    return figures
+
+
+def ratios(olds, news):
+    """Columns of a table: medians, and the median and limits of new over old, turn by turn."""
+    of_turns = [new / old for old, new in zip(olds, news)]
+    return ["%.3g" % statistics.median(olds), "%.3g" % statistics.median(news),
+            "%.3f (%.2f to %.2f)" % (statistics.median(of_turns), min(of_turns), max(of_turns))]
+
+
+def take_turns(old, new, turns, run):
+    """Results of run(version), turn by turn, so that a slow minute of the machine meets both."""
+    results = {old.side: [], new.side: []}
+    for turn in range(turns):
+        for version in (old, new) if turn % 2 == 0 else (new, old):
+            results[version.side].append(run(version))
+    return results[old.side], results[new.side]
+
+
 def compare_times(old, new, options, work, model_folder):
-    """Takes turns, so that a slow minute of the machine meets both."""
     chosen = {name: command for name, command in jobs.timed_jobs(bool(options.spot)).items()
               if fnmatch.fnmatch(name, options.only)}
-    if fnmatch.fnmatch("bench_dip_step", options.only):
-        chosen["bench_dip_step"] = None
     folder = work / "times"
-    print("load %.1f on %d cores, %d busy processes beside; medians of %d turns" %
+    print("\nload %.1f on %d cores, %d busy processes beside; medians of %d turns" %
           (os.getloadavg()[0], os.cpu_count(), options.busy, options.turns))
-    print("| job | CPU old, s | CPU new, s | new/old (least to largest) | wall old, s | wall new, s |"
-          " new/old |\n|---|---|---|---|---|---|---|")
     busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"])
             for _ in range(options.busy)]
     try:
+        if chosen:
+            print("| job | old, CPU s | new, CPU s | new/old (turn by turn) | old, wall s | new, wall s |"
+                  " new/old |\n|---|---|---|---|---|---|---|")
         for name, command in chosen.items():
-            seconds = {old.side: [], new.side: []}
-            for turn in range(options.turns):
-                for version in (old, new) if turn % 2 == 0 else (new, old):
-                    enter(folder, model_folder)
-                    log = work / ("%s-%s.log" % (name.replace(" ", "-"), version.side))
-                    program = [version.dip_step] if command is None else [version.program] + command
-                    seconds[version.side].append(timed(program, folder, log))
-            cells = []
-            for k in (0, 1):
-                olds = [s[k] for s in seconds[old.side]]
-                news = [s[k] for s in seconds[new.side]]
-                ratios = [b / a for a, b in zip(olds, news)]
-                cells += ["%.2f" % statistics.median(olds), "%.2f" % statistics.median(news),
-                          "%.3f (%.2f to %.2f)" % (statistics.median(ratios), min(ratios),
-                                                   max(ratios))]
+
+            def run(version):
+                enter(folder, model_folder)
+                return timed([version.program] + command, folder, work / "times.log")
+
+            olds, news = take_turns(old, new, options.turns, run)
+            cells = sum((ratios([o[k] for o in olds], [n[k] for n in news]) for k in (0, 1)), [])
             print("| %s | %s |" % (name, " | ".join(cells)), flush=True)
+
+        if fnmatch.fnmatch("bench_dip_step", options.only):
+
+            def figures(version):
+                log = work / ("bench_dip_step-%s.log" % version.side)
+                timed([version.dip_step], work, log)
+                return dip_step_figures(log.read_text())
+
+            olds, news = take_turns(old, new, options.turns, figures)
+            print("\n| bench_dip_step | old, wall ms | new, wall ms | new/old (turn by turn) |\n"
+                  "|---|---|---|---|")
+            for name in olds[0]:
+                if name in news[0]:
+                    cells = ratios([o[name] for o in olds], [n[name] for n in news])
+                    print("| %s | %s |" % (name, " | ".join(cells)))
     finally:
         for process in busy:
             process.kill()
             process.wait()
-    if "bench_dip_step" in chosen:
-        for version in (old, new):
-            print("\nbench_dip_step, %s, last turn:" % version.side)
-            print((work / ("bench_dip_step-%s.log" % version.side)).read_text())
 
 
 # ---- command line ---------------------------------------------------------------------------
