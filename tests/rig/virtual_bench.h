@@ -44,6 +44,9 @@ class VirtualClock : public Clock {
                      [](const auto& a, const auto& b) { return a.first < b.first; });
   }
 
+  // As when the computer is busy with something else for so long.
+  void hiccup(double seconds) { now_s_ += seconds; }
+
   std::size_t sent = 0, received = 0;  // by our side of the wire
 
  private:
@@ -61,7 +64,9 @@ class VirtualClock : public Clock {
     const bool due = emulator_.unplugged() || emulator_.bytes_written() > received;
     if (!due) return false;
     pollfd wire = {descriptor, POLLIN, 0};
-    return ::poll(&wire, 1, 1000) > 0;
+    if (::poll(&wire, 1, 1000) > 0) return true;
+    received = emulator_.bytes_written();  // thrown away when the port was opened
+    return false;
   }
 
   Emulator& emulator_;
