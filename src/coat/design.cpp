@@ -125,6 +125,13 @@ class Settling {
 
 }  // namespace
 
+DesignOptions draft_of(DesignOptions options) {
+  options.film.elements = std::min(options.film.elements, kDraftElements);
+  options.dip.step_mm = std::max(options.dip.step_mm, kDraftStep_mm);
+  options.rounds_max = 1;
+  return options;
+}
+
 double InkResult::last_change_mm() const {
   const std::vector<InkRound>& last = rounds.size() > 1 ? rounds : coarse_rounds;
   return last.empty() ? 0 : last.back().change_mm;

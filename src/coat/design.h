@@ -26,6 +26,12 @@ struct DesignOptions {
   InkingOptions inking;  // its base is the paint's
 };
 
+// The same to look at while an object is still being turned: coarse film in long steps, one round.
+// docs/performance.md has the errors and times.
+inline constexpr int kDraftElements = 10000;
+inline constexpr double kDraftStep_mm = 1;
+DesignOptions draft_of(DesignOptions options);
+
 // What lies on the film, and what comes of it on the object.
 struct FilmInk {
   Image wanted;  // per pixel of the film, what shall appear on the object; transparent: no ink

@@ -77,15 +77,15 @@ std::vector<Setting> film_settings(const std::string& film) {
 }
 
 std::vector<Setting> quality_settings(const std::string& quality) {
-  const auto settings = [](std::initializer_list<std::pair<const char*, const char*>> values) {
+  const auto settings = [](std::initializer_list<std::pair<const char*, std::string>> values) {
     std::vector<Setting> list;
     for (const auto& [name, value] : values)
       list.push_back({name, value, false, value, "--quality"});
     return list;
   };
   if (quality == "draft")
-    return settings({{"film.elements", "10000"},
-                     {"dip.step_mm", "1.0"},
+    return settings({{"film.elements", fmt::format("{}", kDraftElements)},
+                     {"dip.step_mm", fmt::format("{:.1f}", kDraftStep_mm)},
                      {"ink.rounds_max", "1"},
                      {"preview.texture_px", "512"},
                      {"preview.pictures", "off"}});

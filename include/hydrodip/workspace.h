@@ -1,0 +1,61 @@
+// A project that is looked at while it is being changed: every step's value is kept by the content
+// that it was made from, and only what a change touches is computed again.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "hydrodip/hydrodip.h"
+
+namespace hydrodip {
+
+// A draft is made on coarse film in long steps and without rounds of ink (draft_of()): a small part
+// of the time. No dip begins where another pose's dip ended: a value depends on its project alone.
+enum class Quality { kDraft, kNormal };
+
+// What a person works on.
+struct Project {
+  std::filesystem::path model;
+  LoadOptions load;
+  PoseOptions pose;
+  LinearColor base{1, 1, 1, 1};  // of the bare object
+  DesignOptions design;
+  PrinterOptions printer;
+};
+
+// For any number of threads.
+class Workspace {
+ public:
+  // Keeps at most so much in memory, nearly, besides what its callers hold.
+  explicit Workspace(std::size_t memory_bytes = std::size_t(1) << 30U);
+  ~Workspace();
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  // A context for a request that makes all earlier ones pointless: they are cancelled and throw
+  // Cancelled wherever they are.
+  RunContext newest();
+
+  // Steps of the project. A model file (with its pictures) that has changed is read again.
+  std::shared_ptr<const Model> model(const Project& project, const RunContext& context);
+  std::shared_ptr<const PosedObject> posed(const Project& project, const RunContext& context);
+  // Of film with even stiffness.
+  std::shared_ptr<const DippedObject> dipped(const Project& project, Quality quality,
+                                             const RunContext& context);
+  std::shared_ptr<const Designed> designed(const Project& project, Quality quality,
+                                           const RunContext& context);
+  // Wanted beside predicted.
+  std::shared_ptr<const Image> picture(const Project& project, Quality quality, int width_px,
+                                       const RunContext& context);
+
+  // Of all values that are kept, nearly.
+  std::size_t memory_bytes() const;
+  // How many values were computed so far: those asked for again do not count.
+  std::size_t computed() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hydrodip

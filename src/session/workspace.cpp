@@ -1,0 +1,288 @@
+#include "hydrodip/workspace.h"
+
+#include <map>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/file.h"
+#include "base/run_scope.h"
+#include "session/node_store.h"
+
+namespace hydrodip {
+namespace {
+
+// ---- keys ----
+
+// A file as the file system tells it apart from a changed one.
+struct FileState {
+  std::filesystem::path path;
+  std::uintmax_t bytes = 0;
+  std::filesystem::file_time_type changed;
+  bool operator==(const FileState&) const = default;
+};
+
+FileState state_of(const std::filesystem::path& path) {
+  std::error_code none;
+  return {path, std::filesystem::file_size(path, none),
+          std::filesystem::last_write_time(path, none)};
+}
+
+void add(ContentKey& key, const LoadOptions& load) {
+  key.add(load.units).add(load.texture.string());
+}
+
+void add(ContentKey& key, const PoseOptions& pose) {
+  key.add(pose.size_mm).add(pose.down);
+  for (int k = 0; k < 3; ++k) key.add(pose.rotate_deg[k]);
+}
+
+void add(ContentKey& key, const FilmOptions& film) {
+  key.add(film.width_mm).add(film.height_mm).add(film.shape).add(film.margin_mm);
+  key.add(film.elements).add(film.grading);
+}
+
+void add(ContentKey& key, const TrajectoryOptions& way) { key.add(way.depth_mm); }
+
+// A project's dips have no stiffness, tears or solver of their own.
+void add(ContentKey& key, const DipOptions& dip) {
+  key.add(dip.step_mm).add(dip.method).add(dip.scheme);
+  key.add(dip.material.z_stretch).add(dip.material.poisson).add(dip.material.tear_stretch);
+}
+
+void add(ContentKey& key, const LinearColor& color) {
+  key.add(double(color.r)).add(double(color.g)).add(double(color.b)).add(double(color.a));
+}
+
+void add(ContentKey& key, const PrinterOptions& printer) {
+  key.add(printer.model).add(printer.intent).add(printer.color).add(printer.profile.string());
+  if (printer.profile.empty()) return;
+  const FileState profile = state_of(printer.profile);
+  key.add(profile.bytes).add(double(profile.changed.time_since_epoch().count()));
+}
+
+void add(ContentKey& key, const DesignOptions& design) {
+  add(key, design.film);
+  add(key, design.trajectory);
+  add(key, design.dip);
+  key.add(design.stiffness.ratio).add(design.stiffness.filter_mm);
+  key.add(design.rounds_max).add(design.dpi);
+  key.add(design.inverse.bleed_mm).add(design.inverse.samples_per_axis);
+  key.add(design.inking.compensate).add(design.inking.policy).add(design.inking.limit);
+}
+
+DesignOptions at(Quality quality, const DesignOptions& design) {
+  return quality == Quality::kDraft ? draft_of(design) : design;
+}
+
+// ---- sizes ----
+
+template <class Item>
+std::size_t bytes_of(const std::vector<Item>& list) {
+  return list.size() * sizeof(Item);
+}
+
+std::size_t bytes_of(const Image& image) { return bytes_of(image.rgba); }
+
+std::size_t bytes_of(const Model& model) {
+  const Object& o = *model.object;
+  std::size_t bytes = bytes_of(o.positions) + bytes_of(o.triangles) + bytes_of(o.material_of) +
+                      bytes_of(o.uvs) + bytes_of(o.colors);
+  for (const auto& texture : o.textures) bytes += bytes_of(*texture);
+  return bytes;
+}
+
+// A mesh with the tree in which rays find its triangles.
+std::size_t bytes_with_tree(std::size_t positions, std::size_t triangles) {
+  constexpr std::size_t kTreePerTriangle = 128;
+  return positions * sizeof(Vec3) + triangles * (sizeof(Triangle) + kTreePerTriangle);
+}
+
+std::size_t bytes_of(const PosedObject& posed) {
+  return bytes_with_tree(posed.mesh().positions.size(), posed.mesh().triangles.size());
+}
+
+std::size_t bytes_of(const DippedObject& dipped) {
+  const std::size_t vertices = dipped.film->position.size();
+  const std::size_t triangles = dipped.film->mesh().triangles.size();
+  std::size_t bytes = 2 * bytes_with_tree(vertices, triangles);
+  for (const DipFrame& frame : dipped.history->frames()) bytes += bytes_of(frame.position);
+  return bytes;
+}
+
+std::size_t bytes_of(const Designed& made) {
+  const FilmInk& ink = made.ink.ink;
+  return bytes_of(made.dipped) + bytes_of(ink.wanted) + bytes_of(ink.on_object) +
+         bytes_of(ink.inking.inks.cmyk) + bytes_of(ink.stretch.area_ratio) +
+         bytes_of(ink.stretch.on_object) + bytes_of(made.ink.reach.difference);
+}
+
+}  // namespace
+
+struct Workspace::Impl {
+  explicit Impl(std::size_t memory_bytes) : nodes(memory_bytes) {}
+
+  // What a model's files were when it was read, and what was in them.
+  struct Reading {
+    std::vector<FileState> files;
+    std::string content;
+  };
+
+  // What is in the files that were read for this; nothing if they have changed or never were.
+  std::optional<std::string> content_of(const std::string& asked) {
+    const std::lock_guard lock(mutex);
+    const auto known = readings.find(asked);
+    if (known == readings.end()) return std::nullopt;
+    for (const FileState& file : known->second.files)
+      if (state_of(file.path) != file) return std::nullopt;
+    return known->second.content;
+  }
+
+  // Loads, and remembers what was in the files. Once more if they changed meanwhile.
+  Model read(const Project& project, const std::string& asked, const RunContext& context) {
+    constexpr int kTries = 3;
+    for (int left = kTries;; --left) {
+      const auto begun = std::filesystem::file_time_type::clock::now();
+      Model model = load(project.model, project.load, context);
+      Reading reading;
+      ContentKey content("content");
+      bool calm = true;
+      for (const std::filesystem::path& file : model.files) {
+        reading.files.push_back(state_of(file));
+        calm &= reading.files.back().changed < begun;
+        content.add(sha256_hex(read_file(file)));
+      }
+      if (!calm && left > 0) continue;
+      reading.content = content.text();
+      const std::lock_guard lock(mutex);
+      readings[asked] = std::move(reading);
+      return model;
+    }
+  }
+
+  template <class Value>
+  struct Keyed {
+    ContentKey key;
+    std::shared_ptr<const Value> value;
+  };
+
+  template <class Value, class Make>
+  Keyed<Value> node(ContentKey key, const RunContext& context, const Make& make) {
+    auto value =
+        nodes.get<Value>(key, context, make, [](const Value& made) { return bytes_of(made); });
+    return {std::move(key), std::move(value)};
+  }
+
+  Keyed<Model> model(const Project& project, const RunContext& context) {
+    ContentKey asked("asked");
+    asked.add(project.model.string());
+    add(asked, project.load);
+    std::optional<Model> fresh;
+    std::optional<std::string> content = content_of(asked.text());
+    if (!content) {
+      fresh = read(project, asked.text(), context);
+      const std::lock_guard lock(mutex);
+      content = readings[asked.text()].content;
+    }
+    ContentKey key("model");
+    key.add(*content);
+    add(key, project.load);
+    return node<Model>(std::move(key), context,
+                       [&] { return fresh ? *fresh : load(project.model, project.load, context); });
+  }
+
+  Keyed<PosedObject> posed(const Project& project, const RunContext& context) {
+    const auto loaded = model(project, context);
+    ContentKey key("posed");
+    key.add(loaded.key.text());
+    add(key, project.pose);
+    return node<PosedObject>(std::move(key), context, [&] {
+      const RunScope scope(context);
+      return pose(*loaded.value, project.pose);
+    });
+  }
+
+  Keyed<DippedObject> dipped(const Project& project, Quality quality, const RunContext& context) {
+    const auto hanging = posed(project, context);
+    const DesignOptions options = at(quality, project.design);
+    ContentKey key("dipped");
+    key.add(hanging.key.text());
+    add(key, options.film);
+    add(key, options.trajectory);
+    add(key, options.dip);
+    return node<DippedObject>(std::move(key), context, [&] {
+      return simulate(*hanging.value, {options.film, options.trajectory, options.dip}, context);
+    });
+  }
+
+  Keyed<Designed> designed(const Project& project, Quality quality, const RunContext& context) {
+    const auto hanging = posed(project, context);
+    const DesignOptions options = at(quality, project.design);
+    ContentKey key("designed");
+    key.add(hanging.key.text());
+    add(key, options);
+    add(key, project.base);
+    add(key, project.printer);
+    return node<Designed>(std::move(key), context, [&] {
+      const auto paint = model_paint(hanging.value->shared_object(), project.base);
+      return design(*hanging.value, *paint, options, make_printer(project.printer), context);
+    });
+  }
+
+  Keyed<Image> picture(const Project& project, Quality quality, int width_px,
+                       const RunContext& context) {
+    const auto made = designed(project, quality, context);
+    ContentKey key("picture");
+    key.add(made.key.text()).add(width_px);
+    return node<Image>(std::move(key), context, [&] {
+      const auto paint = model_paint(made.value->dipped.posed.shared_object(), project.base);
+      return render(finish(paint, {*made.value}), width_px, context);
+    });
+  }
+
+  NodeStore nodes;
+  std::mutex mutex;
+  std::map<std::string, Reading> readings;
+  std::optional<RunContext> newest;
+};
+
+Workspace::Workspace(std::size_t memory_bytes) : impl_(std::make_unique<Impl>(memory_bytes)) {}
+Workspace::~Workspace() = default;
+
+RunContext Workspace::newest() {
+  RunContext next;
+  const std::lock_guard lock(impl_->mutex);
+  if (impl_->newest) impl_->newest->cancel();
+  impl_->newest = next;
+  return next;
+}
+
+std::shared_ptr<const Model> Workspace::model(const Project& project, const RunContext& context) {
+  return impl_->model(project, context).value;
+}
+
+std::shared_ptr<const PosedObject> Workspace::posed(const Project& project,
+                                                    const RunContext& context) {
+  return impl_->posed(project, context).value;
+}
+
+std::shared_ptr<const DippedObject> Workspace::dipped(const Project& project, Quality quality,
+                                                      const RunContext& context) {
+  return impl_->dipped(project, quality, context).value;
+}
+
+std::shared_ptr<const Designed> Workspace::designed(const Project& project, Quality quality,
+                                                    const RunContext& context) {
+  return impl_->designed(project, quality, context).value;
+}
+
+std::shared_ptr<const Image> Workspace::picture(const Project& project, Quality quality,
+                                                int width_px, const RunContext& context) {
+  return impl_->picture(project, quality, width_px, context).value;
+}
+
+std::size_t Workspace::memory_bytes() const { return impl_->nodes.bytes(); }
+std::size_t Workspace::computed() const { return impl_->nodes.computed(); }
+
+}  // namespace hydrodip
