@@ -27,7 +27,8 @@ constexpr double kBarLength = 40;
 struct FilmChoice {
   std::string name;
   double width_mm = 0, height_mm = 0;
-  double excess_mm = 0;  // the worst direction's; not positive: fits
+  double excess_mm = 0;   // the worst direction's; not positive: the object fits it
+  bool fits_bath = true;  // the sheet does
   bool fits() const { return excess_mm <= 0; }
 };
 
@@ -47,21 +48,23 @@ double worst_excess_mm(const std::vector<RoomFit>& list) {
   return worst;
 }
 
-// The film's own limits: the bath is the same for every film.
 FilmChoice try_film(const TriangleMesh& posed, double depth_mm, FilmOptions film,
-                    const std::string& name, double width_mm, double height_mm) {
+                    const BathOptions& bath, const std::string& name, double width_mm,
+                    double height_mm) {
   film.width_mm = width_mm;
   film.height_mm = height_mm;
-  return {name, width_mm, height_mm, worst_excess_mm(film_fits(posed, depth_mm, film))};
+  return {name, width_mm, height_mm, worst_excess_mm(film_fits(posed, depth_mm, film)),
+          sheet_fits_bath(film, bath)};
 }
 
 std::vector<FilmChoice> film_choices(const TriangleMesh& posed, double depth_mm,
-                                     const FilmOptions& film) {
+                                     const FilmOptions& film, const BathOptions& bath) {
   std::vector<FilmChoice> list;
   for (const FilmFormat& format : film_formats()) {
-    list.push_back(try_film(posed, depth_mm, film, format.name, format.width_mm, format.height_mm));
-    list.push_back(try_film(posed, depth_mm, film, format.name + "-landscape", format.height_mm,
-                            format.width_mm));
+    list.push_back(
+        try_film(posed, depth_mm, film, bath, format.name, format.width_mm, format.height_mm));
+    list.push_back(try_film(posed, depth_mm, film, bath, format.name + "-landscape",
+                            format.height_mm, format.width_mm));
   }
   return list;
 }
@@ -104,7 +107,9 @@ std::string describe_fit(const Inspection& i) {
                                         : std::string("fits"));
   std::string fitting;
   for (const FilmChoice& film : i.films)
-    if (film.fits()) fitting += (fitting.empty() ? "" : ", ") + film.name;
+    if (film.fits())
+      fitting += (fitting.empty() ? "" : ", ") + film.name +
+                 (film.fits_bath ? "" : " (larger than the bath)");
   return text + "fits on      " + (fitting.empty() ? "no standard film" : fitting) + "\n";
 }
 
@@ -164,7 +169,8 @@ json films_json(const std::vector<FilmChoice>& films) {
     all.push_back({{"name", film.name},
                    {"width_mm", film.width_mm},
                    {"height_mm", film.height_mm},
-                   {"fits", film.fits()}});
+                   {"fits", film.fits()},
+                   {"fits_bath", film.fits_bath}});
   return all;
 }
 
@@ -214,7 +220,7 @@ JobResult inspect_job(const JobConfig& config, RunContext& context) {
                               prepared,
                               depth_mm,
                               fits(mesh, depth_mm, film, config.bath),
-                              film_choices(mesh, depth_mm, film),
+                              film_choices(mesh, depth_mm, film, config.bath),
                               dip_angles(mesh, depth_mm),
                               context.warnings()};
   JobResult result;

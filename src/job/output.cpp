@@ -53,11 +53,19 @@ ReportInk ink_amounts(const InkImage& inks, double limit) {
   return amounts;
 }
 
+// With what is known of colours and inks.
+Report full_report(const JobRecord& record, const Previews& previews) {
+  Report report = make_report(record);
+  report.colors = previews.colors;
+  report.ink = previews.ink;
+  return report;
+}
+
 // The verdict in one line.
-std::string picture_caption(const JobRecord& record) {
-  const Coverage& coverage = record.dipped().coverage;
+std::string picture_caption(const Report& report) {
+  const Coverage& coverage = *report.coverage;
   if (!(coverage.film_on_object_mm2 > 0)) return short_verdict(coverage);
-  return headline(concern_of(findings(make_report(record)))) + ": " + short_verdict(coverage);
+  return headline(concern_of(findings(report))) + ": " + short_verdict(coverage);
 }
 
 // Grey where a colour comes out as wanted, from yellow to dark red where it cannot.
@@ -108,14 +116,14 @@ PreviewPair reach_pair(const JobRecord& record, const Appearance& shown,
 std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
                                       const std::filesystem::path& gamut_png,
                                       const JobRecord& record, const Appearance& shown,
-                                      const SheetRaster& raster, const std::string& caption_start) {
+                                      const SheetRaster& raster, const std::string& caption) {
   const DippedObject& dipped = record.dipped();
   PreviewOptions options;
   options.width_px = record.config.preview_width_px;
   options.base = record.paint().base();
   std::vector<PreviewPair> pairs(1);
   pairs[0].shown = shown;
-  pairs[0].caption = caption_start + picture_caption(record);
+  pairs[0].caption = caption;
   if (!gamut_png.empty()) pairs.push_back(reach_pair(record, shown, raster));
   const std::vector<Image> pictures = render_previews(dipped.posed.mesh(), dipped.posed.surface(),
                                                       *dipped.film, pairs, options, record.context);
@@ -144,9 +152,27 @@ Image draw_maps(const JobRecord& record) {
                      options, record.context);
 }
 
-// What the 3D view shows, and what is learnt on the way.
-void make_page(const JobRecord& record, const Object& looks, const Appearance& shown,
-               const Image& film_image, const SheetRaster& raster, Previews& previews) {
+// Quantities over the film, and what is learnt from them. Every verdict needs that, so it comes
+// before any picture.
+std::vector<FilmLayer> measure_layers(const JobRecord& record, const Appearance& shown,
+                                      const SheetRaster& raster, Previews& previews) {
+  const DippedObject& dipped = record.dipped();
+  std::vector<FilmLayer> layers;
+  if (record.paint().says_anything()) {
+    layers.push_back(color_error_layer(dipped.posed.mesh(), *dipped.map, shown, record.context));
+    previews.colors = colors_of(layers.back());
+  }
+  if (record.ink != nullptr) {
+    layers.push_back(reach_layer(record, raster));
+    previews.ink = ink_amounts(record.ink->ink.inking.inks, record.config.design.inking.limit);
+  }
+  return layers;
+}
+
+// What the 3D view shows.
+std::string make_scene(const JobRecord& record, const Object& looks,
+                       const std::vector<FilmLayer>& layers, const Image& film_image,
+                       const SheetRaster& raster) {
   const DippedObject& dipped = record.dipped();
   const Image sheet = shrink_to(film_image, kPageTextureSide_px);
   SceneSource scene{looks, *dipped.film, *dipped.history, sheet};
@@ -156,16 +182,8 @@ void make_page(const JobRecord& record, const Object& looks, const Appearance& s
   scene.bath_height_mm = record.config.bath.height_mm;
   scene.tear_stretch = record.config.design.dip.material.tear_stretch;
   scene.base = record.paint().base();
-  if (record.paint().says_anything()) {
-    scene.layers.push_back(
-        color_error_layer(dipped.posed.mesh(), *dipped.map, shown, record.context));
-    previews.colors = colors_of(scene.layers.back());
-  }
-  if (record.ink != nullptr) {
-    scene.layers.push_back(reach_layer(record, raster));
-    previews.ink = ink_amounts(record.ink->ink.inking.inks, record.config.design.inking.limit);
-  }
-  previews.pictures.scene = scene_json(scene, record.context);
+  scene.layers = layers;
+  return scene_json(scene, record.context);
 }
 
 void write_glb(const std::filesystem::path& path, const JobRecord& record, const Object& looks,
@@ -191,18 +209,22 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
   };
   const Object looks = painted_object(dipped.posed.mesh(), record.paint());
   const Appearance shown = appearance(record.finish);
+  std::vector<FilmLayer> layers;
   // The longest first.
   if (record.config.pictures) {
-    tasks.emplace_back([&] { make_page(record, looks, shown, film_image, raster, previews); });
+    layers = measure_layers(record, shown, raster, previews);
+    tasks.emplace_back(
+        [&] { previews.pictures.scene = make_scene(record, looks, layers, film_image, raster); });
     add("maps.png", [&](const auto& path) {
       previews.pictures.maps_png = write_picture(path, draw_maps(record));
     });
     const std::filesystem::path preview_png = folder.path("preview.png");
     const std::filesystem::path gamut_png =
         record.ink != nullptr ? folder.path("gamut.png") : std::filesystem::path();
-    tasks.emplace(tasks.begin(), [&, preview_png, gamut_png] {
+    const std::string caption = caption_start + picture_caption(full_report(record, previews));
+    tasks.emplace(tasks.begin(), [&, preview_png, gamut_png, caption] {
       previews.pictures.preview_png =
-          write_pairs(preview_png, gamut_png, record, shown, raster, caption_start);
+          write_pairs(preview_png, gamut_png, record, shown, raster, caption);
     });
   }
   add("preview.glb", [&](const auto& path) { write_glb(path, record, looks, film_image, raster); });
@@ -212,9 +234,7 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
 }
 
 JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previews& previews) {
-  Report report = make_report(record);
-  report.colors = previews.colors;
-  report.ink = previews.ink;
+  const Report report = full_report(record, previews);
   write_report_json(folder.path("report.json"), report);
   write_report_html(folder.path("report.html"), report, previews.pictures);
   record.context.check_cancelled();

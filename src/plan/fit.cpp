@@ -112,8 +112,8 @@ void add_bath_fits(std::vector<RoomFit>& list, const TriangleMesh& posed, double
 
 void warn_if_sheet_exceeds_bath(const FilmOptions& film, const BathOptions& tank,
                                 RunContext& context) {
+  if (sheet_fits_bath(film, tank)) return;
   const Vec2 bath = bath_along_film(film, tank);
-  if (film.width_mm <= bath.x() && film.height_mm <= bath.y()) return;
   context.warn(fmt::format(
       "The film of {} by {} is larger than the bath of {} by {}: cut it, or give the size of your "
       "bath (bath.width_mm, bath.height_mm).",
@@ -144,6 +144,11 @@ std::vector<RoomFit> fits(const TriangleMesh& posed, double depth_mm, const Film
   std::vector<RoomFit> list = film_fits(posed, depth_mm, film);
   add_bath_fits(list, posed, depth_mm, wet_footprint(posed, depth_mm), film, bath);
   return list;
+}
+
+bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath) {
+  const Vec2 room = bath_along_film(film, bath);
+  return film.width_mm <= room.x() && film.height_mm <= room.y();
 }
 
 void require_fit(const TriangleMesh& posed, double depth_mm, const FilmOptions& film,

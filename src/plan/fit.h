@@ -34,6 +34,9 @@ std::vector<RoomFit> film_fits(const TriangleMesh& posed, double depth_mm, const
 std::vector<RoomFit> fits(const TriangleMesh& posed, double depth_mm, const FilmOptions& film,
                           const BathOptions& bath);
 
+// Whether the whole sheet, margin included, lies flat in the bath.
+bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath);
+
 // Throws InputError for the first that does not fit, saying by how much and how to mend it. Warns
 // about a sheet larger than the bath and about little film around the object.
 void require_fit(const TriangleMesh& posed, double depth_mm, const FilmOptions& film,
