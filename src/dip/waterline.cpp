@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -28,15 +30,32 @@ constexpr double kNearMoves = 16;
 constexpr double kEverBelow = 1e300;
 // Ways that pass what lies between two moments further off than this do not touch it.
 constexpr double kTouchSlack_mm = 0.01;
+// Triangles that follow each other in a mesh lie together, mostly: runs of so many are left out at
+// once.
+constexpr std::size_t kRun = 32;
 // Along each side of the grid over the whole object, however large that is.
 constexpr double kMostCells = 2000;
 
-std::array<Vec3, 8> corners_of(const Box3& box) {
+double bottom(const std::vector<Vec3>& p, const Triangle& t) {
+  return std::min({p[std::size_t(t[0])].z(), p[std::size_t(t[1])].z(), p[std::size_t(t[2])].z()});
+}
+double top(const std::vector<Vec3>& p, const Triangle& t) {
+  return std::max({p[std::size_t(t[0])].z(), p[std::size_t(t[1])].z(), p[std::size_t(t[2])].z()});
+}
+
+std::array<Vec3, 8> corners_of_box(const Box3& box) {
   std::array<Vec3, 8> corners;
   for (std::size_t k = 0; k < 8; ++k)
     corners[k] = Vec3((k & 1 ? box.max : box.min).x(), (k & 2 ? box.max : box.min).y(),
                       (k & 4 ? box.max : box.min).z());
   return corners;
+}
+
+// Lowest and highest that anything in the box can be, in the sinking frame.
+std::pair<double, double> heights_of(const Box3& box, const Moment& moment) {
+  const double middle = moment.sinking_z(box.center());
+  const double half = 0.5 * moment.turn.row(2).cwiseAbs().dot(box.size());
+  return {middle - half - kRounding_mm, middle + half + kRounding_mm};
 }
 
 // Of the part of a segment in a circle.
@@ -56,8 +75,13 @@ double length_within(const Vec2& a, const Vec2& b, const Vec2& centre, double ra
 Waterline::Waterline(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                      double cell_mm)
     : positions_(positions), triangles_(triangles), cell_(cell_mm) {
-  for (const Triangle& t : triangles)
-    for (std::int32_t v : t) box_.add(positions[std::size_t(v)]);
+  runs_.resize((triangles.size() + kRun - 1) / kRun);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::int32_t v : triangles[t]) runs_[t / kRun].add(positions[std::size_t(v)]);
+  for (const Box3& run : runs_) {
+    box_.add(run.min);
+    box_.add(run.max);
+  }
 }
 
 void Waterline::move_to(const Moment& to) {
@@ -65,86 +89,138 @@ void Waterline::move_to(const Moment& to) {
   swept_ = {};
   ++moves_;
   if (triangles_.empty()) return;
-  Rise before = rise_;
-  if (gathered_) rise_ = rise_since_gathered(to);
-  if (!gathered_ || rise_.least < -margin_ || rise_.most > margin_) {
-    gather(to);
-    before = now_ ? rise_since_gathered(*now_) : Rise{0, kEverBelow};
-    rise_ = {};
-  }
-  const double least = std::min(before.least, rise_.least);
-  const double most = std::max(before.most, rise_.most);
-  for (const Near& near : near_) {
-    if (near.bottom + least > gathered_->level_mm + kNearSlack_mm ||
-        near.top + most < gathered_->level_mm - kRounding_mm)
-      continue;
-    const std::array<Vec3, 3> corners_now = corners(near.triangle, to);
-    mark(to.moved && now_ ? corners(near.triangle, *now_) : corners_now, corners_now);
-    cut(corners_now, to.level_mm);
-  }
-  now_ = to;
+  if (to.moved)
+    pass(to);
+  else
+    rise_to(to.level_mm);
   build_grid();
 }
 
-// The height of a point over the water is linear in the point: the box's corners bound its change.
-Waterline::Rise Waterline::rise_since_gathered(const Moment& to) const {
-  Rise rise{1e300, -1e300};
-  for (const Vec3& corner : corners_of(box_)) {
-    const double change = to.height(corner) - gathered_->height(corner);
-    rise.least = std::min(rise.least, change);
-    rise.most = std::max(rise.most, change);
+void Waterline::cover(const Box2& plan) {
+  whole_ = Cells(plan, std::max(cell_, (plan.max - plan.min).maxCoeff() / kMostCells));
+  reached_.assign(whole_.count(), 0);
+}
+
+void Waterline::sort_by_bottom() {
+  std::vector<double> bottoms;
+  for (const Triangle& t : triangles_) bottoms.push_back(bottom(positions_, t));
+  by_bottom_.resize(triangles_.size());
+  std::iota(by_bottom_.begin(), by_bottom_.end(), 0);
+  std::stable_sort(by_bottom_.begin(), by_bottom_.end(), [&](std::int32_t a, std::int32_t b) {
+    return bottoms[std::size_t(a)] < bottoms[std::size_t(b)];
+  });
+  Box2 plan;
+  plan.add(box_.min.head<2>());
+  plan.add(box_.max.head<2>());
+  cover(plan);
+}
+
+void Waterline::rise_to(double level) {
+  if (by_bottom_.empty()) sort_by_bottom();
+  const auto reach_of = [&](std::int32_t triangle) {
+    Box2 box;
+    for (std::int32_t v : triangles_[std::size_t(triangle)])
+      box.add(positions_[std::size_t(v)].head<2>());
+    return Reach{triangle, box, whole_.around(box.min, box.max)};
+  };
+  while (next_ < by_bottom_.size() &&
+         bottom(positions_, triangles_[std::size_t(by_bottom_[next_])]) < level)
+    active_.push_back(reach_of(by_bottom_[next_++]));
+  for (const Reach& reach : active_) mark(reach);
+  for (std::size_t n = next_; n < by_bottom_.size(); ++n) {
+    if (bottom(positions_, triangles_[std::size_t(by_bottom_[n])]) > level + kNearSlack_mm) break;
+    mark(reach_of(by_bottom_[n]));
   }
-  return rise;
+  std::erase_if(active_, [&](const Reach& reach) {
+    return top(positions_, triangles_[std::size_t(reach.triangle)]) < level;
+  });
+  for (const Reach& reach : active_) {
+    const Triangle& t = triangles_[std::size_t(reach.triangle)];
+    cut({&positions_[std::size_t(t[0])], &positions_[std::size_t(t[1])],
+         &positions_[std::size_t(t[2])]},
+        level);
+  }
+}
+
+void Waterline::pass(const Moment& to) {
+  Change before = change_;
+  if (gathered_) change_ = change_since_gathered(to);
+  if (!gathered_ || change_.least < -margin_ || change_.most > margin_) {
+    gather(to);
+    before = now_ ? change_since_gathered(*now_) : Change{0, kEverBelow};
+    change_ = {};
+  }
+  const double low = gathered_->level_mm - kRounding_mm - std::max(before.most, change_.most);
+  const double high = gathered_->level_mm + kNearSlack_mm - std::min(before.least, change_.least);
+  for (const Near& near : near_) {
+    if (near.bottom > high || near.top < low) continue;
+    const Corners corners = corners_of(near.triangle, to);
+    Box2 box;
+    for (const Vec3& corner : corners) box.add(corner.head<2>());
+    if (now_)
+      for (const Vec3& corner : corners_of(near.triangle, *now_)) box.add(corner.head<2>());
+    mark({near.triangle, box, whole_.around(box.min, box.max)});
+    cut({&corners[0], &corners[1], &corners[2]}, to.level_mm);
+  }
+  now_ = to;
+}
+
+// The height of a point over the water is linear in the point: the box's corners bound its change.
+Waterline::Change Waterline::change_since_gathered(const Moment& to) const {
+  Change total{1e300, -1e300};
+  for (const Vec3& corner : corners_of_box(box_)) {
+    const double change = to.height(corner) - gathered_->height(corner);
+    total.least = std::min(total.least, change);
+    total.most = std::max(total.most, change);
+  }
+  return total;
 }
 
 // Everything that may be at the water until the next time, and that has been since the last moment.
 void Waterline::gather(const Moment& to) {
   gathered_ = to;
-  const Rise since = now_ ? rise_since_gathered(*now_) : Rise{0, kEverBelow};
+  const Change since = now_ ? change_since_gathered(*now_) : Change{0, kEverBelow};
   const double last = now_ ? std::max(-since.least, since.most) : cell_ / kNearMoves;
   margin_ = kNearMoves * last;
-  constexpr std::size_t kTrianglesPerTask = 1 << 14;
-  std::vector<std::vector<Near>> found((triangles_.size() + kTrianglesPerTask - 1) /
-                                       kTrianglesPerTask);
-  parallel_for(triangles_.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto z = [&](std::size_t k) {
-        return to.sinking_z(positions_[std::size_t(triangles_[t][k])]);
-      };
-      const double a = z(0), b = z(1), c = z(2);
-      const Near near{std::int32_t(t), std::min({a, b, c}), std::max({a, b, c})};
-      if (near.bottom <= to.level_mm + margin_ + kNearSlack_mm &&
-          near.top + std::max(margin_, since.most) >= to.level_mm - kRounding_mm)
-        found[begin / kTrianglesPerTask].push_back(near);
+  // Of the object's whole height, what can be near: in the sinking frame.
+  const double low = to.level_mm - std::max(margin_, since.most) - kRounding_mm;
+  const double high = to.level_mm + margin_ + kNearSlack_mm;
+  constexpr std::size_t kRunsPerTask = 256;
+  std::vector<std::vector<Near>> found((runs_.size() + kRunsPerTask - 1) / kRunsPerTask);
+  parallel_for(runs_.size(), kRunsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t run = begin; run < end; ++run) {
+      const auto [bottom, top] = heights_of(runs_[run], to);
+      if (bottom > high || top < low) continue;
+      const std::size_t last = std::min((run + 1) * kRun, triangles_.size());
+      for (std::size_t t = run * kRun; t < last; ++t) {
+        const auto z = [&](std::size_t k) {
+          return to.sinking_z(positions_[std::size_t(triangles_[t][k])]);
+        };
+        const double a = z(0), b = z(1), c = z(2);
+        const Near near{std::int32_t(t), std::min({a, b, c}), std::max({a, b, c})};
+        if (near.bottom <= high && near.top >= low) found[begin / kRunsPerTask].push_back(near);
+      }
     }
   });
   near_.clear();
   for (const std::vector<Near>& part : found) near_.insert(near_.end(), part.begin(), part.end());
-  std::ranges::stable_sort(near_, {}, &Near::bottom);
   Box2 plan;
-  for (const Vec3& corner : corners_of(box_)) plan.add(to.to_sinking(corner).head<2>());
-  whole_ = Cells(plan, std::max(cell_, (plan.max - plan.min).maxCoeff() / kMostCells));
-  reached_.assign(whole_.count(), 0);
+  for (const Vec3& corner : corners_of_box(box_)) plan.add(to.to_sinking(corner).head<2>());
+  cover(plan);
 }
 
-std::array<Vec3, 3> Waterline::corners(std::int32_t triangle, const Moment& moment) const {
+Waterline::Corners Waterline::corners_of(std::int32_t triangle, const Moment& moment) const {
   const Triangle& t = triangles_[std::size_t(triangle)];
   return {moment.to_sinking(positions_[std::size_t(t[0])]),
           moment.to_sinking(positions_[std::size_t(t[1])]),
           moment.to_sinking(positions_[std::size_t(t[2])])};
 }
 
-void Waterline::mark(const std::array<Vec3, 3>& before, const std::array<Vec3, 3>& now) {
-  Box2 box;
-  for (std::size_t k = 0; k < 3; ++k) {
-    box.add(before[k].head<2>());
-    box.add(now[k].head<2>());
-  }
-  swept_.add(box.min);
-  swept_.add(box.max);
-  const CellRange cells = whole_.around(box.min, box.max);
-  for (int y = cells.y0; y <= cells.y1; ++y)
-    for (int x = cells.x0; x <= cells.x1; ++x) reached_[whole_.number(x, y)] = moves_;
+void Waterline::mark(const Reach& reach) {
+  swept_.add(reach.box.min);
+  swept_.add(reach.box.max);
+  for (int y = reach.cells.y0; y <= reach.cells.y1; ++y)
+    for (int x = reach.cells.x0; x <= reach.cells.x1; ++x) reached_[whole_.number(x, y)] = moves_;
 }
 
 bool Waterline::may_touch(const Vec2& a, const Vec2& b) const {
@@ -159,11 +235,11 @@ bool Waterline::may_touch(const Vec2& a, const Vec2& b) const {
 }
 
 // A corner at exactly the level counts as above it, so every triangle is cut in 0 or 2 edges.
-void Waterline::cut(const std::array<Vec3, 3>& p, double level) {
+void Waterline::cut(const std::array<const Vec3*, 3>& p, double level) {
   Vec2 ends[2];
   int found = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 *a = &p[k], *b = &p[(k + 1) % 3];
+    const Vec3 *a = p[k], *b = p[(k + 1) % 3];
     if ((a->z() >= level) == (b->z() >= level)) continue;
     // From the lower end, so that both triangles of an edge cut it at the same point.
     if (a->z() > b->z()) std::swap(a, b);
@@ -171,7 +247,7 @@ void Waterline::cut(const std::array<Vec3, 3>& p, double level) {
     if (found < 2) ends[found++] = a->head<2>() + s * (b->head<2>() - a->head<2>());
   }
   if (found < 2) return;
-  const Vec3 n = (p[1] - p[0]).cross(p[2] - p[0]);
+  const Vec3 n = (*p[1] - *p[0]).cross(*p[2] - *p[0]);
   const double horizontal = n.head<2>().norm();
   if (!(horizontal > 0)) return;
   Segment segment;

@@ -30,7 +30,7 @@ class Waterline {
             double cell_mm);
 
   // Cuts at a new moment. Costs in proportion to the triangles near the water, as long as the
-  // object moves little from call to call; once in a while, to all of them.
+  // object moves little from call to call, and once in a while a little of all.
   void move_to(const Moment& to);
 
   // Where the straight way from `from` to `to` leaves the object first.
@@ -54,34 +54,54 @@ class Waterline {
   };
   template <class Weight>
   Point blurred(const Point& point, const Weight& weight_of) const;
-  // A triangle that may come to the water soon, and how high it was when that was found.
+  // A triangle and what it reaches, seen from above.
+  struct Reach {
+    std::int32_t triangle;
+    Box2 box;
+    CellRange cells;  // of the grid over the whole object
+  };
+  void cover(const Box2& plan);
+  void mark(const Reach& reach);
+  void cut(const std::array<const Vec3*, 3>& corners, double level);
+
+  // While the object neither shifts nor turns, the water rises through triangles that are sorted.
+  void rise_to(double level);
+  void sort_by_bottom();
+
+  // Else those near the water are gathered once in a while.
   struct Near {
     std::int32_t triangle;
-    double bottom, top;  // then, in the sinking frame
+    double bottom, top;  // when they were, in the sinking frame
   };
-  // How much higher above the water the object's points are than when the triangles near the water
-  // were gathered: least and most.
-  struct Rise {
+  // How much higher above the water the object's points are than then: least and most.
+  struct Change {
     double least = 0, most = 0;
   };
-  Rise rise_since_gathered(const Moment& to) const;
+  void pass(const Moment& to);
+  Change change_since_gathered(const Moment& to) const;
   void gather(const Moment& to);
-  void mark(const std::array<Vec3, 3>& before, const std::array<Vec3, 3>& now);
-  std::array<Vec3, 3> corners(std::int32_t triangle, const Moment& moment) const;
-  void cut(const std::array<Vec3, 3>& corners, double level);
+  using Corners = std::array<Vec3, 3>;  // in the sinking frame
+  Corners corners_of(std::int32_t triangle, const Moment& moment) const;
+
   void build_grid();
 
   const std::vector<Vec3>& positions_;
   const std::vector<Triangle>& triangles_;
   double cell_;
   Box3 box_;  // the object's
-  std::optional<Moment> now_;
-  // Triangles that may come to the water until its height over the object, as it was when they were
-  // gathered, has changed by more than the margin; lowest first.
+
+  std::vector<std::int32_t> by_bottom_;  // triangles by lowest corner
+  std::size_t next_ = 0;                 // first of by_bottom_ that is still above the water
+  std::vector<Reach> active_;            // triangles that reach from below to above the level
+
+  std::vector<Box3> runs_;  // around triangles that follow each other
+  // Triangles that may come to the water until the height of some point has changed by more than
+  // the margin since they were gathered.
   std::vector<Near> near_;
-  std::optional<Moment> gathered_;
+  std::optional<Moment> gathered_, now_;
   double margin_ = 0;
-  Rise rise_;  // now
+  Change change_;  // now
+
   // Cells over the whole object that triangles at the water between the last two moments reach:
   // those with the present number. The box is around all of them.
   Cells whole_;
