@@ -34,7 +34,8 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
                         .paint = model_paint(object, options.base),
                         .health = loaded.health,
                         .units = loaded.units,
-                        .files = loaded.files};
+                        .files = loaded.files,
+                        .picture_problems = loaded.picture_problems};
   // Area and volume grow with the object.
   const double scale = result.posed.scale();
   result.health.area_mm2 *= scale * scale;
@@ -44,14 +45,18 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
   return result;
 }
 
-void require_appearance(const Object& object, const std::filesystem::path& model) {
+void require_appearance(const Object& object, const std::vector<std::string>& picture_problems,
+                        const std::filesystem::path& model) {
+  // A model of one colour whose picture is missing would print as a plain sheet.
+  if (!picture_problems.empty() && object.one_color())
+    throw InputError(fmt::format("{}: {}", model.string(), picture_problems.front()));
   if (object.has_appearance()) return;
   if (!object.uvs.empty())
     throw InputError(fmt::format(
         "{}: the model has texture coordinates but no texture: name the image with --texture",
         model.string()));
   throw InputError(fmt::format(
-      "{}: the model has neither texture coordinates (UVs) nor vertex colours, so there is nothing "
+      "{}: the model has neither texture coordinates (UVs) nor colours, so there is nothing "
       "to print: unwrap it (in Blender: UV > Smart UV Project) and name an image with --texture, "
       "or "
       "paint vertex colours and save it as PLY",
