@@ -2,14 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory.h"
 
 namespace hydrodip {
 namespace {
 
 constexpr double kTiny_mm = 5;
+
+// The film image as wanted, stretched, inked and seen, and what is written of it.
+constexpr double kBytesPerPixel = 32;
 
 void warn_if_tiny(const TriangleMesh& mesh, RunContext& context) {
   const double largest_mm = mesh.bounds().size().maxCoeff();
@@ -43,6 +48,18 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
   warn_if_tiny(result.posed.mesh(), context);
   context.progress("loading", 1);
   return result;
+}
+
+void require_memory(const DesignOptions& options) {
+  const double width_px = options.film.width_mm / kMmPerInch * options.dpi;
+  const double height_px = options.film.height_mm / kMmPerInch * options.dpi;
+  const double needed = kBytesPerPixel * width_px * height_px, limit = memory_limit_bytes();
+  if (needed <= limit) return;
+  throw InputError(fmt::format(
+      "the sheet of {:.0f} x {:.0f} px needs about {:.1f} GB of memory, but there are {:.1f} GB; "
+      "lower --dpi to {:.0f} or less",
+      width_px, height_px, needed / 1e9, limit / 1e9,
+      std::floor(options.dpi * std::sqrt(limit / needed))));
 }
 
 void require_appearance(const Object& object, const std::vector<std::string>& picture_problems,

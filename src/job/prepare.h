@@ -31,4 +31,7 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
 void require_appearance(const Object& object, const std::vector<std::string>& picture_problems,
                         const std::filesystem::path& model);
 
+// Throws InputError if the sheet's pictures cannot fit the memory that there is.
+void require_memory(const DesignOptions& options);
+
 }  // namespace hydrodip

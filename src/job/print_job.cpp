@@ -31,17 +31,20 @@ SheetOptions sheet_options(const JobConfig& config) {
 void require_ink(const FilmInk& ink, const JobConfig& config) {
   const auto& laid = ink.inking.inks.cmyk;
   if (std::any_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value != 0; })) return;
-  throw InputError(fmt::format(
-      "{}: the sheet would be blank: what the film reaches of the model is white, transparent or of "
-      "the object's own colour; check its texture and colours, which side enters the water (--down), "
-      "and --depth",
-      config.model.string()));
+  throw InputError(
+      fmt::format("{}: the sheet would be blank: what the film reaches of the model is white, "
+                  "transparent or of "
+                  "the object's own colour; check its texture and colours, which side enters the "
+                  "water (--down), "
+                  "and --depth",
+                  config.model.string()));
 }
 
 }  // namespace
 
 JobResult print_job(const JobConfig& config, RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
+  require_memory(config.design);
   OutputFolder folder(config.output);
   Timings times;
 

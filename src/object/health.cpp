@@ -206,8 +206,7 @@ long count_shells(const Object& object) {
 // Closes holes that are small beside the object and beside the shell that they are in.
 class HoleFiller {
  public:
-  HoleFiller(Object& object, const std::vector<Side>& sides)
-      : object_(object), sides_(sides) {}
+  HoleFiller(Object& object, const std::vector<Side>& sides) : object_(object), sides_(sides) {}
 
   // Returns how many it closed.
   long run() {
@@ -526,6 +525,44 @@ bool box_inside(const Box3& inner, const Box3& outer) {
          (inner.max.array() <= outer.max.array()).all();
 }
 
+// Pairs of closed patches (container, candidate) of which the first may surround the second: its
+// box does, and it is larger. Swept along the longest axis, so that thousands of small shells side
+// by side need not be compared each with each. Sorted by container.
+std::vector<std::pair<std::int32_t, std::int32_t>> nested_boxes(
+    const std::vector<std::int32_t>& by_volume, const std::vector<PatchShape>& shapes) {
+  Box3 all;
+  for (const std::int32_t patch : by_volume) {
+    all.add(shapes[std::size_t(patch)].box.min);
+    all.add(shapes[std::size_t(patch)].box.max);
+  }
+  int axis = 0;
+  all.size().maxCoeff(&axis);
+  // Places in by_volume; a smaller place means a larger patch.
+  std::vector<std::int32_t> order(by_volume.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = std::int32_t(i);
+  const auto box = [&](std::int32_t place) -> const Box3& {
+    return shapes[std::size_t(by_volume[std::size_t(place)])].box;
+  };
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return box(a).min[axis] < box(b).min[axis];
+  });
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  std::vector<std::int32_t> open;
+  for (const std::int32_t place : order) {
+    check_cancelled();
+    const double at = box(place).min[axis];
+    std::erase_if(open, [&](std::int32_t other) { return box(other).max[axis] < at; });
+    for (const std::int32_t other : open) {
+      const std::int32_t outer = std::min(place, other), inner = std::max(place, other);
+      if (box_inside(box(inner), box(outer)))
+        pairs.emplace_back(by_volume[std::size_t(outer)], by_volume[std::size_t(inner)]);
+    }
+    open.push_back(place);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
 // Per patch: how many other closed patches surround it.
 std::vector<int> nesting_depth(const Object& object, const Patches& patches,
                                const std::vector<PatchShape>& shapes) {
@@ -539,22 +576,16 @@ std::vector<int> nesting_depth(const Object& object, const Patches& patches,
   for (std::size_t f = 0; f < patches.patch_of.size(); ++f) {
     members[std::size_t(patches.patch_of[f])].push_back(std::int32_t(f));
   }
-  // Largest first: only the few large ones can contain many others.
   std::stable_sort(by_volume.begin(), by_volume.end(), [&](std::int32_t a, std::int32_t b) {
     return std::abs(shapes[std::size_t(a)].volume6) > std::abs(shapes[std::size_t(b)].volume6);
   });
-  for (std::size_t outer = 0; outer < by_volume.size(); ++outer) {
+  const auto pairs = nested_boxes(by_volume, shapes);
+  for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
     check_cancelled();
-    const auto container = std::size_t(by_volume[outer]);
-    std::vector<std::size_t> candidates;
-    for (std::size_t inner = outer + 1; inner < by_volume.size(); ++inner) {
-      const auto candidate = std::size_t(by_volume[inner]);
-      if (box_inside(shapes[candidate].box, shapes[container].box)) candidates.push_back(candidate);
-    }
-    if (candidates.empty()) continue;
+    const auto container = std::size_t(pairs[begin].first);
     const CrossingCounter counter(object, members[container], shapes[container].box);
-    for (const std::size_t candidate : candidates) {
-      check_cancelled();
+    for (; end < pairs.size() && pairs[end].first == pairs[begin].first; ++end) {
+      const auto candidate = std::size_t(pairs[end].second);
       const Triangle& t = object.triangles[std::size_t(shapes[candidate].first_face)];
       const Vec3 probe =
           (object.positions[std::size_t(t[0])] + object.positions[std::size_t(t[1])] +
