@@ -6,6 +6,7 @@
 #pragma GCC diagnostic ignored "-Wextra"
 #pragma GCC diagnostic ignored "-Wshadow"
 #include <draco/compression/decode.h>
+#include <draco/metadata/metadata_decoder.h>
 #pragma GCC diagnostic pop
 
 #include <stdexcept>
@@ -22,9 +23,17 @@ constexpr std::uint8_t kMesh = 1, kSequential = 0;
 void check_counts(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < kHeader || bytes[7] != kMesh)
     throw std::runtime_error("not a mesh compressed by Draco");
+  std::size_t at = kHeader;
   const bool has_metadata = (bytes[10] & 0x80) != 0;
-  if (has_metadata) throw std::runtime_error("a Draco mesh with metadata");
-  std::size_t at = kHeader + (bytes[8] == kSequential ? 0 : 1);
+  if (has_metadata) {
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(bytes.data()) + at, bytes.size() - at);
+    draco::GeometryMetadata metadata;
+    if (!draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata))
+      throw std::runtime_error("its metadata is damaged");
+    at += std::size_t(buffer.decoded_size());
+  }
+  if (bytes[8] != kSequential) ++at;
   for (int count = 0; count < 2; ++count) {
     std::uint64_t value = 0;
     for (int shift = 0; shift < 64; shift += 7) {

@@ -25,17 +25,36 @@ constexpr int kMaxDepth = 128;  // of nodes
 // Extensions that a file may require: those that are read, and those that change neither shape nor
 // base colour.
 bool tolerated(const std::string& name) {
-  static constexpr const char* kNames[] = {
-      "KHR_texture_transform",    "KHR_mesh_quantization", "KHR_draco_mesh_compression",
-      "EXT_meshopt_compression",  "EXT_texture_webp",      "EXT_mesh_gpu_instancing",
-      "KHR_texture_basisu",       "KHR_lights_punctual",   "EXT_lights_image_based",
-      "EXT_lights_ies",           "KHR_animation_pointer", "KHR_xmp",
-      "KHR_xmp_json_ld",          "KHR_audio_emitter",     "MSFT_texture_dds",
-      "EXT_texture_avif",         "EXT_mesh_features",     "EXT_structural_metadata",
-      "EXT_instance_features",    "KHR_node_visibility",   "KHR_node_hoverability",
-      "KHR_node_selectability",   "KHR_interactivity",     "CESIUM_RTC",
-      "CESIUM_primitive_outline", "EXT_primitive_voxels",  "FB_geometry_metadata",
-      "AGI_articulations",        "AGI_stk_metadata"};
+  static constexpr const char* kNames[] = {"KHR_texture_transform",
+                                           "KHR_mesh_quantization",
+                                           "KHR_draco_mesh_compression",
+                                           "EXT_meshopt_compression",
+                                           "KHR_meshopt_compression",
+                                           "EXT_texture_webp",
+                                           "EXT_mesh_gpu_instancing",
+                                           "KHR_texture_basisu",
+                                           "KHR_lights_punctual",
+                                           "EXT_lights_image_based",
+                                           "EXT_lights_ies",
+                                           "KHR_animation_pointer",
+                                           "KHR_xmp",
+                                           "KHR_xmp_json_ld",
+                                           "KHR_audio_emitter",
+                                           "MSFT_texture_dds",
+                                           "EXT_texture_avif",
+                                           "EXT_mesh_features",
+                                           "EXT_structural_metadata",
+                                           "EXT_instance_features",
+                                           "KHR_node_visibility",
+                                           "KHR_node_hoverability",
+                                           "KHR_node_selectability",
+                                           "KHR_interactivity",
+                                           "CESIUM_RTC",
+                                           "CESIUM_primitive_outline",
+                                           "EXT_primitive_voxels",
+                                           "FB_geometry_metadata",
+                                           "AGI_articulations",
+                                           "AGI_stk_metadata"};
   return name.starts_with("KHR_materials_") || name.starts_with("EXT_materials_") ||
          name.starts_with("ADOBE_materials_") ||
          std::any_of(std::begin(kNames), std::end(kNames),

@@ -275,6 +275,12 @@ FileBytes GltfData::data_uri(const std::string& uri) const {
   return out;
 }
 
+// meshoptimizer's, by either name.
+const json* GltfData::compression_of(const json& owner) const {
+  const json* compression = extension(owner, "EXT_meshopt_compression");
+  return compression ? compression : extension(owner, "KHR_meshopt_compression");
+}
+
 void GltfData::read_buffers() {
   for (std::size_t i = 0; i < table_size("buffers"); ++i) {
     const json& buffer = entry("buffers", std::int64_t(i));
@@ -282,7 +288,7 @@ void GltfData::read_buffers() {
     const auto uri = buffer.find("uri");
     Span bytes;
     if (uri == buffer.end()) {
-      const json* fallback = extension(buffer, "EXT_meshopt_compression");
+      const json* fallback = compression_of(buffer);
       // A place for what compressed views unpack to has no bytes of its own.
       if (i == 0 && glb_) {
         bytes = bin_;
@@ -327,7 +333,7 @@ Span GltfData::buffer_part(const json& part) const {
 
 Span GltfData::view(std::int64_t index) {
   const json& view = entry("bufferViews", index);
-  const json* compression = extension(view, "EXT_meshopt_compression");
+  const json* compression = compression_of(view);
   if (!compression) return buffer_part(view);
   const auto known = unpacked_.find(index);
   if (known != unpacked_.end()) return known->second;

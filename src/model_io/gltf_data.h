@@ -74,6 +74,7 @@ class GltfData {
   void check_version() const;
   void read_buffers();
   std::span<const std::uint8_t> buffer_part(const nlohmann::json& part) const;
+  const nlohmann::json* compression_of(const nlohmann::json& owner) const;
   FileBytes unpacked(const nlohmann::json& compression) const;
   void read_sparse(const nlohmann::json& sparse, GltfNumbers& numbers);
 
