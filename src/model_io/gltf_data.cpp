@@ -288,17 +288,12 @@ void GltfData::read_buffers() {
     const auto uri = buffer.find("uri");
     Span bytes;
     if (uri == buffer.end()) {
-      const json* fallback = compression_of(buffer);
-      // A place for what compressed views unpack to has no bytes of its own.
-      if (i == 0 && glb_) {
-        bytes = bin_;
-      } else if (!fallback) {
-        refuse("a buffer has no data");
-      }
-      if (fallback) {
-        buffers_.push_back(bytes);
+      // Without bytes it is a place for what compressed views unpack to.
+      if (i != 0 || !glb_ || compression_of(buffer)) {
+        buffers_.emplace_back();
         continue;
       }
+      bytes = bin_;
     } else {
       if (!uri->is_string()) refuse("a buffer's address is not text");
       const auto& name = uri->get_ref<const std::string&>();

@@ -308,8 +308,15 @@ class PlyReader {
       FileMaterial material;
       material.picture = std::int32_t(file_.pictures.size());
       file_.materials.push_back(material);
-      file_.pictures.push_back({name, input_.name, false, {}, ""});
+      file_.pictures.push_back({file_name(name), input_.name, false, {}, ""});
     }
+  }
+
+  // MeshLab writes "<this>" for the model's own name.
+  std::string file_name(const std::string& name) const {
+    constexpr std::string_view kThis = "<this>";
+    if (!name.starts_with(kThis)) return name;
+    return input_.name.substr(0, input_.name.rfind('.')) + name.substr(kThis.size());
   }
 
   void read_element(const PlyElement& element) {

@@ -238,6 +238,13 @@ TEST_F(Formats, PlySeveralPictures) {
   expect_four_colours(load(folder_.write("a.ply", text)));
 }
 
+TEST_F(Formats, PlyPicturesNamedAfterTheModel) {
+  folder_.write("a_0.png", fixtures::four_colour_png());
+  expect_four_colours(load(folder_.write(
+      "a.ply", ply_square("comment TextureFile <this>_0.png\n",
+                          "property list uchar float texcoord\n", " 8 0 0 1 0 1 1 0 1"))));
+}
+
 TEST_F(Formats, PlyColoursOfFaces) {
   const std::string text = ply_square(
       "", "property uchar red\nproperty uchar green\nproperty uchar blue\n", " 10 200 30");
