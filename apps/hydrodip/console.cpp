@@ -9,14 +9,15 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "harmless.h"
 
 namespace hydrodip {
 namespace {
 
 std::string one_line(std::string text) {
   for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  return text;
+    if (c == '\n' || c == '\r' || c == '\t') c = ' ';
+  return harmless(text);
 }
 
 void write_error_line(const std::string& line) {
@@ -32,9 +33,13 @@ void prepare_console() {
       if (::open("/dev/null", descriptor == 0 ? O_RDONLY : O_WRONLY) == -1) return;
     }
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit then ends in a sentence, as a full disk does
 }
 
-void print_result(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+void print_result(const std::string& text) {
+  const std::string shown = harmless(text);
+  std::fwrite(shown.data(), 1, shown.size(), stdout);
+}
 
 void print_error(const std::string& sentence) {
   write_error_line("error: " + one_line(sentence) + "\n");

@@ -4,7 +4,9 @@
 
 #include <exception>
 #include <new>
+#include <system_error>
 
+#include "affordable_threads.h"
 #include "base/error.h"
 #include "command_line.h"
 #include "console.h"
@@ -31,6 +33,7 @@ int run(const std::vector<std::string>& arguments) {
   if (!line.command) {
     print_result(line.text);
   } else {
+    const AffordableThreads threads;
     RunContext context;
     const CancelOnInterrupt cancel_on_interrupt(context);
     const JobResult result = run_with_progress(line, context);
@@ -57,6 +60,9 @@ int run_safely(const std::vector<std::string>& arguments) {
     return kExitCancelled;
   } catch (const std::bad_alloc&) {
     return fail(kExitFailed, "not enough memory; a lower print.dpi or film.elements needs less");
+  } catch (const std::system_error& error) {
+    return fail(kExitFailed, std::string("the system refuses what the job needs (") + error.what() +
+                                 "); raise its limits, or try --threads 1");
   } catch (const std::exception& error) {
     return fail(kExitFailed, std::string("unexpected: ") + error.what());
   }

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "console.h"
+#include "harmless.h"
 
 namespace hydrodip {
 namespace {
@@ -58,7 +59,7 @@ void ProgressLine::clear() {
 }
 
 void ProgressLine::redraw(double fraction) {
-  std::fputs(("\r\033[K" + describe(fraction)).c_str(), stderr);
+  std::fputs(("\r\033[K" + harmless(describe(fraction))).c_str(), stderr);
   std::fflush(stderr);
   drawn_ = true;
 }

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "harmless.h"
 
 namespace hydrodip {
 namespace {
@@ -23,12 +24,12 @@ std::string trimmed(const std::string& text) {
 
 void TerminalOperator::say(const std::string& text) {
   clear_line();
-  std::fputs((text + "\n").c_str(), stderr);
+  std::fputs((harmless(text) + "\n").c_str(), stderr);
 }
 
 std::string TerminalOperator::ask(const std::string& question) {
   clear_line();
-  std::fputs(question.c_str(), stderr);
+  std::fputs(harmless(question).c_str(), stderr);
   std::fflush(stderr);
   std::string line;
   while (!take_line(line)) {
@@ -46,7 +47,7 @@ std::string TerminalOperator::ask(const std::string& question) {
 // Where nobody looks on, lines would only pile up.
 void TerminalOperator::show(const std::string& line) {
   if (::isatty(STDERR_FILENO) == 0) return;
-  std::fputs(("\r\033[K" + line).c_str(), stderr);
+  std::fputs(("\r\033[K" + harmless(line)).c_str(), stderr);
   std::fflush(stderr);
   shown_ = true;
 }

@@ -1,10 +1,16 @@
 #include "base/output_folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <stdlib.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -54,11 +60,67 @@ void remove_created(std::vector<fs::path>& created) {
   }
 }
 
-bool make_staging_folder(const fs::path& folder, fs::path& staging) {
-  std::string name = (folder / ".hydrodip-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) return false;
-  staging = name;
-  return true;
+constexpr const char* kStagingPrefix = ".hydrodip-";
+
+// Locks the folder for as long as this process lives; -1 if another one has, or it is gone.
+int lock_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (descriptor < 0) return -1;
+  struct stat locked = {}, named = {};
+  // Who removes an abandoned folder may have been faster.
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::fstat(descriptor, &locked) == 0 &&
+      ::stat(folder.c_str(), &named) == 0 && locked.st_ino == named.st_ino)
+    return descriptor;
+  ::close(descriptor);
+  return -1;
+}
+
+// A staging folder that nobody has locked was left by a process that was killed.
+void clear_abandoned(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<fs::path> found;
+  for (fs::directory_iterator it(folder, ignored), end; !ignored && it != end;
+       it.increment(ignored)) {
+    const std::string name = it->path().filename().string();
+    if (name.starts_with(kStagingPrefix) && name.size() == std::strlen(kStagingPrefix) + 6)
+      found.push_back(it->path());
+  }
+  for (const fs::path& staging : found) {
+    const int lock = lock_folder(staging);
+    if (lock < 0) continue;
+    fs::remove_all(staging, ignored);
+    ::close(lock);
+  }
+}
+
+bool make_staging_folder(const fs::path& folder, fs::path& staging, int& lock) {
+  for (int tries = 0; tries < 10; ++tries) {
+    std::string name = (folder / (std::string(kStagingPrefix) + "XXXXXX")).string();
+    if (mkdtemp(name.data()) == nullptr) return false;
+    staging = name;
+    lock = lock_folder(staging);
+    if (lock >= 0 || errno == ENOTSUP || errno == ENOLCK) return true;
+  }
+  return true;  // a file system without locks
+}
+
+// Most of what hydrodip writes has its name in it, near one end; JSON results say their command.
+bool names_hydrodip(const fs::path& file) {
+  constexpr std::streamoff kPart = 1 << 16;
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes(std::size_t(kPart), '\0');
+  const auto part_speaks = [&](std::streamoff from) {
+    stream.clear();
+    stream.seekg(from);
+    stream.read(bytes.data(), kPart);
+    const auto read = std::size_t(std::max<std::streamsize>(stream.gcount(), 0));
+    const std::string_view part = std::string_view(bytes).substr(0, read);
+    return part.find("hydrodip") != std::string_view::npos ||
+           part.find("\n  \"command\": \"") != std::string_view::npos;
+  };
+  std::error_code error;
+  const auto size = std::streamoff(fs::file_size(file, error));
+  return !error && (part_speaks(0) || part_speaks(std::max<std::streamoff>(size - kPart, 0)));
 }
 
 // Puts finished files under their final names one by one; undo() brings everything back.
@@ -118,7 +180,9 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder.empty() ? ".
   for (auto it = missing.rbegin(); it != missing.rend() && !error; ++it) {
     if (fs::create_directory(*it, error)) created_.push_back(*it);
   }
-  if (!error && !make_staging_folder(folder_, staging_)) error = {errno, std::generic_category()};
+  if (!error) clear_abandoned(folder_);
+  if (!error && !make_staging_folder(folder_, staging_, lock_))
+    error = {errno, std::generic_category()};
   if (error) {
     remove_created(created_);
     refuse_folder(folder_, error);
@@ -128,7 +192,36 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder.empty() ? ".
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   if (!staging_.empty()) fs::remove_all(staging_, ignored);
+  if (lock_ >= 0) ::close(lock_);
   remove_created(created_);
+}
+
+void OutputFolder::announce(const std::vector<std::string>& names,
+                            const std::vector<fs::path>& inputs) {
+  std::error_code ignored;
+  std::vector<std::string> foreign;
+  bool ours = false;
+  for (const std::string& name : names) {
+    const fs::path file = folder_ / name;
+    if (!fs::exists(file, ignored)) continue;
+    for (const fs::path& input : inputs)
+      if (fs::equivalent(file, input, ignored))
+        throw InputError(
+            fmt::format("{}: the job reads this file, and its result {} would overwrite it; choose "
+                        "another output folder with -o.",
+                        input.string(), name));
+    if (!fs::is_regular_file(file, ignored)) continue;  // commit() says what is in the way
+    if (names_hydrodip(file)) {
+      ours = true;
+    } else {
+      foreign.push_back(name);
+    }
+  }
+  if (!foreign.empty() && !ours)
+    throw InputError(
+        fmt::format("{}: this file was not written by hydrodip, and would be replaced; choose "
+                    "another output folder with -o, or move it away.",
+                    (folder_ / foreign.front()).string()));
 }
 
 fs::path OutputFolder::path(const std::string& name) {
@@ -153,6 +246,8 @@ void OutputFolder::commit() {
   }
   Replacement replacement(staging_, folder_);
   for (const std::string& name : names_) {
+    std::error_code ignored;
+    replaced_earlier_ = replaced_earlier_ || fs::exists(folder_ / name, ignored);
     error = replacement.replace(name);
     if (error) {
       replacement.undo();

@@ -9,7 +9,8 @@ namespace hydrodip {
 
 // Opens (creating if needed) the folder and a hidden staging folder inside it. Files are written
 // to path(name) and moved to their final names by commit(); without commit() the destructor
-// removes everything, including folders that the constructor itself created.
+// removes everything, including folders that the constructor itself created. Staging folders of
+// processes that were killed are removed by the next one that opens the folder.
 class OutputFolder {
  public:
   // Throws InputError if the folder cannot be created or written to.
@@ -17,6 +18,14 @@ class OutputFolder {
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
+
+  // Says, before anything long is computed, which files will be written and which the job reads.
+  // Throws InputError if one of them would overwrite an input, or a file that hydrodip did not
+  // write: one without hydrodip's name in it, and without a file among `names` beside it that has.
+  void announce(const std::vector<std::string>& names,
+                const std::vector<std::filesystem::path>& inputs);
+  // Whether commit() has put new files in the place of earlier ones.
+  bool replaced_earlier() const { return replaced_earlier_; }
 
   // Where to write the file that will be called name.
   std::filesystem::path path(const std::string& name);
@@ -30,8 +39,10 @@ class OutputFolder {
  private:
   std::filesystem::path folder_;
   std::filesystem::path staging_;
+  int lock_ = -1;  // on the staging folder, while this process lives
   std::vector<std::filesystem::path> created_;
   std::vector<std::string> names_;
+  bool replaced_earlier_ = false;
 };
 
 }  // namespace hydrodip

@@ -264,7 +264,7 @@ std::string summary(const Calibration& calibration, const std::vector<Subject>& 
 }
 
 JobResult shard_result(const JobConfig& config, const Shard& shard, const Search& search,
-                       std::size_t total) {
+                       std::size_t total, const RunContext& context) {
   JobResult result;
   result.folder = config.output;
   result.files = {kStoreName};
@@ -275,6 +275,8 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
       "each "
       "of their folders.\n",
       shard.number, shard.shards, total - missing, total, (config.output / kStoreName).string());
+  for (const std::string& warning : context.warnings())
+    result.text += fmt::format("warning: {}\n", warning);
   result.json = Json{{"command", "calibrate"},
                      {"folder", config.output.string()},
                      {"shard", fmt::format("{}/{}", shard.number, shard.shards)},
@@ -300,15 +302,21 @@ JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& reque
 
   make_folder(config.output);
   SimulationStore store(config.output / kStoreName, store_files(request.merged));
+  std::vector<std::string> fingerprints;
+  for (const Subject& subject : subjects) fingerprints.push_back(subject.fingerprint);
+  for (const std::string& oddity : store.oddities(fingerprints)) context.warn(oddity);
   Search search(subjects, config.design, request.square_mm, options, store);
   if (!request.shard.empty()) {
     search.simulate_grid(shard, context);
-    return shard_result(config, shard, search, grid_points(options).size() * subjects.size());
+    return shard_result(config, shard, search, grid_points(options).size() * subjects.size(),
+                        context);
   }
   const Calibration calibration = search.run(context);
   warn_of_edges(calibration, context);
 
   OutputFolder folder(config.output);
+  folder.announce({"profile.toml", "calibration.json", "error-surface.csv", "error-surface.png"},
+                  files_of(subjects));
   write_file(folder.path("profile.toml"), profile_toml(calibration, subjects));
   const std::string json =
       calibration_json(calibration, subjects, config, request.square_mm, context)

@@ -145,6 +145,7 @@ JobResult kit_job(const JobConfig& config, const CalibrationRequest& request, Ru
   write_instructions(folder.path("instructions.pdf"), config, request.scans, request.square_mm,
                      context);
   result.files.insert(result.files.end(), {"checkerboard.pdf", "instructions.pdf"});
+  folder.announce(result.files, {});
   context.check_cancelled();
   folder.commit();
 

@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -103,19 +104,52 @@ void SimulationStore::read(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = read_file(file);
   const std::string text(bytes.begin(), bytes.end());
   std::size_t number = 0;
+  read_.push_back({file, {}, {}});
+  FileRead& about = read_.back();
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find('\n', begin);
     if (end == std::string::npos) break;  // of another process, still being written
     ++number;
     SimulationKey key;
     SimulationResult result;
-    if (!parse_line(text.substr(begin, end - begin), key, result))
-      refuse(file, fmt::format("line {} is no result of a simulation; is this a store that "
-                               "'hydrodip calibrate' wrote?",
-                               number));
-    results_.try_emplace(key, result);
+    if (parse_line(text.substr(begin, end - begin), key, result)) {
+      results_.try_emplace(key, result);
+      ++about.of_subject[key.subject];
+    } else {
+      about.damaged.push_back(number);
+    }
     begin = end + 1;
   }
+  if (about.of_subject.empty() && !about.damaged.empty())
+    refuse(file, fmt::format("line {} is no result of a simulation; is this a store that "
+                             "'hydrodip calibrate' wrote?",
+                             about.damaged.front()));
+}
+
+std::vector<std::string> SimulationStore::oddities(const std::vector<std::string>& subjects) const {
+  std::vector<std::string> sentences;
+  for (const FileRead& about : read_) {
+    if (!about.damaged.empty())
+      sentences.push_back(fmt::format(
+          "{}: {} damaged ({} {}); what stood there is simulated again.", about.file.string(),
+          about.damaged.size() == 1 ? "a line is"
+                                    : fmt::format("{} lines are", about.damaged.size()),
+          about.damaged.size() == 1 ? "line" : "first: line", about.damaged.front()));
+    std::size_t all = 0, foreign = 0;
+    for (const auto& [subject, count] : about.of_subject) {
+      all += count;
+      const bool ours =
+          std::any_of(subjects.begin(), subjects.end(),
+                      [&](const std::string& known) { return subject.starts_with(known); });
+      if (!ours) foreign += count;
+    }
+    if (foreign > 0 && about.file != file_)
+      sentences.push_back(fmt::format(
+          "{}: {} of its {} simulations are not used: they are of other scans, other objects or "
+          "other settings (film.elements, dip.step_mm, ...) than this calibration's.",
+          about.file.string(), foreign, all));
+  }
+  return sentences;
 }
 
 const SimulationResult* SimulationStore::find(const SimulationKey& key) const {

@@ -25,12 +25,12 @@ struct SimulationKey {
 using SimulationResult = std::optional<WarpedGrid>;
 
 // Text, a line of JSON per simulation, so that stores merge by putting one behind the other. A line
-// cut short by a kill or a crash is dropped when the store is opened. Only one process at a time
-// may write.
+// cut short by a kill or a crash is dropped when the store is opened, other damaged lines are
+// passed over. Only one process at a time may write.
 class SimulationStore {
  public:
   // Opens or makes the file, and reads others beside it, which stay as they are. Throws InputError
-  // if it cannot be read or written, is no store, or another process has it open.
+  // if it cannot be read or written, has no line that a store has, or another process has it open.
   SimulationStore(const std::filesystem::path& file,
                   const std::vector<std::filesystem::path>& others);
   ~SimulationStore();
@@ -42,12 +42,22 @@ class SimulationStore {
   void add(const SimulationKey& key, const SimulationResult& result);
   std::size_t size() const { return results_.size(); }
 
+  // What a user should know of the files: lines passed over, and results whose subject begins like
+  // none of these. One sentence each.
+  std::vector<std::string> oddities(const std::vector<std::string>& subjects) const;
+
  private:
   void read(const std::filesystem::path& file);
   void drop_torn_line();
 
   std::filesystem::path file_;
   int descriptor_ = -1;
+  struct FileRead {
+    std::filesystem::path file;
+    std::vector<std::size_t> damaged;               // lines
+    std::map<std::string, std::size_t> of_subject;  // how many results
+  };
+  std::vector<FileRead> read_;
   std::map<SimulationKey, SimulationResult> results_;
 };
 

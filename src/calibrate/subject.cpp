@@ -268,4 +268,10 @@ bool any_synthetic(const std::vector<Subject>& subjects) {
                      [](const Subject& subject) { return subject.scan.synthetic; });
 }
 
+std::vector<std::filesystem::path> files_of(const std::vector<Subject>& subjects) {
+  std::vector<std::filesystem::path> files;
+  for (const Subject& subject : subjects) files.push_back(subject.file);
+  return files;
+}
+
 }  // namespace hydrodip

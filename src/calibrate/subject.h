@@ -31,6 +31,9 @@ struct Subject {
   std::string fingerprint;         // of all that a simulated comparison depends on but parameters
 };
 
+// The scans' files.
+std::vector<std::filesystem::path> files_of(const std::vector<Subject>& subjects);
+
 // A scan compared with one simulated dip.
 struct Comparison {
   WarpedGrid warped;

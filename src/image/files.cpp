@@ -15,11 +15,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <span>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/math.h"
 #include "base/run_scope.h"
+#include "image/decoders.h"
 
 namespace hydrodip {
 
@@ -27,7 +30,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::uint32_t kMaxSidePx = 1u << 15;
+constexpr png_uint_32 kMaxSidePx = 1u << 15;  // check_picture_size says so first
 constexpr std::uint8_t kPngSignature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 constexpr std::size_t kMessageSize = 256;
 
@@ -41,25 +44,6 @@ bool is_jpeg(const Bytes& bytes) {
 
 std::uint32_t big_endian32(const std::uint8_t* p) {
   return std::uint32_t(p[0]) << 24 | std::uint32_t(p[1]) << 16 | std::uint32_t(p[2]) << 8 | p[3];
-}
-
-[[noreturn]] void refuse(const std::string& name, const char* kind, const char* detail) {
-  throw InputError(
-      fmt::format("{}: damaged or truncated {} image ({}); save it again from an image editor.",
-                  name, kind, detail));
-}
-
-// A few bytes may claim any size; believe only what such a file could possibly hold, so that a
-// forged header cannot ask for gigabytes.
-void check_size(const std::string& name, const char* kind, std::uint32_t width,
-                std::uint32_t height, double smallest_file_bytes, std::size_t file_bytes) {
-  if (width == 0 || height == 0) refuse(name, kind, "it has no pixels");
-  if (width > kMaxSidePx || height > kMaxSidePx) {
-    throw InputError(
-        fmt::format("{}: the image is {} x {} px, more than {} px a side; scale it down.", name,
-                    width, height, kMaxSidePx));
-  }
-  if (smallest_file_bytes > double(file_bytes)) refuse(name, kind, "too few bytes for its size");
 }
 
 // ---- PNG ----------------------------------------------------------------------------------------
@@ -145,44 +129,70 @@ struct PngReader {
   PngReader& operator=(const PngReader&) = delete;
 };
 
-Image decode_png(const Bytes& bytes, const std::string& name) {
+// Calls visit(type, data) for a PNG's chunks, as far as they are whole, until it returns false.
+template <typename Visit>
+void for_each_chunk(const Bytes& bytes, Visit visit) {
+  for (std::size_t at = 8; at + 12 <= bytes.size();) {
+    const std::size_t length = big_endian32(&bytes[at]);
+    if (length > bytes.size() - at - 12) return;
+    const std::string_view type(reinterpret_cast<const char*>(&bytes[at + 4]), 4);
+    if (!visit(type, std::span(bytes).subspan(at + 8, length))) return;
+    at += length + 12;
+  }
+}
+
+void read_png_colors(png_structp png, png_infop info, const Bytes& bytes, StoredPicture& picture) {
+  png_charp profile_name = nullptr;
+  png_bytep profile = nullptr;
+  png_uint_32 size = 0;
+  int method = 0;
+  if (png_get_iCCP(png, info, &profile_name, &method, &profile, &size))
+    picture.profile.assign(profile, profile + size);
+  for_each_chunk(bytes, [&](std::string_view type, std::span<const std::uint8_t> data) {
+    if (type == "cICP" && data.size() == 4) picture.cicp = {data[0], data[1], data[2], data[3]};
+    if (type == "eXIf") picture.orientation = exif_orientation(data);
+    return true;
+  });
+}
+
+StoredPicture decode_png(const Bytes& bytes, const std::string& name) {
   if (bytes.size() < 33 || std::memcmp(bytes.data() + 12, "IHDR", 4) != 0) {
-    refuse(name, "PNG", "it has no header");
+    refuse_picture(name, "PNG", "it has no header");
   }
   const std::uint32_t width = big_endian32(bytes.data() + 16);
   const std::uint32_t height = big_endian32(bytes.data() + 20);
   // Deflate shrinks at most 1032 to 1, and a pixel has at least one bit.
-  check_size(name, "PNG", width, height, double(width) * height / 8 / 1040, bytes.size());
+  check_picture_size(name, "PNG", width, height, double(width) * height / 8 / 1040, bytes.size());
   PngSource source{&bytes, 0, {}};
   PngReader reader(source);
   if (!reader.info || !png_read_header(reader.png, reader.info)) {
-    refuse(name, "PNG", source.message);
+    refuse_picture(name, "PNG", source.message);
   }
   if (png_get_rowbytes(reader.png, reader.info) != std::size_t(4) * width) {
-    refuse(name, "PNG", "unusual pixel layout");
+    refuse_picture(name, "PNG", "unusual pixel layout");
   }
-  Image image{int(width), int(height)};
-  if (!png_decode_rows(reader.png, reader.info, image)) refuse(name, "PNG", source.message);
-  return image;
+  StoredPicture picture;
+  picture.image = Image(int(width), int(height));
+  if (!png_decode_rows(reader.png, reader.info, picture.image))
+    refuse_picture(name, "PNG", source.message);
+  read_png_colors(reader.png, reader.info, bytes, picture);
+  return picture;
 }
 
 double png_dpi(const Bytes& bytes) {
-  for (std::size_t at = 8; at + 12 <= bytes.size();) {
-    const std::size_t length = big_endian32(&bytes[at]);
-    if (length > bytes.size() - at - 12) return 0;
-    const char* type = reinterpret_cast<const char*>(&bytes[at + 4]);
-    if (std::memcmp(type, "IDAT", 4) == 0) return 0;
-    if (std::memcmp(type, "pHYs", 4) == 0 && length == 9) {
-      if (bytes[at + 16] != 1) return 0;  // only an aspect ratio
-      const double per_m = big_endian32(&bytes[at + 8]);
-      const double dpi = per_m * kMmPerInch / 1000;
-      // pHYs counts whole pixels per metre: 300 dpi is stored as 299.9994.
-      const double whole = std::round(dpi);
-      return std::round(whole * 1000 / kMmPerInch) == per_m ? whole : dpi;
-    }
-    at += length + 12;
-  }
-  return 0;
+  double dpi = 0;
+  for_each_chunk(bytes, [&](std::string_view type, std::span<const std::uint8_t> data) {
+    if (type == "IDAT") return false;
+    if (type != "pHYs" || data.size() != 9) return true;
+    if (data[8] != 1) return false;  // only an aspect ratio
+    const double per_m = big_endian32(data.data());
+    dpi = per_m * kMmPerInch / 1000;
+    // pHYs counts whole pixels per metre: 300 dpi is stored as 299.9994.
+    const double whole = std::round(dpi);
+    if (std::round(whole * 1000 / kMmPerInch) == per_m) dpi = whole;
+    return false;
+  });
+  return dpi;
 }
 
 bool opaque(const Image& image) {
@@ -263,6 +273,8 @@ static void jpeg_note_warning(j_common_ptr info, int level) {
 
 }  // extern "C"
 
+constexpr int kExifMarker = JPEG_APP0 + 1, kProfileMarker = JPEG_APP0 + 2;
+
 struct JpegReader {
   jpeg_decompress_struct info{};
   JpegErrors errors{};
@@ -279,10 +291,18 @@ struct JpegReader {
 
   bool read_header() {
     if (setjmp(errors.jump)) return false;
+    jpeg_save_markers(&info, kExifMarker, 0xffff);
+    jpeg_save_markers(&info, kProfileMarker, 0xffff);
     jpeg_read_header(&info, TRUE);
     const bool four_inks = info.jpeg_color_space == JCS_CMYK || info.jpeg_color_space == JCS_YCCK;
     info.out_color_space = four_inks ? JCS_CMYK : JCS_RGB;
     return true;
+  }
+
+  // Its ICC profile, to be freed.
+  bool read_profile(JOCTET** profile, unsigned* size) {
+    if (setjmp(errors.jump)) return false;
+    return jpeg_read_icc_profile(&info, profile, size) != 0;
   }
 
   // row: scratch space for one row of up to four channels.
@@ -320,18 +340,36 @@ bool JpegReader::read_rows(Image& image, std::uint8_t* row) {
   return true;
 }
 
-Image decode_jpeg(const Bytes& bytes, const std::string& name) {
+void read_jpeg_colors(JpegReader& reader, StoredPicture& picture) {
+  for (const auto* marker = reader.info.marker_list; marker; marker = marker->next) {
+    const std::span data(marker->data, marker->data_length);
+    if (marker->marker == kExifMarker && data.size() > 6 &&
+        std::memcmp(data.data(), "Exif\0", 6) == 0)
+      picture.orientation = exif_orientation(data.subspan(6));
+  }
+  if (reader.info.out_color_space != JCS_RGB) return;
+  JOCTET* profile = nullptr;
+  unsigned size = 0;
+  if (!reader.read_profile(&profile, &size)) return;
+  picture.profile.assign(profile, profile + size);
+  std::free(profile);
+}
+
+StoredPicture decode_jpeg(const Bytes& bytes, const std::string& name) {
   JpegReader reader(bytes);
-  if (!reader.read_header()) refuse(name, "JPEG", reader.errors.message);
+  if (!reader.read_header()) refuse_picture(name, "JPEG", reader.errors.message);
   const std::uint32_t width = reader.info.image_width;
   const std::uint32_t height = reader.info.image_height;
   // A block of 64 pixels takes about a bit at the least.
-  check_size(name, "JPEG", width, height, double(width) * height / 1024, bytes.size());
-  Image image{int(width), int(height)};
+  check_picture_size(name, "JPEG", width, height, double(width) * height / 1024, bytes.size());
+  StoredPicture picture;
+  picture.image = Image(int(width), int(height));
   std::vector<std::uint8_t> row(std::size_t(4) * width);
-  if (!reader.read_rows(image, row.data())) refuse(name, "JPEG", reader.errors.message);
-  if (reader.errors.truncated) refuse(name, "JPEG", "it ends too early");
-  return image;
+  read_jpeg_colors(reader, picture);
+  if (!reader.read_rows(picture.image, row.data()))
+    refuse_picture(name, "JPEG", reader.errors.message);
+  if (reader.errors.truncated) refuse_picture(name, "JPEG", "it ends too early");
+  return picture;
 }
 
 struct JpegWriter {
@@ -383,15 +421,56 @@ double jpeg_dpi(const Bytes& bytes) {
 
 }  // namespace
 
+namespace {
+
+bool begins(const Bytes& bytes, std::string_view mark, std::size_t at = 0) {
+  return bytes.size() >= at + mark.size() && std::memcmp(&bytes[at], mark.data(), mark.size()) == 0;
+}
+
+// Kinds that people have and that are not read.
+const char* foreign_kind(const Bytes& bytes) {
+  if (begins(bytes, "8BPS")) return "a Photoshop file";
+  if (begins(bytes, "\xabKTX 20")) return "a KTX2 (Basis Universal) texture";
+  if (begins(bytes, "DDS ")) return "a DDS texture";
+  if (begins(bytes, "ftypheic", 4) || begins(bytes, "ftypmif1", 4)) return "a HEIC picture";
+  if (begins(bytes, "ftypavif", 4)) return "an AVIF picture";
+  if (begins(bytes, "\x76\x2f\x31\x01")) return "an OpenEXR picture";
+  if (begins(bytes, "#?RADIANCE")) return "a Radiance HDR picture";
+  if (begins(bytes, "\xff\x0a") || begins(bytes, "JXL ", 4)) return "a JPEG XL picture";
+  if (begins(bytes, "<svg") || begins(bytes, "<?xml")) return "an SVG drawing";
+  return bytes.empty() ? "an empty file" : nullptr;
+}
+
+StoredPicture decode_any(const Bytes& bytes, const std::string& name) {
+  if (is_png(bytes)) return decode_png(bytes, name);
+  if (is_jpeg(bytes)) return decode_jpeg(bytes, name);
+  if (begins(bytes, "RIFF") && begins(bytes, "WEBP", 8)) return decode_webp(bytes, name);
+  if (begins(bytes, "GIF8")) return decode_gif(bytes, name);
+  if (begins(bytes, std::string_view("II*\0", 4)) || begins(bytes, std::string_view("MM\0*", 4)) ||
+      begins(bytes, std::string_view("II+\0", 4)) || begins(bytes, std::string_view("MM\0+", 4)))
+    return decode_tiff(bytes, name);
+  if (begins(bytes, "BM")) return decode_bmp(bytes, name);
+  const char* foreign = foreign_kind(bytes);
+  if (!foreign && looks_like_tga(bytes)) return decode_tga(bytes, name);
+  throw InputError(fmt::format("{}: {}; give a PNG, JPEG, WebP, TIFF, GIF, BMP or TGA file.", name,
+                               foreign ? fmt::format("{}, which is not read", foreign)
+                                       : "not a picture of a kind that is read"));
+}
+
+}  // namespace
+
 Image decode_image(const Bytes& bytes, const std::string& name) {
   try {
-    if (is_png(bytes)) return decode_png(bytes, name);
-    if (is_jpeg(bytes)) return decode_jpeg(bytes, name);
+    StoredPicture picture = decode_any(bytes, name);
+    if (picture.cicp) {
+      bring_to_srgb(picture.image, *picture.cicp);
+    } else {
+      bring_to_srgb(picture.image, picture.profile);
+    }
+    return oriented(std::move(picture.image), picture.orientation);
   } catch (const std::bad_alloc&) {
     throw InputError(fmt::format("{}: not enough memory for this image; scale it down.", name));
   }
-  throw InputError(fmt::format("{}: {}; give a PNG or JPEG file.", name,
-                               bytes.empty() ? "the file is empty" : "not a PNG or JPEG image"));
 }
 
 Image load_image(const std::filesystem::path& path) {

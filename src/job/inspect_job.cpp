@@ -202,6 +202,7 @@ void write_angle_map(const std::filesystem::path& path, const Inspection& i, Run
 
 void write_files(const Inspection& i, const std::string& report, RunContext& context) {
   OutputFolder folder(i.config.output);
+  folder.announce({"angles.png", "report.json"}, i.prepared.files);
   write_angle_map(folder.path("angles.png"), i, context);
   write_file(folder.path("report.json"), report);
   context.check_cancelled();

@@ -129,6 +129,15 @@ std::vector<ReportInput> describe_inputs(const JobConfig& config, const Prepared
   return inputs;
 }
 
+void announce_outputs(OutputFolder& folder, const std::string& command, const JobConfig& config,
+                      const std::vector<ReportInput>& inputs) {
+  std::vector<std::string> names;
+  for (const ReportOutput& output : outputs(command, config)) names.push_back(output.name);
+  std::vector<std::filesystem::path> paths;
+  for (const ReportInput& input : inputs) paths.emplace_back(input.path);
+  folder.announce(names, paths);
+}
+
 Report make_report(const JobRecord& record) {
   Report report;
   report.tool_version = HYDRODIP_VERSION;

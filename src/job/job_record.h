@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "base/output_folder.h"
 #include "base/timings.h"
 #include "coat/design.h"
 #include "coat/finish.h"
@@ -35,6 +36,10 @@ struct JobRecord {
 // Every file that the job reads, with its hash as it was read. Call it next to reading them.
 std::vector<ReportInput> describe_inputs(const JobConfig& config, const PreparedObject& prepared,
                                          const Printer& printer);
+
+// Tells the folder what the command will write and read; throws as OutputFolder::announce.
+void announce_outputs(OutputFolder& folder, const std::string& command, const JobConfig& config,
+                      const std::vector<ReportInput>& inputs);
 
 Report make_report(const JobRecord& record);
 

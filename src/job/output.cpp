@@ -239,7 +239,9 @@ JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previe
   write_report_html(folder.path("report.html"), report, previews.pictures);
   record.context.check_cancelled();
   folder.commit();
-  return describe_result(report, folder.folder());
+  JobResult result = describe_result(report, folder.folder());
+  if (folder.replaced_earlier()) result.text = "replaced the earlier result there\n" + result.text;
+  return result;
 }
 
 }  // namespace hydrodip

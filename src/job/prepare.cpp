@@ -2,14 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory.h"
 
 namespace hydrodip {
 namespace {
 
 constexpr double kTiny_mm = 5;
+
+// The film image as wanted, stretched, inked and seen, and what is written of it.
+constexpr double kBytesPerPixel = 32;
 
 void warn_if_tiny(const TriangleMesh& mesh, RunContext& context) {
   const double largest_mm = mesh.bounds().size().maxCoeff();
@@ -34,7 +39,8 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
                         .paint = model_paint(object, options.base),
                         .health = loaded.health,
                         .units = loaded.units,
-                        .files = loaded.files};
+                        .files = loaded.files,
+                        .picture_problems = loaded.picture_problems};
   // Area and volume grow with the object.
   const double scale = result.posed.scale();
   result.health.area_mm2 *= scale * scale;
@@ -44,14 +50,30 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
   return result;
 }
 
-void require_appearance(const Object& object, const std::filesystem::path& model) {
+void require_memory(const DesignOptions& options) {
+  const double width_px = options.film.width_mm / kMmPerInch * options.dpi;
+  const double height_px = options.film.height_mm / kMmPerInch * options.dpi;
+  const double needed = kBytesPerPixel * width_px * height_px, limit = memory_limit_bytes();
+  if (needed <= limit) return;
+  throw InputError(fmt::format(
+      "the sheet of {:.0f} x {:.0f} px needs about {:.1f} GB of memory, but there are {:.1f} GB; "
+      "lower --dpi to {:.0f} or less",
+      width_px, height_px, needed / 1e9, limit / 1e9,
+      std::floor(options.dpi * std::sqrt(limit / needed))));
+}
+
+void require_appearance(const Object& object, const std::vector<std::string>& picture_problems,
+                        const std::filesystem::path& model) {
+  // A model of one colour whose picture is missing would print as a plain sheet.
+  if (!picture_problems.empty() && object.one_color())
+    throw InputError(fmt::format("{}: {}", model.string(), picture_problems.front()));
   if (object.has_appearance()) return;
   if (!object.uvs.empty())
     throw InputError(fmt::format(
         "{}: the model has texture coordinates but no texture: name the image with --texture",
         model.string()));
   throw InputError(fmt::format(
-      "{}: the model has neither texture coordinates (UVs) nor vertex colours, so there is nothing "
+      "{}: the model has neither texture coordinates (UVs) nor colours, so there is nothing "
       "to print: unwrap it (in Blender: UV > Smart UV Project) and name an image with --texture, "
       "or "
       "paint vertex colours and save it as PLY",

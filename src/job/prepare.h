@@ -19,6 +19,7 @@ struct PreparedObject {
   MeshHealth health;                         // in posed size
   std::string units;                         // the unit that was applied
   std::vector<std::filesystem::path> files;  // every file that was read
+  std::vector<std::string> picture_problems;  // why some of the model's pictures are not shown
 };
 
 // Loads a model and poses it. Health findings become warnings.
@@ -26,7 +27,11 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
                               RunContext& context);
 
 // Throws InputError saying what is missing, and how to mend it, if the model does not say which
-// colour goes where.
-void require_appearance(const Object& object, const std::filesystem::path& model);
+// colour goes where. picture_problems: as PreparedObject's.
+void require_appearance(const Object& object, const std::vector<std::string>& picture_problems,
+                        const std::filesystem::path& model);
+
+// Throws InputError if the sheet's pictures cannot fit the memory that there is.
+void require_memory(const DesignOptions& options);
 
 }  // namespace hydrodip

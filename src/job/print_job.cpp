@@ -1,3 +1,8 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "job/job_record.h"
@@ -22,25 +27,41 @@ SheetOptions sheet_options(const JobConfig& config) {
   return sheet;
 }
 
+// A sheet without a drop on it is never what was meant.
+void require_ink(const FilmInk& ink, const JobConfig& config) {
+  const auto& laid = ink.inking.inks.cmyk;
+  if (std::any_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value != 0; })) return;
+  throw InputError(
+      fmt::format("{}: the sheet would be blank: what the film reaches of the model is white, "
+                  "transparent or of "
+                  "the object's own colour; check its texture and colours, which side enters the "
+                  "water (--down), "
+                  "and --depth",
+                  config.model.string()));
+}
+
 }  // namespace
 
 JobResult print_job(const JobConfig& config, RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
+  require_memory(config.design);
   OutputFolder folder(config.output);
   Timings times;
 
   const PreparedObject prepared =
       times.measure("load", [&] { return prepare_object(config.model, config.object, context); });
-  require_appearance(prepared.posed.object(), config.model);
+  require_appearance(prepared.posed.object(), prepared.picture_problems, config.model);
   const DesignOptions& options = config.design;
   const TriangleMesh& mesh = prepared.posed.mesh();
   const Trajectory trajectory = make_trajectory(options.trajectory, mesh.positions);
   require_fit(mesh, trajectory.depth_mm(), options.film, config.bath, context);
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
+  announce_outputs(folder, "print", config, inputs);
 
   const Designed designed = design(
       {prepared.posed, *prepared.paint, Allotment(), *printer.model, options}, times, context);
+  require_ink(designed.ink.ink, config);
   times.measure("sheet", [&] {
     write_sheet_files(folder, designed.ink.ink, printer, sheet_options(config), context);
   });

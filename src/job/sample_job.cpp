@@ -20,9 +20,11 @@ JobResult sample_job(const std::string& name, const std::filesystem::path& folde
   result.files = write_sample(name, sample, output.path(model).parent_path());
   for (const std::string& file : result.files)
     if (file != model) output.path(file);
+  output.announce(result.files, {});
   context.check_cancelled();
   output.commit();
 
+  if (output.replaced_earlier()) result.text += "replaced the earlier files there\n";
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (folder / file).string());
   result.text += fmt::format("try: hydrodip print {}\n", (folder / model).string());

@@ -149,6 +149,7 @@ JobResult simulate_job(const JobConfig& config, RunContext& context) {
   require_fit(mesh, trajectory.depth_mm(), config.design.film, config.bath, context);
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
+  announce_outputs(folder, "simulate", config, inputs);
   const PrintedFilm printed =
       times.measure("film image", [&] { return printed_film(config, *printer.model); });
 

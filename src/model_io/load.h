@@ -1,13 +1,11 @@
-// Object in: the only place that knows assimp.
+// Object in.
 //
-// Colour, as read: texture images are sRGB; so are OBJ's Kd, 3MF's colours and the vertex colours
-// of PLY, OFF, STL and OBJ. glTF's factors and vertex colours are linear. STL, PLY and OFF have no
-// materials: their base colour is white. OBJ: a Kd beside a map_Kd multiplies it only if it is not
-// grey (exporters write a grey Kd that was never meant as a tint); Kd and d make the base colour.
-// glTF: alphaMode decides what becomes of the alpha; the texture transform is applied to the UVs.
-// Not supported: -o, -s and -t of MTL maps; glTF's compression, quantisation and skins; more than
-// one material, seams in texture coordinates within one mesh, tile styles and several model parts
-// in 3MF; face colours in PLY and OFF.
+// Colour, as read: pictures are brought to sRGB; OBJ's Kd, 3MF's colours and the vertex and face
+// colours of PLY, OFF, STL and OBJ are sRGB. glTF's factors and vertex colours are linear. STL, PLY
+// and OFF have no materials: their base colour is white. OBJ: a Kd beside a map_Kd multiplies it
+// only if it is not grey (exporters write a grey Kd that was never meant as a tint); Kd and d make
+// the base colour. glTF: alphaMode decides what becomes of the alpha; the texture transform is
+// applied to the UVs. docs/formats.md says what of each format is read, warned about and refused.
 #pragma once
 
 #include <filesystem>
@@ -33,6 +31,9 @@ struct LoadedObject {
   MeshHealth health;
   std::string units;                         // the unit that was applied
   std::vector<std::filesystem::path> files;  // every file that was read, for the report's hashes
+  // Why pictures that the model refers to are not shown: one sentence each, also among the
+  // context's warnings.
+  std::vector<std::string> picture_problems;
 };
 
 // Reads OBJ (+MTL, textures), PLY, STL, OFF, 3MF, glTF, GLB. Scales to millimetres, checks and

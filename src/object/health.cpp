@@ -7,11 +7,13 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "base/disjoint_sets.h"
 #include "base/run_scope.h"
+#include "object/polygon.h"
 
 namespace hydrodip {
 
@@ -198,6 +200,138 @@ long count_shells(const Object& object) {
   }
   return shells;
 }
+
+// ---- small holes --------------------------------------------------------------------------------
+
+// Closes holes that are small beside the object and beside the shell that they are in.
+class HoleFiller {
+ public:
+  HoleFiller(Object& object, const std::vector<Side>& sides) : object_(object), sides_(sides) {}
+
+  // Returns how many it closed.
+  long run() {
+    collect_rims();
+    if (rims_.empty()) return 0;
+    const double largest = kRelativeSize * object_.bounds().size().norm();
+    std::vector<char> seen(rims_.size(), 0);
+    long closed = 0;
+    for (std::size_t start = 0; start < rims_.size(); ++start) {
+      if (seen[start]) continue;
+      const std::vector<std::size_t> loop = trace(start, largest, seen);
+      if (loop.size() < 3 || !shell_dwarfs(loop)) continue;
+      fill(loop);
+      ++closed;
+    }
+    return closed;
+  }
+
+ private:
+  static constexpr double kRelativeSize = 0.003;
+  static constexpr std::size_t kMostCorners = 1000;
+
+  // An open edge, in the direction in which its triangle runs.
+  struct Rim {
+    std::int32_t from, to;
+    std::uint32_t place;
+  };
+
+  void collect_rims() {
+    for_each_edge(sides_, [&](std::size_t begin, std::size_t end) {
+      if (end - begin != 1) return;
+      const std::uint32_t place = sides_[begin].place;
+      const Triangle& t = object_.triangles[place / 3];
+      rims_.push_back({t[place % 3], t[(place + 1) % 3], place});
+    });
+    std::sort(rims_.begin(), rims_.end(), [](const Rim& a, const Rim& b) {
+      return std::tie(a.from, a.place) < std::tie(b.from, b.place);
+    });
+  }
+
+  // The only open edge that begins at the vertex, or none.
+  std::optional<std::size_t> leaving(std::int32_t vertex) const {
+    const auto first =
+        std::lower_bound(rims_.begin(), rims_.end(), vertex,
+                         [](const Rim& rim, std::int32_t wanted) { return rim.from < wanted; });
+    if (first == rims_.end() || first->from != vertex) return {};
+    if (first + 1 != rims_.end() && (first + 1)->from == vertex) return {};
+    return std::size_t(first - rims_.begin());
+  }
+
+  // The edges around a small hole, or nothing.
+  std::vector<std::size_t> trace(std::size_t start, double largest, std::vector<char>& seen) const {
+    std::vector<std::size_t> loop;
+    Box3 box;
+    for (std::size_t at = start;;) {
+      seen[at] = 1;
+      loop.push_back(at);
+      box.add(object_.positions[std::size_t(rims_[at].from)]);
+      if (loop.size() > kMostCorners || box.size().norm() > largest) return {};
+      const auto next = leaving(rims_[at].to);
+      if (!next) return {};
+      if (*next == start) return loop;
+      if (seen[*next]) return {};
+      at = *next;
+    }
+  }
+
+  // A loose scrap's outline is no hole.
+  bool shell_dwarfs(const std::vector<std::size_t>& loop) {
+    if (shell_boxes_.empty()) measure_shells();
+    Box3 box;
+    for (const std::size_t at : loop) box.add(object_.positions[std::size_t(rims_[at].from)]);
+    const auto shell = shells_->find(std::uint32_t(rims_[loop[0]].from));
+    return shell_boxes_[shell].size().norm() > 4 * box.size().norm();
+  }
+
+  void measure_shells() {
+    shells_.emplace(object_.positions.size());
+    for (const Triangle& t : object_.triangles) {
+      shells_->join(t[0], t[1]);
+      shells_->join(t[1], t[2]);
+    }
+    shell_boxes_.resize(object_.positions.size());
+    for (std::size_t v = 0; v < object_.positions.size(); ++v)
+      shell_boxes_[shells_->find(std::uint32_t(v))].add(object_.positions[v]);
+  }
+
+  // Against the open edges' direction, so that the new triangles face as their neighbours do. They
+  // look like the neighbours at their corners.
+  void fill(std::vector<std::size_t> loop) {
+    std::reverse(loop.begin(), loop.end());
+    std::vector<Vec3> corners;
+    for (const std::size_t at : loop)
+      corners.push_back(object_.positions[std::size_t(rims_[at].from)]);
+    for (const auto& cut : triangulate(corners)) {
+      std::array<std::uint32_t, 3> places{};
+      for (std::size_t c = 0; c < 3; ++c) places[c] = rims_[loop[std::size_t(cut[c])]].place;
+      const int material = object_.material_of[places[0] / 3];
+      // Where materials meet, one of them goes on alone.
+      for (std::uint32_t& place : places)
+        if (object_.material_of[place / 3] != material) place = places[0];
+      object_.triangles.push_back({rims_[loop[std::size_t(cut[0])]].from,
+                                   rims_[loop[std::size_t(cut[1])]].from,
+                                   rims_[loop[std::size_t(cut[2])]].from});
+      object_.material_of.push_back(material);
+      copy_corners(object_.uvs, places);
+      copy_corners(object_.colors, places);
+    }
+  }
+
+  template <typename Corner>
+  static void copy_corners(std::vector<std::array<Corner, 3>>& values,
+                           const std::array<std::uint32_t, 3>& places) {
+    if (values.empty()) return;
+    std::array<Corner, 3> corners;
+    for (std::size_t c = 0; c < 3; ++c) corners[c] = values[places[c] / 3][places[c] % 3];
+    values.push_back(corners);
+  }
+
+  Object& object_;
+  const std::vector<Side>& sides_;
+  std::vector<Rim> rims_;
+  std::optional<DisjointSets> shells_;
+  std::vector<Box3> shell_boxes_;
+};
 
 // ---- orientation --------------------------------------------------------------------------------
 
@@ -391,6 +525,44 @@ bool box_inside(const Box3& inner, const Box3& outer) {
          (inner.max.array() <= outer.max.array()).all();
 }
 
+// Pairs of closed patches (container, candidate) of which the first may surround the second: its
+// box does, and it is larger. Swept along the longest axis, so that thousands of small shells side
+// by side need not be compared each with each. Sorted by container.
+std::vector<std::pair<std::int32_t, std::int32_t>> nested_boxes(
+    const std::vector<std::int32_t>& by_volume, const std::vector<PatchShape>& shapes) {
+  Box3 all;
+  for (const std::int32_t patch : by_volume) {
+    all.add(shapes[std::size_t(patch)].box.min);
+    all.add(shapes[std::size_t(patch)].box.max);
+  }
+  int axis = 0;
+  all.size().maxCoeff(&axis);
+  // Places in by_volume; a smaller place means a larger patch.
+  std::vector<std::int32_t> order(by_volume.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = std::int32_t(i);
+  const auto box = [&](std::int32_t place) -> const Box3& {
+    return shapes[std::size_t(by_volume[std::size_t(place)])].box;
+  };
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return box(a).min[axis] < box(b).min[axis];
+  });
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  std::vector<std::int32_t> open;
+  for (const std::int32_t place : order) {
+    check_cancelled();
+    const double at = box(place).min[axis];
+    std::erase_if(open, [&](std::int32_t other) { return box(other).max[axis] < at; });
+    for (const std::int32_t other : open) {
+      const std::int32_t outer = std::min(place, other), inner = std::max(place, other);
+      if (box_inside(box(inner), box(outer)))
+        pairs.emplace_back(by_volume[std::size_t(outer)], by_volume[std::size_t(inner)]);
+    }
+    open.push_back(place);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
 // Per patch: how many other closed patches surround it.
 std::vector<int> nesting_depth(const Object& object, const Patches& patches,
                                const std::vector<PatchShape>& shapes) {
@@ -404,22 +576,16 @@ std::vector<int> nesting_depth(const Object& object, const Patches& patches,
   for (std::size_t f = 0; f < patches.patch_of.size(); ++f) {
     members[std::size_t(patches.patch_of[f])].push_back(std::int32_t(f));
   }
-  // Largest first: only the few large ones can contain many others.
   std::stable_sort(by_volume.begin(), by_volume.end(), [&](std::int32_t a, std::int32_t b) {
     return std::abs(shapes[std::size_t(a)].volume6) > std::abs(shapes[std::size_t(b)].volume6);
   });
-  for (std::size_t outer = 0; outer < by_volume.size(); ++outer) {
+  const auto pairs = nested_boxes(by_volume, shapes);
+  for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
     check_cancelled();
-    const auto container = std::size_t(by_volume[outer]);
-    std::vector<std::size_t> candidates;
-    for (std::size_t inner = outer + 1; inner < by_volume.size(); ++inner) {
-      const auto candidate = std::size_t(by_volume[inner]);
-      if (box_inside(shapes[candidate].box, shapes[container].box)) candidates.push_back(candidate);
-    }
-    if (candidates.empty()) continue;
+    const auto container = std::size_t(pairs[begin].first);
     const CrossingCounter counter(object, members[container], shapes[container].box);
-    for (const std::size_t candidate : candidates) {
-      check_cancelled();
+    for (; end < pairs.size() && pairs[end].first == pairs[begin].first; ++end) {
+      const auto candidate = std::size_t(pairs[end].second);
       const Triangle& t = object.triangles[std::size_t(shapes[candidate].first_face)];
       const Vec3 probe =
           (object.positions[std::size_t(t[0])] + object.positions[std::size_t(t[1])] +
@@ -499,6 +665,11 @@ std::vector<std::string> MeshHealth::findings() const {
     out.push_back(fmt::format("Turned over {} that faced the wrong way.",
                               counted(flipped, "triangle", "triangles")));
   }
+  if (holes_closed > 0) {
+    out.push_back(fmt::format(
+        "Closed {} smaller than 0.3 % of the object, so that the film does not tear there.",
+        counted(holes_closed, "hole", "holes")));
+  }
   if (boundary_edges > 0) {
     out.push_back(fmt::format("The surface has {} ({}); it is dipped as it is, open.",
                               counted(holes, "hole", "holes"),
@@ -528,7 +699,9 @@ MeshHealth check_and_repair(Object& object) {
   health.degenerate_removed = drop_collapsed(object);
   health.duplicates_removed = drop_duplicates(object);
   {
-    const std::vector<Side> sides = sorted_sides(object);
+    std::vector<Side> sides = sorted_sides(object);
+    health.holes_closed = HoleFiller(object, sides).run();
+    if (health.holes_closed > 0) sides = sorted_sides(object);
     count_edges(object, sides, health);
     orient(object, sides, health);
   }

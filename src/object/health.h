@@ -14,6 +14,7 @@ struct MeshHealth {
   long degenerate_removed = 0;  // zero area or repeated vertex
   long duplicates_removed = 0;  // same three positions as an earlier face
   long flipped = 0;             // faces turned to agree with their neighbours / to face outward
+  long holes_closed = 0;        // holes too small for the film to notice, filled
   long boundary_edges = 0;      // edges with one face: holes
   long holes = 0;               // closed loops of boundary edges
   long nonmanifold_edges = 0;   // edges with more than two faces
@@ -29,10 +30,11 @@ struct MeshHealth {
 
 // Welds vertices at equal positions (attributes live at the corners, so seams stay sharp) and drops
 // unused ones, removes degenerate and duplicate faces (the same three positions in any order: the
-// first one stays), makes orientation consistent across manifold edges within each
-// shell, and turns each closed shell outward (a shell nested in another one keeps the sense that
-// makes it a cavity). Open shells keep the majority orientation of the file. Deterministic,
-// O(n log n).
+// first one stays), fills holes smaller than 0.3 % of the object (the film would bridge them, but
+// the contact line would tear a whole cell there), makes orientation consistent across manifold
+// edges within each shell, and turns each closed shell outward (a shell nested in another one keeps
+// the sense that makes it a cavity). Open shells keep the majority orientation of the file.
+// Deterministic, O(n log n). Throws Cancelled (run_scope.h).
 MeshHealth check_and_repair(Object& object);
 
 }  // namespace hydrodip

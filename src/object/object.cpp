@@ -108,18 +108,26 @@ bool same_color(const LinearColor& a, const LinearColor& b) {
 
 }  // namespace
 
-bool Object::has_appearance() const {
-  if (!colors.empty()) return true;
+std::optional<LinearColor> Object::one_color() const {
+  if (!colors.empty()) return {};
   const Material* plain = nullptr;
   for (const int index : material_of) {
     const Material& material = materials[std::size_t(index)];
-    if (material.texture >= 0 && !uvs.empty()) return true;
-    if (plain && plain != &material && !same_color(plain->base_color, material.base_color)) {
-      return true;
-    }
+    if (material.texture >= 0 && !uvs.empty()) return {};
+    if (plain && plain != &material && !same_color(plain->base_color, material.base_color))
+      return {};
     plain = &material;
   }
-  return false;
+  return plain ? plain->base_color : LinearColor{1, 1, 1, 1};
+}
+
+bool Object::has_appearance() const {
+  const auto color = one_color();
+  if (!color) return true;
+  const bool white = color->r >= 1 && color->g >= 1 && color->b >= 1;
+  if (white || !(color->a > 0)) return false;
+  return std::any_of(material_of.begin(), material_of.end(),
+                     [&](int index) { return materials[std::size_t(index)].states_color; });
 }
 
 Box3 TriangleMesh::bounds() const {

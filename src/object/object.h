@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct Material {
   int texture = -1;                    // index into Object::textures, -1: none
   Wrap wrap_u = Wrap::kRepeat;
   Wrap wrap_v = Wrap::kRepeat;
+  bool states_color = false;  // base_color is the file's word, not a default
 };
 
 // Per-triangle-corner texture coordinates keep seams sharp: two triangles that share an edge need
@@ -41,9 +43,12 @@ struct Object : TriangleMesh {
   std::vector<Material> materials;  // never empty
   std::vector<std::shared_ptr<const Image>> textures;
 
-  // Whether the model says which colour goes where (texture with UVs, vertex colours, or more than
-  // a single plain material). Without it `print` has nothing to print.
+  // Whether the model says which colour goes where: texture with UVs, vertex colours, several
+  // materials, or one whose colour the file states, unless that is white. Without it `print` has
+  // nothing to print.
   bool has_appearance() const;
+  // The colour of all of it, if it has no texture, no vertex colours and one material colour.
+  std::optional<LinearColor> one_color() const;
 };
 
 // A point on the surface: barycentric weights (1 - u - v, u, v) of a triangle's corners.

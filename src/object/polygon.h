@@ -11,7 +11,9 @@ namespace hydrodip {
 // Cuts a polygon (corners in order, roughly plane, perhaps concave) into corners.size() - 2
 // triangles of indices into `corners`, all turning like the polygon. Ears are clipped in the
 // plane of the polygon's mean normal; where none fits (self-intersections), corners are cut off in
-// order. O(n^2) for convex, O(n^3) for the worst polygons.
+// order. Time grows with the number of corners: a polygon that takes more than some thousand looks
+// per corner (none that bounds an area does) has the rest cut off in order too. Throws Cancelled
+// (run_scope.h).
 std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& corners);
 
 }  // namespace hydrodip

@@ -309,7 +309,10 @@ std::string times(const Report& report) {
         "<td class=\"number\">{}\u00a0MB</td></tr>\n",
         shown(std::round(double(report.peak_memory_bytes) / 1e6)));
   }
-  return section("How long it took", rows);
+  // Marked, because everything else on the page depends on the input alone.
+  std::string text = section("How long it took", rows);
+  text.insert(text.find('>'), " id=\"times\"");
+  return text;
 }
 
 std::string inputs(const Report& report) {

@@ -277,6 +277,7 @@ JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
   const std::vector<PosePicture> pictures = pose_pictures(
       job, kPictureWidth_px, static_cast<int>(kPictureWidth_px / kPictureAspect), context);
   OutputFolder output(path.has_parent_path() ? path.parent_path() : ".");
+  output.announce({path.filename().string()}, {});
   PdfDocument pdf;
   pdf.set_title("Run sheet, " + job.title);
   RunSheet(pdf, paper, job, pictures, context).draw();

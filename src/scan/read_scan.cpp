@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "model_io/load.h"
-#include "model_io/text_checks.h"
+#include "model_io/text.h"
 
 namespace hydrodip {
 
@@ -91,7 +91,10 @@ bool is_heading(std::string_view line) {
   });
 }
 
+bool in_range(std::int64_t place) { return place > -100000 && place < 100000; }
+
 CornerGrid read_table(const std::filesystem::path& file, std::string_view rest) {
+  rest = without_bom(rest);
   CornerGrid grid;
   std::map<GridPlace, std::size_t> line_of;
   std::size_t number = 0;
@@ -108,11 +111,11 @@ CornerGrid read_table(const std::filesystem::path& file, std::string_view rest) 
       continue;
     }
     heading_allowed = false;
-    long long column = 0, row = 0;
+    std::int64_t column = 0, row = 0;
     Vec3 p;
     bool good = parse_integer(take_word(words), column) && parse_integer(take_word(words), row);
     for (int k = 0; k < 3; ++k) good = good && parse_number(take_word(words), p[k]);
-    good = good && take_word(words).empty() && std::abs(column) < 100000 && std::abs(row) < 100000;
+    good = good && take_word(words).empty() && in_range(column) && in_range(row);
     if (!good)
       throw InputError(fmt::format(
           "{}, line {}: a corner is given as column,row,x,y,z: two whole numbers and three lengths",

@@ -15,7 +15,6 @@ constexpr void check(bool holds) {
 
 #include <algorithm>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 #include "base/error.h"
@@ -53,7 +52,45 @@ class SettingReader {
   }
 
  private:
+  // toml++ and what it makes recurse along dotted keys and into brackets.
+  void check_nesting(std::string_view text) const {
+    constexpr int kMost = 32;
+    int dots = 0, depth = 0;
+    std::size_t line = 1;
+    char quote = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      const char c = text[i];
+      if (c == '\n') {
+        ++line;
+        dots = 0;
+        quote = 0;  // strings of several lines hold no keys either, and may only hide dots
+      } else if (quote) {
+        if (c == '\\' && quote == '"') ++i;
+        if (c == quote) quote = 0;
+      } else if (c == '"' || c == '\'') {
+        quote = c;
+      } else if (c == '#') {
+        while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
+      } else if (c == '.') {
+        ++dots;
+      } else if (c == '=' || c == ',') {
+        dots = 0;
+      } else if (c == '[' || c == '{') {
+        ++depth;
+        dots = 0;
+      } else if (c == ']' || c == '}') {
+        --depth;
+        dots = 0;
+      }
+      if (dots > kMost || depth > kMost)
+        throw InputError(
+            fmt::format("{}:{}:1: not a setting: it is nested more than {} levels deep",
+                        file_.string(), line, kMost));
+    }
+  }
+
   toml::table parse(std::string_view text) const {
+    check_nesting(text);
     try {
       return toml::parse(text, file_.string());
     } catch (const toml::parse_error& error) {
@@ -136,15 +173,22 @@ class SettingReader {
     return path.empty() ? path : (file_.parent_path() / path).string();
   }
 
-  static std::string shown(const toml::node& node) {
-    std::ostringstream text;
-    node.visit([&](const auto& value) {
-      if constexpr (toml::is_value<decltype(value)>)
-        text << value.get();
-      else if constexpr (toml::is_array<decltype(value)>)
-        text << value;
-    });
-    return fmt::format("'{}'", text.str());
+  // For messages. toml++'s own printer cannot print the smallest integer.
+  static std::string shown(const toml::node& node) { return fmt::format("'{}'", printed(node)); }
+
+  static std::string printed(const toml::node& node) {
+    if (const auto text = node.value_exact<std::string>()) return text->substr(0, 200);
+    if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
+    if (const auto* real = node.as_floating_point()) return fmt::format("{}", real->get());
+    if (const auto* boolean = node.as_boolean()) return boolean->get() ? "true" : "false";
+    const toml::array* array = node.as_array();
+    if (!array) return "a date or time";
+    std::string text;
+    for (const toml::node& element : *array) {
+      if (text.size() > 100) return fmt::format("[{}, ...]", text);
+      text += (text.empty() ? "" : ", ") + (element.is_table() ? "{...}" : printed(element));
+    }
+    return fmt::format("[{}]", text);
   }
 
   std::filesystem::path file_;

@@ -197,5 +197,47 @@ TEST_F(OutputFolderTest, OnlyPlainNamesAreAccepted) {
   }
 }
 
+TEST_F(OutputFolderTest, InputsAreNotOverwritten) {
+  write(root_ / "texture.png", "mine");
+  OutputFolder folder(root_);
+  folder.announce({"other.png"}, {root_ / "texture.png"});
+  EXPECT_THROW(folder.announce({"texture.png"}, {root_ / "." / "texture.png"}), InputError);
+  fs::create_symlink(root_ / "texture.png", root_ / "link.png");
+  EXPECT_THROW(folder.announce({"link.png"}, {root_ / "texture.png"}), InputError);
+}
+
+TEST_F(OutputFolderTest, FilesOfOthersAreNotReplaced) {
+  write(root_ / "report.json", "{}");
+  OutputFolder folder(root_);
+  EXPECT_THROW(folder.announce({"report.json"}, {}), InputError);
+  write(root_ / "report.json", std::string(100000, ' ') + "by hydrodip");
+  folder.announce({"report.json"}, {});
+  // A file without a mark belongs to one with it.
+  write(root_ / "picture.png", "pixels");
+  folder.announce({"report.json", "picture.png"}, {});
+  EXPECT_THROW(folder.announce({"picture.png"}, {}), InputError);
+}
+
+TEST_F(OutputFolderTest, SaysWhetherEarlierFilesWereReplaced) {
+  for (const bool again : {false, true}) {
+    OutputFolder folder(root_);
+    write(folder.path("a.txt"), "a");
+    folder.commit();
+    EXPECT_EQ(folder.replaced_earlier(), again);
+  }
+}
+
+TEST_F(OutputFolderTest, ClearsWhatKilledProcessesLeft) {
+  fs::create_directories(root_ / ".hydrodip-dead00" / "..earlier");
+  write(root_ / ".hydrodip-dead00" / "half.png", "half");
+  fs::create_directories(root_ / ".hydrodip-settings");  // not by that name
+  const OutputFolder living(root_);
+  EXPECT_FALSE(fs::exists(root_ / ".hydrodip-dead00"));
+  EXPECT_TRUE(fs::exists(root_ / ".hydrodip-settings"));
+  const std::ptrdiff_t with_one = entries(root_);
+  const OutputFolder second(root_);
+  EXPECT_EQ(entries(root_), with_one + 1);  // the living one's is left alone
+}
+
 }  // namespace
 }  // namespace hydrodip

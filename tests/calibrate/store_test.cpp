@@ -96,5 +96,32 @@ TEST_F(StoreTest, RefusesOtherFiles) {
   EXPECT_THROW(SimulationStore(file_, {folder_ / "missing"}), InputError);
 }
 
+TEST_F(StoreTest, DamagedLinesArePassedOverAndSaid) {
+  {
+    SimulationStore store(file_, {});
+    for (const double z : {0.1, 0.2, 0.3}) store.add(key(z), result(z));
+  }
+  std::string damaged = text();
+  damaged.replace(damaged.find('\n') + 5, 3, "\xff\x00}");
+  write(damaged);
+  SimulationStore store(file_, {});
+  EXPECT_EQ(store.size(), 2u);
+  const auto said = store.oddities({"abc"});
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("line 2"), std::string::npos);
+  store.add(key(0.2), result(0.2));
+  EXPECT_EQ(store.size(), 3u);
+}
+
+TEST_F(StoreTest, ResultsOfOtherSubjectsAreSaid) {
+  const std::filesystem::path other = folder_ / "other.jsonl";
+  SimulationStore(other, {}).add(key(0.2), result(2));
+  const SimulationStore store(file_, {other});
+  EXPECT_TRUE(store.oddities({"abc"}).empty());
+  const auto said = store.oddities({"def"});
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("1 of its 1 simulations are not used"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace hydrodip

@@ -34,7 +34,7 @@ TEST(Appearance, IsAskedForWithTheWayToMend) {
   object.material_of = {0};
   object.materials.emplace_back();
   try {
-    require_appearance(object, "cup.stl");
+    require_appearance(object, {}, "cup.stl");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_TRUE(contains(error.what(), "cup.stl"));
@@ -42,12 +42,29 @@ TEST(Appearance, IsAskedForWithTheWayToMend) {
   }
   object.uvs.resize(object.triangles.size());
   try {
-    require_appearance(object, "cup.obj");
+    require_appearance(object, {}, "cup.obj");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_TRUE(contains(error.what(), "--texture"));
   }
-  EXPECT_NO_THROW(require_appearance(make_sample("box"), "box"));
+  EXPECT_NO_THROW(require_appearance(make_sample("box"), {}, "box"));
+}
+
+TEST(Appearance, OfOneColourNamesThePictureThatIsMissing) {
+  Object object = make_sample("box");
+  object.textures.clear();
+  for (Material& material : object.materials) {
+    material.texture = -1;
+    material.base_color = {0.5F, 0, 0, 1};
+    material.states_color = true;
+  }
+  EXPECT_NO_THROW(require_appearance(object, {}, "box.obj"));
+  try {
+    require_appearance(object, {"wood.png is missing."}, "box.obj");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(contains(error.what(), "wood.png"));
+  }
 }
 
 }  // namespace

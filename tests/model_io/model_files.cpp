@@ -7,10 +7,6 @@
 #include "base/file.h"
 #include "image/files.h"
 
-// assimp leaks a little when it refuses a damaged file; what we leak is still reported.
-extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp\n"; }
-
 namespace hydrodip::fixtures {
 
 namespace {

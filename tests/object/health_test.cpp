@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "base/error.h"
+#include "base/run_scope.h"
 #include "object/polygon.h"
 
 namespace hydrodip {
@@ -224,6 +226,89 @@ TEST(Triangulate, DegeneratePolygonsEnd) {
   EXPECT_EQ(triangulate({}).size(), 0u);
   EXPECT_EQ(triangulate(std::vector<Vec3>(5, Vec3::Zero())).size(), 3u);
   EXPECT_EQ(triangulate({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2u);
+}
+
+// A circle, a star and a zigzag of many corners: exact areas, in time that allows a test.
+TEST(Triangulate, ManyCorners) {
+  constexpr int kCorners = 100000;
+  for (const double inner : {1.0, 0.5}) {
+    std::vector<Vec3> star;
+    double exact = 0;
+    for (int i = 0; i < kCorners; ++i) {
+      const double radius = i % 2 == 0 ? 1 : inner, angle = 2 * M_PI * i / kCorners;
+      star.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+    }
+    for (std::size_t i = 0; i < star.size(); ++i)
+      exact += 0.5 * cross2(star[i].head<2>(), star[(i + 1) % star.size()].head<2>());
+    const auto triangles = triangulate(star);
+    ASSERT_EQ(triangles.size(), star.size() - 2);
+    double area = 0;
+    for (const auto& t : triangles) area += std::abs(signed_area(star, t));
+    EXPECT_NEAR(area, exact, 1e-9);
+  }
+}
+
+TEST(Triangulate, PolygonsThatCrossThemselvesEnd) {
+  std::mt19937 random(3);
+  std::vector<Vec3> tangle;
+  for (int i = 0; i < 20000; ++i)
+    tangle.emplace_back(double(random() % 1000), double(random() % 1000), 0);
+  EXPECT_EQ(triangulate(tangle).size(), tangle.size() - 2);
+  const std::vector<Vec3> same(20000, Vec3(1, 2, 3));
+  EXPECT_EQ(triangulate(same).size(), same.size() - 2);
+}
+
+TEST(Triangulate, CanBeCancelled) {
+  RunContext context;
+  context.cancel();
+  std::vector<Vec3> tangle;
+  for (int i = 0; i < 20000; ++i) tangle.emplace_back(i % 7, i % 11, 0);
+  const RunScope scope(context);
+  EXPECT_THROW(triangulate(tangle), Cancelled);
+}
+
+// A tetrahedron of edge about 60, one face of which is open at a small triangle in its middle.
+Object pierced(double hole) {
+  Object object;
+  object.positions = {{0, 0, 0}, {60, 0, 0}, {0, 60, 0}, {0, 0, 60}};
+  const Vec3 middle(20, 20, 0);
+  for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(60, 0, 0), Vec3(0, 60, 0)})
+    object.positions.push_back(middle + hole / 60 * (corner - middle));
+  object.triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    object.triangles.push_back({next, i, 4 + i});
+    object.triangles.push_back({next, 4 + i, 4 + next});
+  }
+  object.material_of.assign(object.triangles.size(), 0);
+  object.uvs.resize(object.triangles.size());
+  object.materials.emplace_back();
+  return object;
+}
+
+TEST(Health, PinholesAreClosedAndSaid) {
+  Object object = pierced(0.06);
+  const MeshHealth health = check_and_repair(object);
+  EXPECT_EQ(health.holes_closed, 1);
+  EXPECT_TRUE(health.closed());
+  EXPECT_NEAR(health.volume_mm3, 60.0 * 60 * 60 / 6, 1e-6);
+  EXPECT_EQ(object.uvs.size(), object.triangles.size());
+  EXPECT_EQ(object.material_of.size(), object.triangles.size());
+  const auto findings = health.findings();
+  EXPECT_TRUE(std::any_of(findings.begin(), findings.end(), [](const std::string& finding) {
+    return finding.find("Closed 1 hole") != std::string::npos;
+  }));
+}
+
+TEST(Health, HolesThatAreMeantAndScrapsStayOpen) {
+  Object open = pierced(6);
+  EXPECT_EQ(check_and_repair(open).holes_closed, 0);
+  Object scrap = box();
+  scrap.positions.insert(scrap.positions.end(), {{5, 5, 5}, {5.001, 5, 5}, {5, 5.001, 5}});
+  const auto first = std::int32_t(scrap.positions.size()) - 3;
+  scrap.triangles.push_back({first, first + 1, first + 2});
+  scrap.material_of.push_back(0);
+  EXPECT_EQ(check_and_repair(scrap).holes_closed, 0);
 }
 
 }  // namespace

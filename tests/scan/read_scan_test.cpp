@@ -70,7 +70,7 @@ TEST_F(ReadScanTest, QuadsHaveTheSameLengthsAsTheTable) {
     return lengths;
   };
   sum = total(scan.grid), expected = total(board);
-  EXPECT_NEAR(sum, expected, 1e-3);  // assimp reads single precision
+  EXPECT_NEAR(sum, expected, 1e-3);  // the reader keeps single precision
 }
 
 TEST_F(ReadScanTest, SeparatorsAndHeadingsAreFree) {

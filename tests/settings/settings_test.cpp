@@ -193,6 +193,22 @@ TEST_F(Settings, BrokenTomlSaysFileLineAndColumn) {
   EXPECT_TRUE(contains(toml_error("a = \"\"\"\n[=]\n\"\"\"\n[=]\nb = 1\n"), "job.toml:4:1"));
 }
 
+TEST_F(Settings, DeepKeysAndTheSmallestIntegerAreRefusedInOneSentence) {
+  std::string deep = "a";
+  for (int i = 0; i < 9999; ++i) deep += ".a";
+  EXPECT_TRUE(contains(toml_error(deep + " = 1\n"), "levels deep"));
+  EXPECT_TRUE(contains(toml_error("[" + deep + "]\n"), "levels deep"));
+  EXPECT_TRUE(contains(toml_error("a = " + std::string(9999, '[') + "\n"), "levels deep"));
+  // Numbers with decimals and strings with dots are no keys.
+  std::string many = "object.rotate_deg = [0.1";
+  for (int i = 0; i < 99; ++i) many += ", 0.1";
+  EXPECT_FALSE(contains(toml_error(many + "]\n"), "levels deep"));
+  EXPECT_FALSE(contains(toml_error("print.job_name = \"" + deep + "\"\n"), "levels deep"));
+  const std::string least = toml_error("object.rotate_deg = [-9223372036854775808, 2, 3]\n");
+  EXPECT_TRUE(contains(least, "[-9223372036854775808, 2, 3]")) << least;
+  EXPECT_TRUE(contains(toml_error("film.elements = -9223372036854775808\n"), "film.elements"));
+}
+
 TEST_F(Settings, MissingFileIsRefused) {
   EXPECT_THROW(read_settings(folder_ / "nowhere.toml"), InputError);
   EXPECT_THROW(read_settings(folder_), InputError);

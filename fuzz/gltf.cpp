@@ -1,0 +1,5 @@
+#include "model.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return hydrodip::fuzz::read(hydrodip::read_gltf, "a.glb", data, size);
+}

@@ -1,0 +1,102 @@
+// The only place that knows giflib.
+#include <gif_lib.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include "image/decoders.h"
+
+namespace hydrodip {
+
+namespace {
+
+struct GifSource {
+  const PictureBytes& bytes;
+  std::size_t at = 0;
+};
+
+int read_gif(GifFileType* file, GifByteType* out, int count) {
+  auto* source = static_cast<GifSource*>(file->UserData);
+  const std::size_t taken = std::min(std::size_t(count), source->bytes.size() - source->at);
+  std::memcpy(out, source->bytes.data() + source->at, taken);
+  source->at += taken;
+  return int(taken);
+}
+
+struct CloseGif {
+  void operator()(GifFileType* file) const { DGifCloseFile(file, nullptr); }
+};
+
+// The palette's entry that is transparent, or -1.
+int transparent_entry(GifFileType* file) {
+  int code = 0;
+  GifByteType* data = nullptr;
+  int transparent = -1;
+  if (DGifGetExtension(file, &code, &data) == GIF_ERROR) return -1;
+  while (data) {
+    if (code == GRAPHICS_EXT_FUNC_CODE && data[0] >= 4) transparent = data[1] & 1 ? data[4] : -1;
+    if (DGifGetExtensionNext(file, &data) == GIF_ERROR) break;
+  }
+  return transparent;
+}
+
+// Rows of an interlaced picture come in four passes.
+int row_of(int number, int height) {
+  constexpr int kFirst[] = {0, 4, 2, 1}, kStep[] = {8, 8, 4, 2};
+  for (int pass = 0; pass < 4; ++pass) {
+    const int rows = (height - kFirst[pass] + kStep[pass] - 1) / kStep[pass];
+    if (number < rows) return kFirst[pass] + number * kStep[pass];
+    number -= std::max(rows, 0);
+  }
+  return height - 1;
+}
+
+Image read_frame(GifFileType* file, int transparent, const PictureBytes& bytes,
+                 const std::string& name) {
+  if (DGifGetImageDesc(file) == GIF_ERROR) refuse_picture(name, "GIF", "it has no picture");
+  const GifImageDesc& frame = file->Image;
+  const ColorMapObject* colors = frame.ColorMap ? frame.ColorMap : file->SColorMap;
+  const int width = std::max(file->SWidth, frame.Left + frame.Width);
+  const int height = std::max(file->SHeight, frame.Top + frame.Height);
+  if (!colors || frame.Left < 0 || frame.Top < 0 || frame.Width < 1 || frame.Height < 1)
+    refuse_picture(name, "GIF", "its first picture is damaged");
+  check_picture_size(name, "GIF", std::uint32_t(width), std::uint32_t(height), 0, bytes.size());
+  Image image(width, height);
+  std::vector<GifPixelType> row(std::size_t(frame.Width));
+  for (int y = 0; y < frame.Height; ++y) {
+    if (DGifGetLine(file, row.data(), frame.Width) == GIF_ERROR)
+      refuse_picture(name, "GIF", "it ends too early");
+    const int to = frame.Top + (frame.Interlace ? row_of(y, frame.Height) : y);
+    for (int x = 0; x < frame.Width; ++x) {
+      const int index = row[std::size_t(x)];
+      if (index == transparent || index >= colors->ColorCount) continue;
+      const GifColorType& color = colors->Colors[index];
+      const std::uint8_t rgba[] = {color.Red, color.Green, color.Blue, 255};
+      std::copy_n(rgba, 4, image.pixel(frame.Left + x, to));
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+StoredPicture decode_gif(const PictureBytes& bytes, const std::string& name) {
+  GifSource source{bytes};
+  int error = 0;
+  const std::unique_ptr<GifFileType, CloseGif> file(DGifOpen(&source, read_gif, &error));
+  if (!file) refuse_picture(name, "GIF", "its header cannot be read");
+  int transparent = -1;
+  for (;;) {
+    GifRecordType kind = UNDEFINED_RECORD_TYPE;
+    if (DGifGetRecordType(file.get(), &kind) == GIF_ERROR || kind == TERMINATE_RECORD_TYPE)
+      refuse_picture(name, "GIF", "it has no picture");
+    if (kind == EXTENSION_RECORD_TYPE) {
+      transparent = std::max(transparent, transparent_entry(file.get()));
+    } else if (kind == IMAGE_DESC_RECORD_TYPE) {
+      return {read_frame(file.get(), transparent, bytes, name), {}, {}, 1};
+    }
+  }
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,117 @@
+// Pictures' own colour spaces: the only place in this folder that knows Little CMS.
+#include <lcms2.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <type_traits>
+
+#include "image/decoders.h"
+
+namespace hydrodip {
+
+namespace {
+
+struct CloseContext {
+  void operator()(cmsContext context) const { cmsDeleteContext(context); }
+};
+struct CloseProfile {
+  void operator()(cmsHPROFILE profile) const { cmsCloseProfile(profile); }
+};
+struct CloseTransform {
+  void operator()(cmsHTRANSFORM transform) const { cmsDeleteTransform(transform); }
+};
+struct FreeCurve {
+  void operator()(cmsToneCurve* curve) const { cmsFreeToneCurve(curve); }
+};
+// Without a context of its own, Little CMS would report errors through a global.
+using Context = std::unique_ptr<std::remove_pointer_t<cmsContext>, CloseContext>;
+using Profile = std::unique_ptr<void, CloseProfile>;
+using Transform = std::unique_ptr<void, CloseTransform>;
+using Curve = std::unique_ptr<cmsToneCurve, FreeCurve>;
+
+// A byte or two of rounding: not worth touching every pixel for.
+bool changes_nothing(cmsHTRANSFORM transform) {
+  constexpr int kSteps = 9, kRounding = 2;
+  for (int i = 0; i < kSteps * kSteps * kSteps; ++i) {
+    const int level[] = {i % kSteps, i / kSteps % kSteps, i / kSteps / kSteps};
+    std::array<std::uint8_t, 4> in{0, 0, 0, 255}, out{};
+    for (std::size_t c = 0; c < 3; ++c) in[c] = std::uint8_t(level[c] * 255 / (kSteps - 1));
+    cmsDoTransform(transform, in.data(), out.data(), 1);
+    for (std::size_t c = 0; c < 3; ++c)
+      if (std::abs(int(in[c]) - int(out[c])) > kRounding) return false;
+  }
+  return true;
+}
+
+void transform_pixels(Image& image, cmsContext context, cmsHPROFILE from) {
+  if (!from || cmsGetColorSpace(from) != cmsSigRgbData) return;
+  const Profile srgb(cmsCreate_sRGBProfileTHR(context));
+  const Transform transform(cmsCreateTransformTHR(context, from, TYPE_RGBA_8, srgb.get(),
+                                                  TYPE_RGBA_8, INTENT_RELATIVE_COLORIMETRIC,
+                                                  cmsFLAGS_COPY_ALPHA));
+  if (!transform || changes_nothing(transform.get())) return;
+  for (int y = 0; y < image.height_px; ++y)
+    cmsDoTransform(transform.get(), image.pixel(0, y), image.pixel(0, y),
+                   cmsUInt32Number(image.width_px));
+}
+
+// ITU-T H.273's numbers.
+std::optional<cmsCIExyYTRIPLE> primaries_of(int number) {
+  switch (number) {
+    case 1:
+      return cmsCIExyYTRIPLE{{0.64, 0.33, 1}, {0.30, 0.60, 1}, {0.15, 0.06, 1}};
+    case 9:
+      return cmsCIExyYTRIPLE{{0.708, 0.292, 1}, {0.170, 0.797, 1}, {0.131, 0.046, 1}};
+    case 12:
+      return cmsCIExyYTRIPLE{{0.680, 0.320, 1}, {0.265, 0.690, 1}, {0.150, 0.060, 1}};
+    default:
+      return {};
+  }
+}
+
+Curve curve_of(cmsContext context, int number) {
+  switch (number) {
+    case 1:
+    case 6:
+    case 14:
+    case 15: {
+      const cmsFloat64Number bt709[] = {1 / 0.45, 1 / 1.099, 0.099 / 1.099, 1 / 4.5, 0.081};
+      return Curve(cmsBuildParametricToneCurve(context, 4, bt709));
+    }
+    case 4:
+      return Curve(cmsBuildGamma(context, 2.2));
+    case 8:
+      return Curve(cmsBuildGamma(context, 1));
+    case 13: {
+      const cmsFloat64Number srgb[] = {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045};
+      return Curve(cmsBuildParametricToneCurve(context, 4, srgb));
+    }
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace
+
+void bring_to_srgb(Image& image, const PictureBytes& profile) {
+  if (profile.empty()) return;
+  const Context context(cmsCreateContext(nullptr, nullptr));
+  const Profile from(
+      cmsOpenProfileFromMemTHR(context.get(), profile.data(), cmsUInt32Number(profile.size())));
+  transform_pixels(image, context.get(), from.get());
+}
+
+void bring_to_srgb(Image& image, const std::array<std::uint8_t, 4>& cicp) {
+  const auto primaries = primaries_of(cicp[0]);
+  const Context context(cmsCreateContext(nullptr, nullptr));
+  const Curve curve = curve_of(context.get(), cicp[1]);
+  if (!primaries || !curve || cicp[2] != 0 || cicp[3] != 1) return;
+  const cmsCIExyY white{0.3127, 0.3290, 1};
+  cmsToneCurve* curves[] = {curve.get(), curve.get(), curve.get()};
+  const Profile from(cmsCreateRGBProfileTHR(context.get(), &white, &*primaries, curves));
+  transform_pixels(image, context.get(), from.get());
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,127 @@
+// TIFF pictures; the only place in this folder that knows libtiff (what is printed:
+// sheet/tiff.cpp).
+#include <tiffio.h>
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "image/decoders.h"
+
+namespace hydrodip {
+
+namespace {
+
+struct TiffSource {
+  const PictureBytes& bytes;
+  std::size_t at = 0;
+  char message[256] = {};
+};
+
+extern "C" {
+
+static tsize_t tiff_read(thandle_t handle, tdata_t out, tsize_t count) {
+  auto* source = static_cast<TiffSource*>(handle);
+  const std::size_t left = source->bytes.size() - std::min(source->at, source->bytes.size());
+  const std::size_t taken = std::min(std::size_t(std::max<tsize_t>(count, 0)), left);
+  if (taken > 0) std::memcpy(out, source->bytes.data() + source->at, taken);
+  source->at += taken;
+  return tsize_t(taken);
+}
+
+static tsize_t tiff_no_write(thandle_t, tdata_t, tsize_t) { return 0; }
+
+static toff_t tiff_seek(thandle_t handle, toff_t offset, int whence) {
+  auto* source = static_cast<TiffSource*>(handle);
+  const toff_t base = whence == SEEK_CUR   ? source->at
+                      : whence == SEEK_END ? source->bytes.size()
+                                           : 0;
+  source->at = std::size_t(base + offset);
+  return source->at;
+}
+
+static int tiff_close(thandle_t) { return 0; }
+
+static toff_t tiff_size(thandle_t handle) { return static_cast<TiffSource*>(handle)->bytes.size(); }
+
+static int tiff_map(thandle_t, tdata_t*, toff_t*) { return 0; }
+
+static void tiff_unmap(thandle_t, tdata_t, toff_t) {}
+
+static int tiff_keep_error(TIFF*, void* user, const char*, const char* format, va_list arguments) {
+  auto* source = static_cast<TiffSource*>(user);
+  std::vsnprintf(source->message, sizeof source->message, format, arguments);
+  return 1;
+}
+
+static int tiff_ignore_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
+
+}  // extern "C"
+
+struct CloseTiff {
+  void operator()(TIFF* file) const { TIFFClose(file); }
+};
+using Tiff = std::unique_ptr<TIFF, CloseTiff>;
+
+Tiff open(TiffSource& source) {
+  TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options, tmsize_t(1) << 30);
+  TIFFOpenOptionsSetErrorHandlerExtR(options, tiff_keep_error, &source);
+  TIFFOpenOptionsSetWarningHandlerExtR(options, tiff_ignore_warning, nullptr);
+  Tiff file(TIFFClientOpenExt("picture", "rm", &source, tiff_read, tiff_no_write, tiff_seek,
+                              tiff_close, tiff_size, tiff_map, tiff_unmap, options));
+  TIFFOpenOptionsFree(options);
+  return file;
+}
+
+// libtiff multiplies colours by alpha.
+void make_straight(Image& image) {
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    const int alpha = image.rgba[i + 3];
+    if (alpha == 255 || alpha == 0) continue;
+    for (std::size_t c = 0; c < 3; ++c)
+      image.rgba[i + c] =
+          std::uint8_t(std::min(255, (image.rgba[i + c] * 255 + alpha / 2) / alpha));
+  }
+}
+
+}  // namespace
+
+StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
+  TiffSource source{bytes};
+  const Tiff file = open(source);
+  if (!file) refuse_picture(name, "TIFF", source.message);
+  std::uint32_t width = 0, height = 0;
+  std::uint16_t photometric = PHOTOMETRIC_RGB;
+  TIFFGetField(file.get(), TIFFTAG_IMAGEWIDTH, &width);
+  TIFFGetField(file.get(), TIFFTAG_IMAGELENGTH, &height);
+  TIFFGetField(file.get(), TIFFTAG_PHOTOMETRIC, &photometric);
+  check_picture_size(name, "TIFF", width, height, 0, bytes.size());
+  StoredPicture picture;
+  picture.image = Image(int(width), int(height));
+  char why[1024] = {};
+  if (!TIFFRGBAImageOK(file.get(), why)) refuse_picture(name, "TIFF", why);
+  std::vector<std::uint32_t> raster(std::size_t(width) * height);
+  if (!TIFFReadRGBAImageOriented(file.get(), width, height, raster.data(), ORIENTATION_TOPLEFT, 1))
+    refuse_picture(name, "TIFF", source.message);
+  for (std::size_t i = 0; i < raster.size(); ++i) {
+    std::uint8_t* pixel = &picture.image.rgba[4 * i];
+    pixel[0] = std::uint8_t(TIFFGetR(raster[i]));
+    pixel[1] = std::uint8_t(TIFFGetG(raster[i]));
+    pixel[2] = std::uint8_t(TIFFGetB(raster[i]));
+    pixel[3] = std::uint8_t(TIFFGetA(raster[i]));
+  }
+  make_straight(picture.image);
+  std::uint32_t profile_size = 0;
+  void* profile = nullptr;
+  if (photometric == PHOTOMETRIC_RGB &&
+      TIFFGetField(file.get(), TIFFTAG_ICCPROFILE, &profile_size, &profile)) {
+    const auto* begin = static_cast<const std::uint8_t*>(profile);
+    picture.profile.assign(begin, begin + profile_size);
+  }
+  return picture;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,71 @@
+// Words and numbers of text model files, shared by the readers.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace hydrodip {
+
+inline bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+}
+
+// Takes the next blank-separated word off the front; empty at the end.
+inline std::string_view take_word(std::string_view& rest) {
+  std::size_t begin = 0;
+  while (begin < rest.size() && is_blank(rest[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < rest.size() && !is_blank(rest[end])) ++end;
+  const std::string_view word = rest.substr(begin, end - begin);
+  rest.remove_prefix(end);
+  return word;
+}
+
+// Takes the next line off the front, without its line end: LF, CR LF, or CR alone.
+inline std::string_view take_line(std::string_view& rest) {
+  const std::size_t end = rest.find_first_of("\n\r");
+  const std::string_view line = rest.substr(0, end);
+  const bool both = rest.substr(line.size(), 2) == "\r\n";
+  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + (both ? 2 : 1));
+  return line;
+}
+
+inline std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+// Without the byte order mark that some editors put before UTF-8.
+inline std::string_view without_bom(std::string_view text) {
+  if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
+  return text;
+}
+
+inline std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  return out;
+}
+
+// The whole word as a finite number that also fits a float.
+inline bool parse_number(std::string_view word, double& value) {
+  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size() && std::isfinite(float(value));
+}
+
+inline bool parse_integer(std::string_view word, std::int64_t& value) {
+  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+// A coordinate. Whole part and decimals are rounded apart, as hydrodip did from its first version
+// on, so that results stay the same bytes; the difference is one float's last bit.
+bool parse_coordinate(std::string_view word, float& value);
+
+}  // namespace hydrodip

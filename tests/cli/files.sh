@@ -1,0 +1,157 @@
+#!/bin/sh
+# Files that people have, and what must never happen to them: nothing of theirs is overwritten,
+# nothing in them reaches the terminal raw, and what is missing is named with who asks for it.
+. "$(dirname "$0")/common.sh"
+
+# refused FRAGMENT ARGUMENTS...: exit code 2 and one sentence that contains FRAGMENT.
+refused() {
+  fragment=$1
+  shift
+  "$hydrodip" "$@" --quiet > "$work/.out" 2> "$work/.err"
+  code=$?
+  [ "$code" -eq 2 ] || fail "exit code $code instead of 2: $*: $(cat "$work/.err")"
+  [ "$(wc -l < "$work/.err")" -eq 1 ] || fail "not one line on stderr: $*: $(cat "$work/.err")"
+  grep -qF -- "$fragment" "$work/.err" || fail "no '$fragment' in: $(cat "$work/.err")"
+}
+
+write_slab() {  # a textured slab; $1: its material library
+  {
+    [ -z "$1" ] || echo "mtllib $1"
+    printf 'v 0 0 0\nv 60 0 0\nv 60 60 0\nv 0 60 0\nv 0 0 10\nv 60 0 10\nv 60 60 10\nv 0 60 10\n'
+    printf 'vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 4/4 3/3 2/2 1/1\nf 5/1 6/2 7/3 8/4\n'
+    printf 'f 1/1 2/2 6/3 5/4\nf 2/1 3/2 7/3 6/4\nf 3/1 4/2 8/3 7/4\nf 4/1 1/2 5/3 8/4\n'
+  }
+}
+
+"$hydrodip" sample box -o samples > /dev/null || fail 'sample box'
+mkdir slab
+cp samples/box.png slab/tex.png
+write_slab slab.mtl > slab/slab.obj
+printf 'newmtl m\nKd 1 1 1\nmap_Kd tex.png\n' > slab/slab.mtl
+"$hydrodip" print slab/slab.obj $quick -o right --quiet > /dev/null || fail 'print of the slab'
+
+# The same print, however the model is written down.
+same() {
+  "$hydrodip" print "$1" $quick -o same --quiet > same.txt || fail "print $1"
+  cmp -s right/print.png same/print.png || fail "$1 prints differently"
+}
+{ printf '\357\273\277'; cat slab/slab.obj; } > slab/bom.obj
+same slab/bom.obj
+printf 'newmtl q\nKd 1 0 0\n' > slab/q.mtl
+write_slab 'q.mtl slab.mtl' > slab/two.obj
+same slab/two.obj
+printf 'newmtl m\nTr 1.000000\nmap_Kd TEX.PNG\n' > slab/tr.mtl
+write_slab tr.mtl > slab/tr.obj
+same slab/tr.obj
+grep -q 'Tr 1' same.txt || fail 'no warning about Tr 1'
+
+# What is missing, and who asks for it.
+printf 'newmtl m\nKd 1 1 1\nmap_Kd nothere.png\n' > slab/miss.mtl
+write_slab miss.mtl > slab/miss.obj
+refused 'nothere.png that miss.mtl refers to' print slab/miss.obj -o out
+write_slab gone.mtl > slab/nomtl.obj
+"$hydrodip" inspect slab/nomtl.obj | grep -q 'gone.mtl that nomtl.obj refers to' ||
+  fail 'a missing material library is not named'
+write_tetrahedron tetra.obj
+refused 'nope.png' print tetra.obj --texture nope.png -o out
+
+# One plain colour is a picture; white is none, and neither is a picture of it.
+printf 'newmtl m\nKd 0.8 0.2 0.1\n' > slab/plain.mtl
+write_slab plain.mtl > slab/plain.obj
+"$hydrodip" print slab/plain.obj $quick -o plain --quiet > plain.txt || fail 'print of one colour'
+grep -q '#cc331a' plain.txt || fail 'one plain colour is not said'
+if command -v convert > /dev/null; then
+  convert -size 8x8 xc:white slab/white.png
+  refused 'blank' print slab/slab.obj --texture slab/white.png $quick -o blank
+  [ ! -e blank ] || fail 'a blank sheet leaves files'
+fi
+
+# Nobody's files are overwritten.
+mkdir own
+cp slab/slab.obj own/slab.obj
+cp slab/tex.png own/print.png
+printf 'newmtl m\nKd 1 1 1\nmap_Kd print.png\n' > own/slab.mtl
+(cd own && refused 'would overwrite it' print slab.obj $quick -o .)
+cmp -s own/print.png slab/tex.png || fail 'an input was overwritten'
+mkdir foreign
+echo 'my notes' > foreign/report.html
+refused 'not written by hydrodip' print slab/slab.obj $quick -o foreign
+[ "$(cat foreign/report.html)" = 'my notes' ] || fail 'a foreign file was replaced'
+[ "$(ls -A foreign)" = report.html ] || fail 'files beside a foreign one'
+"$hydrodip" print slab/slab.obj $quick -o right --quiet > again.txt || fail 'second print'
+grep -q 'replaced the earlier result' again.txt || fail 'an earlier result is replaced in silence'
+grep -q 'replaced' plain.txt && fail 'nothing was replaced the first time'
+
+# The next run clears what a killed one left.
+mkdir -p killed/.hydrodip-abcdef
+echo half > killed/.hydrodip-abcdef/print.png
+"$hydrodip" inspect tetra.obj --set preview.width_px=200 -o killed > /dev/null || fail 'inspect -o'
+[ "$(ls -A killed | tr '\n' ' ')" = 'angles.png report.json ' ] || fail "left: $(ls -A killed)"
+
+# Reports differ in their times and memory alone.
+if command -v python3 > /dev/null; then
+  "$hydrodip" print slab/slab.obj $quick -o right --quiet > /dev/null || fail 'third print'
+  cp -r right first
+  "$hydrodip" print slab/slab.obj $quick -o right --quiet > /dev/null || fail 'fourth print'
+  python3 - <<'PY' || fail 'reports differ in more than times and memory'
+import json, re
+reports = [json.load(open(f + '/report.json')) for f in ('first', 'right')]
+for report in reports:
+    del report['seconds']
+    report.pop('peak_memory_bytes', None)
+assert reports[0] == reports[1]
+pages = [re.sub(r'<section id="times">.*?</section>', '', open(f + '/report.html').read(), flags=re.S)
+         for f in ('first', 'right')]
+assert pages[0] == pages[1]
+PY
+fi
+
+# No control character of a file or a path reaches the terminal; C1 is control too.
+esc=$(printf '\033')
+mkdir odd
+printf 'newmtl a\nKd 0.8 0.5 0.5\nmap_Kd \033]0;title\007\033[31mRED\302\2332J.png\n' > odd/m.mtl
+{ echo 'mtllib m.mtl'; echo 'usemtl a'; cat tetra.obj; } > odd/m.obj
+printf 'ply\nformat ascii 1.0\nelement \033[31mx\nend_header\n' > odd/e.ply
+cp tetra.obj "odd/t${esc}[1m.obj"
+for arguments in odd/m.obj odd/e.ply "odd/t${esc}[1m.obj" "odd/none${esc}[1m.obj"; do
+  for json in '' --json; do
+    # shellcheck disable=SC2086
+    "$hydrodip" inspect "$arguments" $json > shown.txt 2>&1
+    LC_ALL=C grep -q "[$(printf '\001-\010\013-\037\177')]" shown.txt &&
+      fail "control characters from $arguments: $(cat -v shown.txt)"
+    LC_ALL=C grep -q "$(printf '\302[\200-\237]')" shown.txt && fail "C1 from $arguments"
+  done
+done
+
+# Limits of the system end in a sentence.
+if command -v prlimit > /dev/null; then
+  prlimit --fsize=50000 "$hydrodip" print slab/slab.obj $quick -o limited --quiet > /dev/null 2> limit.txt
+  code=$?
+  [ "$code" -eq 2 ] || fail "a file-size limit: exit code $code: $(cat limit.txt)"
+  [ "$(wc -l < limit.txt)" -eq 1 ] || fail "a file-size limit: $(cat limit.txt)"
+  [ ! -e limited ] || fail 'a file-size limit leaves files'
+  for limit in 221000000 300000000 500000000; do
+    prlimit --as=$limit "$hydrodip" print slab/slab.obj $quick -o limited --quiet > /dev/null 2> limit.txt
+    code=$?
+    [ "$code" -eq 0 ] || [ "$code" -eq 2 ] || [ "$code" -eq 3 ] ||
+      fail "a limit of $limit bytes: exit code $code: $(cat limit.txt)"
+    [ ! -e limited/.hydrodip-* ] || fail "a limit of $limit bytes leaves files"
+    rm -rf limited
+  done
+fi
+
+# Settings.
+awk 'BEGIN { printf "a"; for (i = 0; i < 9999; ++i) printf ".a"; print " = 1" }' > deep.toml
+refused 'levels deep' inspect tetra.obj --config deep.toml
+printf '[object]\nrotate_deg = [-9223372036854775808, 2, 3]\nsize_mm = -9223372036854775808\n' > least.toml
+refused '-9223372036854775808' inspect tetra.obj --config least.toml
+
+# Another country's way to write numbers changes nothing.
+if locale -a 2> /dev/null | grep -qi '^de_DE.utf-\{0,1\}8'; then
+  LC_ALL=de_DE.UTF-8 "$hydrodip" print slab/slab.obj $quick -o german --quiet > /dev/null ||
+    fail 'print in German'
+  for name in print.png print.tif print.pdf film.ply preview.glb; do
+    cmp -s right/$name german/$name || fail "$name depends on the locale"
+  done
+fi
+finish

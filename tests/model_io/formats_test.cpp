@@ -1,0 +1,648 @@
+// Features of each format that people's files have: docs/formats.md, line by line.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "contains.h"
+#include "model_io/load.h"
+#include "model_io/model_files.h"
+
+namespace hydrodip {
+namespace {
+
+using fixtures::Bytes;
+using fixtures::ModelFolder;
+
+struct Loaded {
+  LoadedObject object;
+  std::vector<std::string> warnings;
+};
+
+Loaded load(const std::filesystem::path& path, const LoadOptions& options = {}) {
+  RunContext context;
+  LoadedObject object = load_object(path, options, context);
+  return {std::move(object), context.warnings()};
+}
+
+std::string refusal_of(const std::filesystem::path& path, const LoadOptions& options = {}) {
+  try {
+    load(path, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool warned(const Loaded& loaded, const std::string& of) {
+  for (const std::string& warning : loaded.warnings)
+    if (contains(warning, of)) return true;
+  return false;
+}
+
+// The colour at a point of the plane z = 0 over black, as sRGB bytes.
+std::array<int, 3> seen_at(const Loaded& loaded, double x, double y) {
+  const Object& object = loaded.object.object;
+  for (std::size_t f = 0; f < object.triangles.size(); ++f) {
+    const Triangle& t = object.triangles[f];
+    const Vec2 a = object.positions[std::size_t(t[0])].head<2>();
+    const Vec2 ab = object.positions[std::size_t(t[1])].head<2>() - a;
+    const Vec2 ac = object.positions[std::size_t(t[2])].head<2>() - a;
+    const double area = cross2(ab, ac);
+    const double u = cross2(Vec2(x, y) - a, ac) / area;
+    const double v = cross2(ab, Vec2(x, y) - a) / area;
+    if (u < -1e-9 || v < -1e-9 || u + v > 1 + 1e-9) continue;
+    const LinearColor color = color_at(object, {int(f), u, v}, {0, 0, 0, 1});
+    return {linear_to_srgb8(color.r), linear_to_srgb8(color.g), linear_to_srgb8(color.b)};
+  }
+  ADD_FAILURE() << "no triangle at " << x << ", " << y;
+  return {};
+}
+
+using Rgb = std::array<int, 3>;
+constexpr Rgb kRed{255, 0, 0}, kGreen{0, 255, 0}, kBlue{0, 0, 255}, kWhite{255, 255, 255},
+    kBlack{0, 0, 0};
+
+// A unit square with the four-colour picture on it: red and green above, blue and white below.
+void expect_four_colours(const Loaded& loaded) {
+  EXPECT_EQ(seen_at(loaded, 0.25, 0.75), kRed);
+  EXPECT_EQ(seen_at(loaded, 0.75, 0.75), kGreen);
+  EXPECT_EQ(seen_at(loaded, 0.25, 0.25), kBlue);
+  EXPECT_EQ(seen_at(loaded, 0.75, 0.25), kWhite);
+}
+
+// An OBJ of that square; what stands before it and how its material looks.
+class Formats : public ::testing::Test {
+ protected:
+  Formats() { folder_.write("tex.png", fixtures::four_colour_png()); }
+
+  Loaded obj(const std::string& mtl, const std::string& head = "mtllib a.mtl\n") {
+    folder_.write("a.mtl", mtl);
+    return load(folder_.write("a.obj", head + kSquare));
+  }
+
+  static constexpr const char* kSquare =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+      "usemtl m\nf 1/1 2/2 3/3 4/4\n";
+  ModelFolder folder_;
+};
+
+// ---- OBJ ----------------------------------------------------------------------------------------
+
+TEST_F(Formats, ObjByteOrderMarks) {
+  const std::string bom = "\xef\xbb\xbf";
+  expect_four_colours(obj("newmtl m\nmap_Kd tex.png\n", bom + "mtllib a.mtl\n"));
+  expect_four_colours(obj(bom + "newmtl m\nmap_Kd tex.png\n"));
+}
+
+TEST_F(Formats, ObjSeveralLibrariesInOneLineOrSeveral) {
+  folder_.write("b.mtl", std::string("newmtl q\nKd 1 0 0\n"));
+  folder_.write("c d.mtl", std::string("newmtl m\nmap_Kd tex.png\n"));
+  expect_four_colours(obj("newmtl m\nmap_Kd tex.png\n", "mtllib b.mtl a.mtl\n"));
+  expect_four_colours(obj("newmtl z\nKd 1 0 0\n", "mtllib b.mtl\nmtllib a.mtl\nmtllib c d.mtl\n"));
+}
+
+TEST_F(Formats, ObjLineEndsOfAllSystems) {
+  std::string text = std::string("mtllib a.mtl\n") + kSquare;
+  folder_.write("a.mtl", std::string("newmtl m\rmap_Kd tex.png\r"));
+  for (const char* end : {"\r\n", "\r"}) {
+    std::string other;
+    for (const char c : text) other += c == '\n' ? std::string(end) : std::string(1, c);
+    expect_four_colours(load(folder_.write("a.obj", other)));
+  }
+}
+
+TEST_F(Formats, MtlMapOptions) {
+  // Twice as many: the whole picture fills the lower left quarter.
+  const Loaded tiled = obj("newmtl m\nmap_Kd -s 2 2 1 tex.png\n");
+  EXPECT_EQ(seen_at(tiled, 0.125, 0.375), kRed);
+  EXPECT_EQ(seen_at(tiled, 0.375, 0.375), kGreen);
+  EXPECT_EQ(seen_at(tiled, 0.625, 0.875), kRed);
+  const Loaded shifted = obj("newmtl m\nmap_Kd -o 0.5 tex.png\n");
+  EXPECT_EQ(seen_at(shifted, 0.25, 0.75), kGreen);
+  EXPECT_EQ(seen_at(shifted, 0.75, 0.75), kRed);
+  const Loaded both = obj("newmtl m\nmap_Kd -o 0.5 0 0 -s 2 2 1 tex.png\n");
+  EXPECT_EQ(seen_at(both, 0.125, 0.375), kGreen);
+  // Half as strong on a base of half: c -> 0.5 + 0.5 c.
+  const Loaded ranged = obj("newmtl m\nmap_Kd -mm 0.5 0.5 tex.png\n");
+  EXPECT_EQ(seen_at(ranged, 0.25, 0.75), (Rgb{255, 128, 128}));
+  const Loaded clamped = obj("newmtl m\nmap_Kd -clamp on -s 2 2 2 tex.png\n");
+  EXPECT_EQ(seen_at(clamped, 0.9, 0.9), kGreen);
+  expect_four_colours(obj("newmtl m\nmap_Kd -blendu on -bm 1 -texres 512 \"tex.png\"\n"));
+}
+
+TEST_F(Formats, MtlTransparencyThatMeansOpaque) {
+  const Loaded meshlab = obj("newmtl m\nTr 1.000000\nmap_Kd tex.png\n");
+  expect_four_colours(meshlab);
+  EXPECT_TRUE(warned(meshlab, "Tr 1"));
+  const Loaded both = obj("newmtl m\nd 1\nTr 1\nmap_Kd tex.png\n");
+  expect_four_colours(both);
+  EXPECT_TRUE(both.warnings.empty());
+  const Loaded gone = obj("newmtl m\nd 0\nmap_Kd tex.png\n");
+  EXPECT_EQ(seen_at(gone, 0.25, 0.75), kBlack);
+  EXPECT_TRUE(warned(gone, "d 0"));
+  const Loaded half = obj("newmtl m\nTr 0.5\nKd 1 1 1\n");
+  EXPECT_EQ(seen_at(half, 0.5, 0.5)[0], linear_to_srgb8(0.5F));
+}
+
+TEST_F(Formats, PicturesByAnyLetterCaseAndWindowsPath) {
+  std::filesystem::create_directory(folder_ / "Textures");
+  folder_.write("Textures/Wood Grain.PNG", fixtures::four_colour_png());
+  for (const char* name : {"TEX.PNG", "C:\\work\\tex.png", ".\\Tex.png", "textures\\wood grain.png",
+                           "Textures/Wood%20Grain.PNG"})
+    expect_four_colours(obj(fmt::format("newmtl m\nmap_Kd {}\n", name)));
+}
+
+TEST_F(Formats, MissingFilesAreNamedWithWhoAsksForThem) {
+  const Loaded loaded = obj("newmtl m\nmap_Kd nothere.png\n");
+  EXPECT_TRUE(warned(loaded, "nothere.png that a.mtl refers to"));
+  ASSERT_EQ(loaded.object.picture_problems.size(), 1u);
+  EXPECT_TRUE(warned(obj("", "mtllib gone.mtl\n"), "gone.mtl that a.obj refers to"));
+  EXPECT_TRUE(warned(obj("newmtl other\nKd 1 0 0\n"), "no material library defines (m)"));
+}
+
+TEST_F(Formats, ObjColoursOfVertices) {
+  const auto corner_color = [&](const char* colors) {
+    return seen_at(load(folder_.write("a.obj", fmt::format("v 0 0 0 {0}\nv 1 0 0 {0}\nv 0 1 0 {0}\n"
+                                                           "f 1 2 3\n",
+                                                           colors))),
+                   0.2, 0.2);
+  };
+  EXPECT_EQ(corner_color("1 0.5 0"), (Rgb{255, 128, 0}));
+  EXPECT_EQ(corner_color("255 128 0"), (Rgb{255, 128, 0}));
+}
+
+TEST_F(Formats, ObjSmallestAndLargestIndices) {
+  for (const char* index :
+       {"-9223372036854775808", "9223372036854775807", "99999999999999999999", "-4", "4"}) {
+    const auto path =
+        folder_.write("a.obj", fmt::format("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {}\n", index));
+    EXPECT_TRUE(contains(refusal_of(path), "line 4")) << index;
+  }
+}
+
+// Time and memory of these grew with the square.
+TEST_F(Formats, ManyGroupsMaterialsAndCornersStayLinear) {
+  const std::string square = "v 0 0 0\nv 20 0 0\nv 20 20 0\nv 0 20 0\n";
+  std::string groups = square, materials = square, face = square + "f";
+  for (int k = 0; k < 60000; ++k) {
+    groups += fmt::format("o part{}\nf 1 2 3\n", k);
+    materials += fmt::format("usemtl m{}\nf 1 2 3\n", k);
+  }
+  for (int k = 0; k < 300000; ++k) face += fmt::format(" {}", 1 + k % 4);
+  EXPECT_EQ(load(folder_.write("g.obj", groups)).object.health.triangles, 1);
+  EXPECT_EQ(load(folder_.write("m.obj", materials)).object.health.triangles, 1);
+  EXPECT_LE(load(folder_.write("f.obj", face + "\n")).object.health.triangles, 4);
+}
+
+TEST_F(Formats, ReadingCanBeCancelled) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int k = 0; k < 10000; ++k) text += "f 1 2 3\n";
+  RunContext context;
+  context.cancel();
+  EXPECT_THROW(load_object(folder_.write("a.obj", text), {}, context), Cancelled);
+}
+
+TEST_F(Formats, OneStatedColourIsAPicture) {
+  EXPECT_TRUE(obj("newmtl m\nKd 1 0 0\n").object.object.has_appearance());
+  EXPECT_FALSE(obj("newmtl m\nKd 1 1 1\n").object.object.has_appearance());
+  EXPECT_FALSE(obj("newmtl m\n").object.object.has_appearance());
+  EXPECT_TRUE(warned(obj("newmtl m\nKd 1 0 0\n"), "#ff0000"));
+}
+
+// ---- PLY ----------------------------------------------------------------------------------------
+
+std::string ply_square(const std::string& comments, const std::string& face_properties,
+                       const std::string& face) {
+  return "ply\nformat ascii 1.0\n" + comments +
+         "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 1\nproperty list uchar int vertex_indices\n" +
+         face_properties + "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3" + face + "\n";
+}
+
+TEST_F(Formats, PlyCoordinatesOfFacesAndTrailingBlanks) {
+  for (const char* comment : {"comment TextureFile tex.png\n", "comment TextureFile tex.png  \t\n",
+                              "comment TextureFile tex.png\r\n"})
+    expect_four_colours(
+        load(folder_.write("a.ply", ply_square(comment, "property list uchar float texcoord\n",
+                                               " 8 0 0 1 0 1 1 0 1"))));
+}
+
+TEST_F(Formats, PlySeveralPictures) {
+  folder_.write("other.png", fixtures::png_of(1, 1, {{9, 8, 7}}));
+  const std::string text = ply_square(
+      "comment TextureFile other.png\ncomment TextureFile tex.png\n",
+      "property list uchar float texcoord\nproperty int texnumber\n", " 8 0 0 1 0 1 1 0 1 1");
+  expect_four_colours(load(folder_.write("a.ply", text)));
+}
+
+TEST_F(Formats, PlyPicturesNamedAfterTheModel) {
+  folder_.write("a_0.png", fixtures::four_colour_png());
+  expect_four_colours(load(folder_.write(
+      "a.ply", ply_square("comment TextureFile <this>_0.png\n",
+                          "property list uchar float texcoord\n", " 8 0 0 1 0 1 1 0 1"))));
+}
+
+TEST_F(Formats, PlyColoursOfFaces) {
+  const std::string text = ply_square(
+      "", "property uchar red\nproperty uchar green\nproperty uchar blue\n", " 10 200 30");
+  EXPECT_EQ(seen_at(load(folder_.write("a.ply", text)), 0.5, 0.5), (Rgb{10, 200, 30}));
+}
+
+TEST_F(Formats, PlyDataThatBeginsLikeALineEnd) {
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\n"
+      "property uchar y\nproperty uchar z\nelement face 1\n"
+      "property list uchar uchar vertex_indices\nend_header\n";
+  const char body[] = {10, 0, 0, 13, 0, 0, 10, 5, 0, 3, 0, 1, 2};
+  text.append(body, sizeof body);
+  const Loaded loaded = load(folder_.write("a.ply", text));
+  EXPECT_EQ(loaded.object.object.bounds().size(), Vec3(3, 5, 0));
+}
+
+TEST_F(Formats, PlyTriangleStrips) {
+  const Loaded loaded = load(folder_.write(
+      "a.ply", std::string("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+                           "property float y\nproperty float z\nelement tristrips 1\n"
+                           "property list int int vertex_indices\nend_header\n"
+                           "0 0 0\n1 0 0\n0 1 0\n1 1 0\n5 0 1 2 3 -1\n")));
+  EXPECT_EQ(loaded.object.health.triangles, 2);
+  EXPECT_EQ(loaded.object.health.flipped, 0);
+  EXPECT_NEAR(loaded.object.health.area_mm2, 1, 1e-9);
+}
+
+// ---- OFF and STL --------------------------------------------------------------------------------
+
+TEST_F(Formats, OffFacesOfAnySizeAndTheirColours) {
+  std::string text = "OFF12 2 0\n", face = "12";
+  for (int i = 0; i < 12; ++i) {
+    text += fmt::format("{} {} 0\n", std::cos(i * M_PI / 6), std::sin(i * M_PI / 6));
+    face += fmt::format(" {}", i);
+  }
+  text += face + " 255 0 0\n3 0 1 2 0.0 0.0 1.0\n";
+  const Loaded loaded = load(folder_.write("a.off", text));
+  EXPECT_EQ(loaded.object.health.triangles, 10);
+  EXPECT_EQ(seen_at(loaded, -0.1, -0.1), kRed);
+}
+
+// A square of two facets in the plane z = 0 with their colour words.
+Bytes stl_square(const std::string& header, std::uint16_t first, std::uint16_t second) {
+  Bytes out(header.begin(), header.end());
+  out.resize(80, ' ');
+  out.insert(out.end(), {2, 0, 0, 0});
+  const float corners[2][9] = {{0, 0, 0, 1, 0, 0, 1, 1, 0}, {0, 0, 0, 1, 1, 0, 0, 1, 0}};
+  for (int f = 0; f < 2; ++f) {
+    out.resize(out.size() + 12);
+    const auto* raw = reinterpret_cast<const std::uint8_t*>(corners[f]);
+    out.insert(out.end(), raw, raw + sizeof corners[f]);
+    const std::uint16_t word = f == 0 ? first : second;
+    out.insert(out.end(), {std::uint8_t(word), std::uint8_t(word >> 8)});
+  }
+  return out;
+}
+
+TEST_F(Formats, StlColoursOfVisCam) {
+  const Loaded loaded =
+      load(folder_.write("a.stl", stl_square("viscam", 0x8000 | 31 << 10, 0x8000 | 31)));
+  EXPECT_EQ(seen_at(loaded, 0.8, 0.2), kRed);
+  EXPECT_EQ(seen_at(loaded, 0.2, 0.8), kBlue);
+  const Loaded partly = load(folder_.write("a.stl", stl_square("viscam", 0x8000 | 31 << 10, 31)));
+  EXPECT_EQ(seen_at(partly, 0.2, 0.8), kWhite);
+  EXPECT_FALSE(
+      load(folder_.write("a.stl", stl_square("plain", 31, 0))).object.object.has_appearance());
+}
+
+TEST_F(Formats, StlColoursOfMagicsInBothConventions) {
+  const std::string header = std::string("solid COLOR=") + '\x00' + '\xff' + '\x00' + '\xff';
+  // The manual's: bit 15 clear is the facet's own colour, set is the object's.
+  const Loaded manual = load(folder_.write("a.stl", stl_square(header, 31, 0xffff)));
+  EXPECT_EQ(seen_at(manual, 0.8, 0.2), kRed);
+  EXPECT_EQ(seen_at(manual, 0.2, 0.8), kGreen);
+  // MeshLab's and others': set is the facet's own.
+  const Loaded other =
+      load(folder_.write("a.stl", stl_square(header, 0x8000 | 31, 0x8000 | 31 << 10)));
+  EXPECT_EQ(seen_at(other, 0.8, 0.2), kRed);
+  EXPECT_EQ(seen_at(other, 0.2, 0.8), kBlue);
+  const Loaded whole = load(folder_.write("a.stl", stl_square(header, 0, 0)));
+  EXPECT_EQ(seen_at(whole, 0.8, 0.2), kGreen);
+}
+
+// ---- glTF ---------------------------------------------------------------------------------------
+
+class Gltf : public Formats {
+ protected:
+  // A unit square in glTF's frame (ours: z = 0, in metres), textured. All numbers lie in a.bin.
+  Gltf() {
+    for (const auto& p : {std::array<float, 2>{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+      append(positions_, std::array<float, 3>{p[0], 0, -p[1]});
+      append(uvs_, std::array<float, 2>{p[0], 1 - p[1]});
+    }
+    append(indices_, std::array<std::uint16_t, 6>{0, 1, 2, 0, 2, 3});
+  }
+
+  template <typename T>
+  static void append(Bytes& out, const T& values) {
+    const auto* raw = reinterpret_cast<const std::uint8_t*>(values.data());
+    out.insert(out.end(), raw, raw + sizeof(values[0]) * values.size());
+  }
+
+  // One view and one accessor per part; each part's accessor without its bufferView.
+  struct Piece {
+    Bytes bytes;
+    std::string accessor;
+    std::string view_extra;
+  };
+
+  std::vector<Piece> plain() const {
+    return {{positions_, R"("componentType": 5126, "count": 4, "type": "VEC3")", ""},
+            {uvs_, R"("componentType": 5126, "count": 4, "type": "VEC2")", ""},
+            {indices_, R"("componentType": 5123, "count": 6, "type": "SCALAR")", ""}};
+  }
+
+  Loaded gltf(const std::vector<Piece>& pieces, const std::string& material,
+              const std::string& root = "", const std::string& attributes = "",
+              const std::string& texture = R"("source": 0)", const std::string& primitive = "") {
+    return load(write(pieces, material, root, attributes, texture, primitive));
+  }
+
+  std::filesystem::path write(const std::vector<Piece>& pieces, const std::string& material,
+                              const std::string& root = "", const std::string& attributes = "",
+                              const std::string& texture = R"("source": 0)",
+                              const std::string& primitive = "") {
+    Bytes bin;
+    std::string views, accessors;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      while (bin.size() % 4) bin.push_back(0);
+      views += fmt::format(R"({}{{"buffer": 0, "byteOffset": {}, "byteLength": {}{}}})",
+                           i ? "," : "", bin.size(), pieces[i].bytes.size(), pieces[i].view_extra);
+      if (!pieces[i].accessor.empty())
+        accessors += fmt::format(R"({}{{"bufferView": {}, {}}})", accessors.empty() ? "" : ",", i,
+                                 pieces[i].accessor);
+      bin.insert(bin.end(), pieces[i].bytes.begin(), pieces[i].bytes.end());
+    }
+    folder_.write("a.bin", bin);
+    return folder_.write(
+        "a.gltf",
+        fmt::format(
+            R"({{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],
+"nodes": [{{"mesh": 0}}], "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "TEXCOORD_0": 1{}}},
+"indices": 2, "material": 0{}}}]}}], "materials": [{{{}}}], "textures": [{{{}}}],
+"images": [{{"uri": "tex.png"}}], "accessors": [{}], "bufferViews": [{}],
+"buffers": [{{"uri": "a.bin", "byteLength": {}}}]{}}})",
+            attributes, primitive, material, texture, accessors, views, bin.size(), root));
+  }
+
+  static constexpr const char* kTextured =
+      R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0}})";
+  static Rgb at(const Loaded& loaded, double x, double y) {
+    return seen_at(loaded, 1000 * x, 1000 * y);
+  }
+  static void expect_picture(const Loaded& loaded) {
+    EXPECT_EQ(at(loaded, 0.25, 0.75), kRed);
+    EXPECT_EQ(at(loaded, 0.75, 0.75), kGreen);
+    EXPECT_EQ(at(loaded, 0.25, 0.25), kBlue);
+    EXPECT_EQ(at(loaded, 0.75, 0.25), kWhite);
+  }
+
+  Bytes positions_, uvs_, indices_;
+};
+
+TEST_F(Gltf, PlainForComparison) { expect_picture(gltf(plain(), kTextured)); }
+
+TEST_F(Gltf, QuantisedAndNormalisedNumbers) {
+  auto pieces = plain();
+  // Positions in whole numbers of 10 m and 1 cm would be scaled by a node; here they are 0 or 1.
+  pieces[0].bytes = {0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 255, 0, 0, 0, 255, 0};
+  pieces[0].accessor = R"("componentType": 5120, "count": 4, "type": "VEC3")";
+  pieces[0].view_extra = R"(, "byteStride": 4)";
+  pieces[1].bytes = {0, 255, 0, 0, 255, 255, 0, 0, 255, 0, 0, 0, 0, 0, 0, 0};
+  pieces[1].accessor = R"("componentType": 5121, "normalized": true, "count": 4, "type": "VEC2")";
+  pieces[1].view_extra = R"(, "byteStride": 4)";
+  expect_picture(gltf(pieces, kTextured, R"(, "extensionsRequired": ["KHR_mesh_quantization"])"));
+}
+
+TEST_F(Gltf, SparseNumbers) {
+  auto pieces = plain();
+  // Corner 2 lies elsewhere, and the sparse part puts it right.
+  const float wrong = 7;
+  std::memcpy(&pieces[0].bytes[24], &wrong, 4);
+  pieces[0].accessor +=
+      R"(, "sparse": {"count": 1, "indices": {"bufferView": 3, "componentType": 5121}, "values": {"bufferView": 4}})";
+  pieces.push_back({{2}, "", ""});
+  Bytes right;
+  append(right, std::array<float, 3>{1, 0, -1});
+  pieces.push_back({right, "", ""});
+  expect_picture(gltf(pieces, kTextured));
+  pieces[3].bytes = {9};
+  EXPECT_NE(refusal_of(write(pieces, kTextured)), "");
+}
+
+TEST_F(Gltf, AlphaOfVerticesUnderOpaque) {
+  auto pieces = plain();
+  pieces.push_back({{255, 255, 255, 9, 255, 255, 255, 9, 255, 255, 255, 9, 255, 255, 255, 9},
+                    R"("componentType": 5121, "normalized": true, "count": 4, "type": "VEC4")",
+                    ""});
+  expect_picture(gltf(pieces, kTextured, "", R"(, "COLOR_0": 3)"));
+  const Loaded blended =
+      gltf(pieces, std::string(kTextured) + R"(, "alphaMode": "BLEND")", "", R"(, "COLOR_0": 3)");
+  EXPECT_LT(at(blended, 0.25, 0.75)[0], 60);
+}
+
+TEST_F(Gltf, SpecularGlossinessHasABaseColourToo) {
+  expect_picture(gltf(
+      plain(),
+      R"("extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseTexture": {"index": 0}}})",
+      R"(, "extensionsRequired": ["KHR_materials_pbrSpecularGlossiness"])"));
+}
+
+TEST_F(Gltf, ExtensionsThatDoNotTouchTheBaseColour) {
+  for (const char* name : {"KHR_materials_variants", "KHR_materials_clearcoat",
+                           "KHR_materials_transmission", "KHR_lights_punctual"})
+    expect_picture(
+        gltf(plain(), kTextured, fmt::format(R"(, "extensionsRequired": ["{}"])", name)));
+  EXPECT_TRUE(
+      contains(refusal_of(write(plain(), kTextured, R"(, "extensionsRequired": ["ACME_shape"])")),
+               "ACME_shape"));
+}
+
+TEST_F(Gltf, TexturesThatCannotBeReadSayHowToExport) {
+  const std::string basisu = R"("extensions": {"KHR_texture_basisu": {"source": 0}})";
+  const std::string said = refusal_of(write(plain(), kTextured, "", "", basisu));
+  EXPECT_TRUE(contains(said, "KTX2"));
+  EXPECT_TRUE(contains(said, "PNG, JPEG or WebP"));
+  // With another picture to fall back on it is read.
+  expect_picture(gltf(plain(), kTextured, "", "", R"("source": 0, )" + basisu));
+}
+
+TEST_F(Gltf, MissingPicturesAreNamedWithTheModel) {
+  std::filesystem::remove(folder_ / "tex.png");
+  const Loaded loaded = gltf(plain(), kTextured);
+  EXPECT_TRUE(warned(loaded, "tex.png that a.gltf refers to"));
+  EXPECT_EQ(loaded.object.picture_problems.size(), 1u);
+}
+
+TEST_F(Gltf, ShortAndForgedContainers) {
+  for (const std::uint8_t length : {0, 1, 12, 19, 20}) {
+    Bytes bytes = {'g', 'l', 'T', 'F', 2, 0, 0, 0, length, 0, 0, 0, 0, 0, 0, 0, 'J', 'S', 'O', 'N'};
+    EXPECT_NE(refusal_of(folder_.write("a.glb", bytes)), "") << int(length);
+    bytes[12] = 200;
+    EXPECT_NE(refusal_of(folder_.write("a.glb", bytes)), "") << int(length);
+  }
+}
+
+// ---- 3MF ----------------------------------------------------------------------------------------
+
+constexpr const char* kRelations =
+    "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+    "<Relationship Target=\"/3D/3dmodel.model\" Id=\"r\" "
+    "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+
+constexpr const char* kCore = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+
+constexpr const char* kSquareVertices =
+    "<vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>"
+    "<vertex x=\"1\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\"/></vertices>";
+
+class ThreeMf : public Formats {
+ protected:
+  static std::string model(const std::string& inside, const std::string& unit = "millimeter") {
+    return fmt::format(
+        "<?xml version=\"1.0\"?><model unit=\"{}\" xmlns=\"{}\" "
+        "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\" "
+        "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" "
+        "xmlns:s=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\" "
+        "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\">{}</model>",
+        unit, kCore, inside);
+  }
+
+  Loaded package(std::vector<std::pair<std::string, std::string>> parts) {
+    parts.insert(parts.begin(), {"_rels/.rels", kRelations});
+    return load(folder_.write("a.3mf", fixtures::zip_of(parts)));
+  }
+
+  static std::string text(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
+
+  static std::string square(const std::string& properties) {
+    return fmt::format(
+        "<mesh>{}<triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\" {}/>"
+        "<triangle v1=\"0\" v2=\"2\" v3=\"3\" {}/></triangles></mesh>",
+        kSquareVertices, properties,
+        properties.find("p3=\"2\"") == std::string::npos ? properties
+                                                         : "pid=\"2\" p1=\"0\" p2=\"2\" p3=\"3\"");
+  }
+};
+
+TEST_F(ThreeMf, TexturesWithTheirSeamsAndThumbnails) {
+  const std::string resources =
+      "<resources><m:texture2d id=\"1\" path=\"/3D/Textures/t.png\" contenttype=\"image/png\"/>"
+      "<m:texture2dgroup id=\"2\" texid=\"1\"><m:tex2coord u=\"0\" v=\"0\"/>"
+      "<m:tex2coord u=\"1\" v=\"0\"/><m:tex2coord u=\"1\" v=\"1\"/><m:tex2coord u=\"0\" v=\"1\"/>"
+      "</m:texture2dgroup><object id=\"3\">" +
+      square("pid=\"2\" p1=\"0\" p2=\"1\" p3=\"2\"") +
+      "</object></resources><build><item objectid=\"3\"/></build>";
+  const Loaded loaded = package({{"3D/3dmodel.model", model(resources)},
+                                 {"3D/Textures/t.png", text(fixtures::four_colour_png())},
+                                 {"Metadata/thumbnail.png", text(fixtures::four_colour_png())}});
+  expect_four_colours(loaded);
+  EXPECT_TRUE(loaded.warnings.empty());
+  const Loaded missing = package({{"3D/3dmodel.model", model(resources)}});
+  EXPECT_TRUE(warned(missing, "t.png that a.3mf refers to"));
+}
+
+TEST_F(ThreeMf, ColoursOfCornersCompositesAndLayers) {
+  const auto colored = [&](const std::string& groups, const std::string& properties) {
+    return package({{"3D/3dmodel.model",
+                     model("<resources>" + groups + "<object id=\"9\">" + square(properties) +
+                           "</object></resources><build><item objectid=\"9\"/></build>")}});
+  };
+  const std::string base =
+      "<basematerials id=\"1\"><base name=\"a\" displaycolor=\"#FF0000\"/>"
+      "<base name=\"b\" displaycolor=\"#0000FFFF\"/></basematerials>";
+  EXPECT_EQ(seen_at(colored(base, "pid=\"1\" p1=\"1\""), 0.5, 0.2), kBlue);
+  const std::string composite = base +
+                                "<m:compositematerials id=\"4\" matid=\"1\" matindices=\"0 1\">"
+                                "<m:composite values=\"0.5 0.5\"/></m:compositematerials>";
+  EXPECT_EQ(seen_at(colored(composite, "pid=\"4\" p1=\"0\""), 0.5, 0.2), (Rgb{128, 0, 128}));
+  const std::string layers = base +
+                             "<m:colorgroup id=\"5\"><m:color color=\"#00FF00\"/></m:colorgroup>"
+                             "<m:multiproperties id=\"6\" pids=\"1 5\"><m:multi pindices=\"0 0\"/>"
+                             "</m:multiproperties>";
+  EXPECT_EQ(seen_at(colored(layers, "pid=\"6\" p1=\"0\""), 0.5, 0.2), kGreen);
+  EXPECT_TRUE(colored(base, "pid=\"1\" p1=\"1\"").object.object.has_appearance());
+}
+
+TEST_F(ThreeMf, PartsOfTheProductionExtension) {
+  const std::string inner =
+      model("<resources><object id=\"1\">" + square("") + "</object></resources><build/>");
+  const std::string outer = model(
+      "<resources><object id=\"8\"><components>"
+      "<component p:path=\"/3D/Objects/part_1.model\" objectid=\"1\" "
+      "transform=\"1 0 0 0 1 0 0 0 1 5 0 0\"/></components></object></resources>"
+      "<build><item objectid=\"8\" transform=\"0 1 0 -1 0 0 0 0 1 0 0 0\"/></build>");
+  const Loaded loaded = package({{"3D/3dmodel.model", outer}, {"3D/Objects/part_1.model", inner}});
+  // Moved to x = 5, then turned by a quarter: x becomes y.
+  EXPECT_NEAR((loaded.object.object.bounds().min - Vec3(-1, 5, 0)).norm(), 0, 1e-6);
+  EXPECT_NEAR((loaded.object.object.bounds().max - Vec3(0, 6, 0)).norm(), 0, 1e-6);
+}
+
+TEST_F(ThreeMf, SlicesAreNoVerticesAndLatticesAreSaid) {
+  const Loaded loaded =
+      package({{"3D/3dmodel.model",
+                model("<resources><s:slicestack id=\"7\"><s:slice ztop=\"1\"><s:vertices>"
+                      "<s:vertex x=\"1\" y=\"2\"/></s:vertices><s:polygon startv=\"0\"/></s:slice>"
+                      "</s:slicestack><object id=\"1\" s:slicestackid=\"7\"><mesh>" +
+                      std::string(kSquareVertices) +
+                      "<triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles>"
+                      "<b:beamlattice radius=\"1\"><b:beams><b:beam v1=\"0\" v2=\"9\"/></b:beams>"
+                      "</b:beamlattice></mesh></object></resources>"
+                      "<build><item objectid=\"1\"/></build>")}});
+  EXPECT_EQ(loaded.object.health.triangles, 1);
+  EXPECT_TRUE(warned(loaded, "beam lattices"));
+}
+
+TEST_F(ThreeMf, PaintOfSlicersIsNamed) {
+  EXPECT_TRUE(warned(package({{"3D/3dmodel.model",
+                               model("<resources><object id=\"1\">" + square("paint_color=\"4\"") +
+                                     "</object></resources><build><item objectid=\"1\"/>"
+                                     "</build>")}}),
+                     "paint_color"));
+}
+
+TEST_F(ThreeMf, SupportsAreNotDipped) {
+  const Loaded loaded =
+      package({{"3D/3dmodel.model",
+                model("<resources><object id=\"1\">" + square("") +
+                      "</object><object id=\"2\" "
+                      "type=\"support\">" +
+                      square("") +
+                      "</object></resources><build><item objectid=\"1\"/>"
+                      "<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 9 0 0\"/></build>")}});
+  EXPECT_EQ(loaded.object.health.triangles, 2);
+}
+
+TEST_F(ThreeMf, CopiesWithoutEndAreRefused) {
+  const auto items = [&](int count, const std::string& object) {
+    std::string text = "<resources>" + object + "</resources><build>";
+    for (int i = 0; i < count; ++i) text += "<item objectid=\"1\"/>";
+    return refusal_of(
+        folder_.write("a.3mf", fixtures::zip_of({{"3D/3dmodel.model", model(text + "</build>")}})));
+  };
+  EXPECT_TRUE(contains(items(400000, "<object id=\"1\">" + square("") + "</object>"), "objects"));
+  // Each object twice in the next: 2^25 copies.
+  std::string nested;
+  for (int i = 1; i <= 25; ++i)
+    nested += fmt::format(
+        "<object id=\"{}\"><components><component objectid=\"{}\"/>"
+        "<component objectid=\"{}\"/></components></object>",
+        i, i + 1, i + 1);
+  nested += "<object id=\"26\">" + square("") + "</object>";
+  EXPECT_TRUE(contains(items(1, nested), "copies"));
+  EXPECT_TRUE(contains(
+      items(1, "<object id=\"1\"><components><component objectid=\"1\"/></components></object>"),
+      "nested"));
+}
+
+}  // namespace
+}  // namespace hydrodip
