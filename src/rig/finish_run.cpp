@@ -14,6 +14,7 @@ void note_end(RunRecord& record, const std::string& outcome, const std::string& 
   if (!message.empty()) fields.emplace_back("message", message);
   if (end.rest) {
     fields.emplace_back("stage_stands_still", end.rest->confirmed);
+    fields.emplace_back("stage_knows_its_place", end.rest->place_known);
     fields.emplace_back("stage_position_mm", end.rest->position_mm);
   }
   record.note("end", fields);

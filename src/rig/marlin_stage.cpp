@@ -62,7 +62,7 @@ class MarlinStage : public Stage {
     if (homing_) return homing_state();
     const auto position = read_position();
     StageState state;
-    state.homed = homed_;
+    state.homed = state.position_known = homed_;
     const bool changed = position && std::abs(*position - position_mm_) > 0.5 / steps_per_mm_;
     if (position) position_mm_ = *position;
     state.position_mm = position_mm_;
@@ -138,7 +138,7 @@ class MarlinStage : public Stage {
 
   // An earlier line was lost for good: the printer still waits for its number.
   void renumber(int& number, int wanted) {
-    if (number - wanted > kMostLinesLost || number < wanted) set_restarted();
+    if (number - wanted > kMostLinesLost || number < wanted) set_restarted(wanted);
     number = wanted;
     next_line_ = wanted + 1;
   }
@@ -152,13 +152,16 @@ class MarlinStage : public Stage {
     homed_ = homing_ = false;
   }
 
-  [[noreturn]] void set_restarted() {
+  // It counts lines from `next` on.
+  [[noreturn]] void set_restarted(int next) {
     homed_ = homing_ = false;
+    aimed_.reset();
+    next_line_ = next;
     throw StageError("the printer has started anew and forgotten its home: was its power cut?");
   }
 
   void refuse_errors(const std::string& line) {
-    if (line == "start" && connected_) set_restarted();
+    if (line == "start" && connected_) set_restarted(0);
     if (is_halt(line)) {
       set_halted();
       throw StageError("the printer has halted itself (" + line + "): reset it");
@@ -231,6 +234,7 @@ class MarlinStage : public Stage {
       throw LinkError("the printer fell silent while homing");
     StageState state;
     state.position_mm = position_mm_;
+    state.position_known = false;
     state.moving = true;
     return state;
   }

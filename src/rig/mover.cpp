@@ -15,10 +15,13 @@ constexpr double kRestPoll_s = 0.05;
 constexpr double kRestTimeout_s = 4;
 constexpr double kOldAnswers_s = 3;
 constexpr double kHomingTimeout_s = 300;
+// A movement may take this many times as long as planned, and this long on top.
+constexpr double kDeadlineFactor = 2, kDeadline_s = 5;
+// A stage that is under way and stays where it is for that long is stuck. At a crawl it still has
+// time for a few steps.
+constexpr double kStuck_s = 1, kStuckSteps = 4;
 // Short leashes still span a few steps.
 constexpr double kLeashSteps = 8;
-// A stage that is this far behind has lost steps, or is not the stage that it says it is.
-constexpr double kLag_mm = 1, kLag_s = 0.6;
 
 // The stop of a movement that was under way: why, and how it ended.
 std::string with_rest(const std::string& phase, const std::string& why, const Rest& rest) {
@@ -29,9 +32,7 @@ std::string with_rest(const std::string& phase, const std::string& why, const Re
 
 std::string Rest::sentence() const {
   if (confirmed && !place_known)
-    return fmt::format(
-        "The stage stands still, somewhere near {:.1f} mm: home it before anything else.",
-        position_mm);
+    return "The stage stands still and no longer knows where: home it before anything else.";
   if (confirmed) return fmt::format("The stage stands still at {:.3f} mm.", position_mm);
   if (homing)
     return "Whether the stage stands still is not known: it may still be homing. Keep clear, or "
@@ -50,6 +51,10 @@ struct Mover::Way {
   double step_mm = 0;
   bool steady = false;
 
+  double length_mm() const { return std::abs(end_mm - start_mm); }
+  double planned_s() const { return length_mm() / mm_per_s; }
+  double deadline_s() const { return kDeadlineFactor * planned_s() + kDeadline_s; }
+  double stuck_s() const { return std::max(kStuck_s, kStuckSteps * step_mm / mm_per_s); }
   double direction() const { return end_mm >= start_mm ? 1 : -1; }
   double leash_mm() const { return std::max(mm_per_s * kLeash_s, kLeashSteps * step_mm); }
   double leash_end_mm(double position_mm) const {
@@ -57,7 +62,7 @@ struct Mover::Way {
     return direction() > 0 ? std::min(ahead, end_mm) : std::max(ahead, end_mm);
   }
   double commanded_mm(double elapsed_s) const {
-    return start_mm + direction() * std::min(mm_per_s * elapsed_s, std::abs(end_mm - start_mm));
+    return start_mm + direction() * std::min(mm_per_s * elapsed_s, length_mm());
   }
 };
 
@@ -67,6 +72,13 @@ Mover::Mover(Stage& stage, Clock& clock, RunContext& context)
 }
 
 StageState Mover::state() { return stage_.state(); }
+
+// A stage that has forgotten where it is counts from somewhere else.
+StageState Mover::look() {
+  const StageState state = stage_.state();
+  if (state.position_known) last_position_mm_ = state.position_mm;
+  return state;
+}
 
 void Mover::home() {
   require_permission();
@@ -79,8 +91,7 @@ void Mover::home() {
     for (;;) {
       clock_.sleep(kCycle_s);
       cancel_point();
-      const StageState state = stage_.state();
-      last_position_mm_ = state.position_mm;
+      const StageState state = look();
       record("homing", state.position_mm, state.position_mm);
       if (!state.fault.empty()) throw StageError(state.fault);
       if (!state.moving && state.homed) return;
@@ -95,7 +106,7 @@ void Mover::move_to(const std::string& phase, double position_mm, double mm_per_
   require_within_limits(position_mm);
   guarded(phase, false, [&] {
     cancel_point();
-    const StageState state = stage_.state();
+    const StageState state = look();
     if (!state.fault.empty()) throw StageError(state.fault);
     if (!state.homed) throw StageError("the stage is not homed, so it does not know where it is");
     if (state.moving) throw StageError("the stage is moving already");
@@ -106,7 +117,8 @@ void Mover::move_to(const std::string& phase, double position_mm, double mm_per_
 
 void Mover::follow(const Way& way) {
   const double start_s = clock_.now_s();
-  last_position_mm_ = leash_end_mm_ = way.start_mm;
+  leash_end_mm_ = way.start_mm;
+  double moved_s = start_s;  // when its place last changed
   record(way.phase, way.start_mm, way.start_mm);
   for (;;) {
     cancel_point();
@@ -114,36 +126,55 @@ void Mover::follow(const Way& way) {
     stage_.aim(leash_end_mm_);
     clock_.sleep(kCycle_s);
     cancel_point();
-    const StageState state = stage_.state();
-    const double elapsed_s = clock_.now_s() - start_s;
-    last_position_mm_ = state.position_mm;
-    record(way.phase, way.commanded_mm(elapsed_s), state.position_mm);
-    check(state, way, elapsed_s);
+    const double before_mm = last_position_mm_;
+    const StageState state = look();
+    const double now_s = clock_.now_s();
+    record(way.phase, way.commanded_mm(now_s - start_s), state.position_mm);
+    check(state, way, now_s - start_s);
     if (!state.moving && leash_end_mm_ == way.end_mm) return;
+    if (std::abs(last_position_mm_ - before_mm) > 0.5 * way.step_mm) moved_s = now_s;
+    check_progress(way, now_s - start_s, now_s - moved_s);
   }
 }
 
 void Mover::check(const StageState& state, const Way& way, double elapsed_s) const {
-  if (!state.fault.empty()) throw StageError(state.fault);
-  if (!state.homed) throw StageError("the stage has forgotten its home: was its power cut?");
+  require_sound(state);
   if (way.steady) check_lag(state, way, elapsed_s);
-  if (state.moving) return;
-  if (leash_end_mm_ == way.end_mm) {
-    const double missing_mm = std::abs(state.position_mm - way.end_mm);
-    if (missing_mm > way.step_mm)
-      throw StageError(fmt::format("the stage stopped {:.3f} mm before its goal", missing_mm));
-  } else if (way.steady) {
+  const bool at_leash_end = std::abs(state.position_mm - leash_end_mm_) <= way.step_mm;
+  if (!state.moving && !at_leash_end)
+    throw StageError(fmt::format(
+        "the stage stopped {:.3f} mm before its goal: something is in its way, or its travel ends "
+        "earlier than it says",
+        std::abs(state.position_mm - way.end_mm)));
+  if (way.steady && at_leash_end && leash_end_mm_ != way.end_mm)
     throw StageError(
         "the stage had to wait, for the computer or the link was too slow to keep the speed");
-  }
 }
 
 void Mover::check_lag(const StageState& state, const Way& way, double elapsed_s) const {
   const double lag_mm = way.direction() * (way.commanded_mm(elapsed_s) - state.position_mm);
-  if (std::abs(lag_mm) <= kLag_mm + kLag_s * way.mm_per_s) return;
-  throw StageError(
-      fmt::format("the stage is {:.2f} mm {} its place: it slipped, or its answers come too slowly",
-                  std::abs(lag_mm), lag_mm > 0 ? "behind" : "ahead of"));
+  if (std::abs(lag_mm) <= allowed_lag_mm(way.mm_per_s)) return;
+  throw StageError(fmt::format(
+      "the stage is {} by {:.1f} mm: it slips, runs at a speed of its own, or answers too late",
+      lag_mm > 0 ? "behind" : "ahead", std::abs(lag_mm)));
+}
+
+void Mover::check_progress(const Way& way, double elapsed_s, double still_s) const {
+  const double left_mm = std::abs(way.end_mm - last_position_mm_);
+  if (still_s >= way.stuck_s())
+    throw StageError(
+        fmt::format("the stage is stuck {:.1f} mm before its goal: something is in its way, or its "
+                    "travel ends earlier than it says",
+                    left_mm));
+  if (elapsed_s > way.deadline_s())
+    throw StageError(fmt::format(
+        "the stage is still {:.1f} mm from its goal after {:.0f} s, where {:.0f} s were planned",
+        left_mm, elapsed_s, way.planned_s()));
+}
+
+void Mover::require_sound(const StageState& state) {
+  if (!state.fault.empty()) throw StageError(state.fault);
+  if (!state.homed) throw StageError("the stage has forgotten its home: was its power cut?");
 }
 
 void Mover::dwell(const std::string& phase, double seconds) {
@@ -153,9 +184,12 @@ void Mover::dwell(const std::string& phase, double seconds) {
     leash_end_mm_ = place_mm;
     for (;;) {
       cancel_point();
-      const StageState state = stage_.state();
+      const StageState state = look();
       record(phase, place_mm, state.position_mm);
-      if (!state.fault.empty()) throw StageError(state.fault);
+      require_sound(state);
+      const double off_mm = std::abs(state.position_mm - place_mm);
+      if (off_mm > allowed_lag_mm(0))
+        throw StageError(fmt::format("the stage has left its place by {:.1f} mm", off_mm));
       const double left_s = end_s - clock_.now_s();
       if (left_s <= 0) return;
       clock_.sleep(std::min(left_s, 0.5));
@@ -216,8 +250,8 @@ Rest Mover::bring_to_rest(bool homing) {
         stage_.stop();
         stopped = true;
       }
-      const StageState state = stage_.state();
-      rest.position_mm = last_position_mm_ = state.position_mm;
+      const StageState state = look();
+      rest.position_mm = last_position_mm_;
       rest.place_known = state.position_known;
       rest.confirmed = !state.moving;
       if (rest.confirmed && (!link_bad || clock_.now_s() > start_s + kOldAnswers_s)) return rest;

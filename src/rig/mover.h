@@ -19,12 +19,15 @@ namespace hydrodip {
 inline constexpr double kLeash_s = 0.6;
 // From whatever makes a stop due (Ctrl-C, a lost link, a warning flag) to standstill, at the most.
 inline constexpr double kLongestStop_s = 1.5;
+// A steady movement is broken off when the stage is farther than this from where its speed should
+// have brought it: it has slipped, or is not the stage that it says it is. 0 mm/s: standing still.
+inline double allowed_lag_mm(double mm_per_s) { return 1 + 0.6 * mm_per_s; }
 
 // How a movement that was broken off ended.
 struct Rest {
   bool place_known = true;  // false: it stands still, but has forgotten where
   bool confirmed = false;   // the stage itself said that it stands still
-  double position_mm = 0;   // then; else where it last said it was
+  double position_mm = 0;   // then; else where it last said it was, while it knew
   double farthest_mm = 0;   // not confirmed: it cannot have got further than this
   bool homing = false;      // it was homing; farthest_mm means nothing
   std::string sentence() const;
@@ -43,13 +46,15 @@ class Mover {
   void allow_motion() { allowed_ = true; }
 
   // These return when the stage stands still at the end of the movement. On Ctrl-C, a warning flag,
-  // a lost or garbled link, a lag, they stop the stage (slowing down; at once on a second Ctrl-C),
+  // a lost or garbled link, a lost home, a lag, a stage that is stuck or takes twice as long as
+  // planned, they stop the stage (slowing down; at once on a second Ctrl-C),
   // make sure that it stands still as far as that can be known, and throw Cancelled, LinkError or
   // StageError with what happened and how the stage ended; last_rest() has the latter.
   // Throws StageError without moving for a target beyond the stage's limits.
   void home();
   // Steady: the speed matters, so a computer that comes too late is an error as well.
   void move_to(const std::string& phase, double position_mm, double mm_per_min, bool steady);
+  // Stands still; a stage that leaves its place is an error.
   void dwell(const std::string& phase, double seconds);
 
   const std::optional<Rest>& last_rest() const { return last_rest_; }
@@ -61,9 +66,12 @@ class Mover {
   struct Way;
   void require_permission() const;
   void guarded(const std::string& phase, bool homing, const std::function<void()>& movement);
+  StageState look();
   void follow(const Way& way);
   void check(const StageState& state, const Way& way, double elapsed_s) const;
   void check_lag(const StageState& state, const Way& way, double elapsed_s) const;
+  void check_progress(const Way& way, double elapsed_s, double still_s) const;
+  static void require_sound(const StageState& state);
   void record(const std::string& phase, double commanded_mm, double reported_mm);
   Rest bring_to_rest(bool homing);
   void cancel_point() const;

@@ -17,7 +17,7 @@ struct StageIdentity {
 
 struct StageState {
   double position_mm = 0;
-  bool position_known = true;  // false: a machine that was halted no longer says where it is
+  bool position_known = true;  // false: halted, or without a home; position_mm means little
   bool moving = false;
   bool homed = false;
   std::string flag;   // as the stage says it: "WR"; "" for none

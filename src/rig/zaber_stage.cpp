@@ -39,14 +39,19 @@ class ZaberStage : public Stage {
     StageState state;
     state.position_mm = to_mm(number(reply.data, "get pos"));
     state.moving = reply.busy;
-    state.homed = !zaber_flag_means_not_homed(reply.flag);
     state.flag = reply.flag;
     state.fault = describe_fault(reply.flag);
+    // One flag is shown, and a fault hides that home is lost.
+    if (state.fault.empty()) homed_ = !zaber_flag_means_not_homed(reply.flag);
+    state.homed = state.position_known = homed_;
     return state;
   }
 
   void acknowledge() override { command("warnings clear"); }
-  void start_homing() override { command("home"); }
+  void start_homing() override {
+    homed_ = false;
+    command("home");
+  }
 
   void set_speed(double mm_per_min) override {
     command(fmt::format("set maxspeed {}", std::lround(mm_per_min / 60 / step_mm() * kSpeedUnit)));
@@ -57,8 +62,9 @@ class ZaberStage : public Stage {
         command(fmt::format("move abs {}", std::lround(position_mm / step_mm())));
     const std::string fault = describe_fault(reply.flag);
     if (!fault.empty()) throw StageError(fault);
-    if (zaber_flag_means_not_homed(reply.flag))
-      throw StageError("the stage has forgotten its home: was its power cut?");
+    if (!zaber_flag_means_not_homed(reply.flag)) return;
+    homed_ = false;
+    throw StageError("the stage has forgotten its home: was its power cut?");
   }
 
   void stop() override { command("stop"); }
@@ -138,6 +144,7 @@ class ZaberStage : public Stage {
   StageOptions options_;
   int next_id_ = 0;
   bool checksums_ = false;
+  bool homed_ = false;
 };
 
 }  // namespace

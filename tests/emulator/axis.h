@@ -14,6 +14,7 @@ class Axis {
   bool moving() const { return velocity != 0 || position != target; }
 
   void stop() {  // slowing down
+    if (velocity == 0) return halt();
     const double sign = velocity < 0 ? -1 : 1;
     target = std::round(position + sign * velocity * velocity / (2 * acceleration));
   }

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kTick_s = 1e-3;
 constexpr double kStart_s = 1;
+constexpr double kHeard_s = 0.5;
 
 }  // namespace
 
@@ -35,15 +36,29 @@ void Emulator::advance(double now_s) {
   while (now_s_ + kTick_s / 2 < now_s) {
     now_s_ += kTick_s;
     strike();
-    axis_.step(kTick_s);
-    if (homing_ && !axis_.moving()) {
-      homing_ = false;
-      homed_ = true;
-    }
+    move();
     tick();
     watch();
   }
   deliver();
+}
+
+void Emulator::move() {
+  if (strength(FaultKind::kStick) > 0)
+    axis_.velocity = 0;
+  else
+    step_axis(1 - strength(FaultKind::kSlow));
+  if (!homing_ || axis_.moving()) return;
+  homing_ = false;
+  homed_ = true;
+  count_from_here();
+}
+
+void Emulator::step_axis(double pace) {
+  const double top_speed = axis_.top_speed;
+  axis_.top_speed *= pace;
+  axis_.step(kTick_s);
+  axis_.top_speed = top_speed;
 }
 
 void Emulator::read_wire() {
@@ -101,7 +116,13 @@ void Emulator::strike() {
     struck_[i] = true;
     if (faults_[i].kind == FaultKind::kStall) on_stall();
     if (faults_[i].kind == FaultKind::kOverheat) on_overheat();
-    if (faults_[i].kind == FaultKind::kPowerCut) on_power_cut();
+    if (faults_[i].kind == FaultKind::kPowerCut) awake_s_ = now_s_ + kStart_s;
+    if (faults_[i].kind == FaultKind::kPowerCut || faults_[i].kind == FaultKind::kBlink)
+      on_power_cut();
+    if (faults_[i].kind == FaultKind::kSlip && axis_.velocity != 0)
+      axis_.position -= std::copysign(1, axis_.velocity) * std::round(faults_[i].value / step_mm_);
+    if (faults_[i].kind == FaultKind::kSag && !axis_.moving())
+      axis_.position = axis_.target += std::round(faults_[i].value / step_mm_);
     if (faults_[i].kind == FaultKind::kUnplug) unplug();
   }
 }
@@ -109,7 +130,8 @@ void Emulator::strike() {
 void Emulator::on_power_cut() {
   axis_.halt();
   homed_ = homing_ = false;
-  awake_s_ = now_s_ + kStart_s;
+  lost_home_s_ = now_s_;
+  count_from_here();
 }
 
 void Emulator::unplug() {
@@ -135,12 +157,18 @@ void Emulator::begin_homing() {
   axis_.target = 0;
 }
 
+void Emulator::begin_move() {
+  if (!homed_ && now_s_ > lost_home_s_ + kHeard_s) moved_unhomed_ = true;
+}
+
 void Emulator::stop_due(double at_s) {
   if (!due_s_ || at_s < *due_s_) due_s_ = at_s;
 }
 
 void Emulator::watch() {
   if (due_s_ && now_s_ > *due_s_ && moving() && !disobeyed_s_) disobeyed_s_ = now_s_;
+  if (moving() && !was_moving_) last_start_s_ = now_s_;
+  was_moving_ = moving();
   if (moving()) history_.push_back({now_s_, position_mm()});
 }
 

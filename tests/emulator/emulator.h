@@ -23,6 +23,12 @@ enum class FaultKind {
   kStall,           // the motor is blocked, and the machine notices
   kOverheat,        // a warning flag, though the motor runs on
   kPowerCut,        // off and on again: home is forgotten
+  kBlink,           // the same in no time and without a word
+  kSlow,            // value: share of the speed that is lost, 0 to 1
+  kSlip,            // value: mm that the motor falls back, if it moves
+  kSag,             // value: mm that the motor gives way towards more, if it stands
+  kStick,           // the motor is blocked, and the machine says that it moves
+  kShortTravel,     // value: mm that the machine says it can travel further, either way
 };
 
 struct Fault {
@@ -56,13 +62,17 @@ class Emulator {
   void stop_due(double at_s);
   // When it moved although it should not have; nothing: never.
   std::optional<double> disobeyed_s() const { return disobeyed_s_; }
-  // A movement other than homing was begun without a home.
+  // A movement other than homing was begun without a home, longer after losing it than a computer
+  // needs to hear of it.
   bool moved_unhomed() const { return moved_unhomed_; }
 
   bool moving() const { return axis_.moving(); }
   bool homing() const { return homing_; }
   bool homed() const { return homed_; }
+  // Where it truly is, from its home; without a home it counts from somewhere else.
   double position_mm() const { return axis_.position * step_mm_; }
+  // When it last began to move, for whatever reason; 0: never.
+  double last_start_s() const { return last_start_s_; }
   // Mean speed between two places during the last passage down, mm/min; for the test of constancy.
   double measured_speed_mm_per_min(double from_mm, double to_mm) const;
   bool unplugged() const { return master_ < 0; }
@@ -77,6 +87,12 @@ class Emulator {
 
   void reply(const std::string& line);
   void begin_homing();
+  void begin_move();
+  // Of what the machine believes of itself.
+  double count() const { return axis_.position - origin_; }
+  void aim_at(double count) { axis_.target = std::round(count + origin_); }
+  void count_from_here() { origin_ = axis_.position; }
+  double strength(FaultKind kind) const;
 
   Axis axis_;  // in steps
   double step_mm_ = 1;
@@ -94,13 +110,14 @@ class Emulator {
   bool active(const Fault& fault) const {
     return now_s_ >= fault.at_s && now_s_ < fault.at_s + fault.lasts_s;
   }
-  double strength(FaultKind kind) const;
   bool chance(double probability);
   void garble(std::string& bytes);
   void strike();
   bool mute() const { return strength(FaultKind::kSilence) > 0 || now_s_ < awake_s_; }
   void unplug();
   void deliver();
+  void move();
+  void step_axis(double pace);
   void watch();
 
   int master_ = -1;
@@ -109,10 +126,14 @@ class Emulator {
   std::string line_;
   std::vector<Fault> faults_;
   std::vector<bool> struck_;
+  double origin_ = 0;  // in steps
+  double lost_home_s_ = -1e9;
   double awake_s_ = 0;  // after a power cut the machine first has to start
   std::deque<Outgoing> outgoing_;
   std::size_t bytes_read_ = 0, bytes_written_ = 0;
   std::optional<double> due_s_, disobeyed_s_;
+  double last_start_s_ = 0;
+  bool was_moving_ = false;
   struct Place {
     double time_s, mm;
   };

@@ -17,6 +17,7 @@ class MarlinEmulator : public Emulator {
   explicit MarlinEmulator(unsigned seed) : Emulator(seed) {
     step_mm_ = 1 / kStepsPerMm;
     axis_.position = axis_.target = 30 * kStepsPerMm;
+    count_from_here();
     axis_.acceleration = 100 * kStepsPerMm;
     axis_.top_speed = 10 * kStepsPerMm;
   }
@@ -52,10 +53,10 @@ class MarlinEmulator : public Emulator {
   void on_overheat() override { kill("MAXTEMP triggered"); }
   void on_power_cut() override {
     Emulator::on_power_cut();
-    killed_ = false;
+    killed_ = was_homing_ = false;
     last_number_ = -1;
     waiting_.clear();
-    reply("start");
+    if (strength(FaultKind::kBlink) == 0) reply("start");
   }
 
  private:
@@ -107,15 +108,15 @@ class MarlinEmulator : public Emulator {
       return;  // ok when it is done
     }
     if (text.rfind("G1 ", 0) == 0) {
-      if (!homed_) moved_unhomed_ = true;
+      begin_move();
       axis_.top_speed = value(text, 'F', 600) / 60 * kStepsPerMm;
-      axis_.target = std::round(std::min(kZMax_mm, std::max(0.0, value(text, 'Z', position_mm()))) *
-                                kStepsPerMm);
+      aim_at(kStepsPerMm * std::clamp(value(text, 'Z', step_mm_ * count()), 0.0, kZMax_mm));
     } else if (text == "M410") {
       axis_.stop();
     } else if (text == "M114") {
-      reply(fmt::format("X:0.00 Y:0.00 Z:{:.2f} E:0.00 Count X:0 Y:0 Z:{}", axis_.target * step_mm_,
-                        std::lround(axis_.position)));
+      reply(fmt::format("X:0.00 Y:0.00 Z:{:.2f} E:0.00 Count X:0 Y:0 Z:{}",
+                        (axis_.target - axis_.position + count()) * step_mm_,
+                        std::lround(count())));
     } else if (text == "M115") {
       reply(
           "FIRMWARE_NAME:Marlin 2.1.2 SOURCE_CODE_URL:github.com/MarlinFirmware/Marlin "
@@ -123,7 +124,10 @@ class MarlinEmulator : public Emulator {
     } else if (text == "M92") {
       reply("  M92 X80.00 Y80.00 Z400.00 E93.00");
     } else if (text == "M211") {
-      reply("Soft endstops: On  Min:  X0.00 Y0.00 Z0.00   Max:  X200.00 Y200.00 Z200.00");
+      const double surplus_mm = strength(FaultKind::kShortTravel);
+      reply(fmt::format(
+          "Soft endstops: On  Min:  X0.00 Y0.00 Z{:.2f}   Max:  X200.00 Y200.00 Z{:.2f}",
+          -surplus_mm, kZMax_mm + surplus_mm));
     } else if (text != "G90" && text != "G21" && text.rfind("M110", 0) != 0) {
       reply("echo:Unknown command: \"" + text + "\"");
     }

@@ -25,6 +25,7 @@ class ZaberEmulator : public Emulator {
     step_mm_ = kMicrostep_mm;
     homed_ = homed;
     axis_.position = axis_.target = 200000;
+    if (!homed) count_from_here();
     axis_.top_speed = 153600 / kSpeedUnit;
     axis_.acceleration = 205 * 10000 / kSpeedUnit;
     set_speed_ = axis_.top_speed;
@@ -103,7 +104,7 @@ class ZaberEmulator : public Emulator {
     if (verb == "set") return set(what, value, refusal);
     if (verb == "move" && what == "abs") return move(std::atol(value.c_str()), refusal);
     if (verb == "move" && what == "rel")
-      return move(std::lround(axis_.position) + std::atol(value.c_str()), refusal);
+      return move(std::lround(count()) + std::atol(value.c_str()), refusal);
     if (verb == "home") {
       axis_.top_speed = 30000;
       begin_homing();
@@ -122,11 +123,11 @@ class ZaberEmulator : public Emulator {
 
   void get(const std::string& what, std::string& data, std::string& refusal) {
     if (what == "pos") {
-      data = fmt::format("{}", std::lround(axis_.position));
+      data = fmt::format("{}", std::lround(count()));
     } else if (what == "limit.max") {
-      data = fmt::format("{}", kLimitMax);
+      data = fmt::format("{}", kLimitMax + surplus());
     } else if (what == "limit.min") {
-      data = std::string("0");
+      data = fmt::format("{}", -surplus());
     } else if (what == "deviceid") {
       data = std::string("30111");
     } else if (what == "version") {
@@ -153,13 +154,15 @@ class ZaberEmulator : public Emulator {
   }
 
   void move(long target, std::string& refusal) {
-    if (!homed_) moved_unhomed_ = true;
-    if (target < 0 || target > kLimitMax) {
+    begin_move();
+    if (target < -surplus() || target > kLimitMax + surplus()) {
       refusal = std::string("BADDATA");
       return;
     }
-    axis_.target = double(target);
+    aim_at(double(std::clamp(target, 0L, kLimitMax)));
   }
+
+  long surplus() const { return std::lround(strength(FaultKind::kShortTravel) / kMicrostep_mm); }
 
   bool checksums_ = false;
   bool was_moving_ = false;

@@ -1,55 +1,14 @@
 #include <gtest/gtest.h>
 
-#include <deque>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-
 #include "base/error.h"
-#include "base/file.h"
-#include "rig/rig.h"
+#include "guided.h"
 #include "rig/run_record.h"
-#include "virtual_bench.h"
 
 namespace hydrodip {
 namespace {
 
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
-
-// Answers by the question's beginning; the time that an answer takes passes on the clock.
-class ScriptedOperator : public Operator {
- public:
-  explicit ScriptedOperator(Clock& clock) : clock_(clock) {}
-
-  void say(const std::string& text) override { said += text + "\n"; }
-  void show(const std::string&) override {}
-  bool pressed_enter() override { return clock_.now_s() - asked_s_ >= soak_s; }
-  std::string ask(const std::string& question) override {
-    clock_.sleep(1);
-    asked_s_ = clock_.now_s();
-    if (question.find("broken off") != std::string::npos) return take_up;
-    if (question.find("Type yes") != std::string::npos) return yes;
-    if (question.find("or here") != std::string::npos) {
-      if (jogs.empty()) return "here";
-      const std::string jog = jogs.front();
-      jogs.pop_front();
-      return jog;
-    }
-    if (question.find("Temperature") != std::string::npos) return "28,5";
-    if (question.find("Gun before") != std::string::npos) return "812.40";
-    if (question.find("Gun after") != std::string::npos) return "808.90";
-    return "";
-  }
-
-  std::string said, yes = "yes", take_up = "no";
-  std::deque<std::string> jogs = {"60", "-2.5"};
-  double soak_s = 70;
-
- private:
-  Clock& clock_;
-  double asked_s_ = 0;
-};
 
 class GuideTest : public ::testing::Test {
  protected:
@@ -63,13 +22,7 @@ class GuideTest : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  void write_report(const Json& parameters) const {
-    Json report = {{"schema_version", 1},
-                   {"title", "mask"},
-                   {"parameters", parameters},
-                   {"figures", {{"depth_mm", 29.5}, {"object_size_mm", {100, 130, 29.5}}}}};
-    write_file(folder_ / "report.json", report.dump());
-  }
+  void write_report(const Json& parameters) const { write_rig_report(folder_, parameters); }
 
   RigJob job(const std::string& port) const {
     RigJob job = load_rig_job(folder_, {});
@@ -78,10 +31,7 @@ class GuideTest : public ::testing::Test {
   }
 
   std::vector<Json> log(int run = 1) const {
-    std::ifstream file(folder_ / ("rig-" + std::to_string(run)) / "log.jsonl");
-    std::vector<Json> lines;
-    for (std::string line; std::getline(file, line);) lines.push_back(Json::parse(line));
-    return lines;
+    return read_log(folder_ / ("rig-" + std::to_string(run)));
   }
 
   static const Json* find(const std::vector<Json>& lines, const std::string& event) {
@@ -91,19 +41,6 @@ class GuideTest : public ::testing::Test {
   }
 
   fs::path folder_;
-};
-
-struct GuidedBench {
-  GuidedBench() : emulator(zaber_emulator()), clock(*emulator), person(clock) {
-    bench.open = [this](const StageOptions& options) -> std::unique_ptr<Link> {
-      return std::make_unique<CountingLink>(open_serial(options.port, options.baud, clock), clock);
-    };
-  }
-  std::unique_ptr<Emulator> emulator;
-  VirtualClock clock;
-  ScriptedOperator person;
-  RunContext context;
-  Bench bench{person, clock, {}};
 };
 
 TEST_F(GuideTest, LeadsFromHomeToRetractAndLogsWhatWas) {
@@ -138,6 +75,126 @@ TEST_F(GuideTest, DoesWithoutAStage) {
   rig_guide(job(""), guided.bench, guided.context);
   EXPECT_EQ(guided.emulator->position_mm(), place_mm);
   EXPECT_EQ(log().back()["outcome"], "done");
+}
+
+// The time that the depth takes at the job's speed: 29.5 mm at 100 mm/min.
+TEST_F(GuideTest, TheHandDipTakesAsLongAsDepthAndSpeedSay) {
+  GuidedBench guided;
+  rig_guide(job(""), guided.bench, guided.context);
+  const ScriptedOperator& person = guided.person;
+  const double answer_s = 1, dwell_s = job("").config.process.dwell_s;
+  const double down_s = person.asked_s("surface is clear") - person.asked_s("By hand") - answer_s;
+  EXPECT_NEAR(down_s - dwell_s, 17.7, 0.5);
+  EXPECT_NE(person.asked.at(0).second.find("film is ready"), std::string::npos);
+  for (const auto& [time_s, line] : person.shown) {
+    if (line.find("of 29.5 mm") == std::string::npos) continue;
+    const double past_s = time_s - person.asked_s("By hand") - answer_s;
+    EXPECT_NEAR(std::stod(line), past_s * 100 / 60, 0.06) << line;
+  }
+  EXPECT_NEAR((*find(log(), "dipped by hand"))["planned_s"].get<double>(), 17.7, 1e-9);
+}
+
+TEST_F(GuideTest, WaterOutsideItsRangeIsAskedAgainAndLogged) {
+  GuidedBench guided;
+  guided.person.temperatures = {"26.9", "30.1", "27", "30"};
+  rig_guide(job(""), guided.bench, guided.context);
+  EXPECT_EQ(guided.person.times_asked("too cold"), 1);
+  EXPECT_EQ(guided.person.times_asked("too warm"), 1);
+  std::vector<std::pair<double, bool>> measured;
+  for (const Json& line : log())
+    if (line["event"] == "water") measured.emplace_back(line["celsius"], line["within"]);
+  const std::vector<std::pair<double, bool>> wanted = {
+      {26.9, false}, {30.1, false}, {27, true}, {30, true}};
+  EXPECT_EQ(measured, wanted);
+}
+
+TEST_F(GuideTest, WaterThatIsKeptOrMeasuredAfterIsAskedOnce) {
+  GuidedBench guided;
+  guided.person.keep_water = "keep";
+  guided.person.temperatures = {"26.9", "26.9"};
+  rig_guide(job(""), guided.bench, guided.context);
+  EXPECT_EQ(guided.person.times_asked("Temperature"), 2);
+  EXPECT_EQ(guided.person.times_asked("too cold"), 1);  // after the dip nothing can be mended
+}
+
+// From the moment that the spraying was done, as the clock has it, by hand and by stage.
+TEST_F(GuideTest, TheActivatorWorksForItsThirtySeconds) {
+  for (const bool by_stage : {false, true}) {
+    GuidedBench guided;
+    rig_guide(job(by_stage ? guided.emulator->port() : ""), guided.bench, guided.context);
+    const ScriptedOperator& person = guided.person;
+    const double sprayed_s = person.asked_s("Spray.") + 1;
+    const double began_s = person.asked_s(by_stage ? "will now dip" : "By hand");
+    EXPECT_GE(began_s - sprayed_s, 30);
+    EXPECT_LT(began_s - sprayed_s, 30.5);
+    EXPECT_NEAR((*find(log(by_stage ? 2 : 1), "activator worked"))["seconds"].get<double>(),
+                began_s - sprayed_s, 0.01);
+  }
+}
+
+// The wait begins anew with what was sprayed last.
+TEST_F(GuideTest, TooLittleActivatorIsSprayedOnAndTooMuchIsNot) {
+  GuidedBench guided;
+  guided.person.guns_after = {"810.40", "808.90"};  // 2 g, then 3.5 g
+  rig_guide(job(""), guided.bench, guided.context);
+  EXPECT_EQ(guided.person.times_asked("Spray."), 2);
+  EXPECT_GE(guided.person.asked_s("By hand") - guided.person.asked_s("Spray."), 33);
+  GuidedBench second;
+  second.person.guns_after = {"807.40"};  // 5 g
+  rig_guide(job(""), second.bench, second.context);
+  EXPECT_EQ(second.person.times_asked("Spray."), 1);
+  EXPECT_NE(second.person.said.find("g too much"), std::string::npos);
+  EXPECT_FALSE((*find(log(2), "activator"))["within"].get<bool>());
+}
+
+TEST_F(GuideTest, SoakingShorterOrLongerThanPlannedIsLogged) {
+  const double soaked_s[] = {59, 61, 79, 81};
+  for (int run = 0; run < 4; ++run) {
+    GuidedBench guided;
+    guided.person.soak_s = soaked_s[run];
+    rig_guide(job(""), guided.bench, guided.context);
+    const Json soaked = *find(log(run + 1), "soaked");
+    EXPECT_NEAR(soaked["seconds"].get<double>(), soaked_s[run], 0.3);
+    EXPECT_EQ(soaked["within"].get<bool>(), run == 1 || run == 2) << soaked;
+  }
+}
+
+// Whatever the machine could do: stage.lowest_mm is the operator's.
+TEST_F(GuideTest, NothingGoesLowerThanTheOperatorsLimit) {
+  for (const StageDown down : {StageDown::kPlus, StageDown::kMinus}) {
+    GuidedBench guided;
+    RigJob job = this->job(guided.emulator->port());
+    const bool plus = down == StageDown::kPlus;
+    job.config.stage.down = down;
+    job.config.stage.water_mm = plus ? 100 : 200;
+    job.config.stage.lowest_mm = plus ? 129.4 : 170.6;  // the dip ends at 129.5 or 170.5
+    guided.bench.yes_given = true;
+    rig_stage({"home"}, nullptr, job.config.stage, guided.bench, guided.context);
+    const auto dip = [&] {
+      rig_stage({"dip"}, &job, job.config.stage, guided.bench, guided.context);
+    };
+    try {
+      dip();
+      ADD_FAILURE() << "it dipped";
+    } catch (const StageError& error) {
+      EXPECT_NE(std::string(error.what()).find("stage.lowest_mm"), std::string::npos);
+    }
+    job.config.stage.lowest_mm = plus ? 129.6 : 170.4;
+    dip();
+    EXPECT_NEAR(guided.emulator->position_mm(), plus ? 129.5 : 170.5, 0.001);
+  }
+}
+
+TEST_F(GuideTest, FortyRandomFaultSequencesLeaveNothingMoving) {
+  int finished = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed)
+    for (const Machine machine : {Machine::kZaber, Machine::kMarlin}) {
+      std::string story;
+      EXPECT_EQ(random_guided_faults(machine, seed, folder_ / "storm", story), "") << story;
+      finished += story.ends_with("finished") ? 1 : 0;
+    }
+  EXPECT_GT(finished, 0);
+  EXPECT_LT(finished, 40);
 }
 
 TEST_F(GuideTest, ANoMovesNothing) {

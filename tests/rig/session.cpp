@@ -2,18 +2,55 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <random>
 
 namespace hydrodip {
 namespace {
 
 constexpr double kStep_mm = 0.0025;  // the coarser machine's
+constexpr double kLook_s = 0.01;
+constexpr double kStuck_s = 1;
+
+// What the storm draws from.
+constexpr std::array<FaultKind, 12> kDrawn = {
+    FaultKind::kGarbleReplies, FaultKind::kGarbleCommands, FaultKind::kSlowReplies,
+    FaultKind::kSilence,       FaultKind::kUnplug,         FaultKind::kStall,
+    FaultKind::kOverheat,      FaultKind::kPowerCut,       FaultKind::kBlink,
+    FaultKind::kSlow,          FaultKind::kSlip,           FaultKind::kStick};
 
 const char* name(FaultKind kind) {
-  constexpr const char* kNames[] = {"garbled replies", "garbled commands", "slow replies",
-                                    "silence",         "unplugged",        "stall",
-                                    "overheated",      "power cut"};
-  return kNames[static_cast<int>(kind)];
+  switch (kind) {
+    case FaultKind::kGarbleReplies:
+      return "garbled replies";
+    case FaultKind::kGarbleCommands:
+      return "garbled commands";
+    case FaultKind::kSlowReplies:
+      return "slow replies";
+    case FaultKind::kSilence:
+      return "silence";
+    case FaultKind::kUnplug:
+      return "unplugged";
+    case FaultKind::kStall:
+      return "stall";
+    case FaultKind::kOverheat:
+      return "overheated";
+    case FaultKind::kPowerCut:
+      return "power cut";
+    case FaultKind::kBlink:
+      return "power blinked";
+    case FaultKind::kSlow:
+      return "runs slow";
+    case FaultKind::kSlip:
+      return "slipped";
+    case FaultKind::kSag:
+      return "sagged";
+    case FaultKind::kStick:
+      return "stuck";
+    case FaultKind::kShortTravel:
+      return "short travel";
+  }
+  return "";
 }
 
 // Homing is the stage's own movement: without a link it runs to its end.
@@ -22,13 +59,52 @@ bool leaves_homing_alone(FaultKind kind) {
          kind == FaultKind::kSlowReplies;
 }
 
-bool makes_stop_due(FaultKind kind, double value) {
-  return kind == FaultKind::kSilence || kind == FaultKind::kUnplug || kind == FaultKind::kStall ||
-         kind == FaultKind::kOverheat || kind == FaultKind::kPowerCut ||
-         (kind == FaultKind::kSlowReplies && value > kReplyTimeout_s);
+bool ends_everything(FaultKind kind) {
+  return kind == FaultKind::kSilence || kind == FaultKind::kUnplug || kind == FaultKind::kOverheat;
+}
+
+// The rest is for the referee to see.
+bool ends_movement(const Fault& fault) {
+  return ends_everything(fault.kind) || fault.kind == FaultKind::kStall ||
+         fault.kind == FaultKind::kPowerCut || fault.kind == FaultKind::kBlink ||
+         (fault.kind == FaultKind::kSlowReplies && fault.value > kReplyTimeout_s &&
+          fault.lasts_s > 2);
+}
+
+void tell_what_is_due(const Fault& fault, Emulator& machine, VirtualClock& clock) {
+  if (machine.homing() && leaves_homing_alone(fault.kind)) return;
+  if (ends_everything(fault.kind) || (machine.moving() && ends_movement(fault)))
+    machine.stop_due(clock.now_s() + kLongestStop_s);
 }
 
 }  // namespace
+
+void Referee::start() {
+  look();
+  clock_.at(clock_.now_s() + kLook_s, [this] { start(); });
+}
+
+void Referee::movement(const std::string& phase, double goal_mm, double steady_mm_per_min) {
+  if (phase == phase_) return;
+  phase_ = phase;
+  start_s_ = moved_s_ = clock_.now_s();
+  start_mm_ = place_mm_ = machine_.position_mm();
+  goal_mm_ = goal_mm;
+  mm_per_s_ = steady_mm_per_min / 60;
+}
+
+void Referee::look() {
+  const double now_s = clock_.now_s(), place_mm = machine_.position_mm();
+  if (place_mm != place_mm_) moved_s_ = now_s;
+  place_mm_ = place_mm;
+  if (phase_.empty() || std::abs(place_mm - goal_mm_) <= kStep_mm) return;
+  const double way_mm = goal_mm_ - start_mm_;
+  const double done_mm = std::min(mm_per_s_ * (now_s - start_s_), std::abs(way_mm));
+  const double lag_mm = std::abs(start_mm_ + std::copysign(done_mm, way_mm) - place_mm);
+  const bool steady = mm_per_s_ > 0;
+  if (now_s - moved_s_ > kStuck_s || (steady && lag_mm > allowed_lag_mm(mm_per_s_)))
+    machine_.stop_due(now_s + kLongestStop_s);
+}
 
 std::string broken_promise(VirtualBench& bench, const Outcome& outcome, const ShortDip& dip) {
   Emulator& machine = *bench.emulator;
@@ -59,40 +135,51 @@ std::string broken_promise(VirtualBench& bench, const Outcome& outcome, const Sh
   return "";
 }
 
-std::string random_faults(Machine machine, unsigned seed, std::string& story) {
-  VirtualBench bench(machine, seed);
+std::string draw_faults(unsigned seed, double until_s, Emulator& machine, VirtualClock& clock,
+                        RunContext& context) {
   std::mt19937 random(seed);
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
-  story = fmt::format("seed {}: ", seed);
+  std::string story = fmt::format("seed {}: ", seed);
   const int count = std::uniform_int_distribution<int>(1, 3)(random);
   for (int i = 0; i < count; ++i) {
-    Fault fault{static_cast<FaultKind>(std::uniform_int_distribution<int>(0, 7)(random)),
-                between(0, 28), between(0.02, 1), between(0.05, 20)};
+    Fault fault{kDrawn[std::uniform_int_distribution<std::size_t>(0, kDrawn.size() - 1)(random)],
+                between(0, until_s), between(0.02, 1), between(0.05, 20)};
     if (fault.kind == FaultKind::kSilence) fault.lasts_s = 1e9;
+    if (fault.kind == FaultKind::kSlip) fault.value *= 10;
     story += fmt::format("{} ({:.2f}) at {:.3f} s for {:.2f} s; ", name(fault.kind), fault.value,
                          fault.at_s, fault.lasts_s);
-    bench.emulator->add(fault);
-    if (makes_stop_due(fault.kind, fault.value) &&
-        (fault.kind != FaultKind::kSlowReplies || fault.lasts_s > 2))
-      bench.clock.at(fault.at_s, [&bench, fault] {
-        if (bench.emulator->homing() && leaves_homing_alone(fault.kind)) return;
-        bench.emulator->stop_due(bench.clock.now_s() + kLongestStop_s);
-      });
+    machine.add(fault);
+    clock.at(fault.at_s, [&machine, &clock, fault] { tell_what_is_due(fault, machine, clock); });
   }
   if (between(0, 1) < 0.4) {
-    const double at_s = between(0, 28);
+    const double at_s = between(0, until_s);
     const bool twice = between(0, 1) < 0.5;
     story += fmt::format("Ctrl-C at {:.3f} s{}; ", at_s, twice ? ", and again" : "");
-    bench.clock.at(at_s, [&bench] {
-      bench.context.cancel();
-      if (!bench.emulator->homing()) bench.emulator->stop_due(bench.clock.now_s() + kLongestStop_s);
+    clock.at(at_s, [&machine, &clock, &context] {
+      context.cancel();
+      if (!machine.homing()) machine.stop_due(clock.now_s() + kLongestStop_s);
     });
-    if (twice) bench.clock.at(at_s + between(0, 0.4), [&bench] { bench.context.cancel(); });
+    if (twice) clock.at(at_s + between(0, 0.4), [&context] { context.cancel(); });
   }
+  return story;
+}
+
+std::string random_faults(Machine machine, unsigned seed, std::string& story) {
+  VirtualBench bench(machine, seed);
+  story = draw_faults(seed, 28, *bench.emulator, bench.clock, bench.context);
   const ShortDip dip;
-  const Outcome outcome = run_dip(bench, dip);
+  Referee referee(*bench.emulator, bench.clock);
+  referee.start();
+  const Outcome outcome = run_dip(bench, dip, [&](const TracePoint& point) {
+    if (point.phase == "dip")
+      referee.movement(point.phase, dip.bottom_mm, dip.mm_per_min);
+    else if (point.phase == "approach" || point.phase == "retract")
+      referee.movement(point.phase, dip.start_mm, 0);
+    else
+      referee.standstill();
+  });
   story += outcome.finished ? "finished" : outcome.message;
   return broken_promise(bench, outcome, dip);
 }

@@ -1,6 +1,7 @@
 // One dip without people: home, approach, dip, retract; and what there is to say about it after.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -21,11 +22,14 @@ struct ShortDip {
   double mm_per_min = 300;
 };
 
-inline Outcome run_dip(VirtualBench& bench, const ShortDip& dip) {
+using OnPoint = std::function<void(const TracePoint&)>;
+
+inline Outcome run_dip(VirtualBench& bench, const ShortDip& dip, const OnPoint& on_point = {}) {
   Outcome outcome;
   std::optional<Mover> mover;
   try {
     mover.emplace(*bench.stage, bench.clock, bench.context);
+    mover->on_point(on_point);
     mover->allow_motion();
     mover->home();
     mover->move_to("approach", dip.start_mm, 900, false);
@@ -46,6 +50,31 @@ inline Outcome run_dip(VirtualBench& bench, const ShortDip& dip) {
 
 // Why the outcome is not as promised; "" if it is. Lets some time pass, for late movements.
 std::string broken_promise(VirtualBench& bench, const Outcome& outcome, const ShortDip& dip);
+
+// Judges a movement from its plan, the clock and where the machine truly is: a stop is due as soon
+// as the machine is not where it should be, or does not get on.
+class Referee {
+ public:
+  Referee(Emulator& machine, VirtualClock& clock) : machine_(machine), clock_(clock) {}
+  // Begins to look, a hundred times a second.
+  void start();
+  void movement(const std::string& phase, double goal_mm, double steady_mm_per_min);
+  void standstill() { phase_.clear(); }
+
+ private:
+  void look();
+
+  Emulator& machine_;
+  VirtualClock& clock_;
+  std::string phase_;
+  double start_s_ = 0, start_mm_ = 0, goal_mm_ = 0, mm_per_s_ = 0;
+  double place_mm_ = 0, moved_s_ = 0;
+};
+
+// Draws faults and Ctrl-Cs by the seed and says what; they come up to `until_s`. What they make due
+// is told to the machine.
+std::string draw_faults(unsigned seed, double until_s, Emulator& machine, VirtualClock& clock,
+                        RunContext& context);
 
 // A dip with faults drawn by the seed; the complaint of broken_promise.
 std::string random_faults(Machine machine, unsigned seed, std::string& story);

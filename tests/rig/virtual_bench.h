@@ -44,6 +44,9 @@ class VirtualClock : public Clock {
                      [](const auto& a, const auto& b) { return a.first < b.first; });
   }
 
+  // As when the computer is busy with something else for so long.
+  void hiccup(double seconds) { now_s_ += seconds; }
+
   std::size_t sent = 0, received = 0;  // by our side of the wire
 
  private:
