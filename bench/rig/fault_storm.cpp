@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
     if (complaint.empty()) continue;
     ++broken;
     fmt::print("{} {}: {}\n", kind, complaint, story);
+    std::fflush(stdout);
   }
   std::filesystem::remove_all(folder);
   for (const auto& [ending, times] : endings) fmt::print("{:6} {}\n", times, ending);

@@ -86,12 +86,6 @@ inline double energy_density(const Mat2& F, const Lame& m) {
   return m.mu * (F - rotation(p)).squaredNorm() + 0.5 * m.lambda * dilation * dilation;
 }
 
-inline Mat2 stress(const Mat2& F, const Lame& m) {
-  const Polar p = polar(F);
-  const Mat2 R = rotation(p);
-  return 2 * m.mu * (F - R) + m.lambda * (p.trace - 2) * R;
-}
-
 // Factor of (Q : dF) Q in dP; clamped so that the whole is positive semidefinite if asked.
 inline double turning_stiffness(const Polar& p, const Lame& m, bool definite) {
   const double k = (m.lambda * (p.trace - 2) - 2 * m.mu) / p.trace;

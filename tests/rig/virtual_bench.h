@@ -64,7 +64,9 @@ class VirtualClock : public Clock {
     const bool due = emulator_.unplugged() || emulator_.bytes_written() > received;
     if (!due) return false;
     pollfd wire = {descriptor, POLLIN, 0};
-    return ::poll(&wire, 1, 1000) > 0;
+    if (::poll(&wire, 1, 1000) > 0) return true;
+    received = emulator_.bytes_written();  // thrown away when the port was opened
+    return false;
   }
 
   Emulator& emulator_;

@@ -27,6 +27,14 @@ const MarkText* find_text(const Marks& marks, const std::string& part) {
   return nullptr;
 }
 
+// A text that has to be there; one that lies nowhere if it is not.
+const MarkText& text(const Marks& marks, const std::string& part) {
+  static const MarkText nowhere = {"", Vec2(-1e9, -1e9), 0, 0, 0};
+  const MarkText* found = find_text(marks, part);
+  EXPECT_NE(found, nullptr) << "there is no mark '" << part << "'";
+  return found ? *found : nowhere;
+}
+
 // What a text covers, from its descenders to its capitals.
 Box2 box_of(const MarkText& text) {
   const double size = text.size_pt * kMmPerPt;
@@ -117,17 +125,35 @@ TEST(Marks, AnA4SheetHasEverything) {
 TEST(Marks, OrientationStandsAtTheEdgesItNames) {
   SheetOptions options = sheet(210, 297, 10);
   Marks marks = make_marks(options, half_em);
-  EXPECT_LT(find_text(marks, "this edge left")->start.x(), 10);
-  EXPECT_GT(find_text(marks, "this edge right")->start.x(), 200);
-  EXPECT_GT(find_text(marks, "TOP")->start.y(), 287);
+  EXPECT_LT(text(marks, "this edge left").start.x(), 10);
+  EXPECT_GT(text(marks, "this edge right").start.x(), 200);
+  EXPECT_GT(text(marks, "TOP").start.y(), 287);
   // Turned over about its vertical axis, the printed page's right edge comes to lie left.
   options.ink_side_up = false;
   marks = make_marks(options, half_em);
-  EXPECT_GT(find_text(marks, "this edge left")->start.x(), 200);
-  EXPECT_LT(find_text(marks, "this edge right")->start.x(), 10);
-  EXPECT_GT(find_text(marks, "TOP")->start.y(), 287);
+  EXPECT_GT(text(marks, "this edge left").start.x(), 200);
+  EXPECT_LT(text(marks, "this edge right").start.x(), 10);
+  EXPECT_GT(text(marks, "TOP").start.y(), 287);
   EXPECT_NE(find_text(marks, "this side down, image mirrored"), nullptr);
   EXPECT_EQ(find_text(marks, "this side up"), nullptr);
+}
+
+// Whichever side is up, the arrow beside TOP points to the top edge.
+TEST(Marks, TheArrowPointsUp) {
+  for (const bool up : {true, false}) {
+    SheetOptions options = sheet(210, 297, 10);
+    options.ink_side_up = up;
+    const Marks marks = make_marks(options, half_em);
+    ASSERT_EQ(marks.filled.size(), 1U);
+    std::vector<Vec2> corners(marks.filled[0].begin(), marks.filled[0].end());
+    std::sort(corners.begin(), corners.end(),
+              [](const Vec2& a, const Vec2& b) { return a.y() < b.y(); });
+    EXPECT_EQ(corners[0].y(), corners[1].y());
+    EXPECT_GT(corners[2].y(), corners[1].y() + 1);
+    EXPECT_NEAR(corners[2].x(), 0.5 * (corners[0].x() + corners[1].x()), 1e-12);
+    // Beside the text, not in it.
+    EXPECT_LT(corners[2].x(), text(marks, "TOP").start.x());
+  }
 }
 
 // Lengths of the ruler's ticks by position, from the vertical lines in the bottom margin.
