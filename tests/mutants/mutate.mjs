@@ -38,6 +38,13 @@ function readList(folder) {
   return mutants;
 }
 
+// Stays the same when others come and go, so that little has to be built again.
+function numberOf(text) {
+  let hash = 2166136261;
+  for (const c of text) hash = Math.imul(hash ^ c.codePointAt(0), 16777619) >>> 0;
+  return 1 + (hash % 2147483646);
+}
+
 // ---- the copy ----
 
 // Finds a piece of source however it is broken into lines.
@@ -46,29 +53,46 @@ function pattern(source) {
   return new RegExp(tokens.map((t) => t.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("\\s*"), "g");
 }
 
-// The source with the mutant in it; nothing if its place is not found, or not once.
-function mutated(source, mutant) {
+// Where in a source a mutant's piece is; nothing if it is not found, or not once.
+function placeOf(source, mutant) {
   const [first, middle, last] = mutant.before.includes("@@") ? mutant.before.split("@@") : ["", mutant.before, ""];
   const found = [...source.matchAll(pattern(first + middle + last))];
   if (found.length !== 1) return null;
-  const length = (part, at) => part.trim() ? pattern(part).exec(source.slice(at))[0].length : 0;
-  const begin_of = found[0].index, whole = found[0][0].length;
-  let from = begin_of + length(first, begin_of);
+  let from = found[0].index;
+  if (first.trim()) from += pattern(first).exec(source.slice(from))[0].length;
   from += /^\s*/.exec(source.slice(from))[0].length;
-  const to = from + length(middle, from);
-  if (to > begin_of + whole) return null;
-  const was = source.slice(from, to);
-  const isStatement = /[;}]\s*$/.test(middle);
-  const picked = `hydrodip_mutant == ${mutant.number}`;
-  const piece = isStatement
-    ? `if (${picked}) { ${mutant.after} } else { ${was} }`
-    : `(${picked} ? (${mutant.after}) : (${was}))`;
-  // A constant that is picked when the program starts.
-  const begin = Math.max(source.lastIndexOf(";", from), source.lastIndexOf("\n\n", from),
-                         source.lastIndexOf("{\n", from)) + 1;
-  const lead = source.slice(begin, from).replace(/(static |inline )?constexpr /, (_, kind) =>
+  const rest = pattern(middle).exec(source.slice(from));
+  return rest && rest.index === 0 ? { from, to: from + rest[0].length, mutant } : null;
+}
+
+// The source from..to with the edits that lie in it; edits of one piece, or of a piece of a piece,
+// stand inside each other.
+function edited(source, from, to, edits) {
+  const outer = edits.filter((e) => !edits.some((o) => o.from <= e.from && o.to >= e.to && o.to - o.from > e.to - e.from))
+    .sort((a, b) => a.from - b.from);
+  let text = "", at = from;
+  for (let n = 0; n < outer.length;) {
+    const { from: begin, to: end } = outer[n];
+    const inside = edits.filter((e) => e.from >= begin && e.to <= end && e.to - e.from < end - begin);
+    let piece = edited(source, begin, end, inside);
+    const isStatement = /[;}]$/.test(piece);
+    for (; n < outer.length && outer[n].from === begin && outer[n].to === end; ++n) {
+      const { number, after } = outer[n].mutant;
+      piece = isStatement ? `if (hydrodip_mutant == ${number}) { ${after} } else { ${piece} }`
+                          : `(hydrodip_mutant == ${number} ? (${after}) : (${piece}))`;
+    }
+    text += changeable(source, at, begin) + piece;
+    at = end;
+  }
+  return text + source.slice(at, to);
+}
+
+// What stands before a piece: a constant that is picked when the program starts is none for the
+// compiler.
+function changeable(source, at, begin) {
+  const line = Math.max(at, source.lastIndexOf(";", begin), source.lastIndexOf("\n\n", begin), source.lastIndexOf("{\n", begin));
+  return source.slice(at, line) + source.slice(line, begin).replace(/(static |inline )?constexpr /, (_, kind) =>
     kind === "static " ? "static inline const " : kind ? "inline const " : "const ");
-  return source.slice(0, begin) + lead + piece + source.slice(to);
 }
 
 const picker = `#pragma once
@@ -86,18 +110,18 @@ function writeIfNew(path, content) {
 function makeCopy(mutants) {
   const list = execFileSync("git", ["ls-files", "-co", "--exclude-standard"], { cwd: root, encoding: "utf8" });
   const files = new Set(list.split("\n").filter((f) => f && existsSync(join(root, f))));
-  const sources = new Map();
+  const edits = new Map();  // per file
   for (const mutant of mutants) {
-    const source = sources.get(mutant.file) ??
-      (files.has(mutant.file) ? readFileSync(join(root, mutant.file), "utf8") : "");
-    const next = mutated(source, mutant);
-    mutant.stale = next === null;
-    sources.set(mutant.file, next ?? source);
+    const source = files.has(mutant.file) ? readFileSync(join(root, mutant.file), "utf8") : "";
+    const place = placeOf(source, mutant);
+    mutant.stale = !place;
+    if (place) edits.set(mutant.file, [...(edits.get(mutant.file) ?? []), place]);
   }
   for (const file of files) {
-    const source = sources.get(file);
-    const changed = source !== undefined && mutants.some((m) => m.file === file && !m.stale);
-    writeIfNew(join(tree, file), changed ? `#include "base/mutant.h"\n${source}` : readFileSync(join(root, file)));
+    const content = readFileSync(join(root, file));
+    const source = edits.has(file) ? content.toString() : "";
+    writeIfNew(join(tree, file), edits.has(file)
+      ? `#include "base/mutant.h"\n${edited(source, 0, source.length, edits.get(file))}` : content);
   }
   writeIfNew(join(tree, "src/base/mutant.h"), picker);
   if (!existsSync(tree)) return;
@@ -207,7 +231,7 @@ for (const folder of folders)
   }
 // All of them go into the copy, whichever are asked for, so that it need not be built again.
 const everything = all.flatMap(readList);
-everything.forEach((mutant, n) => { mutant.number = n + 1; });
+for (const mutant of everything) mutant.number = numberOf(`${mutant.file} ${mutant.before} ${mutant.after}`);
 makeCopy(everything);
 const mutants = everything.filter((m) => folders.includes(m.folder));
 const stale = mutants.filter((m) => m.stale);

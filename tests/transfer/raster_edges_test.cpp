@@ -42,7 +42,7 @@ TEST(RasterEdges, TheStretchOfAPixelIsThatOfItsCentre) {
   DippedFilm film = fixtures::film_on_slab(5000);
   const auto ratio = [](const Vec2& u) { return 1.5 + 0.01 * u.x() - 0.007 * u.y(); };
   for (std::size_t v = 0; v < film.area_ratio.size(); ++v)
-    film.area_ratio[v] = ratio(film.mesh.u[v]);
+    film.area_ratio[v] = ratio(film.mesh().u[v]);
   const auto dipped = fixtures::mapped(fixtures::slab(), std::move(film));
   const SheetRaster raster{60, 60, 150};
   RunContext context;
@@ -64,7 +64,7 @@ TEST(RasterEdges, TheStretchOfAPixelIsThatOfItsCentre) {
 TEST(RasterEdges, ASymmetricDipHasSymmetricRasters) {
   DippedFilm film = fixtures::film_on_slab(5000);
   for (std::size_t v = 0; v < film.area_ratio.size(); ++v)
-    film.area_ratio[v] = 1 + 0.01 * std::abs(film.mesh.u[v].x());
+    film.area_ratio[v] = 1 + 0.01 * std::abs(film.mesh().u[v].x());
   const auto dipped = fixtures::mapped(fixtures::slab(), std::move(film));
   const SheetRaster raster{60, 60, 127};  // an even number of pixels, 0.2 mm each
   RunContext context;

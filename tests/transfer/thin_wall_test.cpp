@@ -14,7 +14,7 @@ TEST(ThinWall, FilmOnOneSideLeavesTheOtherBare) {
       fixtures::plain_object(shapes::box(Vec3(-kHalfSide_mm, -kHalfSide_mm, 0),
                                          Vec3(kHalfSide_mm, kHalfSide_mm, thickness_mm))),
       fixtures::film_on_slab(2000));
-  ASSERT_GT(wall->film.mesh.cell_mm, thickness_mm);
+  ASSERT_GT(wall->film.mesh().cell_mm, thickness_mm);
   for (double x = -18; x <= 18; x += 4)
     for (double y = -18; y <= 18; y += 4) {
       const auto filmed = wall->map->to_film(Vec3(x, y, 0), Vec3(0, 0, -1));
