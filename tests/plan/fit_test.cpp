@@ -86,6 +86,20 @@ TEST(Fit, WarnsAboutAFilmLargerThanTheBathAndAboutATightOne) {
   EXPECT_TRUE(contains(tight.warnings()[0], "Only 1 mm of free film"));
 }
 
+// From 5 mm of free film on a side it is enough.
+TEST(Fit, WarnsOfLessThanFiveMillimetresOnASide) {
+  for (const auto& [on_a_side_mm, warnings] : {std::pair{4.9, 1U}, {5.1, 0U}}) {
+    Room room;
+    room.film = {100 + 20 + 2 * on_a_side_mm, 297, FilmShape::kRectangle, 10, 1000};
+    RunContext context;
+    require_fit(funnel(), room.depth_mm, room.film, room.bath, context);
+    ASSERT_EQ(context.warnings().size(), warnings) << on_a_side_mm;
+    if (warnings > 0) {
+      EXPECT_TRUE(contains(context.warnings()[0], "Only 4.9 mm of free film"));
+    }
+  }
+}
+
 TEST(Fit, AHugeMisfitAsksForTheUnits) {
   TriangleMesh object = funnel();
   for (Vec3& p : object.positions) p *= 1000;

@@ -20,7 +20,8 @@ TEST(RasterEdges, InkEndsWhereAWideBleedEnds) {
   RunContext context;
   InverseOptions options;
   options.bleed_mm = bleed_mm;
-  const Image image = film_image(dipped->object, *dipped->map, raster, options, context);
+  const Image image =
+      film_image(fixtures::paint_of(*dipped), *dipped->map, raster, options, Allotment(), context);
   const FilmStretch stretch = film_stretch(*dipped->map, raster, bleed_mm, context);
   long missing = 0, beyond = 0, off_object = 0;
   for (int y = 0; y < image.height_px; ++y)
@@ -69,7 +70,8 @@ TEST(RasterEdges, ASymmetricDipHasSymmetricRasters) {
   const SheetRaster raster{60, 60, 127};  // an even number of pixels, 0.2 mm each
   RunContext context;
   const FilmStretch stretch = film_stretch(*dipped->map, raster, 1, context);
-  const Image image = film_image(dipped->object, *dipped->map, raster, {}, context);
+  const Image image =
+      film_image(fixtures::paint_of(*dipped), *dipped->map, raster, {}, Allotment(), context);
   const int w = raster.width_px(), h = raster.height_px();
   const auto at = [&](int x, int y) { return std::size_t(y) * std::size_t(w) + std::size_t(x); };
   long uneven = 0;

@@ -1,0 +1,72 @@
+// What a round of ink says of itself: how far the film moved, how much is printed, and that mixing
+// rounds settles what else takes longer.
+#include <gtest/gtest.h>
+
+#include "coat/design.h"
+#include "samples/samples.h"
+
+namespace hydrodip {
+namespace {
+
+DesignOptions coarse() {
+  DesignOptions options;
+  options.film.width_mm = options.film.height_mm = 120;
+  options.film.elements = 3000;
+  options.dip.step_mm = 1;
+  options.dip.material.tear_stretch = 0;
+  options.dpi = 72;
+  options.inverse.samples_per_axis = 1;
+  return options;
+}
+
+Designed designed(const std::string& sample, const DesignOptions& options) {
+  RunContext context;
+  Timings timings;
+  const auto shared = std::make_shared<const Object>(make_sample(sample));
+  const PosedObject posed(shared, {});
+  return design({posed, *model_paint(shared), Allotment(), *make_device_model(), options}, timings,
+                context);
+}
+
+// Film that floats leaves no trace: only what lies on the object after both dips counts.
+TEST(InkRound, MovesTheFilmThatLiesThereInBothDips) {
+  DesignOptions options = coarse();
+  options.depth_mm = 8;
+  options.rounds_max = 1;
+  const Designed first = designed("sphere", options);
+  options.rounds_max = 2;
+  const Designed second = designed("sphere", options);
+  ASSERT_EQ(second.ink.rounds.size(), 2U);
+  const DippedFilm &from = *first.dipped.film, &to = *second.dipped.film;
+  std::vector<std::uint8_t> lies(from.position.size(), 0);
+  for (std::size_t t = 0; t < from.mesh().triangles.size(); ++t)
+    if (from.lies_on_object(t) && to.lies_on_object(t))
+      for (const std::int32_t v : from.mesh().triangles[t]) lies[std::size_t(v)] = 1;
+  double sum = 0, all = 0, count = 0;
+  for (std::size_t v = 0; v < lies.size(); ++v) {
+    const double way = (to.position[v] - from.position[v]).norm();
+    all += way / double(lies.size());
+    if (!lies[v]) continue;
+    sum += way;
+    ++count;
+  }
+  ASSERT_GT(count, 20);
+  EXPECT_NEAR(second.ink.rounds[1].change_mm, sum / count, 1e-12);
+  EXPECT_GT(std::abs(sum / count - all), 1e-4);  // or this would tell nothing
+}
+
+// The flat bottom of the sample box, 40 x 40 mm, and half a millimetre of its walls.
+TEST(InkRound, PrintsTheAreaOfTheSlabInSquareMillimetres) {
+  for (const double dpi : {72.0, 150.0}) {
+    DesignOptions options = coarse();
+    options.depth_mm = 0.5;
+    options.rounds_max = 1;
+    options.inverse.bleed_mm = 0;
+    options.dpi = dpi;
+    const Designed box = designed("box", options);
+    EXPECT_NEAR(box.ink.rounds[0].printed_mm2, 1640, 80) << dpi;
+  }
+}
+
+}  // namespace
+}  // namespace hydrodip
