@@ -164,7 +164,7 @@ function runTests(name, filter, number, limit_s, slot) {
 }
 
 // Quick tests first, and slow ones only where those see nothing.
-const filters = ["-*Slow*:*/mask*:*.Mask*", "*Slow*"];
+const filters = ["-*Slow*:*/mask*:*.Mask*:RunSheet*", "*Slow*:RunSheet*"];
 
 async function inParallel(items, work) {
   let next = 0;
