@@ -14,6 +14,8 @@ namespace {
 
 constexpr int kAttempts = 3;
 constexpr int kMostLinesLost = 2;
+// Half of the last digit that a printer shows of where it goes, and a little.
+constexpr double kShown_mm = 0.006;
 // Boards restart when their port is opened.
 constexpr double kStartTimeout_s = 10;
 // While it homes, Marlin says "busy" every two seconds.
@@ -61,6 +63,7 @@ class MarlinStage : public Stage {
     if (halted_) return halted_state();
     if (homing_) return homing_state();
     const auto position = read_position();
+    require_right_way();
     StageState state;
     state.homed = state.position_known = homed_;
     const bool changed = position && std::abs(*position - position_mm_) > 0.5 / steps_per_mm_;
@@ -213,12 +216,30 @@ class MarlinStage : public Stage {
 
   // The steppers' own count: the other figures of M114 tell where the last command leads.
   std::optional<double> read_position() {
+    leads_to_.reset();
     for (const std::string& line : exchange("M114")) {
       const std::size_t count = line.find("Count");
       if (count == std::string::npos) continue;
+      if (line.find("Z:") < count) leads_to_ = number_after(line, "Z:");
       if (const auto steps = number_after(line, "Z:", count)) return *steps / steps_per_mm_;
     }
     return {};
+  }
+
+  // Lines carry a weak sum: two wrong bits may look right. And firmware cuts off what lies beyond
+  // its own limits without a word. Answers carry none at all, so they are asked for twice.
+  void require_right_way() {
+    for (int asked = 1; is_wrong_way(); ++asked) {
+      if (asked == kAttempts)
+        throw StageError(fmt::format(
+            "the printer goes to {:.2f} mm, not to {:.2f} mm as it was told: its travel ends "
+            "earlier than it says, or the link garbles what it carries",
+            *leads_to_, *aimed_));
+      read_position();
+    }
+  }
+  bool is_wrong_way() const {
+    return homed_ && aimed_ && leads_to_ && std::abs(*leads_to_ - *aimed_) > kShown_mm;
   }
 
   StageState homing_state() {
@@ -254,7 +275,8 @@ class MarlinStage : public Stage {
   double steps_per_mm_ = 1;
   double speed_mm_per_min_ = 60;
   double position_mm_ = 0;
-  std::optional<double> aimed_;  // where the commands lead; unknown after a stop
+  std::optional<double> aimed_;     // where it was sent; unknown after a stop
+  std::optional<double> leads_to_;  // where it says that it goes
   bool connected_ = false, homing_ = false, homed_ = false, halted_ = false;
   double heard_s_ = 0;
 };

@@ -83,6 +83,7 @@ StageState Mover::look() {
 void Mover::home() {
   require_permission();
   guarded("homing", true, [&] {
+    cancel_point();
     stage_.acknowledge();
     const StageState before = stage_.state();
     if (!before.fault.empty()) throw StageError(before.fault);

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 #include "rig/stage.h"
 #include "rig/zaber_message.h"
@@ -41,17 +42,13 @@ class ZaberStage : public Stage {
     state.moving = reply.busy;
     state.flag = reply.flag;
     state.fault = describe_fault(reply.flag);
-    // One flag is shown, and a fault hides that home is lost.
-    if (state.fault.empty()) homed_ = !zaber_flag_means_not_homed(reply.flag);
-    state.homed = state.position_known = homed_;
+    state.homed = state.position_known =
+        state.fault.empty() ? !zaber_flag_means_not_homed(reply.flag) : homed_behind_fault();
     return state;
   }
 
   void acknowledge() override { command("warnings clear"); }
-  void start_homing() override {
-    homed_ = false;
-    command("home");
-  }
+  void start_homing() override { command("home"); }
 
   void set_speed(double mm_per_min) override {
     command(fmt::format("set maxspeed {}", std::lround(mm_per_min / 60 / step_mm() * kSpeedUnit)));
@@ -62,9 +59,8 @@ class ZaberStage : public Stage {
         command(fmt::format("move abs {}", std::lround(position_mm / step_mm())));
     const std::string fault = describe_fault(reply.flag);
     if (!fault.empty()) throw StageError(fault);
-    if (!zaber_flag_means_not_homed(reply.flag)) return;
-    homed_ = false;
-    throw StageError("the stage has forgotten its home: was its power cut?");
+    if (zaber_flag_means_not_homed(reply.flag))
+      throw StageError("the stage has forgotten its home: was its power cut?");
   }
 
   void stop() override { command("stop"); }
@@ -125,6 +121,15 @@ class ZaberStage : public Stage {
         text, command));
   }
 
+  // Replies show one flag, and a fault's hides that home is lost. The list shows all: "02 FS WR".
+  bool homed_behind_fault() {
+    const ZaberReply reply = exchange("warnings");
+    std::istringstream words(reply.data);
+    for (std::string flag; words >> flag;)
+      if (zaber_flag_means_not_homed(flag)) return false;
+    return reply.accepted;
+  }
+
   // Early firmware does not know the setting; replies then come without.
   void request_checksums() { checksums_ = exchange("set comm.checksum 1").accepted; }
 
@@ -144,7 +149,6 @@ class ZaberStage : public Stage {
   StageOptions options_;
   int next_id_ = 0;
   bool checksums_ = false;
-  bool homed_ = false;
 };
 
 }  // namespace

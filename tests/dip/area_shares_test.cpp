@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "dip/measure.h"
 #include "exact/shapes.h"
@@ -26,14 +27,14 @@ struct Pair {
       state.position.emplace_back(u.x() > 0 ? 2 * u.x() : u.x(), u.y(), 0);
     state.state.assign(4, VertexState::kAttached);
     state.torn.assign(2, 0);
-    state.tear_level.assign(2, 1e300);
+    state.torn_at_mm.assign(2, 1e300);
   }
   std::vector<double> area_ratio() const {
     const shapes::Shape slab = shapes::box(Vec3(-99, -99, 0), Vec3(99, 99, 5));
     const Surface surface(slab.positions, slab.triangles);
     DipOptions options;
     options.material.tear_stretch = 0;
-    return measured(film, state, options, surface).area_ratio;
+    return measured(std::make_shared<const FilmMesh>(film), state, options, surface).area_ratio;
   }
 };
 

@@ -82,7 +82,7 @@ TEST(Steepness, IsRiseOverRun) {
 // reaches further back, by the strain, but never by more than half of the way.
 TEST(Ghost, LiesAsFarBackAsTheFilmThatWasLaid) {
   Foot foot;
-  foot.point = Vec3(7, 1, 4);
+  foot.place = Vec2(7, 1);
   foot.way = foot.laid = Vec2(2, 0.5);
   place_ghost(foot, Mat2::Identity());
   EXPECT_LT((foot.ghost - Vec2(5, 0.5)).norm(), 1e-12);

@@ -10,7 +10,7 @@ namespace {
 struct Block {
   shapes::Shape shape = shapes::box(Vec3(-10, -10, 0), Vec3(10, 10, 6));
   Waterline line{shape.positions, shape.triangles, 2};
-  Block() { line.raise_to(3); }
+  Block() { line.move_to(Moment::at_depth(3)); }
   // The direction where a way from the middle leaves the block, `beside` mm beside its corner.
   Vec2 leaving(double beside) const {
     const auto out = line.exit(Vec2(0, 0), 2 * Vec2(10 + beside, 10 - beside));

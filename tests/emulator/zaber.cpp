@@ -109,6 +109,9 @@ class ZaberEmulator : public Emulator {
       axis_.top_speed = 30000;
       begin_homing();
     } else if (verb == "warnings") {
+      if (what.empty())
+        data = fault_.empty() ? (homed_ ? std::string("00") : std::string("01 WR"))
+                              : (homed_ ? "01 " + fault_ : "02 " + fault_ + " WR");
       if (what == "clear" && fault_ == "FS") fault_.clear();
     } else if (verb == "stop") {
       homing_ = false;

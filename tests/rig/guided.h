@@ -19,7 +19,7 @@ namespace hydrodip {
 // Answers by the question's beginning; the time that an answer takes passes on the clock.
 class ScriptedOperator : public Operator {
  public:
-  explicit ScriptedOperator(Clock& clock) : clock_(clock) {}
+  ScriptedOperator(Clock& clock, const RunContext& context) : clock_(clock), context_(context) {}
 
   void say(const std::string& text) override { said += text + "\n"; }
   void show(const std::string& line) override {
@@ -30,6 +30,7 @@ class ScriptedOperator : public Operator {
   std::string ask(const std::string& question) override {
     asked.emplace_back(clock_.now_s(), question);
     clock_.sleep(1);
+    if (context_.cancelled()) throw Cancelled();  // as at a terminal
     asked_s_ = clock_.now_s();
     if (question.find("broken off") != std::string::npos) return take_up;
     if (question.find("Type yes") != std::string::npos) return yes;
@@ -71,6 +72,7 @@ class ScriptedOperator : public Operator {
   }
 
   Clock& clock_;
+  const RunContext& context_;
   double asked_s_ = 0;
 };
 
@@ -78,15 +80,15 @@ struct GuidedBench {
   explicit GuidedBench(Machine machine = Machine::kZaber, unsigned seed = 1)
       : emulator(machine == Machine::kZaber ? zaber_emulator(seed) : marlin_emulator(seed)),
         clock(*emulator),
-        person(clock) {
+        person(clock, context) {
     bench.open = [this](const StageOptions& options) -> std::unique_ptr<Link> {
       return std::make_unique<CountingLink>(open_serial(options.port, options.baud, clock), clock);
     };
   }
   std::unique_ptr<Emulator> emulator;
   VirtualClock clock;
-  ScriptedOperator person;
   RunContext context;
+  ScriptedOperator person;
   Bench bench{person, clock, {}};
 };
 

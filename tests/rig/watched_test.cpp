@@ -209,6 +209,30 @@ TEST_P(Watched, NoTargetBeyondTheTravelIsSent) {
   mover.require_within_limits(mover.identity().max_mm);
 }
 
+// Ctrl-C just before a movement: it does not even begin.
+TEST_P(Watched, NoMovementBeginsAfterCtrlC) {
+  VirtualBench bench(GetParam());
+  Mover mover(*bench.stage, bench.clock, bench.context);
+  mover.allow_motion();
+  bench.context.cancel();
+  EXPECT_THROW(mover.home(), Cancelled);
+  EXPECT_FALSE(bench.emulator->moving());
+  EXPECT_EQ(bench.emulator->last_start_s(), 0);
+}
+
+// A lost home behind a fault is still lost.
+TEST_P(Watched, AFaultDoesNotHideThatHomeIsLost) {
+  VirtualBench bench(GetParam());
+  const Outcome outcome = run_dip(bench, kLongDip, [&](const TracePoint& point) {
+    if (point.phase != "dip" || point.commanded_mm < 25 || bench.emulator->moved_unhomed()) return;
+    bench.emulator->add({FaultKind::kBlink, bench.clock.now_s(), 1, 0.01});
+    bench.emulator->add({FaultKind::kStall, bench.clock.now_s() + 0.002, 1, 0.01});
+  });
+  EXPECT_FALSE(outcome.finished);
+  ASSERT_TRUE(outcome.rest);
+  EXPECT_FALSE(outcome.rest->place_known) << outcome.message;
+}
+
 // The leash runs dry: in a steady dip the film would see it, on the way there nobody does.
 TEST_P(Watched, AComputerThatComesTooLateIsAnErrorInASteadyDipOnly) {
   for (const std::string phase : {"approach", "dip"}) {
