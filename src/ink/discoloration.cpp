@@ -231,7 +231,9 @@ Reach measure_reach(const Image& wanted, const Image& on_object, const FilmStret
   });
   double within = 0, beyond = 0;
   const double pixel_mm = kMmPerInch / raster.dpi;
+  CheckEvery check(1 << 16);
   for (std::size_t i = 0; i < pixels; ++i) {
+    check();
     if (!counts(i)) continue;
     const double area = pixel_mm * pixel_mm * double(stretch.area_ratio[i]);
     const double difference = double(reach.difference[i]);
