@@ -97,6 +97,7 @@ FilmLayer pixel_layer(const std::string& key, const std::vector<float>& values, 
   std::vector<int> count(layer.values.size(), 0);
   const Vec2 size = layer.extent.max - layer.extent.min;
   for (int y = 0; y < height_px && !layer.values.empty(); ++y) {
+    check_cancelled();
     for (int x = 0; x < width_px; ++x) {
       const float value = values[std::size_t(y) * std::size_t(width_px) + std::size_t(x)];
       if (std::isnan(value)) continue;

@@ -196,7 +196,9 @@ double png_dpi(const Bytes& bytes) {
 }
 
 bool opaque(const Image& image) {
+  CheckEvery check(1 << 16);
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+    check();
     if (image.rgba[i] != 255) return false;
   }
   return true;

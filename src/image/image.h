@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/filled.h"
+
 namespace hydrodip {
 
 // A colour in linear light, straight (not premultiplied) alpha, sRGB primaries, nominally [0, 1].
@@ -33,7 +35,7 @@ struct Image {
   Image(int width, int height)  // fully transparent black
       : width_px(width),
         height_px(height),
-        rgba(std::size_t(4) * std::size_t(width) * std::size_t(height), 0) {}
+        rgba(filled<std::uint8_t>(std::size_t(4) * std::size_t(width) * std::size_t(height), 0)) {}
 
   std::uint8_t* pixel(int x, int y) {
     return rgba.data() + 4 * (std::size_t(y) * std::size_t(width_px) + std::size_t(x));

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/filled.h"
 #include "base/parallel.h"
 #include "ink/difference.h"
 
@@ -221,7 +222,7 @@ Reach measure_reach(const Image& wanted, const Image& on_object, const FilmStret
   const auto counts = [&](std::size_t i) {
     return stretch.on_object[i] != 0 && wanted.rgba[4 * i + 3] == 255;
   };
-  reach.difference.assign(pixels, 0.0F);
+  reach.difference = filled(pixels, 0.0F);
   parallel_for(pixels, kPixelGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint8_t *asked = &wanted.rgba[4 * i], *got = &on_object.rgba[4 * i];
@@ -231,7 +232,9 @@ Reach measure_reach(const Image& wanted, const Image& on_object, const FilmStret
   });
   double within = 0, beyond = 0;
   const double pixel_mm = kMmPerInch / raster.dpi;
+  CheckEvery check(1 << 16);
   for (std::size_t i = 0; i < pixels; ++i) {
+    check();
     if (!counts(i)) continue;
     const double area = pixel_mm * pixel_mm * double(stretch.area_ratio[i]);
     const double difference = double(reach.difference[i]);

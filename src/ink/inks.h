@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/filled.h"
+
 namespace hydrodip {
 
 // Amounts in [0, 1]: 1 is as much as one pass of the printer gives. While they are being computed
@@ -27,7 +29,7 @@ struct InkImage {
   InkImage(int width, int height)  // no ink
       : width_px(width),
         height_px(height),
-        cmyk(std::size_t(4) * std::size_t(width) * std::size_t(height), 0) {}
+        cmyk(filled<std::uint8_t>(std::size_t(4) * std::size_t(width) * std::size_t(height), 0)) {}
 
   std::uint8_t* pixel(int x, int y) {
     return cmyk.data() + 4 * (std::size_t(y) * std::size_t(width_px) + std::size_t(x));

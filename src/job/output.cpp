@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/file.h"
+#include "base/run_scope.h"
 #include "export/film_ply.h"
 #include "export/preview_glb.h"
 #include "export/scene.h"
@@ -41,7 +42,9 @@ ReportInk ink_amounts(const InkImage& inks, double limit) {
   amounts.density_limit = limit;
   float most = 0;
   std::array<std::uint64_t, 4> sum{};
+  CheckEvery check(1 << 16);
   for (std::size_t i = 0; i < inks.cmyk.size(); i += 4) {
+    check();
     const std::uint8_t* laid = inks.cmyk.data() + i;
     if (is_blank(laid)) continue;
     most = std::max(most, from_bytes(laid).density());
@@ -135,9 +138,12 @@ std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
 FilmLayer reach_layer(const JobRecord& record, const SheetRaster& raster) {
   const InkResult& ink = *record.ink;
   std::vector<float> difference = ink.reach.difference;
-  for (std::size_t i = 0; i < difference.size(); ++i)
+  CheckEvery check(1 << 16);
+  for (std::size_t i = 0; i < difference.size(); ++i) {
+    check();
     if (ink.ink.wanted.rgba[4 * i + 3] == 0)
       difference[i] = std::numeric_limits<float>::quiet_NaN();
+  }
   return pixel_layer("out_of_gamut", difference, raster.width_px(), raster.height_px(),
                      Vec2(raster.width_mm, raster.height_mm), record.dipped().map->covered());
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/run_scope.h"
+
 namespace hydrodip {
 namespace {
 
@@ -161,8 +163,10 @@ void Canvas::blend(int x, int y, double coverage, const LinearColor& color) {
 }
 
 void Canvas::fill_all(const Paint& paint) {
-  for (int y = 0; y < height_px_; ++y)
+  for (int y = 0; y < height_px_; ++y) {
+    check_cancelled();
     for (int x = 0; x < width_px_; ++x) blend(x, y, 1.0, paint(to_mm(x, y)));
+  }
 }
 
 // Exact horizontal coverage on a few sub-scanlines per pixel row.
@@ -179,6 +183,7 @@ std::vector<float> Canvas::coverage_of_fill(const Path& path, Pixels& pixels) co
                               0.0f);
   std::vector<double> crossings;
   for (int y = pixels.y0; y < pixels.y1; ++y) {
+    check_cancelled();
     float* row = coverage.data() + std::size_t(y - pixels.y0) * std::size_t(pixels.width());
     for (int sub = 0; sub < kSubScanlines; ++sub) {
       const double line = y + (sub + 0.5) / kSubScanlines;
@@ -203,6 +208,7 @@ std::vector<float> Canvas::coverage_of_fill(const Path& path, Pixels& pixels) co
 }
 
 void Canvas::fill(const Path& path, const Paint& paint) {
+  check_cancelled();
   Pixels pixels{};
   const std::vector<float> coverage = coverage_of_fill(path, pixels);
   std::size_t i = 0;
@@ -216,6 +222,7 @@ void Canvas::fill(const Path& path, const LinearColor& color) {
 }
 
 void Canvas::stroke(const Path& path, const Radius& radius_mm, const LinearColor& color) {
+  check_cancelled();
   if (path.empty()) return;
   std::vector<double> along(path.size(), 0.0);
   for (std::size_t i = 1; i < path.size(); ++i)

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "base/filled.h"
 #include "base/parallel.h"
 
 namespace hydrodip {
@@ -213,8 +214,8 @@ FilmStretch film_stretch(const FilmMap& map, const SheetRaster& raster, double b
                          RunContext& context) {
   const auto width = std::size_t(raster.width_px());
   FilmStretch result;
-  result.area_ratio.assign(width * std::size_t(raster.height_px()), 1.0F);
-  result.on_object.assign(result.area_ratio.size(), 0);
+  result.area_ratio = filled(width * std::size_t(raster.height_px()), 1.0F);
+  result.on_object = filled<std::uint8_t>(result.area_ratio.size(), 0);
   for_each_inked(map, raster, bleed_mm, "measuring the stretch", context,
                  [&](int x, int y, FilmMap::Cursor& cursor) {
                    const Vec2 u = raster.to_film(x + 0.5, y + 0.5);
