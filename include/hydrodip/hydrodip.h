@@ -36,8 +36,8 @@ namespace hydrodip {
 
 // A model as its file has it, in millimetres.
 struct Model {
-  std::shared_ptr<const Object> object;
-  MeshHealth health;
+  std::shared_ptr<const Object> object;      // the mesh and its colours
+  MeshHealth health;                         // what was wrong with the mesh, and mended
   std::string units;                         // the unit that was applied
   std::vector<std::filesystem::path> files;  // every file that was read
 };
@@ -64,9 +64,9 @@ PosedObject pose(const Model& model, const PoseOptions& options = {});
 
 // A dip of film with even stiffness, or with that of `modulus` (DipOptions).
 struct SimulationOptions {
-  FilmOptions film;
-  TrajectoryOptions trajectory;
-  DipOptions dip;
+  FilmOptions film;              // its size and its mesh
+  TrajectoryOptions trajectory;  // the object's way into the water
+  DipOptions dip;                // with the film's material
 };
 
 // Where the film goes. `observe` sees every step, on the calling thread.

@@ -1,0 +1,22 @@
+#!/bin/sh
+# Every installed header compiles alone, and a program links, with what pkg-config says.
+# Usage: sh pkg_config.sh PREFIX COMPILER
+set -u
+prefix=$1
+compiler=$2
+command -v pkg-config > /dev/null || exit 77
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name hydrodip.pc)")
+export PKG_CONFIG_PATH
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+flags=$(pkg-config --cflags hydrodip) || exit 1
+libraries=$(pkg-config --libs hydrodip) || exit 1
+
+(cd "$prefix/include" && find hydrodip -name '*.h') > "$work/headers"
+[ -s "$work/headers" ] || { echo "FAILED: no header is installed"; exit 1; }
+while read -r header; do
+  printf '#include "%s"\n' "$header" > "$work/alone.cpp"
+  # shellcheck disable=SC2086
+  "$compiler" -std=c++20 -fsyntax-only -Wall -Wextra -Werror $flags "$work/alone.cpp" ||
+    { echo "FAILED: $header does not compile alone"; exit 1; }
+done < "$work/headers"
