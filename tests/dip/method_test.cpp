@@ -147,7 +147,7 @@ TEST(SingleStep, LeavesFilmUnchangedUnderAPlate) {
 
 TEST(SingleStep, WithoutVerticalStretchIsTheProjection) {
   const FilmMesh film = square_film(4000);
-  DipOptions options = with_method(DipMethod::kSingleStep, 0);
+  exact::StraightDip options = with_method(DipMethod::kSingleStep, 0);
   options.material.z_stretch = 0;
   const DippedFilm slid = exact::dip_shape(tilted_ellipsoid(), film, options);
   options.method = DipMethod::kProjection;

@@ -30,14 +30,6 @@ inline Shape placed(Shape shape, const Vec3& turn_deg = Vec3::Zero(),
   return shape;
 }
 
-inline Shape full_sphere(double radius, int rings = 120, int segments = 160) {
-  return revolve(
-      [=](double s) {
-        return Vec2(radius * std::sin(M_PI * s), radius * (1 - std::cos(M_PI * s)));
-      },
-      rings, segments);
-}
-
 // Meridian through the given corners, from the bottom up.
 inline Shape turned(const std::vector<Vec2>& corners, int segments = 160) {
   return revolve(

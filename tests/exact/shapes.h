@@ -62,6 +62,14 @@ inline Shape sphere_bowl(double radius, double rim_radius, int rings = 300, int 
       rings, segments);
 }
 
+inline Shape full_sphere(double radius, int rings = 120, int segments = 160) {
+  return revolve(
+      [=](double s) {
+        return Vec2(radius * std::sin(M_PI * s), radius * (1 - std::cos(M_PI * s)));
+      },
+      rings, segments);
+}
+
 inline Shape cone(double radius, double tan_theta, int rings = 60, int segments = 360) {
   return revolve([=](double s) { return Vec2(radius * s, radius * s * tan_theta); }, rings,
                  segments);

@@ -28,9 +28,9 @@ JobConfig small_job(const fs::path& model, const fs::path& output, int threads, 
   JobConfig config;
   config.model = model;
   config.output = output;
-  config.film.elements = 2000;
-  config.dip.step_mm = step_mm;
-  config.print.dpi = 30;
+  config.design.film.elements = 2000;
+  config.design.dip.step_mm = step_mm;
+  config.design.dpi = 30;
   config.preview_width_px = 200;
   config.preview_texture_px = 64;
   config.threads = threads;
