@@ -232,7 +232,9 @@ LinearColor tinted_over(const LinearColor& color, const LinearColor& tint,
 // A texture as it looks on the bare object, with the material's colour.
 Image painted(const Image& texture, const LinearColor& tint, const LinearColor& base) {
   Image result = texture;
+  CheckEvery check(1 << 14);
   for (std::size_t i = 0; i < result.rgba.size(); i += 4) {
+    check();
     std::uint8_t* p = result.rgba.data() + i;
     const LinearColor color{srgb8_to_linear(p[0]), srgb8_to_linear(p[1]), srgb8_to_linear(p[2]),
                             float(p[3]) / 255};

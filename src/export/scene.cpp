@@ -241,7 +241,9 @@ Json layers_json(const SceneSource& source, Packer& packer) {
 // at.
 Image over_base(const Image& image, const LinearColor& base) {
   Image result = image;
+  CheckEvery check(1 << 14);
   for (std::size_t i = 0; i < result.rgba.size(); i += 4) {
+    check();
     std::uint8_t* p = result.rgba.data() + i;
     const float alpha = float(p[3]) / 255;
     const float channels[3] = {base.r, base.g, base.b};

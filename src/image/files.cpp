@@ -387,6 +387,8 @@ struct JpegWriter {
     jpeg_mem_dest(&info, &data, &size);
   }
   ~JpegWriter() {
+    // The memory moves as it grows, which libjpeg says only here.
+    info.dest->term_destination(&info);
     jpeg_destroy_compress(&info);
     std::free(data);
   }

@@ -22,7 +22,7 @@ bool less_position(const Vec3& a, const Vec3& b) {
 std::vector<int> weld(const std::vector<Vec3>& positions, int& count) {
   std::vector<int> order(positions.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
+  sort_unless_cancelled(order.begin(), order.end(), [&](int a, int b) {
     const Vec3& pa = positions[std::size_t(a)];
     const Vec3& pb = positions[std::size_t(b)];
     return pa == pb ? a < b : less_position(pa, pb);
@@ -46,7 +46,9 @@ struct Corner {
 std::vector<std::vector<Corner>> corners_around(const std::vector<Triangle>& triangles,
                                                 const std::vector<int>& welded, int count) {
   std::vector<std::vector<Corner>> around{std::size_t(count)};
+  CheckEvery check(1 << 14);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
+    check();
     for (std::size_t k = 0; k < 3; ++k) {
       around[std::size_t(welded[std::size_t(triangles[t][k])])].push_back({t, k});
     }

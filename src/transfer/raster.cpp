@@ -175,7 +175,10 @@ void for_each_inked(const FilmMap& map, const SheetRaster& raster, double bleed_
                     const std::string& stage, RunContext& context, const Paint& paint) {
   const RunScope scope(context);
   std::vector<Tile> tiles = tiles_of(raster.width_px(), raster.height_px());
-  std::erase_if(tiles, [&](const Tile& t) { return !may_hold_ink(t, raster, map, bleed_mm); });
+  std::erase_if(tiles, [&](const Tile& t) {
+    check_cancelled();
+    return !may_hold_ink(t, raster, map, bleed_mm);
+  });
   const auto paint_tile = [&](const Tile& tile) {
     FilmMap::Cursor cursor;
     for (int y = tile.y0; y < tile.y1; ++y)

@@ -107,11 +107,15 @@ class Cancellation : public SideBySideJobs {
  protected:
   template <typename Job>
   void expect_stops_anywhere(const Job& job) {
-    constexpr std::int64_t kPlaces = 24;
-    RunContext whole;
-    whole.cancel_at_check(std::int64_t(1) << 60);
-    job(whole);
-    const std::int64_t checks = whole.checks();
+    constexpr std::int64_t kPlaces = 16;
+    // Twice: what a process computes once is looked at in the first run alone.
+    std::int64_t checks = 0;
+    for (int run = 0; run < 2; ++run) {
+      RunContext whole;
+      whole.cancel_at_check(std::int64_t(1) << 60);
+      job(whole);
+      checks = whole.checks();
+    }
     ASSERT_GT(checks, kPlaces);
     fs::remove_all(folder_ / "out");
     for (std::int64_t place = 0; place <= kPlaces; ++place) {
@@ -135,7 +139,8 @@ TEST_F(Cancellation, StopsInspectingAtAnyCheck) {
 }
 
 TEST_F(Cancellation, StopsASampleAtAnyCheck) {
-  expect_stops_anywhere([&](RunContext& context) { sample_job("mask", folder_ / "out", context); });
+  expect_stops_anywhere(
+      [&](RunContext& context) { sample_job("sphere", folder_ / "out", context); });
 }
 
 }  // namespace
