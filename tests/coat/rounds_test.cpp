@@ -31,7 +31,7 @@ Designed designed(const std::string& sample, const DesignOptions& options) {
 // Film that floats leaves no trace: only what lies on the object after both dips counts.
 TEST(InkRound, MovesTheFilmThatLiesThereInBothDips) {
   DesignOptions options = coarse();
-  options.depth_mm = 8;
+  options.trajectory.depth_mm = 8;
   options.rounds_max = 1;
   const Designed first = designed("sphere", options);
   options.rounds_max = 2;
@@ -59,7 +59,7 @@ TEST(InkRound, MovesTheFilmThatLiesThereInBothDips) {
 TEST(InkRound, PrintsTheAreaOfTheSlabInSquareMillimetres) {
   for (const double dpi : {72.0, 150.0}) {
     DesignOptions options = coarse();
-    options.depth_mm = 0.5;
+    options.trajectory.depth_mm = 0.5;
     options.rounds_max = 1;
     options.inverse.bleed_mm = 0;
     options.dpi = dpi;
