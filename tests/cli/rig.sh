@@ -16,7 +16,7 @@ expect() {
 }
 
 start_stage() {
-  "$emulator" zaber > port.txt &
+  "$emulator" zaber 5 > port.txt & # near its home, so that it is there soon
   stage=$!
   until [ -s port.txt ]; do sleep 0.1; done
   port=$(cat port.txt)
@@ -51,7 +51,7 @@ expect 0 'not homed' rig stage status --port "$port"
 
 fast='--set process.soak_min_s=0 --set process.activator_g=0 --set process.activator_wait_s=0
       --set process.dwell_s=0 --set stage.clearance_mm=6 --set process.speed_mm_per_min=300
-      --set stage.travel_mm_per_min=900'
+      --set stage.travel_mm_per_min=900 --set process.lift_mm_per_min=900'
 # shellcheck disable=SC2086
 printf '%s\n' '' '' yes 20 here 28 '' '' 10 '' 10 yes '' yes 28 'all well' |
   "$hydrodip" rig guide job --port "$port" $fast > said.txt 2> asked.txt ||

@@ -31,6 +31,11 @@ Emulator::Emulator(unsigned seed) : random_(seed) {
 
 Emulator::~Emulator() { unplug(); }
 
+void Emulator::stand_at(double mm) {
+  axis_.position = axis_.target = std::round(mm / step_mm_);
+  count_from_here();
+}
+
 void Emulator::advance(double now_s) {
   read_wire();
   while (now_s_ + kTick_s / 2 < now_s) {

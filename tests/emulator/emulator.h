@@ -47,6 +47,8 @@ class Emulator {
 
   const std::string& port() const { return port_; }
   int descriptor() const { return master_; }
+  // Where it was left when it was switched off.
+  void stand_at(double mm);
   void add(const Fault& fault) { faults_.push_back(fault); }
 
   // Lets the machine live until then, in steps of a millisecond.
