@@ -391,6 +391,7 @@ LoadedObject load_object(const fs::path& path, const LoadOptions& options, RunCo
   context.check_cancelled();
 
   LoadedObject loaded;
+  loaded.picture_problems = file.color_problems;
   Pictures pictures(file, folder, loaded, context);
   Materials materials(file, pictures, only_texture, loaded.object);
   if (only_texture) {

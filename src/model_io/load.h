@@ -31,7 +31,7 @@ struct LoadedObject {
   MeshHealth health;
   std::string units;                         // the unit that was applied
   std::vector<std::filesystem::path> files;  // every file that was read, for the report's hashes
-  // Why pictures that the model refers to are not shown: one sentence each, also among the
+  // Why pictures and material libraries that the model refers to are not shown: one sentence each, also among the
   // context's warnings.
   std::vector<std::string> picture_problems;
 };

@@ -60,6 +60,8 @@ struct ModelFile {
   std::vector<LinearColor> colors;        // per corner; or empty
   std::vector<FileMaterial> materials;
   std::vector<FilePicture> pictures;
+  // Why colours that the file refers to are not known, one sentence each; warned of already.
+  std::vector<std::string> color_problems;
 
   void reserve(std::size_t faces, std::size_t corner_count) {
     corners.reserve(corner_count);

@@ -232,11 +232,12 @@ class ObjReader {
 
   // A library under the model's own name is meant where files were renamed.
   void warn_of_library(const std::string& name) {
-    input_.context.warn(
-        fmt::format("The file {} that {} refers to is missing; put it beside the "
-                    "model.",
-                    name.substr(0, 200), input_.name));
-    read_library(input_.name.substr(0, input_.name.rfind('.')) + ".mtl");
+    const std::string sentence =
+        fmt::format("The file {} that {} refers to is missing; put it beside the model.",
+                    name.substr(0, 200), input_.name);
+    input_.context.warn(sentence);
+    if (!read_library(input_.name.substr(0, input_.name.rfind('.')) + ".mtl"))
+      file_.color_problems.push_back(sentence);
   }
 
   void resolve_coordinates() {

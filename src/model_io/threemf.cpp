@@ -350,7 +350,11 @@ class PartReader {
     for (std::size_t layer = 0; layer < mixed_.size(); ++layer) {
       const std::int32_t group = mixed_[layer].first;
       if (group < 0) continue;
-      const Entry& found = entry_of(group, layer < indices.size() ? indices[layer] : 0);
+      const std::int32_t index = layer < indices.size() ? indices[layer] : 0;
+      const Group& entries = part_.groups[std::size_t(group)];
+      // The consortium's own samples have layers with fewer entries than are asked for.
+      if (std::size_t(index) >= entries.size()) continue;
+      const Entry& found = entries[std::size_t(index)];
       if (found.material >= 0 || entry.material < 0) entry = found;
     }
     add_entry(entry);

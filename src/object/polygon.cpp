@@ -93,7 +93,7 @@ class EarClipper {
         before_(corners.size()),
         after_(corners.size()),
         gone_(corners.size(), 0),
-        looks_left_(kLooksPerCorner * count_) {
+        looks_left_((count_ > kFewCorners ? kLooksInGrid : kLooksPerCorner) * count_) {
     for (int i = 0; i < count_; ++i) {
       before_[std::size_t(i)] = i > 0 ? i - 1 : count_ - 1;
       after_[std::size_t(i)] = i + 1 < count_ ? i + 1 : 0;
@@ -122,7 +122,7 @@ class EarClipper {
   }
 
  private:
-  static constexpr long kLooksPerCorner = 5000;
+  static constexpr long kLooksPerCorner = 5000, kLooksInGrid = 1000;
   static constexpr int kFewCorners = 64;
 
   int next_ear(int at, int left) {

@@ -50,6 +50,7 @@ printf 'newmtl m\nKd 1 1 1\nmap_Kd nothere.png\n' > slab/miss.mtl
 write_slab miss.mtl > slab/miss.obj
 refused 'nothere.png that miss.mtl refers to' print slab/miss.obj -o out
 write_slab gone.mtl > slab/nomtl.obj
+refused 'gone.mtl that nomtl.obj refers to' print slab/nomtl.obj -o out
 "$hydrodip" inspect slab/nomtl.obj | grep -q 'gone.mtl that nomtl.obj refers to' ||
   fail 'a missing material library is not named'
 write_tetrahedron tetra.obj

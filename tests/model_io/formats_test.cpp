@@ -159,7 +159,10 @@ TEST_F(Formats, MissingFilesAreNamedWithWhoAsksForThem) {
   const Loaded loaded = obj("newmtl m\nmap_Kd nothere.png\n");
   EXPECT_TRUE(warned(loaded, "nothere.png that a.mtl refers to"));
   ASSERT_EQ(loaded.object.picture_problems.size(), 1u);
-  EXPECT_TRUE(warned(obj("", "mtllib gone.mtl\n"), "gone.mtl that a.obj refers to"));
+  std::filesystem::remove(folder_ / "a.mtl");
+  const Loaded without = load(folder_.write("b.obj", "mtllib gone.mtl\n" + std::string(kSquare)));
+  EXPECT_TRUE(warned(without, "gone.mtl that b.obj refers to"));
+  EXPECT_EQ(without.object.picture_problems.size(), 1u);
   EXPECT_TRUE(warned(obj("newmtl other\nKd 1 0 0\n"), "no material library defines (m)"));
 }
 
