@@ -15,12 +15,12 @@ enum class Quality { kDraft, kNormal };
 
 // What a person works on.
 struct Project {
-  std::filesystem::path model;
-  LoadOptions load;
-  PoseOptions pose;
+  std::filesystem::path model;   // its file
+  LoadOptions load;              // how that is read
+  PoseOptions pose;              // how the object hangs over the bath
   LinearColor base{1, 1, 1, 1};  // of the bare object
-  DesignOptions design;
-  PrinterOptions printer;
+  DesignOptions design;          // film, way into the water, ink
+  PrinterOptions printer;        // which inks it makes of a colour
 };
 
 // For any number of threads.
@@ -38,10 +38,12 @@ class Workspace {
 
   // Steps of the project. A model file (with its pictures) that has changed is read again.
   std::shared_ptr<const Model> model(const Project& project, const RunContext& context);
+  // As the object hangs over the bath.
   std::shared_ptr<const PosedObject> posed(const Project& project, const RunContext& context);
   // Of film with even stiffness.
   std::shared_ptr<const DippedObject> dipped(const Project& project, Quality quality,
                                              const RunContext& context);
+  // What to print, and the dip of it.
   std::shared_ptr<const Designed> designed(const Project& project, Quality quality,
                                            const RunContext& context);
   // Wanted beside predicted.

@@ -11,6 +11,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 flags=$(pkg-config --cflags hydrodip) || exit 1
 libraries=$(pkg-config --libs hydrodip) || exit 1
+# Warnings of Eigen's own are not looked for.
+flags=$(echo "$flags" | sed 's|-I\([^ ]*eigen3\)|-isystem \1|')
 
 (cd "$prefix/include" && find hydrodip -name '*.h') > "$work/headers"
 [ -s "$work/headers" ] || { echo "FAILED: no header is installed"; exit 1; }
@@ -20,3 +22,13 @@ while read -r header; do
   "$compiler" -std=c++20 -fsyntax-only -Wall -Wextra -Werror $flags "$work/alone.cpp" ||
     { echo "FAILED: $header does not compile alone"; exit 1; }
 done < "$work/headers"
+
+printf '%s\n' '#include <hydrodip/hydrodip.h>' \
+  'int main() { return hydrodip::sample("box").object->triangles.empty() ? 1 : 0; }' \
+  > "$work/linked.cpp"
+# shellcheck disable=SC2086
+"$compiler" -std=c++20 $flags "$work/linked.cpp" -o "$work/linked" $libraries ||
+  { echo "FAILED: a program does not link"; exit 1; }
+LD_LIBRARY_PATH=$(pkg-config --variable=libdir hydrodip) "$work/linked" ||
+  { echo "FAILED: a linked program does not run"; exit 1; }
+echo "all passed"
