@@ -137,12 +137,13 @@ std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
 // How far each colour is from what was wanted, where there is film with ink.
 FilmLayer reach_layer(const JobRecord& record, const SheetRaster& raster) {
   const InkResult& ink = *record.ink;
-  std::vector<float> difference = ink.reach.difference;
+  std::vector<float> difference;
+  difference.reserve(ink.reach.difference.size());
   CheckEvery check(1 << 16);
-  for (std::size_t i = 0; i < difference.size(); ++i) {
+  for (std::size_t i = 0; i < ink.reach.difference.size(); ++i) {
     check();
-    if (ink.ink.wanted.rgba[4 * i + 3] == 0)
-      difference[i] = std::numeric_limits<float>::quiet_NaN();
+    const bool blank = ink.ink.wanted.rgba[4 * i + 3] == 0;
+    difference.push_back(blank ? std::numeric_limits<float>::quiet_NaN() : ink.reach.difference[i]);
   }
   return pixel_layer("out_of_gamut", difference, raster.width_px(), raster.height_px(),
                      Vec2(raster.width_mm, raster.height_mm), record.dipped().map->covered());

@@ -244,6 +244,7 @@ void Canvas::stroke(const Path& path, const Radius& radius_mm, const LinearColor
   std::vector<float> coverage(std::size_t(pixels.width()) * std::size_t(pixels.y1 - pixels.y0),
                               0.0f);
   for (std::size_t i = 0; i < px.size(); ++i) {
+    check_cancelled();
     const std::size_t j = std::min(i + 1, px.size() - 1);
     Box2 segment;
     const double reach = std::max(radius_px[i], radius_px[j]) + 1;
