@@ -41,6 +41,6 @@ int main() {
   std::printf("film: %zu vertices, %zu triangles\n", mesh.u.size(), mesh.triangles.size());
   std::printf("attached: %zu vertices, at most %.4f mm off the sphere\n", attached, off_mm);
   std::printf("on the sphere: %.1f mm2 of film, printed on %.1f mm2\n", area_mm2, printed_mm2);
-  std::printf("largest stretch: %.3f\n",
-              *std::max_element(film.stretch.begin(), film.stretch.end()));
+  std::printf("area ratio: %.6f on average; coverage says %.6f\n", area_mm2 / printed_mm2,
+              dipped.coverage.area_ratio_mean);
 }

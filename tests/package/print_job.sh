@@ -21,7 +21,7 @@ node -e '
   const near = (a, b, by) => Math.abs(a - b) <= by;
   process.exit(
     near(number("covered"), 100 * report.coverage.covered_downward_share, 0.06) &&
-    near(number("largest stretch"), report.stretch.max, 0.006) ? 0 : 1);
+    near(number("largest stretch"), report.stretch.stretch_max, 0.006) ? 0 : 1);
 ' || fail "it says other than report.json"
 
 "$example" no-such.obj other > said.txt 2> error.txt && fail "a missing model is no error"
