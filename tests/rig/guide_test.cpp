@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "base/error.h"
 #include "guided.h"
@@ -13,9 +14,10 @@ namespace fs = std::filesystem;
 class GuideTest : public ::testing::Test {
  protected:
   void SetUp() override {
+    // Two builds may run the same test at a time.
     folder_ = fs::path(::testing::TempDir()) /
-              ("rig_guide_" +
-               std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+              ("rig_guide_" + std::to_string(::getpid()) +
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     write_report(Json::object());
