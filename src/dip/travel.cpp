@@ -13,7 +13,8 @@ namespace hydrodip {
 
 namespace {
 
-// A path is measured in so many parts from keyframe to keyframe, and so many at least.
+// A path is measured in so many parts from keyframe to keyframe, where its speed changes, and in so
+// many at least in all.
 constexpr int kPartsPerPiece = 16, kFewestParts = 64;
 // Halvings of the part in which the object first touches.
 constexpr int kHalvings = 30;
@@ -94,8 +95,8 @@ Travel::Travel(const Trajectory& trajectory, const std::vector<Vec3>& positions,
 }
 
 void Travel::measure(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
-  const int parts =
-      std::max(kFewestParts, kPartsPerPiece * int(trajectory_.keyframes().size() - 1));
+  const int pieces = int(trajectory_.keyframes().size()) - 1;
+  const int parts = pieces * std::max(kPartsPerPiece, (kFewestParts + pieces - 1) / pieces);
   const double deep = -lowest(moment_of(trajectory_, 0), positions);
   if (deep > kStartSlack_mm)
     throw InputError(fmt::format(

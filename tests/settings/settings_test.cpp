@@ -189,7 +189,7 @@ TEST_F(Settings, BrokenTomlSaysFileLineAndColumn) {
   EXPECT_EQ(message.find('\n'), std::string::npos);
   EXPECT_TRUE(contains(toml_error("film.width_mm = 1\nfilm.width_mm = 2\n"), "job.toml:2:"));
   EXPECT_TRUE(contains(toml_error(std::string("a = '\xff\xfe\x00'", 9)), "not valid TOML"));
-  EXPECT_TRUE(contains(toml_error(std::string(5000, '[')), "not valid TOML"));
+  EXPECT_TRUE(contains(toml_error(std::string(5000, '[')), "nested more than 32 levels deep"));
   EXPECT_TRUE(contains(toml_error("a = \"\"\"\n[=]\n\"\"\"\n[=]\nb = 1\n"), "job.toml:4:1"));
 }
 
