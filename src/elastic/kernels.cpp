@@ -57,8 +57,8 @@ const std::vector<Variant>& variants() {
   return found;
 }
 
-// Read once, and constant from then on: it says what this process can run, not what a job wants, and
-// tests and benchmarks compare processors with it. All variants give the same bytes.
+// Read once, and constant from then on: it says what this process can run, not what a job wants,
+// and tests and benchmarks compare processors with it. All variants give the same bytes.
 const Table& best() {
   static const Table& chosen = choose();
   return chosen;

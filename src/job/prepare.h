@@ -16,9 +16,9 @@ namespace hydrodip {
 struct PreparedObject {
   PosedObject posed;
   std::shared_ptr<const Paint> paint;
-  MeshHealth health;                         // in posed size
-  std::string units;                         // the unit that was applied
-  std::vector<std::filesystem::path> files;  // every file that was read
+  MeshHealth health;                          // in posed size
+  std::string units;                          // the unit that was applied
+  std::vector<std::filesystem::path> files;   // every file that was read
   std::vector<std::string> picture_problems;  // why some of the model's pictures are not shown
 };
 

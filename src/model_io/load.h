@@ -31,8 +31,8 @@ struct LoadedObject {
   MeshHealth health;
   std::string units;                         // the unit that was applied
   std::vector<std::filesystem::path> files;  // every file that was read, for the report's hashes
-  // Why pictures and material libraries that the model refers to are not shown: one sentence each, also among the
-  // context's warnings.
+  // Why pictures and material libraries that the model refers to are not shown: one sentence each,
+  // also among the context's warnings.
   std::vector<std::string> picture_problems;
 };
 

@@ -215,7 +215,8 @@ std::vector<Parameter> dip_records() {
           "dip.step_mm", "mm", 0.001, 10, [](C& c) -> double& { return c.design.dip.step_mm; },
           "how far the object is lowered in one step of the simulation"),
       number(
-          "dip.depth_mm", "mm", 0.001, 5000, [](C& c) -> double& { return c.design.trajectory.depth_mm; },
+          "dip.depth_mm", "mm", 0.001, 5000,
+          [](C& c) -> double& { return c.design.trajectory.depth_mm; },
           "how deep the object is dipped", "the whole object"),
       choice<DipMethod>(
           "dip.method",

@@ -63,7 +63,8 @@ refused '240 mm long (y), 50 mm more than the 190 mm' simulate tetra.obj --size 
 refused '10 mm more than the 10 mm of the bath' simulate tetra.obj --set bath.depth_mm=10 -o out
 refused 'more than the 30 mm of the free film' simulate tetra.obj --film 50x50 -o out
 refused 'more than' simulate tetra.obj --film 60x60 --set film.shape=disc -o out
-refused '150 mm of the bath' simulate tetra.obj --depth 200 -o out
+refused '150 mm of the bath' simulate tetra.obj --size 400 --film 600x600 \
+  --set bath.width_mm=600 --set bath.height_mm=600 -o out
 refused '--units' simulate tetra.obj --units m -o out
 
 # Parameters and options.
