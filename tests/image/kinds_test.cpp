@@ -75,7 +75,7 @@ TEST(Gif, WithPaletteAndTransparency) {
   expect_every_cut_refused(bytes, bytes.size() - 3);
 }
 
-void put(Bytes& out, std::uint32_t value, int count) {
+void put(Bytes& out, std::uint64_t value, int count) {
   for (int i = 0; i < count; ++i) out.push_back(std::uint8_t(value >> (8 * i)));
 }
 
