@@ -75,8 +75,9 @@ TEST(Gif, WithPaletteAndTransparency) {
   expect_every_cut_refused(bytes, bytes.size() - 3);
 }
 
-void put(Bytes& out, std::uint64_t value, int count) {
-  for (int i = 0; i < count; ++i) out.push_back(std::uint8_t(value >> (8 * i)));
+// Little-endian.
+void put(Bytes& out, std::uint32_t value, int count) {
+  for (; count > 0; --count, value >>= 8U) out.push_back(std::uint8_t(value));
 }
 
 Bytes bmp(std::uint32_t bits, int height, std::uint32_t compression, const Bytes& palette,
