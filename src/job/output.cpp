@@ -19,6 +19,7 @@
 #include "render/preview.h"
 #include "report/findings.h"
 #include "report/report.h"
+#include "session/appearance_of.h"
 
 namespace hydrodip {
 namespace {
@@ -77,19 +78,6 @@ LinearColor reach_color(float difference) {
   if (difference <= float(kVisible)) return {0.6F, 0.6F, 0.6F, 1};
   const float t = std::min(1.0F, difference / kMost);
   return {1 - 0.65F * t * t, 0.75F * (1 - t) * (1 - t), 0.05F * (1 - t), 1};
-}
-
-// Wanted: the paint; predicted: the finish. Refers to it.
-Appearance appearance(const Finish& finish) {
-  Appearance result;
-  result.wanted = [&paint = finish.paint(), says = finish.paint().says_anything()](
-                      const SurfacePoint& point, const Vec3&, const Vec3&) {
-    return says ? paint.color_at(point) : paint.base();
-  };
-  result.predicted = [&finish](const SurfacePoint& point, const Vec3&, const Vec3&) {
-    return finish.color_at(point);
-  };
-  return result;
 }
 
 // What comes out beside how far it is from what was wanted.
@@ -215,7 +203,7 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
     tasks.emplace_back([path = folder.path(name), write] { write(path); });
   };
   const Object looks = painted_object(dipped.posed.mesh(), record.paint());
-  const Appearance shown = appearance(record.finish);
+  const Appearance shown = appearance_of(record.finish);
   std::vector<FilmLayer> layers;
   // The longest first.
   if (record.config.pictures) {

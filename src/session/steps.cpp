@@ -10,6 +10,7 @@
 #include "image/files.h"
 #include "render/preview.h"
 #include "samples/samples.h"
+#include "session/appearance_of.h"
 #include "session/sheet_files.h"
 
 namespace hydrodip {
@@ -35,18 +36,6 @@ void require_sound(const Object& object) {
     refuse("needs colours for every triangle or none");
   for (const Material& m : object.materials)
     if (m.texture >= int(object.textures.size())) refuse("has a material without its texture");
-}
-
-// As wanted, or bare where nothing is.
-Appearance appearance_of(const Finish& finish) {
-  Appearance shown;
-  shown.wanted = [&paint = finish.paint()](const SurfacePoint& point, const Vec3&, const Vec3&) {
-    return paint.says_anything() ? paint.color_at(point) : paint.base();
-  };
-  shown.predicted = [&finish](const SurfacePoint& point, const Vec3&, const Vec3&) {
-    return finish.color_at(point);
-  };
-  return shown;
 }
 
 }  // namespace
