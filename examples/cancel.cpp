@@ -13,8 +13,8 @@ int main(int argc, char** argv) {
   const hydrodip::RunContext context;
   std::promise<void> half_dipped;
   bool told = false;
-  context.on_progress([&](const std::string& stage, double fraction) {
-    if (told || stage != "dipping" || fraction < 0.5) return;
+  context.on_progress([&](const std::string& activity, double fraction) {
+    if (told || activity != "dipping" || fraction < 0.5) return;
     told = true;
     half_dipped.set_value();
   });

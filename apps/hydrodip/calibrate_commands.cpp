@@ -85,7 +85,7 @@ JobConfig configure_writing_to(const Request& request, const char* default_folde
   return config;
 }
 
-JobResult run_calibrate(const Request& request, RunContext& context) {
+JobResult run_calibrate(const Request& request, const RunContext& context) {
   require_scans(request, "calibrate");
   return calibrate_job(configure_writing_to(request, "calibration"), request.calibration, context);
 }
@@ -99,7 +99,7 @@ void declare_measure(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
-JobResult run_measure(const Request& request, RunContext& context) {
+JobResult run_measure(const Request& request, const RunContext& context) {
   require_scans(request, "measure");
   return measure_job(configure(request), request.calibration, context);
 }
@@ -131,7 +131,7 @@ void declare_synth(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
-JobResult run_synth(const Request& request, RunContext& context) {
+JobResult run_synth(const Request& request, const RunContext& context) {
   const CalibrationRequest wanted = with_objects(request);
   return synth_job(configure_writing_to(request, "synthetic-scans"), wanted, context);
 }
@@ -144,7 +144,7 @@ void declare_kit(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
-JobResult run_kit(const Request& request, RunContext& context) {
+JobResult run_kit(const Request& request, const RunContext& context) {
   const CalibrationRequest wanted = with_objects(request);
   return kit_job(configure_writing_to(request, "calibration-kit"), wanted, context);
 }

@@ -31,7 +31,7 @@ void declare_print(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
-JobResult run_print(const Request& request, RunContext& context) {
+JobResult run_print(const Request& request, const RunContext& context) {
   require_model(request.model, "print");
   JobConfig config = configure(request);
   config.output = output_folder(request, "print");
@@ -49,7 +49,7 @@ void declare_simulate(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
-JobResult run_simulate(const Request& request, RunContext& context) {
+JobResult run_simulate(const Request& request, const RunContext& context) {
   require_model(request.model, "simulate");
   JobConfig config = configure(request);
   config.output = output_folder(request, "simulate");
@@ -65,7 +65,7 @@ void declare_inspect(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
-JobResult run_inspect(const Request& request, RunContext& context) {
+JobResult run_inspect(const Request& request, const RunContext& context) {
   require_model(request.model, "inspect");
   return inspect_job(configure(request), context);
 }
@@ -75,7 +75,7 @@ void declare_view(CLI::App& app, Request& request) {
   declare_reporting(app, request);
 }
 
-JobResult run_view(const Request& request, RunContext&) {
+JobResult run_view(const Request& request, const RunContext&) {
   if (request.folder.empty())
     throw InputError("name the folder to view, as in 'hydrodip view mask-print'");
   return view_job(request.folder);
@@ -87,12 +87,12 @@ void declare_sample_command(CLI::App& app, Request& request) {
   declare_reporting(app, request);
 }
 
-JobResult run_sample(const Request& request, RunContext& context) {
+JobResult run_sample(const Request& request, const RunContext& context) {
   if (request.sample.empty()) return list_samples();
   return sample_job(request.sample, request.output.empty() ? "." : request.output, context);
 }
 
-JobResult run_params(const Request&, RunContext&) {
+JobResult run_params(const Request&, const RunContext&) {
   JobResult result;
   result.text = parameters_table();
   result.json = parameters_json();

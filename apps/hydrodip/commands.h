@@ -15,7 +15,7 @@ struct Command {
   std::string summary;  // one line
   std::string details;  // shown below the options; may be empty
   void (*declare)(CLI::App& app, Request& request);
-  JobResult (*run)(const Request& request, RunContext& context);
+  JobResult (*run)(const Request& request, const RunContext& context);
 };
 
 const std::vector<Command>& commands();

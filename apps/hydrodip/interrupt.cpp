@@ -9,10 +9,10 @@ namespace hydrodip {
 namespace {
 
 // A signal handler can reach nothing but a global.
-std::atomic<RunContext*> interrupted_context{nullptr};
+std::atomic<const RunContext*> interrupted_context{nullptr};
 
 void handle(int) {
-  RunContext* const context = interrupted_context.load();
+  const RunContext* const context = interrupted_context.load();
   if (!context) ::_exit(kExitCancelled);
   const int bearable = context->expects_second_cancel() ? 2 : 1;
   if (context->cancel_requests() >= bearable) ::_exit(kExitCancelled);
@@ -37,7 +37,7 @@ void install(void (*handler)(int)) {
 
 }  // namespace
 
-CancelOnInterrupt::CancelOnInterrupt(RunContext& context) {
+CancelOnInterrupt::CancelOnInterrupt(const RunContext& context) {
   interrupted_context.store(&context);
   install(handle);
 }

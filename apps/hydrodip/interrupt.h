@@ -9,7 +9,7 @@ namespace hydrodip {
 // While it lives, SIGINT, SIGTERM and SIGHUP cancel `context`. One at a time.
 class CancelOnInterrupt {
  public:
-  explicit CancelOnInterrupt(RunContext& context);
+  explicit CancelOnInterrupt(const RunContext& context);
   ~CancelOnInterrupt();
   CancelOnInterrupt(const CancelOnInterrupt&) = delete;
   CancelOnInterrupt& operator=(const CancelOnInterrupt&) = delete;

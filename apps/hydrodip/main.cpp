@@ -20,11 +20,11 @@ constexpr int kExitDone = 0;
 constexpr int kExitInput = 2;
 constexpr int kExitFailed = 3;
 
-JobResult run_with_progress(const CommandLine& line, RunContext& context) {
+JobResult run_with_progress(const CommandLine& line, const RunContext& context) {
   ProgressLine progress(::isatty(STDERR_FILENO) != 0);
   if (!line.request.quiet)
     context.on_progress(
-        [&](const std::string& stage, double fraction) { progress.update(stage, fraction); });
+        [&](const std::string& activity, double fraction) { progress.update(activity, fraction); });
   return line.command->run(line.request, context);
 }
 

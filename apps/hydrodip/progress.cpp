@@ -33,19 +33,19 @@ std::string show_time(double duration_s) {
 }  // namespace
 
 ProgressLine::ProgressLine(bool terminal)
-    : terminal_(terminal), job_start_(Clock::now()), stage_start_(job_start_) {}
+    : terminal_(terminal), job_start_(Clock::now()), activity_start_(job_start_) {}
 
-void ProgressLine::update(const std::string& stage, double fraction) {
+void ProgressLine::update(const std::string& activity, double fraction) {
   const auto now = Clock::now();
-  const bool new_stage = stage != stage_;
-  if (new_stage) {
-    stage_ = stage;
-    stage_start_ = now;
+  const bool new_activity = activity != activity_;
+  if (new_activity) {
+    activity_ = activity;
+    activity_start_ = now;
     tenths_shown_ = -1;
   }
   if (!terminal_) {
     if (now - job_start_ >= kQuietStart) add_line(fraction);
-  } else if (new_stage || now - last_draw_ >= kRedrawEvery) {
+  } else if (new_activity || now - last_draw_ >= kRedrawEvery) {
     last_draw_ = now;
     redraw(fraction);
   }
@@ -67,17 +67,17 @@ void ProgressLine::redraw(double fraction) {
 void ProgressLine::add_line(double fraction) {
   const auto now = Clock::now();
   const int tenths = static_cast<int>(10 * fraction);
-  const bool first_of_stage = tenths_shown_ < 0;
-  if (!first_of_stage && (tenths == tenths_shown_ || now - last_draw_ < kPlainLineEvery)) return;
+  const bool first_of_activity = tenths_shown_ < 0;
+  if (!first_of_activity && (tenths == tenths_shown_ || now - last_draw_ < kPlainLineEvery)) return;
   tenths_shown_ = tenths;
   last_draw_ = now;
   print_notice(describe(fraction));
 }
 
 std::string ProgressLine::describe(double fraction) const {
-  if (!terminal_ && fraction <= 0) return stage_;
-  std::string line = fmt::format("{} {:3.0f} %", stage_, std::floor(100 * fraction));
-  const double spent_s = seconds(Clock::now() - stage_start_);
+  if (!terminal_ && fraction <= 0) return activity_;
+  std::string line = fmt::format("{} {:3.0f} %", activity_, std::floor(100 * fraction));
+  const double spent_s = seconds(Clock::now() - activity_start_);
   if (spent_s >= kEstimateFrom_s && fraction >= kEstimateFromFraction && fraction < 1)
     line += ", " + show_time(spent_s * (1 - fraction) / fraction) + " left";
   return line;

@@ -13,7 +13,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  void update(const std::string& stage, double fraction);
+  void update(const std::string& activity, double fraction);
   // Removes the line, before anything else is printed.
   void clear();
 
@@ -26,10 +26,10 @@ class ProgressLine {
 
   bool terminal_;
   bool drawn_ = false;
-  std::string stage_;
-  int tenths_shown_ = -1;  // of the stage, in plain lines
+  std::string activity_;
+  int tenths_shown_ = -1;  // of the activity, in plain lines
   Clock::time_point job_start_;
-  Clock::time_point stage_start_;
+  Clock::time_point activity_start_;
   Clock::time_point last_draw_;
 };
 

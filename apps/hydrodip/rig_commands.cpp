@@ -44,13 +44,13 @@ void declare_sheet(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
-JobResult run_sheet(const Request& request, RunContext& context) {
+JobResult run_sheet(const Request& request, const RunContext& context) {
   return rig_sheet(load_job(request, "rig sheet"), request.paper, request.output, context);
 }
 
 // The real bench: this computer's clock, ports and terminal.
 struct RealBench {
-  explicit RealBench(const Request& request, RunContext& context)
+  explicit RealBench(const Request& request, const RunContext& context)
       : clock(system_clock()), person(*clock, context) {
     bench.yes_given = request.yes;
   }
@@ -69,7 +69,7 @@ void declare_guide(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
-JobResult run_guide(const Request& request, RunContext& context) {
+JobResult run_guide(const Request& request, const RunContext& context) {
   const RigJob job = load_job(request, "rig guide");
   RealBench real(request, context);
   return rig_guide(job, real.bench, context);
@@ -90,7 +90,7 @@ void declare_stage(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
-JobResult run_stage(const Request& request, RunContext& context) {
+JobResult run_stage(const Request& request, const RunContext& context) {
   if (request.action.empty())
     throw InputError(
         "name what the stage is to do: find, status, home, jog, approach, dip or retract");

@@ -9,7 +9,7 @@ namespace hydrodip {
 
 class TerminalOperator : public Operator {
  public:
-  TerminalOperator(Clock& clock, RunContext& context) : clock_(clock), context_(context) {}
+  TerminalOperator(Clock& clock, const RunContext& context) : clock_(clock), context_(context) {}
   void say(const std::string& text) override;
   std::string ask(const std::string& question) override;
   void show(const std::string& line) override;
@@ -21,7 +21,7 @@ class TerminalOperator : public Operator {
   void clear_line();
 
   Clock& clock_;
-  RunContext& context_;
+  const RunContext& context_;
   std::string typed_;
   bool ended_ = false;
   bool shown_ = false;

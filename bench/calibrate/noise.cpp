@@ -33,7 +33,7 @@ struct Shape {
   CheckerboardDip truth;
 
   Shape(const std::string& name, const CheckeredFilm& film, const DipOptions& dip,
-        const JobConfig& config, RunContext& context)
+        const JobConfig& config, const RunContext& context)
       : object(calibration_object(name, config, context)),
         surface(object.object.positions, object.object.triangles),
         truth(dip_checkerboard(film, object, surface, kTruth, dip, context)) {}
@@ -50,7 +50,7 @@ JobConfig search_config() {
 // Dips at points of the fit, each computed once.
 class Dips {
  public:
-  Dips(const DesignOptions& design, RunContext& context)
+  Dips(const DesignOptions& design, const RunContext& context)
       : options_(design.dip), film_(checkered_film(design, kSquare_mm)), context_(context) {}
 
   const CheckerboardDip& at(const std::string& name, const CalibrationObject& object,
@@ -65,7 +65,7 @@ class Dips {
  private:
   DipOptions options_;
   CheckeredFilm film_;
-  RunContext& context_;
+  const RunContext& context_;
   std::map<std::pair<std::string, std::array<double, 3>>, std::unique_ptr<CheckerboardDip>> dips_;
 };
 

@@ -284,7 +284,7 @@ def compare_hashes(old, new, options, work, model_folder, model_sum):
 
 
 def timed(command, folder, log):
-    """Seconds of all threads together, and by the clock."""
+    """Seconds of all threads together, seconds by the clock, and MB at most."""
     start = time.monotonic()
     with open(log, "wb") as output:
         process = subprocess.Popen(command, cwd=folder, stdout=output, stderr=subprocess.STDOUT)
@@ -293,7 +293,7 @@ def timed(command, folder, log):
     if process.returncode != 0:
         raise Refusal("%s: exit code %d, see %s" % (" ".join(map(str, command)), process.returncode,
                                                     log))
-    return usage.ru_utime + usage.ru_stime, time.monotonic() - start
+    return usage.ru_utime + usage.ru_stime, time.monotonic() - start, usage.ru_maxrss / 1024
 
 
 def dip_step_figures(text):
@@ -340,7 +340,7 @@ def compare_times(old, new, options, work, model_folder):
     try:
         if chosen:
             print("| job | old, CPU s | new, CPU s | new/old (turn by turn) | old, wall s | new, wall s |"
-                  " new/old |\n|---|---|---|---|---|---|---|")
+                  " new/old | old, MB | new, MB | new/old |\n|---|---|---|---|---|---|---|---|---|---|")
         for name, command in chosen.items():
 
             def run(version):
@@ -348,7 +348,7 @@ def compare_times(old, new, options, work, model_folder):
                 return timed([version.program] + command, folder, work / "times.log")
 
             olds, news = take_turns(old, new, options.turns, run)
-            cells = sum((ratios([o[k] for o in olds], [n[k] for n in news]) for k in (0, 1)), [])
+            cells = sum((ratios([o[k] for o in olds], [n[k] for n in news]) for k in (0, 1, 2)), [])
             print("| %s | %s |" % (name, " | ".join(cells)), flush=True)
 
         if fnmatch.fnmatch("bench_dip_step", options.only):

@@ -31,7 +31,7 @@ struct Timed {
   }
 };
 
-Timed run(JobResult (*job)(const JobConfig&, RunContext&), const JobConfig& config) {
+Timed run(JobResult (*job)(const JobConfig&, const RunContext&), const JobConfig& config) {
   RunContext context;
   const auto start = Clock::now();
   job(config, context);

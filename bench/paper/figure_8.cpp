@@ -25,7 +25,7 @@ Image as_image(const InkImage& inks) {
 }
 
 DippedObject dipped(const std::string& name, const DesignOptions& options,
-                    const Checkerboard& board, RunContext& context) {
+                    const Checkerboard& board, const RunContext& context) {
   return dip_printed(posed(make_sample(name)), board.inks, options, context);
 }
 

@@ -24,7 +24,7 @@ constexpr Method kMethods[] = {{"projection", DipMethod::kProjection},
                                {"full", DipMethod::kFull}};
 
 CornerGrid true_corners(const CalibrationObject& object, const Surface& surface,
-                        const DesignOptions& design, RunContext& context) {
+                        const DesignOptions& design, const RunContext& context) {
   const DesignOptions fine = finer_film(design);
   const CheckerboardDip dip = dip_checkerboard(checkered_film(fine, kSquare_mm), object, surface,
                                                film_parameters(design), fine.dip, context);

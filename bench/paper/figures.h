@@ -10,7 +10,7 @@ namespace hydrodip::paper {
 
 struct Study {
   std::filesystem::path folder;  // pictures go here
-  RunContext& context;
+  const RunContext& context;
 };
 
 // Each writes its pictures (figure_5.png, ...) and returns what was measured, as Markdown.

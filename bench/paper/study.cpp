@@ -19,7 +19,7 @@ constexpr int kGap_px = 12, kTitle_px = 34;
 const Vec3 kEye = Vec3(0.25, -0.45, -1).normalized();
 
 ViewPair pictures_of(const PosedObject& object, const Appearance& look, int size_px,
-                     RunContext& context) {
+                     const RunContext& context) {
   const TriangleMesh& mesh = object.mesh();
   const std::vector<CornerNormals> normals = corner_normals(mesh.positions, mesh.triangles);
   const Studio studio{mesh, object.surface(), normals, true, 0.5};
@@ -27,7 +27,7 @@ ViewPair pictures_of(const PosedObject& object, const Appearance& look, int size
 }
 
 DippedObject dip_film(const PosedObject& object, const SharedFilmMesh& film, const DipOptions& dip,
-                      const DesignOptions& options, RunContext& context) {
+                      const DesignOptions& options, const RunContext& context) {
   Timings timings;
   const Trajectory trajectory = make_trajectory(options.trajectory, object.mesh().positions);
   return dip_object(object, film, trajectory, dip, timings, context);
@@ -56,7 +56,7 @@ PosedObject posed(Object object) {
 }
 
 DippedObject dip_printed(const PosedObject& object, const InkImage& inks,
-                         const DesignOptions& options, RunContext& context) {
+                         const DesignOptions& options, const RunContext& context) {
   const auto film = std::make_shared<const FilmMesh>(make_film_mesh(options.film));
   DipOptions dip = options.dip;
   dip.modulus = film_modulus(*film, inks, raster_of(options.film, options.dpi), options.stiffness);
@@ -64,13 +64,13 @@ DippedObject dip_printed(const PosedObject& object, const InkImage& inks,
 }
 
 DippedObject dip_blank(const PosedObject& object, const DesignOptions& options,
-                       RunContext& context) {
+                       const RunContext& context) {
   const auto film = std::make_shared<const FilmMesh>(make_film_mesh(options.film));
   return dip_film(object, film, options.dip, options, context);
 }
 
 Designed designed(const PosedObject& object, const ColorModel& model, DesignOptions options,
-                  int rounds, RunContext& context) {
+                  int rounds, const RunContext& context) {
   Timings timings;
   options.rounds_max = rounds;
   const auto paint = model_paint(object.shared_object());
@@ -115,7 +115,7 @@ Image film_square(const Image& film_image, const SheetRaster& raster, double sid
 }
 
 Image dipped_picture(const DippedObject& dipped, const Image& film_image, const SheetRaster& raster,
-                     int size_px, RunContext& context) {
+                     int size_px, const RunContext& context) {
   const auto paint = model_paint(dipped.posed.shared_object());
   const auto predicted = [&](const SurfacePoint&, const Vec3& position, const Vec3& normal) {
     return predicted_color(film_image, raster, *dipped.map, position, normal, paint->base());
@@ -123,7 +123,7 @@ Image dipped_picture(const DippedObject& dipped, const Image& film_image, const 
   return pictures_of(dipped.posed, {colors_of(*paint), predicted}, size_px, context).predicted;
 }
 
-Image wanted_picture(const PosedObject& object, int size_px, RunContext& context) {
+Image wanted_picture(const PosedObject& object, int size_px, const RunContext& context) {
   const auto paint = model_paint(object.shared_object());
   const auto wanted = colors_of(*paint);
   return pictures_of(object, {wanted, wanted}, size_px, context).wanted;

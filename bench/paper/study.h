@@ -21,14 +21,14 @@ PosedObject posed(Object object);
 
 // Dips a film with these inks on it, at options.dpi; they stiffen it.
 DippedObject dip_printed(const PosedObject& object, const InkImage& inks,
-                         const DesignOptions& options, RunContext& context);
+                         const DesignOptions& options, const RunContext& context);
 // Dips blank film, or what is the same, film that ink does not stiffen.
 DippedObject dip_blank(const PosedObject& object, const DesignOptions& options,
-                       RunContext& context);
+                       const RunContext& context);
 
 // The print that the job makes of an object's own colours, with `rounds` rounds at most.
 Designed designed(const PosedObject& object, const ColorModel& model, DesignOptions options,
-                  int rounds, RunContext& context);
+                  int rounds, const RunContext& context);
 
 // ---- pictures ----
 
@@ -45,9 +45,9 @@ Image film_square(const Image& film_image, const SheetRaster& raster, double sid
 // The object with that film on it, from below, as lit in the studio. `film_image` shows every
 // pixel as it looks on the object.
 Image dipped_picture(const DippedObject& dipped, const Image& film_image, const SheetRaster& raster,
-                     int size_px, RunContext& context);
+                     int size_px, const RunContext& context);
 // The object with its own colours.
-Image wanted_picture(const PosedObject& object, int size_px, RunContext& context);
+Image wanted_picture(const PosedObject& object, int size_px, const RunContext& context);
 
 // ---- tables ----
 

@@ -29,7 +29,7 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
 
 struct RunContext::Voice {
   std::mutex progress_mutex, log_mutex, warnings_mutex;
-  std::atomic<int> stages_side_by_side{0};
+  std::atomic<int> activities_side_by_side{0};
   ProgressSink progress_sink;
   LogSink log_sink;
   std::vector<std::string> warnings;
@@ -48,14 +48,14 @@ void RunContext::on_log(LogSink sink) const {
   voice_->log_sink = std::move(sink);
 }
 
-void RunContext::progress(const std::string& stage, double fraction) const {
+void RunContext::progress(const std::string& activity, double fraction) const {
   check_cancelled();
-  if (voice_->stages_side_by_side == 0) show_progress(stage, fraction);
+  if (voice_->activities_side_by_side == 0) show_progress(activity, fraction);
 }
 
-void RunContext::show_progress(const std::string& stage, double fraction) const {
+void RunContext::show_progress(const std::string& activity, double fraction) const {
   const std::lock_guard lock(voice_->progress_mutex);
-  if (voice_->progress_sink) voice_->progress_sink(stage, std::clamp(fraction, 0.0, 1.0));
+  if (voice_->progress_sink) voice_->progress_sink(activity, std::clamp(fraction, 0.0, 1.0));
 }
 
 void RunContext::log(const std::string& line) const {
@@ -117,29 +117,29 @@ RunContext RunContext::quiet() const {
   return part;
 }
 
-void RunContext::side_by_side(const std::string& stage,
+void RunContext::side_by_side(const std::string& activity,
                               const std::vector<std::function<void()>>& tasks) const {
   const RunScope scope(*this);
-  progress(stage, 0);
+  progress(activity, 0);
   std::mutex counting;
   int done = 0;
   std::vector<std::function<void()>> counted;
   counted.reserve(tasks.size());
-  const bool shown = voice_->stages_side_by_side++ == 0;
+  const bool shown = voice_->activities_side_by_side++ == 0;
   for (const auto& task : tasks)
     counted.emplace_back([&, task] {
       task();
       const std::lock_guard lock(counting);  // counted and shown in the same order
       ++done;
-      if (shown) show_progress(stage, done / double(tasks.size()));
+      if (shown) show_progress(activity, done / double(tasks.size()));
     });
   try {
     parallel_do(counted);
   } catch (...) {
-    --voice_->stages_side_by_side;
+    --voice_->activities_side_by_side;
     throw;
   }
-  --voice_->stages_side_by_side;
+  --voice_->activities_side_by_side;
 }
 
 }  // namespace hydrodip

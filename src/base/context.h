@@ -17,8 +17,8 @@ class ThreadBudget;
 // thread, also through a const reference.
 class RunContext {
  public:
-  // stage: what is being done, in words ("dipping"); fraction in [0, 1] of that stage.
-  using ProgressSink = std::function<void(const std::string& stage, double fraction)>;
+  // activity: what is being done, in words ("dipping"); fraction in [0, 1] of that activity.
+  using ProgressSink = std::function<void(const std::string& activity, double fraction)>;
   // One line for people who follow along; never needed to understand the result.
   using LogSink = std::function<void(const std::string& line)>;
 
@@ -32,7 +32,7 @@ class RunContext {
   void on_log(LogSink sink) const;
 
   // Reports progress and throws Cancelled if the job was cancelled.
-  void progress(const std::string& stage, double fraction) const;
+  void progress(const std::string& activity, double fraction) const;
 
   void log(const std::string& line) const;
 
@@ -74,16 +74,16 @@ class RunContext {
   // cancelled alone; progress and log end there, and it keeps its warnings to itself.
   RunContext quiet() const;
 
-  // Runs the tasks side by side as one stage, whose progress is how many are done: that of the
-  // tasks' own stages is not shown. Exceptions as by parallel_do().
-  void side_by_side(const std::string& stage,
+  // Runs the tasks side by side as one activity, whose progress is how many are done: that of the
+  // tasks' own activities is not shown. Exceptions as by parallel_do().
+  void side_by_side(const std::string& activity,
                     const std::vector<std::function<void()>>& tasks) const;
 
  private:
   struct Cancellation;
   struct Voice;
 
-  void show_progress(const std::string& stage, double fraction) const;
+  void show_progress(const std::string& activity, double fraction) const;
 
   std::shared_ptr<Cancellation> cancellation_;
   std::shared_ptr<Voice> voice_;

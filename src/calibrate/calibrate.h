@@ -41,18 +41,19 @@ std::vector<double> parse_range(const std::string& text, const std::string& opti
 // error-surface.png in config.output, with simulations.jsonl, from which an interrupted calibration
 // goes on. With a shard only the latter. Throws InputError, DipError, Cancelled.
 JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& request,
-                        RunContext& context);
+                        const RunContext& context);
 
 // Eq. 4 for each scan and each method (full, single-step, projection) with the configuration's
 // parameters. Writes error-map.png and measure.json only if config.output is given.
 JobResult measure_job(const JobConfig& config, const CalibrationRequest& request,
-                      RunContext& context);
+                      const RunContext& context);
 
 // Scans from known parameters: NAME-scan.obj and .csv for each object, truth.toml.
 JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
-                    RunContext& context);
+                    const RunContext& context);
 
 // What a calibration needs: the shapes as STL, the film's PDF, instructions.
-JobResult kit_job(const JobConfig& config, const CalibrationRequest& request, RunContext& context);
+JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
+                  const RunContext& context);
 
 }  // namespace hydrodip

@@ -225,7 +225,7 @@ Json calibration_json(const Calibration& calibration, const std::vector<Subject>
           {"warnings", context.warnings()}};
 }
 
-void warn_of_edges(const Calibration& calibration, RunContext& context) {
+void warn_of_edges(const Calibration& calibration, const RunContext& context) {
   for (std::size_t k = 0; k < 3; ++k) {
     const FilmParameters& p = calibration.all.parameters;
     // No film has less than none, and no ink makes it softer.
@@ -290,7 +290,7 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
 }  // namespace
 
 JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& request,
-                        RunContext& context) {
+                        const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   const SearchOptions options = search_options(request);
   const Shard shard = parse_shard(request.shard);

@@ -71,7 +71,7 @@ const std::vector<KitShape>& kit_shapes() {
 }
 
 CalibrationObject calibration_object(const std::string& text, const JobConfig& config,
-                                     RunContext& context) {
+                                     const RunContext& context) {
   const auto [name, depth] = split_depth(text);
   CalibrationObject result;
   result.name = name;
@@ -111,7 +111,7 @@ GridLanding CheckerboardDip::landing(const CalibrationObject& object) const {
 
 CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObject& object,
                                  const Surface& surface, const FilmParameters& parameters,
-                                 const DipOptions& options, RunContext& context) {
+                                 const DipOptions& options, const RunContext& context) {
   DipOptions dip_options = options;
   dip_options.material.z_stretch = parameters.z_stretch;
   dip_options.material.poisson = parameters.poisson;

@@ -47,7 +47,7 @@ const std::vector<KitShape>& kit_shapes();
 
 // "sphere", "ellipsoid@11" (depth in mm) or a model file with its depth. Throws InputError.
 CalibrationObject calibration_object(const std::string& text, const JobConfig& config,
-                                     RunContext& context);
+                                     const RunContext& context);
 
 // Everything about a film that its parameters leave alone. Immutable.
 struct CheckeredFilm {
@@ -70,6 +70,6 @@ struct CheckerboardDip {
 // them. Same bytes for any number of threads. Throws DipError, InputError, Cancelled.
 CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObject& object,
                                  const Surface& surface, const FilmParameters& parameters,
-                                 const DipOptions& options, RunContext& context);
+                                 const DipOptions& options, const RunContext& context);
 
 }  // namespace hydrodip

@@ -34,7 +34,7 @@ Image as_image(const InkImage& inks) {
 }
 
 void write_film(const std::filesystem::path& path, const JobConfig& config, double square_mm,
-                RunContext& context) {
+                const RunContext& context) {
   const Checkerboard board = checkerboard_to_print(config.design.film, square_mm);
   SheetOptions sheet;
   sheet.width_mm = config.design.film.width_mm;
@@ -130,7 +130,8 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
 
 }  // namespace
 
-JobResult kit_job(const JobConfig& config, const CalibrationRequest& request, RunContext& context) {
+JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
+                  const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   for (const std::string& text : request.scans)
     calibration_object(text, config, context);  // refuses what does not fit the film

@@ -34,7 +34,7 @@ struct Measurement {
 };
 
 Measurement measure(const Subject& subject, const CheckeredFilm& film, const DesignOptions& design,
-                    const Method& method, double square_mm, RunContext& context) {
+                    const Method& method, double square_mm, const RunContext& context) {
   DipOptions options = design.dip;
   options.method = method.method;
   const CheckerboardDip dip = dip_checkerboard(film, subject.object, *subject.surface,
@@ -91,7 +91,8 @@ std::string text_of(const Subject& subject, const std::vector<Measurement>& meas
   return text;
 }
 
-void warn_of_bare_corners(const Subject& subject, const Measurement& full, RunContext& context) {
+void warn_of_bare_corners(const Subject& subject, const Measurement& full,
+                          const RunContext& context) {
   if (5 * full.unknown > subject.scan.grid.position.size())
     context.warn(fmt::format(
         "{}: {} of {} corners lie where the simulated dip lays no film; check the depth ('{}@DEPTH="
@@ -103,7 +104,7 @@ void warn_of_bare_corners(const Subject& subject, const Measurement& full, RunCo
 }  // namespace
 
 JobResult measure_job(const JobConfig& config, const CalibrationRequest& request,
-                      RunContext& context) {
+                      const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   const ScanSettings settings = {{request.scan_units, request.square_mm, request.mirrored},
                                  request.aligned};

@@ -119,7 +119,7 @@ std::vector<SimulationRequest> grid_requests(const SearchOptions& options, std::
 
 }  // namespace
 
-void Search::simulate_grid(const Shard& shard, RunContext& context) {
+void Search::simulate_grid(const Shard& shard, const RunContext& context) {
   const std::vector<SimulationRequest> all = grid_requests(options_, subjects_.size());
   std::vector<SimulationRequest> mine;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -131,7 +131,7 @@ std::size_t Search::missing() const {
   return search_film_.missing(grid_requests(options_, subjects_.size()));
 }
 
-std::vector<GridPointError> Search::grid_errors(RunContext& context) {
+std::vector<GridPointError> Search::grid_errors(const RunContext& context) {
   const std::vector<FilmParameters> points = grid_points(options_);
   const std::vector<SimulationResult> results =
       search_film_.get(grid_requests(options_, subjects_.size()), "searching", context);
@@ -175,12 +175,12 @@ FitOptions Search::fit_options() const {
 
 Eigen::MatrixXd Search::errors_at(Simulations& simulations,
                                   const std::vector<std::size_t>& subjects,
-                                  const std::vector<FitPoint>& points, const std::string& stage,
-                                  RunContext& context) {
+                                  const std::vector<FitPoint>& points, const std::string& activity,
+                                  const RunContext& context) {
   std::vector<SimulationRequest> requests;
   for (const FitPoint& point : points)
     for (const std::size_t s : subjects) requests.push_back({s, from_fit(point)});
-  const std::vector<SimulationResult> results = simulations.get(requests, stage, context);
+  const std::vector<SimulationResult> results = simulations.get(requests, activity, context);
   Eigen::Index rows = 0;
   for (const std::size_t s : subjects) rows += Eigen::Index(compared_[s].size());
   Eigen::MatrixXd errors(rows, Eigen::Index(points.size()));
@@ -197,7 +197,7 @@ Eigen::MatrixXd Search::errors_at(Simulations& simulations,
 }
 
 Correction Search::correction_at(const std::vector<std::size_t>& subjects, const FitPoint& point,
-                                 RunContext& context) {
+                                 const RunContext& context) {
   const auto errors = [&](Simulations& simulations) -> Eigen::VectorXd {
     return errors_at(simulations, subjects, {point}, "correcting", context).col(0);
   };
@@ -205,7 +205,7 @@ Correction Search::correction_at(const std::vector<std::size_t>& subjects, const
 }
 
 Eigen::MatrixXd Search::noise_gradient(const std::vector<std::size_t>& subjects,
-                                       const FitPoint& point, RunContext& context) {
+                                       const FitPoint& point, const RunContext& context) {
   Eigen::Index rows = 0, columns = 0;
   for (const std::size_t s : subjects) {
     rows += Eigen::Index(compared_[s].size());
@@ -228,7 +228,7 @@ Eigen::MatrixXd Search::noise_gradient(const std::vector<std::size_t>& subjects,
 }
 
 LengthErrors Search::errors_with(const std::vector<std::size_t>& subjects,
-                                 const Eigen::VectorXd& correction, RunContext& context) {
+                                 const Eigen::VectorXd& correction, const RunContext& context) {
   return [this, subjects, correction, &context](const std::vector<FitPoint>& points) {
     return with(errors_at(search_film_, subjects, points, "refining", context), correction);
   };
@@ -236,7 +236,7 @@ LengthErrors Search::errors_with(const std::vector<std::size_t>& subjects,
 
 Answer Search::answer(const std::string& name, const std::vector<std::size_t>& subjects,
                       const FitPoint& start, const Eigen::VectorXd& correction,
-                      RunContext& context) {
+                      const RunContext& context) {
   Answer result;
   result.name = name;
   result.fit = fit_parameters(start, errors_with(subjects, correction, context), fit_options());
@@ -247,7 +247,7 @@ Answer Search::answer(const std::string& name, const std::vector<std::size_t>& s
 // Takes out what noise does to the answer on average, and says how sure it is. Where the answer is
 // at the edge of its range, both start from where noise has driven it beyond.
 void Search::judge(Answer& answer, const std::vector<std::size_t>& subjects,
-                   const Correction& lacking, RunContext& context) {
+                   const Correction& lacking, const RunContext& context) {
   Fit fit = answer.fit;
   const bool at_edge = fit.at_bound[0] || fit.at_bound[1] || fit.at_bound[2];
   if (at_edge)
@@ -269,7 +269,7 @@ void Search::judge(Answer& answer, const std::vector<std::size_t>& subjects,
   answer.parameters = from_fit(answer.fit.point);
 }
 
-Calibration Search::run(RunContext& context) {
+Calibration Search::run(const RunContext& context) {
   Calibration result;
   result.grid = grid_errors(context);
   const auto best =

@@ -65,34 +65,35 @@ class Search {
          const SearchOptions& options, SimulationStore& store);
 
   // Simulates the grid, or a shard of it, and keeps the results.
-  void simulate_grid(const Shard& shard, RunContext& context);
+  void simulate_grid(const Shard& shard, const RunContext& context);
   // How many of the grid's simulations the store lacks.
   std::size_t missing() const;
 
   // Everything; computes what the store lacks. The result depends on the store only by speed.
   // Throws InputError if no grid point can be dipped.
-  Calibration run(RunContext& context);
+  Calibration run(const RunContext& context);
 
  private:
   using Lengths = std::vector<std::vector<std::size_t>>;  // per subject: which are compared
 
-  std::vector<GridPointError> grid_errors(RunContext& context);
+  std::vector<GridPointError> grid_errors(const RunContext& context);
   FitOptions fit_options() const;
   // Length errors of some subjects on one film, as the fit wants them.
   Eigen::MatrixXd errors_at(Simulations& simulations, const std::vector<std::size_t>& subjects,
-                            const std::vector<FitPoint>& points, const std::string& stage,
-                            RunContext& context);
+                            const std::vector<FitPoint>& points, const std::string& activity,
+                            const RunContext& context);
   // Of the search's film at a point.
   Correction correction_at(const std::vector<std::size_t>& subjects, const FitPoint& point,
-                           RunContext& context);
+                           const RunContext& context);
   Answer answer(const std::string& name, const std::vector<std::size_t>& subjects,
-                const FitPoint& start, const Eigen::VectorXd& correction, RunContext& context);
+                const FitPoint& start, const Eigen::VectorXd& correction,
+                const RunContext& context);
   LengthErrors errors_with(const std::vector<std::size_t>& subjects,
-                           const Eigen::VectorXd& correction, RunContext& context);
+                           const Eigen::VectorXd& correction, const RunContext& context);
   void judge(Answer& answer, const std::vector<std::size_t>& subjects, const Correction& lacking,
-             RunContext& context);
+             const RunContext& context);
   Eigen::MatrixXd noise_gradient(const std::vector<std::size_t>& subjects, const FitPoint& point,
-                                 RunContext& context);
+                                 const RunContext& context);
 
   const std::vector<Subject>& subjects_;
   SearchOptions options_;

@@ -24,11 +24,11 @@ class Crew {
  public:
   explicit Crew(const RunContext& context) : workers_context_(context.with_threads(1).quiet()) {}
 
-  using Task = std::function<void(std::size_t index, RunContext& context)>;
+  using Task = std::function<void(std::size_t index, const RunContext& context)>;
   using Done = std::function<void(std::size_t index)>;
 
   void run(std::size_t count, int threads, const Task& task, const Done& done,
-           RunContext& context) {
+           const RunContext& context) {
     std::vector<std::thread> workers;
     const auto size = std::min(count, std::size_t(std::max(1, threads)));
     for (std::size_t i = 0; i < size; ++i) workers.emplace_back([&] { work(count, task); });
@@ -61,7 +61,7 @@ class Crew {
     }
   }
 
-  void collect(std::size_t count, const Done& done, RunContext& context) {
+  void collect(std::size_t count, const Done& done, const RunContext& context) {
     std::size_t seen = 0;
     while (seen < count) {
       std::vector<std::size_t> batch;
@@ -104,13 +104,15 @@ SimulationKey Simulations::key_of(const SimulationRequest& request) const {
   return {subjects_[request.subject].fingerprint + "-" + level_, request.parameters};
 }
 
-CheckerboardDip Simulations::dip(const SimulationRequest& request, RunContext& context) const {
+CheckerboardDip Simulations::dip(const SimulationRequest& request,
+                                 const RunContext& context) const {
   const Subject& subject = subjects_[request.subject];
   return dip_checkerboard(film_, subject.object, *subject.surface, request.parameters, options_,
                           context);
 }
 
-SimulationResult Simulations::compute(const SimulationRequest& request, RunContext& context) const {
+SimulationResult Simulations::compute(const SimulationRequest& request,
+                                      const RunContext& context) const {
   try {
     return compare(subjects_[request.subject], dip(request, context)).warped;
   } catch (const DipError&) {
@@ -126,7 +128,8 @@ std::size_t Simulations::missing(const std::vector<SimulationRequest>& requests)
 }
 
 std::vector<SimulationResult> Simulations::get(const std::vector<SimulationRequest>& requests,
-                                               const std::string& stage, RunContext& context) {
+                                               const std::string& activity,
+                                               const RunContext& context) {
   std::vector<SimulationRequest> todo;
   std::set<SimulationKey> listed;
   for (const SimulationRequest& request : requests)
@@ -137,14 +140,14 @@ std::vector<SimulationResult> Simulations::get(const std::vector<SimulationReque
     const int threads = available_threads();
     std::vector<SimulationResult> computed(todo.size());
     std::size_t done = 0;
-    context.progress(stage, 0);
+    context.progress(activity, 0);
     Crew(context).run(
         todo.size(), threads,
-        [&](std::size_t i, RunContext& quiet) { computed[i] = compute(todo[i], quiet); },
+        [&](std::size_t i, const RunContext& quiet) { computed[i] = compute(todo[i], quiet); },
         [&](std::size_t i) {
           store_.add(key_of(todo[i]), computed[i]);
           computed[i].reset();
-          context.progress(stage, double(++done) / double(todo.size()));
+          context.progress(activity, double(++done) / double(todo.size()));
         },
         context);
   }

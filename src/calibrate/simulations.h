@@ -24,20 +24,20 @@ class Simulations {
               const std::string& level, SimulationStore& store);
 
   // In the order of the requests. Computes what the store does not have, as many at once as there
-  // are threads, and keeps each as it is done. Progress under the name `stage`. Throws Cancelled:
+  // are threads, and keeps each as it is done. Progress under the name `activity`. Throws Cancelled:
   // what was finished by then is kept.
   std::vector<SimulationResult> get(const std::vector<SimulationRequest>& requests,
-                                    const std::string& stage, RunContext& context);
+                                    const std::string& activity, const RunContext& context);
 
   // How many of the requests the store lacks.
   std::size_t missing(const std::vector<SimulationRequest>& requests) const;
 
   // One dip with its map, for what the store does not keep.
-  CheckerboardDip dip(const SimulationRequest& request, RunContext& context) const;
+  CheckerboardDip dip(const SimulationRequest& request, const RunContext& context) const;
 
  private:
   SimulationKey key_of(const SimulationRequest& request) const;
-  SimulationResult compute(const SimulationRequest& request, RunContext& context) const;
+  SimulationResult compute(const SimulationRequest& request, const RunContext& context) const;
 
   const std::vector<Subject>& subjects_;
   DipOptions options_;

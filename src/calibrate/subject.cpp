@@ -46,7 +46,8 @@ GridPlace reach_of(const FilmOptions& film, double square_mm) {
 }
 
 // Warns, or refuses what cannot be a scan of this object.
-void judge(const Subject& subject, const Alignment& alignment, bool aligned, RunContext& context) {
+void judge(const Subject& subject, const Alignment& alignment, bool aligned,
+           const RunContext& context) {
   const std::string file = subject.file.string();
   if (alignment.rms_mm > kLargestDistance_mm)
     throw InputError(
@@ -62,7 +63,7 @@ void judge(const Subject& subject, const Alignment& alignment, bool aligned, Run
 }
 
 void judge_match(const Subject& subject, const GridMatch& match, bool told_mirrored,
-                 RunContext& context) {
+                 const RunContext& context) {
   const std::string file = subject.file.string();
   if (match.mirrored)
     throw InputError(
@@ -76,7 +77,7 @@ void judge_match(const Subject& subject, const GridMatch& match, bool told_mirro
 }
 
 void find_how_it_lies(Subject& subject, const ScanSettings& settings, const JobConfig& config,
-                      RunContext& context) {
+                      const RunContext& context) {
   const TriangleMesh& object = subject.object.object;
   subject.surface = std::make_unique<Surface>(object.positions, object.triangles);
   if (settings.aligned) {
@@ -118,7 +119,7 @@ class Fingerprint {
 
 // What this program makes of a small dip: another mesh, solver or scheme makes something else, and
 // what an older program has simulated is no use to it then.
-double program_mark(RunContext& context) {
+double program_mark(const RunContext& context) {
   DesignOptions small;
   small.film.width_mm = small.film.height_mm = 120;
   small.film.elements = 800;
@@ -242,7 +243,7 @@ Eigen::MatrixXd noise_gradient_of(const Subject& subject, const CheckerboardDip&
 
 std::vector<Subject> load_subjects(const std::vector<std::string>& texts,
                                    const ScanSettings& settings, const JobConfig& config,
-                                   RunContext& context) {
+                                   const RunContext& context) {
   RunContext quiet = context.quiet();
   const double program = program_mark(quiet);
   std::vector<Subject> subjects;

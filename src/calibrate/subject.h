@@ -54,7 +54,7 @@ Eigen::MatrixXd noise_gradient_of(const Subject& subject, const CheckerboardDip&
 // Throws InputError; warns about scans that fit badly.
 std::vector<Subject> load_subjects(const std::vector<std::string>& texts,
                                    const ScanSettings& settings, const JobConfig& config,
-                                   RunContext& context);
+                                   const RunContext& context);
 
 // Whether any of them was computed, not scanned.
 bool any_synthetic(const std::vector<Subject>& subjects);

@@ -31,7 +31,7 @@ std::string truth_toml(const FilmParameters& truth) {
 }  // namespace
 
 JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
-                    RunContext& context) {
+                    const RunContext& context) {
   check(request);
   const RunScope scope(context.with_threads(config.threads));
   // Finer than any film that calibrate dips with the same configuration.

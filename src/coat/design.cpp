@@ -26,7 +26,7 @@ bool ink_matters(const DesignOptions& options) {
 // The rounds and the print that they lead to.
 class Settling {
  public:
-  Settling(const DesignTask& task, Timings& timings, RunContext& context)
+  Settling(const DesignTask& task, Timings& timings, const RunContext& context)
       : task_(task),
         timings_(timings),
         context_(context),
@@ -118,7 +118,7 @@ class Settling {
 
   const DesignTask task_;
   Timings& timings_;
-  RunContext& context_;
+  const RunContext& context_;
   const SharedFilmMesh film_;
   InkResult result_;
 };
@@ -137,7 +137,7 @@ double InkResult::last_change_mm() const {
   return last.empty() ? 0 : last.back().change_mm;
 }
 
-Designed design(const DesignTask& task, Timings& timings, RunContext& context) {
+Designed design(const DesignTask& task, Timings& timings, const RunContext& context) {
   const RunScope scope(context);
   return Settling(task, timings, context).run();
 }

@@ -82,6 +82,6 @@ struct DesignTask {
 // Dips until ink and film agree, at most rounds_max times. Where film tears, the first two rounds
 // are made on coarser film before: if they tell that ink and film never agree, the film itself is
 // dipped once. Warns where they do not agree.
-Designed design(const DesignTask& task, Timings& timings, RunContext& context);
+Designed design(const DesignTask& task, Timings& timings, const RunContext& context);
 
 }  // namespace hydrodip

@@ -8,7 +8,7 @@ namespace hydrodip {
 
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
                         const Trajectory& trajectory, const DipOptions& options, Timings& timings,
-                        RunContext& context, const DipObserver& observe) {
+                        const RunContext& context, const DipObserver& observe) {
   const RunScope scope(context);
   DippedObject result{.posed = posed};
   const TriangleMesh& mesh = posed.mesh();

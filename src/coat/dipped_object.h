@@ -28,6 +28,6 @@ struct DippedObject {
 // Simulates the dip of an object on film that it fits; `observe` sees every step. Throws as dip().
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
                         const Trajectory& trajectory, const DipOptions& options, Timings& timings,
-                        RunContext& context, const DipObserver& observe = {});
+                        const RunContext& context, const DipObserver& observe = {});
 
 }  // namespace hydrodip

@@ -61,7 +61,7 @@ double mean_of(const std::vector<double>& values) {
 }  // namespace
 
 InkRounds::InkRounds(const DesignTask& task, const DesignOptions& options,
-                     const SharedFilmMesh& film, Timings& timings, RunContext& context)
+                     const SharedFilmMesh& film, Timings& timings, const RunContext& context)
     : task_(task),
       options_(options),
       film_(film),

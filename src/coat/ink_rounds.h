@@ -17,7 +17,7 @@ class InkRounds {
  public:
   // Refers to all of them. `film` is that of options.film.
   InkRounds(const DesignTask& task, const DesignOptions& options, const SharedFilmMesh& film,
-            Timings& timings, RunContext& context);
+            Timings& timings, const RunContext& context);
 
   // The modulus of the first film; blank unless told.
   void begin_with(std::vector<double> modulus) { dip_options_.modulus = std::move(modulus); }
@@ -49,7 +49,7 @@ class InkRounds {
   const DesignOptions& options_;
   const SharedFilmMesh film_;
   Timings& timings_;
-  RunContext& context_;
+  const RunContext& context_;
   const Trajectory trajectory_;
   double rounds_dpi_;
   DipOptions dip_options_;  // of the next dip

@@ -56,7 +56,7 @@ DipState floating_film(const FilmMesh& film) {
 }
 
 void check_rim(const FilmMesh& film, const Surface& surface, const Travel& travel,
-               RunContext& context) {
+               const RunContext& context) {
   for (std::size_t v = 0; v < film.u.size(); ++v) {
     if (!film.on_rim[v]) continue;
     const Vec3 below(film.u[v].x(), film.u[v].y(), -1);
@@ -123,7 +123,7 @@ std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, c
 
 DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
               const std::vector<Triangle>& triangles, const Surface& surface,
-              const Trajectory& trajectory, const DipOptions& options, RunContext& context,
+              const Trajectory& trajectory, const DipOptions& options, const RunContext& context,
               const DipObserver& observe) {
   const RunScope scope(context);
   const FilmMesh& film = *mesh;

@@ -73,14 +73,14 @@ using DipObserver =
 // (exit code 3) if a step cannot be computed, InputError for options out of range, Cancelled.
 DipResult dip(const SharedFilmMesh& film, const std::vector<Vec3>& positions,
               const std::vector<Triangle>& triangles, const Surface& surface,
-              const Trajectory& trajectory, const DipOptions& options, RunContext& context,
+              const Trajectory& trajectory, const DipOptions& options, const RunContext& context,
               const DipObserver& observe = {});
 
 // The same on a mesh that nobody else holds.
 inline DipResult dip(FilmMesh film, const std::vector<Vec3>& positions,
                      const std::vector<Triangle>& triangles, const Surface& surface,
-                     const Trajectory& trajectory, const DipOptions& options, RunContext& context,
-                     const DipObserver& observe = {}) {
+                     const Trajectory& trajectory, const DipOptions& options,
+                     const RunContext& context, const DipObserver& observe = {}) {
   return dip(std::make_shared<const FilmMesh>(std::move(film)), positions, triangles, surface,
              trajectory, options, context, observe);
 }

@@ -19,7 +19,7 @@ struct DipSetting {
   const Surface& surface;
   const DipOptions& options;
   const Travel& travel;
-  RunContext& context;
+  const RunContext& context;
 };
 
 // The film during the dip, in the posed-object frame: the object stands still, a plane of water

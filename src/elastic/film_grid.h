@@ -38,13 +38,13 @@ struct GridLayout {
                  });
   }
 
-  // Calls step(stage, row) for all of the grid's rows and so many stages, in parallel where that
-  // pays. A row's stage comes after the stage before it of the same row and the two next to it, and
+  // Calls step(pass, row) for all of the grid's rows and so many passes, in parallel where that
+  // pays. A row's pass comes after the pass before it of the same row and the two next to it, and
   // mostly soon, while what they share is still in the cache. Rows in [begin, end) take longest.
   template <typename Step>
-  void sweep(int stages, std::ptrdiff_t begin, std::ptrdiff_t end, const Step& step) const {
+  void sweep(int passes, std::ptrdiff_t begin, std::ptrdiff_t end, const Step& step) const {
     // Strips first, without rows that wait for a neighbouring strip; then those rows.
-    const std::ptrdiff_t strips = strips_of(end - begin), s = stages;
+    const std::ptrdiff_t strips = strips_of(end - begin), s = passes;
     const auto seam = [&](std::size_t n) {  // before this strip
       const auto strip = std::ptrdiff_t(n);
       return strip == 0 ? 0 : strip == strips ? ny : begin + (end - begin) * strip / strips;
@@ -52,17 +52,17 @@ struct GridLayout {
     parallel_for(std::size_t(strips), 1, [&](std::size_t strip, std::size_t) {
       const std::ptrdiff_t from = seam(strip), to = seam(strip + 1);
       for (std::ptrdiff_t front = from; front < to + s - 1; ++front)
-        for (std::ptrdiff_t stage = 0; stage < s; ++stage) {
-          const std::ptrdiff_t row = front - stage;
-          if (row < (from > 0 ? from + stage : 0)) continue;
-          if (row < (to < ny ? to - stage : to)) step(int(stage), row);
+        for (std::ptrdiff_t pass = 0; pass < s; ++pass) {
+          const std::ptrdiff_t row = front - pass;
+          if (row < (from > 0 ? from + pass : 0)) continue;
+          if (row < (to < ny ? to - pass : to)) step(int(pass), row);
         }
     });
     if (strips == 1) return;
     parallel_for(std::size_t(strips) - 1, 1, [&](std::size_t strip, std::size_t) {
       const std::ptrdiff_t here = seam(strip + 1);
-      for (std::ptrdiff_t stage = 1; stage < s; ++stage)
-        for (std::ptrdiff_t row = here - stage; row < here + stage; ++row) step(int(stage), row);
+      for (std::ptrdiff_t pass = 1; pass < s; ++pass)
+        for (std::ptrdiff_t row = here - pass; row < here + pass; ++row) step(int(pass), row);
     });
   }
 
@@ -75,7 +75,7 @@ struct GridLayout {
   static constexpr std::size_t kLooseEnds = 2 * kernels::kLanes;
   // What is worth a thread's while.
   static constexpr std::ptrdiff_t kNodesPerTask = 3000;
-  // The same for all stages of a sweep together.
+  // The same for all passes of a sweep together.
   static constexpr std::ptrdiff_t kNodesPerStrip = 600;
   // So many that few wait for the seams, and no row waits for two of them.
   static constexpr std::ptrdiff_t kRowsPerStrip = 16;

@@ -236,17 +236,17 @@ void Multigrid::go_down(Level& level, const GridVector& b, GridVector& x, Level&
   const int steps = int(level.weights.size());
   GridVector* const turns[2] = {&level.other, &x};  // whose row the steps write in turn
   GridVector& rest = level.other;
-  layout.sweep(steps + 2, active.row_begin(), active.row_end(), [&](int stage, std::ptrdiff_t j) {
+  layout.sweep(steps + 2, active.row_begin(), active.row_end(), [&](int pass, std::ptrdiff_t j) {
     const kernels::Part smoothed = active.smoothed(j), reached = active.reached(j);
-    if (stage < steps) {
-      GridVector &from = *turns[1 - stage % 2], &to = *turns[stage % 2];
-      const float weight = level.weights[std::size_t(stage)];
-      if (stage < 2 && !active.whole(smoothed)) clear_row(layout, j, to);
-      if (stage == 0)
+    if (pass < steps) {
+      GridVector &from = *turns[1 - pass % 2], &to = *turns[pass % 2];
+      const float weight = level.weights[std::size_t(pass)];
+      if (pass < 2 && !active.whole(smoothed)) clear_row(layout, j, to);
+      if (pass == 0)
         run.precondition(A, smoothed, b, weight, to);
       else
         run.smooth(A, smoothed, b, from, weight, to);
-    } else if (stage == steps) {
+    } else if (pass == steps) {
       if (!active.whole(reached)) copy_row(layout, j, b, rest);
       run.residual(A, reached, b, x, rest);
     } else {
@@ -267,12 +267,12 @@ void Multigrid::come_up(const Level& coarse, Level& level, const GridVector& b,
   const ActivePart& active = level.active;
   const int steps = int(level.weights.size());
   GridVector* const turns[2] = {&x, &level.other};
-  layout.sweep(steps + 1, active.row_begin(), active.row_end(), [&](int stage, std::ptrdiff_t j) {
-    if (stage == 0) return run.prolong_rows(between, j, j + 1, coarse.x, x);
+  layout.sweep(steps + 1, active.row_begin(), active.row_end(), [&](int pass, std::ptrdiff_t j) {
+    if (pass == 0) return run.prolong_rows(between, j, j + 1, coarse.x, x);
     const kernels::Part smoothed = active.smoothed(j);
-    if (stage == 1 && !active.whole(smoothed)) copy_row(layout, j, x, level.other);
-    const GridVector& from = *turns[(stage - 1) % 2];
-    run.smooth(A, smoothed, b, from, level.weights[std::size_t(steps - stage)], *turns[stage % 2]);
+    if (pass == 1 && !active.whole(smoothed)) copy_row(layout, j, x, level.other);
+    const GridVector& from = *turns[(pass - 1) % 2];
+    run.smooth(A, smoothed, b, from, level.weights[std::size_t(steps - pass)], *turns[pass % 2]);
   });
 }
 

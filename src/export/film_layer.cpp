@@ -43,7 +43,9 @@ class ColorError {
 
   void fill_row(FilmLayer& layer, int row) const {
     FilmMap::Cursor cursor;
+    CheckEvery check(64);
     for (int x = 0; x < layer.width; ++x) {
+      check();
       layer.values[std::size_t(row) * std::size_t(layer.width) + std::size_t(x)] =
           at(layer, x, row, cursor);
     }
@@ -79,12 +81,11 @@ class ColorError {
 }  // namespace
 
 FilmLayer color_error_layer(const TriangleMesh& object, const FilmMap& map,
-                            const Appearance& appearance, RunContext& context) {
+                            const Appearance& appearance, const RunContext& context) {
   const RunScope scope(context);
   FilmLayer layer = empty_layer("color_error", map.covered());
   const ColorError error(object, map, appearance);
   parallel_for(std::size_t(layer.height), 4, [&](std::size_t begin, std::size_t end) {
-    context.check_cancelled();
     for (std::size_t row = begin; row < end; ++row) error.fill_row(layer, int(row));
   });
   return layer;

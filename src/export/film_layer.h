@@ -19,7 +19,7 @@ struct FilmLayer {
 
 // CIEDE2000 between wanted and predicted colour, each averaged over the cell.
 FilmLayer color_error_layer(const TriangleMesh& object, const FilmMap& map,
-                            const Appearance& appearance, RunContext& context);
+                            const Appearance& appearance, const RunContext& context);
 
 // From a value per pixel of the film image (`width_px` x `height_px` over the whole sheet; NaN:
 // nothing there): means over cells, within the film coordinates `extent`.

@@ -278,10 +278,10 @@ std::string without_tags(const std::string& text) {
 
 }  // namespace
 
-std::string scene_json(const SceneSource& source, RunContext& context) {
+std::string scene_json(const SceneSource& source, const RunContext& context) {
   const RunScope scope(context);
-  const std::string stage = "packing the 3D view";
-  context.progress(stage, 0);
+  const std::string activity = "packing the 3D view";
+  context.progress(activity, 0);
   Packer packer;
   Json json;
   json["base"] = {source.base.r, source.base.g, source.base.b};
@@ -290,14 +290,14 @@ std::string scene_json(const SceneSource& source, RunContext& context) {
   json["cell_mm"] = source.film.mesh().cell_mm;
   json["bath"] = {{"width_mm", source.bath_width_mm}, {"height_mm", source.bath_height_mm}};
   json["sheet"] = sheet_json(source);
-  context.progress(stage, 0.3);
+  context.progress(activity, 0.3);
   json["object"] = object_json(source.object, packer);
-  context.progress(stage, 0.5);
+  context.progress(activity, 0.5);
   json["film"] = film_json(source, packer);
   json["layers"] = layers_json(source, packer);
-  context.progress(stage, 0.7);
+  context.progress(activity, 0.7);
   json["data"] = packer.finish();
-  context.progress(stage, 1);
+  context.progress(activity, 1);
   return without_tags(json.dump(-1, ' ', true, Json::error_handler_t::replace));
 }
 

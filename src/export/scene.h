@@ -29,6 +29,6 @@ struct SceneSource {
 // One JSON object in ASCII without '<', so that it can stand in a script element. Lengths are
 // quantised to a 65535th of the scene's extent. An object of very many triangles is simplified for
 // the eye.
-std::string scene_json(const SceneSource& source, RunContext& context);
+std::string scene_json(const SceneSource& source, const RunContext& context);
 
 }  // namespace hydrodip

@@ -138,7 +138,7 @@ Inks compensated(const Inks& wanted, double area_ratio, GamutPolicy policy, doub
 }
 
 Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
-                const InkingOptions& options, RunContext& context) {
+                const InkingOptions& options, const RunContext& context) {
   const RunScope scope(context);
   Inking result;
   result.inks = InkImage(wanted.width_px, wanted.height_px);

@@ -43,7 +43,7 @@ struct Inking {
 // the object. area_ratio: per pixel. Ink lies on the base colour as a filter: the light that comes
 // back is that from white film times the base.
 Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
-                const InkingOptions& options, RunContext& context);
+                const InkingOptions& options, const RunContext& context);
 
 // What a film with these inks looks like before the dip: over white; transparent where `wanted`
 // is, so that the rest of the sheet stays empty.

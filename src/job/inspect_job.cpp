@@ -191,7 +191,8 @@ std::string machine_readable(const Inspection& i) {
   return all.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
-void write_angle_map(const std::filesystem::path& path, const Inspection& i, RunContext& context) {
+void write_angle_map(const std::filesystem::path& path, const Inspection& i,
+                     const RunContext& context) {
   MapOptions options;
   options.width_px = i.config.preview_width_px;
   options.caption = map_caption(i.angles, nullptr);
@@ -200,7 +201,7 @@ void write_angle_map(const std::filesystem::path& path, const Inspection& i, Run
   write_file(path, png.data(), png.size());
 }
 
-void write_files(const Inspection& i, const std::string& report, RunContext& context) {
+void write_files(const Inspection& i, const std::string& report, const RunContext& context) {
   OutputFolder folder(i.config.output);
   folder.announce({"angles.png", "report.json"}, i.prepared.files);
   write_angle_map(folder.path("angles.png"), i, context);
@@ -211,7 +212,7 @@ void write_files(const Inspection& i, const std::string& report, RunContext& con
 
 }  // namespace
 
-JobResult inspect_job(const JobConfig& config, RunContext& context) {
+JobResult inspect_job(const JobConfig& config, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   const PreparedObject prepared = prepare_object(config.model, config.object, context);
   const TriangleMesh& mesh = prepared.posed.mesh();

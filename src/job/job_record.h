@@ -25,7 +25,7 @@ struct JobRecord {
   const std::vector<ReportInput>& inputs;
   const Finish& finish;
   const Timings& times;
-  RunContext& context;
+  const RunContext& context;
   const InkResult* ink = nullptr;  // of print
   std::string ink_model;           // how colours became inks
 

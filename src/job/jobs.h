@@ -1,4 +1,4 @@
-// The pipelines behind the commands. Each reads as the list of its stages.
+// The pipelines behind the commands. Each reads as the list of its steps.
 #pragma once
 
 #include <filesystem>
@@ -21,15 +21,15 @@ struct JobResult {
 // print.pdf, print.png, print.tif, film.ply, preview.png, maps.png, gamut.png, preview.glb,
 // report.json, report.html in config.output. All of them appear, or none. Throws InputError,
 // DipError, Cancelled.
-JobResult print_job(const JobConfig& config, RunContext& context);
+JobResult print_job(const JobConfig& config, const RunContext& context);
 
 // Forward only: film.ply, preview.png, maps.png, preview.glb, report.json, report.html; with
 // config.film_image (the whole sheet, as print.png) also what the object will look like.
-JobResult simulate_job(const JobConfig& config, RunContext& context);
+JobResult simulate_job(const JobConfig& config, const RunContext& context);
 
 // No simulation: size, mesh health, what fits the film, dip angles. Writes angles.png and
 // report.json only if config.output is given.
-JobResult inspect_job(const JobConfig& config, RunContext& context);
+JobResult inspect_job(const JobConfig& config, const RunContext& context);
 
 // Opens a job's report.html (`where`: it, or its folder) in the default browser; where there is
 // none, the result says its path. Throws InputError if there is no report.
@@ -37,7 +37,7 @@ JobResult view_job(const std::filesystem::path& where);
 
 // Writes a built-in sample model with its texture.
 JobResult sample_job(const std::string& name, const std::filesystem::path& folder,
-                     RunContext& context);
+                     const RunContext& context);
 // The built-in samples' names and what they are; for `hydrodip sample` without a name.
 JobResult list_samples();
 

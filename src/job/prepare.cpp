@@ -16,7 +16,7 @@ constexpr double kTiny_mm = 5;
 // The film image as wanted, stretched, inked and seen, and what is written of it.
 constexpr double kBytesPerPixel = 32;
 
-void warn_if_tiny(const TriangleMesh& mesh, RunContext& context) {
+void warn_if_tiny(const TriangleMesh& mesh, const RunContext& context) {
   const double largest_mm = mesh.bounds().size().maxCoeff();
   if (!(largest_mm < kTiny_mm)) return;
   std::string length = fmt::format("{:.2f}", largest_mm);
@@ -30,7 +30,7 @@ void warn_if_tiny(const TriangleMesh& mesh, RunContext& context) {
 }  // namespace
 
 PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOptions& options,
-                              RunContext& context) {
+                              const RunContext& context) {
   context.progress("loading", 0);
   LoadedObject loaded = load_object(model, options.load, context);
   for (const std::string& finding : loaded.health.findings()) context.warn(finding);

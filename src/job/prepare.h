@@ -24,7 +24,7 @@ struct PreparedObject {
 
 // Loads a model and poses it. Health findings become warnings.
 PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOptions& options,
-                              RunContext& context);
+                              const RunContext& context);
 
 // Throws InputError saying what is missing, and how to mend it, if the model does not say which
 // colour goes where. picture_problems: as PreparedObject's.

@@ -42,7 +42,7 @@ void require_ink(const FilmInk& ink, const JobConfig& config) {
 
 }  // namespace
 
-JobResult print_job(const JobConfig& config, RunContext& context) {
+JobResult print_job(const JobConfig& config, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   require_memory(config.design);
   OutputFolder folder(config.output);

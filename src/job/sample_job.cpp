@@ -10,7 +10,7 @@
 namespace hydrodip {
 
 JobResult sample_job(const std::string& name, const std::filesystem::path& folder,
-                     RunContext& context) {
+                     const RunContext& context) {
   const RunScope scope(context);
   const Object sample = make_sample(name);  // refuses unknown names before a folder is made
   OutputFolder output(folder);

@@ -128,7 +128,7 @@ DipOptions dip_options(const FilmMesh& film, const PrintedFilm& printed, const J
 
 Image seen_on_object(const DippedObject& dipped, const PrintedFilm& printed,
                      const ColorModel& model, const LinearColor& base, bool pales,
-                     RunContext& context) {
+                     const RunContext& context) {
   FilmStretch stretch = film_stretch(*dipped.map, printed.raster, 0, context);
   if (!pales) std::fill(stretch.area_ratio.begin(), stretch.area_ratio.end(), 1.0F);
   return look_on_object(printed.inks, stretch.area_ratio, model, base);
@@ -136,7 +136,7 @@ Image seen_on_object(const DippedObject& dipped, const PrintedFilm& printed,
 
 }  // namespace
 
-JobResult simulate_job(const JobConfig& config, RunContext& context) {
+JobResult simulate_job(const JobConfig& config, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   OutputFolder folder(config.output);
   Timings times;

@@ -80,7 +80,7 @@ Unit unit_for(const std::string& asked, const std::string& in_file, const Format
 // ---- reading ------------------------------------------------------------------------------------
 
 ModelFile read_model(const fs::path& path, const Format& format, ModelFolder& folder,
-                     RunContext& context) {
+                     const RunContext& context) {
   const std::string shown = path.string(), name = path.filename().string();
   const FileBytes bytes = folder.read_path(path);
   if (bytes.empty())
@@ -124,7 +124,8 @@ void apply_alpha(Image& image, Alpha alpha, float cutoff) {
 // Reads pictures once each, and tells of those that cannot be had.
 class Pictures {
  public:
-  Pictures(const ModelFile& file, ModelFolder& folder, LoadedObject& loaded, RunContext& context)
+  Pictures(const ModelFile& file, ModelFolder& folder, LoadedObject& loaded,
+           const RunContext& context)
       : file_(file), folder_(folder), loaded_(loaded), context_(context) {}
 
   // Index of the material's picture among the object's textures, or -1.
@@ -178,7 +179,7 @@ class Pictures {
   const ModelFile& file_;
   ModelFolder& folder_;
   LoadedObject& loaded_;
-  RunContext& context_;
+  const RunContext& context_;
   std::map<std::tuple<std::string, int, float, float, float>, int> textures_;
 };
 
@@ -244,7 +245,7 @@ class Materials {
 class ObjectMaker {
  public:
   ObjectMaker(const std::string& path, ModelFile& file, Materials& materials, bool only_texture,
-              Object& object, RunContext& context)
+              Object& object, const RunContext& context)
       : path_(path),
         file_(file),
         materials_(materials),
@@ -342,7 +343,7 @@ void forget_colors(const ModelFile& file, const fs::path& model, const fs::path&
   object.colors.clear();
 }
 
-void warn_of_one_color(const Object& object, RunContext& context) {
+void warn_of_one_color(const Object& object, const RunContext& context) {
   const auto color = object.one_color();
   if (!color || object.uvs.empty() || !object.has_appearance()) return;
   context.warn(fmt::format(
@@ -379,7 +380,8 @@ PolygonMesh load_polygons(const fs::path& path) {
   return mesh;
 }
 
-LoadedObject load_object(const fs::path& path, const LoadOptions& options, RunContext& context) {
+LoadedObject load_object(const fs::path& path, const LoadOptions& options,
+                         const RunContext& context) {
   const Format& format = format_of(path);
   unit_for(options.units, "", format);  // refuses a bad --units before the long part
   ModelFolder folder(path);

@@ -43,7 +43,7 @@ struct LoadedObject {
 // or unparsable files, face indices out of range, non-finite coordinates, no triangles, --texture
 // without UVs, unknown extension.
 LoadedObject load_object(const std::filesystem::path& path, const LoadOptions& options,
-                         RunContext& context);
+                         const RunContext& context);
 
 // Faces as the file has them, not cut into triangles. Equal positions are one vertex.
 struct PolygonMesh {

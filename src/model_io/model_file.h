@@ -87,7 +87,7 @@ struct ModelInput {
   const std::string& name;  // the file's bare name, for messages about what it refers to
   const FileBytes& bytes;   // not empty
   SideFiles& side_files;
-  RunContext& context;  // warnings; asked for a cancel every now and then
+  const RunContext& context;  // warnings; asked for a cancel every now and then
 };
 
 // All throw InputError and Cancelled. Memory: some tens of bytes per corner.

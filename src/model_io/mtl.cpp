@@ -111,7 +111,7 @@ struct Names {
 struct Oddities {
   Names invisible, inverted;
 
-  void tell(const std::string& library, RunContext& context) const {
+  void tell(const std::string& library, const RunContext& context) const {
     if (invisible.count > 0)
       context.warn(fmt::format(
           "{} makes {} wholly transparent (d 0: {}), so nothing of it is printed; write d 1 where "
@@ -165,7 +165,7 @@ MtlMaterial meaning_of(const MtlLines& lines, Oddities& odd) {
 }  // namespace
 
 std::vector<MtlMaterial> read_mtl(const std::string& name, const FileBytes& bytes,
-                                  RunContext& context) {
+                                  const RunContext& context) {
   std::vector<MtlMaterial> materials;
   MtlLines lines;
   Oddities odd;

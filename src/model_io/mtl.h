@@ -16,6 +16,6 @@ struct MtlMaterial {
 // Lines that make no sense are left out: a library never stops a model. `name` is used in warnings,
 // which say what was taken differently from how it stands there.
 std::vector<MtlMaterial> read_mtl(const std::string& name, const FileBytes& bytes,
-                                  RunContext& context);
+                                  const RunContext& context);
 
 }  // namespace hydrodip

@@ -111,7 +111,7 @@ void add_bath_fits(std::vector<RoomFit>& list, const TriangleMesh& posed, double
 }
 
 void warn_if_sheet_exceeds_bath(const FilmOptions& film, const BathOptions& tank,
-                                RunContext& context) {
+                                const RunContext& context) {
   if (sheet_fits_bath(film, tank)) return;
   const Vec2 bath = bath_along_film(film, tank);
   context.warn(fmt::format(
@@ -120,7 +120,7 @@ void warn_if_sheet_exceeds_bath(const FilmOptions& film, const BathOptions& tank
       mm(film.width_mm), mm(film.height_mm), mm(bath.x()), mm(bath.y())));
 }
 
-void warn_if_tight(const std::vector<RoomFit>& list, RunContext& context) {
+void warn_if_tight(const std::vector<RoomFit>& list, const RunContext& context) {
   for (const RoomFit& fit : list) {
     if (fit.room == "the bath" || -fit.excess_mm() >= 2 * kComfortableClearance_mm) continue;
     context.warn(fmt::format(
@@ -152,7 +152,7 @@ bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath) {
 }
 
 void require_fit(const TriangleMesh& posed, double depth_mm, const FilmOptions& film,
-                 const BathOptions& bath, RunContext& context) {
+                 const BathOptions& bath, const RunContext& context) {
   const std::vector<RoomFit> list = fits(posed, depth_mm, film, bath);
   for (const RoomFit& fit : list)
     if (fit.excess_mm() > kFitTolerance_mm)

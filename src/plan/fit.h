@@ -40,6 +40,6 @@ bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath);
 // Throws InputError for the first that does not fit, saying by how much and how to mend it. Warns
 // about a sheet larger than the bath and about little film around the object.
 void require_fit(const TriangleMesh& posed, double depth_mm, const FilmOptions& film,
-                 const BathOptions& bath, RunContext& context);
+                 const BathOptions& bath, const RunContext& context);
 
 }  // namespace hydrodip

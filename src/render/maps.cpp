@@ -239,7 +239,7 @@ double mm_per_px(const TriangleMesh& object, const Camera& camera, int width_px)
 }
 
 ViewPair render(const MapScene& scene, const Surface& surface, const View& view,
-                const MapLayout& layout, RunContext& context) {
+                const MapLayout& layout, const RunContext& context) {
   const double hatch_mm =
       kHatch * layout.unit * mm_per_px(scene.object, view.camera, layout.cell_width);
   const Appearance appearance = map_appearance(scene, view.camera, hatch_mm);
@@ -301,10 +301,10 @@ Appearance map_appearance(const MapScene& scene, const Camera& camera, double ha
 }
 
 Image render_maps(const TriangleMesh& object, const Surface& surface, const DippedFilm& film,
-                  const FilmMap& map, const MapOptions& options, RunContext& context) {
+                  const FilmMap& map, const MapOptions& options, const RunContext& context) {
   const RunScope scope(context);
-  const std::string stage = "drawing the maps";
-  context.progress(stage, 0);
+  const std::string activity = "drawing the maps";
+  context.progress(activity, 0);
   const std::vector<CornerNormals> normals = map_normals(object);
   const MapScene scene{object, normals, film.depth_mm, &map,
                        stretch_scale_end(film, options.tear_stretch)};
@@ -316,7 +316,7 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
       blank_page(layout.width, layout.header + views_height + layout.legend + layout.footer);
   int y = layout.header;
   for (std::size_t i = 0; i < 2; ++i) {
-    context.progress(stage, 0.1 + 0.45 * double(i));
+    context.progress(activity, 0.1 + 0.45 * double(i));
     const View view = view_from(object, directions[i], layout, layout.cell_height[i]);
     const ViewPair pair = render(scene, surface, view, layout, context);
     paste(page, pair.wanted, layout.cell_x(0), y);
@@ -332,15 +332,15 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
   draw_angle_legend(legend(0), some_stays_dry(object, film.depth_mm));
   draw_stretch_legend(legend(1), scene.largest_stretch, options.tear_stretch > 0);
   draw_caption(page, layout, options.caption);
-  context.progress(stage, 1);
+  context.progress(activity, 1);
   return page;
 }
 
 Image render_angle_map(const TriangleMesh& object, const Surface& surface, double depth_mm,
-                       const MapOptions& options, RunContext& context) {
+                       const MapOptions& options, const RunContext& context) {
   const RunScope scope(context);
-  const std::string stage = "drawing the angle map";
-  context.progress(stage, 0);
+  const std::string activity = "drawing the angle map";
+  context.progress(activity, 0);
   const std::vector<CornerNormals> normals = map_normals(object);
   const MapScene scene{object, normals, depth_mm};
   const std::array<Vec3, 2> directions = telling_directions(object, surface, DippedFilm{});
@@ -349,7 +349,7 @@ Image render_angle_map(const TriangleMesh& object, const Surface& surface, doubl
   const int height = std::max(layout.cell_height[0], layout.cell_height[1]);
   Image page = blank_page(layout.width, layout.header + height + layout.legend + layout.footer);
   for (int i = 0; i < 2; ++i) {
-    context.progress(stage, 0.1 + 0.45 * i);
+    context.progress(activity, 0.1 + 0.45 * i);
     const View view = view_from(object, directions[std::size_t(i)], layout, height);
     const ViewPair pair = render(scene, surface, view, layout, context);
     paste(page, pair.wanted, layout.cell_x(i), layout.header);
@@ -359,7 +359,7 @@ Image render_angle_map(const TriangleMesh& object, const Surface& surface, doubl
       Legend(page, layout, 0.5 * layout.width - 350 * layout.unit, layout.header + height),
       some_stays_dry(object, depth_mm));
   draw_caption(page, layout, options.caption);
-  context.progress(stage, 1);
+  context.progress(activity, 1);
   return page;
 }
 

@@ -25,11 +25,11 @@ struct MapOptions {
 
 // Both maps side by side, a row for each direction. `map` is the film's over the same object.
 Image render_maps(const TriangleMesh& object, const Surface& surface, const DippedFilm& film,
-                  const FilmMap& map, const MapOptions& options, RunContext& context);
+                  const FilmMap& map, const MapOptions& options, const RunContext& context);
 
 // The angle map alone, of an object to be dipped `depth_mm` deep; no film is needed.
 Image render_angle_map(const TriangleMesh& object, const Surface& surface, double depth_mm,
-                       const MapOptions& options, RunContext& context);
+                       const MapOptions& options, const RunContext& context);
 
 // One line under the maps: shares beyond the limits. `coverage` may be null.
 std::string map_caption(const DipAngles& angles, const Coverage* coverage);

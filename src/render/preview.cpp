@@ -72,7 +72,7 @@ Appearance completed(const Appearance& appearance, const LinearColor& base) {
 
 std::vector<Image> render_previews(const TriangleMesh& object, const Surface& surface,
                                    const DippedFilm& film, const std::vector<PreviewPair>& pairs,
-                                   const PreviewOptions& options, RunContext& context) {
+                                   const PreviewOptions& options, const RunContext& context) {
   const RunScope scope(context);
   const std::string stage = "drawing the preview";
   context.progress(stage, 0);

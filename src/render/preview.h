@@ -28,6 +28,6 @@ struct PreviewPair {
 // not see), soft light, neutral ground.
 std::vector<Image> render_previews(const TriangleMesh& object, const Surface& surface,
                                    const DippedFilm& film, const std::vector<PreviewPair>& pairs,
-                                   const PreviewOptions& options, RunContext& context);
+                                   const PreviewOptions& options, const RunContext& context);
 
 }  // namespace hydrodip

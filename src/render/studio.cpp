@@ -97,7 +97,8 @@ std::vector<Vec3> turned_to(const Vec3& axis, std::vector<Vec3> rays) {
 // What is seen in every pixel, and the light there.
 class Stage {
  public:
-  Stage(const Studio& studio, const Camera& camera, int width, int height, RunContext& context)
+  Stage(const Studio& studio, const Camera& camera, int width, int height,
+        const RunContext& context)
       : studio_(studio), camera_(camera), width_(width), height_(height), context_(context) {
     const Box3 box = studio.object.bounds();
     extent_ = box.empty() ? 1 : std::max(1e-9, box.size().norm());
@@ -351,7 +352,7 @@ class Stage {
   const Camera camera_;
   int width_;
   int height_;
-  RunContext& context_;
+  const RunContext& context_;
   double extent_ = 1;
   Vec3 ground_normal_, lamp_;
   std::vector<Vec3> sky_rays_;  // around z
@@ -499,7 +500,7 @@ struct LitView::Impl {
 };
 
 LitView::LitView(const Studio& studio, const Camera& camera, int width_px, int height_px,
-                 RunContext& context)
+                 const RunContext& context)
     : impl_(new Impl{Stage(studio, camera, width_px, height_px, context)}) {}
 LitView::~LitView() = default;
 

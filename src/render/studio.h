@@ -32,7 +32,7 @@ struct ViewPair {
 class LitView {
  public:
   LitView(const Studio& studio, const Camera& camera, int width_px, int height_px,
-          RunContext& context);
+          const RunContext& context);
   ~LitView();
 
   ViewPair show(const Appearance& appearance) const;

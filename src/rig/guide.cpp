@@ -18,7 +18,7 @@ constexpr double kHottest_c = 100, kHeaviest_g = 100000;
 
 class Guide {
  public:
-  Guide(const RigJob& job, Bench& bench, RunRecord& record, RunContext& context)
+  Guide(const RigJob& job, Bench& bench, RunRecord& record, const RunContext& context)
       : job_(job),
         process_(job.config.process),
         bench_(bench),
@@ -256,7 +256,7 @@ class Guide {
   Bench& bench_;
   Operator& person_;
   RunRecord& record_;
-  RunContext& context_;
+  const RunContext& context_;
   std::optional<StageSession> stage_;
   std::optional<double> water_mm_;
   std::vector<std::string> done_;
@@ -266,7 +266,7 @@ class Guide {
 
 }  // namespace
 
-JobResult rig_guide(const RigJob& job, Bench& bench, RunContext& context) {
+JobResult rig_guide(const RigJob& job, Bench& bench, const RunContext& context) {
   const BrokenRun broken = last_broken_run(job);  // before this run has a folder
   RunRecord record(job, bench.clock);
   Guide guide(job, bench, record, context);

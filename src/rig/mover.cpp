@@ -66,7 +66,7 @@ struct Mover::Way {
   }
 };
 
-Mover::Mover(Stage& stage, Clock& clock, RunContext& context)
+Mover::Mover(Stage& stage, Clock& clock, const RunContext& context)
     : stage_(stage), clock_(clock), context_(context), identity_(stage.connect()) {
   context.expect_second_cancel();
 }

@@ -36,7 +36,7 @@ struct Rest {
 class Mover {
  public:
   // Connects. Until allow_motion(), nothing moves; until the stage is homed, nothing but homing.
-  Mover(Stage& stage, Clock& clock, RunContext& context);
+  Mover(Stage& stage, Clock& clock, const RunContext& context);
 
   const StageIdentity& identity() const { return identity_; }
   StageState state();
@@ -78,7 +78,7 @@ class Mover {
 
   Stage& stage_;
   Clock& clock_;
-  RunContext& context_;
+  const RunContext& context_;
   StageIdentity identity_;
   bool allowed_ = false;
   double last_position_mm_ = 0;

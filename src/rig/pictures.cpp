@@ -38,9 +38,9 @@ bool is_as_printed(const RigJob& job) {
 }
 
 // In the posed-object frame.
-Object hanging_object(const RigJob& job) {
+Object hanging_object(const RigJob& job, const RunContext& context) {
   // What there is to say about the model was said when it was printed.
-  RunContext unheard;
+  const RunContext unheard = context.quiet();
   if (is_as_printed(job)) {
     const PreparedObject prepared = prepare_object(job.config.model, job.config.object, unheard);
     return painted_object(prepared.posed.mesh(), *prepared.paint);
@@ -51,7 +51,7 @@ Object hanging_object(const RigJob& job) {
 }
 
 Image render(const Object& object, const View& view, int width_px, int height_px,
-             RunContext& context) {
+             const RunContext& context) {
   const Surface surface(object.positions, object.triangles);
   const std::vector<CornerNormals> normals = corner_normals(object.positions, object.triangles);
   Appearance appearance;
@@ -67,8 +67,8 @@ Image render(const Object& object, const View& view, int width_px, int height_px
 }  // namespace
 
 std::vector<PosePicture> pose_pictures(const RigJob& job, int width_px, int height_px,
-                                       RunContext& context) {
-  const Object hanging = hanging_object(job);
+                                       const RunContext& context) {
+  const Object hanging = hanging_object(job, context);
   const std::vector<View> views = {
       {"from the front (-y)", Turn::kUpright, Vec3::UnitZ()},
       {"from the right (+x)", Turn::kUpright, Vec3::UnitX()},

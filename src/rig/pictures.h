@@ -19,6 +19,6 @@ struct PosePicture {
 // it is still what was printed, else the job's preview.glb. Throws InputError if that is missing or
 // is no model.
 std::vector<PosePicture> pose_pictures(const RigJob& job, int width_px, int height_px,
-                                       RunContext& context);
+                                       const RunContext& context);
 
 }  // namespace hydrodip

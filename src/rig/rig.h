@@ -18,7 +18,7 @@ namespace hydrodip {
 // The run sheet for the wet bench as a PDF of one or two pages; every figure is the job's. `paper`:
 // "a4", "letter" or "" (letter for letter film, else A4); `file` empty: FOLDER/run-sheet.pdf.
 JobResult rig_sheet(const RigJob& job, const std::string& paper, const std::filesystem::path& file,
-                    RunContext& context);
+                    const RunContext& context);
 
 // Who and what takes part at the bench. `open`: the wire to the stage.
 struct Bench {
@@ -31,7 +31,7 @@ struct Bench {
 // Leads through a dip step by step; with config.stage.port it moves the stage as well. Writes a
 // log and the trace to a new folder JOB/rig-N, whatever happens. Throws Cancelled, StageError,
 // InputError, with the log's last line saying the same.
-JobResult rig_guide(const RigJob& job, Bench& bench, RunContext& context);
+JobResult rig_guide(const RigJob& job, Bench& bench, const RunContext& context);
 
 // action: "status", "home", "jog", "approach", "dip", "retract". Only "status", "home" and "jog"
 // can do without a job.
@@ -41,9 +41,9 @@ struct StageAction {
   bool dry_run = false;
 };
 JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOptions& stage,
-                    Bench& bench, RunContext& context);
+                    Bench& bench, const RunContext& context);
 
 // "find": asks at every serial port of this computer, or at the one given.
-JobResult rig_find(const StageOptions& stage, Bench& bench, RunContext& context);
+JobResult rig_find(const StageOptions& stage, Bench& bench, const RunContext& context);
 
 }  // namespace hydrodip

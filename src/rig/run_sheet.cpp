@@ -39,7 +39,7 @@ PaperSize choose_paper(const std::string& name, const FilmOptions& film) {
 class RunSheet {
  public:
   RunSheet(PdfDocument& pdf, const PaperSize& paper, const RigJob& job,
-           const std::vector<PosePicture>& pictures, RunContext& context)
+           const std::vector<PosePicture>& pictures, const RunContext& context)
       : page_(pdf, paper),
         job_(job),
         process_(job.config.process),
@@ -265,13 +265,13 @@ class RunSheet {
   const RigJob& job_;
   const ProcessOptions& process_;
   const std::vector<PosePicture>& pictures_;
-  RunContext& context_;
+  const RunContext& context_;
 };
 
 }  // namespace
 
 JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
-                    const std::filesystem::path& file, RunContext& context) {
+                    const std::filesystem::path& file, const RunContext& context) {
   const PaperSize paper = choose_paper(paper_name, job.config.design.film);
   const std::filesystem::path path = file.empty() ? job.folder / "run-sheet.pdf" : file;
   const std::vector<PosePicture> pictures = pose_pictures(

@@ -81,7 +81,7 @@ void perform(StageSession& session, const StageAction& action, const RigJob* job
   for (const char* phase : {"approach", "dip", "dwell"}) session.perform(*job, water_mm, phase);
 }
 
-JobResult status(const StageOptions& stage, Bench& bench, RunContext& context) {
+JobResult status(const StageOptions& stage, Bench& bench, const RunContext& context) {
   StageSession session(stage, bench, nullptr, context);
   return words(session.describe() + "\n" + session.describe_state() + "\n");
 }
@@ -100,7 +100,7 @@ std::vector<std::string> ports() {
 }  // namespace
 
 JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOptions& stage,
-                    Bench& bench, RunContext& context) {
+                    Bench& bench, const RunContext& context) {
   check_action(action, job);
   if (action.action == "find") return rig_find(stage, bench, context);
   if (action.dry_run) {
@@ -129,7 +129,7 @@ JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOpt
   return result;
 }
 
-JobResult rig_find(const StageOptions& stage, Bench& bench, RunContext& context) {
+JobResult rig_find(const StageOptions& stage, Bench& bench, const RunContext& context) {
   const std::vector<std::string> list =
       stage.port.empty() ? ports() : std::vector<std::string>{stage.port};
   std::string text;

@@ -30,7 +30,7 @@ std::optional<double> parse_mm(const std::string& text) {
 }  // namespace
 
 StageSession::StageSession(const StageOptions& options, Bench& bench, RunRecord* record,
-                           RunContext& context)
+                           const RunContext& context)
     : options_(options),
       bench_(bench),
       record_(record),

@@ -14,7 +14,8 @@ namespace hydrodip {
 class StageSession {
  public:
   // Opens the port and connects. `record` may be null.
-  StageSession(const StageOptions& options, Bench& bench, RunRecord* record, RunContext& context);
+  StageSession(const StageOptions& options, Bench& bench, RunRecord* record,
+               const RunContext& context);
 
   // Homes the stage unless it is homed, after a yes.
   void ensure_home(bool always = false);

@@ -7,7 +7,7 @@ namespace {
 
 // For the printer's own RGB where its profile is given, else in sRGB.
 void write_rgb_pdf(const std::filesystem::path& path, const Image& look, const Printer& printer,
-                   const SheetOptions& options, RunContext& context) {
+                   const SheetOptions& options, const RunContext& context) {
   if (!printer.is_rgb) return write_print_pdf(path, look, srgb_profile(), options, context);
   const Image in_rgb = in_printer_rgb(look, printer.profile_bytes, printer.profile_file.string(),
                                       printer.options.intent);

@@ -7,7 +7,7 @@ namespace hydrodip {
 
 namespace {
 
-void draw_marks(PdfDocument& document, const SheetOptions& options, RunContext& context) {
+void draw_marks(PdfDocument& document, const SheetOptions& options, const RunContext& context) {
   const Marks marks =
       make_marks(options, [&](const std::string& text) { return document.text_width(text); });
   document.set_stroke(marks.line_mm, 0, true);
@@ -28,7 +28,7 @@ void draw_marks(PdfDocument& document, const SheetOptions& options, RunContext& 
 
 void write_print_pdf(const std::filesystem::path& path, const Picture& picture,
                      const std::vector<std::uint8_t>& profile, const SheetOptions& options,
-                     RunContext& context) {
+                     const RunContext& context) {
   check_sheet(picture, options);
   PdfDocument document;
   document.forbid_scaling();

@@ -52,7 +52,7 @@ Handle made(HPDF_Doc document, Handle handle) {
 // and holds differences to the left neighbour, which compress several times better.
 class PixelStream {
  public:
-  PixelStream(const Picture& picture, const PixelBox& box, bool mirror, RunContext& context)
+  PixelStream(const Picture& picture, const PixelBox& box, bool mirror, const RunContext& context)
       : picture_(picture),
         box_(box),
         mirror_(mirror),
@@ -110,7 +110,7 @@ class PixelStream {
   Picture picture_;
   PixelBox box_;
   bool mirror_;
-  RunContext& context_;
+  const RunContext& context_;
   std::vector<std::uint8_t> row_;
   std::size_t at_ = 0;
   int next_row_ = 0;
@@ -290,7 +290,7 @@ void PdfDocument::add_page(double width_mm, double height_mm) {
 
 void PdfDocument::draw_image(const Picture& picture, const std::vector<std::uint8_t>& profile,
                              const PixelBox& box, bool mirror, const Box2& place,
-                             RunContext& context) {
+                             const RunContext& context) {
   const HPDF_Doc document = impl_->document.get();
   impl_->pictures.push_back(std::make_unique<PixelStream>(picture, box, mirror, context));
   const HPDF_Image image =

@@ -47,7 +47,7 @@ class PdfDocument {
   // The block of the picture, over white, filling `place`. Its pixels must live until save(). An
   // sRGB picture carries the profile itself; for inks it becomes the output intent. Empty: none.
   void draw_image(const Picture& picture, const std::vector<std::uint8_t>& profile,
-                  const PixelBox& box, bool mirror, const Box2& place, RunContext& context);
+                  const PixelBox& box, bool mirror, const Box2& place, const RunContext& context);
   // For lines, circles and outlines from here on, on this page.
   void set_stroke(double width_mm, double gray = 0, bool square_ends = false);
   void draw_lines(const std::vector<PdfLine>& lines);

@@ -48,6 +48,6 @@ CmykFile read_cmyk_tiff(const std::filesystem::path& path);
 // intent). Throws InputError if it cannot be written.
 void write_print_pdf(const std::filesystem::path& path, const Picture& picture,
                      const std::vector<std::uint8_t>& profile, const SheetOptions& options,
-                     RunContext& context);
+                     const RunContext& context);
 
 }  // namespace hydrodip

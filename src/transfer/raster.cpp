@@ -172,7 +172,7 @@ namespace {
 // paint(x, y, cursor) for every pixel that may carry ink, on any thread; progress as `stage`.
 template <class Paint>
 void for_each_inked(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
-                    const std::string& stage, RunContext& context, const Paint& paint) {
+                    const std::string& stage, const RunContext& context, const Paint& paint) {
   const RunScope scope(context);
   std::vector<Tile> tiles = tiles_of(raster.width_px(), raster.height_px());
   std::erase_if(tiles, [&](const Tile& t) {
@@ -202,7 +202,8 @@ SheetRaster raster_of(const FilmOptions& film, double dpi) {
 }
 
 Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& raster,
-                 const InverseOptions& options, const Allotment& allotment, RunContext& context) {
+                 const InverseOptions& options, const Allotment& allotment,
+                 const RunContext& context) {
   Image image(raster.width_px(), raster.height_px());
   const Printed printed(paint, allotment);
   for_each_inked(map, raster, options.bleed_mm, "rastering", context,
@@ -214,7 +215,7 @@ Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& rast
 }
 
 FilmStretch film_stretch(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
-                         RunContext& context) {
+                         const RunContext& context) {
   const auto width = std::size_t(raster.width_px());
   FilmStretch result;
   result.area_ratio = filled(width * std::size_t(raster.height_px()), 1.0F);

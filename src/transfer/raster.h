@@ -40,7 +40,8 @@ struct InverseOptions {
 // The image to print: opaque where ink goes, transparent elsewhere (partial alpha along edges, and
 // where the allotment gives this film a part of the ink only).
 Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& raster,
-                 const InverseOptions& options, const Allotment& allotment, RunContext& context);
+                 const InverseOptions& options, const Allotment& allotment,
+                 const RunContext& context);
 
 // How far the film of every pixel ends up stretched.
 struct FilmStretch {
@@ -49,7 +50,7 @@ struct FilmStretch {
   std::vector<std::uint8_t> on_object;  // per pixel: its centre lies on the object
 };
 FilmStretch film_stretch(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
-                         RunContext& context);
+                         const RunContext& context);
 
 // The colour (linear) that a film image leaves at a film coordinate: bilinear, transparent outside.
 // The image is centred on the sheet and has raster.dpi.

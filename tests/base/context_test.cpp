@@ -18,16 +18,16 @@ TEST(RunContext, CopiesStandForTheSameJob) {
   const RunContext copy = job;
   std::vector<std::string> heard;
   copy.on_log([&](const std::string& line) { heard.push_back(line); });
-  copy.on_progress([&](const std::string& stage, double) { heard.push_back(stage); });
+  copy.on_progress([&](const std::string& activity, double) { heard.push_back(activity); });
   job.log("a line");
-  job.progress("a stage", 0.5);
-  EXPECT_EQ(heard, (std::vector<std::string>{"a line", "a stage"}));
+  job.progress("an activity", 0.5);
+  EXPECT_EQ(heard, (std::vector<std::string>{"a line", "an activity"}));
   job.warn("take care");
   copy.warn("take care");
   EXPECT_EQ(copy.warnings(), std::vector<std::string>{"take care"});
   copy.cancel();
   EXPECT_TRUE(job.cancelled());
-  EXPECT_THROW(job.progress("a stage", 1), Cancelled);
+  EXPECT_THROW(job.progress("an activity", 1), Cancelled);
   EXPECT_EQ(heard.size(), 2U);
 }
 
@@ -44,7 +44,7 @@ TEST(RunContext, AQuietPartIsCancelledWithItsJobAndKeepsToItself) {
   job.on_progress([](const std::string&, double) { ADD_FAILURE() << "heard"; });
   job.on_log([](const std::string&) { ADD_FAILURE() << "heard"; });
   const RunContext part = job.quiet(), part_of_part = part.quiet(), other = job.quiet();
-  part.progress("a stage", 0.5);
+  part.progress("an activity", 0.5);
   part.log("a line");
   part.warn("take care");
   EXPECT_TRUE(job.warnings().empty());
@@ -55,7 +55,7 @@ TEST(RunContext, AQuietPartIsCancelledWithItsJobAndKeepsToItself) {
   EXPECT_FALSE(other.cancelled());
   job.cancel();
   EXPECT_TRUE(other.cancelled());
-  EXPECT_THROW(other.progress("a stage", 1), Cancelled);
+  EXPECT_THROW(other.progress("an activity", 1), Cancelled);
 }
 
 TEST(RunContext, RequestsAreCounted) {

@@ -27,7 +27,7 @@ struct Truth {
   Surface surface;
   CheckerboardDip dip;
 
-  Truth(const std::string& name, const FilmParameters& parameters, RunContext& context)
+  Truth(const std::string& name, const FilmParameters& parameters, const RunContext& context)
       : object(calibration_object(name, quick_config(), context)),
         surface(object.object.positions, object.object.triangles),
         dip(dip_checkerboard(checkered_film(finer_film(quick_config().design), 5), object, surface,

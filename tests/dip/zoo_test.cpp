@@ -22,7 +22,7 @@ FilmOptions coarse_film() {
 }
 
 void expect_sound(const shapes::Shape& shape, const FilmOptions& film_options, DipOptions options,
-                  RunContext& context, double depth_mm = 0) {
+                  const RunContext& context, double depth_mm = 0) {
   const FilmMesh mesh = make_film_mesh(film_options);
   const Surface surface(shape.positions, shape.triangles);
   const DipResult result = dip(mesh, shape.positions, shape.triangles, surface,

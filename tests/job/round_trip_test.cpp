@@ -34,7 +34,7 @@ JobConfig mask_job(const std::filesystem::path& folder) {
 
 // The film that carries the inks of print.tif, dipped as it will be.
 DippedObject dipped_again(const JobConfig& config, const PosedObject& posed, const InkImage& inks,
-                          RunContext& context) {
+                          const RunContext& context) {
   Timings timings;
   const DesignOptions& design = config.design;
   const auto film = std::make_shared<const FilmMesh>(make_film_mesh(design.film));

@@ -132,16 +132,16 @@ class Cancellation : public SideBySideJobs {
 };
 
 TEST_F(Cancellation, StopsPrintingAtAnyCheck) {
-  expect_stops_anywhere([&](RunContext& context) { print_job(job("out", 1, 2), context); });
+  expect_stops_anywhere([&](const RunContext& context) { print_job(job("out", 1, 2), context); });
 }
 
 TEST_F(Cancellation, StopsInspectingAtAnyCheck) {
-  expect_stops_anywhere([&](RunContext& context) { inspect_job(job("out", 1, 2), context); });
+  expect_stops_anywhere([&](const RunContext& context) { inspect_job(job("out", 1, 2), context); });
 }
 
 TEST_F(Cancellation, StopsASampleAtAnyCheck) {
   expect_stops_anywhere(
-      [&](RunContext& context) { sample_job("sphere", folder_ / "out", context); });
+      [&](const RunContext& context) { sample_job("sphere", folder_ / "out", context); });
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ std::string broken_promise(VirtualBench& bench, const Outcome& outcome, const Sh
 }
 
 std::string draw_faults(unsigned seed, double until_s, Emulator& machine, VirtualClock& clock,
-                        RunContext& context) {
+                        const RunContext& context) {
   std::mt19937 random(seed);
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);

@@ -74,7 +74,7 @@ class Referee {
 // Draws faults and Ctrl-Cs by the seed and says what; they come up to `until_s`. What they make due
 // is told to the machine.
 std::string draw_faults(unsigned seed, double until_s, Emulator& machine, VirtualClock& clock,
-                        RunContext& context);
+                        const RunContext& context);
 
 // A dip with faults drawn by the seed; the complaint of broken_promise.
 std::string random_faults(Machine machine, unsigned seed, std::string& story);
