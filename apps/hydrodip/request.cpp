@@ -88,6 +88,8 @@ void declare_film_and_dip(CLI::App& app, Request& request) {
   declare_film(app, request);
   add_parameter_option(app, request, "--depth", "dip.depth_mm", "MM", kFilmGroup,
                        "how deep to dip (default: the whole object)");
+  add_parameter_option(app, request, "--path", "path", "FILE.csv", kFilmGroup,
+                       "the way into the water, one keyframe a row (default: straight down)");
   add_parameter_option(app, request, "--method", "dip.method", "full|single-step|projection",
                        kFilmGroup,
                        "how the film gets onto the object; the last two are simple baselines to "

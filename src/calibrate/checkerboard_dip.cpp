@@ -85,7 +85,8 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
     if (depth > 0) way.depth_mm = depth;
     result.depth_mm = make_trajectory(way, result.object.positions).depth_mm();
   }
-  require_fit(result.object, result.depth_mm, config.design.film, config.bath, context);
+  require_fit(result.object, room_of(result.object, result.depth_mm), config.design.film,
+              config.bath, context);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/run_scope.h"
+#include "dip/wetting.h"
 
 namespace hydrodip {
 
@@ -26,8 +27,9 @@ DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
   timings.measure("map", [&] {
     context.progress("mapping", 0);
     result.map = std::make_shared<const FilmMap>(mesh, posed.surface(), *result.film);
-    result.coverage = measure_coverage(mesh, *result.film);
-    result.angles = dip_angles(mesh, result.film->depth_mm);
+    result.direction_at = dipping_direction(trajectory, mesh.positions, mesh.triangles);
+    result.coverage = measure_coverage(mesh, *result.film, result.direction_at);
+    result.angles = dip_angles(mesh, result.direction_at);
     context.progress("mapping", 1);
   });
   return result;

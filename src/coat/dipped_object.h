@@ -23,6 +23,7 @@ struct DippedObject {
   std::shared_ptr<const FilmMap> map = {};
   Coverage coverage = {};
   DipAngles angles = {};
+  DippingDirection direction_at = straight_down_to(0);
 };
 
 // Simulates the dip of an object on film that it fits; `observe` sees every step. Throws as dip().

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/awake_threads.h"
 #include "base/error.h"
@@ -20,6 +21,12 @@ namespace {
 // How far before and behind its straight way a point looks for contact, so that nothing slips
 // between two steps or through single precision.
 constexpr double kContactSlack_mm = 1e-3;
+
+// A path is cut into so many parts to see whether the object comes to the rim.
+constexpr int kRimParts = 64;
+
+// From this high above the water on film counts as lifted out.
+constexpr double kLifted_mm = 0.1;
 
 // Half a pixel at 600 dpi.
 constexpr double kVisible_mm = 0.02;
@@ -51,21 +58,48 @@ DipState floating_film(const FilmMesh& film) {
     state.state.push_back(film.on_rim[v] ? VertexState::kClamped : VertexState::kUnattached);
   }
   state.torn.assign(film.triangles.size(), 0);
+  state.lifted.assign(film.u.size(), 0);
   state.torn_at_mm.assign(film.triangles.size(), std::numeric_limits<double>::infinity());
   return state;
+}
+
+// Whether the object meets a point that stays in the bath where it is.
+bool meets(const Surface& surface, const Travel& travel, const Vec2& place) {
+  if (travel.trajectory().is_straight_down())
+    return surface.is_hit(Vec3(place.x(), place.y(), -1), Vec3(0, 0, 1), 0, travel.length_mm() + 1);
+  const auto seen = [&](int part) {
+    const Moment moment = travel.at(travel.length_mm() * part / kRimParts);
+    return moment.to_object(Vec3(place.x(), place.y(), moment.level_mm));
+  };
+  for (int part = 1; part <= kRimParts; ++part)
+    if (first_contact(surface, seen(part - 1), seen(part))) return true;
+  return false;
 }
 
 void check_rim(const FilmMesh& film, const Surface& surface, const Travel& travel,
                const RunContext& context) {
   for (std::size_t v = 0; v < film.u.size(); ++v) {
-    if (!film.on_rim[v]) continue;
-    const Vec3 below(film.u[v].x(), film.u[v].y(), -1);
-    if (!surface.is_hit(below, Vec3(0, 0, 1), 0, travel.length_mm() + 1)) continue;
+    if (!film.on_rim[v] || !meets(surface, travel, film.u[v])) continue;
     context.warn(
         "the object touches the film's taped rim, where the film cannot follow: use a larger film, "
         "a smaller object or another pose");
     return;
   }
+}
+
+// Below the water.
+double deepest(const Moment& moment, const std::vector<Vec3>& positions) {
+  double depth = 0;
+  for (const Vec3& p : positions) depth = std::max(depth, -moment.height(p));
+  return depth;
+}
+
+// Film that is laid and comes out of the water again.
+void mark_lifted(DipState& state) {
+  for (std::size_t v = 0; v < state.state.size(); ++v)
+    if (state.state[v] == VertexState::kAttached &&
+        state.moment.height(state.position[v]) > kLifted_mm)
+      state.lifted[v] = 1;
 }
 
 std::unique_ptr<Scheme> make_scheme(const DipSetting& setting, DipState& state) {
@@ -143,6 +177,7 @@ DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
     context.progress("dipping", double(step - 1) / steps);
     const DipStatistics before = state.statistics;
     scheme->advance(travel.at(travel.length_mm() * step / steps));
+    if (state.moment.moved) mark_lifted(state);
     // In however many parts.
     state.statistics.unconverged_steps =
         std::min(state.statistics.unconverged_steps, before.unconverged_steps + 1);
@@ -159,7 +194,9 @@ DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
     context.warn(fmt::format("in {} of {} steps the film's equilibrium was found only to {:.2g} mm",
                              state.statistics.unconverged_steps, steps,
                              state.statistics.largest_residual_mm));
-  return {measured(mesh, state, options, surface), state.statistics};
+  DippedFilm dipped = measured(mesh, state, options, surface);
+  if (state.moment.moved) dipped.depth_mm = deepest(state.moment, positions);
+  return {std::move(dipped), state.statistics};
 }
 
 }  // namespace hydrodip

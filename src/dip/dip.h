@@ -31,6 +31,10 @@ struct FilmMaterial {
   double z_stretch = 0.65;    // vertical scale of the film's rest shape (contact angle)
   double poisson = 0;         // below 0.5
   double tear_stretch = 1.4;  // largest principal stretch the film bears; 0: never tears
+  // Smallest principal stretch that the film bears without wrinkles. In truth so thin a sheet
+  // buckles at once, but swelling film takes up a little, and wrinkles only show from a few percent
+  // on: at 5 % they are a fifteenth as high as they are apart.
+  double wrinkle_stretch = 0.95;
 };
 
 struct DipOptions {

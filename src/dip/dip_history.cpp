@@ -32,7 +32,7 @@ void DipHistory::record(int step, int steps, const Moment& moment,
   }
   if (!is_kept(step, steps)) return;
   DipFrame frame;
-  frame.level_mm = moment.level_mm;
+  frame.moment = moment;
   frame.position.reserve(position.size());
   for (std::size_t v = 0; v < position.size(); ++v) {
     Vec3 p = position[v];

@@ -11,7 +11,7 @@
 namespace hydrodip {
 
 struct DipFrame {
-  double level_mm = 0;                         // immersion depth
+  Moment moment;
   std::vector<std::array<float, 3>> position;  // per film vertex, posed-object frame, mm
 };
 

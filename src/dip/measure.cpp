@@ -31,7 +31,8 @@ std::array<double, 3> voronoi_shares(const std::array<double, 3>& squared_edge, 
 }
 
 struct TriangleMeasure {
-  double flat_area, area, stretch;
+  double flat_area, area;
+  double stretch, least_stretch;     // principal
   std::array<double, 3> flat_share;  // of flat_area, Voronoi
 };
 
@@ -50,12 +51,14 @@ TriangleMeasure measure_triangle(const FilmMesh& film, const DipState& state, st
   m.area = 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
   const RestTriangle rest = rest_triangle(film.u[std::size_t(v[0])], film.u[std::size_t(v[1])],
                                           film.u[std::size_t(v[2])]);
-  // Largest singular value of dX/du, from the metric G = (dX/du)^T (dX/du).
+  // Singular values of dX/du, from the metric G = (dX/du)^T (dX/du).
   Eigen::Matrix<double, 3, 2> J = Eigen::Matrix<double, 3, 2>::Zero();
   for (std::size_t k = 0; k < 3; ++k) J += at(k) * rest.gradient.row(Eigen::Index(k));
   const Mat2 G = J.transpose() * J;
   const double half = 0.5 * G.trace();
-  m.stretch = std::sqrt(half + std::sqrt(std::max(0.0, half * half - G.determinant())));
+  const double apart = std::sqrt(std::max(0.0, half * half - G.determinant()));
+  m.stretch = std::sqrt(half + apart);
+  m.least_stretch = std::sqrt(std::max(0.0, half - apart));
   m.flat_share = voronoi_shares(flat, m.flat_area);
   return m;
 }
@@ -68,6 +71,14 @@ bool folded(const FilmMesh& film, const DipState& state, const Surface& surface,
              &c = state.position[std::size_t(v[2])];
   const auto below = surface.closest_point((a + b + c) / 3, 10 * film.cell_mm);
   return below && (b - a).cross(c - a).dot(surface.normal(*below)) >= 0;
+}
+
+// The bath holds it at the water.
+void hold_rim(const Moment& moment, DippedFilm& film) {
+  for (std::size_t v = 0; v < film.state.size(); ++v)
+    if (film.state[v] == VertexState::kClamped)
+      film.position[v] =
+          moment.to_object(Vec3(film.position[v].x(), film.position[v].y(), moment.level_mm));
 }
 
 // Film that was told when to tear bears so much more, so that nothing is decided by a hair.
@@ -88,7 +99,10 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
   result.state = state.state;
   result.torn = state.torn;
   result.torn_at_mm = state.torn_at_mm;
+  result.lifted = state.lifted;
+  result.wrinkled.assign(film.triangles.size(), 0);
   result.depth_mm = state.moment.level_mm;
+  if (state.moment.moved) hold_rim(state.moment, result);
 
   const std::size_t vertices = film.u.size();
   // Vertices on the object are measured on the film that lies there; others on all around them.
@@ -104,6 +118,7 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
       return state.state[std::size_t(i)] == VertexState::kAttached;
     });
     if (!on_object) continue;
+    result.wrinkled[t] = measures.back().least_stretch < options.material.wrinkle_stretch;
     const bool told = !options.tears_at_mm.empty();
     const bool tears = (limit > 0 && measures.back().stretch > limit) ||
                        (told && state.moment.travelled_mm >= options.tears_at_mm[t]) ||

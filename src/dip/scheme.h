@@ -30,6 +30,8 @@ struct DipState {
   std::vector<Vec3> position;
   std::vector<VertexState> state;
   std::vector<std::uint8_t> torn;  // per triangle
+  std::vector<std::uint8_t>
+      lifted;                      // per vertex: attached, and out of the water again at some time
   std::vector<double> torn_at_mm;  // per triangle: travelled when it tore; infinity: not yet
   DipStatistics statistics;
 };

@@ -46,13 +46,19 @@ class Trajectory {
   bool straight_;
 };
 
-// What is asked of the way in.
+// What is asked of the way in: a path, or straight down, perhaps tilted or rolled.
 struct TrajectoryOptions {
-  double depth_mm = 0;  // straight down; 0: until the object is completely below the water
+  double depth_mm = 0;  // of the lowest point, in the end; 0: until the object is below the water
+  std::vector<Keyframe> path = {};  // not empty: this, and nothing of what follows but the pivot
+  // The object leans over by tilt_deg and comes down like that, or leans over by roll_deg more
+  // while it comes down; its top goes towards the direction tilt_toward_deg from +x to +y.
+  double tilt_deg = 0, tilt_toward_deg = 0, roll_deg = 0;
+  Vec3 pivot_mm = Vec3::Zero();  // of a path's turns
 };
 
-// For an object with these vertices. It is never lowered further than until its top is below the
-// water. Throws InputError.
+// For an object with these vertices. A tilted object is moved so that what it covers of the film,
+// on its way, lies in the film's middle. It is never lowered further than until its top is below
+// the water. Throws InputError.
 Trajectory make_trajectory(const TrajectoryOptions& options, const std::vector<Vec3>& positions);
 
 }  // namespace hydrodip

@@ -17,7 +17,7 @@ namespace {
 // many at least in all.
 constexpr int kPartsPerPiece = 16, kFewestParts = 64;
 // Halvings of the part in which the object first touches.
-constexpr int kHalvings = 30;
+constexpr int kHalvings = 48;
 // Rounding, at the start, of an object that just touches.
 constexpr double kStartSlack_mm = 1e-3;
 

@@ -165,16 +165,31 @@ Json object_json(const Object& object, Packer& packer) {
 
 // --- Film ---
 
+// Where the object is in the bath: 4 x 4, column by column.
+Json pose_json(const Moment& moment) {
+  Json matrix = Json::array();
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    for (Eigen::Index r = 0; r < 3; ++r) matrix.push_back(moment.turn(r, c));
+    matrix.push_back(0);
+  }
+  matrix.push_back(moment.shift.x());
+  matrix.push_back(moment.shift.y());
+  matrix.push_back(moment.shift.z() - moment.level_mm);
+  matrix.push_back(1);
+  return matrix;
+}
+
 Json frames_json(const DipHistory& history, Packer& packer) {
   Quantizer quantizer(3);
   for (const DipFrame& frame : history.frames()) {
     for (const auto& p : frame.position) quantizer.widen(p);
   }
   std::vector<std::uint16_t> steps;
-  Json levels = Json::array();
+  Json levels = Json::array(), poses = Json::array();
   std::size_t values = 1;
   for (const DipFrame& frame : history.frames()) {
-    levels.push_back(frame.level_mm);
+    levels.push_back(frame.moment.travelled_mm);
+    if (frame.moment.moved) poses.push_back(pose_json(frame.moment));
     values = 3 * frame.position.size();
     for (const auto& p : frame.position) {
       for (std::size_t k = 0; k < 3; ++k) steps.push_back(quantizer.step(k, double(p[k])));
@@ -183,6 +198,7 @@ Json frames_json(const DipHistory& history, Packer& packer) {
   // Against the frame before: film that is attached stays where it is.
   Json json = quantizer.json(packer.add(steps, values));
   json["levels"] = levels;
+  if (!poses.empty()) json["poses"] = poses;
   return json;
 }
 

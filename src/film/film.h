@@ -66,7 +66,11 @@ struct DippedFilm {
   // Per triangle: how far the object had travelled (straight down: its depth) when it tore;
   // infinity: it did not.
   std::vector<double> torn_at_mm;
-  double depth_mm = 0;  // immersion reached
+  // On the object, pressed together to less than material.wrinkle_stretch; per triangle.
+  std::vector<std::uint8_t> wrinkled;
+  // Attached, and lifted out of the water again while the object went on; per vertex.
+  std::vector<std::uint8_t> lifted;
+  double depth_mm = 0;  // of the object's deepest point, in the end
 
   const FilmMesh& mesh() const { return *shared_mesh; }
   // A triangle whose corners are all attached and that is not torn: film that lies on the object.

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
+#include "dip/wetting.h"
 #include "image/files.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
@@ -36,6 +37,7 @@ struct Inspection {
   const JobConfig& config;
   const PreparedObject& prepared;
   double depth_mm = 0;
+  DippingDirection direction_at;
   std::vector<RoomFit> fit;  // film and bath of this job
   std::vector<FilmChoice> films;
   DipAngles angles;
@@ -48,23 +50,23 @@ double worst_excess_mm(const std::vector<RoomFit>& list) {
   return worst;
 }
 
-FilmChoice try_film(const TriangleMesh& posed, double depth_mm, FilmOptions film,
+FilmChoice try_film(const TriangleMesh& posed, const Room& room, FilmOptions film,
                     const BathOptions& bath, const std::string& name, double width_mm,
                     double height_mm) {
   film.width_mm = width_mm;
   film.height_mm = height_mm;
-  return {name, width_mm, height_mm, worst_excess_mm(film_fits(posed, depth_mm, film)),
+  return {name, width_mm, height_mm, worst_excess_mm(film_fits(posed, room, film)),
           sheet_fits_bath(film, bath)};
 }
 
-std::vector<FilmChoice> film_choices(const TriangleMesh& posed, double depth_mm,
+std::vector<FilmChoice> film_choices(const TriangleMesh& posed, const Room& room,
                                      const FilmOptions& film, const BathOptions& bath) {
   std::vector<FilmChoice> list;
   for (const FilmFormat& format : film_formats()) {
     list.push_back(
-        try_film(posed, depth_mm, film, bath, format.name, format.width_mm, format.height_mm));
-    list.push_back(try_film(posed, depth_mm, film, bath, format.name + "-landscape",
-                            format.height_mm, format.width_mm));
+        try_film(posed, room, film, bath, format.name, format.width_mm, format.height_mm));
+    list.push_back(try_film(posed, room, film, bath, format.name + "-landscape", format.height_mm,
+                            format.width_mm));
   }
   return list;
 }
@@ -197,7 +199,7 @@ void write_angle_map(const std::filesystem::path& path, const Inspection& i,
   options.width_px = i.config.preview_width_px;
   options.caption = map_caption(i.angles, nullptr);
   const std::vector<std::uint8_t> png = encode_png(render_angle_map(
-      i.prepared.posed.mesh(), i.prepared.posed.surface(), i.depth_mm, options, context));
+      i.prepared.posed.mesh(), i.prepared.posed.surface(), i.direction_at, options, context));
   write_file(path, png.data(), png.size());
 }
 
@@ -217,13 +219,17 @@ JobResult inspect_job(const JobConfig& config, const RunContext& context) {
   const PreparedObject prepared = prepare_object(config.model, config.object, context);
   const TriangleMesh& mesh = prepared.posed.mesh();
   const FilmOptions& film = config.design.film;
-  const double depth_mm = make_trajectory(config.design.trajectory, mesh.positions).depth_mm();
+  const Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
+  const DippingDirection direction_at =
+      dipping_direction(trajectory, mesh.positions, mesh.triangles);
+  const Room room = room_of(mesh, trajectory);
   const Inspection inspection{config,
                               prepared,
-                              depth_mm,
-                              fits(mesh, depth_mm, film, config.bath),
-                              film_choices(mesh, depth_mm, film, config.bath),
-                              dip_angles(mesh, depth_mm),
+                              room.depth_mm,
+                              direction_at,
+                              fits(mesh, room, film, config.bath),
+                              film_choices(mesh, room, film, config.bath),
+                              dip_angles(mesh, direction_at),
                               context.warnings()};
   JobResult result;
   result.text = describe(inspection);

@@ -143,6 +143,7 @@ Image draw_maps(const JobRecord& record) {
   options.width_px = record.config.preview_width_px;
   options.tear_stretch = record.config.design.dip.material.tear_stretch;
   options.caption = map_caption(dipped.angles, &dipped.coverage);
+  options.direction_at = dipped.direction_at;
   return render_maps(dipped.posed.mesh(), dipped.posed.surface(), *dipped.film, *dipped.map,
                      options, record.context);
 }

@@ -54,7 +54,7 @@ JobResult print_job(const JobConfig& config, const RunContext& context) {
   const DesignOptions& options = config.design;
   const TriangleMesh& mesh = prepared.posed.mesh();
   const Trajectory trajectory = make_trajectory(options.trajectory, mesh.positions);
-  require_fit(mesh, trajectory.depth_mm(), options.film, config.bath, context);
+  require_fit(mesh, room_of(mesh, trajectory), options.film, config.bath, context);
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
   announce_outputs(folder, "print", config, inputs);

@@ -146,7 +146,7 @@ JobResult simulate_job(const JobConfig& config, const RunContext& context) {
       times.measure("load", [&] { return prepare_object(config.model, config.object, context); });
   const TriangleMesh& mesh = prepared.posed.mesh();
   const Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
-  require_fit(mesh, trajectory.depth_mm(), config.design.film, config.bath, context);
+  require_fit(mesh, room_of(mesh, trajectory), config.design.film, config.bath, context);
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
   announce_outputs(folder, "simulate", config, inputs);

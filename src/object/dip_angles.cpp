@@ -7,21 +7,33 @@
 
 namespace hydrodip {
 
-double dip_angle_deg(const Vec3& normal) {
-  return std::acos(std::clamp(-normal.z(), -1.0, 1.0)) * 180 / std::numbers::pi;
+double dip_angle_deg(const Vec3& normal, const Vec3& direction) {
+  return std::acos(std::clamp(normal.dot(direction), -1.0, 1.0)) * 180 / std::numbers::pi;
+}
+
+DippingDirection straight_down_to(double depth_mm) {
+  return [depth_mm](const Vec3& point, double slack_mm) -> std::optional<Vec3> {
+    if (point.z() > depth_mm + slack_mm) return std::nullopt;
+    return Vec3(0, 0, -1);
+  };
 }
 
 DipAngles dip_angles(const TriangleMesh& posed, double depth_mm) {
+  return dip_angles(posed, straight_down_to(depth_mm));
+}
+
+DipAngles dip_angles(const TriangleMesh& posed, const DippingDirection& direction_at) {
   DipAngles angles;
   for (const Triangle& triangle : posed.triangles) {
     const Vec3& a = posed.positions[static_cast<std::size_t>(triangle[0])];
     const Vec3& b = posed.positions[static_cast<std::size_t>(triangle[1])];
     const Vec3& c = posed.positions[static_cast<std::size_t>(triangle[2])];
-    if ((a.z() + b.z() + c.z()) / 3 > depth_mm) continue;
+    const auto direction = direction_at((a + b + c) / 3, 0);
+    if (!direction) continue;
     const Vec3 doubled = (b - a).cross(c - a);
     const double area = 0.5 * doubled.norm();
     if (!(area > 0)) continue;
-    const double angle = dip_angle_deg(doubled.normalized());
+    const double angle = dip_angle_deg(doubled.normalized(), *direction);
     if (!faces_down(angle)) {
       angles.upward_mm2 += area;
       continue;

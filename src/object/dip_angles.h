@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <optional>
 
 #include "object/object.h"
 
@@ -26,8 +28,13 @@ struct DipAngles {
   double over_limit_share() const { return downward_mm2 > 0 ? over_limit_mm2 / downward_mm2 : 0; }
 };
 
-// Angle between the dipping direction (0, 0, -1) and a unit normal.
-double dip_angle_deg(const Vec3& normal);
+// Angle between the dipping direction and a unit normal.
+double dip_angle_deg(const Vec3& normal, const Vec3& direction = Vec3(0, 0, -1));
+
+// The dipping direction (unit, posed-object frame) at the moment at which the water first reaches a
+// point of the object; empty if it stays more than slack_mm above the water.
+using DippingDirection = std::function<std::optional<Vec3>(const Vec3& point, double slack_mm)>;
+DippingDirection straight_down_to(double depth_mm);
 
 // Whether film coming from below meets such a surface face on, if at a slant; vertical does not.
 constexpr bool faces_down(double angle_deg) { return angle_deg < 90 - kDipAngleTolerance_deg; }
@@ -36,6 +43,7 @@ constexpr bool beyond_dip_limit(double angle_deg) {
 }
 
 // `posed` in the posed-object frame. Faces count by the position of their centre.
-DipAngles dip_angles(const TriangleMesh& posed, double depth_mm);
+DipAngles dip_angles(const TriangleMesh& posed, double depth_mm);  // straight down
+DipAngles dip_angles(const TriangleMesh& posed, const DippingDirection& direction_at);
 
 }  // namespace hydrodip

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "dip/travel.h"
 
 namespace hydrodip {
 namespace {
@@ -14,6 +15,9 @@ namespace {
 constexpr double kFitTolerance_mm = 1e-6;
 // Film needs room to stretch between the object and the tape.
 constexpr double kComfortableClearance_mm = 5;
+
+// A path is looked at so often.
+constexpr int kPathParts = 24;
 
 // A unit mistaken (metres read as inches, ...) shows as a misfit of this factor.
 constexpr double kSuspiciousMisfit = 9;
@@ -26,34 +30,23 @@ std::string mm(double length_mm) {
   return text + " mm";
 }
 
-// Extent of the part of the object that gets wet, as seen from the film's centre.
-struct Footprint {
-  double half_width_mm = 0;   // largest |x|
-  double half_height_mm = 0;  // largest |y|
-  double radius_mm = 0;
-
-  void add(const Vec3& p) {
-    half_width_mm = std::max(half_width_mm, std::abs(p.x()));
-    half_height_mm = std::max(half_height_mm, std::abs(p.y()));
-    radius_mm = std::max(radius_mm, std::hypot(p.x(), p.y()));
-  }
-};
+void add(Room& room, const Vec3& in_bath) {
+  room.half_width_mm = std::max(room.half_width_mm, std::abs(in_bath.x()));
+  room.half_height_mm = std::max(room.half_height_mm, std::abs(in_bath.y()));
+  room.radius_mm = std::max(room.radius_mm, std::hypot(in_bath.x(), in_bath.y()));
+}
 
 // Triangles are cut at the water line: a partly dipped funnel may be wider above it.
-Footprint wet_footprint(const TriangleMesh& posed, double depth_mm) {
-  Footprint footprint;
+void add_wet_part(Room& room, const TriangleMesh& posed, const Moment& moment) {
+  const double level = moment.level_mm;
   for (const Triangle& triangle : posed.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const Vec3& a =
-          posed.positions[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
-      const Vec3& b =
-          posed
-              .positions[static_cast<std::size_t>(triangle[static_cast<std::size_t>((k + 1) % 3)])];
-      if (a.z() <= depth_mm) footprint.add(a);
-      if ((a.z() <= depth_mm) != (b.z() <= depth_mm))
-        footprint.add(a + (b - a) * ((depth_mm - a.z()) / (b.z() - a.z())));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 a = moment.to_sinking(posed.positions[std::size_t(triangle[k])]);
+      const Vec3 b = moment.to_sinking(posed.positions[std::size_t(triangle[(k + 1) % 3])]);
+      if (a.z() <= level) add(room, a);
+      if ((a.z() <= level) != (b.z() <= level))
+        add(room, a + (b - a) * ((level - a.z()) / (b.z() - a.z())));
     }
-  return footprint;
 }
 
 // "--size 71": the largest extent at which the object would just fit; "" if size cannot help.
@@ -87,8 +80,8 @@ Vec2 bath_along_film(const FilmOptions& film, const BathOptions& bath) {
   return film.width_mm > film.height_mm ? Vec2(longer, shorter) : Vec2(shorter, longer);
 }
 
-void add_film_fits(std::vector<RoomFit>& list, const TriangleMesh& posed,
-                   const Footprint& footprint, const FilmOptions& film) {
+void add_film_fits(std::vector<RoomFit>& list, const TriangleMesh& posed, const Room& footprint,
+                   const FilmOptions& film) {
   if (film.shape == FilmShape::kDisc) {
     const double diameter = std::min(film.width_mm, film.height_mm) - 2 * film.margin_mm;
     list.push_back(film_fit(posed, "across", 2 * footprint.radius_mm, diameter));
@@ -100,12 +93,12 @@ void add_film_fits(std::vector<RoomFit>& list, const TriangleMesh& posed,
                           film.height_mm - 2 * film.margin_mm));
 }
 
-void add_bath_fits(std::vector<RoomFit>& list, const TriangleMesh& posed, double depth_mm,
-                   const Footprint& footprint, const FilmOptions& film, const BathOptions& tank) {
+void add_bath_fits(std::vector<RoomFit>& list, const TriangleMesh& posed, const Room& footprint,
+                   const FilmOptions& film, const BathOptions& tank) {
   const Vec2 bath = bath_along_film(film, tank);
   list.push_back(bath_fit(posed, "wide (x)", 2 * footprint.half_width_mm, bath.x()));
   list.push_back(bath_fit(posed, "long (y)", 2 * footprint.half_height_mm, bath.y()));
-  RoomFit depth = bath_fit(posed, "deep in the water", depth_mm, tank.depth_mm);
+  RoomFit depth = bath_fit(posed, "deep in the water", footprint.depth_mm, tank.depth_mm);
   depth.remedy = "dip less of it with --depth, " + depth.remedy;
   list.push_back(depth);
 }
@@ -132,17 +125,36 @@ void warn_if_tight(const std::vector<RoomFit>& list, const RunContext& context) 
 
 }  // namespace
 
-std::vector<RoomFit> film_fits(const TriangleMesh& posed, double depth_mm,
+Room room_of(const TriangleMesh& posed, double depth_mm) {
+  Room room{.depth_mm = depth_mm};
+  add_wet_part(room, posed, Moment::at_depth(depth_mm));
+  return room;
+}
+
+Room room_of(const TriangleMesh& posed, const Trajectory& trajectory) {
+  if (trajectory.is_straight_down()) return room_of(posed, trajectory.depth_mm());
+  const Travel travel(trajectory, posed.positions, posed.triangles);
+  Room room;
+  for (int part = 0; part <= kPathParts; ++part) {
+    const Moment moment = travel.at(travel.length_mm() * part / kPathParts);
+    add_wet_part(room, posed, moment);
+    for (const Vec3& p : posed.positions)
+      room.depth_mm = std::max(room.depth_mm, -moment.height(p));
+  }
+  return room;
+}
+
+std::vector<RoomFit> film_fits(const TriangleMesh& posed, const Room& room,
                                const FilmOptions& film) {
   std::vector<RoomFit> list;
-  add_film_fits(list, posed, wet_footprint(posed, depth_mm), film);
+  add_film_fits(list, posed, room, film);
   return list;
 }
 
-std::vector<RoomFit> fits(const TriangleMesh& posed, double depth_mm, const FilmOptions& film,
+std::vector<RoomFit> fits(const TriangleMesh& posed, const Room& room, const FilmOptions& film,
                           const BathOptions& bath) {
-  std::vector<RoomFit> list = film_fits(posed, depth_mm, film);
-  add_bath_fits(list, posed, depth_mm, wet_footprint(posed, depth_mm), film, bath);
+  std::vector<RoomFit> list = film_fits(posed, room, film);
+  add_bath_fits(list, posed, room, film, bath);
   return list;
 }
 
@@ -151,9 +163,9 @@ bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath) {
   return film.width_mm <= room.x() && film.height_mm <= room.y();
 }
 
-void require_fit(const TriangleMesh& posed, double depth_mm, const FilmOptions& film,
+void require_fit(const TriangleMesh& posed, const Room& room, const FilmOptions& film,
                  const BathOptions& bath, const RunContext& context) {
-  const std::vector<RoomFit> list = fits(posed, depth_mm, film, bath);
+  const std::vector<RoomFit> list = fits(posed, room, film, bath);
   for (const RoomFit& fit : list)
     if (fit.excess_mm() > kFitTolerance_mm)
       throw InputError(fmt::format(

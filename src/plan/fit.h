@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "dip/trajectory.h"
 #include "film/film.h"
 #include "object/object.h"
 
@@ -27,11 +28,22 @@ struct RoomFit {
   double excess_mm() const { return needed_mm - available_mm; }
 };
 
-// Every direction in which it has to fit the film. Only the part that gets wet counts.
-std::vector<RoomFit> film_fits(const TriangleMesh& posed, double depth_mm, const FilmOptions& film);
+// What the part of an object that gets wet takes in the bath, on all of its way.
+struct Room {
+  double depth_mm = 0;        // of the deepest point
+  double half_width_mm = 0;   // largest |x|, from the film's centre
+  double half_height_mm = 0;  // largest |y|
+  double radius_mm = 0;
+};
+Room room_of(const TriangleMesh& posed, const Trajectory& trajectory);
+Room room_of(const TriangleMesh& posed, double depth_mm);  // straight down
+
+// Every direction in which it has to fit the film.
+std::vector<RoomFit> film_fits(const TriangleMesh& posed, const Room& room,
+                               const FilmOptions& film);
 
 // Film first, then the bath.
-std::vector<RoomFit> fits(const TriangleMesh& posed, double depth_mm, const FilmOptions& film,
+std::vector<RoomFit> fits(const TriangleMesh& posed, const Room& room, const FilmOptions& film,
                           const BathOptions& bath);
 
 // Whether the whole sheet, margin included, lies flat in the bath.
@@ -39,7 +51,7 @@ bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath);
 
 // Throws InputError for the first that does not fit, saying by how much and how to mend it. Warns
 // about a sheet larger than the bath and about little film around the object.
-void require_fit(const TriangleMesh& posed, double depth_mm, const FilmOptions& film,
+void require_fit(const TriangleMesh& posed, const Room& room, const FilmOptions& film,
                  const BathOptions& bath, const RunContext& context);
 
 }  // namespace hydrodip

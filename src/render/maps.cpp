@@ -15,6 +15,9 @@
 namespace hydrodip {
 namespace {
 
+// Surface that the water just reaches counts as wet.
+constexpr double kWetSlack_mm = 1e-6;
+
 constexpr double kCrease_deg = 30;
 constexpr double kFlatness = 0.6;
 constexpr double kHatch = 17;  // from stripe to stripe, in lengths of the layout
@@ -247,8 +250,9 @@ ViewPair render(const MapScene& scene, const Surface& surface, const View& view,
   return LitView(studio, view.camera, layout.cell_width, view.height_px, context).show(appearance);
 }
 
-bool some_stays_dry(const TriangleMesh& object, double depth_mm) {
-  return object.bounds().max.z() > depth_mm + 1e-6;
+bool some_stays_dry(const TriangleMesh& object, const DippingDirection& direction_at) {
+  return std::ranges::any_of(object.positions,
+                             [&](const Vec3& p) { return !direction_at(p, kWetSlack_mm); });
 }
 
 }  // namespace
@@ -258,9 +262,9 @@ std::vector<CornerNormals> map_normals(const TriangleMesh& object) {
 }
 
 double angle_at(const TriangleMesh& object, const std::vector<CornerNormals>& normals,
-                const SurfacePoint& point) {
+                const SurfacePoint& point, const Vec3& direction) {
   const Vec3 smooth = normal_between(normals[std::size_t(point.triangle)], point.u, point.v);
-  return dip_angle_deg(smooth.isZero() ? face_normal(object, point.triangle) : smooth);
+  return dip_angle_deg(smooth.isZero() ? face_normal(object, point.triangle) : smooth, direction);
 }
 
 LinearColor angle_color(double angle_deg) {
@@ -286,8 +290,9 @@ Appearance map_appearance(const MapScene& scene, const Camera& camera, double ha
   const Vec3 diagonal = (camera.right - camera.up) * std::sqrt(0.5);
   Appearance appearance;
   appearance.wanted = [&scene](const SurfacePoint& point, const Vec3& position, const Vec3&) {
-    if (position.z() > scene.depth_mm + 1e-6) return kNeutral;
-    return angle_color(angle_at(scene.object, scene.normals, point));
+    const auto direction = scene.direction_at(position, kWetSlack_mm);
+    if (!direction) return kNeutral;
+    return angle_color(angle_at(scene.object, scene.normals, point, *direction));
   };
   appearance.predicted = [&scene, diagonal, hatch_mm](const SurfacePoint&, const Vec3& position,
                                                       const Vec3& normal) {
@@ -306,7 +311,9 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
   const std::string activity = "drawing the maps";
   context.progress(activity, 0);
   const std::vector<CornerNormals> normals = map_normals(object);
-  const MapScene scene{object, normals, film.depth_mm, &map,
+  const DippingDirection direction_at =
+      options.direction_at ? options.direction_at : straight_down_to(film.depth_mm);
+  const MapScene scene{object, normals, direction_at, &map,
                        stretch_scale_end(film, options.tear_stretch)};
   const std::array<Vec3, 2> directions = telling_directions(object, surface, film);
   const MapLayout layout = make_layout(object, directions, options);
@@ -329,20 +336,21 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
   const auto legend = [&](int column) {
     return Legend(page, layout, center(column) - 350 * layout.unit, y);
   };
-  draw_angle_legend(legend(0), some_stays_dry(object, film.depth_mm));
+  draw_angle_legend(legend(0), some_stays_dry(object, direction_at));
   draw_stretch_legend(legend(1), scene.largest_stretch, options.tear_stretch > 0);
   draw_caption(page, layout, options.caption);
   context.progress(activity, 1);
   return page;
 }
 
-Image render_angle_map(const TriangleMesh& object, const Surface& surface, double depth_mm,
-                       const MapOptions& options, const RunContext& context) {
+Image render_angle_map(const TriangleMesh& object, const Surface& surface,
+                       const DippingDirection& direction_at, const MapOptions& options,
+                       const RunContext& context) {
   const RunScope scope(context);
   const std::string activity = "drawing the angle map";
   context.progress(activity, 0);
   const std::vector<CornerNormals> normals = map_normals(object);
-  const MapScene scene{object, normals, depth_mm};
+  const MapScene scene{object, normals, direction_at};
   const std::array<Vec3, 2> directions = telling_directions(object, surface, DippedFilm{});
   const MapLayout layout = make_layout(object, directions, options);
 
@@ -357,7 +365,7 @@ Image render_angle_map(const TriangleMesh& object, const Surface& surface, doubl
   draw_title(page, layout, "dipping angle, from two sides", 0.5 * layout.width);
   draw_angle_legend(
       Legend(page, layout, 0.5 * layout.width - 350 * layout.unit, layout.header + height),
-      some_stays_dry(object, depth_mm));
+      some_stays_dry(object, direction_at));
   draw_caption(page, layout, options.caption);
   context.progress(activity, 1);
   return page;

@@ -19,17 +19,19 @@ namespace hydrodip {
 
 struct MapOptions {
   int width_px = 1600;
-  double tear_stretch = 0;  // the film's limit, marked on the scale; 0: it never tears
-  std::string caption;      // one line under the picture
+  double tear_stretch = 0;             // the film's limit, marked on the scale; 0: it never tears
+  std::string caption;                 // one line under the picture
+  DippingDirection direction_at = {};  // empty: straight down as deep as the film says
 };
 
 // Both maps side by side, a row for each direction. `map` is the film's over the same object.
 Image render_maps(const TriangleMesh& object, const Surface& surface, const DippedFilm& film,
                   const FilmMap& map, const MapOptions& options, const RunContext& context);
 
-// The angle map alone, of an object to be dipped `depth_mm` deep; no film is needed.
-Image render_angle_map(const TriangleMesh& object, const Surface& surface, double depth_mm,
-                       const MapOptions& options, const RunContext& context);
+// The angle map alone; no film is needed.
+Image render_angle_map(const TriangleMesh& object, const Surface& surface,
+                       const DippingDirection& direction_at, const MapOptions& options,
+                       const RunContext& context);
 
 // One line under the maps: shares beyond the limits. `coverage` may be null.
 std::string map_caption(const DipAngles& angles, const Coverage* coverage);
@@ -39,9 +41,10 @@ std::string map_caption(const DipAngles& angles, const Coverage* coverage);
 // Of the curved surface that the triangles stand for; edges sharper than 30 degrees stay edges.
 std::vector<CornerNormals> map_normals(const TriangleMesh& object);
 
-// Dipping angle at a point, degrees: 0 faces straight down, 180 straight up.
+// Dipping angle at a point that met the water in this direction, degrees: 0 faces it, 180 faces
+// away.
 double angle_at(const TriangleMesh& object, const std::vector<CornerNormals>& normals,
-                const SurfacePoint& point);
+                const SurfacePoint& point, const Vec3& direction = Vec3(0, 0, -1));
 
 // Blue to pale up to the limit, orange to dark red beyond it, grey for what does not face down.
 LinearColor angle_color(double angle_deg);
@@ -57,9 +60,9 @@ double stretch_scale_end(const DippedFilm& film, double tear_stretch);
 struct MapScene {
   const TriangleMesh& object;
   const std::vector<CornerNormals>& normals;
-  double depth_mm = 0;           // surface above stays dry
-  const FilmMap* map = nullptr;  // null: no film
-  double largest_stretch = 1;    // end of the scale
+  DippingDirection direction_at;  // what it has no answer for stays dry
+  const FilmMap* map = nullptr;   // null: no film
+  double largest_stretch = 1;     // end of the scale
 };
 Appearance map_appearance(const MapScene& scene, const Camera& camera, double hatch_mm);
 

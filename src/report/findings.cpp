@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kNearlyAll = 0.9;        // of what faces down; film ends a cell short of borders
 constexpr double kMuchTorn = 0.1;         // of the film that meets the object
+constexpr double kFewWrinkles = 0.01;     // of the film on the object
 constexpr double kNearLimit = 0.9;        // of the tear stretch
 constexpr double kPale = 1.3;             // area ratio from which paling shows
 constexpr double kMuchSteep = 0.1;        // of what faces down
@@ -65,6 +66,24 @@ Finding tears(const Coverage& c) {
           "of the film that meets the object tears; nothing is printed there.",
           "Turn steep sides down (--rotate, --down), dip less deep (--depth) and the rest in "
           "another turn, or use a film that bears more. The overlay \"tears\" shows where."};
+}
+
+// Pressed together, or lifted out of the water on the way: only where there is any worth naming.
+void add_slack_film(const Coverage& c, std::vector<Finding>& list) {
+  if (c.wrinkled_mm2 > kFewWrinkles * c.covered_mm2)
+    list.push_back({"wrinkles", Concern::kCare, "Wrinkles",
+                    percent(Coverage::share(c.wrinkled_mm2, c.covered_mm2)),
+                    "of the film on the object is pressed together and wrinkles.",
+                    "Let the object come down straighter there, or roll it less "
+                    "(material.wrinkle_stretch says what the film bears)."});
+  if (c.lifted_mm2 > 0)
+    list.push_back(
+        {"lifted", Concern::kCare, "Lifted out", fmt::format("{:.0f} mm2", c.lifted_mm2),
+         fmt::format("of film comes out of the water again on the way, around ({:.0f}, {:.0f}, "
+                     "{:.0f}) mm of the posed object; it may peel off or drain there.",
+                     c.lifted_at.x(), c.lifted_at.y(), c.lifted_at.z()),
+         "Turn the object about an edge that is outside of the water line, or lower it while it "
+         "turns."});
 }
 
 Finding stretch(const Coverage& c, double tear_stretch) {
@@ -199,6 +218,7 @@ std::vector<Finding> findings(const Report& report) {
     if (c.film_on_object_mm2 > 0) {
       list.push_back(tears(c));
       list.push_back(stretch(c, report.tear_stretch));
+      add_slack_film(c, list);
       if (report.angles) list.push_back(steepness(*report.angles));
       list.push_back(registration(c, report.bleed_mm));
     }

@@ -78,7 +78,9 @@ Json coverage_json(const Coverage& c) {
           {"covered_downward_share", number(c.covered_downward_share())},
           {"film_on_object_mm2", number(c.film_on_object_mm2)},
           {"torn_mm2", number(c.torn_mm2)},
-          {"torn_share", number(c.torn_share())}};
+          {"torn_share", number(c.torn_share())},
+          {"wrinkled_mm2", number(c.wrinkled_mm2)},
+          {"lifted_mm2", number(c.lifted_mm2)}};
 }
 
 Json stretch_json(const Coverage& c) {

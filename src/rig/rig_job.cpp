@@ -108,6 +108,13 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
   job.title = title_of(report);
   apply_settings(job.config, settings_of(report["parameters"], (folder / "report.json").string()));
   apply_sources(job.config, sources);
+  const TrajectoryOptions& way = job.config.design.trajectory;
+  if (!way.path.empty() || way.tilt_deg != 0 || way.roll_deg != 0)
+    throw InputError(fmt::format(
+        "{}: this job's way into the water shifts or turns the object, and the rig only lowers it: "
+        "dip it by hand along its path, or print it anew without path, dip.tilt_deg and "
+        "dip.roll_deg",
+        folder.string()));
   find_model(report, job);
   const Json& figures = report["figures"];
   if (!figures["depth_mm"].is_number() || !(figures["depth_mm"].get<double>() > 0))

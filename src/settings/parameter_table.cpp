@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "settings/params.h"
+#include "settings/path_file.h"
 
 namespace hydrodip {
 namespace {
@@ -102,6 +103,16 @@ Parameter vector(std::string name, std::string unit, double min, double max, Acc
   p.set = [access](JobConfig& c, const ParameterValue& v) {
     const auto& xyz = std::get<std::array<double, 3>>(v);
     access(c) = Vec3(xyz[0], xyz[1], xyz[2]);
+  };
+  return p;
+}
+
+Parameter way_in(std::string name, Access<std::vector<Keyframe>> access, std::string help) {
+  Parameter p{std::move(name), "", ParameterType::kWayIn, 0, 0, "", {}, std::move(help), {}, {}};
+  p.get = [access](const JobConfig& c) { return ParameterValue(rows_of(read(access, c))); };
+  p.set = [access](JobConfig& c, const ParameterValue& v) {
+    const auto& rows = std::get<std::string>(v);
+    access(c) = rows.empty() ? std::vector<Keyframe>() : path_of_rows(rows, "path");
   };
   return p;
 }
@@ -218,6 +229,26 @@ std::vector<Parameter> dip_records() {
           "dip.depth_mm", "mm", 0.001, 5000,
           [](C& c) -> double& { return c.design.trajectory.depth_mm; },
           "how deep the object is dipped", "the whole object"),
+      number(
+          "dip.tilt_deg", "deg", -85, 85,
+          [](C& c) -> double& { return c.design.trajectory.tilt_deg; },
+          "lean the object over by so much and dip it like that"),
+      number(
+          "dip.roll_deg", "deg", -170, 170,
+          [](C& c) -> double& { return c.design.trajectory.roll_deg; },
+          "lay the object over by so much more on its way down"),
+      number(
+          "dip.tilt_toward_deg", "deg", -360, 360,
+          [](C& c) -> double& { return c.design.trajectory.tilt_toward_deg; },
+          "where its top leans to: degrees from +x to +y"),
+      way_in(
+          "path", [](C& c) -> std::vector<Keyframe>& { return c.design.trajectory.path; },
+          "CSV file with the way into the water: lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,"
+          "turn_y_deg,turn_z_deg; empty: straight down"),
+      vector(
+          "dip.pivot_mm", "mm", -5000, 5000,
+          [](C& c) -> Vec3& { return c.design.trajectory.pivot_mm; },
+          "point of the posed object about which a path turns"),
       choice<DipMethod>(
           "dip.method",
           {{"full", DipMethod::kFull},
@@ -243,6 +274,10 @@ std::vector<Parameter> material_records() {
           "material.tear_stretch", "", 1, 100,
           [](C& c) -> double& { return c.design.dip.material.tear_stretch; },
           "largest principal stretch that the film bears", "the film never tears"),
+      number(
+          "material.wrinkle_stretch", "", 0, 1,
+          [](C& c) -> double& { return c.design.dip.material.wrinkle_stretch; },
+          "smallest principal stretch that the film bears without wrinkles"),
       number(
           "material.poisson", "", 0, 0.499,
           [](C& c) -> double& { return c.design.dip.material.poisson; },

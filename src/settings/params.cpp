@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "settings/path_file.h"
 
 namespace hydrodip {
 namespace {
@@ -77,6 +78,9 @@ std::string expectation(const Parameter& p) {
       return "a colour such as #ffcc00";
     case ParameterType::kVector:
       return "three numbers X,Y,Z, each from " + range;
+    case ParameterType::kWayIn:
+      return "the name of a CSV file, or in a configuration rows of six numbers (lower, shift x, "
+             "shift y, turn x, turn y, turn z)";
   }
   return "";
 }
@@ -115,6 +119,23 @@ std::array<double, 3> checked_vector(const Parameter& p, const Setting& setting)
   return {(*values)[0] + 0.0, (*values)[1] + 0.0, (*values)[2] + 0.0};
 }
 
+// A text with ';' is the rows themselves, as reports have them, and else the name of a file.
+std::string checked_path(const Parameter& p, const Setting& setting) {
+  if (const auto* text = std::get_if<std::string>(&setting.value)) {
+    if (text->find('\0') != std::string::npos) refuse(p, setting);
+    if (text->empty()) return "";
+    return rows_of(text->find(';') == std::string::npos ? read_path(*text)
+                                                        : path_of_rows(*text, setting.origin));
+  }
+  const auto* values = std::get_if<std::vector<double>>(&setting.value);
+  if (!values || values->empty() || values->size() % 6 != 0) refuse(p, setting);
+  std::vector<Keyframe> keyframes;
+  for (auto v = values->begin(); v != values->end(); v += 6)
+    keyframes.push_back({v[0], v[1], v[2], v[3], v[4], v[5]});
+  check_path(keyframes, setting.origin);
+  return rows_of(keyframes);
+}
+
 std::string checked_text(const Parameter& p, const Setting& setting) {
   const std::string* text = std::get_if<std::string>(&setting.value);
   if (!text) refuse(p, setting);
@@ -133,6 +154,8 @@ ParameterValue checked(const Parameter& p, const Setting& setting) {
       return checked_number(p, setting);
     case ParameterType::kVector:
       return checked_vector(p, setting);
+    case ParameterType::kWayIn:
+      return checked_path(p, setting);
     default:
       return checked_text(p, setting);
   }
@@ -154,6 +177,8 @@ const char* type_name(ParameterType type) {
       return "color";
     case ParameterType::kVector:
       return "vector";
+    case ParameterType::kWayIn:
+      return "keyframes";
   }
   return "";
 }

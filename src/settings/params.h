@@ -12,10 +12,10 @@
 
 namespace hydrodip {
 
-enum class ParameterType { kNumber, kInteger, kChoice, kText, kPath, kColor, kVector };
+enum class ParameterType { kNumber, kInteger, kChoice, kText, kPath, kColor, kVector, kWayIn };
 
-// A checked value: a number (kNumber, kInteger), text (kChoice, kText, kPath, kColor) or three
-// numbers (kVector).
+// A checked value: a number (kNumber, kInteger), text (kChoice, kText, kPath, kColor; of kWayIn the
+// rows of keyframes, as rows_of() writes them) or three numbers (kVector).
 using ParameterValue = std::variant<double, std::string, std::array<double, 3>>;
 
 struct Parameter {

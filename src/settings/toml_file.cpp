@@ -143,9 +143,12 @@ class SettingReader {
     if (const auto number = as_number(node))
       setting.value = *number;
     else if (const auto text = node.value_exact<std::string>())
-      setting.value = parameter.type == ParameterType::kPath ? beside_file(*text) : *text;
+      setting.value =
+          parameter.type == ParameterType::kPath || parameter.type == ParameterType::kWayIn
+              ? beside_file(*text)
+              : *text;
     else
-      setting.value = as_numbers(node);
+      setting.value = parameter.type == ParameterType::kWayIn ? as_rows(node) : as_numbers(node);
     found_.push_back(std::move(located));
   }
 
@@ -167,6 +170,19 @@ class SettingReader {
       numbers.push_back(*number);
     }
     return numbers;
+  }
+
+  // Rows of six numbers, one after the other; empty for anything else.
+  static std::vector<double> as_rows(const toml::node& node) {
+    std::vector<double> all;
+    const toml::array* array = node.as_array();
+    if (!array) return {};
+    for (const toml::node& row : *array) {
+      const std::vector<double> numbers = as_numbers(row);
+      if (numbers.size() != 6) return {};
+      all.insert(all.end(), numbers.begin(), numbers.end());
+    }
+    return all;
   }
 
   std::string beside_file(const std::string& path) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "film/film.h"
+#include "object/dip_angles.h"
 #include "object/object.h"
 
 namespace hydrodip {
@@ -13,6 +14,9 @@ struct Coverage {
   double covered_downward_mm2 = 0;  // of downward_mm2: film lies on it
   double film_on_object_mm2 = 0;    // of the flat film: lies on the object
   double torn_mm2 = 0;              // of the flat film
+  double wrinkled_mm2 = 0;          // of the object: film lies there pressed together
+  double lifted_mm2 = 0;            // of the object: film on it came out of the water again
+  Vec3 lifted_at = Vec3::Zero();    // the middle of that, posed-object frame
   // Of film that lies on the object; means are weighted by flat area.
   double stretch_mean = 1;  // largest principal stretch
   double stretch_max = 1;
@@ -29,6 +33,8 @@ struct Coverage {
 
 // Everything from the triangles of object and film alone: covered_mm2 is the area of the film as
 // it lies on the object, which is the object's to the accuracy of the film's mesh. Never NaN.
-Coverage measure_coverage(const TriangleMesh& object, const DippedFilm& film);
+Coverage measure_coverage(const TriangleMesh& object, const DippedFilm& film);  // straight down
+Coverage measure_coverage(const TriangleMesh& object, const DippedFilm& film,
+                          const DippingDirection& direction_at);
 
 }  // namespace hydrodip

@@ -23,8 +23,8 @@ TEST(DipHistory, KeepsTheEndsAndAboutEvenlyWhatIsBetween) {
   const DipHistory history = watched(5, 1000, 500);
   ASSERT_EQ(history.frames().size(), 5u);
   for (std::size_t i = 0; i < 5; ++i)
-    EXPECT_NEAR(history.frames()[i].level_mm, 25.0 * double(i), 0.11);
-  EXPECT_EQ(history.frames().back().level_mm, 100);
+    EXPECT_NEAR(history.frames()[i].moment.level_mm, 25.0 * double(i), 0.11);
+  EXPECT_EQ(history.frames().back().moment.level_mm, 100);
 }
 
 TEST(DipHistory, KeepsEveryStepOfAShortDip) {
@@ -42,7 +42,7 @@ TEST(DipHistory, KnowsWhenFilmWasAttached) {
 TEST(DipHistory, TheRimStaysAtTheWater) {
   const DipHistory history = watched(4, 30, 5);
   for (const DipFrame& frame : history.frames()) {
-    EXPECT_EQ(frame.position[0][2], float(frame.level_mm));
+    EXPECT_EQ(frame.position[0][2], float(frame.moment.level_mm));
   }
 }
 

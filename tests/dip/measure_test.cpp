@@ -64,6 +64,17 @@ TEST(Measure, TearsWhatIsStretchedBeyondTheLimit) {
   EXPECT_EQ(torn(0), 0);  // never tears
 }
 
+TEST(Measure, KnowsWhatIsPressedTogether) {
+  const FilmMesh film = film_mesh();
+  const auto wrinkled = [&](double factor) {
+    const DipState state = laid_flat(film, Vec2(factor, 1.2).asDiagonal());
+    const DippedFilm result = measured_on_plane(film, state, 0);
+    return std::count(result.wrinkled.begin(), result.wrinkled.end(), 1);
+  };
+  EXPECT_EQ(wrinkled(0.94), std::ptrdiff_t(film.triangles.size()));
+  EXPECT_EQ(wrinkled(0.96), 0);
+}
+
 // Film that floats is stretched at will: only film on the object is judged here.
 TEST(Measure, VerticesOnTheObjectAreMeasuredOnTheFilmThatLiesThere) {
   const FilmMesh film = film_mesh();

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "dip/travel.h"
+#include "dip/zoo_shapes.h"
 #include "exact/shapes.h"
 
 namespace hydrodip {
@@ -76,6 +77,38 @@ TEST(Trajectory, NoObjectGoesDeeperThanItsTop) {
   EXPECT_EQ(make_trajectory({0}, box.positions).depth_mm(), 5);
   EXPECT_THROW(make_trajectory({-1}, box.positions), InputError);
   EXPECT_THROW(make_trajectory({std::nan("")}, box.positions), InputError);
+}
+
+// Whatever way it leans, an object that leans starts at the water and ends as deep as asked, in the
+// middle of the film.
+TEST(Trajectory, ALeaningObjectTouchesFirstAndGoesAsDeepAsAsked) {
+  const shapes::Shape box = shapes::box(Vec3(-6, -4, 0), Vec3(6, 4, 30));
+  for (const double toward : {0.0, 90.0, 200.0})
+    for (const double roll : {0.0, 35.0}) {
+      const Trajectory path = make_trajectory(
+          {.depth_mm = 9, .tilt_deg = 20, .tilt_toward_deg = toward, .roll_deg = roll},
+          box.positions);
+      const auto lowest = [&](double t) {
+        double low = 1e300;
+        for (const Vec3& p : box.positions) low = std::min(low, (path.bath_from_object(t) * p).z());
+        return low;
+      };
+      EXPECT_NEAR(lowest(0), 0, 1e-9);
+      EXPECT_NEAR(lowest(1), -9, 1e-9);
+      EXPECT_NEAR(lowest(0.5), -4.5, 0.01);
+      const Vec3 up = path.bath_from_object(1).linear() * Vec3(0, 0, 1);
+      EXPECT_NEAR(std::acos(up.z()), (20 + roll) * M_PI / 180, 1e-9);
+      EXPECT_NEAR(up.x(), std::hypot(up.x(), up.y()) * std::cos(toward * M_PI / 180), 1e-9);
+      EXPECT_NEAR(up.y(), std::hypot(up.x(), up.y()) * std::sin(toward * M_PI / 180), 1e-9);
+    }
+}
+
+TEST(Trajectory, APathLeavesNothingElseToSay) {
+  const shapes::Shape box = shapes::box(Vec3(-1, -1, 0), Vec3(1, 1, 5));
+  const std::vector<Keyframe> path = {{}, {.lower_mm = 3, .turn_x_deg = 5}};
+  EXPECT_EQ(make_trajectory({.path = path}, box.positions).depth_mm(), 3);
+  EXPECT_THROW(make_trajectory({.depth_mm = 2, .path = path}, box.positions), InputError);
+  EXPECT_THROW(make_trajectory({.path = path, .roll_deg = 2}, box.positions), InputError);
 }
 
 TEST(Travel, StraightDownIsTheDepth) {

@@ -53,15 +53,20 @@ inline Trajectory path_of(const RolledCylinder& cylinder) {
                                .turn_y_deg = cylinder.turn / kDegree}});
 }
 
-inline PathError rolled_cylinder_error(const RolledCylinder& cylinder, int elements,
-                                       double step_mm = 0.1) {
-  const FilmMesh film = strip(cylinder.L, elements);
+inline DipResult dip_cylinder(const RolledCylinder& cylinder, const FilmMesh& film,
+                              double step_mm) {
   const shapes::Shape shape = shapes::trough(cylinder.radius, 70, 100 * kDegree, 1440);
   DipOptions options;
   options.step_mm = step_mm;
   options.material.tear_stretch = 0;
   options.material.z_stretch = cylinder.z_stretch;
-  const DipResult result = dip_along(shape, film, path_of(cylinder), options);
+  return dip_along(shape, film, path_of(cylinder), options);
+}
+
+inline PathError rolled_cylinder_error(const RolledCylinder& cylinder, int elements,
+                                       double step_mm = 0.1) {
+  const FilmMesh film = strip(cylinder.L, elements);
+  const DipResult result = dip_cylinder(cylinder, film, step_mm);
   const RolledCylinder::Side right = cylinder.solved(1), left = cylinder.solved(-1);
   PathError error;
   error.statistics = result.statistics;

@@ -25,7 +25,7 @@ struct Room {
 std::string fit_error(const TriangleMesh& object, const Room& room) {
   RunContext context;
   try {
-    require_fit(object, room.depth_mm, room.film, room.bath, context);
+    require_fit(object, room_of(object, room.depth_mm), room.film, room.bath, context);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -75,13 +75,13 @@ TEST(Fit, WarnsAboutAFilmLargerThanTheBathAndAboutATightOne) {
   Room room;
   RunContext context;
   room.film = {297, 420, FilmShape::kRectangle, 10, 1000};
-  require_fit(funnel(), room.depth_mm, room.film, room.bath, context);
+  require_fit(funnel(), room_of(funnel(), room.depth_mm), room.film, room.bath, context);
   ASSERT_EQ(context.warnings().size(), 1u);
   EXPECT_TRUE(contains(context.warnings()[0], "larger than the bath"));
 
   RunContext tight;
   room.film = {122, 297, FilmShape::kRectangle, 10, 1000};
-  require_fit(funnel(), room.depth_mm, room.film, room.bath, tight);
+  require_fit(funnel(), room_of(funnel(), room.depth_mm), room.film, room.bath, tight);
   ASSERT_EQ(tight.warnings().size(), 1u);
   EXPECT_TRUE(contains(tight.warnings()[0], "Only 1 mm of free film"));
 }
@@ -92,7 +92,7 @@ TEST(Fit, WarnsOfLessThanFiveMillimetresOnASide) {
     Room room;
     room.film = {100 + 20 + 2 * on_a_side_mm, 297, FilmShape::kRectangle, 10, 1000};
     RunContext context;
-    require_fit(funnel(), room.depth_mm, room.film, room.bath, context);
+    require_fit(funnel(), room_of(funnel(), room.depth_mm), room.film, room.bath, context);
     ASSERT_EQ(context.warnings().size(), warnings) << on_a_side_mm;
     if (warnings > 0) {
       EXPECT_TRUE(contains(context.warnings()[0], "Only 4.9 mm of free film"));

@@ -52,7 +52,7 @@ struct Scene {
   DippedFilm film = film_torn_on_one_side();
   FilmMap map{ball, surface, film};
   std::vector<CornerNormals> normals = map_normals(ball);
-  MapScene maps{ball, normals, 1e9, &map, 1.8};
+  MapScene maps{ball, normals, straight_down_to(1e9), &map, 1.8};
 };
 
 struct Pixel {
@@ -190,7 +190,7 @@ Image draw_page(const Scene& scene, bool angles_only, int width_px = 320) {
   options.caption = "caption";
   RunContext context;
   return angles_only
-             ? render_angle_map(scene.ball, scene.surface, 25, options, context)
+             ? render_angle_map(scene.ball, scene.surface, straight_down_to(25), options, context)
              : render_maps(scene.ball, scene.surface, scene.film, scene.map, options, context);
 }
 
@@ -227,7 +227,8 @@ TEST(Maps, StopWhenCancelled) {
   context.cancel();
   EXPECT_THROW(render_maps(scene.ball, scene.surface, scene.film, scene.map, {}, context),
                Cancelled);
-  EXPECT_THROW(render_angle_map(scene.ball, scene.surface, 25, {}, context), Cancelled);
+  EXPECT_THROW(render_angle_map(scene.ball, scene.surface, straight_down_to(25), {}, context),
+               Cancelled);
 }
 
 TEST(Maps, CaptionNamesBothShares) {

@@ -24,6 +24,15 @@ export class FilmShape {
       this.position[i] = frames[from + i] + part * (frames[to + i] - frames[from + i]);
     }
     this.frame = part === 1 ? k + 1 : k;
+    this.between = { k, part };
+  }
+
+  // Of the object in the bath, as a matrix of 4 x 4 column by column; null: as deep as it has gone.
+  pose() {
+    const { poses } = this.film;
+    if (!poses || !this.between) return null;
+    const { k, part } = this.between;
+    return poses[k].map((value, i) => value + part * (poses[k + 1][i] - value));
   }
 
   attached(vertex) {

@@ -33,7 +33,7 @@ class Viewer {
     this.listen();
     this.layout();
     this.setView('both');
-    this.setDepth(scene.depth_mm);
+    this.setDepth(scene.travel_mm);
   }
 
   // --- The page's part ---
@@ -84,7 +84,7 @@ class Viewer {
   }
 
   makeDipRow(button) {
-    const depth = this.scene.depth_mm;
+    const depth = this.scene.travel_mm;
     this.slider = make('input', {
       type: 'range', id: 'depth', min: '0', max: String(depth), step: 'any', value: String(depth),
       'aria-label': 'Immersion depth in mm',
@@ -158,21 +158,21 @@ class Viewer {
     this.depth = depth;
     this.stage.setDepth(depth);
     const area = this.stage.shape.attachedArea();
-    this.depthText.textContent = `${depth.toFixed(1)} mm deep, ${(area / 100).toFixed(1)} cm\u00b2 of film attached`;
+    this.depthText.textContent = `${depth.toFixed(1)} mm ${this.scene.film.poses ? 'on its way' : 'deep'}, ${(area / 100).toFixed(1)} cm\u00b2 of film attached`;
     if (this.spot) this.show(this.spot);
   }
 
   play() {
     this.playing = true;
     this.playButton.textContent = 'Stop';
-    if (this.depth >= this.scene.depth_mm) this.setDepth(0);
+    if (this.depth >= this.scene.travel_mm) this.setDepth(0);
     let last = null;
     const step = (now) => {
       if (!this.playing) return;
       const passed = last === null ? 0 : (now - last) / 1000;
       last = now;
-      this.setDepth(Math.min(this.scene.depth_mm, this.depth + (passed / PLAY_SECONDS) * this.scene.depth_mm));
-      if (this.depth >= this.scene.depth_mm) this.stopPlaying();
+      this.setDepth(Math.min(this.scene.travel_mm, this.depth + (passed / PLAY_SECONDS) * this.scene.travel_mm));
+      if (this.depth >= this.scene.travel_mm) this.stopPlaying();
       else requestAnimationFrame(step);
     };
     requestAnimationFrame(step);

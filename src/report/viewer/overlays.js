@@ -75,7 +75,8 @@ export const OVERLAYS = [
   {
     key: 'angle',
     label: 'dip angle',
-    available: () => true,
+    // Seen from here it is against the vertical; along other paths only maps.png knows it.
+    available: (scene) => !scene.film.poses,
     film: null,
     torn: null,
     object: () => ({ mode: MODE.angle }),

@@ -60,7 +60,8 @@ function readFilm(data, film) {
     index: numbers(data, film.index),
     position: lengths(data, film.position),
     frames: lengths(data, film.frames),
-    levels: film.frames.levels,
+    levels: film.frames.levels, // travelled; straight down the depth, mm
+    poses: film.frames.poses, // of the object in the bath; straight down: none
     attachedFrom: numbers(data, film.attached_from),
     state: numbers(data, film.state),
     torn: numbers(data, film.torn),
@@ -74,12 +75,14 @@ export async function readScene(text) {
   const scene = JSON.parse(text);
   const data = await inflate(scene.data);
   const layers = {};
+  const film = readFilm(data, scene.film);
   for (const layer of scene.layers) layers[layer.key] = { ...layer, cells: numbers(data, layer) };
   return {
     ...scene,
     data: null,
     object: readObject(data, scene.object),
-    film: readFilm(data, scene.film),
+    film,
+    travel_mm: film.poses ? film.levels.at(-1) : scene.depth_mm,
     layers,
   };
 }

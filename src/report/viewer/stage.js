@@ -269,7 +269,14 @@ export class Stage {
     const { position, normal } = this.sheetFilm.geometry.attributes;
     normal.array.set(vertexNormals(this.shape.position, film.index, this.allTriangles, 1));
     position.needsUpdate = normal.needsUpdate = true;
-    this.lowered.position.z = -depth;
+    const pose = this.shape.pose();
+    if (pose) {
+      this.lowered.matrixAutoUpdate = false;
+      this.lowered.matrix.fromArray(pose);
+      this.lowered.matrixWorldNeedsUpdate = true;
+    } else {
+      this.lowered.position.z = -depth;
+    }
     const points = this.shape.contactLine();
     this.contact.visible = points.length > 0;
     if (points.length) {

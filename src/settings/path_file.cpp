@@ -1,0 +1,125 @@
+#include "settings/path_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "base/error.h"
+#include "base/file.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr std::string_view kHeader =
+    "lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_z_deg";
+constexpr std::size_t kMostKeyframes = 10000;
+constexpr std::size_t kLargestFile = 1 << 21;
+constexpr double kFurthest_mm = 5000, kMostTurn_deg = 3600;
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r";
+  const auto first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return "";
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view text, char at) {
+  std::vector<std::string_view> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(at, begin), text.size());
+    parts.push_back(trimmed(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+double number(std::string_view text, const std::string& origin) {
+  if (!text.empty() && text[0] == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    throw InputError(fmt::format("{}: '{}' is not a number", origin, text.substr(0, 40)));
+  return value;
+}
+
+Keyframe keyframe_of(const std::vector<std::string_view>& cells, const std::string& origin) {
+  if (cells.size() != 6)
+    throw InputError(fmt::format("{}: a keyframe has 6 numbers, not {}", origin, cells.size()));
+  std::array<double, 6> v{};
+  for (std::size_t n = 0; n < 6; ++n) v[n] = number(cells[n], origin);
+  return {v[0], v[1], v[2], v[3], v[4], v[5]};
+}
+
+}  // namespace
+
+std::vector<Keyframe> path_of_rows(const std::string& text, const std::string& origin) {
+  std::vector<Keyframe> keyframes;
+  for (const std::string_view row : split(text, ';'))
+    if (!row.empty()) keyframes.push_back(keyframe_of(split(row, ','), origin));
+  check_path(keyframes, origin);
+  return keyframes;
+}
+
+std::string rows_of(const std::vector<Keyframe>& keyframes) {
+  std::string rows;
+  for (const Keyframe& k : keyframes)
+    rows += fmt::format("{}{},{},{},{},{},{}", rows.empty() ? "" : "; ", k.lower_mm, k.shift_x_mm,
+                        k.shift_y_mm, k.turn_x_deg, k.turn_y_deg, k.turn_z_deg);
+  return rows;
+}
+
+void check_path(const std::vector<Keyframe>& keyframes, const std::string& origin) {
+  if (keyframes.size() < 2)
+    throw InputError(fmt::format(
+        "{}: a path needs two keyframes at least: where it begins and where it ends", origin));
+  if (keyframes.size() > kMostKeyframes)
+    throw InputError(fmt::format("{}: a path has {} keyframes at most", origin, kMostKeyframes));
+  for (std::size_t n = 0; n < keyframes.size(); ++n) {
+    const Keyframe& k = keyframes[n];
+    const bool near = std::abs(k.lower_mm) <= kFurthest_mm &&
+                      std::abs(k.shift_x_mm) <= kFurthest_mm &&
+                      std::abs(k.shift_y_mm) <= kFurthest_mm;
+    const bool turns = std::abs(k.turn_x_deg) <= kMostTurn_deg &&
+                       std::abs(k.turn_y_deg) <= kMostTurn_deg &&
+                       std::abs(k.turn_z_deg) <= kMostTurn_deg;
+    if (!near || !turns)
+      throw InputError(fmt::format(
+          "{}: keyframe {} of the path is out of any bath: lengths are at most {} mm, turns {} "
+          "degrees",
+          origin, n + 1, kFurthest_mm, kMostTurn_deg));
+  }
+}
+
+std::vector<Keyframe> read_path(const std::filesystem::path& file) {
+  const std::vector<std::uint8_t> bytes = read_file(file);
+  if (bytes.size() > kLargestFile)
+    throw InputError(fmt::format("{}: too large for a path", file.string()));
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  std::vector<Keyframe> keyframes;
+  bool header = false;
+  int line_number = 0;
+  for (const std::string_view line : split(text, '\n')) {
+    ++line_number;
+    if (line.empty() || line[0] == '#') continue;
+    const std::string origin = fmt::format("{}:{}", file.string(), line_number);
+    const std::vector<std::string_view> cells = split(line, ',');
+    if (!header) {
+      if (cells != split(kHeader, ','))
+        throw InputError(fmt::format("{}: a path begins with the line {}", origin, kHeader));
+      header = true;
+      continue;
+    }
+    keyframes.push_back(keyframe_of(cells, origin));
+  }
+  if (!header)
+    throw InputError(fmt::format("{}: a path begins with the line {}", file.string(), kHeader));
+  check_path(keyframes, file.string());
+  return keyframes;
+}
+
+}  // namespace hydrodip
