@@ -67,6 +67,7 @@ struct SimulationOptions {
   FilmOptions film;              // its size and its mesh
   TrajectoryOptions trajectory;  // the object's way into the water
   DipOptions dip;                // with the film's material
+  AirOptions air;                // how finely trapped air is looked for
 };
 
 // Where the film goes. `observe` sees every step, on the calling thread.

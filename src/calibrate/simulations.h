@@ -24,8 +24,8 @@ class Simulations {
               const std::string& level, SimulationStore& store);
 
   // In the order of the requests. Computes what the store does not have, as many at once as there
-  // are threads, and keeps each as it is done. Progress under the name `activity`. Throws Cancelled:
-  // what was finished by then is kept.
+  // are threads, and keeps each as it is done. Progress under the name `activity`. Throws
+  // Cancelled: what was finished by then is kept.
   std::vector<SimulationResult> get(const std::vector<SimulationRequest>& requests,
                                     const std::string& activity, const RunContext& context);
 

@@ -33,7 +33,13 @@ class Settling {
         film_(std::make_shared<const FilmMesh>(make_film_mesh(task.options.film))) {}
 
   Designed run() {
-    InkRounds rounds(task_, options(), film_, timings_, context_);
+    air_ = timings_.measure("air", [&] {
+      const TriangleMesh& mesh = task_.posed.mesh();
+      return std::make_shared<const TrappedAir>(
+          find_air(mesh, task_.posed.surface(),
+                   make_trajectory(options().trajectory, mesh.positions), options().air, context_));
+    });
+    InkRounds rounds(task_, options(), film_, air_, timings_, context_);
     const Outcome outcome = settle(rounds);
     result_.rounds = rounds.rounds();
     result_.settled = outcome == Outcome::kSettled;
@@ -71,7 +77,7 @@ class Settling {
       return std::nullopt;
     const DesignOptions coarse = coarser(options());
     const auto film = std::make_shared<const FilmMesh>(make_film_mesh(coarse.film));
-    InkRounds rounds(task_, coarse, film, timings_, context_);
+    InkRounds rounds(task_, coarse, film, air_, timings_, context_);
     Outcome outcome = rounds.next();
     const std::vector<std::uint8_t>& torn = rounds.dipped().film->torn;
     const bool tears = std::find(torn.begin(), torn.end(), 1) != torn.end();
@@ -120,6 +126,7 @@ class Settling {
   Timings& timings_;
   const RunContext& context_;
   const SharedFilmMesh film_;
+  std::shared_ptr<const TrappedAir> air_;
   InkResult result_;
 };
 
@@ -128,6 +135,7 @@ class Settling {
 DesignOptions draft_of(DesignOptions options) {
   options.film.elements = std::min(options.film.elements, kDraftElements);
   options.dip.step_mm = std::max(options.dip.step_mm, kDraftStep_mm);
+  options.air.cells = std::min(options.air.cells, kDraftAirCells);
   options.rounds_max = 1;
   return options;
 }

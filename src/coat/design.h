@@ -19,6 +19,7 @@ struct DesignOptions {
   FilmOptions film;
   TrajectoryOptions trajectory;
   DipOptions dip;  // with the film's material
+  AirOptions air;
   StiffnessOptions stiffness;
   int rounds_max = 10;  // simulate, invert, stiffen, repeat: at most this often
   double dpi = 300;     // of what is printed
@@ -30,6 +31,7 @@ struct DesignOptions {
 // docs/performance.md has the errors and times.
 inline constexpr int kDraftElements = 10000;
 inline constexpr double kDraftStep_mm = 1;
+inline constexpr int kDraftAirCells = 40000;
 DesignOptions draft_of(DesignOptions options);
 
 // What lies on the film, and what comes of it on the object.

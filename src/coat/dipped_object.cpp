@@ -7,19 +7,59 @@
 
 namespace hydrodip {
 
+namespace {
+
+// Film that is laid is as near to where it lies.
+constexpr double kOnSurface_mm = 0.05;
+
+// Air that stays is as good as solid: its lids belong to what the film meets.
+DipResult dip_around_air(const PosedObject& posed, const TriangleMesh& lids,
+                         const SharedFilmMesh& film, const Trajectory& trajectory,
+                         const DipOptions& options, const RunContext& context,
+                         const DipObserver& observe) {
+  const auto all = std::make_shared<TriangleMesh>(posed.mesh());
+  const std::size_t own = all->triangles.size();
+  const auto base = std::int32_t(all->positions.size());
+  all->positions.insert(all->positions.end(), lids.positions.begin(), lids.positions.end());
+  for (const Triangle& t : lids.triangles)
+    all->triangles.push_back({base + t[0], base + t[1], base + t[2]});
+  const Surface surface(all);
+  DipResult result =
+      dip(film, all->positions, all->triangles, surface, trajectory, options, context, observe);
+  // What meets a lid floats on the water in the pocket.
+  DippedFilm& dipped = result.film;
+  for (std::size_t v = 0; v < dipped.state.size(); ++v) {
+    if (dipped.state[v] != VertexState::kAttached) continue;
+    const auto on = surface.closest_point(dipped.position[v], kOnSurface_mm);
+    if (on && std::size_t(on->triangle) >= own) dipped.state[v] = VertexState::kUnattached;
+  }
+  return result;
+}
+
+}  // namespace
+
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
                         const Trajectory& trajectory, const DipOptions& options, Timings& timings,
-                        const RunContext& context, const DipObserver& observe) {
+                        const RunContext& context, const DipObserver& observe,
+                        const AirSearch& air) {
   const RunScope scope(context);
   DippedObject result{.posed = posed};
   const TriangleMesh& mesh = posed.mesh();
+  result.air = air.found ? air.found : timings.measure("air", [&] {
+    return std::make_shared<const TrappedAir>(
+        find_air(mesh, posed.surface(), trajectory, air.options, context));
+  });
   timings.measure("dip", [&] {
     auto history = std::make_shared<DipHistory>();
-    DipResult dipped = dip(film, mesh.positions, mesh.triangles, posed.surface(), trajectory,
-                           options, context, [&](auto&&... state) {
-                             history->record(state...);
-                             if (observe) observe(state...);
-                           });
+    const DipObserver watch = [&](auto&&... state) {
+      history->record(state...);
+      if (observe) observe(state...);
+    };
+    const TriangleMesh& lids = result.air->lids;
+    DipResult dipped = lids.triangles.empty()
+                           ? dip(film, mesh.positions, mesh.triangles, posed.surface(), trajectory,
+                                 options, context, watch)
+                           : dip_around_air(posed, lids, film, trajectory, options, context, watch);
     result.film = std::make_shared<const DippedFilm>(std::move(dipped.film));
     result.statistics = dipped.statistics;
     result.history = std::move(history);

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "air/air.h"
 #include "base/context.h"
 #include "base/timings.h"
 #include "dip/dip.h"
@@ -24,11 +25,20 @@ struct DippedObject {
   Coverage coverage = {};
   DipAngles angles = {};
   DippingDirection direction_at = straight_down_to(0);
+  std::shared_ptr<const TrappedAir> air = {};  // never null after a dip
 };
 
-// Simulates the dip of an object on film that it fits; `observe` sees every step. Throws as dip().
+// Trapped air: how it is looked for, or what an earlier dip of the object on the same way found.
+struct AirSearch {
+  AirOptions options = {};
+  std::shared_ptr<const TrappedAir> found = {};
+};
+
+// Simulates the dip of an object on film that it fits; `observe` sees every step. No film gets
+// where air stays. Throws as dip().
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
                         const Trajectory& trajectory, const DipOptions& options, Timings& timings,
-                        const RunContext& context, const DipObserver& observe = {});
+                        const RunContext& context, const DipObserver& observe = {},
+                        const AirSearch& air = {});
 
 }  // namespace hydrodip

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 
@@ -61,10 +62,12 @@ double mean_of(const std::vector<double>& values) {
 }  // namespace
 
 InkRounds::InkRounds(const DesignTask& task, const DesignOptions& options,
-                     const SharedFilmMesh& film, Timings& timings, const RunContext& context)
+                     const SharedFilmMesh& film, std::shared_ptr<const TrappedAir> air,
+                     Timings& timings, const RunContext& context)
     : task_(task),
       options_(options),
       film_(film),
+      air_(std::move(air)),
       timings_(timings),
       context_(context),
       trajectory_(make_trajectory(options.trajectory, task.posed.mesh().positions)),
@@ -108,7 +111,8 @@ bool InkRounds::dip() {
   if (number() > 0) before_ = dipped_;
   dip_options_.failed_share_max = dip_options_.modulus.empty() ? 1 : kFailedSteps;
   try {
-    dipped_ = dip_object(task_.posed, film_, trajectory_, dip_options_, timings_, context_);
+    dipped_ = dip_object(task_.posed, film_, trajectory_, dip_options_, timings_, context_, {},
+                         {.options = {}, .found = air_});
   } catch (const DipError&) {
     if (dip_options_.modulus.empty()) throw;
     return false;

@@ -1,6 +1,7 @@
 // The rounds in which ink and film come to agree: dip, print, stiffen, and again.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -15,9 +16,10 @@ enum class Outcome { kGoesOn, kSettled, kUnsettled, kHopeless, kFailed };
 
 class InkRounds {
  public:
-  // Refers to all of them. `film` is that of options.film.
+  // Refers to all of them. `film` is that of options.film, `air` what this way into the water
+  // traps.
   InkRounds(const DesignTask& task, const DesignOptions& options, const SharedFilmMesh& film,
-            Timings& timings, const RunContext& context);
+            std::shared_ptr<const TrappedAir> air, Timings& timings, const RunContext& context);
 
   // The modulus of the first film; blank unless told.
   void begin_with(std::vector<double> modulus) { dip_options_.modulus = std::move(modulus); }
@@ -48,6 +50,7 @@ class InkRounds {
   const DesignTask task_;
   const DesignOptions& options_;
   const SharedFilmMesh film_;
+  const std::shared_ptr<const TrappedAir> air_;
   Timings& timings_;
   const RunContext& context_;
   const Trajectory trajectory_;

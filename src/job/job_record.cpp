@@ -152,6 +152,7 @@ Report make_report(const JobRecord& record) {
   report.total_seconds = record.times.total_s();
   report.rounds = rounds(record);
   report.coverage = record.dipped().coverage;
+  report.air = record.dipped().air;
   report.angles = record.dipped().angles;
   report.mesh = record.prepared.health;
   report.tear_stretch = record.config.design.dip.material.tear_stretch;

@@ -144,6 +144,10 @@ Image draw_maps(const JobRecord& record) {
   options.tear_stretch = record.config.design.dip.material.tear_stretch;
   options.caption = map_caption(dipped.angles, &dipped.coverage);
   options.direction_at = dipped.direction_at;
+  if (!dipped.air->pockets.empty())
+    options.in_air = [&](int triangle, const Vec3& position) {
+      return dipped.air->holds(triangle, position);
+    };
   return render_maps(dipped.posed.mesh(), dipped.posed.surface(), *dipped.film, *dipped.map,
                      options, record.context);
 }

@@ -153,8 +153,9 @@ JobResult simulate_job(const JobConfig& config, const RunContext& context) {
   const PrintedFilm printed =
       times.measure("film image", [&] { return printed_film(config, *printer.model); });
 
-  const DippedObject dipped = dip_object(prepared.posed, film, trajectory,
-                                         dip_options(*film, printed, config), times, context);
+  const DippedObject dipped =
+      dip_object(prepared.posed, film, trajectory, dip_options(*film, printed, config), times,
+                 context, {}, {.options = config.design.air, .found = {}});
 
   Image seen = times.measure("look", [&] {
     return seen_on_object(dipped, printed, *printer.model, prepared.paint->base(),

@@ -23,6 +23,7 @@ constexpr double kFlatness = 0.6;
 constexpr double kHatch = 17;  // from stripe to stripe, in lengths of the layout
 
 constexpr LinearColor kNeutral{0.36f, 0.36f, 0.36f, 1};
+constexpr LinearColor kAir{0.32f, 0.13f, 0.52f, 1};
 constexpr LinearColor kTornDark{0.50f, 0.0f, 0.025f, 1};
 constexpr LinearColor kTornLight{1, 1, 1, 1};
 
@@ -176,7 +177,7 @@ class Legend {
 LinearColor neutral(double) { return kNeutral; }
 
 // 700 wide.
-void draw_angle_legend(Legend legend, bool some_stays_dry) {
+void draw_angle_legend(Legend legend, bool some_stays_dry, bool some_is_in_air) {
   constexpr double kFrom = 20, kTo = 540;
   const auto place = [](double angle_deg) { return kFrom + (kTo - kFrom) * angle_deg / 90; };
   legend.label("angle between surface normal and dipping direction", 350);
@@ -190,6 +191,10 @@ void draw_angle_legend(Legend legend, bool some_stays_dry) {
   legend.bar(600, 670, neutral);
   legend.note("upright or", 635, 0);
   legend.note(some_stays_dry ? "up, or dry" : "facing up", 635, 1);
+  if (!some_is_in_air) return;
+  legend.bar(705, 755, [](double) { return kAir; });
+  legend.note("trapped", 730, 0);
+  legend.note("air", 730, 1);
 }
 
 double tick_spacing(double range) {
@@ -292,6 +297,7 @@ Appearance map_appearance(const MapScene& scene, const Camera& camera, double ha
   appearance.wanted = [&scene](const SurfacePoint& point, const Vec3& position, const Vec3&) {
     const auto direction = scene.direction_at(position, kWetSlack_mm);
     if (!direction) return kNeutral;
+    if (scene.in_air && scene.in_air(point.triangle, position)) return kAir;
     return angle_color(angle_at(scene.object, scene.normals, point, *direction));
   };
   appearance.predicted = [&scene, diagonal, hatch_mm](const SurfacePoint&, const Vec3& position,
@@ -313,8 +319,8 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
   const std::vector<CornerNormals> normals = map_normals(object);
   const DippingDirection direction_at =
       options.direction_at ? options.direction_at : straight_down_to(film.depth_mm);
-  const MapScene scene{object, normals, direction_at, &map,
-                       stretch_scale_end(film, options.tear_stretch)};
+  const MapScene scene{object,         normals, direction_at,
+                       options.in_air, &map,    stretch_scale_end(film, options.tear_stretch)};
   const std::array<Vec3, 2> directions = telling_directions(object, surface, film);
   const MapLayout layout = make_layout(object, directions, options);
 
@@ -336,7 +342,7 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
   const auto legend = [&](int column) {
     return Legend(page, layout, center(column) - 350 * layout.unit, y);
   };
-  draw_angle_legend(legend(0), some_stays_dry(object, direction_at));
+  draw_angle_legend(legend(0), some_stays_dry(object, direction_at), bool(options.in_air));
   draw_stretch_legend(legend(1), scene.largest_stretch, options.tear_stretch > 0);
   draw_caption(page, layout, options.caption);
   context.progress(activity, 1);
@@ -350,7 +356,7 @@ Image render_angle_map(const TriangleMesh& object, const Surface& surface,
   const std::string activity = "drawing the angle map";
   context.progress(activity, 0);
   const std::vector<CornerNormals> normals = map_normals(object);
-  const MapScene scene{object, normals, direction_at};
+  const MapScene scene{object, normals, direction_at, options.in_air};
   const std::array<Vec3, 2> directions = telling_directions(object, surface, DippedFilm{});
   const MapLayout layout = make_layout(object, directions, options);
 
@@ -365,7 +371,7 @@ Image render_angle_map(const TriangleMesh& object, const Surface& surface,
   draw_title(page, layout, "dipping angle, from two sides", 0.5 * layout.width);
   draw_angle_legend(
       Legend(page, layout, 0.5 * layout.width - 350 * layout.unit, layout.header + height),
-      some_stays_dry(object, direction_at));
+      some_stays_dry(object, direction_at), bool(options.in_air));
   draw_caption(page, layout, options.caption);
   context.progress(activity, 1);
   return page;

@@ -3,6 +3,7 @@
 // where it tears.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,15 @@
 
 namespace hydrodip {
 
+// Whether a point of one of the object's triangles stays in trapped air.
+using InAir = std::function<bool(int triangle, const Vec3& position)>;
+
 struct MapOptions {
   int width_px = 1600;
   double tear_stretch = 0;             // the film's limit, marked on the scale; 0: it never tears
   std::string caption;                 // one line under the picture
   DippingDirection direction_at = {};  // empty: straight down as deep as the film says
+  InAir in_air = {};                   // where air keeps the water away; empty: nowhere
 };
 
 // Both maps side by side, a row for each direction. `map` is the film's over the same object.
@@ -61,8 +66,9 @@ struct MapScene {
   const TriangleMesh& object;
   const std::vector<CornerNormals>& normals;
   DippingDirection direction_at;  // what it has no answer for stays dry
-  const FilmMap* map = nullptr;   // null: no film
-  double largest_stretch = 1;     // end of the scale
+  InAir in_air = {};
+  const FilmMap* map = nullptr;  // null: no film
+  double largest_stretch = 1;    // end of the scale
 };
 Appearance map_appearance(const MapScene& scene, const Camera& camera, double hatch_mm);
 

@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kNearlyAll = 0.9;        // of what faces down; film ends a cell short of borders
 constexpr double kMuchTorn = 0.1;         // of the film that meets the object
+constexpr double kMuchAir = 0.02;         // of the object's surface
+constexpr double kSomeEscapes = 0.05;     // of a pocket
 constexpr double kFewWrinkles = 0.01;     // of the film on the object
 constexpr double kNearLimit = 0.9;        // of the tear stretch
 constexpr double kPale = 1.3;             // area ratio from which paling shows
@@ -84,6 +86,44 @@ void add_slack_film(const Coverage& c, std::vector<Finding>& list) {
                      c.lifted_at.x(), c.lifted_at.y(), c.lifted_at.z()),
          "Turn the object about an edge that is outside of the water line, or lower it while it "
          "turns."});
+}
+
+std::string place(const Vec3& p) {
+  return fmt::format("({:.0f}, {:.0f}, {:.0f}) mm of the posed object", p.x(), p.y(), p.z());
+}
+
+std::string let_out(const AirPocket& pocket) {
+  if (pocket.lets_out)
+    return fmt::format(
+        "Tilt the object by {:.0f} degrees (dip.tilt_deg={:.0f}, dip.tilt_toward_deg={:.0f}), or "
+        "drill a vent at its highest point.",
+        pocket.lets_out->tilt_deg, pocket.lets_out->tilt_deg, pocket.lets_out->toward_deg);
+  return "Drill a vent at its highest point, or turn another side down (--rotate, --down).";
+}
+
+void add_air(const TrappedAir& air, const Coverage& c, std::vector<Finding>& list) {
+  if (air.area_mm2() > 0) {
+    const AirPocket& pocket = air.pockets.front();
+    const bool much = air.area_mm2() > kMuchAir * c.object_mm2;
+    std::string text = fmt::format("of the surface stays dry: {:.2g} ml of air cannot get out",
+                                   air.volume_mm3() / 1000);
+    text += air.pockets.size() == 1 ? fmt::format(" from below {}.", place(pocket.top))
+                                    : fmt::format(" of {} hollows; the largest reaches up to {}.",
+                                                  air.pockets.size(), place(pocket.top));
+    std::string advice = let_out(pocket);
+    if (pocket.escapes_share > kSomeEscapes)
+      advice += fmt::format(" {} of it gets out as the object turns on, under film that may burst.",
+                            percent(pocket.escapes_share));
+    list.push_back({"air", much ? Concern::kStop : Concern::kCare, "Trapped air",
+                    fmt::format("{:.0f} mm2", air.area_mm2()), std::move(text), std::move(advice)});
+  }
+  if (!air.vents.empty())
+    list.push_back(
+        {"vent", Concern::kCare, "Vent", fmt::format("{:.1f} mm", air.vents.front().width_mm),
+         fmt::format("wide hole in the surface at {} lets air out: if the real object has none "
+                     "there, {:.0f} mm2 stay dry.",
+                     place(air.vents.front().at), air.vents.front().area_mm2),
+         "Close the hole in the model if it is not real."});
 }
 
 Finding stretch(const Coverage& c, double tear_stretch) {
@@ -219,6 +259,7 @@ std::vector<Finding> findings(const Report& report) {
       list.push_back(tears(c));
       list.push_back(stretch(c, report.tear_stretch));
       add_slack_film(c, list);
+      if (report.air) add_air(*report.air, c, list);
       if (report.angles) list.push_back(steepness(*report.angles));
       list.push_back(registration(c, report.bleed_mm));
     }

@@ -6,11 +6,13 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "air/air.h"
 #include "object/dip_angles.h"
 #include "object/health.h"
 #include "transfer/coverage.h"
@@ -91,7 +93,8 @@ struct Report {
   std::vector<ReportStage> stages;  // in the order they ran
   double total_seconds = 0;         // 0: the sum of the stages
   std::vector<ReportRound> rounds;
-  std::optional<Coverage> coverage;  // nothing was dipped: absent
+  std::optional<Coverage> coverage;       // nothing was dipped: absent
+  std::shared_ptr<const TrappedAir> air;  // likewise
   std::optional<DipAngles> angles;
   std::optional<MeshHealth> mesh;
   std::optional<ReportInk> ink;

@@ -78,9 +78,34 @@ Json coverage_json(const Coverage& c) {
           {"covered_downward_share", number(c.covered_downward_share())},
           {"film_on_object_mm2", number(c.film_on_object_mm2)},
           {"torn_mm2", number(c.torn_mm2)},
-          {"torn_share", number(c.torn_share())},
-          {"wrinkled_mm2", number(c.wrinkled_mm2)},
-          {"lifted_mm2", number(c.lifted_mm2)}};
+          {"torn_share", number(c.torn_share())}};
+}
+
+Json point_json(const Vec3& p) { return {number(p.x()), number(p.y()), number(p.z())}; }
+
+Json air_json(const TrappedAir& air) {
+  Json pockets = Json::array();
+  for (const AirPocket& pocket : air.pockets) {
+    Json one = {{"area_mm2", number(pocket.area_mm2)},
+                {"volume_mm3", number(pocket.volume_mm3)},
+                {"closed_at_mm", number(pocket.closed_at_mm)},
+                {"top_mm", point_json(pocket.top)},
+                {"escapes_share", number(pocket.escapes_share)}};
+    if (pocket.lets_out)
+      one["lets_out"] = {{"tilt_deg", number(pocket.lets_out->tilt_deg)},
+                         {"tilt_toward_deg", number(pocket.lets_out->toward_deg)}};
+    pockets.push_back(std::move(one));
+  }
+  Json vents = Json::array();
+  for (const AirVent& vent : air.vents)
+    vents.push_back({{"at_mm", point_json(vent.at)},
+                     {"width_mm", number(vent.width_mm)},
+                     {"area_mm2", number(vent.area_mm2)}});
+  return {{"area_mm2", number(air.area_mm2())},
+          {"volume_mm3", number(air.volume_mm3())},
+          {"cell_mm", number(air.cell_mm)},
+          {"pockets", std::move(pockets)},
+          {"vents", std::move(vents)}};
 }
 
 Json stretch_json(const Coverage& c) {
@@ -176,7 +201,10 @@ std::string report_json(const Report& report) {
   if (report.coverage) {
     json["coverage"] = coverage_json(*report.coverage);
     json["stretch"] = stretch_json(*report.coverage);
+    json["wrinkled_mm2"] = number(report.coverage->wrinkled_mm2);
+    json["lifted_mm2"] = number(report.coverage->lifted_mm2);
   }
+  if (report.air) json["air"] = air_json(*report.air);
   if (report.angles) json["dip_angles"] = angles_json(*report.angles);
   if (report.mesh) json["mesh"] = mesh_json(*report.mesh);
   if (report.ink) json["ink"] = ink_json(*report.ink);

@@ -74,7 +74,7 @@ DippedObject simulate(const PosedObject& posed, const SimulationOptions& options
   Timings timings;
   return dip_object(posed, std::make_shared<const FilmMesh>(make_film_mesh(options.film)),
                     make_trajectory(options.trajectory, posed.mesh().positions), options.dip,
-                    timings, job, observe);
+                    timings, job, observe, {.options = options.air, .found = {}});
 }
 
 Designed design(const PosedObject& posed, const Paint& paint, const DesignOptions& options,

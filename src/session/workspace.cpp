@@ -43,12 +43,21 @@ void add(ContentKey& key, const FilmOptions& film) {
   key.add(film.elements).add(film.grading);
 }
 
-void add(ContentKey& key, const TrajectoryOptions& way) { key.add(way.depth_mm); }
+void add(ContentKey& key, const TrajectoryOptions& way) {
+  key.add(way.depth_mm).add(way.tilt_deg).add(way.tilt_toward_deg).add(way.roll_deg);
+  for (int k = 0; k < 3; ++k) key.add(way.pivot_mm[k]);
+  key.add(int(way.path.size()));
+  for (const Keyframe& k : way.path) {
+    key.add(k.lower_mm).add(k.shift_x_mm).add(k.shift_y_mm);
+    key.add(k.turn_x_deg).add(k.turn_y_deg).add(k.turn_z_deg);
+  }
+}
 
 // A project's dips have no stiffness, tears or solver of their own.
 void add(ContentKey& key, const DipOptions& dip) {
   key.add(dip.step_mm).add(dip.method).add(dip.scheme);
   key.add(dip.material.z_stretch).add(dip.material.poisson).add(dip.material.tear_stretch);
+  key.add(dip.material.wrinkle_stretch);
 }
 
 void add(ContentKey& key, const LinearColor& color) {
@@ -66,6 +75,7 @@ void add(ContentKey& key, const DesignOptions& design) {
   add(key, design.film);
   add(key, design.trajectory);
   add(key, design.dip);
+  key.add(design.air.cells);
   key.add(design.stiffness.ratio).add(design.stiffness.filter_mm);
   key.add(design.rounds_max).add(design.dpi);
   key.add(design.inverse.bleed_mm).add(design.inverse.samples_per_axis);
@@ -211,8 +221,10 @@ struct Workspace::Impl {
     add(key, options.film);
     add(key, options.trajectory);
     add(key, options.dip);
+    key.add(options.air.cells);
     return node<DippedObject>(std::move(key), context, [&] {
-      return simulate(*hanging.value, {options.film, options.trajectory, options.dip}, context);
+      return simulate(*hanging.value, {options.film, options.trajectory, options.dip, options.air},
+                      context);
     });
   }
 

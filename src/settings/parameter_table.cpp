@@ -225,6 +225,10 @@ std::vector<Parameter> dip_records() {
       number(
           "dip.step_mm", "mm", 0.001, 10, [](C& c) -> double& { return c.design.dip.step_mm; },
           "how far the object is lowered in one step of the simulation"),
+      integer(
+          "dip.air_cells", "", 0, 100000000, [](C& c) -> int& { return c.design.air.cells; },
+          "cubes into which the space around the object is cut to look for trapped air; 0: none is "
+          "looked for"),
       number(
           "dip.depth_mm", "mm", 0.001, 5000,
           [](C& c) -> double& { return c.design.trajectory.depth_mm; },

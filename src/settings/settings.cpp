@@ -86,6 +86,7 @@ std::vector<Setting> quality_settings(const std::string& quality) {
   if (quality == "draft")
     return settings({{"film.elements", fmt::format("{}", kDraftElements)},
                      {"dip.step_mm", fmt::format("{:.1f}", kDraftStep_mm)},
+                     {"dip.air_cells", fmt::format("{}", kDraftAirCells)},
                      {"ink.rounds_max", "1"},
                      {"preview.texture_px", "512"},
                      {"preview.pictures", "off"}});

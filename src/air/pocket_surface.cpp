@@ -1,0 +1,148 @@
+#include "air/pocket_surface.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+#include "base/run_scope.h"
+
+namespace hydrodip {
+
+namespace {
+
+using Polygon = std::vector<Vec3>;
+
+// What of it lies on the side where sign * height is above zero.
+Polygon clipped(const Polygon& polygon, const Plane& plane, double sign) {
+  Polygon result;
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    const double hj = sign * plane.height(polygon[j]), hi = sign * plane.height(polygon[i]);
+    if ((hj > 0) != (hi > 0))
+      result.push_back(polygon[j] + hj / (hj - hi) * (polygon[i] - polygon[j]));
+    if (hi > 0) result.push_back(polygon[i]);
+  }
+  return result;
+}
+
+// Calls visit(area, middle) for each triangle of a fan.
+template <typename Visit>
+void for_fan(const Polygon& polygon, const Visit& visit) {
+  for (std::size_t k = 2; k < polygon.size(); ++k) {
+    const Vec3 &a = polygon[0], &b = polygon[k - 1], &c = polygon[k];
+    visit(0.5 * (b - a).cross(c - a).norm(), Vec3((a + b + c) / 3));
+  }
+}
+
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), std::int32_t(0));
+  }
+  std::int32_t of(std::int32_t i) {
+    while (parent_[std::size_t(i)] != i) {
+      parent_[std::size_t(i)] = parent_[std::size_t(parent_[std::size_t(i)])];
+      i = parent_[std::size_t(i)];
+    }
+    return i;
+  }
+  void join(std::int32_t a, std::int32_t b) {
+    a = of(a);
+    b = of(b);
+    parent_[std::size_t(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+}  // namespace
+
+PocketSurface::PocketSurface(const TriangleMesh& mesh) : mesh_(mesh) {
+  struct Side {
+    std::int32_t a, b, triangle;
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+      sides.push_back({a, b, std::int32_t(t)});
+    }
+  sort_unless_cancelled(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+    return std::tie(x.a, x.b, x.triangle) < std::tie(y.a, y.b, y.triangle);
+  });
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i + 1;
+    for (; end < sides.size() && sides[end].a == sides[i].a && sides[end].b == sides[i].b; ++end)
+      shared_.push_back({sides[i].a, sides[i].b, sides[i].triangle, sides[end].triangle});
+    if (end == i + 1) open_edges_.push_back({sides[i].a, sides[i].b});
+    i = end;
+  }
+}
+
+PocketSurface::Part PocketSurface::part(
+    const Plane& water, const std::optional<Plane>& below,
+    const std::function<bool(const Vec3&, const Vec3&, const Vec3&)>& holds,
+    double reach_mm) const {
+  Sets pieces(mesh_.triangles.size());
+  const auto height = [&](std::int32_t v) { return water.height(mesh_.positions[std::size_t(v)]); };
+  for (const Shared& shared : shared_)
+    if (std::max(height(shared.a), height(shared.b)) > 0) pieces.join(shared.one, shared.other);
+
+  std::vector<double> all(mesh_.triangles.size(), 0), in_pocket(mesh_.triangles.size(), 0);
+  const auto above = [&](std::size_t t) {
+    Polygon polygon;
+    for (const std::int32_t v : mesh_.triangles[t])
+      polygon.push_back(mesh_.positions[std::size_t(v)]);
+    return clipped(polygon, water, 1);
+  };
+  const auto normal_of = [&](std::size_t t) {
+    const auto& v = mesh_.triangles[t];
+    const Vec3& a = mesh_.positions[std::size_t(v[0])];
+    return Vec3((mesh_.positions[std::size_t(v[1])] - a)
+                    .cross(mesh_.positions[std::size_t(v[2])] - a)
+                    .normalized());
+  };
+  CheckEvery check(1 << 12);
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    check();
+    const auto& v = mesh_.triangles[t];
+    if (height(v[0]) <= 0 && height(v[1]) <= 0 && height(v[2]) <= 0) continue;
+    const Vec3 normal = normal_of(t);
+    const auto piece = std::size_t(pieces.of(std::int32_t(t)));
+    for_fan(above(t), [&](double area, const Vec3& middle) {
+      if (!(area > 0)) return;
+      all[piece] += area;
+      if (holds(middle + reach_mm * normal, middle, normal) ||
+          (!is_closed() && holds(middle - reach_mm * normal, middle, -normal)))
+        in_pocket[piece] += area;
+    });
+  }
+
+  Part part;
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    const auto piece = std::size_t(pieces.of(std::int32_t(t)));
+    if (!(in_pocket[piece] > 0.5 * all[piece])) continue;
+    Polygon polygon = above(t);
+    if (polygon.size() < 3) continue;
+    part.triangles.push_back(std::int32_t(t));
+    const double slope = water.up.dot(normal_of(t));
+    for_fan(polygon, [&](double area, const Vec3& middle) {
+      part.volume_mm3 -= area * slope * water.height(middle);
+    });
+    for (const Vec3& p : polygon)
+      if (water.height(p) > highest) {
+        highest = water.height(p);
+        part.top = p;
+      }
+    if (below) polygon = clipped(polygon, *below, -1);
+    for_fan(polygon, [&](double area, const Vec3&) { part.area_mm2 += area; });
+  }
+  return part;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,249 @@
+// Hollows whose air can be worked out by hand.
+#include "air/air.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "exact/shapes.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr int kSegments = 96;
+constexpr double kRad = std::numbers::pi / 180;
+
+// Of a regular polygon with its corners on a circle.
+double polygon_area(double radius) {
+  return 0.5 * kSegments * radius * radius * std::sin(2 * std::numbers::pi / kSegments);
+}
+double polygon_outline(double radius) {
+  return 2 * kSegments * radius * std::sin(std::numbers::pi / kSegments);
+}
+
+// Closed profiles (radius, height) turn into solids; the way round that faces outwards.
+shapes::Shape turned(std::vector<Vec2> profile) {
+  double twice = 0;
+  for (std::size_t i = 0, j = profile.size() - 1; i < profile.size(); j = i++)
+    twice += cross2(profile[j], profile[i]);
+  if (twice < 0) std::reverse(profile.begin(), profile.end());
+  if (profile.front() != profile.back() && profile.front().x() > 0)
+    profile.push_back(profile.front());
+  const int rings = int(profile.size()) - 1;
+  return shapes::revolve([&](double s) { return profile[std::size_t(std::lround(s * rings))]; },
+                         rings, kSegments);
+}
+
+// Mouth down: 18 mm outer and 15 mm inner radius, 25 mm deep.
+const std::vector<Vec2> kCup = {{0, 28}, {18, 28}, {18, 0}, {15, 0}, {15, 25}, {0, 25}};
+
+TriangleMesh mesh_of(const shapes::Shape& shape) { return {shape.positions, shape.triangles}; }
+
+TriangleMesh moved(TriangleMesh mesh, const Mat3& turn) {
+  double low = 1e300;
+  for (Vec3& p : mesh.positions) {
+    p = turn * p;
+    low = std::min(low, p.z());
+  }
+  for (Vec3& p : mesh.positions) p.z() -= low;
+  return mesh;
+}
+
+TrappedAir air_of(const TriangleMesh& mesh, const Trajectory& way, int cells = 200000) {
+  const Surface surface(mesh.positions, mesh.triangles);
+  return find_air(mesh, surface, way, {cells}, RunContext());
+}
+
+TrappedAir air_of(const TriangleMesh& mesh) {
+  return air_of(mesh, Trajectory::straight_down(mesh.bounds().max.z()));
+}
+
+double lid_area(const TrappedAir& air) {
+  double area = 0;
+  for (const Triangle& t : air.lids.triangles) {
+    const Vec3& a = air.lids.positions[std::size_t(t[0])];
+    const Vec3 twice = (air.lids.positions[std::size_t(t[1])] - a)
+                           .cross(air.lids.positions[std::size_t(t[2])] - a);
+    EXPECT_LT(twice.z(), 0) << "a lid faces down";
+    area += 0.5 * twice.norm();
+  }
+  return area;
+}
+
+TEST(Air, ACupMouthDownKeepsAllOfIt) {
+  for (const int cells : {20000, 200000, 1000000}) {
+    const TriangleMesh cup = mesh_of(turned(kCup));
+    const TrappedAir air = air_of(cup, Trajectory::straight_down(28), cells);
+    ASSERT_EQ(air.pockets.size(), 1U) << cells;
+    const AirPocket& pocket = air.pockets[0];
+    EXPECT_NEAR(pocket.closed_at_mm, 0, 0.003);
+    EXPECT_NEAR(pocket.volume_mm3, 25 * polygon_area(15), 1);
+    EXPECT_NEAR(pocket.area_mm2, 25 * polygon_outline(15) + polygon_area(15), 0.5);
+    EXPECT_NEAR(pocket.top.z(), 25, 1e-9);
+    // Its walls all but level.
+    EXPECT_GT(pocket.lets_out.value_or(Tilt{90, 0}).tilt_deg, 75);
+    EXPECT_NEAR(lid_area(air), polygon_area(15), 1e-6);
+  }
+}
+
+TEST(Air, OnlyWhatWaterWouldReachCountsAsArea) {
+  const TriangleMesh cup = mesh_of(turned(kCup));
+  const TrappedAir air = air_of(cup, Trajectory::straight_down(10));
+  ASSERT_EQ(air.pockets.size(), 1U);
+  EXPECT_NEAR(air.area_mm2(), 10 * polygon_outline(15), 0.5);
+  EXPECT_NEAR(air.volume_mm3(), 25 * polygon_area(15), 1);
+}
+
+TEST(Air, AHoleInTheBottomLetsItOut) {
+  const TriangleMesh cup =
+      mesh_of(turned({{1.5, 28}, {18, 28}, {18, 0}, {15, 0}, {15, 25}, {1.5, 25}}));
+  EXPECT_TRUE(air_of(cup).pockets.empty());
+}
+
+// Water comes in until it closes the inner rim at its highest point.
+TEST(Air, ATiltedCupFillsUpToItsRim) {
+  for (const double tilt : {5.0, 20.0, 35.0}) {
+    const Mat3 lean = Eigen::AngleAxisd(tilt * kRad, Vec3::UnitY()).toRotationMatrix();
+    const TrappedAir air = air_of(moved(mesh_of(turned(kCup)), lean));
+    ASSERT_EQ(air.pockets.size(), 1U) << tilt;
+    const AirPocket& pocket = air.pockets[0];
+    EXPECT_NEAR(pocket.closed_at_mm, (15 + 18) * std::sin(tilt * kRad), 0.003) << tilt;
+    const double mean_wetted = 15 * std::tan(tilt * kRad);
+    EXPECT_NEAR(pocket.volume_mm3, (25 - mean_wetted) * polygon_area(15), 5) << tilt;
+    EXPECT_NEAR(pocket.area_mm2, (25 - mean_wetted) * polygon_outline(15) + polygon_area(15), 1)
+        << tilt;
+    EXPECT_NEAR(lid_area(air), polygon_area(15) / std::cos(tilt * kRad), 0.5) << tilt;
+  }
+}
+
+// The same cup, leaned over by the way in instead.
+TEST(Air, AWayThatTiltsIsAsGoodAsATiltedCup) {
+  const TriangleMesh cup = mesh_of(turned(kCup));
+  TrajectoryOptions options;
+  options.tilt_deg = 20;
+  const TrappedAir air = air_of(cup, make_trajectory(options, cup.positions));
+  ASSERT_EQ(air.pockets.size(), 1U);
+  const double mean_wetted = 15 * std::tan(20 * kRad);
+  EXPECT_NEAR(air.volume_mm3(), (25 - mean_wetted) * polygon_area(15), 5);
+  EXPECT_NEAR(air.area_mm2(), (25 - mean_wetted) * polygon_outline(15) + polygon_area(15), 1);
+  EXPECT_NEAR(air.pockets[0].escapes_share, 0, 0.02);
+}
+
+TEST(Air, WhatTurnsOverUnderWaterLetsItsAirGo) {
+  const TriangleMesh cup = mesh_of(turned(kCup));
+  const TrappedAir air =
+      air_of(cup, Trajectory::through({{}, {.lower_mm = 60}, {.lower_mm = 60, .turn_x_deg = 170}},
+                                      Vec3(0, 0, 14)));
+  ASSERT_EQ(air.pockets.size(), 1U);
+  EXPECT_NEAR(air.volume_mm3(), 25 * polygon_area(15), 1);
+  EXPECT_GT(air.pockets[0].escapes_share, 0.95);
+}
+
+TEST(Air, HollowsWithinHollowsCloseOneByOne) {
+  // A pipe in the cup, which reaches 5 mm further down.
+  const TriangleMesh nested = moved(mesh_of(turned({{0, 28},
+                                                    {18, 28},
+                                                    {18, 0},
+                                                    {15, 0},
+                                                    {15, 25},
+                                                    {8, 25},
+                                                    {8, -5},
+                                                    {6, -5},
+                                                    {6, 25},
+                                                    {0, 25}})),
+                                    Mat3::Identity());
+  const TrappedAir air = air_of(nested);
+  ASSERT_EQ(air.pockets.size(), 2U);
+  EXPECT_NEAR(air.pockets[0].closed_at_mm, 5, 0.003);
+  EXPECT_NEAR(air.pockets[0].volume_mm3, 25 * (polygon_area(15) - polygon_area(8)), 2);
+  EXPECT_NEAR(air.pockets[1].closed_at_mm, 0, 0.003);
+  EXPECT_NEAR(air.pockets[1].volume_mm3, 30 * polygon_area(6), 2);
+  EXPECT_NEAR(lid_area(air), polygon_area(15) - polygon_area(8) + polygon_area(6), 1e-6);
+}
+
+// The pipe ends above the cup's rim: water comes to neither.
+TEST(Air, AHollowAboveTheWaterOfAnotherIsPartOfIt) {
+  const TriangleMesh nested = mesh_of(turned({{0, 28},
+                                              {18, 28},
+                                              {18, 0},
+                                              {15, 0},
+                                              {15, 25},
+                                              {8, 25},
+                                              {8, 10},
+                                              {6, 10},
+                                              {6, 25},
+                                              {0, 25}}));
+  const TrappedAir air = air_of(nested);
+  ASSERT_EQ(air.pockets.size(), 1U);
+  EXPECT_NEAR(air.volume_mm3(), 25 * polygon_area(15) - 15 * (polygon_area(8) - polygon_area(6)),
+              2);
+}
+
+TEST(Air, WhatIsOpenAboveKeepsNone) {
+  // A ring, flat and upright, and a ball.
+  const auto ring = shapes::revolve(
+      [](double s) {
+        const double a = 2 * std::numbers::pi * s - 0.5 * std::numbers::pi;
+        return Vec2(20 + 6 * std::cos(a), 6 + 6 * std::sin(a));
+      },
+      48, kSegments);
+  EXPECT_TRUE(air_of(mesh_of(ring)).pockets.empty());
+  const Mat3 upright = Eigen::AngleAxisd(90 * kRad, Vec3::UnitX()).toRotationMatrix();
+  EXPECT_TRUE(air_of(moved(mesh_of(ring), upright)).pockets.empty());
+  const Mat3 mouth_up = Eigen::AngleAxisd(180 * kRad, Vec3::UnitX()).toRotationMatrix();
+  EXPECT_TRUE(air_of(moved(mesh_of(turned(kCup)), mouth_up)).pockets.empty());
+}
+
+// A bowl of 20 mm radius as a sheet, mouth down; and the same with a hole of a fifth of a
+// millimetre.
+TEST(Air, SmallHolesInScansAreVentsAndSaidToBe) {
+  const auto bowl = [](double hole_radius) {
+    return mesh_of(shapes::revolve(
+        [&](double s) {
+          const double a = 0.5 * std::numbers::pi * s;
+          const double end = std::asin(hole_radius / 20);
+          const double b = a * (1 - 2 * end / std::numbers::pi);
+          return Vec2(20 * std::cos(b), 20 * std::sin(b));
+        },
+        64, kSegments));
+  };
+  const TrappedAir whole = air_of(bowl(0));
+  ASSERT_EQ(whole.pockets.size(), 1U);
+  EXPECT_TRUE(whole.vents.empty());
+  EXPECT_NEAR(whole.area_mm2(), 2 * std::numbers::pi * 400, 10);
+
+  const TrappedAir pierced = air_of(bowl(0.1));
+  ASSERT_GT(pierced.cell_mm, 0.4);
+  EXPECT_TRUE(pierced.pockets.empty());
+  ASSERT_EQ(pierced.vents.size(), 1U);
+  EXPECT_NEAR(pierced.vents[0].width_mm, 0.2, 0.01);
+  EXPECT_NEAR(pierced.vents[0].area_mm2, 2 * std::numbers::pi * 400, 10);
+  EXPECT_NEAR((pierced.vents[0].at - Vec3(0, 0, 20)).norm(), 0, 0.02);
+}
+
+// A shallow dish: air gets out once its rim's far side is the highest point of it.
+TEST(Air, TheSmallestTiltThatLetsItOut) {
+  // A cone 4 mm deep and 20 mm wide all round in a plate: it opens when the cone's side lies level.
+  const TriangleMesh dish = mesh_of(turned({{0, 10}, {24, 10}, {24, 0}, {20, 0}, {0, 4}}));
+  const TrappedAir air = air_of(dish);
+  ASSERT_EQ(air.pockets.size(), 1U);
+  EXPECT_NEAR(air.volume_mm3(), 4.0 / 3 * polygon_area(20), 2);
+  ASSERT_TRUE(air.pockets[0].lets_out);
+  EXPECT_NEAR(air.pockets[0].lets_out->tilt_deg, std::atan(4.0 / 20) / kRad, 3);
+}
+
+TEST(Air, TurningEverythingChangesNothing) {
+  const TriangleMesh cup = mesh_of(turned(kCup));
+  const Mat3 lean = Eigen::AngleAxisd(15 * kRad, Vec3::UnitY()).toRotationMatrix();
+  const TrappedAir one = air_of(moved(cup, lean));
+  const Mat3 about = Eigen::AngleAxisd(37 * kRad, Vec3::UnitZ()).toRotationMatrix();
+  const TrappedAir other = air_of(moved(cup, about * lean));
+  ASSERT_EQ(other.pockets.size(), 1U);
+  EXPECT_NEAR(one.volume_mm3(), other.volume_mm3(), 1);
+  EXPECT_NEAR(one.area_mm2(), other.area_mm2(), 1);
+}
+
+}  // namespace
+}  // namespace hydrodip
