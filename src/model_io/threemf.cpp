@@ -483,8 +483,6 @@ class ThreeMfReader {
       for (const auto& [id, object] : part.objects) items.push_back({"", id, Matrix4f::Identity()});
     for (const Component& item : items) place(root_, item, Matrix4f::Identity(), 0);
     if (file_.face_end.empty()) refuse_model(input_.path, "it has no triangles");
-    if (!has_colors_) file_.colors = {};
-    if (!has_uvs_) file_.uvs = {};
     tell_what_is_left_out();
     return std::move(file_);
   }
@@ -587,11 +585,19 @@ class ThreeMfReader {
                 : part.groups[std::size_t(triangle.group)][std::size_t(triangle.entries[c])];
       file_.corners.push_back(first + triangle.corners[c]);
       if (k == 0) material = entry.material;
-      has_colors_ = has_colors_ || (!plain && part.group_has_color[std::size_t(triangle.group)]);
-      has_uvs_ = has_uvs_ || entry.material >= 0;
-      file_.colors.push_back({srgb8_to_linear(entry.color[0]), srgb8_to_linear(entry.color[1]),
-                              srgb8_to_linear(entry.color[2]), float(entry.color[3]) / 255});
-      file_.uvs.push_back(entry.uv);
+      if (!plain && part.group_has_color[std::size_t(triangle.group)]) has_colors_ = true;
+      if (entry.material >= 0) has_uvs_ = true;
+      // From the first on that says anything.
+      const std::size_t before = file_.corners.size() - 1;
+      if (has_colors_) {
+        file_.colors.resize(before, {1, 1, 1, 1});
+        file_.colors.push_back({srgb8_to_linear(entry.color[0]), srgb8_to_linear(entry.color[1]),
+                                srgb8_to_linear(entry.color[2]), float(entry.color[3]) / 255});
+      }
+      if (has_uvs_) {
+        file_.uvs.resize(before, kPlain.uv);
+        file_.uvs.push_back(entry.uv);
+      }
     }
     file_.end_face(material);
   }
@@ -620,7 +626,7 @@ class ThreeMfReader {
   std::map<std::string, Part> parts_;
   SlicerParts slicer_parts_;
   LeftOut left_out_;
-  std::int64_t triangles_left_ = 1'000'000;
+  std::int64_t triangles_left_ = 500'000;
   std::int64_t placements_left_ = 20'000;
   bool has_colors_ = false, has_uvs_ = false;
 };
