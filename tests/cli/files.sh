@@ -162,7 +162,7 @@ if command -v prlimit > /dev/null; then
       code=$?
       if [ "$code" -eq 2 ] || [ "$code" -eq 3 ]; then
         one_line "a limit of $limit MB"
-        grep -qE 'not enough memory|memory that this machine' limit.txt ||
+        grep -qE 'not enough memory|GB of memory' limit.txt ||
           fail "a limit of $limit MB: no word about memory: $(cat limit.txt)"
       elif [ "$code" -ne 0 ]; then
         fail "a limit of $limit MB: exit code $code: $(cat limit.txt)"
