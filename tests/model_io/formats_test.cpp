@@ -265,6 +265,11 @@ TEST_F(Formats, PlyDataThatBeginsLikeALineEnd) {
   EXPECT_EQ(loaded.object.object.bounds().size(), Vec3(3, 5, 0));
 }
 
+TEST_F(Formats, SentencesGoOnAfterANulByte) {
+  const std::string text("ply\nformat ascii 1.0\nelement ver\0tex\nend_header\n", 51);
+  EXPECT_TRUE(contains(refusal_of(folder_.write("a.ply", text)), "'ver?tex' has no valid count"));
+}
+
 TEST_F(Formats, PlyTriangleStrips) {
   const Loaded loaded = load(folder_.write(
       "a.ply", std::string("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
