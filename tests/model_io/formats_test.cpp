@@ -266,7 +266,8 @@ TEST_F(Formats, PlyDataThatBeginsLikeALineEnd) {
 }
 
 TEST_F(Formats, SentencesGoOnAfterANulByte) {
-  const std::string text("ply\nformat ascii 1.0\nelement ver\0tex\nend_header\n", 51);
+  constexpr char kText[] = "ply\nformat ascii 1.0\nelement ver\0tex\nend_header\n";
+  const std::string text(kText, sizeof kText - 1);
   EXPECT_TRUE(contains(refusal_of(folder_.write("a.ply", text)), "'ver?tex' has no valid count"));
 }
 
