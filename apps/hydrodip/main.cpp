@@ -1,13 +1,14 @@
 // The command line: parses, runs a job, and turns what it returns or throws into words and an exit
 // code.
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <exception>
 #include <new>
 #include <system_error>
 
-#include "affordable_threads.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "command_line.h"
 #include "console.h"
 #include "interrupt.h"
@@ -33,7 +34,6 @@ int run(const std::vector<std::string>& arguments) {
   if (!line.command) {
     print_result(line.text);
   } else {
-    const AffordableThreads threads;
     RunContext context;
     const CancelOnInterrupt cancel_on_interrupt(context);
     const JobResult result = run_with_progress(line, context);
@@ -48,6 +48,13 @@ int fail(int code, const std::string& sentence) {
   return code;
 }
 
+std::string out_of_memory() {
+  return fmt::format(
+      "not enough memory: the job may have {:.0f} MB; a lower print.dpi or film.elements needs "
+      "less",
+      memory_limit_bytes() / 1e6);
+}
+
 int run_safely(const std::vector<std::string>& arguments) {
   try {
     return run(arguments);
@@ -59,7 +66,7 @@ int run_safely(const std::vector<std::string>& arguments) {
     print_notice(cancelled.what());
     return kExitCancelled;
   } catch (const std::bad_alloc&) {
-    return fail(kExitFailed, "not enough memory; a lower print.dpi or film.elements needs less");
+    return fail(kExitFailed, out_of_memory());
   } catch (const std::system_error& error) {
     return fail(kExitFailed, std::string("the system refuses what the job needs (") + error.what() +
                                  "); raise its limits, or try --threads 1");

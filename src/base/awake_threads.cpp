@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "base/thread_budget.h"
+#include "base/thread_supply.h"
 #include "base/work.h"
 
 namespace hydrodip {
@@ -208,7 +208,7 @@ class SharedLoops {
 
 AwakeThreads::AwakeThreads() {
   // Threads that wait awake must not take turns on a core.
-  const int threads = std::min({available_threads(), processor_threads(), kMostThreads});
+  const int threads = std::min({available_threads(), threads_in_supply(), kMostThreads});
   if (work_here.in_loop || work_here.awake != nullptr || threads < 2) return;
   loops_ = std::make_unique<SharedLoops>(threads);
   work_here.awake = loops_.get();

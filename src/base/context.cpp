@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/run_scope.h"
 #include "base/thread_budget.h"
+#include "base/thread_supply.h"
 
 namespace hydrodip {
 
@@ -108,7 +109,7 @@ RunContext RunContext::with_threads(int threads) const {
   return limited;
 }
 
-int RunContext::threads() const { return budget_ ? budget_->threads() : processor_threads(); }
+int RunContext::threads() const { return budget_ ? budget_->threads() : threads_in_supply(); }
 
 RunContext RunContext::quiet() const {
   RunContext part;

@@ -9,6 +9,7 @@
 
 #include "base/awake_threads.h"
 #include "base/thread_budget.h"
+#include "base/thread_supply.h"
 
 namespace hydrodip {
 
@@ -112,7 +113,7 @@ void parallel_do(const std::vector<std::function<void()>>& tasks) {
 }
 
 int available_threads() {
-  return work_here.budget != nullptr ? work_here.budget->threads() : processor_threads();
+  return work_here.budget != nullptr ? work_here.budget->threads() : threads_in_supply();
 }
 
 ThreadLimit::ThreadLimit(int threads)

@@ -5,6 +5,7 @@
 #include "base/thread_budget.h"
 
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -24,6 +25,12 @@ void run_here(const ChunkLoop& loop) {
 }  // namespace
 
 int processor_threads() { return tbb::info::default_concurrency(); }
+
+void stay_on_one_thread() {
+  static const tbb::global_control& one =
+      *new tbb::global_control(tbb::global_control::max_allowed_parallelism, 1);
+  static_cast<void>(one);
+}
 
 ThreadBudget::ThreadBudget(int threads) : threads_(threads), arena_(new tbb::task_arena(threads)) {}
 

@@ -8,6 +8,10 @@ namespace hydrodip {
 // How many threads the processor runs at once, as far as this process may use them.
 int processor_threads();
 
+// From now on, and for the whole process, no loop uses any thread but its own: neither ours nor a
+// library's that runs on TBB.
+void stay_on_one_thread();
+
 // A loop over chunks, in plain types: thread_budget.cpp is compiled apart (see there).
 struct ChunkLoop {
   // Throws nothing.

@@ -7,6 +7,7 @@
 #include <exception>
 #include <mutex>
 #include <set>
+#include <system_error>
 #include <thread>
 
 #include "base/error.h"
@@ -31,7 +32,11 @@ class Crew {
            const RunContext& context) {
     std::vector<std::thread> workers;
     const auto size = std::min(count, std::size_t(std::max(1, threads)));
-    for (std::size_t i = 0; i < size; ++i) workers.emplace_back([&] { work(count, task); });
+    try {
+      for (std::size_t i = 0; i < size; ++i) workers.emplace_back([&] { work(count, task); });
+    } catch (const std::system_error&) {  // the system gives no more threads: fewer will do
+      if (workers.empty()) throw;
+    }
     std::exception_ptr failure;
     try {
       collect(count, done, context);

@@ -3,6 +3,13 @@
 // keeps one copy of those, and it could be one that this processor cannot run.
 #include "elastic/kernels.h"
 
+// Before a loop whose turns have nothing to do with each other.
+#if defined(__clang__)
+#define KERNELS_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define KERNELS_INDEPENDENT _Pragma("GCC ivdep")
+#endif
+
 namespace hydrodip::kernels {
 namespace {
 
@@ -123,7 +130,7 @@ void restrict_rows(const Transfer& t, std::ptrdiff_t begin, std::ptrdiff_t end, 
       const std::ptrdiff_t first = (J + 1) * t.coarse_stride + kLanes;
       const float* mask = t.coarse_mask + first;
       float* to = (component == 0 ? b.x : b.y) + first;
-#pragma GCC ivdep
+      KERNELS_INDEPENDENT
       for (int I = 0; I < t.coarse_nx; ++I) {
         const int i = 2 * I;
         const float left = centre * from[i - 1] + side * (below[i - 1] + above[i - 1]);
@@ -145,7 +152,7 @@ void prolong_rows(const Transfer& t, std::ptrdiff_t begin, std::ptrdiff_t end, I
       const int pairs = t.fine_nx / 2;
       if (t.fine_nx % 2 == 1)
         to[2 * pairs] += mask[2 * pairs] * 0.5F * (from[pairs] + above[pairs]);
-#pragma GCC ivdep
+      KERNELS_INDEPENDENT
       for (int I = 0; I < pairs; ++I) {
         const float here = from[I] + above[I], next = from[I + 1] + above[I + 1];
         to[2 * I] += mask[2 * I] * 0.5F * here;
@@ -170,7 +177,7 @@ double dot(std::size_t begin, std::size_t end, Input a, Input b) {
 }
 
 void scale_and_add(std::size_t begin, std::size_t end, Output a, float scale, Input b) {
-#pragma GCC ivdep
+  KERNELS_INDEPENDENT
   for (std::size_t n = begin; n < end; ++n) {
     a.x[n] = scale * a.x[n] + b.x[n];
     a.y[n] = scale * a.y[n] + b.y[n];
@@ -276,7 +283,7 @@ inline std::int64_t rest_shapes_of(const Elements& e, std::ptrdiff_t row, ConstF
   film += first + shift;
   flat_area += first + shift;
   std::int64_t small = 0;
-#pragma GCC ivdep
+  KERNELS_INDEPENDENT
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const Corners t = corners_of<kUpper>(x, y, i, stride, rising[i]);
     const double bx = t.x1 - t.x0, by = t.y1 - t.y0, cx = t.x2 - t.x0, cy = t.y2 - t.y0;
@@ -290,7 +297,7 @@ inline std::int64_t rest_shapes_of(const Elements& e, std::ptrdiff_t row, ConstF
     g2x[i] = -by * inverse;
     g2y[i] = bx * inverse;
     size[i] = found;
-    small += (present > 0) & (found < least_share * flat_area[i]) ? 1 : 0;
+    small += ((present > 0) & (found < least_share * flat_area[i])) ? 1 : 0;
   }
   return small;
 }
@@ -357,7 +364,7 @@ struct Forces {
   const double g2x = e.gradient[1][0][at], g2y = e.gradient[1][1][at];
   const double det = s.xx * s.yy - s.xy * s.yx;
   return {xx * g1x + xy * g1y, yx * g1x + yy * g1y, xx * g2x + xy * g2y, yx * g2x + yy * g2y,
-          (e.area[at] > 0) & !(det > 0) ? 1 : 0};
+          ((e.area[at] > 0) & !(det > 0)) ? 1 : 0};
 }
 
 // A psi = A (mu |F - R|^2 + lambda / 2 (tr S - 2)^2).
@@ -378,7 +385,7 @@ void energy(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t end, ConstFi
   for (std::ptrdiff_t row = begin; row < end; ++row) {
     const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
     const double *x = u.x, *y = u.y, *rising = e.rising[row & 1];
-#pragma GCC ivdep
+    KERNELS_INDEPENDENT
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       const std::ptrdiff_t at = first + i;
       sum[i] += energy_of(e, at, corners_of<false>(x, y, at, stride, rising[i])) +
@@ -414,7 +421,7 @@ std::int64_t add_up_cells(const Elements& e, std::ptrdiff_t row, ConstField u,
   double* __restrict by = to.by, * __restrict cx = to.cx, * __restrict cy = to.cy;
   double* __restrict dx = to.dx, * __restrict dy = to.dy;
   std::int64_t turned_over = 0;
-#pragma GCC ivdep
+  KERNELS_INDEPENDENT
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const std::ptrdiff_t at = first + i;
     const bool up = rising[i] > 0;
@@ -453,7 +460,7 @@ std::int64_t gradient(const Elements& e, std::ptrdiff_t begin, std::ptrdiff_t en
     const std::ptrdiff_t first = first_of_row(e, row);
     const double* free = mask + first;
     double* __restrict x = out.x + first, * __restrict y = out.y + first;
-#pragma GCC ivdep
+    KERNELS_INDEPENDENT
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       x[i] = free[i] * ((here.ax[i] + here.bx[i - 1]) + (before.cx[i - 1] + before.dx[i]));
       y[i] = free[i] * ((here.ay[i] + here.by[i - 1]) + (before.cy[i - 1] + before.dy[i]));
@@ -472,7 +479,7 @@ inline std::int64_t turned_over_of(const Elements& e, std::ptrdiff_t row, ConstF
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const Corners t = corners_of<kUpper>(x, y, i, stride, rising[i]);
     const double twice = (t.x1 - t.x0) * (t.y2 - t.y0) - (t.y1 - t.y0) * (t.x2 - t.x0);
-    found += (area[i] > 0) & !(twice > 0) ? 1 : 0;
+    found += ((area[i] > 0) & !(twice > 0)) ? 1 : 0;
   }
   return found;
 }
@@ -493,7 +500,7 @@ inline std::int64_t changed_of(const Elements& e, std::ptrdiff_t row, ConstField
   const std::ptrdiff_t count = columns(e);
   const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
   const double* rising = e.rising[row & 1];
-#pragma GCC ivdep
+  KERNELS_INDEPENDENT
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const std::ptrdiff_t t = first + i + (kUpper ? e.upper : 0);
     const Strain s = strain_of(e, t, corners_of<kUpper>(u.x, u.y, first + i, stride, rising[i]));
@@ -537,7 +544,7 @@ inline void overstretched_of(const Elements& e, std::ptrdiff_t row, ConstField u
   const std::ptrdiff_t count = columns(e);
   const std::ptrdiff_t first = first_of_row(e, row), stride = e.stride;
   const double* rising = e.rising[row & 1];
-#pragma GCC ivdep
+  KERNELS_INDEPENDENT
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const std::ptrdiff_t t = first + i + (kUpper ? e.upper : 0);
     const Strain s = strain_of(e, t, corners_of<kUpper>(u.x, u.y, first + i, stride, rising[i]));
@@ -562,7 +569,7 @@ void carry(std::size_t begin, std::size_t end, const std::int32_t* const corner[
            std::int64_t* inside) {
   constexpr double kInside = -1e-12;
   double* __restrict to_x = out.x, * __restrict to_y = out.y;
-#pragma GCC ivdep
+  KERNELS_INDEPENDENT
   for (std::size_t n = begin; n < end; ++n) {
     const std::int32_t a = corner[0][n], b = corner[1][n], c = corner[2][n];
     const double ux = u.x[a], uy = u.y[a];
@@ -579,7 +586,7 @@ void carry(std::size_t begin, std::size_t end, const std::int32_t* const corner[
     const bool near = dx * dx + dy * dy < reach * reach;
     to_x[n] = x;
     to_y[n] = y;
-    inside[n] = usable & near & (wa >= kInside) & (wb >= kInside) & (wc >= kInside) ? 1 : 0;
+    inside[n] = (usable & near & (wa >= kInside) & (wb >= kInside) & (wc >= kInside)) ? 1 : 0;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/run_scope.h"
 
 namespace hydrodip {
 
@@ -70,6 +71,7 @@ Image oriented(Image image, int orientation) {
   const int width = image.width_px, height = image.height_px;
   Image out = swapped ? Image(height, width) : Image(width, height);
   for (int y = 0; y < out.height_px; ++y) {
+    check_cancelled();
     for (int x = 0; x < out.width_px; ++x) {
       // 6: the picture's left column, read from below, is the first row shown.
       int from_x = swapped ? y : x, from_y = swapped ? x : y;

@@ -251,11 +251,22 @@ bool png_encode(PngWriter& writer, const Image& image, bool drop_alpha, double d
 
 // ---- JPEG ---------------------------------------------------------------------------------------
 
+// For what C calls, through which nothing may be thrown.
+bool is_cancelled() {
+  try {
+    check_cancelled();
+    return false;
+  } catch (const Cancelled&) {
+    return true;
+  }
+}
+
 struct JpegErrors {
   jpeg_error_mgr manager;  // first: libjpeg hands back a pointer to it
   std::jmp_buf jump;
   char message[JMSG_LENGTH_MAX];
   bool truncated;
+  jpeg_progress_mgr progress;
 };
 
 extern "C" {
@@ -264,6 +275,19 @@ static void jpeg_keep_error(j_common_ptr info) {
   auto* errors = reinterpret_cast<JpegErrors*>(info->err);
   errors->manager.format_message(info, errors->message);
   std::longjmp(errors->jump, 1);
+}
+
+// Pictures in several scans are read as a whole before their first row comes.
+// A scan of a few bytes costs as much time as a whole one: very many are made to hang a reader.
+static void jpeg_watch(j_common_ptr info) {
+  constexpr int kMostScans = 200;
+  auto* errors = reinterpret_cast<JpegErrors*>(info->err);
+  if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number > kMostScans) {
+    std::snprintf(errors->message, sizeof errors->message, "it comes in more than %d scans",
+                  kMostScans);
+    std::longjmp(errors->jump, 1);
+  }
+  if (is_cancelled()) std::longjmp(errors->jump, 1);
 }
 
 static void jpeg_note_warning(j_common_ptr info, int level) {
@@ -285,6 +309,8 @@ struct JpegReader {
     errors.manager.error_exit = jpeg_keep_error;
     errors.manager.emit_message = jpeg_note_warning;
     jpeg_create_decompress(&info);
+    errors.progress.progress_monitor = jpeg_watch;
+    info.progress = &errors.progress;
     jpeg_mem_src(&info, bytes.data(), static_cast<unsigned long>(bytes.size()));
   }
   ~JpegReader() { jpeg_destroy_decompress(&info); }
@@ -368,8 +394,10 @@ StoredPicture decode_jpeg(const Bytes& bytes, const std::string& name) {
   picture.image = Image(int(width), int(height));
   std::vector<std::uint8_t> row(std::size_t(4) * width);
   read_jpeg_colors(reader, picture);
-  if (!reader.read_rows(picture.image, row.data()))
+  if (!reader.read_rows(picture.image, row.data())) {
+    check_cancelled();
     refuse_picture(name, "JPEG", reader.errors.message);
+  }
   if (reader.errors.truncated) refuse_picture(name, "JPEG", "it ends too early");
   return picture;
 }

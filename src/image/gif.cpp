@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 
+#include "base/run_scope.h"
 #include "image/decoders.h"
 
 namespace hydrodip {
@@ -65,6 +66,7 @@ Image read_frame(GifFileType* file, int transparent, const PictureBytes& bytes,
   Image image(width, height);
   std::vector<GifPixelType> row(std::size_t(frame.Width));
   for (int y = 0; y < frame.Height; ++y) {
+    check_cancelled();
     if (DGifGetLine(file, row.data(), frame.Width) == GIF_ERROR)
       refuse_picture(name, "GIF", "it ends too early");
     const int to = frame.Top + (frame.Interlace ? row_of(y, frame.Height) : y);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "base/run_scope.h"
 #include "image/decoders.h"
 
 namespace hydrodip {
@@ -52,9 +53,11 @@ void transform_pixels(Image& image, cmsContext context, cmsHPROFILE from) {
                                                   TYPE_RGBA_8, INTENT_RELATIVE_COLORIMETRIC,
                                                   cmsFLAGS_COPY_ALPHA));
   if (!transform || changes_nothing(transform.get())) return;
-  for (int y = 0; y < image.height_px; ++y)
+  for (int y = 0; y < image.height_px; ++y) {
+    check_cancelled();
     cmsDoTransform(transform.get(), image.pixel(0, y), image.pixel(0, y),
                    cmsUInt32Number(image.width_px));
+  }
 }
 
 // ITU-T H.273's numbers.

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "base/error.h"
+#include "base/run_scope.h"
 #include "image/decoders.h"
 
 namespace hydrodip {
@@ -124,6 +125,7 @@ class BmpReader {
 
   void read_rows() {
     for (int row = 0; row < image_.height_px; ++row) {
+      check_cancelled();
       const std::size_t begin = data_ + std::size_t(row) * row_bytes_;
       for (int x = 0; x < image_.width_px; ++x)
         std::copy_n(color(begin, std::size_t(x)).data(), 4, pixel(x, row));
@@ -151,7 +153,9 @@ class BmpReader {
         std::copy_n(palette_[entry].data(), 4, pixel(x, row));
       ++x;
     };
+    CheckEvery check(1 << 12);
     for (std::size_t at = data_; at + 1 < bytes_.size();) {
+      check();
       const int count = bytes_[at], value = bytes_[at + 1];
       at += 2;
       if (count > 0) {
@@ -215,6 +219,7 @@ class TgaReader {
     Image image{int(width), int(height)};
     const bool from_top = (descriptor & 0x20) != 0, from_right = (descriptor & 0x10) != 0;
     for (int row = 0; row < image.height_px; ++row) {
+      check_cancelled();
       for (int column = 0; column < image.width_px; ++column) {
         const int x = from_right ? image.width_px - 1 - column : column;
         const int y = from_top ? row : image.height_px - 1 - row;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <memory>
 
+#include "base/run_scope.h"
 #include "image/decoders.h"
 
 namespace hydrodip {
@@ -76,9 +77,59 @@ Tiff open(TiffSource& source) {
   return file;
 }
 
+// libtiff's reader of all kinds of pixels.
+class RgbaReader {
+ public:
+  RgbaReader(TIFF* file, const std::string& name) {
+    char why[1024] = {};
+    if (!TIFFRGBAImageOK(file, why) || !TIFFRGBAImageBegin(&image_, file, 1, why))
+      refuse_picture(name, "TIFF", why);
+    image_.req_orientation = ORIENTATION_TOPLEFT;
+    // Whole strips or tiles at a time: parts of one would be unpacked again and again.
+    std::uint32_t block = 0;
+    TIFFGetFieldDefaulted(file, TIFFIsTiled(file) ? TIFFTAG_TILELENGTH : TIFFTAG_ROWSPERSTRIP,
+                          &block);
+    const bool upright = image_.orientation == ORIENTATION_TOPLEFT;
+    if (!upright || block == 0 || block >= image_.height)
+      band_rows_ = image_.height;
+    else
+      band_rows_ = (kBandRows + block - 1) / block * block;
+  }
+  ~RgbaReader() { TIFFRGBAImageEnd(&image_); }
+  RgbaReader(const RgbaReader&) = delete;
+  RgbaReader& operator=(const RgbaReader&) = delete;
+
+  // False if the file is damaged.
+  bool read(Image& to) {
+    std::vector<std::uint32_t> raster;
+    std::uint8_t* out = to.rgba.data();
+    for (std::uint32_t row = 0; row < image_.height; row += band_rows_) {
+      check_cancelled();
+      const std::uint32_t rows = std::min(band_rows_, image_.height - row);
+      raster.assign(std::size_t(image_.width) * rows, 0);
+      image_.row_offset = int(row);
+      if (!TIFFRGBAImageGet(&image_, raster.data(), image_.width, rows)) return false;
+      for (const std::uint32_t pixel : raster) {
+        *out++ = std::uint8_t(TIFFGetR(pixel));
+        *out++ = std::uint8_t(TIFFGetG(pixel));
+        *out++ = std::uint8_t(TIFFGetB(pixel));
+        *out++ = std::uint8_t(TIFFGetA(pixel));
+      }
+    }
+    return true;
+  }
+
+ private:
+  static constexpr std::uint32_t kBandRows = 64;
+  TIFFRGBAImage image_{};
+  std::uint32_t band_rows_ = 0;
+};
+
 // libtiff multiplies colours by alpha.
 void make_straight(Image& image) {
+  CheckEvery check(1 << 20);
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    check();
     const int alpha = image.rgba[i + 3];
     if (alpha == 255 || alpha == 0) continue;
     for (std::size_t c = 0; c < 3; ++c)
@@ -101,18 +152,8 @@ StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
   check_picture_size(name, "TIFF", width, height, 0, bytes.size());
   StoredPicture picture;
   picture.image = Image(int(width), int(height));
-  char why[1024] = {};
-  if (!TIFFRGBAImageOK(file.get(), why)) refuse_picture(name, "TIFF", why);
-  std::vector<std::uint32_t> raster(std::size_t(width) * height);
-  if (!TIFFReadRGBAImageOriented(file.get(), width, height, raster.data(), ORIENTATION_TOPLEFT, 1))
+  if (!RgbaReader(file.get(), name).read(picture.image))
     refuse_picture(name, "TIFF", source.message);
-  for (std::size_t i = 0; i < raster.size(); ++i) {
-    std::uint8_t* pixel = &picture.image.rgba[4 * i];
-    pixel[0] = std::uint8_t(TIFFGetR(raster[i]));
-    pixel[1] = std::uint8_t(TIFFGetG(raster[i]));
-    pixel[2] = std::uint8_t(TIFFGetB(raster[i]));
-    pixel[3] = std::uint8_t(TIFFGetA(raster[i]));
-  }
   make_straight(picture.image);
   std::uint32_t profile_size = 0;
   void* profile = nullptr;

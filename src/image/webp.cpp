@@ -2,8 +2,10 @@
 #include <webp/decode.h>
 #include <webp/demux.h>
 
+#include <algorithm>
 #include <memory>
 
+#include "base/run_scope.h"
 #include "image/decoders.h"
 
 namespace hydrodip {
@@ -13,6 +15,27 @@ namespace {
 struct DeleteDemuxer {
   void operator()(WebPDemuxer* demuxer) const { WebPDemuxDelete(demuxer); }
 };
+
+struct DeleteDecoder {
+  void operator()(WebPIDecoder* decoder) const { WebPIDelete(decoder); }
+};
+
+// Shows the decoder more and more of the file, so that a job can be cancelled in between.
+bool read_pixels(const PictureBytes& bytes, Image& image) {
+  constexpr std::size_t kPiece = std::size_t(1) << 16;
+  const std::unique_ptr<WebPIDecoder, DeleteDecoder> decoder(
+      WebPINewRGB(MODE_RGBA, image.rgba.data(), image.rgba.size(), 4 * image.width_px));
+  if (!decoder) throw std::bad_alloc();
+  for (std::size_t shown = 0; shown < bytes.size();) {
+    check_cancelled();
+    shown = std::min(shown + kPiece, bytes.size());
+    const VP8StatusCode status = WebPIUpdate(decoder.get(), bytes.data(), shown);
+    if (status == VP8_STATUS_OK) return true;
+    if (status == VP8_STATUS_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (status != VP8_STATUS_SUSPENDED) return false;
+  }
+  return false;
+}
 
 PictureBytes chunk(WebPDemuxer* demuxer, const char* kind) {
   WebPChunkIterator found;
@@ -33,9 +56,7 @@ StoredPicture decode_webp(const PictureBytes& bytes, const std::string& name) {
                      bytes.size());
   StoredPicture picture;
   picture.image = Image(features.width, features.height);
-  if (!WebPDecodeRGBAInto(bytes.data(), bytes.size(), picture.image.rgba.data(),
-                          picture.image.rgba.size(), 4 * features.width))
-    refuse_picture(name, "WebP", "its pixels cannot be read");
+  if (!read_pixels(bytes, picture.image)) refuse_picture(name, "WebP", "its pixels cannot be read");
   const WebPData data{bytes.data(), bytes.size()};
   const std::unique_ptr<WebPDemuxer, DeleteDemuxer> demuxer(WebPDemux(&data));
   if (!demuxer) return picture;

@@ -9,6 +9,7 @@
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
+#include "report/report.h"
 #include "session/sheet_files.h"
 
 namespace hydrodip {
@@ -28,16 +29,17 @@ SheetOptions sheet_options(const JobConfig& config) {
 }
 
 // A sheet without a drop on it is never what was meant.
-void require_ink(const FilmInk& ink, const JobConfig& config) {
-  const auto& laid = ink.inking.inks.cmyk;
+void require_ink(const Designed& designed, const JobConfig& config) {
+  const auto& laid = designed.ink.ink.inking.inks.cmyk;
   if (std::any_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value != 0; })) return;
-  throw InputError(
-      fmt::format("{}: the sheet would be blank: what the film reaches of the model is white, "
-                  "transparent or of "
-                  "the object's own colour; check its texture and colours, which side enters the "
-                  "water (--down), "
-                  "and --depth",
-                  config.model.string()));
+  const Coverage& coverage = designed.dipped.coverage;
+  throw InputError(fmt::format(
+      "{}: the sheet would be blank. {}", config.model.string(),
+      coverage.film_on_object_mm2 > 0
+          ? "What the film reaches of the model is white, transparent or of the object's own "
+            "colour; check its texture and colours, which side enters the water (--down), and "
+            "--depth."
+          : plain_verdict(coverage)));
 }
 
 }  // namespace
@@ -61,7 +63,7 @@ JobResult print_job(const JobConfig& config, const RunContext& context) {
 
   const Designed designed = design(
       {prepared.posed, *prepared.paint, Allotment(), *printer.model, options}, times, context);
-  require_ink(designed.ink.ink, config);
+  require_ink(designed, config);
   times.measure("sheet", [&] {
     write_sheet_files(folder, designed.ink.ink, printer, sheet_options(config), context);
   });

@@ -100,12 +100,10 @@ class GltfReader {
     file_.y_up = true;
     file_.units = "meter";
     read_materials();
-    corners_left_ = 6'000'000 + 30 * std::int64_t(data_.total_bytes());
+    corners_left_ = 1'500'000 + 30 * std::int64_t(data_.total_bytes());
     visits_left_ = std::int64_t(data_.table_size("nodes"));
     for (const std::int64_t root : roots()) visit(root, Matrix4f::Identity(), 0);
     if (file_.face_end.empty()) data_.refuse("it has no triangles");
-    if (!has_colors_) file_.colors = {};
-    if (!has_uvs_) file_.uvs = {};
     return std::move(file_);
   }
 
@@ -528,23 +526,27 @@ class GltfReader {
     return used_[at].index;
   }
 
+  // From the first part on that has any.
   void add_uv(const Part& part, std::int64_t corner) {
+    if (part.uvs) has_uvs_ = true;
+    if (!has_uvs_) return;
+    file_.uvs.resize(file_.corners.size() - 1, {ModelFile::kNoUv, 0});
     std::array<float, 4> uv{ModelFile::kNoUv, 0};
     if (part.uvs) {
       part.uvs.get(corner, uv.data());
       uv[1] = 1 - uv[1];
-      has_uvs_ = true;
     }
     file_.uvs.emplace_back(uv[0], uv[1]);
   }
 
-  // Linear already. An opaque material's alpha is 1, whatever its vertices say.
+  // From the first part on that has any. Linear already. An opaque material's alpha is 1, whatever
+  // its vertices say.
   void add_color(const Part& part, std::int64_t corner) {
+    if (part.colors) has_colors_ = true;
+    if (!has_colors_) return;
+    file_.colors.resize(file_.corners.size() - 1, {1, 1, 1, 1});
     std::array<float, 4> c{1, 1, 1, 1};
-    if (part.colors) {
-      part.colors.get(corner, c.data());
-      has_colors_ = true;
-    }
+    if (part.colors) part.colors.get(corner, c.data());
     file_.colors.push_back({unit(c[0]), unit(c[1]), unit(c[2]), part.opaque ? 1 : unit(c[3])});
   }
 

@@ -155,7 +155,9 @@ void GltfData::parse(std::string_view text) {
   // Values nest by recursion: a file of nothing but "[" must not exhaust the stack.
   int depth = 0;
   bool quoted = false;
+  CancelCheck cancel(input_.context);
   for (std::size_t i = 0; i < text.size(); ++i) {
+    cancel();
     const char c = text[i];
     if (quoted) {
       if (c == '\\') ++i;
@@ -167,7 +169,6 @@ void GltfData::parse(std::string_view text) {
     if (c == ']' || c == '}') --depth;
     if (depth > kMaxDepth) refuse("its JSON is nested too deeply");
   }
-  CancelCheck cancel(input_.context);
   *root_ = json::parse(
       text,
       [&](int, json::parse_event_t, json&) {
@@ -256,7 +257,9 @@ FileBytes GltfData::data_uri(const std::string& uri) const {
   std::uint32_t bits = 0;
   int held = 0;
   bool ended = false;
+  CancelCheck cancel(input_.context);
   for (std::size_t i = comma + 1; i < uri.size(); ++i) {
+    cancel();
     const char c = uri[i];
     const int value = c >= 'A' && c <= 'Z'   ? c - 'A'
                       : c >= 'a' && c <= 'z' ? c - 'a' + 26

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/run_scope.h"
 #include "image/files.h"
 #include "model_io/model_file.h"
 #include "model_io/model_folder.h"
@@ -109,13 +110,18 @@ void apply_range(Image& image, float base, float gain) {
   for (std::size_t i = 0; i < 256; ++i)
     table[i] =
         std::uint8_t(std::lround(255 * std::clamp(base + gain * float(i) / 255, 0.0F, 1.0F)));
-  for (std::size_t i = 0; i < image.rgba.size(); ++i)
+  CheckEvery check(1 << 20);
+  for (std::size_t i = 0; i < image.rgba.size(); ++i) {
+    check();
     if (i % 4 != 3) image.rgba[i] = table[image.rgba[i]];
+  }
 }
 
 void apply_alpha(Image& image, Alpha alpha, float cutoff) {
   if (alpha == Alpha::kBlend) return;
+  CheckEvery check(1 << 20);
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+    check();
     const bool shows = alpha == Alpha::kOpaque || float(image.rgba[i]) >= cutoff * 255;
     image.rgba[i] = shows ? 255 : 0;
   }

@@ -105,7 +105,12 @@ ModelFile read_3mf(const ModelInput& input);
 [[noreturn]] void refuse_line(const std::string& path, long line, const std::string& what);
 
 // The start of a word from a file, for messages.
-inline std::string shown(std::string_view word) { return std::string(word.substr(0, 40)); }
+inline std::string shown(std::string_view word) {
+  std::string text(word.substr(0, 40));
+  for (char& c : text)
+    if (c == '\0') c = '?';  // an exception's sentence would end there
+  return text;
+}
 
 // Asks for a cancel every few thousand calls.
 class CancelCheck {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <unordered_map>
+#include <utility>
 
 #include "base/error.h"
 #include "model_io/model_file.h"
@@ -274,7 +275,8 @@ class ObjReader {
     int count = 0;
     for (std::size_t m = 0; m < defined_.size(); ++m) {
       if (defined_[m] || ++count > 3) continue;
-      names += (names.empty() ? "" : ", ") + shown(file_.materials[m].name);
+      const std::string& name = file_.materials[m].name;
+      names += (names.empty() ? "" : ", ") + (name.empty() ? "without a name" : shown(name));
     }
     if (count > 0)
       input_.context.warn(

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "model_io/model_file.h"
 #include "model_io/package.h"
+#include "model_io/slicer_parts.h"
 #include "model_io/text.h"
 
 namespace hydrodip {
@@ -472,17 +473,16 @@ class ThreeMfReader {
         cancel_(input.context) {}
 
   ModelFile run() {
-    const std::string root = root_part();
-    const Part& part = this->part(root);
+    slicer_parts_ = read_slicer_parts(input_.path, package_, input_.context);
+    root_ = root_part();
+    const Part& part = this->part(root_);
     file_.units = part.units;
     std::vector<Component> items = part.items;
     // Some write no build at all: then everything is meant.
     if (items.empty())
       for (const auto& [id, object] : part.objects) items.push_back({"", id, Matrix4f::Identity()});
-    for (const Component& item : items) place(root, item, Matrix4f::Identity(), 0);
+    for (const Component& item : items) place(root_, item, Matrix4f::Identity(), 0);
     if (file_.face_end.empty()) refuse_model(input_.path, "it has no triangles");
-    if (!has_colors_) file_.colors = {};
-    if (!has_uvs_) file_.uvs = {};
     tell_what_is_left_out();
     return std::move(file_);
   }
@@ -530,9 +530,17 @@ class ThreeMfReader {
       refuse_model(input_.path, fmt::format("object {} is used but not defined", placed.id));
     if (!object->second.printed) return;
     const Matrix4f world = parent * placed.transform;
-    add_mesh(part, object->second, world);
+    // Slicers speak of the objects of the root part.
+    const bool root = name == root_;
+    add_mesh(part, object->second, world, root ? left_out_triangles(placed.id) : kNone);
     for (const Component& component : object->second.components)
-      place(name, component, world, depth + 1);
+      if (!root || !slicer_parts_.components.contains({placed.id, component.id}))
+        place(name, component, world, depth + 1);
+  }
+
+  const std::vector<SlicerParts::Range>& left_out_triangles(std::int64_t object) const {
+    const auto known = slicer_parts_.triangles.find(object);
+    return known == slicer_parts_.triangles.end() ? kNone : known->second;
   }
 
   [[noreturn]] void refuse_copies() const {
@@ -542,7 +550,8 @@ class ThreeMfReader {
                     input_.path));
   }
 
-  void add_mesh(const Part& part, const Object3mf& object, const Matrix4f& world) {
+  void add_mesh(const Part& part, const Object3mf& object, const Matrix4f& world,
+                const std::vector<SlicerParts::Range>& left_out) {
     if ((triangles_left_ -= std::int64_t(object.triangles.size())) < 0) refuse_copies();
     const auto first = std::int32_t(file_.positions.size());
     check_count(input_.path, file_.positions.size() + object.vertices.size());
@@ -553,9 +562,13 @@ class ThreeMfReader {
       file_.positions.push_back(linear * p.cast<double>() + offset);
     }
     const bool mirrored = world.determinant() < 0;
-    for (const MeshTriangle& triangle : object.triangles) {
+    auto next_left_out = left_out.begin();
+    for (std::size_t t = 0; t < object.triangles.size(); ++t) {
       cancel_();
-      add_triangle(part, triangle, first, mirrored);
+      while (next_left_out != left_out.end() && next_left_out->second < std::int64_t(t))
+        ++next_left_out;
+      if (next_left_out != left_out.end() && next_left_out->first <= std::int64_t(t)) continue;
+      add_triangle(part, object.triangles[t], first, mirrored);
     }
     check_count(input_.path, file_.corners.size());
   }
@@ -572,16 +585,26 @@ class ThreeMfReader {
                 : part.groups[std::size_t(triangle.group)][std::size_t(triangle.entries[c])];
       file_.corners.push_back(first + triangle.corners[c]);
       if (k == 0) material = entry.material;
-      has_colors_ = has_colors_ || (!plain && part.group_has_color[std::size_t(triangle.group)]);
-      has_uvs_ = has_uvs_ || entry.material >= 0;
-      file_.colors.push_back({srgb8_to_linear(entry.color[0]), srgb8_to_linear(entry.color[1]),
-                              srgb8_to_linear(entry.color[2]), float(entry.color[3]) / 255});
-      file_.uvs.push_back(entry.uv);
+      if (!plain && part.group_has_color[std::size_t(triangle.group)]) has_colors_ = true;
+      if (entry.material >= 0) has_uvs_ = true;
+      // From the first on that says anything.
+      const std::size_t before = file_.corners.size() - 1;
+      if (has_colors_) {
+        file_.colors.resize(before, {1, 1, 1, 1});
+        file_.colors.push_back({srgb8_to_linear(entry.color[0]), srgb8_to_linear(entry.color[1]),
+                                srgb8_to_linear(entry.color[2]), float(entry.color[3]) / 255});
+      }
+      if (has_uvs_) {
+        file_.uvs.resize(before, kPlain.uv);
+        file_.uvs.push_back(entry.uv);
+      }
     }
     file_.end_face(material);
   }
 
   void tell_what_is_left_out() const {
+    for (const std::string& kind : slicer_parts_.kinds)
+      input_.context.warn(fmt::format("{} holds {}; they are left out.", input_.name, kind));
     for (const std::string& feature : left_out_.features)
       input_.context.warn(fmt::format("{} holds {}, which are left out.", input_.name, feature));
     if (left_out_.painted > 0)
@@ -592,15 +615,18 @@ class ThreeMfReader {
   }
 
   static constexpr std::int64_t kCopies = 4;
+  static inline const std::vector<SlicerParts::Range> kNone;
 
   const ModelInput& input_;
   Package package_;
   ModelFile file_;
   Textures textures_;
   CancelCheck cancel_;
+  std::string root_;  // its part's stored name
   std::map<std::string, Part> parts_;
+  SlicerParts slicer_parts_;
   LeftOut left_out_;
-  std::int64_t triangles_left_ = 1'000'000;
+  std::int64_t triangles_left_ = 500'000;
   std::int64_t placements_left_ = 20'000;
   bool has_colors_ = false, has_uvs_ = false;
 };

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
 
 #include "base/error.h"
 #include "base/run_scope.h"
 #include "base/thread_budget.h"
+#include "base/thread_supply.h"
 
 namespace hydrodip {
 
@@ -70,8 +72,13 @@ namespace {
 // One device for all surfaces of the process: it holds Embree's settings and is never changed.
 // Begun by whoever comes first; never ended, for a surface may live as long as the process.
 RTCDevice device() {
-  static const RTCDevice shared = rtcNewDevice("set_affinity=0");
-  if (!shared) throw std::runtime_error("Embree could not be started");
+  static const RTCDevice shared = [] {
+    threads_in_supply();
+    RTCDevice made = rtcNewDevice("set_affinity=0");
+    if (!made && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (!made) throw std::runtime_error("Embree cannot run on this processor");
+    return made;
+  }();
   return shared;
 }
 

@@ -265,6 +265,12 @@ TEST_F(Formats, PlyDataThatBeginsLikeALineEnd) {
   EXPECT_EQ(loaded.object.object.bounds().size(), Vec3(3, 5, 0));
 }
 
+TEST_F(Formats, SentencesGoOnAfterANulByte) {
+  constexpr char kText[] = "ply\nformat ascii 1.0\nelement ver\0tex\nend_header\n";
+  const std::string text(kText, sizeof kText - 1);
+  EXPECT_TRUE(contains(refusal_of(folder_.write("a.ply", text)), "'ver?tex' has no valid count"));
+}
+
 TEST_F(Formats, PlyTriangleStrips) {
   const Loaded loaded = load(folder_.write(
       "a.ply", std::string("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
@@ -623,6 +629,78 @@ TEST_F(ThreeMf, SupportsAreNotDipped) {
                       "</object></resources><build><item objectid=\"1\"/>"
                       "<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 9 0 0\"/></build>")}});
   EXPECT_EQ(loaded.object.health.triangles, 2);
+}
+
+// Bambu Studio and OrcaSlicer: one object of three components, of which one is to be dipped.
+TEST_F(ThreeMf, HelperPartsOfBambuStudioAreLeftOut) {
+  const std::string inner = model("<resources><object id=\"1\">" + square("") +
+                                  "</object><object id=\"2\" type=\"other\">" + square("") +
+                                  "</object><object id=\"3\" type=\"other\">" + square("") +
+                                  "</object></resources><build/>");
+  std::string components;
+  for (int id = 1; id <= 3; ++id)
+    components += fmt::format(
+        "<component p:path=\"/3D/Objects/object_1.model\" objectid=\"{}\" "
+        "transform=\"1 0 0 0 1 0 0 0 1 {} 0 0\"/>",
+        id, 10 * id);
+  const std::string outer = model("<resources><object id=\"4\"><components>" + components +
+                                  "</components></object></resources><build>"
+                                  "<item objectid=\"4\"/></build>");
+  const auto with = [&](const std::string& settings) {
+    return package({{"3D/3dmodel.model", outer},
+                    {"3D/Objects/object_1.model", inner},
+                    {"Metadata/model_settings.config", settings}});
+  };
+  const Loaded loaded = with(
+      "<?xml version=\"1.0\"?><config><object id=\"4\">"
+      "<metadata key=\"name\" value=\"a\"/>"
+      "<part id=\"1\" subtype=\"normal_part\"><metadata key=\"extruder\" value=\"1\"/></part>"
+      "<part id=\"2\" subtype=\"modifier_part\"/><part id=\"3\" subtype=\"negative_part\"/>"
+      "</object><plate/></config>");
+  EXPECT_EQ(loaded.object.health.triangles, 2);
+  EXPECT_EQ(loaded.object.object.bounds().min, Vec3(10, 0, 0));
+  EXPECT_EQ(loaded.object.object.bounds().max, Vec3(11, 1, 0));
+  EXPECT_TRUE(warned(loaded, "modifiers"));
+  EXPECT_TRUE(warned(loaded, "negative parts"));
+  // Settings of another object, and such as cannot be read, change nothing.
+  EXPECT_EQ(with("<config><object id=\"1\"><part id=\"2\" subtype=\"modifier_part\"/></object>"
+                 "</config>")
+                .object.health.triangles,
+            6);
+  EXPECT_EQ(with("<config><object id=").object.health.triangles, 6);
+}
+
+// PrusaSlicer: one mesh, of which ranges of triangles are volumes.
+TEST_F(ThreeMf, HelperVolumesOfPrusaSlicerAreLeftOut) {
+  const std::string mesh =
+      "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>"
+      "<vertex x=\"1\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\"/>"
+      "<vertex x=\"9\" y=\"9\" z=\"9\"/></vertices><triangles>"
+      "<triangle v1=\"0\" v2=\"1\" v3=\"4\"/><triangle v1=\"1\" v2=\"2\" v3=\"4\"/>"
+      "<triangle v1=\"0\" v2=\"1\" v3=\"2\"/><triangle v1=\"0\" v2=\"2\" v3=\"3\"/>"
+      "<triangle v1=\"2\" v2=\"3\" v3=\"4\"/></triangles></mesh>";
+  const auto with = [&](const std::string& modifier) {
+    return package(
+        {{"3D/3dmodel.model", model("<resources><object id=\"1\">" + mesh +
+                                    "</object></resources><build><item objectid=\"1\"/></build>")},
+         {"Metadata/Slic3r_PE_model.config",
+          "<config><object id=\"1\" instances_count=\"1\">"
+          "<volume firstid=\"4\" lastid=\"4\">" +
+              modifier +
+              "</volume><volume firstid=\"2\" lastid=\"3\">"
+              "<metadata type=\"volume\" key=\"volume_type\" value=\"ModelPart\"/></volume>"
+              "<volume firstid=\"0\" lastid=\"1\">" +
+              modifier + "</volume></object></config>"}});
+  };
+  for (const char* modifier :
+       {"<metadata type=\"volume\" key=\"volume_type\" value=\"ParameterModifier\"/>",
+        "<metadata type=\"volume\" key=\"modifier\" value=\"1\"/>"}) {
+    const Loaded loaded = with(modifier);
+    EXPECT_EQ(loaded.object.health.triangles, 2);
+    EXPECT_EQ(loaded.object.object.bounds().max, Vec3(1, 1, 0));
+    EXPECT_TRUE(warned(loaded, "modifiers"));
+  }
+  EXPECT_EQ(with("").object.health.triangles, 5);
 }
 
 TEST_F(ThreeMf, CopiesWithoutEndAreRefused) {

@@ -77,9 +77,9 @@ const film = async () => Number(/([\d.]+) cm/.exec(await text('#depth-text'))[1]
 // --- What must hold ---
 
 test('opens without a complaint, asks for nothing, and fits the window', async () => {
-  const wide = { width: 1100, height: 700 };
-  const phone = { width: 390, height: 700 };
-  for (const [{ url }, size] of [[mask, wide], [mask, phone], [partial, wide], [failed, phone]]) {
+  const wide = { width: 1000, height: 560 };
+  const phone = { width: 390, height: 560 };
+  for (const [{ url }, size] of [[mask, wide], [partial, phone], [failed, phone]]) {
     await openView({ url }, size);
     assert.deepEqual(browser.complaints, []);
     assert.ok(!(await shown('#still')), 'the view takes the still picture\'s place');

@@ -1,14 +1,21 @@
-#include "affordable_threads.h"
+#include "base/thread_supply.h"
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
+#include "base/thread_budget.h"
+
 namespace hydrodip {
+
 namespace {
+
+// Besides TBB's: those that wait awake, and ended ones that the system still counts.
+constexpr int kToSpare = 8;
 
 // Keeps every thread that comes until all are there.
 class Meeting {
@@ -19,6 +26,7 @@ class Meeting {
     std::unique_lock lock(mutex_);
     if (--missing_ <= 0) all_here_.notify_all();
     all_here_.wait_for(lock, std::chrono::milliseconds(200), [&] { return missing_ <= 0; });
+    missing_ = 0;  // who has not come by now is not waited for again
   }
 
   void dissolve() {
@@ -33,8 +41,29 @@ class Meeting {
   int missing_;
 };
 
-// Whether that many more threads can run at once.
-bool can_start(int count) {
+// A loop in which every thread of the processor's takes part.
+struct Roll : ChunkLoop {
+  explicit Roll(int threads) : ChunkLoop{&Roll::answer, std::size_t(threads)}, meeting(threads) {}
+  static void answer(const ChunkLoop& loop, std::size_t) {
+    static_cast<const Roll&>(loop).meeting.come();
+  }
+  mutable Meeting meeting;
+};
+
+int secure_threads() {
+  const int wanted = processor_threads();
+  if (wanted < 2) return 1;
+  if (!can_start_threads(wanted - 1 + std::min(wanted, kToSpare))) {
+    stay_on_one_thread();
+    return 1;
+  }
+  run_on_all_threads(Roll(wanted));
+  return wanted;
+}
+
+}  // namespace
+
+bool can_start_threads(int count) {
   std::vector<std::thread> threads;
   Meeting meeting(count + 1);
   bool all = true;
@@ -49,17 +78,9 @@ bool can_start(int count) {
   return all;
 }
 
-}  // namespace
-
-AffordableThreads::AffordableThreads() {
-  const int wanted = available_threads();
-  if (wanted < 2) return;
-  if (!can_start(wanted - 1)) {
-    limit_.emplace(1);
-    return;
-  }
-  Meeting meeting(wanted);
-  parallel_for(std::size_t(wanted), 1, [&](std::size_t, std::size_t) { meeting.come(); });
+int threads_in_supply() {
+  static const int threads = secure_threads();
+  return threads;
 }
 
 }  // namespace hydrodip
