@@ -42,11 +42,4 @@ void ThreadBudget::run(const ChunkLoop& loop) {
 
 void run_on_all_threads(const ChunkLoop& loop) { run_here(loop); }
 
-void run_alone(const ChunkLoop& loop) {
-  tbb::task_arena one_thread(1);
-  one_thread.execute([&loop] {
-    for (std::size_t c = 0; c < loop.chunks; ++c) loop.run(loop, c);
-  });
-}
-
 }  // namespace hydrodip

@@ -41,7 +41,4 @@ class ThreadBudget {
 // The same with all of the processor's threads.
 void run_on_all_threads(const ChunkLoop& loop);
 
-// Runs the loop on the calling thread, and loops that a library runs on TBB inside it as well.
-void run_alone(const ChunkLoop& loop);
-
 }  // namespace hydrodip

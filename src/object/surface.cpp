@@ -4,15 +4,16 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <string>
 
 #include "base/error.h"
 #include "base/run_scope.h"
-#include "base/thread_budget.h"
 #include "base/thread_supply.h"
 
 namespace hydrodip {
@@ -74,7 +75,8 @@ namespace {
 RTCDevice device() {
   static const RTCDevice shared = [] {
     threads_in_supply();
-    RTCDevice made = rtcNewDevice("set_affinity=0");
+    // More threads of its user's than there are: none of its own ever helps.
+    RTCDevice made = rtcNewDevice("set_affinity=0,user_threads=65536");
     if (!made && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (!made) throw std::runtime_error("Embree cannot run on this processor");
     return made;
@@ -104,17 +106,13 @@ void add_triangles(RTCScene scene, const std::vector<Vec3>& positions,
 }
 
 // Embree's parallel build may order triangles differently from run to run, and with it the choice
-// among triangles hit exactly on their common edge. So this thread builds, alone. (Embree's own
-// option "threads=1" and a limit set for TBB would hold back the whole process.)
+// among triangles hit exactly on their common edge. So every thread builds alone: all places in
+// Embree's arena are kept for those who join (see device()), and one joins at a time.
 void build(RTCScene scene) {
-  struct Build : ChunkLoop {
-    RTCScene scene;
-    bool stopped = false;
-  } build{{[](const ChunkLoop& loop, std::size_t) {
-             rtcJoinCommitScene(static_cast<const Build&>(loop).scene);
-           },
-           1},
-          scene};
+  static std::timed_mutex one_at_a_time;
+  std::unique_lock lock(one_at_a_time, std::defer_lock);
+  while (!lock.try_lock_for(std::chrono::milliseconds(5))) check_cancelled();
+  bool stopped = false;
   const auto go_on = [](void* stopped, double) {
     try {
       check_cancelled();
@@ -123,10 +121,10 @@ void build(RTCScene scene) {
     }
     return !*static_cast<bool*>(stopped);
   };
-  rtcSetSceneProgressMonitorFunction(scene, go_on, &build.stopped);
-  run_alone(build);
+  rtcSetSceneProgressMonitorFunction(scene, go_on, &stopped);
+  rtcJoinCommitScene(scene);
   rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
-  if (build.stopped) throw Cancelled();
+  if (stopped) throw Cancelled();
   if (rtcGetDeviceError(device()) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
 }
 

@@ -52,7 +52,7 @@ struct Scene {
   DippedFilm film = film_torn_on_one_side();
   FilmMap map{ball, surface, film};
   std::vector<CornerNormals> normals = map_normals(ball);
-  MapScene maps{ball, normals, straight_down_to(1e9), &map, 1.8};
+  MapScene maps{ball, normals, straight_down_to(1e9), {}, &map, 1.8};
 };
 
 struct Pixel {

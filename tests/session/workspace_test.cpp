@@ -18,6 +18,7 @@ class WorkspaceTest : public testing::Test {
     write_sample("box", make_sample("box"), folder_.path());
     project_.model = folder_.path() / "box.obj";
     project_.design.film.width_mm = project_.design.film.height_mm = 120;
+    project_.design.air.cells = kDraftAirCells;
     project_.design.film.elements = 2000;
     project_.design.trajectory.depth_mm = 4;
     project_.design.dip.step_mm = 1;
@@ -122,10 +123,10 @@ TEST_F(WorkspaceTest, ANewerRequestCancelsTheOlder) {
   project_.design.film.elements = 2000;
   project_.design.dip.step_mm = 1;
   const auto again = workspace_.dipped(project_, Quality::kNormal, newer);
-  EXPECT_EQ(again->film->position,
-            simulate(*workspace_.posed(project_, newer),
-                     {project_.design.film, project_.design.trajectory, project_.design.dip})
-                .film->position);
+  EXPECT_EQ(again->film->position, simulate(*workspace_.posed(project_, newer),
+                                            {project_.design.film, project_.design.trajectory,
+                                             project_.design.dip, project_.design.air})
+                                       .film->position);
 }
 
 TEST_F(WorkspaceTest, TwoWhoAskForTheSameShareOneComputation) {
