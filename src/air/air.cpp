@@ -39,7 +39,8 @@ constexpr double kVolumeAgrees = 0.3;
 constexpr std::size_t kTiltCells = 30000;
 constexpr int kTiltDirections = 8;
 constexpr double kCoarseTilt_deg = 10, kFineTilt_deg = 2, kMostTilt_deg = 85;
-constexpr double kHardlyAny = 0.02;  // of a pocket's cells
+constexpr double kHardlyAny = 0.02;   // of a pocket's cells
+constexpr double kMostlyOpen = 0.25;  // likewise
 
 using Numbers = std::vector<std::uint16_t>;
 
@@ -302,10 +303,11 @@ class Search {
     for (const Hollow& hollow : found_) {
       context.progress("looking for trapped air",
                        0.5 + 0.5 * double(pockets.size()) / double(found_.size()));
-      AirPocket pocket = close(hollow, &air.lids);
+      TriangleMesh lids;
+      AirPocket pocket = close(hollow, &lids);
       PocketSurface::Part part = measure(hollow, pocket);
-      if (!(pocket.area_mm2 > 0)) continue;
-      lean(hollow, pocket);
+      if (!(pocket.area_mm2 > 0) || !lean(hollow, pocket)) continue;
+      add(lids, air.lids);
       pockets.emplace_back(std::move(pocket), std::move(part.triangles));
     }
     std::ranges::stable_sort(pockets, std::greater<>(),
@@ -420,13 +422,16 @@ class Search {
     return part;
   }
 
-  void lean(const Hollow& hollow, AirPocket& pocket) const {
+  // What becomes of it when the object leans. False if the other grid that this takes has a way out
+  // as it hangs: whatever way one grid finds is there.
+  bool lean(const Hollow& hollow, AirPocket& pocket) const {
     const Leaning leaning(object_, cells_, hollow, hollow_of_);
+    const double then = leaning.kept(pocket.water.up);
+    if (then < kMostlyOpen) return false;
     if (travel_.trajectory().is_straight_down()) {
       pocket.lets_out = leaning.lets_out();
-      return;
+      return true;
     }
-    const double then = leaning.kept(pocket.water.up);
     Vec3 last = pocket.water.up;
     double least = then;
     constexpr int kLooks = 24;
@@ -438,7 +443,15 @@ class Search {
       last = up;
       least = std::min(least, leaning.kept(up));
     }
-    if (then > 0) pocket.escapes_share = 1 - least / then;
+    pocket.escapes_share = 1 - least / then;
+    return true;
+  }
+
+  static void add(const TriangleMesh& more, TriangleMesh& all) {
+    const auto base = std::int32_t(all.positions.size());
+    all.positions.insert(all.positions.end(), more.positions.begin(), more.positions.end());
+    for (const Triangle& t : more.triangles)
+      all.triangles.push_back({base + t[0], base + t[1], base + t[2]});
   }
 
   Plane plane_at(double travelled_mm) const { return water_at(travel_.at(travelled_mm)); }
