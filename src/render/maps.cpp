@@ -178,23 +178,24 @@ LinearColor neutral(double) { return kNeutral; }
 
 // 700 wide.
 void draw_angle_legend(Legend legend, bool some_stays_dry, bool some_is_in_air) {
-  constexpr double kFrom = 20, kTo = 540;
-  const auto place = [](double angle_deg) { return kFrom + (kTo - kFrom) * angle_deg / 90; };
+  constexpr double kFrom = 20;
+  const double to = some_is_in_air ? 460 : 540, patch = some_is_in_air ? 520 : 600;
+  const auto place = [&](double angle_deg) { return kFrom + (to - kFrom) * angle_deg / 90; };
   legend.label("angle between surface normal and dipping direction", 350);
-  legend.bar(kFrom, kTo, [](double t) { return angle_color(std::min(90 * t, 89.8)); });
+  legend.bar(kFrom, to, [](double t) { return angle_color(std::min(90 * t, 89.8)); });
   for (int angle = 0; angle <= 90; angle += 15) {
     legend.tick(place(angle), fmt::format("{}\u00b0", angle));
   }
   legend.limit(place(kDipAngleLimit_deg), fmt::format("limit {:.0f}\u00b0", kDipAngleLimit_deg));
   legend.note("flat to the water", place(0) + 52, 1);
   legend.note("steeper: film may tear", place(67.5), 1);
-  legend.bar(600, 670, neutral);
-  legend.note("upright or", 635, 0);
-  legend.note(some_stays_dry ? "up, or dry" : "facing up", 635, 1);
+  legend.bar(patch, patch + 70, neutral);
+  legend.note("upright or", patch + 35, 0);
+  legend.note(some_stays_dry ? "up, or dry" : "facing up", patch + 35, 1);
   if (!some_is_in_air) return;
-  legend.bar(705, 755, [](double) { return kAir; });
-  legend.note("trapped", 730, 0);
-  legend.note("air", 730, 1);
+  legend.bar(630, 700, [](double) { return kAir; });
+  legend.note("trapped", 665, 0);
+  legend.note("air", 665, 1);
 }
 
 double tick_spacing(double range) {
