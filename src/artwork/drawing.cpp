@@ -143,6 +143,28 @@ struct Drawing::Impl {
   Owned<RsvgHandle> handle;
   Vec2 size;
   std::string name;
+
+  // Rows from `top` on.
+  void draw(Image& image, int top, int rows) const {
+    const Owned<cairo_surface_t> surface(
+        cairo_image_surface_create(CAIRO_FORMAT_ARGB32, image.width_px, rows));
+    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
+    const Owned<cairo_t> cairo(cairo_create(surface.get()));
+    cairo_translate(cairo.get(), 0, -top);
+    // One factor for both directions would leave a strip of a rounded size blank.
+    cairo_scale(cairo.get(), image.width_px / size.x(), image.height_px / size.y());
+    const RsvgRectangle all{0, 0, size.x(), size.y()};
+    GError* error = nullptr;
+    check_cancelled();
+    if (!rsvg_handle_render_document(handle.get(), cairo.get(), &all, &error))
+      throw InputError(fmt::format("{}: the drawing cannot be drawn ({}); save it again.", name,
+                                   message_of(error)));
+    cairo_surface_flush(surface.get());
+    const unsigned char* data = cairo_image_surface_get_data(surface.get());
+    const auto stride = std::size_t(cairo_image_surface_get_stride(surface.get()));
+    for (int y = 0; y < rows; ++y)
+      make_straight(data + std::size_t(y) * stride, image.width_px, image.pixel(0, top + y));
+  }
 };
 
 Drawing::Drawing(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -172,14 +194,20 @@ Drawing Drawing::from_text(const std::string& text, const std::string& font,
   const std::string element = text_element(text, font, color);
   const std::string name = "the text '" + text + "'";
   std::string why;
-  const RsvgRectangle whole{-1000, -1000, 2000, 2000};
+  // Around the origin, so large that no line reaches its edge.
+  constexpr double kRoom = 1e5;
+  const RsvgRectangle whole{-kRoom, -kRoom, 2 * kRoom, 2 * kRoom};
   const Owned<RsvgHandle> measured = parse(svg_around(element, whole), why);
   if (!measured) throw InputError(fmt::format("{} cannot be set: {}.", name, why));
+  const RsvgRectangle viewport{0, 0, 2 * kRoom, 2 * kRoom};
   RsvgRectangle ink{}, logical{};
-  if (!rsvg_handle_get_geometry_for_element(measured.get(), "#t", &ink, &logical, nullptr) ||
+  if (!rsvg_handle_get_geometry_for_layer(measured.get(), "#t", &viewport, &ink, &logical,
+                                          nullptr) ||
       !(ink.width > 0 && ink.height > 0))
     throw InputError(name +
                      " shows nothing: write letters, and see to it that fonts are installed");
+  ink.x -= kRoom;
+  ink.y -= kRoom;
   ink = {ink.x - kTextPad, ink.y - kTextPad, ink.width + 2 * kTextPad, ink.height + 2 * kTextPad};
   auto impl = std::make_unique<Impl>();
   impl->name = name;
@@ -192,25 +220,11 @@ Drawing Drawing::from_text(const std::string& text, const std::string& font,
 double Drawing::aspect() const { return impl_->size.x() / impl_->size.y(); }
 
 Image Drawing::pixels(int width_px, int height_px) const {
-  const Owned<cairo_surface_t> surface(
-      cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width_px, height_px));
-  if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
-  const Owned<cairo_t> cairo(cairo_create(surface.get()));
-  // One factor for both directions would leave a strip of a rounded size blank.
-  cairo_scale(cairo.get(), width_px / impl_->size.x(), height_px / impl_->size.y());
-  const RsvgRectangle all{0, 0, impl_->size.x(), impl_->size.y()};
-  GError* error = nullptr;
-  if (!rsvg_handle_render_document(impl_->handle.get(), cairo.get(), &all, &error))
-    throw InputError(fmt::format("{}: the drawing cannot be drawn ({}); save it again.",
-                                 impl_->name, message_of(error)));
-  cairo_surface_flush(surface.get());
+  // In bands, so that memory holds the picture once.
+  constexpr int kBand_px = 1024;
   Image image(width_px, height_px);
-  const unsigned char* data = cairo_image_surface_get_data(surface.get());
-  const auto stride = std::size_t(cairo_image_surface_get_stride(surface.get()));
-  for (int y = 0; y < height_px; ++y) {
-    check_cancelled();
-    make_straight(data + std::size_t(y) * stride, width_px, image.pixel(0, y));
-  }
+  for (int top = 0; top < height_px; top += kBand_px)
+    impl_->draw(image, top, std::min(kBand_px, height_px - top));
   return image;
 }
 

@@ -17,7 +17,9 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 // A way that is shorter by less is no shorter.
-constexpr double kShorter = 1 - 1e-7;
+constexpr double kShorter = 1 - 1e-11;
+// Ways to what is near enough may lead along what is a little farther.
+constexpr double kBeyond = 1.3;
 
 // ---- a finer mesh ----
 
@@ -186,6 +188,90 @@ class Spreading {
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front_;
 };
 
+// ---- even directions ----
+
+// A row of corners keeps all of its curvature to itself: ways to the left and to the right of it
+// disagree, where a smooth surface would spread the difference. Directions are evened out between
+// neighbours by mean value weights, which leave a plane, and all that can be unrolled into one, as
+// it is; distances stay.
+class Evening {
+ public:
+  Evening(const TriangleMesh& mesh, std::vector<Vec2>& place) : mesh_(mesh), place_(place) {
+    const std::size_t count = mesh.positions.size();
+    angle_ = filled(count, 0.0);
+    edge_ = filled(count, 0.0);
+    fan_ = filled<std::int64_t>(count, 0);
+    whole_ = filled<std::uint8_t>(count, 1);
+    for (const Triangle& t : mesh.triangles) {
+      for (std::size_t k = 0; k < 3; ++k) look_at(t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
+      if (place_[std::size_t(t[0])].allFinite()) reached_.push_back(t);
+    }
+  }
+
+  void run(int rounds) {
+    for (int round = 0; round < rounds; ++round) {
+      check_cancelled();
+      step();
+    }
+  }
+
+ private:
+  Vec3 way(std::int32_t from, std::int32_t to) const {
+    return mesh_.positions[std::size_t(to)] - mesh_.positions[std::size_t(from)];
+  }
+  const Vec2& place(std::int32_t v) const { return place_[std::size_t(v)]; }
+
+  static double angle_between(const Vec3& a, const Vec3& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+  }
+
+  // Corners in the midst of reached surface that is not torn there.
+  void look_at(std::int32_t v, std::int32_t a, std::int32_t b) {
+    constexpr double kTorn = 3;
+    const auto i = std::size_t(v);
+    angle_[i] += angle_between(way(v, a), way(v, b));
+    edge_[i] = std::max(edge_[i], way(v, a).norm());
+    fan_[i] += std::int64_t(a) - std::int64_t(b);  // comes back to 0 around the corner
+    for (const std::int32_t other : {a, b})
+      whole_[i] &= std::uint8_t(place(v).allFinite() && place(other).allFinite() &&
+                                (place(v) - place(other)).norm() < kTorn * way(v, other).norm());
+  }
+
+  void step() {
+    constexpr double kNear = 5;  // edges
+    std::vector<Vec2> sum = filled(place_.size(), Vec2(0, 0));
+    std::vector<double> total = filled(place_.size(), 0.0);
+    for (const Triangle& t : reached_)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int32_t v = t[k], a = t[(k + 1) % 3], b = t[(k + 2) % 3];
+        const auto i = std::size_t(v);
+        if (!whole_[i] || fan_[i] != 0) continue;
+        const double share = angle_between(way(v, a), way(v, b)) / angle_[i];
+        const double half = std::tan(std::min(share * std::numbers::pi, 1.5));
+        for (const std::int32_t other : {a, b}) {
+          const double weight = half / way(v, other).norm();
+          sum[i] += weight * place(other);
+          total[i] += weight;
+        }
+      }
+    for (std::size_t i = 0; i < place_.size(); ++i) {
+      if (!(total[i] > 0)) continue;
+      // Next to the centre every way is straight anyway.
+      const double distance = place_[i].norm();
+      const double part = 0.5 * std::clamp(distance / (kNear * edge_[i]) - 1, 0.0, 1.0);
+      const Vec2 next = (1 - part) * place_[i] + part * sum[i] / total[i];
+      if (next.norm() > 0.5 * distance) place_[i] = distance / next.norm() * next;
+    }
+  }
+
+  const TriangleMesh& mesh_;
+  std::vector<Vec2>& place_;
+  std::vector<Triangle> reached_;
+  std::vector<double> angle_, edge_;
+  std::vector<std::int64_t> fan_;
+  std::vector<std::uint8_t> whole_;
+};
+
 }  // namespace
 
 FineMesh::FineMesh(const TriangleMesh& mesh, int per_side) : per_side_(per_side) {
@@ -236,7 +322,7 @@ PolarMap polar_map(const TriangleMesh& mesh, const SurfacePoint& centre, const V
   inside.v = (1 - 3 * kInside) * centre.v + kInside;
   const Vec3 start = position_at(mesh, inside), exact = position_at(mesh, centre);
   const Vec2 shift((start - exact).dot(right), (start - exact).dot(up));
-  Spreading spreading(mesh, farthest_mm);
+  Spreading spreading(mesh, kBeyond * farthest_mm);
   for (const std::int32_t v : mesh.triangles[std::size_t(centre.triangle)]) {
     const Vec3 d = mesh.positions[std::size_t(v)] - start;
     spreading.start(v, {d.norm(), std::atan2(d.dot(up), d.dot(right))});
@@ -245,9 +331,12 @@ PolarMap polar_map(const TriangleMesh& mesh, const SurfacePoint& centre, const V
   PolarMap map;
   map.place_mm.reserve(mesh.positions.size());
   for (const Polar& p : spreading.polar())
-    map.place_mm.push_back(
-        p.distance < kFar ? Vec2(shift + p.distance * Vec2(std::cos(p.angle), std::sin(p.angle)))
-                          : Vec2(kFar, kFar));
+    map.place_mm.push_back(p.distance < kFar
+                               ? Vec2(p.distance * Vec2(std::cos(p.angle), std::sin(p.angle)))
+                               : Vec2(kFar, kFar));
+  constexpr int kRounds = 10;
+  Evening(mesh, map.place_mm).run(kRounds);
+  for (Vec2& place : map.place_mm) place += shift;
   return map;
 }
 

@@ -23,8 +23,8 @@ class FineMesh {
 };
 
 struct PolarMap {
-  // Per vertex: distance times direction, in the plane of `right` and `up` at the centre. Not
-  // finite beyond the farthest distance asked for.
+  // Per vertex: distance times direction, in the plane of `right` and `up` at the centre. Beyond
+  // the farthest distance asked for not exact, and far beyond it not finite.
   std::vector<Vec2> place_mm;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -55,7 +56,9 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
                              result.posed, context)
                      .paint;
   for (const ArtworkLayer& layer : options.artwork)
-    if (!layer.image.empty()) result.files.push_back(layer.image);
+    if (!layer.image.empty() &&
+        std::find(result.files.begin(), result.files.end(), layer.image) == result.files.end())
+      result.files.push_back(layer.image);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 #include <numbers>
 
@@ -62,20 +63,39 @@ inline TriangleMesh box(const Vec3& low, const Vec3& high) {
   return mesh;
 }
 
-// Around z, outward, without caps; the seam is at +x.
+// Equal corners become one, and what has no area goes.
+inline TriangleMesh welded(const TriangleMesh& mesh) {
+  TriangleMesh result;
+  std::map<std::array<long, 3>, std::int32_t> known;
+  std::vector<std::int32_t> now;
+  for (const Vec3& p : mesh.positions) {
+    const std::array<long, 3> key = {std::lround(p.x() * 1e6), std::lround(p.y() * 1e6),
+                                     std::lround(p.z() * 1e6)};
+    const auto [found, is_new] = known.try_emplace(key, std::int32_t(result.positions.size()));
+    if (is_new) result.positions.push_back(p);
+    now.push_back(found->second);
+  }
+  for (const Triangle& t : mesh.triangles) {
+    const Triangle v = {now[std::size_t(t[0])], now[std::size_t(t[1])], now[std::size_t(t[2])]};
+    if (v[0] != v[1] && v[1] != v[2] && v[2] != v[0]) result.triangles.push_back(v);
+  }
+  return result;
+}
+
+// Around z, outward, without caps.
 inline TriangleMesh tube(double radius, double height, int around, int along) {
-  return sheet(around, along, [=](double s, double t) {
+  return welded(sheet(around, along, [=](double s, double t) {
     return Vec3(radius * std::cos(2 * kPi * s), radius * std::sin(2 * kPi * s), height * t);
-  });
+  }));
 }
 
 // Latitude and longitude, outward.
 inline TriangleMesh ball(double radius, int around, int along) {
-  return sheet(around, along, [=](double s, double t) {
+  return welded(sheet(around, along, [=](double s, double t) {
     const double latitude = kPi * (t - 0.5);
     return Vec3(radius * Vec3(std::cos(latitude) * std::cos(2 * kPi * s),
                               std::cos(latitude) * std::sin(2 * kPi * s), std::sin(latitude)));
-  });
+  }));
 }
 
 // As it stands: positions are the model's, but for the shift that centres it over the bath.

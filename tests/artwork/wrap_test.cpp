@@ -86,19 +86,28 @@ TEST(Wrap, OnAConeIsItsUnrolling) {
 }
 
 TEST(Wrap, OnASphereKeepsLengthsAndDirectionsFromTheCentre) {
-  constexpr double kRadius = 30;
-  const TriangleMesh mesh = ball(kRadius, 120, 60);
-  const Vec3 centre = kRadius * Vec3(0.3, -0.8, 0.5).normalized();
-  const Vec3 out = centre.normalized();
-  const Vec3 right = Vec3(0, 0, 1).cross(out).normalized(), up = out.cross(right);
-  EXPECT_LT(unrolling_error(mesh, centre, right, up, 40,
-                            [&](const Vec3& p) {
-                              const Vec3 q = p.normalized();
-                              const Vec2 direction(q.dot(right), q.dot(up));
-                              const double angle = std::acos(std::clamp(q.dot(out), -1.0, 1.0));
-                              return Vec2(kRadius * angle * direction.normalized());
-                            }),
-            0.005);
+  constexpr double kRadius = 30, kReach = 40;
+  // Anywhere, and at a corner where rows of corners meet.
+  for (const Vec3& towards : {Vec3(0.3, -0.8, 0.5), Vec3(0, -1, 0)}) {
+    const PosedObject object = posed(ball(kRadius, 120, 60));
+    const Vec3 middle = moved(object, Vec3::Zero()), out = towards.normalized();
+    const Vec3 right = Vec3(0, 0, 1).cross(out).normalized(), up = out.cross(right);
+    const auto hit = object.surface().closest_point(middle + kRadius * out, 1);
+    const PolarMap map =
+        polar_map(object.mesh(), {hit->triangle, hit->u, hit->v}, right, up, kReach);
+    int seen = 0;
+    for (std::size_t v = 0; v < map.place_mm.size(); ++v) {
+      const Vec3 q = (object.mesh().positions[v] - middle).normalized();
+      const double length = kRadius * std::acos(std::clamp(q.dot(out), -1.0, 1.0));
+      if (length > kReach || length < 2) continue;
+      ++seen;
+      EXPECT_NEAR(map.place_mm[v].norm(), length, 0.005 * length);
+      const double turn = std::atan2(q.dot(up), q.dot(right));
+      const double found = std::atan2(map.place_mm[v].y(), map.place_mm[v].x());
+      EXPECT_NEAR(std::remainder(found - turn, 2 * kPi), 0, 0.02);
+    }
+    EXPECT_GT(seen, 1000);
+  }
 }
 
 TEST(Wrap, FollowsAnEdgeAsPaperDoes) {
