@@ -170,6 +170,8 @@ bool shows_anything(const Image& image) {
 void warn_of_wrap(const ArtworkLayer& layer, const WrapReport& report, const RunContext& context) {
   context.log(fmt::format("{}: wrapped, stretched {:.2f} to {:.2f} times", name_of(layer),
                           report.stretch_least, report.stretch_most));
+  // A repeated picture goes on to where the surface comes round to itself.
+  if (layer.repeat != Repeat::kOnce) return;
   constexpr double kMuch = 1.5;
   if (report.folded_mm2 > 0)
     context.warn(fmt::format(
