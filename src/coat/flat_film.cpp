@@ -152,10 +152,10 @@ double distortion_of(const DippedFilm& film, const std::vector<Vec2>& place) {
     const Eigen::JacobiSVD<Mat2> svd(surface * pattern.inverse());
     const double area = 0.5 * std::abs(surface.determinant());
     for (int k = 0; k < 2; ++k)
-      sum += 0.5 * area * std::min(1.0, std::abs(svd.singularValues()[k] - 1));
+      sum += 0.5 * area * std::min(1.0, std::pow(svd.singularValues()[k] - 1, 2));
     total += area;
   }
-  return total > 0 ? sum / total : 0;
+  return total > 0 ? std::sqrt(sum / total) : 0;
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ class FlatFilm {
   // For a point of the film as printed, mm.
   Vec2 at(const Vec2& film_mm) const;
 
-  // Mean of how far lengths on the object are from those of a pattern, by area: |stretch - 1|.
+  // How far lengths on the object are from those of a pattern: stretch - 1, root mean square by
+  // area.
   double distortion() const { return distortion_; }  // drawn in these coordinates
   double distortion_as_printed() const { return distortion_as_printed_; }
 

@@ -27,10 +27,11 @@ class FreeRooms {
  public:
   explicit FreeRooms(const Vec2& sheet_mm) : rooms_{{Vec2::Zero(), sheet_mm}} {}
 
-  PackedPiece place(const Vec2& size) {
+  // `turns`: which way round the piece may lie.
+  PackedPiece place(const Vec2& size, const std::vector<bool>& turns) {
     PackedPiece best;
     double least = 1e300;
-    for (const bool turned : {false, true}) {
+    for (const bool turned : turns) {
       const Vec2 wanted = turned ? Vec2(size.y(), size.x()) : size;
       for (const Room& room : rooms_) {
         const Vec2 left = room.size() - wanted;
@@ -78,10 +79,11 @@ class FreeRooms {
 };
 
 std::vector<PackedPiece> packed_in(const std::vector<std::size_t>& order,
-                                   const std::vector<Vec2>& sizes, const Vec2& sheet) {
+                                   const std::vector<Vec2>& sizes, const Vec2& sheet,
+                                   const std::vector<bool>& turns) {
   FreeRooms rooms(sheet);
   std::vector<PackedPiece> pieces(sizes.size());
-  for (const std::size_t i : order) pieces[i] = rooms.place(sizes[i]);
+  for (const std::size_t i : order) pieces[i] = rooms.place(sizes[i], turns);
   return pieces;
 }
 
@@ -101,12 +103,15 @@ std::vector<PackedPiece> pack_pieces(const std::vector<Vec2>& sizes_mm, const Ve
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return measure(sizes_mm[a]) > measure(sizes_mm[b]);
     });
-    std::vector<PackedPiece> pieces = packed_in(order, sizes_mm, sheet_mm);
-    const auto count = std::count_if(pieces.begin(), pieces.end(),
-                                     [](const PackedPiece& piece) { return piece.placed; });
-    if (count <= most) continue;
-    most = count;
-    best = std::move(pieces);
+    // Equal pieces often fill a sheet only if all lie the same way.
+    for (const std::vector<bool>& turns : {std::vector{false}, {false, true}, {true}}) {
+      std::vector<PackedPiece> pieces = packed_in(order, sizes_mm, sheet_mm, turns);
+      const auto count = std::count_if(pieces.begin(), pieces.end(),
+                                       [](const PackedPiece& piece) { return piece.placed; });
+      if (count <= most) continue;
+      most = count;
+      best = std::move(pieces);
+    }
   }
   return best;
 }

@@ -107,6 +107,30 @@ assert a[2] <= b[0] + 1e-6 or b[2] <= a[0] + 1e-6 or a[3] <= b[1] + 1e-6 or b[3]
 assert all(10 <= v <= 190 for v in a + b)
 PY
 
+# Profiles count: Display P3 and CMYK come out as Little CMS's own tool has them.
+inks=/usr/share/color/icc/ghostscript/default_cmyk.icc
+p3=/usr/share/color/argyll/ref/DisplayP3.icm
+# shown IMAGE: the colour in the middle of the film image.
+shown() {
+  # shellcheck disable=SC2086
+  "$hydrodip" print plate.stl --art "$1" $quick --set preview.pictures=off -o shown --quiet \
+    > /dev/null || fail "print with $1"
+  convert shown/print.png -crop 1x1+141+113 -depth 8 txt:- | tail -1 |
+    sed 's/^[^(]*(\([0-9]*\),\([0-9]*\),\([0-9]*\).*/\1 \2 \3/'
+}
+# like COLOR VALUES PROFILE
+like() {
+  printf '%s\n' "$2" | transicc -i "$3" -o '*sRGB' -t 1 -n 2> /dev/null |
+    awk -v shown="$1" '{ split(shown, s); for (k = 1; k <= 3; ++k) if (s[k] - $k > 1.5 || $k - s[k] > 1.5) exit 1
+      if (NF < 3) exit 1; found = 1 } END { exit !found }' || fail "$2 by $3 came out as $1"
+}
+if command -v transicc > /dev/null && command -v convert > /dev/null && [ -e "$inks" ] && [ -e "$p3" ]; then
+  convert -size 64x48 'xc:cmyk(60%,30%,20%,5%)' -quality 100 -profile "$inks" cmyk.jpg
+  like "$(shown cmyk.jpg)" '60 30 20 5' "$inks"
+  convert -size 64x48 'xc:rgb(180,120,90)' -profile "$p3" p3.png
+  like "$(shown p3.png)" '180 120 90' "$p3"
+fi
+
 # refused FRAGMENT ARGUMENTS...
 refused() {
   fragment=$1
@@ -128,7 +152,7 @@ refused 'hits nothing' print plate.stl --art photo.png --art-at 90,15,2 --art-to
 refused 'needs artwork' print plate.stl --art-size 10 -o nothing
 refused 'size_mm must be W or W,H' print plate.stl --art photo.png --art-size 10,0 -o nothing
 refused 'projection must be one of planar' print plate.stl --art photo.png --projection flat -o nothing
-refused "did you mean 'turn_deg'" print plate.stl --art photo.png --set 'artwork[1].turn=3' -o nothing
+refused "did you mean 'turn_deg'" print plate.stl --art photo.png --set 'artwork[1].turn_dg=3' -o nothing
 refused 'put a picture on it with --art' print plate.stl -o nothing
 refused 'true width' pattern plate.stl --tile photo.png -o nothing
 refused 'the spot is away' pattern plate.stl --tile photo.png --tile-mm 20 --keep 90,0,0 -o nothing
