@@ -30,7 +30,7 @@ report = json.load(open('out.json'))
 roles = {i['role']: i for i in report['inputs']}
 assert roles['artwork']['sha256'] == hashlib.sha256(open('photo.png', 'rb').read()).hexdigest()
 assert report['parameters']['artwork[1].image']['value'] == 'photo.png'
-assert report['colors']['error_mean'] < 5, report['colors']
+assert report['colors']['error_mean_ciede2000'] < 5, report['colors']
 PY
 
 # From below with +y up, -x is to the right: on the film, seen from above, red is on the right.
