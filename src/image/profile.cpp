@@ -141,6 +141,7 @@ void bring_inks_to_srgb(Image& image, const PictureBytes& profile) {
                                                   INTENT_RELATIVE_COLORIMETRIC, 0));
   if (!transform) throw std::bad_alloc();
   for (int y = 0; y < image.height_px; ++y) {
+    check_cancelled();
     std::uint8_t* row = image.pixel(0, y);
     cmsDoTransform(transform.get(), row, row, cmsUInt32Number(image.width_px));
     for (int x = 0; x < image.width_px; ++x) row[4 * x + 3] = 255;

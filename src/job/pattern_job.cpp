@@ -39,7 +39,7 @@ DippedObject trial_dip(const JobConfig& config, const PreparedObject& prepared, 
   Timings timings;
   return dip_object(prepared.posed, std::make_shared<const FilmMesh>(make_film_mesh(options.film)),
                     make_trajectory(options.trajectory, prepared.posed.mesh().positions),
-                    options.dip, timings, context);
+                    options.dip, timings, context, {}, {.options = options.air, .found = {}});
 }
 
 std::vector<Vec3> posed_spots(const PatternRequest& request, const PosedObject& posed) {
