@@ -1,5 +1,7 @@
 #include "commands.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "calibrate_commands.h"
 #include "rig_commands.h"
@@ -25,6 +27,7 @@ void declare_print(CLI::App& app, Request& request) {
   declare_output(app, request, "MODEL-print");
   declare_reporting(app, request);
   declare_object(app, request);
+  declare_artwork(app, request);
   declare_film_and_dip(app, request);
   declare_ink(app, request);
   declare_resolution(app, request);
@@ -38,11 +41,75 @@ JobResult run_print(const Request& request, const RunContext& context) {
   return print_job(config, context);
 }
 
+void declare_pattern_command(CLI::App& app, Request& request) {
+  declare_model(app, request);
+  declare_output(app, request, "MODEL-pattern");
+  declare_reporting(app, request);
+  declare_pattern(app, request);
+  declare_object(app, request);
+  declare_film_and_dip(app, request);
+  declare_ink(app, request);
+  declare_resolution(app, request);
+  declare_configuration(app, request);
+}
+
+JobResult run_pattern(const Request& request, const RunContext& context) {
+  require_model(request.model, "pattern");
+  if (request.pattern.tile.empty() || !(request.pattern.tile_mm > 0))
+    throw InputError(
+        "name the pattern and its true width, as in 'hydrodip pattern grip.stl --tile camo.png "
+        "--tile-mm 80'");
+  if (!(request.pattern.tile_mm >= 1 && request.pattern.tile_mm <= 3000))
+    throw InputError("--tile-mm: must be a width from 1 to 3000 mm");
+  JobConfig config = configure(request);
+  config.output = output_folder(request, "pattern");
+  return pattern_job(config, request.pattern, context);
+}
+
+void declare_nest_command(CLI::App& app, Request& request) {
+  declare_nest(app, request);
+  declare_output(app, request, "nest");
+  declare_reporting(app, request);
+  declare_film(app, request);
+  declare_ink(app, request);
+  declare_resolution(app, request);
+  declare_configuration(app, request);
+}
+
+// Copies of one part are one part.
+std::vector<NestRequest::Part> parts_of(const Request& request, const JobConfig& sheet) {
+  std::vector<PartEntry> entries = sheet.parts;
+  for (const std::string& job : request.jobs) {
+    const auto known = std::find_if(entries.begin(), entries.end(),
+                                    [&](const PartEntry& entry) { return entry.job == job; });
+    if (known == entries.end())
+      entries.push_back({job, 1});
+    else
+      ++known->count;
+  }
+  std::vector<NestRequest::Part> parts;
+  for (const PartEntry& entry : entries)
+    parts.push_back({configure_part(request, entry.job.string()), entry.count});
+  return parts;
+}
+
+JobResult run_nest(const Request& request, const RunContext& context) {
+  JobConfig sheet = configure(request);
+  sheet.output = request.output.empty() ? "nest" : request.output;
+  const NestRequest nest{parts_of(request, sheet), request.clearance_mm};
+  if (nest.parts.empty())
+    throw InputError("name the parts to nest, as in 'hydrodip nest a.toml b.stl b.stl --film a3'");
+  if (!(request.clearance_mm >= 0 && request.clearance_mm <= 500))
+    throw InputError("--clearance: must be a width from 0 to 500 mm");
+  return nest_job(sheet, nest, context);
+}
+
 void declare_simulate(CLI::App& app, Request& request) {
   declare_model(app, request);
   declare_output(app, request, "MODEL-simulate");
   declare_reporting(app, request);
   declare_object(app, request);
+  declare_artwork(app, request);
   declare_film_image(app, request);
   declare_film_and_dip(app, request);
   declare_ink(app, request);
@@ -110,6 +177,15 @@ std::vector<Command> own_commands() {
        "Writes film.ply, preview.png, maps.png, preview.glb, report.json and report.html.\n"
        "'hydrodip view DIR' opens the report.",
        declare_simulate, run_simulate},
+      {"pattern", "pattern film on a part: where it goes, and the film image",
+       "The pattern lies on the film at its true size and is stretched with it; its place is\n"
+       "searched so that detail and seams stay away from stretched film and from --keep spots.\n"
+       "Writes the same files as 'hydrodip print'.",
+       declare_pattern_command, run_pattern},
+      {"nest", "several parts on one sheet of film, each with the film that it needs",
+       "Writes print.pdf, print.png and print.tif of the whole sheet with lines to cut along,\n"
+       "nest.html (the run sheet: which part where), nest.json and a picture of each part.",
+       declare_nest_command, run_nest},
       {"inspect", "size, mesh health, dip angles, what fits the film; no simulation",
        "With -o it writes angles.png and report.json.", declare_inspect, run_inspect},
       {"view", "open a job's report in the browser",

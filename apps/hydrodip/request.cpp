@@ -1,6 +1,9 @@
 #include "request.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 
 #include "base/error.h"
 
@@ -9,6 +12,7 @@ namespace {
 
 constexpr const char* kOutputGroup = "Output";
 constexpr const char* kObjectGroup = "Object";
+constexpr const char* kArtworkGroup = "Artwork (one layer; more as [[artwork]] in a file)";
 constexpr const char* kFilmGroup = "Film and dip";
 constexpr const char* kConfigGroup = "Configuration";
 
@@ -25,6 +29,24 @@ void add_parameter_option(CLI::App& app, Request& request, const std::string& op
       ->group(group)
       ->type_name(value_name)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+// "1,2,3", from least to most numbers.
+std::vector<double> numbers_of(const std::string& option, const std::string& text,
+                               std::size_t least, std::size_t most) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    double number = 0;
+    const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, number);
+    if (error != std::errc() || rest != text.data() + end || !std::isfinite(number)) break;
+    numbers.push_back(number);
+    if (end == text.size() && numbers.size() >= least && numbers.size() <= most) return numbers;
+    begin = end + 1;
+  }
+  throw InputError(option + ": write " + std::to_string(least) +
+                   (most > least ? " or " + std::to_string(most) : std::string()) +
+                   " numbers with commas between them, not '" + text + "'");
 }
 
 }  // namespace
@@ -60,6 +82,44 @@ void declare_object(CLI::App& app, Request& request) {
       "side that enters the water first (default: -z)");
   add("--rotate", "object.rotate_deg", "X,Y,Z",
       "then turn about fixed x, y, z in that order (degrees)");
+}
+
+void declare_artwork(CLI::App& app, Request& request) {
+  const auto add = [&](const char* option, const char* key, const char* value_name,
+                       const char* help) {
+    add_parameter_option(app, request, option, std::string("art.") + key, value_name, kArtworkGroup,
+                         help);
+  };
+  add("--art", "image", "IMG",
+      "picture to put on the model, which needs no UVs: PNG, JPEG, SVG, ...");
+  add("--art-text", "text", "TEXT", "or text");
+  add("--art-font", "font", "FONT", "of the text, as 'DejaVu Serif bold' (default: sans bold)");
+  add("--art-color", "text_color", "#rrggbb", "of the text (default: black)");
+  add("--projection", "projection", "planar|cylinder|sphere|box|uv|wrap|film",
+      "planar, cylinder, sphere, box push the picture through space onto what it meets first; wrap "
+      "sticks it on, along the surface; film leaves it on the film (default: planar)");
+  add("--art-at", "at_mm", "X,Y,Z",
+      "the picture's centre, in the model's frame after --size (default: centred)");
+  add("--art-toward", "toward", "X,Y,Z",
+      "the way it is projected; of cylinder and sphere the axis (default: from the side that "
+      "enters "
+      "the water first, or square to the surface at --art-at)");
+  add("--art-up", "up", "X,Y,Z", "towards the picture's upper edge (default: the model's z)");
+  add("--art-size", "size_mm", "W[,H]",
+      "on the surface; one figure keeps its shape (default: as large as fits)");
+  add("--art-turn", "turn_deg", "DEG", "turn counter-clockwise, as one sees the picture");
+  add("--art-repeat", "repeat", "once|tile|mirror", "beyond its edges (default: once)");
+  app.add_flag_callback(
+         "--art-through",
+         [&request] {
+           request.sources.options.push_back(
+               {"art.through", std::string("true"), false, "'true'", "--art-through"});
+         },
+         "also onto what lies behind the first surface")
+      ->group(kArtworkGroup);
+  add("--art-fade", "fade_deg", "DEG", "fade out where the surface turns away by more than this");
+  add("--art-opacity", "opacity", "0..1", "of the layer (default: 1)");
+  add("--art-blend", "blend", "normal|multiply", "with what is below (default: normal)");
 }
 
 void declare_film(CLI::App& app, Request& request) {
@@ -141,6 +201,59 @@ void declare_film_image(CLI::App& app, Request& request) {
       ->type_name("IMG");
 }
 
+void declare_pattern(CLI::App& app, Request& request) {
+  constexpr const char* kPatternGroup = "Pattern";
+  PatternRequest& pattern = request.pattern;
+  app.add_option("--tile", pattern.tile,
+                 "picture that is repeated over the film: PNG, JPEG, SVG, ...")
+      ->group(kPatternGroup)
+      ->type_name("IMG");
+  app.add_option("--tile-mm", pattern.tile_mm,
+                 "its width on the film, as bought pattern film has it")
+      ->group(kPatternGroup)
+      ->type_name("MM");
+  app.add_flag("--compensate", pattern.compensate,
+               "draw the pattern so that it looks unstretched on the part")
+      ->group(kPatternGroup);
+  app.add_option_function<std::vector<std::string>>(
+         "--keep",
+         [&pattern](const std::vector<std::string>& spots) {
+           for (const std::string& spot : spots) {
+             const std::vector<double> n = numbers_of("--keep", spot, 3, 4);
+             pattern.spots.push_back({Vec3(n[0], n[1], n[2]), n.size() > 3 ? n[3] : 10});
+           }
+         },
+         "a spot of the model to keep free of detail and seams, and its radius (default: 10)")
+      ->group(kPatternGroup)
+      ->type_name("X,Y,Z[,R]")
+      ->allow_extra_args(false);
+  app.add_option_function<std::string>(
+         "--tile-at",
+         [&pattern](const std::string& text) {
+           const std::vector<double> n = numbers_of("--tile-at", text, 2, 2);
+           pattern.shift_mm = Vec2(n[0], n[1]);
+         },
+         "a tile's centre on the film, from its middle (default: where it does least harm)")
+      ->group(kPatternGroup)
+      ->type_name("X,Y");
+  app.add_option_function<double>(
+         "--tile-turn", [&pattern](const double& turn) { pattern.turn_deg = turn; },
+         "turn of the pattern, counter-clockwise from above (default: as it does least harm)")
+      ->group(kPatternGroup)
+      ->type_name("DEG");
+}
+
+void declare_nest(CLI::App& app, Request& request) {
+  app.add_option(
+         "PART", request.jobs,
+         "models or jobs, once for each copy; or [[part]] tables (job, count) in a --config")
+      ->type_name("");
+  app.add_option("--clearance", request.clearance_mm,
+                 "free film around each part (default: a quarter of its depth, 10 mm or more)")
+      ->group(kFilmGroup)
+      ->type_name("MM");
+}
+
 void declare_sample(CLI::App& app, Request& request) {
   app.add_option("NAME", request.sample, "which sample; without it: lists them")->type_name("");
 }
@@ -158,6 +271,12 @@ JobConfig configure(const Request& request) {
   config.command_line = request.command_line;
   apply_sources(config, request.sources);
   return config;
+}
+
+JobConfig configure_part(const Request& request, const std::string& model) {
+  Request part = request;
+  part.model = model;
+  return configure(part);
 }
 
 }  // namespace hydrodip

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calibrate/calibrate.h"
+#include "job/jobs.h"
 #include "settings/settings.h"
 
 namespace CLI {
@@ -26,6 +27,9 @@ struct Request {
   bool dry_run = false;
   bool yes = false;
   CalibrationRequest calibration;
+  PatternRequest pattern;
+  std::vector<std::string> jobs;  // of several parts
+  double clearance_mm = 0;
   SettingSources sources;
   bool quiet = false;
   bool json = false;
@@ -36,16 +40,21 @@ void declare_model(CLI::App& app, Request& request);
 void declare_output(CLI::App& app, Request& request, const std::string& default_folder);
 void declare_reporting(CLI::App& app, Request& request);  // --json, --quiet
 void declare_object(CLI::App& app, Request& request);
+void declare_artwork(CLI::App& app, Request& request);
 void declare_film(CLI::App& app, Request& request);          // --film, --quality
 void declare_film_and_dip(CLI::App& app, Request& request);  // the same, --depth, --method
 void declare_ink(CLI::App& app, Request& request);
 void declare_resolution(CLI::App& app, Request& request);
 void declare_configuration(CLI::App& app, Request& request);
 void declare_film_image(CLI::App& app, Request& request);
+void declare_pattern(CLI::App& app, Request& request);
+void declare_nest(CLI::App& app, Request& request);
 void declare_sample(CLI::App& app, Request& request);
 void declare_folder(CLI::App& app, Request& request);
 
 // The options as a job's configuration. Throws InputError.
 JobConfig configure(const Request& request);
+// The same with another model, or job's file, as one of several parts.
+JobConfig configure_part(const Request& request, const std::string& model);
 
 }  // namespace hydrodip

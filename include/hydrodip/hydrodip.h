@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "artwork/layer.h"
 #include "base/context.h"
 #include "base/error.h"
 #include "coat/design.h"
@@ -54,6 +55,14 @@ Model sample(const std::string& name);
 
 // The model's own colours over the bare object's (linear light).
 std::shared_ptr<const Paint> paint_of(const Model& model, const LinearColor& base = {1, 1, 1, 1});
+
+// The same under layers of artwork, the bottom one first, as they lie on the object in that pose (a
+// pose matters only to layers that leave open from where they come). `dpi`, `samples_per_axis`: of
+// what will be printed, to which drawings are matched.
+std::shared_ptr<const Paint> paint_with(const Model& model, const PosedObject& posed,
+                                        const std::vector<ArtworkLayer>& layers,
+                                        const LinearColor& base = {1, 1, 1, 1}, double dpi = 300,
+                                        int samples_per_axis = 3, const RunContext& context = {});
 
 // ---- pose ----
 

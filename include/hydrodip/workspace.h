@@ -15,12 +15,13 @@ enum class Quality { kDraft, kNormal };
 
 // What a person works on.
 struct Project {
-  std::filesystem::path model;   // its file
-  LoadOptions load;              // how that is read
-  PoseOptions pose;              // how the object hangs over the bath
-  LinearColor base{1, 1, 1, 1};  // of the bare object
-  DesignOptions design;          // film, way into the water, ink
-  PrinterOptions printer;        // which inks it makes of a colour
+  std::filesystem::path model;        // its file
+  LoadOptions load;                   // how that is read
+  PoseOptions pose;                   // how the object hangs over the bath
+  LinearColor base{1, 1, 1, 1};       // of the bare object
+  std::vector<ArtworkLayer> artwork;  // over the model's colours, the bottom layer first
+  DesignOptions design;               // film, way into the water, ink
+  PrinterOptions printer;             // which inks it makes of a colour
 };
 
 // For any number of threads.
@@ -40,6 +41,10 @@ class Workspace {
   std::shared_ptr<const Model> model(const Project& project, const RunContext& context);
   // As the object hangs over the bath.
   std::shared_ptr<const PosedObject> posed(const Project& project, const RunContext& context);
+  // What is wanted on it: the model's colours under the artwork, whose files are read again when
+  // they have changed.
+  std::shared_ptr<const Paint> paint(const Project& project, Quality quality,
+                                     const RunContext& context);
   // Of film with even stiffness.
   std::shared_ptr<const DippedObject> dipped(const Project& project, Quality quality,
                                              const RunContext& context);

@@ -22,6 +22,8 @@ struct StoredPicture {
   std::optional<std::array<std::uint8_t, 4>>
       cicp;             // PNG's: primaries, transfer, matrix, full range
   int orientation = 1;  // EXIF's, 1 to 8
+  // Four inks instead of RGBA, 255 for most: the profile says what they show.
+  bool inks = false;
 };
 
 StoredPicture decode_webp(const PictureBytes& bytes, const std::string& name);
@@ -36,9 +38,13 @@ int exif_orientation(std::span<const std::uint8_t> exif);
 // As the orientation wants it seen.
 Image oriented(Image image, int orientation);
 
-// Brings the colours to sRGB, as the ICC profile or PNG's cICP numbers say. Leaves them alone if
-// these cannot be used (not RGB, damaged, HDR), or mean sRGB anyhow.
+// Brings the colours to sRGB, as the ICC profile (of RGB or grey) or PNG's cICP numbers say. Leaves
+// them alone if these cannot be used (damaged, HDR), or mean sRGB anyhow.
 void bring_to_srgb(Image& image, const PictureBytes& profile);
+// From StoredPicture::inks to opaque sRGB. The profile is one of four inks.
+void bring_inks_to_srgb(Image& image, const PictureBytes& profile);
+// Whether a profile is one of four inks, from which colours can be told.
+bool is_ink_profile(const PictureBytes& profile);
 void bring_to_srgb(Image& image, const std::array<std::uint8_t, 4>& cicp);
 
 [[noreturn]] void refuse_picture(const std::string& name, const char* kind, const std::string& why);

@@ -333,11 +333,11 @@ struct JpegReader {
     return jpeg_read_icc_profile(&info, profile, size) != 0;
   }
 
-  // row: scratch space for one row of up to four channels.
-  bool read_rows(Image& image, std::uint8_t* row);
+  // row: scratch space for one row of up to four channels. inks: four of them are kept as they are.
+  bool read_rows(Image& image, std::uint8_t* row, bool inks);
 };
 
-// Press files hold CMYK; Adobe's are inverted. A plain device formula is enough for a texture.
+// Press files hold CMYK; Adobe's are inverted. Without a profile a plain device formula has to do.
 void cmyk_to_rgb(const std::uint8_t* cmyk, bool inverted, std::uint8_t* rgb) {
   const int k = inverted ? cmyk[3] : 255 - cmyk[3];
   for (int c = 0; c < 3; ++c) {
@@ -346,7 +346,7 @@ void cmyk_to_rgb(const std::uint8_t* cmyk, bool inverted, std::uint8_t* rgb) {
   }
 }
 
-bool JpegReader::read_rows(Image& image, std::uint8_t* row) {
+bool JpegReader::read_rows(Image& image, std::uint8_t* row, bool inks) {
   if (setjmp(errors.jump)) return false;
   jpeg_start_decompress(&info);
   const bool four_inks = info.out_color_space == JCS_CMYK;
@@ -356,6 +356,10 @@ bool JpegReader::read_rows(Image& image, std::uint8_t* row) {
     jpeg_read_scanlines(&info, &row, 1);
     const std::uint8_t* in = row;
     for (int x = 0; x < image.width_px; ++x, out += 4, in += four_inks ? 4 : 3) {
+      if (inks) {
+        for (int c = 0; c < 4; ++c) out[c] = std::uint8_t(info.saw_Adobe_marker ? 255 - in[c] : in[c]);
+        continue;
+      }
       if (four_inks) {
         cmyk_to_rgb(in, info.saw_Adobe_marker, out);
       } else {
@@ -375,12 +379,14 @@ void read_jpeg_colors(JpegReader& reader, StoredPicture& picture) {
         std::memcmp(data.data(), "Exif\0", 6) == 0)
       picture.orientation = exif_orientation(data.subspan(6));
   }
-  if (reader.info.out_color_space != JCS_RGB) return;
   JOCTET* profile = nullptr;
   unsigned size = 0;
   if (!reader.read_profile(&profile, &size)) return;
   picture.profile.assign(profile, profile + size);
   std::free(profile);
+  if (reader.info.out_color_space == JCS_RGB) return;
+  picture.inks = is_ink_profile(picture.profile);
+  if (!picture.inks) picture.profile.clear();
 }
 
 StoredPicture decode_jpeg(const Bytes& bytes, const std::string& name) {
@@ -394,7 +400,7 @@ StoredPicture decode_jpeg(const Bytes& bytes, const std::string& name) {
   picture.image = Image(int(width), int(height));
   std::vector<std::uint8_t> row(std::size_t(4) * width);
   read_jpeg_colors(reader, picture);
-  if (!reader.read_rows(picture.image, row.data())) {
+  if (!reader.read_rows(picture.image, row.data(), picture.inks)) {
     check_cancelled();
     refuse_picture(name, "JPEG", reader.errors.message);
   }
@@ -494,7 +500,9 @@ StoredPicture decode_any(const Bytes& bytes, const std::string& name) {
 Image decode_image(const Bytes& bytes, const std::string& name) {
   try {
     StoredPicture picture = decode_any(bytes, name);
-    if (picture.cicp) {
+    if (picture.inks) {
+      bring_inks_to_srgb(picture.image, picture.profile);
+    } else if (picture.cicp) {
       bring_to_srgb(picture.image, *picture.cicp);
     } else {
       bring_to_srgb(picture.image, picture.profile);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <new>
 #include <optional>
 #include <type_traits>
 
@@ -46,7 +47,22 @@ bool changes_nothing(cmsHTRANSFORM transform) {
   return true;
 }
 
+// Red, green and blue are one value.
+void transform_grey(Image& image, cmsContext context, cmsHPROFILE from) {
+  const Profile srgb(cmsCreate_sRGBProfileTHR(context));
+  const Transform transform(cmsCreateTransformTHR(context, from, TYPE_GRAY_8, srgb.get(),
+                                                  TYPE_RGB_8, INTENT_RELATIVE_COLORIMETRIC, 0));
+  if (!transform) return;
+  std::array<std::uint8_t, 256> levels{};
+  for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = std::uint8_t(i);
+  std::array<std::uint8_t, 3 * 256> shown{};
+  cmsDoTransform(transform.get(), levels.data(), shown.data(), cmsUInt32Number(levels.size()));
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+    std::copy_n(&shown[3U * image.rgba[i]], 3, &image.rgba[i]);
+}
+
 void transform_pixels(Image& image, cmsContext context, cmsHPROFILE from) {
+  if (from && cmsGetColorSpace(from) == cmsSigGrayData) transform_grey(image, context, from);
   if (!from || cmsGetColorSpace(from) != cmsSigRgbData) return;
   const Profile srgb(cmsCreate_sRGBProfileTHR(context));
   const Transform transform(cmsCreateTransformTHR(context, from, TYPE_RGBA_8, srgb.get(),
@@ -104,6 +120,32 @@ void bring_to_srgb(Image& image, const PictureBytes& profile) {
   const Profile from(
       cmsOpenProfileFromMemTHR(context.get(), profile.data(), cmsUInt32Number(profile.size())));
   transform_pixels(image, context.get(), from.get());
+}
+
+bool is_ink_profile(const PictureBytes& profile) {
+  if (profile.empty()) return false;
+  const Context context(cmsCreateContext(nullptr, nullptr));
+  const Profile from(
+      cmsOpenProfileFromMemTHR(context.get(), profile.data(), cmsUInt32Number(profile.size())));
+  return from && cmsGetColorSpace(from.get()) == cmsSigCmykData &&
+         cmsIsIntentSupported(from.get(), INTENT_RELATIVE_COLORIMETRIC, LCMS_USED_AS_INPUT);
+}
+
+void bring_inks_to_srgb(Image& image, const PictureBytes& profile) {
+  const Context context(cmsCreateContext(nullptr, nullptr));
+  const Profile from(
+      cmsOpenProfileFromMemTHR(context.get(), profile.data(), cmsUInt32Number(profile.size())));
+  const Profile srgb(cmsCreate_sRGBProfileTHR(context.get()));
+  const Transform transform(cmsCreateTransformTHR(context.get(), from.get(), TYPE_CMYK_8,
+                                                  srgb.get(), TYPE_RGBA_8,
+                                                  INTENT_RELATIVE_COLORIMETRIC, 0));
+  if (!transform) throw std::bad_alloc();
+  for (int y = 0; y < image.height_px; ++y) {
+    check_cancelled();
+    std::uint8_t* row = image.pixel(0, y);
+    cmsDoTransform(transform.get(), row, row, cmsUInt32Number(image.width_px));
+    for (int x = 0; x < image.width_px; ++x) row[4 * x + 3] = 255;
+  }
 }
 
 void bring_to_srgb(Image& image, const std::array<std::uint8_t, 4>& cicp) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "settings/artwork_tables.h"
 #include "settings/params.h"
 
 namespace hydrodip {
@@ -40,6 +41,17 @@ ReportParameter describe_parameter(const Parameter& parameter, const JobConfig& 
   else
     std::visit([&](const auto& v) { described.value = v; }, value);
   return described;
+}
+
+void describe_artwork(const std::vector<ArtworkLayer>& layers,
+                      std::vector<ReportParameter>& parameters) {
+  const std::vector<std::string> usual = layer_values({});
+  for (std::size_t n = 0; n < layers.size(); ++n) {
+    const std::vector<std::string> values = layer_values(layers[n]);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      parameters.push_back({fmt::format("artwork[{}].{}", n + 1, layer_keys()[k].name),
+                            layer_keys()[k].unit, values[k], values[k] != usual[k]});
+  }
 }
 
 std::vector<ReportFigure> dip_figures(const DipStatistics& s) {
@@ -109,6 +121,8 @@ std::vector<ReportFigure> figures(const DippedObject& dipped) {
 
 std::string role_of(const std::filesystem::path& file, const JobConfig& config) {
   if (file == config.model) return "model";
+  for (const ArtworkLayer& layer : config.object.artwork)
+    if (file == layer.image) return "artwork";
   const std::string extension = file.extension().string();
   if (extension == ".mtl" || extension == ".MTL") return "material";
   return extension == ".bin" ? "model data" : "texture";
@@ -148,6 +162,7 @@ Report make_report(const JobRecord& record) {
   report.inputs = record.inputs;
   for (const Parameter& parameter : parameters())
     report.parameters.push_back(describe_parameter(parameter, record.config));
+  describe_artwork(record.config.object.artwork, report.parameters);
   for (const Timing& time : record.times.list()) report.stages.push_back({time.what, time.seconds});
   report.total_seconds = record.times.total_s();
   report.rounds = rounds(record);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/context.h"
+#include "base/math.h"
 #include "settings/config.h"
 
 namespace hydrodip {
@@ -30,6 +32,42 @@ JobResult simulate_job(const JobConfig& config, const RunContext& context);
 // No simulation: size, mesh health, what fits the film, dip angles. Writes angles.png and
 // report.json only if config.output is given.
 JobResult inspect_job(const JobConfig& config, const RunContext& context);
+
+// A part in pattern film: a picture that is repeated over the whole film.
+struct PatternRequest {
+  std::filesystem::path tile;
+  double tile_mm = 0;  // its width; the height keeps its shape
+  // The pattern is drawn so that it looks unstretched on the part.
+  bool compensate = false;
+  struct Spot {
+    Vec3 at_mm;  // in the model's frame after scaling
+    double radius_mm = 10;
+  };
+  std::vector<Spot> spots;         // to be kept free of detail, seams and stretch
+  std::optional<Vec2> shift_mm;    // of the tile's centre from the film's; none: searched
+  std::optional<double> turn_deg;  // counter-clockwise as seen from above; none: searched
+};
+
+// Finds where the pattern does least harm, and prints it as print_job does, below the job's other
+// artwork. Throws as print_job.
+JobResult pattern_job(const JobConfig& config, const PatternRequest& request,
+                      const RunContext& context);
+
+// Several parts on one sheet of film, which is cut into pieces: one for each part, with the film
+// that it needs around it.
+struct NestRequest {
+  struct Part {
+    JobConfig config;  // its film is the sheet's; its piece's size follows from the object
+    int count = 1;
+  };
+  std::vector<Part> parts;
+  double clearance_mm = 0;  // free film around the object; 0: a quarter of its depth, 10 mm or more
+};
+
+// print.pdf, print.png, print.tif of the whole sheet; nest.html, the run sheet; nest.json; a
+// picture of each part. `sheet` says film, printer and output. Throws as print_job, and InputError
+// saying how many parts fit if not all do.
+JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const RunContext& context);
 
 // Opens a job's report.html (`where`: it, or its folder) in the default browser; where there is
 // none, the result says its path. Throws InputError if there is no report.

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "artwork/artwork.h"
 #include "base/error.h"
 #include "base/memory.h"
 
@@ -30,8 +32,9 @@ void warn_if_tiny(const TriangleMesh& mesh, const RunContext& context) {
 }  // namespace
 
 PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOptions& options,
-                              const RunContext& context) {
+                              const RunContext& context, double dpi, int samples_per_axis) {
   context.progress("loading", 0);
+  std::vector<PictureSource> pictures = read_pictures(options.artwork);
   LoadedObject loaded = load_object(model, options.load, context);
   for (const std::string& finding : loaded.health.findings()) context.warn(finding);
   const auto object = std::make_shared<const Object>(std::move(loaded.object));
@@ -47,6 +50,15 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
   result.health.volume_mm3 *= scale * scale * scale;
   warn_if_tiny(result.posed.mesh(), context);
   context.progress("loading", 1);
+  if (options.artwork.empty()) return result;
+  result.paint = lay_artwork({options.artwork, std::move(pictures), result.paint,
+                              result.health.closed(), dpi, samples_per_axis},
+                             result.posed, context)
+                     .paint;
+  for (const ArtworkLayer& layer : options.artwork)
+    if (!layer.image.empty() &&
+        std::find(result.files.begin(), result.files.end(), layer.image) == result.files.end())
+      result.files.push_back(layer.image);
   return result;
 }
 
@@ -74,9 +86,7 @@ void require_appearance(const Object& object, const std::vector<std::string>& pi
         model.string()));
   throw InputError(fmt::format(
       "{}: the model has neither texture coordinates (UVs) nor colours, so there is nothing "
-      "to print: unwrap it (in Blender: UV > Smart UV Project) and name an image with --texture, "
-      "or "
-      "paint vertex colours and save it as PLY",
+      "to print: put a picture on it with --art IMG, or paint vertex colours and save it as PLY",
       model.string()));
 }
 

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
+#include "coat/film_paint.h"
 #include "job/job_record.h"
 #include "job/jobs.h"
 #include "job/output.h"
@@ -50,9 +51,12 @@ JobResult print_job(const JobConfig& config, const RunContext& context) {
   OutputFolder folder(config.output);
   Timings times;
 
-  const PreparedObject prepared =
-      times.measure("load", [&] { return prepare_object(config.model, config.object, context); });
-  require_appearance(prepared.posed.object(), prepared.picture_problems, config.model);
+  const PreparedObject prepared = times.measure("load", [&] {
+    return prepare_object(config.model, config.object, context, config.design.dpi,
+                          config.design.inverse.samples_per_axis);
+  });
+  if (config.object.artwork.empty())
+    require_appearance(prepared.posed.object(), prepared.picture_problems, config.model);
   const DesignOptions& options = config.design;
   const TriangleMesh& mesh = prepared.posed.mesh();
   const Trajectory trajectory = make_trajectory(options.trajectory, mesh.positions);
@@ -68,7 +72,7 @@ JobResult print_job(const JobConfig& config, const RunContext& context) {
     write_sheet_files(folder, designed.ink.ink, printer, sheet_options(config), context);
   });
 
-  const Finish finish(prepared.paint,
+  const Finish finish(paint_as_dipped(prepared.paint, designed.dipped),
                       {{designed.dipped, designed.raster,
                         std::make_shared<const Image>(designed.ink.ink.on_object)}});
   const JobRecord record{"print", config,        prepared,

@@ -142,8 +142,10 @@ JobResult simulate_job(const JobConfig& config, const RunContext& context) {
   Timings times;
 
   const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.design.film));
-  const PreparedObject prepared =
-      times.measure("load", [&] { return prepare_object(config.model, config.object, context); });
+  const PreparedObject prepared = times.measure("load", [&] {
+    return prepare_object(config.model, config.object, context, config.design.dpi,
+                          config.design.inverse.samples_per_axis);
+  });
   const TriangleMesh& mesh = prepared.posed.mesh();
   const Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
   require_fit(mesh, room_of(mesh, trajectory), config.design.film, config.bath, context);

@@ -343,9 +343,9 @@ void forget_colors(const ModelFile& file, const fs::path& model, const fs::path&
                    Object& object) {
   if (file.uvs.empty())
     throw InputError(fmt::format(
-        "{}: the model has no texture coordinates (UVs), so --texture {} cannot be placed; unwrap "
-        "it, in Blender for instance, and export it as OBJ or GLB.",
-        model.string(), texture.string()));
+        "{1}: the model has no texture coordinates (UVs), so --texture {0} cannot be placed; put "
+        "it on with --art {0}, which needs none.",
+        texture.string(), model.string()));
   object.colors.clear();
 }
 

@@ -16,6 +16,13 @@ class Paint {
   // Textures at full resolution: callers antialias by supersampling.
   virtual LinearColor color_at(const SurfacePoint& point) const = 0;
 
+  // The same where film lies whose coordinate there is `film_mm`: colours may depend on it.
+  virtual LinearColor color_on_film(const SurfacePoint& point, const Vec2& film_mm) const {
+    static_cast<void>(film_mm);
+    return color_at(point);
+  }
+  virtual bool depends_on_film() const { return false; }
+
   // Whether anything but the bare object's colour is wanted anywhere.
   virtual bool says_anything() const = 0;
 

@@ -2,9 +2,11 @@
 #include <cmath>
 #include <utility>
 
+#include "artwork/artwork.h"
 #include "base/file.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
+#include "coat/film_paint.h"
 #include "export/film_ply.h"
 #include "hydrodip/hydrodip.h"
 #include "image/files.h"
@@ -63,6 +65,19 @@ std::shared_ptr<const Paint> paint_of(const Model& model, const LinearColor& bas
   return model_paint(model.object, base);
 }
 
+std::shared_ptr<const Paint> paint_with(const Model& model, const PosedObject& posed,
+                                        const std::vector<ArtworkLayer>& layers,
+                                        const LinearColor& base, double dpi, int samples_per_axis,
+                                        const RunContext& context) {
+  std::shared_ptr<const Paint> own = paint_of(model, base);
+  if (layers.empty()) return own;
+  const RunScope scope(context);
+  return lay_artwork({layers, read_pictures(layers), std::move(own), model.health.closed(), dpi,
+                      samples_per_axis},
+                     posed, context)
+      .paint;
+}
+
 PosedObject pose(const Model& model, const PoseOptions& options) {
   return PosedObject(model.object, options);
 }
@@ -97,6 +112,7 @@ Finish finish(std::shared_ptr<const Paint> paint, const std::vector<Designed>& d
                                        {1, 1, 1, 1}));
     coats.push_back({made.dipped, made.raster, std::move(look)});
   }
+  if (!coats.empty()) paint = paint_as_dipped(std::move(paint), coats.front().dipped);
   return Finish(std::move(paint), std::move(coats));
 }
 

@@ -82,6 +82,24 @@ void add(ContentKey& key, const DesignOptions& design) {
   key.add(design.inking.compensate).add(design.inking.policy).add(design.inking.limit);
 }
 
+void add(ContentKey& key, const std::optional<Vec3>& v) {
+  key.add(v ? "set" : "open");
+  for (int k = 0; v && k < 3; ++k) key.add((*v)[k]);
+}
+
+void add(ContentKey& key, const ArtworkLayer& layer) {
+  key.add(layer.image.string()).add(layer.text).add(layer.font);
+  add(key, layer.text_color);
+  if (!layer.image.empty()) {
+    const FileState image = state_of(layer.image);
+    key.add(image.bytes).add(double(image.changed.time_since_epoch().count()));
+  }
+  key.add(layer.projection).add(layer.repeat).add(layer.blend).add(layer.through);
+  for (const auto* v : {&layer.at_mm, &layer.toward, &layer.up}) add(key, *v);
+  key.add(layer.width_mm).add(layer.height_mm).add(layer.turn_deg);
+  key.add(layer.fade_deg).add(layer.opacity);
+}
+
 DesignOptions at(Quality quality, const DesignOptions& design) {
   return quality == Quality::kDraft ? draft_of(design) : design;
 }
@@ -127,6 +145,13 @@ std::size_t bytes_of(const Designed& made) {
          bytes_of(ink.inking.inks.cmyk) + bytes_of(ink.stretch.area_ratio) +
          bytes_of(ink.stretch.on_object) + bytes_of(made.ink.reach.difference);
 }
+
+struct SharedPaint {
+  std::shared_ptr<const Paint> paint;
+};
+
+// Its pictures are not known here; a guess.
+std::size_t bytes_of(const SharedPaint&) { return std::size_t(16) << 20U; }
 
 }  // namespace
 
@@ -228,17 +253,35 @@ struct Workspace::Impl {
     });
   }
 
-  Keyed<Designed> designed(const Project& project, Quality quality, const RunContext& context) {
+  Keyed<SharedPaint> paint(const Project& project, Quality quality, const RunContext& context) {
+    const auto loaded = model(project, context);
     const auto hanging = posed(project, context);
     const DesignOptions options = at(quality, project.design);
-    ContentKey key("designed");
+    ContentKey key("paint");
     key.add(hanging.key.text());
-    add(key, options);
     add(key, project.base);
+    key.add(options.dpi).add(options.inverse.samples_per_axis);
+    if (project.artwork.empty())
+      return {std::move(key), std::make_shared<const SharedPaint>(
+                                  SharedPaint{paint_of(*loaded.value, project.base)})};
+    for (const ArtworkLayer& layer : project.artwork) add(key, layer);
+    return node<SharedPaint>(std::move(key), context, [&] {
+      return SharedPaint{paint_with(*loaded.value, *hanging.value, project.artwork, project.base,
+                                    options.dpi, options.inverse.samples_per_axis, context)};
+    });
+  }
+
+  Keyed<Designed> designed(const Project& project, Quality quality, const RunContext& context) {
+    const auto hanging = posed(project, context);
+    const auto wanted = paint(project, quality, context);
+    const DesignOptions options = at(quality, project.design);
+    ContentKey key("designed");
+    key.add(wanted.key.text());
+    add(key, options);
     add(key, project.printer);
     return node<Designed>(std::move(key), context, [&] {
-      const auto paint = model_paint(hanging.value->shared_object(), project.base);
-      return design(*hanging.value, *paint, options, make_printer(project.printer), context);
+      return design(*hanging.value, *wanted.value->paint, options, make_printer(project.printer),
+                    context);
     });
   }
 
@@ -247,9 +290,9 @@ struct Workspace::Impl {
     const auto made = designed(project, quality, context);
     ContentKey key("picture");
     key.add(made.key.text()).add(width_px);
+    const auto wanted = paint(project, quality, context);
     return node<Image>(std::move(key), context, [&] {
-      const auto paint = model_paint(made.value->dipped.posed.shared_object(), project.base);
-      return render(finish(paint, {*made.value}), width_px, context);
+      return render(finish(wanted.value->paint, {*made.value}), width_px, context);
     });
   }
 
@@ -277,6 +320,11 @@ std::shared_ptr<const Model> Workspace::model(const Project& project, const RunC
 std::shared_ptr<const PosedObject> Workspace::posed(const Project& project,
                                                     const RunContext& context) {
   return impl_->posed(project, context).value;
+}
+
+std::shared_ptr<const Paint> Workspace::paint(const Project& project, Quality quality,
+                                              const RunContext& context) {
+  return impl_->paint(project, quality, context).value->paint;
 }
 
 std::shared_ptr<const DippedObject> Workspace::dipped(const Project& project, Quality quality,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "artwork/layer.h"
 #include "coat/design.h"
 #include "ink/printer.h"
 #include "model_io/load.h"
@@ -16,9 +17,10 @@
 namespace hydrodip {
 
 struct ObjectOptions {
-  LoadOptions load;              // units, texture
-  PoseOptions pose;              // size, down, rotation
-  LinearColor base{1, 1, 1, 1};  // of the bare object
+  LoadOptions load;                   // units, texture
+  PoseOptions pose;                   // size, down, rotation
+  LinearColor base{1, 1, 1, 1};       // of the bare object
+  std::vector<ArtworkLayer> artwork;  // over the model's own colours, the bottom layer first
 };
 
 enum class InkSide { kUp, kDown };
@@ -63,6 +65,12 @@ struct StageOptions {
   double travel_mm_per_min = 600;  // where no water is near
 };
 
+// One of several parts that share a sheet, as a [[part]] table gives it.
+struct PartEntry {
+  std::filesystem::path job;  // a model, or a job's file
+  int count = 1;
+};
+
 struct JobConfig {
   std::filesystem::path model;
   std::filesystem::path film_image;  // simulate: the image that was printed; may be empty
@@ -78,6 +86,7 @@ struct JobConfig {
   PrintOptions print;
   ProcessOptions process;
   StageOptions stage;
+  std::vector<PartEntry> parts;
   int preview_width_px = 1600;
   int preview_texture_px = 2048;
   bool pictures = true;  // preview.png, maps.png, gamut.png and the 3D view of report.html

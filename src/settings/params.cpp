@@ -10,6 +10,8 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "settings/artwork_tables.h"
+#include "settings/part_tables.h"
 #include "settings/path_file.h"
 
 namespace hydrodip {
@@ -205,6 +207,7 @@ const Parameter& find_parameter(const std::string& name, const std::string& orig
 
 void apply_settings(JobConfig& config, const std::vector<Setting>& settings) {
   for (const Setting& setting : settings) {
+    if (apply_artwork_setting(config, setting) || apply_part_setting(config, setting)) continue;
     const Parameter& p = find_parameter(setting.name, setting.origin);
     p.set(config, checked(p, setting));
   }

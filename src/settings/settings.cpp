@@ -108,6 +108,12 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
       add(read_settings(file));
       config.settings_files.push_back(file);
     }
+  // Options speak of a layer of their own, above those of files, if they give it a picture.
+  const bool own_layer =
+      std::any_of(sources.options.begin(), sources.options.end(), [](const Setting& setting) {
+        return setting.name == "art.image" || setting.name == "art.text";
+      });
+  if (own_layer) config.object.artwork.emplace_back();
   add(sources.options);
   add(sources.sets);
   apply_dependent_defaults(config, all);

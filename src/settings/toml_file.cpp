@@ -19,6 +19,7 @@ constexpr void check(bool holds) {
 
 #include "base/error.h"
 #include "base/file.h"
+#include "settings/artwork_tables.h"
 #include "settings/settings.h"
 
 namespace hydrodip {
@@ -26,6 +27,9 @@ namespace {
 
 // A configuration is a page of text; anything larger is the wrong file.
 constexpr std::size_t kLargestFile = 1 << 20;
+
+// Tables that may stand several times.
+constexpr const char *kArtworkTables = "artwork", *kPartTables = "part";
 
 struct Located {
   Setting setting;
@@ -127,14 +131,31 @@ class SettingReader {
       const std::string name = prefix + std::string(key.str());
       if (const toml::table* inner = node.as_table())
         collect(*inner, name + ".");
+      else if ((name == kArtworkTables || name == kPartTables) && node.is_array_of_tables())
+        collect_tables(*node.as_array(), name);
       else
         add(name, key.source().begin, node);
     }
   }
 
+  // [[artwork]], once for each layer: artwork[1].size_mm and so on. [[part]] likewise.
+  void collect_tables(const toml::array& tables, const std::string& name) {
+    int number = 0;
+    for (const toml::node& table : tables)
+      collect(*table.as_table(), fmt::format("{}[{}].", name, ++number));
+  }
+
+  // As a parameter of that type is read.
+  static ParameterType type_of(const std::string& name, const std::string& origin) {
+    const bool table = name.starts_with("artwork[") || name.starts_with("part[");
+    if (!table) return find_parameter(name, origin).type;
+    return is_artwork_path(name) || name.ends_with("].job") ? ParameterType::kPath
+                                                            : ParameterType::kText;
+  }
+
   void add(const std::string& name, const toml::source_position& at, const toml::node& node) {
     const std::string origin = fmt::format("{}:{}", file_.string(), at.line);
-    const Parameter& parameter = find_parameter(name, origin);
+    const ParameterType type = type_of(name, origin);
     Located located;
     located.line = at.line;
     located.column = at.column;
@@ -143,12 +164,13 @@ class SettingReader {
     if (const auto number = as_number(node))
       setting.value = *number;
     else if (const auto text = node.value_exact<std::string>())
-      setting.value =
-          parameter.type == ParameterType::kPath || parameter.type == ParameterType::kWayIn
-              ? beside_file(*text)
-              : *text;
+      setting.value = type == ParameterType::kPath || type == ParameterType::kWayIn
+                          ? beside_file(*text)
+                          : *text;
+    else if (const auto* flag = node.as_boolean(); flag && is_artwork_switch(name))
+      setting.value = std::string(flag->get() ? "true" : "false");
     else
-      setting.value = parameter.type == ParameterType::kWayIn ? as_rows(node) : as_numbers(node);
+      setting.value = type == ParameterType::kWayIn ? as_rows(node) : as_numbers(node);
     found_.push_back(std::move(located));
   }
 

@@ -94,10 +94,13 @@ SurfacePoint between(const std::array<SurfacePoint, 4>& p, double x, double y) {
 // What is printed of a point of the object.
 class Printed {
  public:
-  Printed(const Paint& paint, const Allotment& allotment) : paint_(paint), allotment_(allotment) {}
+  Printed(const Paint& paint, const Allotment& allotment)
+      : paint_(paint), allotment_(allotment), depends_on_film_(paint.depends_on_film()) {}
 
-  LinearColor at(const SurfacePoint& point) const {
-    LinearColor color = paint_.color_at(point);
+  // `film`: where on the film it is printed.
+  LinearColor at(const SurfacePoint& point, const Vec2& film) const {
+    LinearColor color =
+        depends_on_film_ ? paint_.color_on_film(point, film) : paint_.color_at(point);
     if (!allotment_.is_full()) color.a *= allotment_.at(point);
     return color;
   }
@@ -105,6 +108,7 @@ class Printed {
  private:
   const Paint& paint_;
   const Allotment& allotment_;
+  bool depends_on_film_;
 };
 
 // One pixel of the film image.
@@ -118,7 +122,7 @@ LinearColor pixel_color(const Printed& printed, const FilmMap& map, const SheetR
   if (!nearest) return {0, 0, 0, 0};
   const double distance = (*nearest - centre).norm();
   if (distance > radius && distance + radius < options.bleed_mm)
-    if (const auto point = map.to_object(*nearest, cursor)) return printed.at(*point);
+    if (const auto point = map.to_object(*nearest, cursor)) return printed.at(*point, centre);
   const float weight = 1.0f / static_cast<float>(n * n);
   const Samples samples{raster.to_film(x, y), kMmPerInch / raster.dpi, n};
   ColorSum sum;
@@ -126,7 +130,7 @@ LinearColor pixel_color(const Printed& printed, const FilmMap& map, const SheetR
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i) {
         const SurfacePoint point = between(*corners, double(i) / (n - 1), double(j) / (n - 1));
-        sum.add(printed.at(point), weight);
+        sum.add(printed.at(point, samples.at(i, j)), weight);
       }
     return sum.color();
   }
@@ -137,7 +141,7 @@ LinearColor pixel_color(const Printed& printed, const FilmMap& map, const SheetR
       if (!point && options.bleed_mm > 0)
         if (const auto near = map.nearest_covered(u, options.bleed_mm, cursor))
           point = map.to_object(*near, cursor);
-      if (point) sum.add(printed.at(*point), weight);
+      if (point) sum.add(printed.at(*point, u), weight);
     }
   return sum.color();
 }

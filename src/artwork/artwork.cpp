@@ -1,0 +1,260 @@
+#include "artwork/artwork.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "artwork/placement.h"
+#include "base/error.h"
+#include "base/run_scope.h"
+
+namespace hydrodip {
+namespace {
+
+// A layer may show nothing where this little of it would be seen.
+constexpr float kNothing = 1.0F / 1024;
+
+struct Layer {
+  std::shared_ptr<const Image> image;
+  PictureFrame frame;
+  std::unique_ptr<const Placement> placement;  // none: on the film
+  Vec2 film_centre_mm{0, 0};
+  float opacity;
+  Blend blend;
+};
+
+// Premultiplied.
+LinearColor shown_by(const Layer& layer, const Vec2& place_mm, float share) {
+  LinearColor color = sample(*layer.image, layer.frame, place_mm);
+  const float part = layer.opacity * share;
+  return {part * color.r, part * color.g, part * color.b, part * color.a};
+}
+
+LinearColor over(const LinearColor& top, Blend blend, const LinearColor& under) {
+  const float rest = 1 - top.a;
+  if (blend == Blend::kNormal)
+    return {top.r + rest * under.r, top.g + rest * under.g, top.b + rest * under.b, 1};
+  return {(top.r + rest) * under.r, (top.g + rest) * under.g, (top.b + rest) * under.b, 1};
+}
+
+class LayeredPaint : public Paint {
+ public:
+  LayeredPaint(PosedObject posed, std::shared_ptr<const Paint> under)
+      : Paint(under->base()), posed_(std::move(posed)), under_(std::move(under)) {}
+
+  void add(Layer layer) { layers_.push_back(std::move(layer)); }
+  const PosedObject& posed() const { return posed_; }
+
+  LinearColor color_at(const SurfacePoint& point) const override { return color(point, nullptr); }
+  LinearColor color_on_film(const SurfacePoint& point, const Vec2& film_mm) const override {
+    return color(point, &film_mm);
+  }
+  bool depends_on_film() const override {
+    return std::any_of(layers_.begin(), layers_.end(),
+                       [](const Layer& layer) { return !layer.placement; });
+  }
+  bool says_anything() const override { return true; }
+
+ private:
+  // From the top down to the first layer that hides all below, and back up again.
+  LinearColor color(const SurfacePoint& point, const Vec2* film_mm) const {
+    constexpr std::size_t kAtOnce = 8;
+    std::array<LinearColor, kAtOnce> seen;
+    std::array<std::size_t, kAtOnce> from;
+    std::size_t count = 0, next = layers_.size();
+    bool hidden = false;
+    while (next > 0 && count < kAtOnce && !hidden) {
+      --next;
+      const LinearColor color = shown(layers_[next], point, film_mm);
+      if (color.a < kNothing) continue;
+      hidden = color.a >= 1 && layers_[next].blend == Blend::kNormal;
+      seen[count] = color;
+      from[count++] = next;
+    }
+    LinearColor result = hidden ? LinearColor{0, 0, 0, 1} : under_at(next, point, film_mm);
+    while (count > 0) {
+      --count;
+      result = over(seen[count], layers_[from[count]].blend, result);
+    }
+    return result;
+  }
+
+  // What lies below the topmost layers: those that did not fit at once, and the object's colours.
+  LinearColor under_at(std::size_t layers, const SurfacePoint& point, const Vec2* film_mm) const {
+    LinearColor result = under_->color_at(point);
+    for (std::size_t n = 0; n < layers; ++n)
+      result = over(shown(layers_[n], point, film_mm), layers_[n].blend, result);
+    return result;
+  }
+
+  static LinearColor shown(const Layer& layer, const SurfacePoint& point, const Vec2* film_mm) {
+    constexpr LinearColor kClear{0, 0, 0, 0};
+    if (!layer.placement)
+      return film_mm ? shown_by(layer, *film_mm - layer.film_centre_mm, 1) : kClear;
+    Spot spot;
+    if (!layer.placement->find(point, spot)) return kClear;
+    const LinearColor color = shown_by(layer, spot.place_mm, spot.share);
+    return color.a >= kNothing && layer.placement->is_lit(point) ? color : kClear;
+  }
+
+  PosedObject posed_;
+  std::shared_ptr<const Paint> under_;
+  std::vector<Layer> layers_;
+};
+
+// ---- whether a picture lies on the object at all ----
+
+bool lies_within(const PictureFrame& frame, const Vec2& place_mm) {
+  const Vec2 t = frame.to_picture(place_mm);
+  return frame.repeat() != Repeat::kOnce || (t.x() >= 0 && t.x() <= 1 && t.y() >= 0 && t.y() <= 1);
+}
+
+// Looked at on a grid, so fine that no picture falls through.
+bool hits(const Layer& layer, const TriangleMesh& mesh) {
+  const double step = layer.frame.size_mm().minCoeff() / 48;
+  constexpr int kMost = 400;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    check_cancelled();
+    const Triangle& v = mesh.triangles[t];
+    const Vec3& a = mesh.positions[std::size_t(v[0])];
+    const Vec3& b = mesh.positions[std::size_t(v[1])];
+    const Vec3& c = mesh.positions[std::size_t(v[2])];
+    const double edge = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    const int n = int(std::clamp(std::ceil(edge / step), 1.0, double(kMost)));
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; i + j < n; ++j) {
+        const SurfacePoint point{int(t), (i + 1.0 / 3) / n, (j + 1.0 / 3) / n};
+        Spot spot;
+        if (layer.placement->find(point, spot) && lies_within(layer.frame, spot.place_mm) &&
+            layer.placement->is_lit(point))
+          return true;
+      }
+  }
+  return false;
+}
+
+std::string shown(const Vec3& p) {
+  return fmt::format("{:.1f},{:.1f},{:.1f}", p.x(), p.y(), p.z());
+}
+
+[[noreturn]] void refuse_miss(const ArtworkLayer& layer, const PosedObject& posed) {
+  const Mat3 turn = posed.matrix().topLeftCorner<3, 3>() / posed.scale();
+  const Vec3 offset = posed.matrix().topRightCorner<3, 1>();
+  std::string where = "the model has no surface there";
+  if (layer.at_mm) {
+    const Vec3 at = turn * *layer.at_mm + offset;
+    if (const auto hit = posed.surface().closest_point(at, 1e9))
+      where = fmt::format(
+          "from {} the surface is nearest at {} (mm, in the model's frame after --size)",
+          shown(*layer.at_mm), shown(turn.transpose() * (posed.surface().position(*hit) - offset)));
+  }
+  throw InputError(
+      fmt::format("{}: the artwork hits nothing of the model, or only what is hidden from its "
+                  "side: {}; move it "
+                  "with --art-at, or turn it with --art-toward",
+                  name_of(layer), where));
+}
+
+// ---- laying ----
+
+bool shows_anything(const Image& image) {
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+    if (image.rgba[i] > 0) return true;
+  return false;
+}
+
+void warn_of_wrap(const ArtworkLayer& layer, const WrapReport& report, const RunContext& context) {
+  context.log(fmt::format("{}: wrapped, stretched {:.2f} to {:.2f} times", name_of(layer),
+                          report.stretch_least, report.stretch_most));
+  // A repeated picture goes on to where the surface comes round to itself.
+  if (layer.repeat != Repeat::kOnce) return;
+  constexpr double kMuch = 1.5;
+  if (report.folded_mm2 > 0)
+    context.warn(fmt::format(
+        "{}: wrapped, the picture folds over itself on {:.1f} mm2 of the surface; make it smaller "
+        "or move its centre",
+        name_of(layer), report.folded_mm2));
+  else if (report.stretch_most > kMuch || report.stretch_least < 1 / kMuch)
+    context.warn(fmt::format(
+        "{}: wrapped, the picture is stretched {:.2f} to {:.2f} times where the surface is curved; "
+        "make it smaller or move its centre",
+        name_of(layer), report.stretch_least, report.stretch_most));
+}
+
+Placed place(const PlacementTask& task, const RunContext& context) {
+  switch (task.layer.projection) {
+    case Projection::kUv:
+      return place_by_uv(task);
+    case Projection::kWrap: {
+      WrapReport report;
+      Placed placed = place_wrapped(task, report);
+      warn_of_wrap(task.layer, report, context);
+      return placed;
+    }
+    default:
+      return place_pushed(task);
+  }
+}
+
+// On the film a picture has its own size, or a hand's width.
+Vec2 size_on_film(const ArtworkLayer& layer, const PictureSource& picture) {
+  constexpr double kUsual_mm = 100;
+  if (layer.width_mm > 0 && layer.height_mm > 0) return {layer.width_mm, layer.height_mm};
+  double width = layer.width_mm;
+  if (!(width > 0) && layer.height_mm > 0) width = layer.height_mm * picture.aspect();
+  if (!(width > 0)) width = picture.natural_width_mm();
+  if (!(width > 0)) width = kUsual_mm;
+  return {width, width / picture.aspect()};
+}
+
+Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask& task,
+          const PosedObject& posed, const RunContext& context) {
+  Placed placed;
+  if (wanted.projection == Projection::kFilm)
+    placed.size_mm = size_on_film(wanted, picture);
+  else
+    placed = place({wanted, picture.aspect(), posed, task.closed}, context);
+  const double pixels_per_mm = task.dpi / kMmPerInch * task.samples_per_axis;
+  Layer layer{picture.pixels(placed.size_mm.x(), placed.size_mm.y(), pixels_per_mm),
+              PictureFrame(placed.size_mm, wanted.turn_deg, wanted.repeat),
+              std::move(placed.placement),
+              wanted.at_mm ? Vec2(wanted.at_mm->head<2>()) : Vec2(Vec2::Zero()),
+              float(wanted.opacity),
+              wanted.blend};
+  if (!shows_anything(*layer.image))
+    throw InputError(name_of(wanted) +
+                     ": the picture is transparent everywhere; nothing would show");
+  if (layer.placement && !hits(layer, posed.mesh())) refuse_miss(wanted, posed);
+  return layer;
+}
+
+}  // namespace
+
+std::vector<PictureSource> read_pictures(const std::vector<ArtworkLayer>& layers) {
+  std::vector<PictureSource> pictures;
+  for (const ArtworkLayer& layer : layers) pictures.emplace_back(layer);
+  return pictures;
+}
+
+Artwork lay_artwork(ArtworkTask task, const PosedObject& posed, const RunContext& context) {
+  const RunScope scope(context);
+  auto paint = std::make_shared<LayeredPaint>(posed, task.under);
+  Artwork artwork;
+  for (std::size_t n = 0; n < task.layers.size(); ++n) {
+    context.progress("laying artwork", double(n) / double(task.layers.size()));
+    Layer layer = lay(task.layers[n], task.pictures[n], task, paint->posed(), context);
+    artwork.layers.push_back({name_of(task.layers[n]), layer.frame.size_mm()});
+    context.log(fmt::format("{}: {:.1f} x {:.1f} mm", artwork.layers.back().name,
+                            layer.frame.size_mm().x(), layer.frame.size_mm().y()));
+    paint->add(std::move(layer));
+  }
+  context.progress("laying artwork", 1);
+  artwork.paint = std::move(paint);
+  return artwork;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,347 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "artwork/drawing.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/output_folder.h"
+#include "base/run_scope.h"
+#include "coat/film_paint.h"
+#include "hydrodip/hydrodip.h"
+#include "image/files.h"
+#include "job/jobs.h"
+#include "job/prepare.h"
+#include "plan/fit.h"
+#include "plan/sheet_packing.h"
+#include "session/sheet_files.h"
+
+namespace hydrodip {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr double kLeastClearance_mm = 10, kClearancePerDepth = 0.25;
+// Lines to cut along, and what is written beside them, in the taped margin.
+constexpr double kLine_mm = 0.2, kLabel_mm = 3;
+
+// A part and its piece of film.
+struct Part {
+  JobConfig config;
+  int count = 1;
+  PreparedObject prepared;
+  Trajectory trajectory;
+};
+
+// One piece of the sheet.
+struct Piece {
+  std::size_t part;
+  int number;  // from 1, over all
+  PackedPiece place;
+};
+
+struct Nest {
+  std::vector<Part> parts;
+  std::vector<Piece> pieces;
+  std::vector<std::shared_ptr<const Designed>> made;  // per part
+};
+
+Vec2 film_size(const FilmOptions& film) { return {film.width_mm, film.height_mm}; }
+
+// The piece that an object needs: itself, free film, tape.
+FilmOptions piece_for(const Room& room, const FilmOptions& sheet, double clearance_mm) {
+  const double clearance = clearance_mm > 0
+                               ? clearance_mm
+                               : std::max(kLeastClearance_mm, kClearancePerDepth * room.depth_mm);
+  FilmOptions piece = sheet;
+  piece.shape = FilmShape::kRectangle;
+  piece.width_mm = std::ceil(2 * (room.half_width_mm + clearance + sheet.margin_mm));
+  piece.height_mm = std::ceil(2 * (room.half_height_mm + clearance + sheet.margin_mm));
+  return piece;
+}
+
+Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet,
+                  const NestRequest& request, const RunContext& context) {
+  JobConfig config = wanted.config;
+  config.printer = sheet.printer;
+  config.design.dpi = sheet.design.dpi;
+  PreparedObject prepared = prepare_object(config.model, config.object, context, config.design.dpi,
+                                           config.design.inverse.samples_per_axis);
+  if (config.object.artwork.empty())
+    require_appearance(prepared.posed.object(), prepared.picture_problems, config.model);
+  const TriangleMesh& mesh = prepared.posed.mesh();
+  Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
+  config.design.film =
+      piece_for(room_of(mesh, trajectory), sheet.design.film, request.clearance_mm);
+  require_fit(mesh, room_of(mesh, trajectory), config.design.film, config.bath, context);
+  return {std::move(config), wanted.count, std::move(prepared), std::move(trajectory)};
+}
+
+std::vector<Piece> placed(const std::vector<Part>& parts, const FilmOptions& sheet) {
+  std::vector<Piece> pieces;
+  std::vector<Vec2> sizes;
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    for (int n = 0; n < parts[p].count; ++n) {
+      pieces.push_back({p, int(pieces.size()) + 1, {}});
+      sizes.push_back(film_size(parts[p].config.design.film));
+    }
+  const Vec2 room = film_size(sheet) - 2 * Vec2::Constant(sheet.margin_mm);
+  const std::vector<PackedPiece> places = pack_pieces(sizes, room);
+  int fit = 0;
+  std::string left_out;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    pieces[i].place = places[i];
+    pieces[i].place.corner_mm += Vec2::Constant(sheet.margin_mm);
+    fit += places[i].placed ? 1 : 0;
+    if (!places[i].placed && left_out.empty())
+      left_out = fmt::format("{} needs a piece of {:.0f} x {:.0f} mm",
+                             parts[pieces[i].part].config.model.filename().string(), sizes[i].x(),
+                             sizes[i].y());
+  }
+  if (fit < int(pieces.size()))
+    throw InputError(fmt::format(
+        "the film of {:g} x {:g} mm holds {} of the {} parts ({}); take a larger --film, fewer "
+        "parts, or less --clearance",
+        sheet.width_mm, sheet.height_mm, fit, pieces.size(), left_out));
+  return pieces;
+}
+
+// ---- the sheet ----
+
+// A rectangle of pixels on the sheet, and how a piece's own pixels lie in it.
+class PieceOnSheet {
+ public:
+  PieceOnSheet(const Piece& piece, const SheetRaster& own, const SheetRaster& sheet)
+      : width_(own.width_px()), height_(own.height_px()), turned_(piece.place.turned) {
+    const double pixel_mm = kMmPerInch / sheet.dpi;
+    left_ = int(std::lround(piece.place.corner_mm.x() / pixel_mm));
+    const int bottom = int(std::lround(piece.place.corner_mm.y() / pixel_mm));
+    left_ = std::clamp(left_, 0, std::max(0, sheet.width_px() - wide()));
+    top_ =
+        std::clamp(sheet.height_px() - bottom - high(), 0, std::max(0, sheet.height_px() - high()));
+  }
+  int wide() const { return turned_ ? height_ : width_; }
+  int high() const { return turned_ ? width_ : height_; }
+
+  // Copies 4-byte pixels of the piece. Turned: its right edge is up on the sheet.
+  template <class Pixels>
+  void copy(const Pixels& from, Pixels& sheet) const {
+    for (int y = 0; y < height_; ++y)
+      for (int x = 0; x < width_; ++x) {
+        const int to_x = left_ + (turned_ ? y : x);
+        const int to_y = top_ + (turned_ ? width_ - 1 - x : y);
+        if (to_x < sheet.width_px && to_y < sheet.height_px)
+          std::copy_n(from.pixel(x, y), 4, sheet.pixel(to_x, to_y));
+      }
+  }
+
+ private:
+  int width_, height_;
+  bool turned_;
+  int left_ = 0, top_ = 0;
+};
+
+// Black on a piece: where `alpha` says so.
+void blacken(FilmInk& ink, int x, int y, std::uint8_t alpha) {
+  if (x < 0 || y < 0 || x >= ink.wanted.width_px || y >= ink.wanted.height_px) return;
+  std::uint8_t* inks = ink.inking.inks.pixel(x, y);
+  inks[3] = std::max(inks[3], alpha);
+  std::uint8_t* wanted = ink.wanted.pixel(x, y);
+  if (wanted[3] < alpha) {
+    wanted[0] = wanted[1] = wanted[2] = 0;
+    wanted[3] = alpha;
+  }
+}
+
+// What is needed to cut a piece out and to know it again.
+void mark_piece(FilmInk& ink, const std::string& label, double margin_mm, double dpi) {
+  const int width = ink.wanted.width_px, height = ink.wanted.height_px;
+  const double pixels_per_mm = dpi / kMmPerInch;
+  const int line = std::max(1, int(std::lround(kLine_mm * pixels_per_mm)));
+  for (int x = 0; x < width; ++x)
+    for (int k = 0; k < line; ++k) {
+      blacken(ink, x, k, 255);
+      blacken(ink, x, height - 1 - k, 255);
+    }
+  for (int y = 0; y < height; ++y)
+    for (int k = 0; k < line; ++k) {
+      blacken(ink, k, y, 255);
+      blacken(ink, width - 1 - k, y, 255);
+    }
+  if (margin_mm < kLabel_mm + 2) return;
+  const Drawing text = Drawing::from_text(label, "sans bold", {0, 0, 0, 1});
+  double high_mm = kLabel_mm, wide_mm = high_mm * text.aspect();
+  const double room_mm = width / pixels_per_mm - 4;
+  if (wide_mm > room_mm) {
+    high_mm *= room_mm / wide_mm;
+    wide_mm = room_mm;
+  }
+  const Image letters = text.pixels(std::max(1, int(wide_mm * pixels_per_mm)),
+                                    std::max(1, int(high_mm * pixels_per_mm)));
+  const int left = (width - letters.width_px) / 2;
+  const int top = height - int((0.5 * margin_mm + 0.5 * high_mm) * pixels_per_mm);
+  for (int y = 0; y < letters.height_px; ++y)
+    for (int x = 0; x < letters.width_px; ++x)
+      blacken(ink, left + x, top + y, letters.pixel(x, y)[3]);
+}
+
+std::string label_of(const Piece& piece, const Part& part) {
+  return fmt::format("{}: {}", piece.number, part.config.model.stem().string());
+}
+
+FilmInk whole_sheet(const Nest& nest, const SheetRaster& sheet) {
+  FilmInk whole;
+  whole.wanted = Image(sheet.width_px(), sheet.height_px());
+  whole.inking.inks = InkImage(sheet.width_px(), sheet.height_px());
+  for (const Piece& piece : nest.pieces) {
+    const Part& part = nest.parts[piece.part];
+    const FilmInk& made = nest.made[piece.part]->ink.ink;
+    FilmInk own;
+    own.wanted = made.wanted;
+    own.inking.inks = made.inking.inks;
+    mark_piece(own, label_of(piece, part), part.config.design.film.margin_mm, sheet.dpi);
+    const PieceOnSheet on(piece, nest.made[piece.part]->raster, sheet);
+    on.copy(own.wanted, whole.wanted);
+    on.copy(own.inking.inks, whole.inking.inks);
+  }
+  return whole;
+}
+
+// ---- the run sheet ----
+
+json described(const Nest& nest) {
+  json list = json::array();
+  for (const Piece& piece : nest.pieces) {
+    const Part& part = nest.parts[piece.part];
+    const Coverage& coverage = nest.made[piece.part]->dipped.coverage;
+    list.push_back({{"number", piece.number},
+                    {"model", part.config.model.string()},
+                    {"from_left_mm", piece.place.corner_mm.x()},
+                    {"from_bottom_mm", piece.place.corner_mm.y()},
+                    {"width_mm", part.config.design.film.width_mm},
+                    {"height_mm", part.config.design.film.height_mm},
+                    {"turned", piece.place.turned},
+                    {"depth_mm", part.trajectory.depth_mm()},
+                    {"covered_downward_share", coverage.covered_downward_share()},
+                    {"torn_share", coverage.torn_share()}});
+  }
+  return list;
+}
+
+std::string html_escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+  return out;
+}
+
+std::string run_sheet(const Nest& nest, const JobConfig& sheet) {
+  std::string page = fmt::format(
+      "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>hydrodip run sheet</title>"
+      "<style>body{{font:16px sans-serif;margin:2em}}td,th{{padding:.3em .8em;text-align:left;"
+      "border-bottom:1px solid #ccc}}img{{max-height:24em;border:1px solid #ccc}}</style>"
+      "<h1>Run sheet: {} parts on one film of {:g} x {:g} mm</h1>"
+      "<p>Print print.pdf at 100 %, cut along the lines, tape each piece over {:g} mm all around, "
+      "and dip each part on its own piece, centred, with the piece's writing towards you.</p>"
+      "<p><img src=\"print.png\" alt=\"the sheet\"></p>"
+      "<table><tr><th>piece<th>part<th>from the left edge<th>from the lower "
+      "edge<th>size<th>writing "
+      "on the sheet<th>depth of the dip<th>covered<th>torn</tr>",
+      nest.pieces.size(), sheet.design.film.width_mm, sheet.design.film.height_mm,
+      sheet.design.film.margin_mm);
+  for (const Piece& piece : nest.pieces) {
+    const Part& part = nest.parts[piece.part];
+    const Coverage& coverage = nest.made[piece.part]->dipped.coverage;
+    page += fmt::format(
+        "<tr><td>{}<td>{}<td>{:.0f} mm<td>{:.0f} mm<td>{:g} x {:g} mm<td>{}<td>{:.1f} mm<td>{:.0f} "
+        "%<td>{:.1f} %</tr>",
+        piece.number, html_escaped(part.config.model.filename().string()),
+        piece.place.corner_mm.x(), piece.place.corner_mm.y(), part.config.design.film.width_mm,
+        part.config.design.film.height_mm, piece.place.turned ? "upright, on the right" : "below",
+        part.trajectory.depth_mm(), 100 * coverage.covered_downward_share(),
+        100 * coverage.torn_share());
+  }
+  page += "</table>";
+  for (std::size_t p = 0; p < nest.parts.size(); ++p)
+    page += fmt::format("<h2>{}</h2><img src=\"part-{}.png\" alt=\"wanted and predicted\">",
+                        html_escaped(nest.parts[p].config.model.filename().string()), p + 1);
+  return page + "</html>\n";
+}
+
+SheetOptions sheet_options(const JobConfig& config, std::size_t pieces) {
+  SheetOptions sheet;
+  sheet.width_mm = config.design.film.width_mm;
+  sheet.height_mm = config.design.film.height_mm;
+  sheet.margin_mm = config.design.film.margin_mm;
+  sheet.dpi = config.design.dpi;
+  sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
+  sheet.job_name =
+      config.print.job_name.empty() ? fmt::format("{} parts", pieces) : config.print.job_name;
+  return sheet;
+}
+
+std::vector<std::string> file_names(std::size_t parts) {
+  std::vector<std::string> names = {"print.pdf", "print.png", "print.tif", "nest.html",
+                                    "nest.json"};
+  for (std::size_t p = 0; p < parts; ++p) names.push_back(fmt::format("part-{}.png", p + 1));
+  return names;
+}
+
+}  // namespace
+
+JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const RunContext& context) {
+  const RunScope scope(context.with_threads(sheet.threads));
+  require_memory(sheet.design);
+  OutputFolder folder(sheet.output);
+  Nest nest;
+  std::vector<std::filesystem::path> inputs;
+  for (const NestRequest::Part& part : request.parts) {
+    nest.parts.push_back(prepare_part(part, sheet, request, context));
+    const auto& files = nest.parts.back().prepared.files;
+    inputs.insert(inputs.end(), files.begin(), files.end());
+  }
+  folder.announce(file_names(nest.parts.size()), inputs);
+  nest.pieces = placed(nest.parts, sheet.design.film);
+
+  const Printer printer = make_printer(sheet.printer);
+  Timings timings;
+  for (const Part& part : nest.parts)
+    nest.made.push_back(
+        std::make_shared<const Designed>(design({part.prepared.posed, *part.prepared.paint,
+                                                 Allotment(), *printer.model, part.config.design},
+                                                timings, context)));
+
+  const FilmInk whole = whole_sheet(nest, raster_of(sheet.design.film, sheet.design.dpi));
+  write_sheet_files(folder, whole, printer, sheet_options(sheet, nest.pieces.size()), context);
+  for (std::size_t p = 0; p < nest.parts.size(); ++p)
+    write_png(folder.path(fmt::format("part-{}.png", p + 1)),
+              render(finish(nest.parts[p].prepared.paint, {*nest.made[p]}, printer),
+                     sheet.preview_width_px, context));
+  const json report = {{"schema_version", 1},
+                       {"command", "nest"},
+                       {"film_mm", {sheet.design.film.width_mm, sheet.design.film.height_mm}},
+                       {"pieces", described(nest)},
+                       {"warnings", context.warnings()}};
+  const std::string text = report.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  write_file(folder.path("nest.json"), text);
+  write_file(folder.path("nest.html"), run_sheet(nest, sheet));
+  context.check_cancelled();
+  folder.commit();
+
+  JobResult result;
+  result.folder = folder.folder();
+  result.files = file_names(nest.parts.size());
+  result.json = text;
+  result.text = fmt::format(
+      "wrote to {}:\n  print.pdf    the sheet with {} pieces: print it at 100 % (no scaling)\n"
+      "  print.png    what the sheet will look like\n  print.tif    its inks\n"
+      "  nest.html    the run sheet: which part where\n  nest.json    the same for programs\n",
+      folder.folder().string(), nest.pieces.size());
+  for (const std::string& warning : context.warnings()) result.text += "warning: " + warning + "\n";
+  return result;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,312 @@
+#include "settings/artwork_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "base/error.h"
+#include "base/nearest_name.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr std::size_t kMostLayers = 64;
+constexpr double kLongest_mm = 1e5;
+
+using Numbers = std::vector<double>;
+
+struct Key {
+  LayerKey key;
+  // False: the value is none that it can have.
+  std::function<bool(ArtworkLayer&, const Setting&)> set;
+  std::function<std::string(const ArtworkLayer&)> get;
+};
+
+// ---- values ----
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::optional<Numbers> parse_list(const std::string& text) {
+  Numbers values;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    std::string part = trimmed(text.substr(begin, end - begin));
+    if (part.size() > 1 && part[0] == '+' && part[1] != '-') part.erase(0, 1);
+    double value = 0;
+    const auto [rest, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc() || rest != part.data() + part.size()) return {};
+    values.push_back(value);
+    begin = end + 1;
+  }
+  return values;
+}
+
+// Finite ones only.
+std::optional<Numbers> numbers_of(const Setting& setting) {
+  std::optional<Numbers> values;
+  if (const auto* number = std::get_if<double>(&setting.value))
+    values = Numbers{*number};
+  else if (const auto* list = std::get_if<Numbers>(&setting.value))
+    values = *list;
+  else if (const auto* text = std::get_if<std::string>(&setting.value); text && !setting.typed)
+    values = parse_list(*text);
+  if (values)
+    for (const double value : *values)
+      if (!std::isfinite(value)) return {};
+  return values;
+}
+
+std::optional<std::string> text_of(const Setting& setting) {
+  const auto* text = std::get_if<std::string>(&setting.value);
+  if (!text || text->find('\0') != std::string::npos) return {};
+  return *text;
+}
+
+std::string written(const Vec3& v) { return fmt::format("{},{},{}", v.x(), v.y(), v.z()); }
+
+// ---- kinds of keys ----
+
+Key number(const char* name, const char* unit, double min, double max, double ArtworkLayer::*member,
+           const char* help) {
+  return {{name, unit, fmt::format("a number from {} to {}", min, max), help},
+          [=](ArtworkLayer& layer, const Setting& setting) {
+            const auto values = numbers_of(setting);
+            if (!values || values->size() != 1 || !((*values)[0] >= min && (*values)[0] <= max))
+              return false;
+            layer.*member = (*values)[0] + 0.0;
+            return true;
+          },
+          [=](const ArtworkLayer& layer) { return fmt::format("{}", layer.*member); }};
+}
+
+Key vector(const char* name, const char* unit, std::optional<Vec3> ArtworkLayer::*member,
+           const char* help) {
+  return {{name, unit, "three numbers X,Y,Z", help},
+          [=](ArtworkLayer& layer, const Setting& setting) {
+            const auto values = numbers_of(setting);
+            if (!values || values->size() != 3) return false;
+            const Vec3 v((*values)[0] + 0.0, (*values)[1] + 0.0, (*values)[2] + 0.0);
+            if (!(v.cwiseAbs().maxCoeff() <= kLongest_mm)) return false;
+            layer.*member = v;
+            return true;
+          },
+          [=](const ArtworkLayer& layer) {
+            return layer.*member ? written(*(layer.*member)) : std::string();
+          }};
+}
+
+Key size() {
+  return {{"size_mm", "mm", "W or W,H, each more than 0",
+           "width and height on the surface; one figure keeps the picture's shape; default: as "
+           "large as fits"},
+          [](ArtworkLayer& layer, const Setting& setting) {
+            const auto values = numbers_of(setting);
+            if (!values || values->empty() || values->size() > 2) return false;
+            for (const double value : *values)
+              if (!(value >= 0.01 && value <= kLongest_mm)) return false;
+            layer.width_mm = (*values)[0];
+            layer.height_mm = values->size() > 1 ? (*values)[1] : 0;
+            return true;
+          },
+          [](const ArtworkLayer& layer) {
+            if (!(layer.width_mm > 0)) return std::string();
+            return layer.height_mm > 0 ? fmt::format("{},{}", layer.width_mm, layer.height_mm)
+                                       : fmt::format("{}", layer.width_mm);
+          }};
+}
+
+template <class Enum>
+using Names = std::vector<std::pair<const char*, Enum>>;
+
+template <class Enum>
+Key choice(const char* name, Names<Enum> names, Enum ArtworkLayer::*member, const char* help) {
+  std::string all;
+  for (const auto& [label, value] : names)
+    all += (all.empty() ? "one of " : ", ") + std::string(label);
+  return {{name, "", all, help},
+          [=](ArtworkLayer& layer, const Setting& setting) {
+            const auto text = text_of(setting);
+            for (const auto& [label, value] : names)
+              if (text && *text == label) {
+                layer.*member = value;
+                return true;
+              }
+            return false;
+          },
+          [=](const ArtworkLayer& layer) {
+            for (const auto& [label, value] : names)
+              if (layer.*member == value) return std::string(label);
+            return std::string();
+          }};
+}
+
+Key text(const char* name, std::string ArtworkLayer::*member, const char* help) {
+  return {{name, "", "text", help},
+          [=](ArtworkLayer& layer, const Setting& setting) {
+            const auto value = text_of(setting);
+            if (value) layer.*member = *value;
+            return value.has_value();
+          },
+          [=](const ArtworkLayer& layer) { return layer.*member; }};
+}
+
+Key image() {
+  return {{"image", "", "a file name", "PNG, JPEG, WebP, TIFF, SVG, ...; in a file: beside it"},
+          [](ArtworkLayer& layer, const Setting& setting) {
+            const auto value = text_of(setting);
+            if (value) layer.image = *value;
+            return value && !value->empty();
+          },
+          [](const ArtworkLayer& layer) { return layer.image.string(); }};
+}
+
+Key through() {
+  return {{"through", "", "true or false", "also onto what lies behind the first surface"},
+          [](ArtworkLayer& layer, const Setting& setting) {
+            const auto value = text_of(setting);
+            if (!value || (*value != "true" && *value != "false")) return false;
+            layer.through = *value == "true";
+            return true;
+          },
+          [](const ArtworkLayer& layer) { return std::string(layer.through ? "true" : "false"); }};
+}
+
+Key text_color() {
+  return {{"text_color", "", "a colour such as #ffcc00", "of text"},
+          [](ArtworkLayer& layer, const Setting& setting) {
+            const auto hex = text_of(setting);
+            if (!hex || hex->size() != 7 || (*hex)[0] != '#' ||
+                hex->find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
+              return false;
+            const auto channel = [&](std::size_t at) {
+              return srgb8_to_linear(std::uint8_t(std::stoi(hex->substr(at, 2), nullptr, 16)));
+            };
+            layer.text_color = {channel(1), channel(3), channel(5), 1};
+            return true;
+          },
+          [](const ArtworkLayer& layer) {
+            const LinearColor& c = layer.text_color;
+            return fmt::format("#{:02x}{:02x}{:02x}", linear_to_srgb8(c.r), linear_to_srgb8(c.g),
+                               linear_to_srgb8(c.b));
+          }};
+}
+
+const std::vector<Key>& keys() {
+  static const std::vector<Key> all = {
+      image(),
+      text("text", &ArtworkLayer::text, "instead of an image: what is written"),
+      text("font", &ArtworkLayer::font, "of text: a font of this machine, bold, italic"),
+      text_color(),
+      choice<Projection>(
+          "projection",
+          {{"planar", Projection::kPlanar},
+           {"cylinder", Projection::kCylinder},
+           {"sphere", Projection::kSphere},
+           {"box", Projection::kBox},
+           {"uv", Projection::kUv},
+           {"wrap", Projection::kWrap},
+           {"film", Projection::kFilm}},
+          &ArtworkLayer::projection,
+          "planar, cylinder, sphere, box push the picture through space; wrap sticks "
+          "it on"),
+      vector("at_mm", "mm", &ArtworkLayer::at_mm, "the picture's centre, in the model's frame"),
+      vector("toward", "", &ArtworkLayer::toward,
+             "the way it is projected; of cylinder and sphere the axis"),
+      vector("up", "", &ArtworkLayer::up, "towards the picture's upper edge"),
+      size(),
+      number("turn_deg", "deg", -3600, 3600, &ArtworkLayer::turn_deg,
+             "turn counter-clockwise, as one sees the picture"),
+      choice<Repeat>(
+          "repeat", {{"once", Repeat::kOnce}, {"tile", Repeat::kTile}, {"mirror", Repeat::kMirror}},
+          &ArtworkLayer::repeat, "beyond the picture's edges"),
+      through(),
+      number("fade_deg", "deg", 0, 90, &ArtworkLayer::fade_deg,
+             "fade out from this angle between surface and projection on; 90: nowhere"),
+      number("opacity", "", 0, 1, &ArtworkLayer::opacity, "of the whole layer"),
+      choice<Blend>("blend", {{"normal", Blend::kNormal}, {"multiply", Blend::kMultiply}},
+                    &ArtworkLayer::blend, "how it mixes with what is below"),
+  };
+  return all;
+}
+
+// ---- names ----
+
+constexpr const char* kTable = "artwork[";
+constexpr const char* kOption = "art.";
+
+// "size_mm" of "artwork[2].size_mm" and "art.size_mm"; "" of others.
+std::string key_of(const std::string& name) {
+  if (name.starts_with(kOption)) return name.substr(std::string(kOption).size());
+  const std::size_t end = name.find("].");
+  return name.starts_with(kTable) && end != std::string::npos ? name.substr(end + 2) : "";
+}
+
+const Key& find_key(const std::string& name, const Setting& setting) {
+  std::vector<std::string> names;
+  for (const Key& key : keys()) {
+    if (key.key.name == name) return key;
+    names.push_back(key.key.name);
+  }
+  const std::string hint = did_you_mean(name, names);
+  throw InputError(fmt::format("{}: a layer of artwork has no '{}'{}", setting.origin, name,
+                               hint.empty() ? "; docs/artwork.md lists what it has" : hint));
+}
+
+ArtworkLayer& numbered(std::vector<ArtworkLayer>& layers, const Setting& setting) {
+  const std::string digits = setting.name.substr(std::string(kTable).size());
+  std::size_t number = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (number < 1 || number > std::min(layers.size() + 1, kMostLayers))
+    throw InputError(fmt::format("{}: {}: the job has {} layers of artwork, and at most {}",
+                                 setting.origin, setting.name, layers.size(), kMostLayers));
+  if (number > layers.size()) layers.emplace_back();
+  return layers[number - 1];
+}
+
+ArtworkLayer& topmost(std::vector<ArtworkLayer>& layers, const Setting& setting) {
+  if (layers.empty())
+    throw InputError(setting.origin + " needs artwork: name an image with --art, or --art-text");
+  return layers.back();
+}
+
+}  // namespace
+
+bool apply_artwork_setting(JobConfig& config, const Setting& setting) {
+  const bool is_option = setting.name.starts_with(kOption);
+  if (!is_option && !setting.name.starts_with(kTable)) return false;
+  std::vector<ArtworkLayer>& layers = config.object.artwork;
+  const Key& key = find_key(key_of(setting.name), setting);
+  ArtworkLayer& layer = is_option ? topmost(layers, setting) : numbered(layers, setting);
+  if (!key.set(layer, setting))
+    throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, setting.name,
+                                 key.key.range, setting.shown.empty() ? "empty" : setting.shown));
+  return true;
+}
+
+bool is_artwork_path(const std::string& name) { return key_of(name) == "image"; }
+bool is_artwork_switch(const std::string& name) { return key_of(name) == "through"; }
+
+const std::vector<LayerKey>& layer_keys() {
+  static const std::vector<LayerKey> list = [] {
+    std::vector<LayerKey> all;
+    for (const Key& key : keys()) all.push_back(key.key);
+    return all;
+  }();
+  return list;
+}
+
+std::vector<std::string> layer_values(const ArtworkLayer& layer) {
+  std::vector<std::string> values;
+  for (const Key& key : keys()) values.push_back(key.get(layer));
+  return values;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,62 @@
+#include "settings/part_tables.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr const char* kTable = "part[";
+constexpr std::size_t kMostParts = 100;
+constexpr int kMostCopies = 100;
+
+[[noreturn]] void refuse(const Setting& setting, const std::string& expected) {
+  throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, setting.name, expected,
+                               setting.shown.empty() ? "empty" : setting.shown));
+}
+
+PartEntry& numbered(JobConfig& config, const Setting& setting) {
+  const std::string digits = setting.name.substr(std::string(kTable).size());
+  std::size_t number = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (number < 1 || number > std::min(config.parts.size() + 1, kMostParts))
+    throw InputError(fmt::format("{}: {}: the job has {} parts, and at most {}", setting.origin,
+                                 setting.name, config.parts.size(), kMostParts));
+  if (number > config.parts.size()) config.parts.emplace_back();
+  return config.parts[number - 1];
+}
+
+int count_of(const Setting& setting) {
+  double value = 0;
+  if (const auto* number = std::get_if<double>(&setting.value)) value = *number;
+  if (const auto* text = std::get_if<std::string>(&setting.value); text && !setting.typed)
+    std::from_chars(text->data(), text->data() + text->size(), value);
+  if (!(value >= 1 && value <= kMostCopies && value == std::floor(value)))
+    refuse(setting, fmt::format("a whole number from 1 to {}", kMostCopies));
+  return int(value);
+}
+
+}  // namespace
+
+bool apply_part_setting(JobConfig& config, const Setting& setting) {
+  if (!setting.name.starts_with(kTable)) return false;
+  PartEntry& part = numbered(config, setting);
+  if (setting.name.ends_with("].job")) {
+    const auto* text = std::get_if<std::string>(&setting.value);
+    if (!text || text->empty() || text->find('\0') != std::string::npos)
+      refuse(setting, "a file name, of a model or a job");
+    part.job = *text;
+  } else if (setting.name.ends_with("].count")) {
+    part.count = count_of(setting);
+  } else {
+    throw InputError(fmt::format("{}: unknown '{}': a part has a job and a count", setting.origin,
+                                 setting.name));
+  }
+  return true;
+}
+
+}  // namespace hydrodip

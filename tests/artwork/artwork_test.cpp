@@ -1,0 +1,295 @@
+// Layers as a paint: what is seen where, and what is hidden.
+#include "artwork/artwork.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "image/files.h"
+#include "shapes.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr double kBlack = 0.01, kWhite = 0.99;
+
+class Layers : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("hydrodip-artwork-" +
+               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path picture(const std::shared_ptr<const Image>& image,
+                                const std::string& name = "picture.png") {
+    save_png(folder_ / name, *image);
+    return folder_ / name;
+  }
+  std::filesystem::path black() {
+    return picture(painted(8, 8, [](int, int) { return std::array{0, 0, 0, 255}; }), "black.png");
+  }
+
+  static std::shared_ptr<const Paint> laid(const PosedObject& object,
+                                           std::vector<ArtworkLayer> layers, bool closed = true,
+                                           double dpi = 300) {
+    std::vector<PictureSource> pictures = read_pictures(layers);
+    return lay_artwork({std::move(layers), std::move(pictures), model_paint(object.shared_object()),
+                        closed, dpi, 3},
+                       object, RunContext())
+        .paint;
+  }
+
+  std::filesystem::path folder_;
+};
+
+ArtworkLayer downward(const std::filesystem::path& image, double width_mm) {
+  ArtworkLayer layer;
+  layer.image = image;
+  layer.toward = Vec3(0, 0, -1);
+  layer.up = Vec3(0, 1, 0);
+  layer.width_mm = width_mm;
+  return layer;
+}
+
+// What is seen there of an object that is not turned.
+float seen(const PosedObject& object, const Paint& paint, const Vec3& model_point) {
+  const auto hit = object.surface().closest_point(moved(object, model_point), 0.01);
+  if (!hit) {
+    ADD_FAILURE() << "no surface at " << model_point.transpose();
+    return -1;
+  }
+  return paint.color_at({hit->triangle, hit->u, hit->v}).g;
+}
+
+// The picture's left half is black: its edge is where the colour changes, to be found to a
+// thousandth of a millimetre.
+TEST_F(Layers, AnEdgeLiesWhereItIsTold) {
+  const PosedObject object = posed(box({0, 0, 0}, {100, 60, 20}));
+  const auto image = painted(2000, 1000, [](int x, int) {
+    return x < 500 ? std::array{0, 0, 0, 255} : std::array{255, 255, 255, 255};
+  });
+  ArtworkLayer layer = downward(picture(image), 80);
+  layer.at_mm = Vec3(47, 31, 20);
+  const auto paint = laid(object, {layer});
+  // A quarter of 80 mm from its left edge, at 47 - 40.
+  double low = 10, high = 60;
+  while (high - low > 1e-4) {
+    const double middle = 0.5 * (low + high);
+    (seen(object, *paint, {middle, 31, 20}) < 0.5 ? low : high) = middle;
+  }
+  EXPECT_NEAR(low, 27, 0.02);
+}
+
+TEST_F(Layers, TheBackOfAThinShellStaysBare) {
+  // Half a millimetre thick, many small triangles and one of the backs below.
+  TriangleMesh mesh = box({0, 0, 0}, {50, 50, 0.5});
+  const PosedObject coarse = posed(mesh);
+  const auto paint = laid(coarse, {downward(black(), 200)});
+  EXPECT_LT(seen(coarse, *paint, {20, 20, 0.5}), kBlack);
+  EXPECT_GT(seen(coarse, *paint, {20, 20, 0}), kWhite);
+  EXPECT_GT(seen(coarse, *paint, {0, 20, 0.2}), kWhite);  // the rim is parallel to the way
+  // A sphere's shell: an outer and an inner surface, 0.4 mm apart.
+  TriangleMesh shell = ball(20, 300, 150);
+  TriangleMesh inner = ball(19.6, 300, 150);
+  for (Triangle& t : inner.triangles) std::swap(t[1], t[2]);
+  append(shell, inner);
+  const PosedObject fine = posed(shell);
+  const auto on_shell = laid(fine, {downward(black(), 100)});
+  each_point(fine.mesh(), [&](const SurfacePoint& point) {
+    const Vec3 p = position_at(fine.mesh(), point) - moved(fine, Vec3::Zero());
+    if (std::abs(p.z()) < 0.5) return;
+    const bool outer_top = p.norm() > 19.8 && p.z() > 0;
+    const float g = on_shell->color_at(point).g;
+    EXPECT_TRUE(outer_top ? g < kBlack : g > kWhite) << p.transpose() << " " << g;
+  });
+}
+
+TEST_F(Layers, WhatIsHiddenStaysBareUnlessToldOtherwise) {
+  // A small plate over a large one: its shadow is sharp, in big triangles and in small ones.
+  TriangleMesh two = box({0, 0, 0}, {60, 60, 2});
+  append(two, box({20, 20, 30}, {40, 40, 32}));
+  const PosedObject object = posed(two);
+  ArtworkLayer layer = downward(black(), 200);
+  const auto paint = laid(object, {layer});
+  EXPECT_LT(seen(object, *paint, {30, 30, 32}), kBlack);
+  EXPECT_LT(seen(object, *paint, {10, 10, 2}), kBlack);
+  EXPECT_GT(seen(object, *paint, {30, 30, 2}), kWhite);
+  EXPECT_LT(seen(object, *paint, {19.95, 30, 2}), kBlack);
+  EXPECT_GT(seen(object, *paint, {20.05, 30, 2}), kWhite);
+  layer.through = true;
+  const auto through = laid(object, {layer});
+  EXPECT_LT(seen(object, *through, {30, 30, 2}), kBlack);
+  EXPECT_LT(seen(object, *through, {30, 30, 0}), kBlack);
+}
+
+TEST_F(Layers, ShadowsAreTheSameInSmallTriangles) {
+  const auto flat = [](double z) {
+    return [z](double s, double t) { return Vec3(40 * s, 40 * t, z); };
+  };
+  const auto small = [](double s, double t) { return Vec3(10 + 20 * s, 10 + 20 * t, 5); };
+  TriangleMesh two = sheet(120, 120, flat(0));
+  append(two, sheet(60, 60, small));
+  const PosedObject object = posed(two);
+  const auto paint = laid(object, {downward(black(), 200)}, false);
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    const Vec3 p = position_at(object.mesh(), point);
+    const bool below = p.z() < 1 && std::abs(p.x()) < 10 && std::abs(p.y()) < 10;
+    const float g = paint->color_at(point).g;
+    EXPECT_TRUE(below ? g > kWhite : g < kBlack) << p.transpose();
+  });
+}
+
+TEST_F(Layers, TransparentEdgesHaveNoDarkFringe) {
+  // Red, cut out by alpha; the hidden colour of the rest is black. On white, nothing between red
+  // and white is darker than red.
+  const auto image = painted(40, 40, [](int x, int) {
+    return x < 20 ? std::array{255, 0, 0, 255} : std::array{0, 0, 0, 0};
+  });
+  const PosedObject object = posed(box({0, 0, 0}, {40, 40, 5}));
+  const auto paint = laid(object, {downward(picture(image), 40)});
+  for (double x = 15; x < 25; x += 0.01) {
+    const auto hit = object.surface().closest_point(moved(object, {x, 20, 5}), 0.01);
+    const LinearColor color = paint->color_at({hit->triangle, hit->u, hit->v});
+    EXPECT_NEAR(color.r, 1, 1e-5);
+    EXPECT_NEAR(color.g, color.b, 1e-6);
+  }
+}
+
+TEST_F(Layers, LieOverEachOtherInOrder) {
+  const auto gray = picture(painted(4, 4,
+                                    [](int, int) {
+                                      return std::array{188, 188, 188, 255};
+                                    }),
+                            "gray.png");
+  const float half = srgb8_to_linear(188);
+  const PosedObject object = posed(box({0, 0, 0}, {40, 40, 5}));
+  ArtworkLayer bottom = downward(gray, 40), top = downward(black(), 40);
+  top.opacity = 0.25;
+  EXPECT_NEAR(seen(object, *laid(object, {bottom, top}), {20, 20, 5}), 0.75 * half, 1e-4);
+  EXPECT_NEAR(seen(object, *laid(object, {top, bottom}), {20, 20, 5}), half, 1e-4);
+  ArtworkLayer tint = downward(gray, 40);
+  tint.blend = Blend::kMultiply;
+  EXPECT_NEAR(seen(object, *laid(object, {bottom, tint}), {20, 20, 5}), half * half, 1e-4);
+  // More layers than are looked at at once.
+  std::vector<ArtworkLayer> many(20, tint);
+  EXPECT_NEAR(seen(object, *laid(object, many), {20, 20, 5}), std::pow(half, 20), 1e-5);
+}
+
+TEST_F(Layers, RepeatAndMirror) {
+  const auto image = painted(100, 100, [](int x, int) {
+    return x < 50 ? std::array{0, 0, 0, 255} : std::array{255, 255, 255, 255};
+  });
+  const PosedObject object = posed(box({0, 0, 0}, {100, 100, 5}));
+  ArtworkLayer layer = downward(picture(image), 20);
+  layer.at_mm = Vec3(50, 50, 5);
+  const auto at = [&](const Paint& paint, double x) { return seen(object, paint, {x, 50, 5}); };
+  const auto once = laid(object, {layer});
+  EXPECT_LT(at(*once, 45), kBlack);
+  EXPECT_GT(at(*once, 25), kWhite);
+  layer.repeat = Repeat::kTile;
+  const auto tiled = laid(object, {layer});
+  EXPECT_LT(at(*tiled, 65), kBlack);
+  EXPECT_GT(at(*tiled, 75), kWhite);
+  EXPECT_LT(at(*tiled, 25), kBlack);
+  layer.repeat = Repeat::kMirror;
+  const auto mirrored = laid(object, {layer});
+  EXPECT_GT(at(*mirrored, 65), kWhite);
+  EXPECT_LT(at(*mirrored, 75), kBlack);
+  EXPECT_LT(at(*mirrored, 35), kBlack);
+}
+
+TEST_F(Layers, FadeWhereTheSurfaceTurnsAway) {
+  const PosedObject object = posed(ball(20, 200, 100));
+  ArtworkLayer layer = downward(black(), 100);
+  layer.fade_deg = 30;
+  const auto paint = laid(object, {layer});
+  const auto at = [&](double degrees) {
+    const double angle = degrees * kPi / 180;
+    const auto hit = object.surface().closest_point(
+        moved(object, 20 * Vec3(std::sin(angle), 0, std::cos(angle))), 0.1);
+    return double(paint->color_at({hit->triangle, hit->u, hit->v}).g);
+  };
+  EXPECT_NEAR(at(10), 0, 0.01);
+  EXPECT_NEAR(at(28), 0, 0.01);
+  EXPECT_NEAR(at(60), 0.5, 0.02);
+  EXPECT_NEAR(at(85), 1 - 5.0 / 60, 0.02);
+}
+
+TEST_F(Layers, WhatHitsNothingIsRefused) {
+  const PosedObject object = posed(box({0, 0, 0}, {40, 40, 5}));
+  ArtworkLayer layer = downward(black(), 10);
+  layer.at_mm = Vec3(100, 20, 5);
+  EXPECT_THROW(laid(object, {layer}), InputError);
+  ArtworkLayer hidden = downward(picture(painted(4, 4,
+                                                 [](int, int) {
+                                                   return std::array{9, 9, 9, 0};
+                                                 })),
+                                 10);
+  EXPECT_THROW(laid(object, {hidden}), InputError);
+  ArtworkLayer by_uv = downward(black(), 10);
+  by_uv.projection = Projection::kUv;
+  EXPECT_THROW(laid(object, {by_uv}), InputError);
+}
+
+TEST_F(Layers, DrawingsAreAsSharpAsThePrint) {
+  const std::string svg =
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 40 20'><rect x='10.25' y='0' "
+      "width='20' height='20' fill='#000'/></svg>";
+  write_file(folder_ / "logo.svg", svg);
+  const PosedObject object = posed(box({0, 0, 0}, {40, 40, 5}));
+  constexpr double kDpi = 1200;
+  const auto paint = laid(object, {downward(folder_ / "logo.svg", 40)}, true, kDpi);
+  // From white to black within less than a printed pixel, at the right place.
+  double begin = 0, end = 0;
+  for (double x = 10; x < 10.5; x += 0.0005) {
+    const float g = seen(object, *paint, {x, 20, 5});
+    if (g > 0.98) begin = x;
+    if (g > 0.02) end = x;
+  }
+  EXPECT_NEAR(0.5 * (begin + end), 10.25, 0.005);
+  EXPECT_LT(end - begin, kMmPerInch / kDpi);
+}
+
+TEST_F(Layers, TextIsSet) {
+  const PosedObject object = posed(box({0, 0, 0}, {80, 40, 5}));
+  ArtworkLayer layer = downward("", 70);
+  layer.text = "HHH & <H>";
+  const auto paint = laid(object, {layer});
+  int dark = 0, light = 0;
+  for (double x = 5; x < 75; x += 0.1) {
+    const float g = seen(object, *paint, {x, 20, 5});
+    dark += g < 0.1;
+    light += g > 0.9;
+  }
+  EXPECT_GT(dark, 50);
+  EXPECT_GT(light, 50);
+  layer.text = " ";
+  EXPECT_THROW(laid(object, {layer}), InputError);
+}
+
+TEST_F(Layers, OnTheFilmShowWhereFilmLies) {
+  const auto image = painted(100, 100, [](int x, int) {
+    return x < 50 ? std::array{0, 0, 0, 255} : std::array{255, 255, 255, 255};
+  });
+  const PosedObject object = posed(box({0, 0, 0}, {40, 40, 5}));
+  ArtworkLayer layer;
+  layer.image = picture(image);
+  layer.projection = Projection::kFilm;
+  layer.width_mm = 20;
+  layer.repeat = Repeat::kTile;
+  const auto paint = laid(object, {layer});
+  ASSERT_TRUE(paint->depends_on_film());
+  const SurfacePoint anywhere{0, 0.2, 0.2};
+  EXPECT_GT(paint->color_at(anywhere).g, kWhite);
+  EXPECT_LT(paint->color_on_film(anywhere, {-5, 3}).g, kBlack);
+  EXPECT_GT(paint->color_on_film(anywhere, {5, 3}).g, kWhite);
+  EXPECT_LT(paint->color_on_film(anywhere, {15, 3}).g, kBlack);
+}
+
+}  // namespace
+}  // namespace hydrodip

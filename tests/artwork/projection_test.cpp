@@ -1,0 +1,237 @@
+// Where pushed pictures lie, against closed forms. Placement is asked in mm, so that no pixel's
+// size hides an error; the promise is 0.02 mm.
+#include <gtest/gtest.h>
+
+#include "artwork/projector.h"
+#include "base/error.h"
+#include "shapes.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr double kExact_mm = 1e-6;
+
+ArtworkLayer layer_of(Projection projection, double width_mm = 20) {
+  ArtworkLayer layer;
+  layer.image = "test.png";
+  layer.projection = projection;
+  layer.width_mm = width_mm;
+  return layer;
+}
+
+Placed place(const ArtworkLayer& layer, const PosedObject& object, double aspect = 1,
+             bool closed = true) {
+  return place_pushed({layer, aspect, object, closed});
+}
+
+TEST(Planar, IsSeenUprightAndUnmirroredAlongItsWay) {
+  const PosedObject object = posed(box({0, 0, 0}, {60, 40, 30}));
+  ArtworkLayer layer = layer_of(Projection::kPlanar);
+  layer.at_mm = Vec3(25, 15, 30);
+  layer.toward = Vec3(0, 0, -1);
+  layer.up = Vec3(0, 1, 0);
+  const Placed placed = place(layer, object);
+  int seen = 0;
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    Spot spot;
+    const Vec3 p = position_at(object.mesh(), point) - moved(object, Vec3::Zero());
+    const bool on_top = std::abs(p.z() - 30) < 1e-9;
+    const bool lit = placed.placement->find(point, spot) && placed.placement->is_lit(point);
+    if (!on_top) {
+      EXPECT_FALSE(lit) << p.transpose();
+      return;
+    }
+    if (!lit) return;
+    ++seen;
+    // Looking down with +y up, +x is to the right.
+    EXPECT_NEAR(spot.place_mm.x(), p.x() - 25, kExact_mm);
+    EXPECT_NEAR(spot.place_mm.y(), p.y() - 15, kExact_mm);
+  });
+  EXPECT_GT(seen, 5);
+}
+
+TEST(Planar, OnATiltedPlaneIsTheFootOfTheRay) {
+  // z = x / 2 + y / 3 over a square, a sheet that is seen from above.
+  const auto at = [](double s, double t) { return Vec3(40 * s, 40 * t, 20 * s + 40 * t / 3); };
+  const PosedObject object = posed(sheet(7, 5, at));
+  ArtworkLayer layer = layer_of(Projection::kPlanar, 30);
+  layer.at_mm = Vec3(20, 20, 100);  // along its way a place means the same
+  layer.toward = Vec3(1, 0, -2);
+  layer.turn_deg = 0;
+  const Placed placed = place(layer, object, 1, false);
+  const Vec3 way = Vec3(1, 0, -2).normalized();
+  const Vec3 up = (Vec3(0, 0, 1) - way.z() * way).normalized();
+  const Vec3 right = way.cross(up);
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    Spot spot;
+    if (!placed.placement->find(point, spot)) return;
+    const Vec3 p = position_at(object.mesh(), point) - moved(object, Vec3::Zero());
+    EXPECT_NEAR(spot.place_mm.x(), (p - Vec3(20, 20, 100)).dot(right), kExact_mm);
+    EXPECT_NEAR(spot.place_mm.y(), (p - Vec3(20, 20, 100)).dot(up), kExact_mm);
+  });
+}
+
+TEST(Planar, IsTheSameInAnyPose) {
+  const TriangleMesh mesh = box({-10, -20, 5}, {30, 20, 25});
+  ArtworkLayer layer = layer_of(Projection::kPlanar);
+  layer.at_mm = Vec3(10, 0, 25);
+  layer.toward = Vec3(0, 0, -1);
+  const PosedObject plain = posed(mesh);
+  PoseOptions turned;
+  turned.down = ModelSide::kPlusX;
+  turned.rotate_deg = Vec3(10, 20, 70);
+  const PosedObject other = posed(mesh, turned);
+  const Placed a = place(layer, plain), b = place(layer, other);
+  each_point(mesh, [&](const SurfacePoint& point) {
+    Spot one, two;
+    const bool lit = a.placement->find(point, one) && a.placement->is_lit(point);
+    ASSERT_EQ(lit, b.placement->find(point, two) && b.placement->is_lit(point));
+    if (lit) {
+      EXPECT_LT((one.place_mm - two.place_mm).norm(), kExact_mm);
+    }
+  });
+}
+
+TEST(Planar, ByDefaultComesFromBelowAndFillsTheModel) {
+  const PosedObject object = posed(box({0, 0, 0}, {60, 40, 30}));
+  ArtworkLayer layer = layer_of(Projection::kPlanar, 0);
+  const Placed placed = place(layer, object, 2.0);
+  EXPECT_NEAR(placed.size_mm.x(), 60, 1e-9);  // twice as wide as high: the width decides
+  EXPECT_NEAR(placed.size_mm.y(), 30, 1e-9);
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    Spot spot;
+    const bool lit = placed.placement->find(point, spot) && placed.placement->is_lit(point);
+    // Only the picture itself ends before the sides do.
+    if (lit) {
+      EXPECT_NEAR(position_at(object.mesh(), point).z(), 0, 1e-9);
+    }
+    // Seen from below with +y up, -x is to the right.
+    if (lit) {
+      EXPECT_NEAR(spot.place_mm.x(), -position_at(object.mesh(), point).x(), 1e-9);
+    }
+  });
+}
+
+TEST(Planar, ByItsPlaceAloneGoesSquareToTheSurface) {
+  const PosedObject object = posed(box({0, 0, 0}, {60, 40, 30}));
+  ArtworkLayer layer = layer_of(Projection::kPlanar);
+  layer.at_mm = Vec3(60.3, 20, 15);  // a ruler's error beside the +x face
+  const Placed placed = place(layer, object);
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    Spot spot;
+    const Vec3 p = position_at(object.mesh(), point) - moved(object, Vec3::Zero());
+    if (!placed.placement->find(point, spot) || !placed.placement->is_lit(point)) return;
+    EXPECT_NEAR(p.x(), 60, 1e-9);
+    EXPECT_NEAR(spot.place_mm.x(), p.y() - 20, kExact_mm);
+    EXPECT_NEAR(spot.place_mm.y(), p.z() - 15, kExact_mm);
+  });
+}
+
+TEST(Cylinder, OnACylinderIsItsArc) {
+  constexpr double kRadius = 20;
+  const PosedObject object = posed(tube(kRadius, 50, 720, 10));
+  ArtworkLayer layer = layer_of(Projection::kCylinder, 40);
+  layer.toward = Vec3(0, 0, 1);
+  layer.at_mm = Vec3(0, -kRadius, 30);
+  const Placed placed = place(layer, object, 1, false);
+  const Vec3 centre = moved(object, Vec3(0, 0, 0));
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    Spot spot;
+    if (!placed.placement->find(point, spot) || !placed.placement->is_lit(point)) return;
+    const Vec3 p = position_at(object.mesh(), point) - centre;
+    // Seen from -y with z up, +x is to the right. 0.02 mm: the mesh has corners, the form has not.
+    EXPECT_NEAR(spot.place_mm.x(), kRadius * std::atan2(p.x(), -p.y()), 0.002);
+    EXPECT_NEAR(spot.place_mm.y(), p.z() - 30, kExact_mm);
+  });
+}
+
+TEST(Cylinder, FindsTheAxisOfACupWithAHandle) {
+  TriangleMesh cup = tube(35, 90, 256, 8);
+  for (Vec3& p : cup.positions) p += Vec3(5, -3, 0);
+  append(cup, box({38, -8, 20}, {70, 4, 70}));  // a clumsy handle
+  const PosedObject object = posed(cup);
+  ArtworkLayer layer = layer_of(Projection::kCylinder, 60);
+  layer.toward = Vec3(0, 0, 1);
+  layer.at_mm = Vec3(5, -38, 45);
+  const Placed placed = place(layer, object, 2, false);
+  const Vec3 centre = moved(object, Vec3(5, -3, 0));
+  int seen = 0;
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    Spot spot;
+    const Vec3 p = position_at(object.mesh(), point) - centre;
+    if (p.x() > 30 || !placed.placement->find(point, spot)) return;
+    if (std::abs(spot.place_mm.x()) > 30) return;
+    ++seen;
+    EXPECT_NEAR(spot.place_mm.x(), 35 * std::atan2(p.x(), -p.y()), 0.3);
+  });
+  EXPECT_GT(seen, 100);
+}
+
+TEST(Sphere, OnASphereIsLongitudeAndLatitude) {
+  constexpr double kRadius = 30;
+  const PosedObject object = posed(ball(kRadius, 720, 360));
+  ArtworkLayer layer = layer_of(Projection::kSphere, 60);
+  layer.toward = Vec3(0, 0, 1);
+  layer.at_mm = Vec3(0, -kRadius, 0);
+  const Placed placed = place(layer, object);
+  const Vec3 centre = moved(object, Vec3::Zero());
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    Spot spot;
+    if (!placed.placement->find(point, spot) || !placed.placement->is_lit(point)) return;
+    const Vec3 p = (position_at(object.mesh(), point) - centre).normalized();
+    if (std::abs(p.z()) > 0.99) return;
+    EXPECT_NEAR(spot.place_mm.x(), kRadius * std::atan2(p.x(), -p.y()), 0.01);
+    EXPECT_NEAR(spot.place_mm.y(), kRadius * std::asin(p.z()), 0.01);
+  });
+}
+
+TEST(Box, PutsThePictureOnEverySideUnmirrored) {
+  const PosedObject object = posed(box({-20, -20, -20}, {20, 20, 20}));
+  ArtworkLayer layer = layer_of(Projection::kBox, 0);
+  layer.toward = Vec3(0, 1, 0);
+  const Placed placed = place(layer, object);
+  EXPECT_NEAR(placed.size_mm.x(), 40, 1e-9);
+  const Vec3 centre = moved(object, Vec3::Zero());
+  std::array<int, 6> sides{};
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    Spot spot;
+    ASSERT_TRUE(placed.placement->find(point, spot));
+    ASSERT_TRUE(placed.placement->is_lit(point));
+    const Vec3 p = position_at(object.mesh(), point) - centre;
+    const Vec3 n = face_normal(object.mesh(), point.triangle);
+    // The picture's plane is the face: going right and up along it, one goes round the normal.
+    const Vec3 up = std::abs(n.z()) > 0.5 ? Vec3(0, n.z(), 0) : Vec3(0, 0, 1);
+    const Vec3 right = (-n).cross(up);
+    EXPECT_NEAR(spot.place_mm.x(), p.dot(right), kExact_mm);
+    EXPECT_NEAR(spot.place_mm.y(), p.dot(up), kExact_mm);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (std::abs(n[Eigen::Index(k)]) > 0.5) ++sides[2 * k + (n[Eigen::Index(k)] > 0 ? 1 : 0)];
+  });
+  for (const int count : sides) EXPECT_GT(count, 0);
+}
+
+TEST(Placing, RefusesWhatIsFarFromTheModelAndSaysWhereItIs) {
+  const PosedObject object = posed(box({0, 0, 0}, {60, 40, 30}));
+  ArtworkLayer layer = layer_of(Projection::kPlanar);
+  layer.at_mm = Vec3(100, 20, 15);
+  try {
+    place(layer, object);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("60.0,20.0,15.0"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("40.0 mm"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Placing, RefusesDirectionsThatSayNothing) {
+  const PosedObject object = posed(box({0, 0, 0}, {60, 40, 30}));
+  ArtworkLayer layer = layer_of(Projection::kPlanar);
+  layer.toward = Vec3(0, 0, 0);
+  EXPECT_THROW(place(layer, object), InputError);
+  layer.toward = Vec3(0, 0, -1);
+  layer.up = Vec3(0, 0, 2);
+  EXPECT_THROW(place(layer, object), InputError);
+}
+
+}  // namespace
+}  // namespace hydrodip

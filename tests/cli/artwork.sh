@@ -1,0 +1,162 @@
+#!/bin/sh
+# Artwork on models without UVs, from outside: the commonest job there is, files with several layers,
+# pattern film, several parts on a sheet, and what is refused.
+. "$(dirname "$0")/common.sh"
+
+# A plate of 40 x 30 x 5 mm as STL: neither UVs nor colours.
+cat > plate.py <<'PY'
+import itertools, struct
+c = [(x, y, z) for z in (0, 5) for y in (0, 30) for x in (0, 40)]
+f = [(0,2,3),(0,3,1),(4,5,7),(4,7,6),(0,1,5),(0,5,4),(2,6,7),(2,7,3),(0,4,6),(0,6,2),(1,3,7),(1,7,5)]
+with open('plate.stl', 'wb') as out:
+    out.write(b'plate'.ljust(80) + struct.pack('<I', len(f)))
+    for t in f:
+        out.write(struct.pack('<12fH', 0, 0, 0, *itertools.chain(*(c[v] for v in t)), 0))
+PY
+python3 plate.py || exit 77
+cat > logo.svg <<'SVG'
+<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 30"><rect width="20" height="30" fill="#f00"/>
+<rect x="20" width="20" height="30" fill="#00f"/></svg>
+SVG
+"$hydrodip" sample box -o samples > /dev/null || fail 'sample box'
+cp samples/box.png photo.png
+
+# shellcheck disable=SC2086
+"$hydrodip" print plate.stl --art photo.png $quick -o out --json > out.json ||
+  fail "an STL and a PNG: $?"
+python3 - <<'PY' || fail 'the report does not know the picture'
+import hashlib, json
+report = json.load(open('out.json'))
+roles = {i['role']: i for i in report['inputs']}
+assert roles['artwork']['sha256'] == hashlib.sha256(open('photo.png', 'rb').read()).hexdigest()
+assert report['parameters']['artwork[1].image']['value'] == 'photo.png'
+assert report['colors']['error_mean_ciede2000'] < 5, report['colors']
+PY
+
+# From below with +y up, -x is to the right: on the film, seen from above, red is on the right.
+# shellcheck disable=SC2086
+"$hydrodip" print plate.stl --art logo.svg $quick -o svg --quiet > /dev/null || fail 'an SVG'
+if command -v convert > /dev/null; then
+  [ "$(convert svg/print.png -format '%[pixel:p{160,113}] %[pixel:p{120,113}]' info: | tr -d ' ')" != '' ] ||
+    fail 'print.png cannot be read'
+  right=$(convert svg/print.png -crop 1x1+160+113 -depth 8 txt:- | tail -1)
+  left=$(convert svg/print.png -crop 1x1+120+113 -depth 8 txt:- | tail -1)
+  case $right in *'#FF0000'* | *'#FE0000'* | *'#FF0101'* | *red*) ;; *) fail "right of the film: $right" ;; esac
+  case $left in *'#0000FF'* | *'#0000FE'* | *'#0101FF'* | *blue*) ;; *) fail "left of the film: $left" ;; esac
+fi
+
+# Layers in a file beside its pictures, one more by options, and the same bytes from elsewhere.
+mkdir jobs
+cp logo.svg jobs/
+cat > jobs/layers.toml <<'TOML'
+[[artwork]]
+image = "logo.svg"
+projection = "box"
+size_mm = 20
+repeat = "tile"
+through = false
+
+[[artwork]]
+text = "No. 7"
+text_color = "#ffffff"
+at_mm = [20, 15, 0]
+toward = [0, 0, 1]
+size_mm = [30, 8]
+opacity = 0.9
+TOML
+# shellcheck disable=SC2086
+"$hydrodip" print plate.stl --config jobs/layers.toml --art photo.png --art-size 10 --art-turn 30 \
+  --art-opacity 0.5 $quick -o layers --quiet --threads 1 > /dev/null || fail 'layers'
+(cd jobs && "$hydrodip" print ../plate.stl --config layers.toml --art ../photo.png --art-size 10 \
+  --art-turn 30 --art-opacity 0.5 $quick -o ../again --quiet --threads 2 > /dev/null) || fail 'again'
+cmp -s layers/print.tif again/print.tif || fail 'other bytes from another folder, or by two threads'
+
+for projection in cylinder sphere box wrap film; do
+  # shellcheck disable=SC2086
+  "$hydrodip" simulate plate.stl --art photo.png --projection $projection $quick_simulate \
+    -o "$projection" --quiet > /dev/null || fail "projection $projection"
+done
+
+# Pattern film.
+# shellcheck disable=SC2086
+"$hydrodip" pattern plate.stl --tile photo.png --tile-mm 15 --keep 20,15,0,5 $quick -o pattern \
+  --quiet > pattern.txt || fail "pattern: $?"
+grep -q 'pattern at' pattern.txt || fail 'pattern does not say where it lies'
+# shellcheck disable=SC2086
+"$hydrodip" pattern plate.stl --tile photo.png --tile-mm 15 --compensate --tile-at 0,0 --tile-turn 0 \
+  $quick -o flat --quiet > flat.txt || fail "pattern --compensate: $?"
+grep -q 'without' flat.txt || fail 'pattern --compensate does not say what it gains'
+
+# Several parts on a sheet.
+# shellcheck disable=SC2086
+nest='--film 200x200 --set film.elements=800 --set dip.step_mm=1 --dpi 72 --set preview.width_px=200
+      --set print.samples=1'
+# shellcheck disable=SC2086
+"$hydrodip" nest samples/box.obj samples/box.obj $nest -o nest --json --quiet > nest.json ||
+  fail "nest: $?"
+python3 - <<'PY' || fail 'nest.json'
+import json
+pieces = json.load(open('nest.json'))['pieces']
+assert len(pieces) == 2 and pieces[0]['model'] == pieces[1]['model']
+def box(p):
+    w, h = p['width_mm'], p['height_mm']
+    if p['turned']: w, h = h, w
+    return p['from_left_mm'], p['from_bottom_mm'], p['from_left_mm'] + w, p['from_bottom_mm'] + h
+a, b = map(box, pieces)
+assert a[2] <= b[0] + 1e-6 or b[2] <= a[0] + 1e-6 or a[3] <= b[1] + 1e-6 or b[3] <= a[1] + 1e-6
+assert all(10 <= v <= 190 for v in a + b)
+PY
+
+# Profiles count: Display P3 and CMYK come out as Little CMS's own tool has them.
+inks=/usr/share/color/icc/ghostscript/default_cmyk.icc
+p3=/usr/share/color/argyll/ref/DisplayP3.icm
+# shown IMAGE: the colour in the middle of the film image.
+shown() {
+  # shellcheck disable=SC2086
+  "$hydrodip" print plate.stl --art "$1" $quick --set preview.pictures=off -o shown --quiet \
+    > /dev/null || fail "print with $1"
+  convert shown/print.png -crop 1x1+141+113 -depth 8 txt:- | tail -1 |
+    sed 's/^[^(]*(\([0-9]*\),\([0-9]*\),\([0-9]*\).*/\1 \2 \3/'
+}
+# like COLOR VALUES PROFILE
+like() {
+  printf '%s\n' "$2" | transicc -i "$3" -o '*sRGB' -t 1 -n 2> /dev/null |
+    awk -v shown="$1" '{ split(shown, s); for (k = 1; k <= 3; ++k) if (s[k] - $k > 1.5 || $k - s[k] > 1.5) exit 1
+      if (NF < 3) exit 1; found = 1 } END { exit !found }' || fail "$2 by $3 came out as $1"
+}
+if command -v transicc > /dev/null && command -v convert > /dev/null && [ -e "$inks" ] && [ -e "$p3" ]; then
+  convert -size 64x48 'xc:cmyk(60%,30%,20%,5%)' -quality 100 -profile "$inks" cmyk.jpg
+  like "$(shown cmyk.jpg)" '60 30 20 5' "$inks"
+  convert -size 64x48 'xc:rgb(180,120,90)' -profile "$p3" p3.png
+  like "$(shown p3.png)" '180 120 90' "$p3"
+fi
+
+# refused FRAGMENT ARGUMENTS...
+refused() {
+  fragment=$1
+  shift
+  "$hydrodip" "$@" > refused.out 2> refused.err
+  [ $? -eq 2 ] || fail "not refused: $*"
+  grep -q "^error: .*$fragment" refused.err || fail "no '$fragment' in: $(cat refused.err)"
+  [ ! -e nothing ] || fail "left files behind: $*"
+}
+head -c 300 photo.png > broken.png
+echo '<svg xmlns="http://www.w3.org/2000/svg"><rect' > broken.svg
+refused 'nowhere.png' print plate.stl --art nowhere.png -o nothing
+refused 'broken.png.*PNG' print plate.stl --art broken.png --projection uv -o nothing
+refused 'broken.svg.*SVG' print plate.stl --art broken.svg -o nothing
+refused 'no texture coordinates' print plate.stl --art photo.png --projection uv -o nothing
+refused 'nearest at 40.0,15.0,2.0' print plate.stl --art photo.png --art-at 90,15,2 -o nothing
+refused 'hits nothing' print plate.stl --art photo.png --art-at 90,15,2 --art-toward 0,0,1 \
+  --art-size 10 -o nothing
+refused 'needs artwork' print plate.stl --art-size 10 -o nothing
+refused 'size_mm must be W or W,H' print plate.stl --art photo.png --art-size 10,0 -o nothing
+refused 'projection must be one of planar' print plate.stl --art photo.png --projection flat -o nothing
+refused "did you mean 'turn_deg'" print plate.stl --art photo.png --set 'artwork[1].turn_dg=3' -o nothing
+refused 'put a picture on it with --art' print plate.stl -o nothing
+refused 'true width' pattern plate.stl --tile photo.png -o nothing
+refused 'the spot is away' pattern plate.stl --tile photo.png --tile-mm 20 --keep 90,0,0 -o nothing
+refused 'holds 1 of the 3 parts' nest samples/box.obj samples/box.obj samples/box.obj \
+  --film 100x100 -o nothing
+
+finish
