@@ -16,7 +16,7 @@ namespace {
 // Film that lies nowhere only has to follow.
 constexpr double kLooseWeight = 1e-3;
 constexpr int kRounds = 40;
-constexpr double kSettled_mm = 1e-3;
+constexpr double kPlaced_mm = 1e-3;
 
 using Sparse = Eigen::SparseMatrix<double>;
 
@@ -66,7 +66,7 @@ class Flattening {
     std::vector<Vec2> place = mesh_.u;
     for (int round = 0; round < kRounds; ++round) {
       check_cancelled();
-      if (improve(place) < kSettled_mm) break;
+      if (improve(place) < kPlaced_mm) break;
     }
     return place;
   }
