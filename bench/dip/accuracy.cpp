@@ -1,5 +1,6 @@
-// Errors against exact solutions on ways straight down and on others, and what a rolled dip costs
-// against a straight one. Prints the tables of docs/accuracy.md.
+// Errors against exact solutions on ways straight down and on others, what a rolled dip costs
+// against a straight one, and how exactly trapped air is found. Prints the tables of
+// docs/accuracy.md.
 //
 //   bench_accuracy [LARGEST_MESH]
 
@@ -13,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "air/air.h"
+#include "air/cups.h"
 #include "exact/paths.h"
 
 namespace hydrodip {
@@ -83,10 +86,41 @@ void print_costs() {
              kElements, down, roll, roll / down);
 }
 
+// A cup, mouth down, at several tilts and numbers of cells.
+void print_air() {
+  fmt::print(
+      "\n| cup, tilted by | cells | closes (mm) | error (mm) | area (mm2) | error | volume (mm3) | "
+      "error | ms |\n|---|---|---|---|---|---|---|---|---|\n");
+  for (const double tilt : {0.0, 5.0, 20.0, 35.0}) {
+    const Mat3 lean = Eigen::AngleAxisd(tilt * cups::kRad, Vec3::UnitY()).toRotationMatrix();
+    const TriangleMesh cup = cups::moved(cups::mesh_of(cups::turned(cups::kCup)), lean);
+    const Surface surface(cup.positions, cup.triangles);
+    const cups::Kept kept = cups::kept_by_leaning_cup(tilt);
+    for (const int cells : {40000, 600000, 4000000}) {
+      const auto start = std::chrono::steady_clock::now();
+      const TrappedAir air =
+          find_air(cup, surface, Trajectory::straight_down(cup.bounds().max.z()), {cells}, {});
+      const double ms =
+          1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      if (air.pockets.size() != 1) {
+        fmt::print("| {:g} degrees | {} | {} pockets |\n", tilt, cells, air.pockets.size());
+        continue;
+      }
+      const AirPocket& pocket = air.pockets[0];
+      fmt::print(
+          "| {:g} degrees | {} | {:.4f} | {:.4f} | {:.2f} | {:.3f} | {:.1f} | {:.2f} | {:.0f} |\n",
+          tilt, cells, kept.closed_at_mm, pocket.closed_at_mm - kept.closed_at_mm, kept.area_mm2,
+          pocket.area_mm2 - kept.area_mm2, kept.volume_mm3, pocket.volume_mm3 - kept.volume_mm3,
+          ms);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hydrodip
 
 int main(int argc, char** argv) {
   hydrodip::print_errors(argc > 1 ? std::atoi(argv[1]) : 160000);
   hydrodip::print_costs();
+  hydrodip::print_air();
 }

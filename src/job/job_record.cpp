@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "dip/travel.h"
 #include "settings/artwork_tables.h"
 #include "settings/params.h"
 
@@ -152,6 +153,21 @@ void announce_outputs(OutputFolder& folder, const std::string& command, const Jo
   folder.announce(names, paths);
 }
 
+// So many moments of a way that is not straight down, for those who have to go it.
+constexpr int kWayRows = 12;
+
+std::vector<ReportWay> way_in(const JobConfig& config, const TriangleMesh& mesh) {
+  const Trajectory way = make_trajectory(config.design.trajectory, mesh.positions);
+  std::vector<ReportWay> rows;
+  if (way.is_straight_down()) return rows;
+  const Travel travel(way, mesh.positions, mesh.triangles);
+  for (int row = 0; row <= kWayRows; ++row) {
+    const double travelled = travel.length_mm() * row / kWayRows;
+    rows.push_back({travelled, way.at(travel.at(travelled).t)});
+  }
+  return rows;
+}
+
 Report make_report(const JobRecord& record) {
   Report report;
   report.tool_version = HYDRODIP_VERSION;
@@ -168,6 +184,7 @@ Report make_report(const JobRecord& record) {
   report.rounds = rounds(record);
   report.coverage = record.dipped().coverage;
   report.air = record.dipped().air;
+  report.way_in = way_in(record.config, record.dipped().posed.mesh());
   report.angles = record.dipped().angles;
   report.mesh = record.prepared.health;
   report.tear_stretch = record.config.design.dip.material.tear_stretch;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "air/air.h"
+#include "dip/trajectory.h"
 #include "object/dip_angles.h"
 #include "object/health.h"
 #include "transfer/coverage.h"
@@ -62,6 +63,12 @@ struct ReportRound {
   std::vector<ReportFigure> figures;
 };
 
+// Where the object is on its way into the water, and how far its fastest wetted point has come.
+struct ReportWay {
+  double travelled_mm = 0;
+  Keyframe pose;
+};
+
 struct ReportOutput {
   std::string name;         // "print.pdf"
   std::string description;  // "the sheet: print it at 100 %, ink side up"
@@ -93,6 +100,7 @@ struct Report {
   std::vector<ReportStage> stages;  // in the order they ran
   double total_seconds = 0;         // 0: the sum of the stages
   std::vector<ReportRound> rounds;
+  std::vector<ReportWay> way_in;          // empty: straight down
   std::optional<Coverage> coverage;       // nothing was dipped: absent
   std::shared_ptr<const TrappedAir> air;  // likewise
   std::optional<DipAngles> angles;

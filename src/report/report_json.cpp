@@ -83,6 +83,19 @@ Json coverage_json(const Coverage& c) {
 
 Json point_json(const Vec3& p) { return {number(p.x()), number(p.y()), number(p.z())}; }
 
+Json way_json(const std::vector<ReportWay>& way) {
+  Json rows = Json::array();
+  for (const ReportWay& w : way)
+    rows.push_back({{"travelled_mm", number(w.travelled_mm)},
+                    {"lower_mm", number(w.pose.lower_mm)},
+                    {"shift_x_mm", number(w.pose.shift_x_mm)},
+                    {"shift_y_mm", number(w.pose.shift_y_mm)},
+                    {"turn_x_deg", number(w.pose.turn_x_deg)},
+                    {"turn_y_deg", number(w.pose.turn_y_deg)},
+                    {"turn_z_deg", number(w.pose.turn_z_deg)}});
+  return rows;
+}
+
 Json air_json(const TrappedAir& air) {
   Json pockets = Json::array();
   for (const AirPocket& pocket : air.pockets) {
@@ -204,6 +217,7 @@ std::string report_json(const Report& report) {
     json["wrinkled_mm2"] = number(report.coverage->wrinkled_mm2);
     json["lifted_mm2"] = number(report.coverage->lifted_mm2);
   }
+  if (!report.way_in.empty()) json["way_in"] = way_json(report.way_in);
   if (report.air) json["air"] = air_json(*report.air);
   if (report.angles) json["dip_angles"] = angles_json(*report.angles);
   if (report.mesh) json["mesh"] = mesh_json(*report.mesh);

@@ -94,6 +94,7 @@ class Guide {
 
   void ready_stage() {
     person_.say("\nSTAGE.");
+    require_lowering_only(job_);
     stage_.emplace(job_.config.stage, bench_, &record_, context_);
     person_.say(stage_->describe());
     stage_->ensure_home(true);
@@ -181,17 +182,35 @@ class Guide {
   }
 
   void dip_by_hand() {
-    const double seconds = 60 * job_.depth_mm / process_.speed_mm_per_min;
-    person_.ask(fmt::format(
-        "By hand: {:.1f} mm in {:.1f} s, straight down. Enter to start: ", job_.depth_mm, seconds));
+    const double way_mm = in_water_mm(job_), seconds = 60 * way_mm / process_.speed_mm_per_min;
+    person_.ask(
+        fmt::format("By hand: {:.1f} mm in {:.1f} s, {}. Enter to start: ", way_mm, seconds,
+                    moves_aside(job_) ? "along the way in of the run sheet" : "straight down"));
     const double start_s = bench_.clock.now_s();
     for (double past_s = 0; past_s < seconds; past_s = bench_.clock.now_s() - start_s) {
-      person_.show(
-          fmt::format("{:5.1f} of {:.1f} mm", past_s / seconds * job_.depth_mm, job_.depth_mm));
+      person_.show(fmt::format("{:5.1f} of {:.1f} mm", past_s / seconds * way_mm, way_mm) +
+                   where_now(past_s / seconds * way_mm));
       tick();
     }
     record_.note("dipped by hand", {{"planned_s", seconds}});
     if (process_.dwell_s > 0) wait("keep it down", process_.dwell_s, process_.dwell_s, "");
+  }
+
+  // How the object is to be held now, on a way that is not straight.
+  std::string where_now(double travelled_mm) const {
+    if (!moves_aside(job_)) return "";
+    std::size_t next = 1;
+    while (next + 1 < job_.way_in.size() && job_.way_in[next].travelled_mm < travelled_mm) ++next;
+    const WayPoint &a = job_.way_in[next - 1], &b = job_.way_in[next];
+    const double span = b.travelled_mm - a.travelled_mm;
+    const double part = span > 0 ? std::clamp((travelled_mm - a.travelled_mm) / span, 0.0, 1.0) : 1;
+    const auto at = [&](double Keyframe::*of) {
+      return a.pose.*of + part * (b.pose.*of - a.pose.*of);
+    };
+    return fmt::format(
+        "   lowered {:.1f} mm, shifted {:.1f}, {:.1f}, turned {:.0f}, {:.0f}, {:.0f}",
+        at(&Keyframe::lower_mm), at(&Keyframe::shift_x_mm), at(&Keyframe::shift_y_mm),
+        at(&Keyframe::turn_x_deg), at(&Keyframe::turn_y_deg), at(&Keyframe::turn_z_deg));
   }
 
   void lift() {

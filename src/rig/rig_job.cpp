@@ -95,11 +95,55 @@ double letter_area_mm2() {
   return 0;
 }
 
+std::vector<WayPoint> way_in(const Json& report, const std::filesystem::path& file) {
+  std::vector<WayPoint> way;
+  if (!report.contains("way_in")) return way;
+  const auto bad = [&] {
+    return InputError(fmt::format("{}: way_in is not a list of places", file.string()));
+  };
+  if (!report["way_in"].is_array()) throw bad();
+  for (const Json& row : report["way_in"]) {
+    const auto value = [&](const char* name) {
+      if (!row.is_object() || !row.contains(name) || !row[name].is_number()) throw bad();
+      return row[name].get<double>();
+    };
+    way.push_back({value("travelled_mm"),
+                   {.lower_mm = value("lower_mm"),
+                    .shift_x_mm = value("shift_x_mm"),
+                    .shift_y_mm = value("shift_y_mm"),
+                    .turn_x_deg = value("turn_x_deg"),
+                    .turn_y_deg = value("turn_y_deg"),
+                    .turn_z_deg = value("turn_z_deg")}});
+  }
+  return way;
+}
+
 PlannedMove travel(const std::string& phase, double from_mm, double to_mm, double mm_per_min) {
   return {phase, from_mm, to_mm, mm_per_min, 60 * std::abs(to_mm - from_mm) / mm_per_min};
 }
 
 }  // namespace
+
+bool moves_aside(const RigJob& job) {
+  constexpr double kStill = 1e-9;
+  return std::ranges::any_of(job.way_in, [&](const WayPoint& point) {
+    const Keyframe &first = job.way_in.front().pose, &pose = point.pose;
+    return std::abs(pose.shift_x_mm - first.shift_x_mm) > kStill ||
+           std::abs(pose.shift_y_mm - first.shift_y_mm) > kStill ||
+           std::abs(pose.turn_x_deg - first.turn_x_deg) > kStill ||
+           std::abs(pose.turn_y_deg - first.turn_y_deg) > kStill ||
+           std::abs(pose.turn_z_deg - first.turn_z_deg) > kStill;
+  });
+}
+
+void require_lowering_only(const RigJob& job) {
+  if (!moves_aside(job)) return;
+  throw InputError(fmt::format(
+      "{}: this job's way into the water shifts or turns the object, and the stage only lowers it: "
+      "dip it by hand along its run sheet ('hydrodip rig guide' without --port), or print it anew "
+      "without path and dip.roll_deg",
+      job.folder.string()));
+}
 
 RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& sources) {
   const Json report = read_report(folder);
@@ -108,13 +152,7 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
   job.title = title_of(report);
   apply_settings(job.config, settings_of(report["parameters"], (folder / "report.json").string()));
   apply_sources(job.config, sources);
-  const TrajectoryOptions& way = job.config.design.trajectory;
-  if (!way.path.empty() || way.tilt_deg != 0 || way.roll_deg != 0)
-    throw InputError(fmt::format(
-        "{}: this job's way into the water shifts or turns the object, and the rig only lowers it: "
-        "dip it by hand along its path, or print it anew without path, dip.tilt_deg and "
-        "dip.roll_deg",
-        folder.string()));
+  job.way_in = way_in(report, folder / "report.json");
   find_model(report, job);
   const Json& figures = report["figures"];
   if (!figures["depth_mm"].is_number() || !(figures["depth_mm"].get<double>() > 0))
@@ -155,12 +193,18 @@ void save_water_level(const RigJob& job, double position_mm) {
   write_file(job.folder / kLevelFile, Json{{"water_mm", position_mm}}.dump() + "\n");
 }
 
+double in_water_mm(const RigJob& job) {
+  return job.way_in.empty() ? job.depth_mm : job.way_in.back().travelled_mm;
+}
+
 std::vector<PlannedMove> plan_dip(const RigJob& job) {
   const ProcessOptions& process = job.config.process;
   const StageOptions& stage = job.config.stage;
   const double approach_mm = std::min(stage.approach_mm, stage.clearance_mm);
+  PlannedMove dip = travel("dip", approach_mm, -job.depth_mm, process.speed_mm_per_min);
+  dip.seconds = 60 * (approach_mm + in_water_mm(job)) / process.speed_mm_per_min;
   return {travel("approach", stage.clearance_mm, approach_mm, stage.travel_mm_per_min),
-          travel("dip", approach_mm, -job.depth_mm, process.speed_mm_per_min),
+          dip,
           {"dwell", -job.depth_mm, -job.depth_mm, 0, process.dwell_s},
           travel("retract", -job.depth_mm, stage.clearance_mm, process.lift_mm_per_min)};
 }

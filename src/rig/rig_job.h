@@ -7,16 +7,24 @@
 #include <vector>
 
 #include "base/math.h"
+#include "dip/trajectory.h"
 #include "settings/config.h"
 #include "settings/settings.h"
 
 namespace hydrodip {
 
+// Where the object is on its way into the water, and how far its fastest wetted point has come.
+struct WayPoint {
+  double travelled_mm = 0;
+  Keyframe pose;
+};
+
 struct RigJob {
   std::filesystem::path folder;
   std::string title;
-  JobConfig config;  // the job's own parameters, then profile, configuration and --set of today
-  double depth_mm = 0;
+  JobConfig config;     // the job's own parameters, then profile, configuration and --set of today
+  double depth_mm = 0;  // of its deepest point
+  std::vector<WayPoint> way_in;        // from the first touch on; empty: straight down
   Vec3 object_size_mm = Vec3::Zero();  // as posed
   std::string model_sha256;            // of config.model, when it was printed
   std::vector<std::string> warnings;
@@ -24,6 +32,11 @@ struct RigJob {
 
 // Reads FOLDER/report.json of a print or simulate job. Throws InputError if it is none.
 RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& sources);
+
+// Whether the object shifts or turns while it comes down, so that lowering it is not enough.
+bool moves_aside(const RigJob& job);
+// Throws InputError if it does.
+void require_lowering_only(const RigJob& job);
 
 // What the process facts mean for this job's film.
 struct Activator {
@@ -36,6 +49,9 @@ double bath_litres(const BathOptions& bath);
 // was found last and saved in the folder.
 std::optional<double> known_water_level_mm(const RigJob& job);
 void save_water_level(const RigJob& job, double position_mm);
+
+// How far the object travels in the water: at process.speed_mm_per_min.
+double in_water_mm(const RigJob& job);
 
 // One movement of the dip. Heights: of the object's lowest point over the water, mm.
 struct PlannedMove {

@@ -52,6 +52,7 @@ class RunSheet {
     draw_film_and_figures();
     draw_movements();
     page_.new_page();
+    draw_way_in();
     draw_tasks();
     draw_notes();
   }
@@ -180,7 +181,7 @@ class RunSheet {
         {"Depth", fmt::format("{:.2f} mm from the water", job_.depth_mm)},
         {"Speed", fmt::format("{:g} mm/min", process_.speed_mm_per_min)},
         {"Dip takes",
-         fmt::format("{:.1f} s in the water", 60 * job_.depth_mm / process_.speed_mm_per_min)},
+         fmt::format("{:.1f} s in the water", 60 * in_water_mm(job_) / process_.speed_mm_per_min)},
         {"Then hold", fmt::format("{:g} s at least", process_.dwell_s)},
         {"Lift",
          fmt::format("{:g} mm/min, {:.1f} s", process_.lift_mm_per_min, plan.back().seconds)},
@@ -203,6 +204,28 @@ class RunSheet {
            move.mm_per_min > 0 ? fmt::format("{:g}", move.mm_per_min) : "-",
            fmt::format("{:.1f}", move.seconds)},
           move.phase == "dip" ? PdfFont::kBold : PdfFont::kRegular);
+  }
+
+  // Where the object is when, for a way that lowering alone does not go.
+  void draw_way_in() {
+    if (!moves_aside(job_)) return;
+    constexpr std::array<double, 7> kColumns = {0, 24, 50, 76, 102, 126, 150};
+    const auto row = [&](const std::array<std::string, 7>& cells) {
+      page_.y -= 5.2;
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        page_.text(page_.left() + kColumns[i], page_.y, cells[i], kBody_pt);
+    };
+    page_.heading("Way in (from the first touch; turns about x, then y, then z of the bath)");
+    row({"second", "lowered, mm", "shift x, mm", "shift y, mm", "turn x, \u00b0", "turn y, \u00b0",
+         "turn z, \u00b0"});
+    for (const WayPoint& point : job_.way_in)
+      row({fmt::format("{:.1f}", 60 * point.travelled_mm / process_.speed_mm_per_min),
+           fmt::format("{:.1f}", point.pose.lower_mm), fmt::format("{:.1f}", point.pose.shift_x_mm),
+           fmt::format("{:.1f}", point.pose.shift_y_mm),
+           fmt::format("{:.1f}", point.pose.turn_x_deg),
+           fmt::format("{:.1f}", point.pose.turn_y_deg),
+           fmt::format("{:.1f}", point.pose.turn_z_deg)});
+    page_.y -= 2;
   }
 
   std::string ink_side() const {
@@ -240,9 +263,10 @@ class RunSheet {
                {"Gun before, g", "Gun after, g", "Used, g"});
     page_.task(fmt::format("Wait {:g} s.", process_.activator_wait_s));
     page_.heading("Dip");
-    page_.task(fmt::format(
-        "Straight down at {:g} mm/min, {:.2f} mm deep: {:.1f} s from the first touch.",
-        process_.speed_mm_per_min, job_.depth_mm, 60 * job_.depth_mm / process_.speed_mm_per_min));
+    page_.task(fmt::format("{} at {:g} mm/min, {:.2f} mm deep: {:.1f} s from the first touch.",
+                           moves_aside(job_) ? "Along the way in" : "Straight down",
+                           process_.speed_mm_per_min, job_.depth_mm,
+                           60 * in_water_mm(job_) / process_.speed_mm_per_min));
     page_.task(fmt::format("Hold for {:g} s at least. Clear the film that is left off the water.",
                            process_.dwell_s));
     page_.task(fmt::format("Lift at {:g} mm/min.", process_.lift_mm_per_min),

@@ -102,6 +102,7 @@ std::vector<std::string> ports() {
 JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOptions& stage,
                     Bench& bench, const RunContext& context) {
   check_action(action, job);
+  if (job) require_lowering_only(*job);
   if (action.action == "find") return rig_find(stage, bench, context);
   if (action.dry_run) {
     if (!job) return words(fmt::format("{}: nothing was moved\n", action.action));

@@ -7,49 +7,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "air/cups.h"
 #include "exact/shapes.h"
 
 namespace hydrodip {
 namespace {
 
-constexpr int kSegments = 96;
-constexpr double kRad = std::numbers::pi / 180;
-
-// Of a regular polygon with its corners on a circle.
-double polygon_area(double radius) {
-  return 0.5 * kSegments * radius * radius * std::sin(2 * std::numbers::pi / kSegments);
-}
-double polygon_outline(double radius) {
-  return 2 * kSegments * radius * std::sin(std::numbers::pi / kSegments);
-}
-
-// Closed profiles (radius, height) turn into solids; the way round that faces outwards.
-shapes::Shape turned(std::vector<Vec2> profile) {
-  double twice = 0;
-  for (std::size_t i = 0, j = profile.size() - 1; i < profile.size(); j = i++)
-    twice += cross2(profile[j], profile[i]);
-  if (twice < 0) std::reverse(profile.begin(), profile.end());
-  if (profile.front() != profile.back() && profile.front().x() > 0)
-    profile.push_back(profile.front());
-  const int rings = int(profile.size()) - 1;
-  return shapes::revolve([&](double s) { return profile[std::size_t(std::lround(s * rings))]; },
-                         rings, kSegments);
-}
-
-// Mouth down: 18 mm outer and 15 mm inner radius, 25 mm deep.
-const std::vector<Vec2> kCup = {{0, 28}, {18, 28}, {18, 0}, {15, 0}, {15, 25}, {0, 25}};
-
-TriangleMesh mesh_of(const shapes::Shape& shape) { return {shape.positions, shape.triangles}; }
-
-TriangleMesh moved(TriangleMesh mesh, const Mat3& turn) {
-  double low = 1e300;
-  for (Vec3& p : mesh.positions) {
-    p = turn * p;
-    low = std::min(low, p.z());
-  }
-  for (Vec3& p : mesh.positions) p.z() -= low;
-  return mesh;
-}
+using namespace cups;
 
 TrappedAir air_of(const TriangleMesh& mesh, const Trajectory& way, int cells = 200000) {
   const Surface surface(mesh.positions, mesh.triangles);
@@ -109,11 +73,10 @@ TEST(Air, ATiltedCupFillsUpToItsRim) {
     const TrappedAir air = air_of(moved(mesh_of(turned(kCup)), lean));
     ASSERT_EQ(air.pockets.size(), 1U) << tilt;
     const AirPocket& pocket = air.pockets[0];
-    EXPECT_NEAR(pocket.closed_at_mm, (15 + 18) * std::sin(tilt * kRad), 0.003) << tilt;
-    const double mean_wetted = 15 * std::tan(tilt * kRad);
-    EXPECT_NEAR(pocket.volume_mm3, (25 - mean_wetted) * polygon_area(15), 5) << tilt;
-    EXPECT_NEAR(pocket.area_mm2, (25 - mean_wetted) * polygon_outline(15) + polygon_area(15), 1)
-        << tilt;
+    const Kept kept = kept_by_leaning_cup(tilt);
+    EXPECT_NEAR(pocket.closed_at_mm, kept.closed_at_mm, 0.003) << tilt;
+    EXPECT_NEAR(pocket.volume_mm3, kept.volume_mm3, 5) << tilt;
+    EXPECT_NEAR(pocket.area_mm2, kept.area_mm2, 1) << tilt;
     EXPECT_NEAR(lid_area(air), polygon_area(15) / std::cos(tilt * kRad), 0.5) << tilt;
   }
 }
@@ -125,9 +88,9 @@ TEST(Air, AWayThatTiltsIsAsGoodAsATiltedCup) {
   options.tilt_deg = 20;
   const TrappedAir air = air_of(cup, make_trajectory(options, cup.positions));
   ASSERT_EQ(air.pockets.size(), 1U);
-  const double mean_wetted = 15 * std::tan(20 * kRad);
-  EXPECT_NEAR(air.volume_mm3(), (25 - mean_wetted) * polygon_area(15), 5);
-  EXPECT_NEAR(air.area_mm2(), (25 - mean_wetted) * polygon_outline(15) + polygon_area(15), 1);
+  const Kept kept = kept_by_leaning_cup(20);
+  EXPECT_NEAR(air.volume_mm3(), kept.volume_mm3, 5);
+  EXPECT_NEAR(air.area_mm2(), kept.area_mm2, 1);
   EXPECT_NEAR(air.pockets[0].escapes_share, 0, 0.02);
 }
 

@@ -73,6 +73,38 @@ TEST_F(RunSheetTest, SaysTheJobsFigures) {
     EXPECT_NE(text.find(figure), std::string::npos) << figure << "\n" << text;
 }
 
+// A rolled dip: by hand along the rows, never by a stage that only lowers.
+TEST_F(RunSheetTest, AWayThatTurnsStandsOnItRowByRow) {
+  nlohmann::json report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  for (int row = 0; row <= 4; ++row)
+    report["way_in"].push_back({{"travelled_mm", 9.0 * row},
+                                {"lower_mm", 5.0 * row},
+                                {"shift_x_mm", 0},
+                                {"shift_y_mm", -1.5 * row},
+                                {"turn_x_deg", 12.5 * row},
+                                {"turn_y_deg", 0},
+                                {"turn_z_deg", 0}});
+  write_file(folder_ / "report.json", report.dump());
+  const RigJob job = load_rig_job(folder_, {});
+  rig_sheet(job, "", "", context_);
+  const std::string text = read_back("pdftotext -layout");
+  // 36 mm at 90 mm/min.
+  for (const char* words : {"Way in", "24.0", "20.0", "-6.0", "50.0", "Along the way in"})
+    EXPECT_NE(text.find(words), std::string::npos) << words << "\n" << text;
+  EXPECT_NE(read_back("pdfinfo").find("Pages:           2"), std::string::npos);
+  EXPECT_THROW(require_lowering_only(job), InputError);
+  // Held at a slant and lowered straight: a stage can.
+  for (auto& point : report["way_in"]) {
+    point["shift_y_mm"] = 3;
+    point["turn_x_deg"] = 20;
+  }
+  write_file(folder_ / "report.json", report.dump());
+  EXPECT_NO_THROW(require_lowering_only(load_rig_job(folder_, {})));
+  report["way_in"][2].erase("lower_mm");
+  write_file(folder_ / "report.json", report.dump());
+  EXPECT_THROW(load_rig_job(folder_, {}), InputError);
+}
+
 TEST_F(RunSheetTest, FitsBothPapersOnTwoPages) {
   for (const auto& [paper, size] : {std::pair("a4", "595.2"), std::pair("letter", "612 x 792")}) {
     rig_sheet(load_rig_job(folder_, {}), paper, "", context_);
