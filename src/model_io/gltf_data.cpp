@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -83,6 +84,35 @@ float component(const std::uint8_t* at, int type, bool normalized) {
 std::uint32_t whole(const std::uint8_t* at, int type) {
   return type == kUByte ? *at : type == kUShort ? load<std::uint16_t>(at) : load<std::uint32_t>(at);
 }
+
+// Hands a text on and asks for a cancel on the way: a single string may be most of a file.
+class WatchedText {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  WatchedText(const char* at, CancelCheck& cancel) : at_(at), cancel_(&cancel) {}
+  reference operator*() const { return *at_; }
+  WatchedText& operator++() {
+    ++at_;
+    (*cancel_)();
+    return *this;
+  }
+  WatchedText operator++(int) {
+    WatchedText before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const WatchedText& other) const { return at_ == other.at_; }
+  bool operator!=(const WatchedText& other) const { return at_ != other.at_; }
+
+ private:
+  const char* at_;
+  CancelCheck* cancel_;
+};
 
 int components_of(const json& accessor) {
   const auto it = accessor.find("type");
@@ -170,7 +200,7 @@ void GltfData::parse(std::string_view text) {
     if (depth > kMaxDepth) refuse("its JSON is nested too deeply");
   }
   *root_ = json::parse(
-      text,
+      WatchedText(text.data(), cancel), WatchedText(text.data() + text.size(), cancel),
       [&](int, json::parse_event_t, json&) {
         cancel();
         return true;

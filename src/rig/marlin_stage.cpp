@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "rig/stage.h"
@@ -16,6 +17,8 @@ constexpr int kAttempts = 3;
 constexpr int kMostLinesLost = 2;
 // Half of the last digit that a printer shows of where it goes, and a little.
 constexpr double kShown_mm = 0.006;
+// Between two looks that tell whether it stands still.
+constexpr double kLooksApart_s = 0.04;
 // Boards restart when their port is opened.
 constexpr double kStartTimeout_s = 10;
 // While it homes, Marlin says "busy" every two seconds.
@@ -51,6 +54,7 @@ class MarlinStage : public Stage {
     identity.name = firmware_name(exchange("M115"));
     steps_per_mm_ = find_number("M92", "M92", " Z");
     identity.step_mm = 1 / steps_per_mm_;
+    identity.unsure_mm = kShown_mm;
     identity.min_mm = find_number("M211", "Min:", " Z");
     identity.max_mm = find_number("M211", "Max:", " Z");
     exchange("G21");
@@ -70,7 +74,7 @@ class MarlinStage : public Stage {
     if (position) position_mm_ = *position;
     state.position_mm = position_mm_;
     const bool under_way = aimed_ && std::abs(*aimed_ - position_mm_) > 0.5 / steps_per_mm_;
-    state.moving = changed || under_way || !position;
+    state.moving = changed || under_way || !position || (stopping_ && !has_come_to_rest());
     return state;
   }
 
@@ -78,6 +82,7 @@ class MarlinStage : public Stage {
     link_.send(numbered(next_line_++, "G28 Z"));
     homing_ = true;
     aimed_.reset();
+    stopping_.reset();
     heard_s_ = clock_.now_s();
   }
 
@@ -88,6 +93,7 @@ class MarlinStage : public Stage {
     if (!aimed_ || *aimed_ != position_mm)
       exchange(fmt::format("G1 Z{:.4f} F{:.2f}", position_mm, speed_mm_per_min_));
     aimed_ = position_mm;
+    stopping_.reset();
   }
 
   void acknowledge() override {}
@@ -96,8 +102,11 @@ class MarlinStage : public Stage {
   void stop() override {
     if (homing_) return halt();
     if (halted_) return;
-    exchange("M410");
+    stopping_ = Stopping();
     aimed_.reset();
+    for (const std::string& line : exchange("M410"))
+      if (line.find("Unknown command") != std::string::npos)
+        throw StageError("the printer did not understand that it is to stop");
   }
 
   void halt() override {
@@ -226,6 +235,20 @@ class MarlinStage : public Stage {
     return {};
   }
 
+  // After a stop nobody knows where it was going. Two looks within a moment see the same place even
+  // if it moves.
+  bool has_come_to_rest() {
+    const bool leads_away = leads_to_ && std::abs(*leads_to_ - position_mm_) > kShown_mm;
+    const bool same = std::abs(position_mm_ - stopping_->seen_mm) <= 0.5 / steps_per_mm_;
+    if (leads_away || !same) {
+      stopping_ = {position_mm_, clock_.now_s()};
+      return false;
+    }
+    if (clock_.now_s() - stopping_->seen_s < kLooksApart_s) return false;
+    stopping_.reset();
+    return true;
+  }
+
   // Lines carry a weak sum: two wrong bits may look right. And firmware cuts off what lies beyond
   // its own limits without a word. Answers carry none at all, so they are asked for twice.
   void require_right_way() {
@@ -279,6 +302,12 @@ class MarlinStage : public Stage {
   std::optional<double> leads_to_;  // where it says that it goes
   bool connected_ = false, homing_ = false, homed_ = false, halted_ = false;
   double heard_s_ = 0;
+  // After a stop: where it was seen, and since when there.
+  struct Stopping {
+    double seen_mm = std::numeric_limits<double>::infinity();
+    double seen_s = 0;
+  };
+  std::optional<Stopping> stopping_;
 };
 
 }  // namespace

@@ -236,7 +236,8 @@ void Mover::guarded(const std::string& phase, bool homing, const std::function<v
 Rest Mover::bring_to_rest(bool homing) {
   Rest rest;
   rest.position_mm = last_position_mm_;
-  rest.farthest_mm = leash_end_mm_;
+  rest.farthest_mm =
+      leash_end_mm_ + (leash_end_mm_ < last_position_mm_ ? -1 : 1) * identity_.unsure_mm;
   rest.homing = homing;
   const double start_s = clock_.now_s();
   // Over a bad link, what arrives may be an answer of long ago.

@@ -12,7 +12,8 @@ namespace hydrodip {
 struct StageIdentity {
   std::string name;  // "Zaber device 50081, firmware 6.14"
   double min_mm = 0, max_mm = 0;
-  double step_mm = 0;  // smallest movement
+  double step_mm = 0;    // smallest movement
+  double unsure_mm = 0;  // a link that garbles may send it so much further without anybody seeing
 };
 
 struct StageState {

@@ -77,7 +77,7 @@ Dipped dipped_ball(int pierced_ring) {
   options.film.width_mm = options.film.height_mm = 120;
   options.film.elements = 8000;
   options.dip.step_mm = 0.5;
-  options.trajectory.depth_mm = 20;
+  options.trajectory.depth_mm = 8;
   Timings timings;
   const auto film = std::make_shared<const FilmMesh>(make_film_mesh(options.film));
   const Trajectory way = make_trajectory(options.trajectory, prepared.posed.mesh().positions);

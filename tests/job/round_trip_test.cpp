@@ -24,10 +24,10 @@ JobConfig mask_job(const std::filesystem::path& folder) {
   JobConfig config;
   config.model = folder / "mask.obj";
   config.output = folder / "out";
-  // As fine as 20,000 triangles on a whole A4 sheet; the mask is 100 x 130 mm.
+  // No more film than a mask of 100 x 130 mm needs.
   config.design.film.width_mm = 150;
   config.design.film.height_mm = 180;
-  config.design.film.elements = 8700;
+  config.design.film.elements = 14000;
   config.design.dip.step_mm = 0.2;
   // The mask's texture has edges sharper than a pixel of 300 dpi, which alone keep it at 34 dB.
   config.design.dpi = 600;

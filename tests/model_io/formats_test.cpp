@@ -514,6 +514,19 @@ constexpr const char* kSquareVertices =
     "<vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>"
     "<vertex x=\"1\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\"/></vertices>";
 
+// One string may be most of a file: it is scanned, parsed and decoded, and cancelled in each.
+TEST_F(Gltf, IsGivenUpInsideALongString) {
+  constexpr int kCharacters = 4'000'000, kLeastLooks = 3 * (kCharacters / 4096);
+  const auto path = folder_.write(
+      "a.gltf", fmt::format("{{\"asset\":{{\"version\":\"2.0\"}},\"buffers\":[{{\"byteLength\":{},"
+                            "\"uri\":\"data:application/octet-stream;base64,{}\"}}]}}",
+                            kCharacters / 4 * 3, std::string(kCharacters, 'A')));
+  RunContext context;
+  context.cancel_at_check(1'000'000);
+  EXPECT_THROW(load_object(path, {}, context), InputError);  // it has no triangles
+  EXPECT_GE(context.checks(), kLeastLooks);
+}
+
 class ThreeMf : public Formats {
  protected:
   static std::string model(const std::string& inside, const std::string& unit = "millimeter") {

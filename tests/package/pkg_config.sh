@@ -1,5 +1,5 @@
 #!/bin/sh
-# Every installed header compiles alone, and a program links, with what pkg-config says.
+# The installed headers compile, and a program links, with what pkg-config says.
 # Usage: sh pkg_config.sh PREFIX COMPILER
 set -u
 prefix=$1
@@ -16,12 +16,19 @@ flags=$(echo "$flags" | sed 's|-I\([^ ]*eigen3\)|-isystem \1|')
 
 (cd "$prefix/include" && find hydrodip -name '*.h') > "$work/headers"
 [ -s "$work/headers" ] || { echo "FAILED: no header is installed"; exit 1; }
-while read -r header; do
-  printf '#include "%s"\n' "$header" > "$work/alone.cpp"
+# What people begin with, alone; all others together, in order and backwards, so that one that lacks
+# something cannot always find it in those before. (That each stands alone is what ./dev lint sees:
+# every source names its own header first.)
+grep -v '/.*/' "$work/headers" | while read -r header; do
+  printf '#include "%s"\n' "$header" > "$work/$(basename "$header" .h)-alone.cpp"
+done
+LC_ALL=C sort "$work/headers" | sed 's/.*/#include "&"/' > "$work/in-order.cpp"
+LC_ALL=C sort -r "$work/headers" | sed 's/.*/#include "&"/' > "$work/backwards.cpp"
+for source in "$work"/*-alone.cpp "$work/in-order.cpp" "$work/backwards.cpp"; do
   # shellcheck disable=SC2086
-  "$compiler" -std=c++20 -fsyntax-only -Wall -Wextra -Werror $flags "$work/alone.cpp" ||
-    { echo "FAILED: $header does not compile alone"; exit 1; }
-done < "$work/headers"
+  "$compiler" -std=c++20 -fsyntax-only -Wall -Wextra -Werror $flags "$source" ||
+    { echo "FAILED: $(basename "$source") does not compile"; exit 1; }
+done
 
 printf '%s\n' '#include <hydrodip/hydrodip.h>' \
   'int main() { return hydrodip::sample("box").object->triangles.empty() ? 1 : 0; }' \

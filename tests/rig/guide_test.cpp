@@ -199,6 +199,13 @@ TEST_F(GuideTest, FortyRandomFaultSequencesLeaveNothingMoving) {
   EXPECT_LT(finished, 40);
 }
 
+// A garbled command sent it back slowly, and the stop was believed before it stood.
+TEST_F(GuideTest, AStopIsNotBelievedTooEarly) {
+  std::string story;
+  EXPECT_EQ(random_guided_faults(Machine::kMarlin, 1403, folder_ / "storm", story), "") << story;
+  EXPECT_NE(story.find("stands still"), std::string::npos) << story;
+}
+
 TEST_F(GuideTest, ANoMovesNothing) {
   GuidedBench guided;
   guided.person.yes = "no";

@@ -82,6 +82,31 @@ struct Case {
   std::optional<bool> confirmed;  // whether the stage can still be asked after
 };
 
+// Slower than a step in a few milliseconds: two looks in a row see it at the same place.
+TEST_P(BothMachines, AStageThatRunsOutIsNotSaidToStand) {
+  VirtualBench bench(GetParam());
+  Mover mover(*bench.stage, bench.clock, bench.context);
+  mover.allow_motion();
+  mover.home();
+  for (const double mm_per_min : {2, 20, 200}) {
+    const double start_mm = bench.emulator->position_mm();
+    bench.stage->set_speed(mm_per_min);
+    bench.stage->aim(start_mm + 20);
+    bench.clock.sleep(1);
+    bench.stage->state();
+    bench.stage->stop();
+    int looks = 0;
+    for (; bench.stage->state().moving; ++looks) {
+      ASSERT_LT(looks, 1000);
+      bench.clock.sleep(0.001);
+    }
+    EXPECT_FALSE(bench.emulator->moving()) << mm_per_min;
+    const double rest_mm = bench.emulator->position_mm();
+    bench.clock.sleep(1);
+    EXPECT_EQ(bench.emulator->position_mm(), rest_mm);
+  }
+}
+
 TEST_P(BothMachines, EveryFaultInMidDipEndsInAStoppedStageAndAClearMessage) {
   const std::vector<Case> cases = {
       {FaultKind::kGarbleReplies, 1, false}, {FaultKind::kGarbleCommands, 1, false},
@@ -131,6 +156,13 @@ TEST(ZaberStage, OverheatedBeforeTheStartMovesNothing) {
   const Outcome outcome = run_dip(bench, {});
   EXPECT_NE(outcome.message.find("too hot"), std::string::npos) << outcome.message;
   EXPECT_EQ(bench.emulator->position_mm(), place_mm);
+}
+
+// Two wrong bits in a command looked right, and sent it 0.005 mm further than promised.
+TEST(MarlinStage, KeepsItsPromiseWhereTheLinkGarblesUnseen) {
+  std::string story;
+  EXPECT_EQ(random_faults(Machine::kMarlin, 1725, story), "") << story;
+  EXPECT_NE(story.find("at the latest"), std::string::npos) << story;
 }
 
 TEST_P(BothMachines, FiftyRandomFaultSequencesLeaveNothingMoving) {
