@@ -162,9 +162,33 @@ std::string shown(const Vec3& p) {
 // ---- laying ----
 
 bool shows_anything(const Image& image) {
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+  CheckEvery check(1 << 20);
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+    check();
     if (image.rgba[i] > 0) return true;
+  }
   return false;
+}
+
+// What is said of a layer though its projection has no use for it.
+void warn_of_idle_words(const ArtworkLayer& layer, const RunContext& context) {
+  const bool uv = layer.projection == Projection::kUv, film = layer.projection == Projection::kFilm;
+  if (!uv && !film && layer.projection != Projection::kWrap) return;
+  std::string idle;
+  const auto add = [&](bool said, const char* what) {
+    if (said) idle += (idle.empty() ? "" : ", ") + std::string(what);
+  };
+  add(uv && layer.at_mm.has_value(), "its place");
+  add(layer.toward.has_value(), "its direction");
+  add((uv || film) && layer.up.has_value(), "its up");
+  add(uv && (layer.width_mm > 0 || layer.height_mm > 0), "its size");
+  add(layer.through, "through");
+  add(layer.fade_deg < 90, "fading");
+  if (!idle.empty())
+    context.warn(fmt::format("{}: {} means nothing to artwork that is {}", name_of(layer), idle,
+                             uv     ? "laid by UVs"
+                             : film ? "left on the film"
+                                    : "wrapped"));
 }
 
 void warn_of_wrap(const ArtworkLayer& layer, const WrapReport& report, const RunContext& context) {
@@ -213,6 +237,7 @@ Vec2 size_on_film(const ArtworkLayer& layer, const PictureSource& picture) {
 
 Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask& task,
           const PosedObject& posed, const RunContext& context) {
+  warn_of_idle_words(wanted, context);
   Placed placed;
   if (wanted.projection == Projection::kFilm)
     placed.size_mm = size_on_film(wanted, picture);
