@@ -192,8 +192,6 @@ void warn_of_idle_words(const ArtworkLayer& layer, const RunContext& context) {
 }
 
 void warn_of_wrap(const ArtworkLayer& layer, const WrapReport& report, const RunContext& context) {
-  context.log(fmt::format("{}: wrapped, stretched {:.2f} to {:.2f} times", name_of(layer),
-                          report.stretch_least, report.stretch_most));
   // A repeated picture goes on to where the surface comes round to itself.
   if (layer.repeat != Repeat::kOnce) return;
   constexpr double kMuch = 1.5;
@@ -209,7 +207,7 @@ void warn_of_wrap(const ArtworkLayer& layer, const WrapReport& report, const Run
         name_of(layer), report.stretch_least, report.stretch_most));
 }
 
-Placed place(const PlacementTask& task, const RunContext& context) {
+Placed place(const PlacementTask& task, LaidLayer& laid, const RunContext& context) {
   switch (task.layer.projection) {
     case Projection::kUv:
       return place_by_uv(task);
@@ -217,6 +215,8 @@ Placed place(const PlacementTask& task, const RunContext& context) {
       WrapReport report;
       Placed placed = place_wrapped(task, report);
       warn_of_wrap(task.layer, report, context);
+      laid.stretch_least = report.stretch_least;
+      laid.stretch_most = report.stretch_most;
       return placed;
     }
     default:
@@ -236,13 +236,13 @@ Vec2 size_on_film(const ArtworkLayer& layer, const PictureSource& picture) {
 }
 
 Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask& task,
-          const PosedObject& posed, const RunContext& context) {
+          const PosedObject& posed, LaidLayer& laid, const RunContext& context) {
   warn_of_idle_words(wanted, context);
   Placed placed;
   if (wanted.projection == Projection::kFilm)
     placed.size_mm = size_on_film(wanted, picture);
   else
-    placed = place({wanted, picture.aspect(), posed, task.closed}, context);
+    placed = place({wanted, picture.aspect(), posed, task.closed}, laid, context);
   const double pixels_per_mm = task.dpi / kMmPerInch * task.samples_per_axis;
   Layer layer{picture.pixels(placed.size_mm.x(), placed.size_mm.y(), pixels_per_mm),
               PictureFrame(placed.size_mm, wanted.turn_deg, wanted.repeat),
@@ -259,6 +259,14 @@ Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask&
 
 }  // namespace
 
+std::string describe(const LaidLayer& layer) {
+  std::string text = fmt::format("{:.1f} x {:.1f} mm", layer.size_mm.x(), layer.size_mm.y());
+  if (layer.stretch_least < layer.stretch_most)
+    text +=
+        fmt::format(", stretched {:.2f} to {:.2f} times", layer.stretch_least, layer.stretch_most);
+  return text;
+}
+
 std::vector<PictureSource> read_pictures(const std::vector<ArtworkLayer>& layers) {
   std::vector<PictureSource> pictures;
   for (const ArtworkLayer& layer : layers) pictures.emplace_back(layer);
@@ -271,10 +279,11 @@ Artwork lay_artwork(ArtworkTask task, const PosedObject& posed, const RunContext
   Artwork artwork;
   for (std::size_t n = 0; n < task.layers.size(); ++n) {
     context.progress("laying artwork", double(n) / double(task.layers.size()));
-    Layer layer = lay(task.layers[n], task.pictures[n], task, paint->posed(), context);
-    artwork.layers.push_back({name_of(task.layers[n]), layer.frame.size_mm()});
-    context.log(fmt::format("{}: {:.1f} x {:.1f} mm", artwork.layers.back().name,
-                            layer.frame.size_mm().x(), layer.frame.size_mm().y()));
+    LaidLayer laid{.name = name_of(task.layers[n])};
+    Layer layer = lay(task.layers[n], task.pictures[n], task, paint->posed(), laid, context);
+    laid.size_mm = layer.frame.size_mm();
+    context.log(laid.name + ": " + describe(laid));
+    artwork.layers.push_back(std::move(laid));
     paint->add(std::move(layer));
   }
   context.progress("laying artwork", 1);
