@@ -269,6 +269,7 @@ std::string describe(const LaidLayer& layer) {
 
 std::vector<PictureSource> read_pictures(const std::vector<ArtworkLayer>& layers) {
   std::vector<PictureSource> pictures;
+  pictures.reserve(layers.size());
   for (const ArtworkLayer& layer : layers) pictures.emplace_back(layer);
   return pictures;
 }
