@@ -162,14 +162,36 @@ std::string shown(const Vec3& p) {
 // ---- laying ----
 
 bool shows_anything(const Image& image) {
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+  CheckEvery check(1 << 20);
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+    check();
     if (image.rgba[i] > 0) return true;
+  }
   return false;
 }
 
+// What is said of a layer though its projection has no use for it.
+void warn_of_idle_words(const ArtworkLayer& layer, const RunContext& context) {
+  const bool uv = layer.projection == Projection::kUv, film = layer.projection == Projection::kFilm;
+  if (!uv && !film && layer.projection != Projection::kWrap) return;
+  std::string idle;
+  const auto add = [&](bool said, const char* what) {
+    if (said) idle += (idle.empty() ? "" : ", ") + std::string(what);
+  };
+  add(uv && layer.at_mm.has_value(), "its place");
+  add(layer.toward.has_value(), "its direction");
+  add((uv || film) && layer.up.has_value(), "its up");
+  add(uv && (layer.width_mm > 0 || layer.height_mm > 0), "its size");
+  add(layer.through, "through");
+  add(layer.fade_deg < 90, "fading");
+  if (!idle.empty())
+    context.warn(fmt::format("{}: {} means nothing to artwork that is {}", name_of(layer), idle,
+                             uv     ? "laid by UVs"
+                             : film ? "left on the film"
+                                    : "wrapped"));
+}
+
 void warn_of_wrap(const ArtworkLayer& layer, const WrapReport& report, const RunContext& context) {
-  context.log(fmt::format("{}: wrapped, stretched {:.2f} to {:.2f} times", name_of(layer),
-                          report.stretch_least, report.stretch_most));
   // A repeated picture goes on to where the surface comes round to itself.
   if (layer.repeat != Repeat::kOnce) return;
   constexpr double kMuch = 1.5;
@@ -185,7 +207,7 @@ void warn_of_wrap(const ArtworkLayer& layer, const WrapReport& report, const Run
         name_of(layer), report.stretch_least, report.stretch_most));
 }
 
-Placed place(const PlacementTask& task, const RunContext& context) {
+Placed place(const PlacementTask& task, LaidLayer& laid, const RunContext& context) {
   switch (task.layer.projection) {
     case Projection::kUv:
       return place_by_uv(task);
@@ -193,6 +215,8 @@ Placed place(const PlacementTask& task, const RunContext& context) {
       WrapReport report;
       Placed placed = place_wrapped(task, report);
       warn_of_wrap(task.layer, report, context);
+      laid.stretch_least = report.stretch_least;
+      laid.stretch_most = report.stretch_most;
       return placed;
     }
     default:
@@ -212,12 +236,13 @@ Vec2 size_on_film(const ArtworkLayer& layer, const PictureSource& picture) {
 }
 
 Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask& task,
-          const PosedObject& posed, const RunContext& context) {
+          const PosedObject& posed, LaidLayer& laid, const RunContext& context) {
+  warn_of_idle_words(wanted, context);
   Placed placed;
   if (wanted.projection == Projection::kFilm)
     placed.size_mm = size_on_film(wanted, picture);
   else
-    placed = place({wanted, picture.aspect(), posed, task.closed}, context);
+    placed = place({wanted, picture.aspect(), posed, task.closed}, laid, context);
   const double pixels_per_mm = task.dpi / kMmPerInch * task.samples_per_axis;
   Layer layer{picture.pixels(placed.size_mm.x(), placed.size_mm.y(), pixels_per_mm),
               PictureFrame(placed.size_mm, wanted.turn_deg, wanted.repeat),
@@ -234,8 +259,17 @@ Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask&
 
 }  // namespace
 
+std::string describe(const LaidLayer& layer) {
+  std::string text = fmt::format("{:.1f} x {:.1f} mm", layer.size_mm.x(), layer.size_mm.y());
+  if (layer.stretch_least < layer.stretch_most)
+    text +=
+        fmt::format(", stretched {:.2f} to {:.2f} times", layer.stretch_least, layer.stretch_most);
+  return text;
+}
+
 std::vector<PictureSource> read_pictures(const std::vector<ArtworkLayer>& layers) {
   std::vector<PictureSource> pictures;
+  pictures.reserve(layers.size());
   for (const ArtworkLayer& layer : layers) pictures.emplace_back(layer);
   return pictures;
 }
@@ -246,10 +280,11 @@ Artwork lay_artwork(ArtworkTask task, const PosedObject& posed, const RunContext
   Artwork artwork;
   for (std::size_t n = 0; n < task.layers.size(); ++n) {
     context.progress("laying artwork", double(n) / double(task.layers.size()));
-    Layer layer = lay(task.layers[n], task.pictures[n], task, paint->posed(), context);
-    artwork.layers.push_back({name_of(task.layers[n]), layer.frame.size_mm()});
-    context.log(fmt::format("{}: {:.1f} x {:.1f} mm", artwork.layers.back().name,
-                            layer.frame.size_mm().x(), layer.frame.size_mm().y()));
+    LaidLayer laid{.name = name_of(task.layers[n])};
+    Layer layer = lay(task.layers[n], task.pictures[n], task, paint->posed(), laid, context);
+    laid.size_mm = layer.frame.size_mm();
+    context.log(laid.name + ": " + describe(laid));
+    artwork.layers.push_back(std::move(laid));
     paint->add(std::move(layer));
   }
   context.progress("laying artwork", 1);

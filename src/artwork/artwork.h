@@ -29,8 +29,13 @@ struct ArtworkTask {
 // What came of a layer.
 struct LaidLayer {
   std::string name;
-  Vec2 size_mm;
+  Vec2 size_mm{0, 0};
+  // Wrapped: lengths on the surface over the picture's.
+  double stretch_least = 1, stretch_most = 1;
 };
+
+// "40.0 x 20.0 mm, stretched 0.93 to 1.00 times".
+std::string describe(const LaidLayer& layer);
 
 struct Artwork {
   std::shared_ptr<const Paint> paint;

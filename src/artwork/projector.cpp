@@ -223,7 +223,7 @@ Vec3 way_of(const PlacementTask& task, const ModelFrame& frame) {
   if (task.layer.toward) return unit(frame.turn * *task.layer.toward, "toward", task);
   if (!task.layer.at_mm) return Vec3::UnitZ();
   const SurfaceHit hit = nearest_to(task, frame.point(*task.layer.at_mm));
-  return -task.posed.surface().normal(hit);
+  return -seen_from(task, hit);
 }
 
 Aimed aim_plane(const PlacementTask& task) {
@@ -364,6 +364,28 @@ SurfaceHit nearest_to(const PlacementTask& task, const Vec3& at) {
         name_of(task.layer), shown(*task.layer.at_mm), hit->t,
         shown(frame.back(task.posed.surface().position(*hit)))));
   return *hit;
+}
+
+Vec3 seen_from(const PlacementTask& task, const SurfaceHit& hit) {
+  const Surface& surface = task.posed.surface();
+  const Vec3 normal = surface.normal(hit), point = surface.position(hit);
+  if (task.closed) return normal;
+  constexpr double kStart_mm = 1e-2, kSlant = 1.2;  // 67 degrees
+  constexpr int kAround = 8;
+  const double far_mm = 2 * task.posed.mesh().bounds().size().norm();
+  const Vec3 across = normal.unitOrthogonal(), along = normal.cross(across);
+  // From how many directions the point can be seen.
+  const auto open_ways = [&](const Vec3& way) {
+    int free = surface.is_hit(point, way, kStart_mm, far_mm) ? 0 : 1;
+    for (int k = 0; k < kAround; ++k) {
+      const double turn = 2 * std::numbers::pi * k / kAround;
+      const Vec3 slanted = std::cos(kSlant) * way +
+                           std::sin(kSlant) * (std::cos(turn) * across + std::sin(turn) * along);
+      if (!surface.is_hit(point, slanted, kStart_mm, far_mm)) ++free;
+    }
+    return free;
+  };
+  return open_ways(-normal) > open_ways(normal) ? Vec3(-normal) : normal;
 }
 
 Upright upright(const PlacementTask& task, const Vec3& toward) {

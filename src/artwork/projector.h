@@ -35,6 +35,10 @@ Aimed aim(const PlacementTask& task);
 // InputError saying where the surface is.
 SurfaceHit nearest_to(const PlacementTask& task, const Vec3& at);
 
+// Where somebody stands who looks at the surface there: its unit normal, or the other way if the
+// surface has no inside and can be seen from more directions there.
+Vec3 seen_from(const PlacementTask& task, const SurfaceHit& hit);
+
 // From the model's frame, after scaling, to the posed-object frame.
 struct ModelFrame {
   Mat3 turn;

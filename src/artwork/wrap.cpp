@@ -36,7 +36,9 @@ struct Lie {
 
 class Chart {
  public:
-  Chart(const TriangleMesh& mesh, PolarMap map) : mesh_(mesh), place_(std::move(map.place_mm)) {
+  // `side`: 1 if the picture is seen from where the normals point, else -1.
+  Chart(const TriangleMesh& mesh, PolarMap map, int side)
+      : mesh_(mesh), side_(side), place_(std::move(map.place_mm)) {
     lies_.reserve(mesh.triangles.size());
     for (const Triangle& t : mesh.triangles) lies_.push_back(lie_of(t));
   }
@@ -75,7 +77,8 @@ class Chart {
     Mat2 picture;
     picture.col(0) = place_[std::size_t(t[1])] - place_[std::size_t(t[0])];
     picture.col(1) = place_[std::size_t(t[2])] - place_[std::size_t(t[0])];
-    if (!picture.allFinite() || !(picture.determinant() > 0) || !(lie.area_mm2 > 0)) return lie;
+    if (!picture.allFinite() || !(side_ * picture.determinant() > 0) || !(lie.area_mm2 > 0))
+      return lie;
     const double along = e1.norm(), x = e1.dot(e2) / along;
     Mat2 surface;
     surface << along, x, 0, std::sqrt(std::max(0.0, e2.squaredNorm() - x * x));
@@ -86,14 +89,15 @@ class Chart {
   }
 
   const TriangleMesh& mesh_;
+  int side_;
   std::vector<Vec2> place_;
   std::vector<Lie> lies_;
 };
 
 class Wrapped : public Placement {
  public:
-  Wrapped(FineMesh fine, PolarMap map)
-      : fine_(std::move(fine)), chart_(fine_.mesh(), std::move(map)) {}
+  Wrapped(FineMesh fine, PolarMap map, int side)
+      : fine_(std::move(fine)), chart_(fine_.mesh(), std::move(map), side) {}
   const FineMesh& fine() const { return fine_; }
   const Chart& chart() const { return chart_; }
 
@@ -197,7 +201,9 @@ Placed place_wrapped(const PlacementTask& task, WrapReport& report) {
   const ArtworkLayer& layer = task.layer;
   const TriangleMesh& mesh = task.posed.mesh();
   const SurfacePoint centre = centre_of(task);
-  const Upright axes = upright(task, -face_normal(mesh, centre.triangle));
+  const Vec3 viewer = seen_from(task, {centre.triangle, centre.u, centre.v, 0});
+  const int side = viewer.dot(face_normal(mesh, centre.triangle)) > 0 ? 1 : -1;
+  const Upright axes = upright(task, -viewer);
   const bool told = layer.width_mm > 0 || layer.height_mm > 0;
   const double object_mm = mesh.bounds().size().norm();
   Vec2 size = told ? fitting_size(task, Vec2::Ones()) : Vec2::Zero();
@@ -205,7 +211,7 @@ Placed place_wrapped(const PlacementTask& task, WrapReport& report) {
   const double reach = told && !repeats ? 0.55 * size.norm() : 1e300;
   FineMesh fine(mesh, cuts_for(mesh, std::min(told ? size.norm() : 1e300, object_mm)));
   PolarMap map = polar_map(fine.mesh(), fine.fine(centre), axes.right, axes.up, reach);
-  auto wrapped = std::make_unique<Wrapped>(std::move(fine), std::move(map));
+  auto wrapped = std::make_unique<Wrapped>(std::move(fine), std::move(map), side);
   if (!told) {
     const double diagonal = 2 * fair_reach(wrapped->fine(), wrapped->chart(), object_mm);
     size.y() = diagonal / std::hypot(task.aspect, 1.0);

@@ -12,9 +12,10 @@ namespace hydrodip {
 
 // Decodes PNG, JPEG, WebP, TIFF, GIF (its first frame), BMP or TGA (told apart by their first
 // bytes), any bit depth, palette, grey, interlaced; 16-bit is reduced to 8. Embedded RGB and
-// grey profiles, a CMYK JPEG's profile and PNG's cICP are brought to sRGB, EXIF's orientation is
-// applied; a PNG's bare gamma is not. `name` is used in the error only. Throws InputError: not an
-// image, truncated, over 2^15 px a side or 2^28 px in all (refused before it is unpacked).
+// grey profiles, a CMYK JPEG's or TIFF's profile and PNG's cICP are brought to sRGB, EXIF's
+// orientation is applied; a PNG's bare gamma is not. `name` is used in the error only. Throws
+// InputError: not an image, truncated, over 2^15 px a side or 2^28 px in all (refused before it is
+// unpacked).
 Image decode_image(const std::vector<std::uint8_t>& bytes, const std::string& name);
 
 // read_file + decode_image.

@@ -138,6 +138,37 @@ void make_straight(Image& image) {
   }
 }
 
+PictureBytes profile_of(TIFF* file) {
+  std::uint32_t size = 0;
+  void* profile = nullptr;
+  if (!TIFFGetField(file, TIFFTAG_ICCPROFILE, &size, &profile)) return {};
+  const auto* begin = static_cast<const std::uint8_t*>(profile);
+  return {begin, begin + size};
+}
+
+// Four inks of 8 bits in rows, with a profile that says what they show. Of others libtiff makes RGB
+// by a plain formula.
+bool has_known_inks(TIFF* file, std::uint16_t photometric, const PictureBytes& profile) {
+  std::uint16_t bits = 0, samples = 0, planes = 0, orientation = 0;
+  TIFFGetFieldDefaulted(file, TIFFTAG_BITSPERSAMPLE, &bits);
+  TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLESPERPIXEL, &samples);
+  TIFFGetFieldDefaulted(file, TIFFTAG_PLANARCONFIG, &planes);
+  TIFFGetFieldDefaulted(file, TIFFTAG_ORIENTATION, &orientation);
+  return photometric == PHOTOMETRIC_SEPARATED && bits == 8 && samples == 4 &&
+         planes == PLANARCONFIG_CONTIG && orientation == ORIENTATION_TOPLEFT &&
+         !TIFFIsTiled(file) && is_ink_profile(profile);
+}
+
+// False if the file is damaged.
+bool read_inks(TIFF* file, Image& to) {
+  if (TIFFScanlineSize(file) != tmsize_t(4) * to.width_px) return false;
+  for (int y = 0; y < to.height_px; ++y) {
+    check_cancelled();
+    if (TIFFReadScanline(file, to.pixel(0, y), std::uint32_t(y), 0) != 1) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
@@ -152,16 +183,14 @@ StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
   check_picture_size(name, "TIFF", width, height, 0, bytes.size());
   StoredPicture picture;
   picture.image = Image(int(width), int(height));
-  if (!RgbaReader(file.get(), name).read(picture.image))
+  picture.profile = profile_of(file.get());
+  picture.inks = has_known_inks(file.get(), photometric, picture.profile);
+  if (picture.inks ? !read_inks(file.get(), picture.image)
+                   : !RgbaReader(file.get(), name).read(picture.image))
     refuse_picture(name, "TIFF", source.message);
+  if (picture.inks) return picture;
   make_straight(picture.image);
-  std::uint32_t profile_size = 0;
-  void* profile = nullptr;
-  if (photometric == PHOTOMETRIC_RGB &&
-      TIFFGetField(file.get(), TIFFTAG_ICCPROFILE, &profile_size, &profile)) {
-    const auto* begin = static_cast<const std::uint8_t*>(profile);
-    picture.profile.assign(begin, begin + profile_size);
-  }
+  if (photometric != PHOTOMETRIC_RGB) picture.profile.clear();
   return picture;
 }
 

@@ -85,8 +85,9 @@ std::string describe_size(const Inspection& i) {
 
 std::string describe_appearance(const Object& object) {
   if (object.has_appearance()) return "textured or coloured";
-  return object.uvs.empty() ? "none; to print, give it UVs and a texture, or vertex colours"
-                            : "UVs without a texture; to print, name one with --texture";
+  return object.uvs.empty()
+             ? "none; to print, put a picture on it with --art, or give it vertex colours"
+             : "UVs without a texture; to print, name one with --texture";
 }
 
 std::string describe_mesh(const Inspection& i) {

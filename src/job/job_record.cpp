@@ -190,6 +190,10 @@ Report make_report(const JobRecord& record) {
   report.tear_stretch = record.config.design.dip.material.tear_stretch;
   if (record.command == "print") report.bleed_mm = record.config.design.inverse.bleed_mm;
   report.figures = figures(record.dipped());
+  for (std::size_t n = 0; n < record.prepared.artwork.size(); ++n)
+    report.figures.push_back({fmt::format("artwork_{}", n + 1),
+                              "Artwork: " + record.prepared.artwork[n].name,
+                              describe(record.prepared.artwork[n]), ""});
   add_ink(record, report.figures);
   report.warnings = record.context.warnings();
   report.outputs = outputs(record.command, record.config);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "artwork/artwork.h"
 #include "base/error.h"
 #include "base/memory.h"
 
@@ -43,6 +42,7 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
                         .health = loaded.health,
                         .units = loaded.units,
                         .files = loaded.files,
+                        .artwork = {},
                         .picture_problems = loaded.picture_problems};
   // Area and volume grow with the object.
   const double scale = result.posed.scale();
@@ -51,10 +51,11 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
   warn_if_tiny(result.posed.mesh(), context);
   context.progress("loading", 1);
   if (options.artwork.empty()) return result;
-  result.paint = lay_artwork({options.artwork, std::move(pictures), result.paint,
-                              result.health.closed(), dpi, samples_per_axis},
-                             result.posed, context)
-                     .paint;
+  Artwork artwork = lay_artwork({options.artwork, std::move(pictures), result.paint,
+                                 result.health.closed(), dpi, samples_per_axis},
+                                result.posed, context);
+  result.paint = std::move(artwork.paint);
+  result.artwork = std::move(artwork.layers);
   for (const ArtworkLayer& layer : options.artwork)
     if (!layer.image.empty() &&
         std::find(result.files.begin(), result.files.end(), layer.image) == result.files.end())

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "artwork/artwork.h"
 #include "base/context.h"
 #include "model_io/load.h"
 #include "object/paint.h"
@@ -19,6 +20,7 @@ struct PreparedObject {
   MeshHealth health;                          // in posed size
   std::string units;                          // the unit that was applied
   std::vector<std::filesystem::path> files;   // every file that was read
+  std::vector<LaidLayer> artwork;             // as it was laid, the bottom layer first
   std::vector<std::string> picture_problems;  // why some of the model's pictures are not shown
 };
 

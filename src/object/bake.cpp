@@ -99,6 +99,17 @@ CornerUv corners_of(const Square& square, int side_px) {
   return {at(0, 0), at(last, 0), at(0, last)};
 }
 
+// What squares of the least size would hold.
+std::vector<CornerColor> corner_colors(const TriangleMesh& mesh, const Paint& paint) {
+  std::vector<CornerColor> colors(mesh.triangles.size());
+  parallel_for(colors.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      colors[t] = {paint.color_at({int(t), 0, 0}), paint.color_at({int(t), 1, 0}),
+                   paint.color_at({int(t), 0, 1})};
+  });
+  return colors;
+}
+
 Object baked(const TriangleMesh& mesh, const Paint& paint, int most_px) {
   Object object;
   static_cast<TriangleMesh&>(object) = mesh;
@@ -115,6 +126,10 @@ Object baked(const TriangleMesh& mesh, const Paint& paint, int most_px) {
   for (int halvings = 0; area_px(sides) > double(most_px) * most_px && halvings < 24; ++halvings) {
     density /= 2;
     sides = sides_for(mesh, density);
+  }
+  if (*std::max_element(sides.begin(), sides.end()) == kLeastSide_px) {
+    object.colors = corner_colors(mesh, paint);
+    return object;
   }
   const auto side_px =
       int(std::bit_ceil(std::max(2U, unsigned(std::ceil(std::sqrt(area_px(sides)))))));

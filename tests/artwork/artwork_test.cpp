@@ -127,6 +127,61 @@ TEST_F(Layers, WhatIsHiddenStaysBareUnlessToldOtherwise) {
   EXPECT_LT(seen(object, *through, {30, 30, 0}), kBlack);
 }
 
+// A profile turned about z, from the axis and back to it; outward if it goes round the solid with
+// the solid on its left.
+TriangleMesh turned(const std::vector<Vec2>& profile, int around) {
+  const auto n = int(profile.size()) - 1;
+  return welded(sheet(around, n, [&](double s, double t) {
+    const Vec2& p = profile[std::size_t(std::lround(t * n))];
+    return Vec3(p.x() * std::cos(2 * kPi * s), p.x() * std::sin(2 * kPi * s), p.y());
+  }));
+}
+
+// The arc of a circle about the origin, in degrees from straight down.
+void add_arc(std::vector<Vec2>& profile, double radius, double from, double to) {
+  for (int i = 0; i <= 60; ++i) {
+    const double angle = (from + (to - from) * i / 60) * kPi / 180;
+    profile.emplace_back(radius * std::sin(angle), -radius * std::cos(angle));
+  }
+}
+
+TEST_F(Layers, NothingGoesThroughAHole) {
+  // A hollow ball with a hole at its top, wide enough to see the bottom of its inside.
+  std::vector<Vec2> profile;
+  add_arc(profile, 30, 0, 155);
+  add_arc(profile, 28, 155, 0);
+  const PosedObject object = posed(turned(profile, 90));
+  const auto paint = laid(object, {downward(black(), 200)});
+  int outside = 0, inside = 0;
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    const Vec3 p = position_at(object.mesh(), point) - moved(object, Vec3::Zero());
+    const float g = paint->color_at(point).g;
+    if (p.norm() < 28.05) {
+      ++inside;
+      EXPECT_GT(g, kWhite) << p.transpose();
+    } else if (p.norm() > 29.9 && p.z() > 3 && p.head<2>().norm() > 14) {
+      ++outside;
+      EXPECT_LT(g, kBlack) << p.transpose();
+    }
+  });
+  EXPECT_GT(inside, 1000);
+  EXPECT_GT(outside, 1000);
+}
+
+TEST_F(Layers, TheInsideOfABowlIsNoHole) {
+  std::vector<Vec2> profile;
+  add_arc(profile, 30, 0, 88);
+  add_arc(profile, 28, 88, 0);
+  const PosedObject object = posed(turned(profile, 90));
+  const auto paint = laid(object, {downward(black(), 200)});
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    const Vec3 p = position_at(object.mesh(), point) - moved(object, Vec3::Zero());
+    if (p.norm() < 28.01 && p.z() < -4) {
+      EXPECT_LT(paint->color_at(point).g, kBlack) << p.transpose();
+    }
+  });
+}
+
 TEST_F(Layers, ShadowsAreTheSameInSmallTriangles) {
   const auto flat = [](double z) {
     return [z](double s, double t) { return Vec3(40 * s, 40 * t, z); };

@@ -129,6 +129,32 @@ TEST(Wrap, FollowsAnEdgeAsPaperDoes) {
   EXPECT_EQ(report.folded_mm2, 0);
 }
 
+TEST(Wrap, IsSeenUnmirroredOnASheetWhoseNormalsPointInward) {
+  // Half a tube, open, turned inside out by its file.
+  TriangleMesh half = sheet(60, 20, [](double s, double t) {
+    const double angle = kPi * (s - 0.5);
+    return Vec3(25 * std::sin(angle), -25 * std::cos(angle), 60 * t);
+  });
+  for (const bool inward : {false, true}) {
+    if (inward)
+      for (Triangle& t : half.triangles) std::swap(t[1], t[2]);
+    const PosedObject object = posed(half);
+    ArtworkLayer layer;
+    layer.projection = Projection::kWrap;
+    layer.at_mm = Vec3(0, -25, 30);
+    layer.width_mm = 20;
+    WrapReport report;
+    const Placed placed = place_wrapped({layer, 1, object, false}, report);
+    const Vec3 aside = moved(object, Vec3(25 * std::sin(0.2), -25 * std::cos(0.2), 34));
+    const auto hit = object.surface().closest_point(aside, 1);
+    Spot spot;
+    ASSERT_TRUE(placed.placement->find({hit->triangle, hit->u, hit->v}, spot));
+    // Seen from outside, from -y with z up, +x is to the right.
+    EXPECT_NEAR(spot.place_mm.x(), 5, 0.05);
+    EXPECT_NEAR(spot.place_mm.y(), 4, 0.05);
+  }
+}
+
 TEST(Wrap, WarnsBeforeItFoldsOverItself) {
   const PosedObject object = posed(ball(20, 96, 48));
   ArtworkLayer layer;

@@ -127,6 +127,8 @@ like() {
 if command -v transicc > /dev/null && command -v convert > /dev/null && [ -e "$inks" ] && [ -e "$p3" ]; then
   convert -size 64x48 'xc:cmyk(60%,30%,20%,5%)' -quality 100 -profile "$inks" cmyk.jpg
   like "$(shown cmyk.jpg)" '60 30 20 5' "$inks"
+  convert -size 64x48 'xc:cmyk(10%,80%,60%,15%)' -depth 8 -profile "$inks" -compress LZW cmyk.tif
+  like "$(shown cmyk.tif)" '10 80 60 15' "$inks"
   convert -size 64x48 'xc:rgb(180,120,90)' -profile "$p3" p3.png
   like "$(shown p3.png)" '180 120 90' "$p3"
 fi

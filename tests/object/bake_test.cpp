@@ -55,11 +55,18 @@ TEST(Bake, ShowsThePaintEverywhere) {
     }
 }
 
-TEST(Bake, MoreTrianglesThanTexelsGrowTheTexture) {
+TEST(Bake, TrianglesSmallerThanTexelsHaveTheirColorsAtTheCorners) {
   const TriangleMesh mesh = square(60);
-  const Object object = painted_object(mesh, GradientPaint(mesh), 64);
-  EXPECT_GE(object.textures.at(0)->width_px * object.textures.at(0)->height_px,
-            4 * int(mesh.triangles.size()));
+  const GradientPaint paint(mesh);
+  const Object object = painted_object(mesh, paint, 64);
+  EXPECT_TRUE(object.textures.empty());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const SurfacePoint point{int(t), 0.2, 0.5};
+    const LinearColor wanted = paint.color_at(point);
+    const LinearColor shown = color_at(object, point, {0, 0, 0, 1});
+    EXPECT_NEAR(shown.r, wanted.r, 1e-5) << t;
+    EXPECT_NEAR(shown.g, wanted.g, 1e-5) << t;
+  }
 }
 
 TEST(Bake, WhatAModelSaysIsPassedOn) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <thread>
 
+#include "image/files.h"
 #include "samples/samples.h"
 #include "temporary_folder.h"
 
@@ -137,6 +138,37 @@ TEST_F(WorkspaceTest, TwoWhoAskForTheSameShareOneComputation) {
   other.join();
   EXPECT_EQ(a, b);
   EXPECT_EQ(workspace_.computed(), 3U);
+}
+
+TEST_F(WorkspaceTest, ArtworkIsSeenAndItsFileWatched) {
+  const auto picture = folder_.path() / "art.png";
+  const auto plain = [&](std::uint8_t grey) {
+    Image image(8, 8);
+    for (std::size_t i = 0; i < image.rgba.size(); ++i)
+      image.rgba[i] = i % 4 == 3 ? std::uint8_t(255) : grey;
+    save_png(picture, image);
+  };
+  plain(0);
+  design_it();
+  project_.artwork.emplace_back();
+  project_.artwork[0].image = picture;
+  EXPECT_EQ(design_it(), 2U);  // paint, design
+  EXPECT_EQ(design_it(), 0U);
+  EXPECT_EQ(dip(), 0U);  // where film of even stiffness goes has nothing to do with it
+  const auto at_the_bottom = [&] {
+    const auto posed = workspace_.posed(project_, context_);
+    const auto hit = posed->surface().first_hit({0, 0, -1}, {0, 0, 1}, 0, 10);
+    return workspace_.paint(project_, Quality::kNormal, context_)
+        ->color_at({hit->triangle, hit->u, hit->v})
+        .g;
+  };
+  EXPECT_EQ(at_the_bottom(), 0);
+  plain(255);
+  std::filesystem::last_write_time(
+      picture, std::filesystem::last_write_time(picture) + std::chrono::seconds(5));
+  EXPECT_EQ(at_the_bottom(), 1);
+  project_.artwork[0].opacity = 0.5;
+  EXPECT_EQ(design_it(), 2U);
 }
 
 }  // namespace
