@@ -283,6 +283,7 @@ class Search {
       : object_(object),
         surface_(surface),
         travel_(trajectory, object.positions, object.triangles),
+        advises_(options.cells >= kLeastForAdvice),
         cells_(object, std::size_t(options.cells)),
         moments_(travel_, cells_.pitch_mm()),
         wet_(numbers(cells_, [this](const Vec3& p) { return moments_.wet(p); })) {}
@@ -429,7 +430,7 @@ class Search {
     const double then = leaning.kept(pocket.water.up);
     if (then < kMostlyOpen) return false;
     if (travel_.trajectory().is_straight_down()) {
-      pocket.lets_out = leaning.lets_out();
+      if (advises_) pocket.lets_out = leaning.lets_out();
       return true;
     }
     Vec3 last = pocket.water.up;
@@ -459,6 +460,7 @@ class Search {
   const TriangleMesh& object_;
   const Surface& surface_;
   const Travel travel_;
+  const bool advises_;
   Cells cells_;
   const Moments moments_;
   const Numbers wet_;

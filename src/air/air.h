@@ -16,8 +16,12 @@
 
 namespace hydrodip {
 
+inline constexpr int kLeastForAdvice = 100000;
+
 struct AirOptions {
-  // Cubes into which the space around the object is cut; 0: air is not looked for.
+  // Cubes into which the space around the object is cut; 0: air is not looked for. With fewer than
+  // kLeastForAdvice nobody looks for a tilt that lets the air out, which takes several times as
+  // long as finding it.
   int cells = 600000;
 };
 
@@ -36,7 +40,8 @@ struct AirPocket {
   Vec3 top = Vec3::Zero();  // its highest point on the surface: where a vent lets all of it out
   // Share of the volume that gets out again while the object turns further on its way.
   double escapes_share = 0;
-  std::optional<Tilt> lets_out;  // the smallest; none: no tilt up to 85 degrees does
+  // The smallest; none: no tilt up to 85 degrees does, or it was not looked for.
+  std::optional<Tilt> lets_out;
 };
 
 // A small hole in the surface through which air gets out.

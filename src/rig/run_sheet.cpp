@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -100,7 +101,11 @@ class RunSheet {
       words += fmt::format(", turned by {:g}, {:g}, {:g} degrees about x, y, z",
                            pose.rotate_deg.x(), pose.rotate_deg.y(), pose.rotate_deg.z());
     page_.paragraph(page_.left(), page_.width(),
-                    words + ". Hang it over the middle of the film, x along the film's width.",
+                    words + (moves_aside(job_)
+                                 ? ". Shown as it first meets the water; from there along the way "
+                                   "in on page 2, x along the film's width."
+                                 : ". Hang it over the middle of the film, x along the film's "
+                                   "width."),
                     kBody_pt);
   }
 
@@ -218,13 +223,14 @@ class RunSheet {
     page_.heading("Way in (from the first touch; turns about x, then y, then z of the bath)");
     row({"second", "lowered, mm", "shift x, mm", "shift y, mm", "turn x, \u00b0", "turn y, \u00b0",
          "turn z, \u00b0"});
+    const auto tenths = [](double value) {
+      return fmt::format("{:.1f}", std::round(10 * value) / 10 + 0.0);  // never -0.0
+    };
     for (const WayPoint& point : job_.way_in)
-      row({fmt::format("{:.1f}", 60 * point.travelled_mm / process_.speed_mm_per_min),
-           fmt::format("{:.1f}", point.pose.lower_mm), fmt::format("{:.1f}", point.pose.shift_x_mm),
-           fmt::format("{:.1f}", point.pose.shift_y_mm),
-           fmt::format("{:.1f}", point.pose.turn_x_deg),
-           fmt::format("{:.1f}", point.pose.turn_y_deg),
-           fmt::format("{:.1f}", point.pose.turn_z_deg)});
+      row({tenths(60 * point.travelled_mm / process_.speed_mm_per_min), tenths(point.pose.lower_mm),
+           tenths(point.pose.shift_x_mm), tenths(point.pose.shift_y_mm),
+           tenths(point.pose.turn_x_deg), tenths(point.pose.turn_y_deg),
+           tenths(point.pose.turn_z_deg)});
     page_.y -= 2;
   }
 
@@ -243,8 +249,9 @@ class RunSheet {
                     "Take the protective layer off the film.",
                     config.design.film.margin_mm));
     page_.task("Object clean, dry and free of grease; hung as on page 1, over the film's middle.");
-    page_.task("Stage homed; water level found without film on the water; object lifted clear.",
-               {"Level, mm"});
+    if (!moves_aside(job_))
+      page_.task("Stage homed; water level found without film on the water; object lifted clear.",
+                 {"Level, mm"});
     page_.task(fmt::format("Water {:g} to {:g} °C, {:.1f} l.", process_.water_min_c,
                            process_.water_max_c, bath_litres(config.bath)),
                {"Measured, °C"});
