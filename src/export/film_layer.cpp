@@ -1,11 +1,13 @@
 #include "export/film_layer.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "base/parallel.h"
+#include "film/locate.h"
 #include "image/color_difference.h"
 
 namespace hydrodip {
@@ -26,6 +28,22 @@ FilmLayer empty_layer(const std::string& key, const Box2& extent) {
   layer.values.assign(std::size_t(layer.width) * std::size_t(layer.height),
                       std::numeric_limits<float>::quiet_NaN());
   return layer;
+}
+
+// Smallest singular value of dX/du.
+double least_stretch(const DippedFilm& film, std::size_t triangle) {
+  const auto& v = film.mesh().triangles[triangle];
+  const auto corner = [&](std::size_t k) { return film.position[std::size_t(v[k])]; };
+  const auto flat = [&](std::size_t k) { return film.mesh().u[std::size_t(v[k])]; };
+  Mat2 du;
+  du << flat(1) - flat(0), flat(2) - flat(0);
+  Eigen::Matrix<double, 3, 2> dx;
+  dx << corner(1) - corner(0), corner(2) - corner(0);
+  const Eigen::Matrix<double, 3, 2> J = dx * du.inverse();
+  const Mat2 metric = J.transpose() * J;
+  const double half = 0.5 * metric.trace();
+  const double apart = std::sqrt(std::max(0.0, half * half - metric.determinant()));
+  return std::sqrt(std::max(0.0, half - apart));
 }
 
 struct Mean {
@@ -115,6 +133,24 @@ FilmLayer pixel_layer(const std::string& key, const std::vector<float>& values, 
   for (std::size_t i = 0; i < layer.values.size(); ++i) {
     if (count[i] > 0) layer.values[i] = float(sum[i] / count[i]);
   }
+  return layer;
+}
+
+FilmLayer pressed_layer(const DippedFilm& film, const Box2& extent) {
+  FilmLayer layer = empty_layer("pressed", extent);
+  const FilmMesh& mesh = film.mesh();
+  const Vec2 size = layer.extent.max - layer.extent.min;
+  parallel_for(std::size_t(layer.height), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row)
+      for (int x = 0; x < layer.width; ++x) {
+        const Vec2 u(layer.extent.min.x() + size.x() * (x + 0.5) / layer.width,
+                     layer.extent.max.y() - size.y() * (double(row) + 0.5) / layer.height);
+        const FilmLocation at = locate_flat(mesh, u);
+        if (!at.inside || !film.lies_on_object(std::size_t(at.triangle))) continue;
+        layer.values[row * std::size_t(layer.width) + std::size_t(x)] =
+            float(100 * std::max(0.0, 1 - least_stretch(film, std::size_t(at.triangle))));
+      }
+  });
   return layer;
 }
 

@@ -11,8 +11,9 @@
 namespace hydrodip {
 
 struct FilmLayer {
-  std::string key;  // known to the page's table of overlays: "color_error", "out_of_gamut"
-  Box2 extent;      // film coordinates, mm
+  std::string
+      key;      // known to the page's table of overlays: "color_error", "out_of_gamut", "pressed"
+  Box2 extent;  // film coordinates, mm
   int width = 0, height = 0;  // cells
   std::vector<float> values;  // row 0 at +y; NaN where there is nothing
 };
@@ -25,6 +26,10 @@ FilmLayer color_error_layer(const TriangleMesh& object, const FilmMap& map,
 // nothing there): means over cells, within the film coordinates `extent`.
 FilmLayer pixel_layer(const std::string& key, const std::vector<float>& values, int width_px,
                       int height_px, const Vec2& sheet_mm, const Box2& extent);
+
+// By how many percent film that lies on the object is pressed together where it is most: 100 (1 -
+// smallest principal stretch), never below 0.
+FilmLayer pressed_layer(const DippedFilm& film, const Box2& extent);
 
 // Of the values that are there; all 0 if there are none.
 struct LayerSummary {

@@ -166,6 +166,8 @@ std::vector<FilmLayer> measure_layers(const JobRecord& record, const Appearance&
     layers.push_back(reach_layer(record, raster));
     previews.ink = ink_amounts(record.ink->ink.inking.inks, record.config.design.inking.limit);
   }
+  if (dipped.coverage.wrinkled_mm2 > 0)
+    layers.push_back(pressed_layer(*dipped.film, dipped.map->covered()));
   return layers;
 }
 

@@ -73,11 +73,13 @@ Finding tears(const Coverage& c) {
 // Pressed together, or lifted out of the water on the way: only where there is any worth naming.
 void add_slack_film(const Coverage& c, std::vector<Finding>& list) {
   if (c.wrinkled_mm2 > kFewWrinkles * c.covered_mm2)
-    list.push_back({"wrinkles", Concern::kCare, "Wrinkles",
-                    percent(Coverage::share(c.wrinkled_mm2, c.covered_mm2)),
-                    "of the film on the object is pressed together and wrinkles.",
-                    "Let the object come down straighter there, or roll it less "
-                    "(material.wrinkle_stretch says what the film bears)."});
+    list.push_back(
+        {"wrinkles", Concern::kCare, "Wrinkles",
+         percent(Coverage::share(c.wrinkled_mm2, c.covered_mm2)),
+         "of the film on the object is pressed together and wrinkles; the overlay \"wrinkles\" "
+         "shows where.",
+         "Let the object come down straighter there, or roll it less "
+         "(material.wrinkle_stretch says what the film bears)."});
   if (c.lifted_mm2 > 0)
     list.push_back(
         {"lifted", Concern::kCare, "Lifted out", fmt::format("{:.0f} mm2", c.lifted_mm2),

@@ -86,5 +86,20 @@ TEST(FilmLayer, NothingCoveredIsNothing) {
   EXPECT_EQ(summarize(empty).mean, 0);
 }
 
+// Film that lies flat, 10 % shorter along x and 20 % longer along y.
+TEST(FilmLayer, FilmIsPressedByWhatItIsShorter) {
+  FilmOptions options;
+  options.width_mm = options.height_mm = 100;
+  options.elements = 2000;
+  DippedFilm film;
+  film.shared_mesh = std::make_shared<const FilmMesh>(make_film_mesh(options));
+  for (const Vec2& u : film.mesh().u) film.position.emplace_back(0.9 * u.x(), 1.2 * u.y(), 3);
+  film.state.assign(film.mesh().u.size(), VertexState::kAttached);
+  film.torn.assign(film.mesh().triangles.size(), 0);
+  film.torn[0] = 1;
+  const FilmLayer layer = pressed_layer(film, {Vec2(-30, -20), Vec2(30, 20)});
+  for (const float value : layer.values) ASSERT_NEAR(double(value), 10, 1e-4);
+}
+
 }  // namespace
 }  // namespace hydrodip

@@ -118,5 +118,6 @@ export const OVERLAYS = [
     }),
   },
   layerOverlay('color_error', 'colour error', 'Predicted against wanted colour (CIEDE2000; 1 is just visible)', 10),
+  layerOverlay('pressed', 'wrinkles', 'How far the film is pressed together (percent); wrinkles show from about 5 on', 10),
   layerOverlay('out_of_gamut', 'out of gamut', 'How far the wanted colour is from what can be printed (CIEDE2000)', 5),
 ];
