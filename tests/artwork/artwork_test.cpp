@@ -218,6 +218,16 @@ TEST_F(Layers, TransparentEdgesHaveNoFringe) {
   }
 }
 
+TEST_F(Layers, StandUpright) {
+  const auto image = painted(40, 40, [](int, int y) {
+    return y < 20 ? std::array{0, 0, 0, 255} : std::array{255, 255, 255, 255};
+  });
+  const PosedObject object = posed(box({0, 0, 0}, {40, 40, 5}));
+  const auto paint = laid(object, {downward(picture(image), 40)});
+  EXPECT_LT(seen(object, *paint, {20, 30, 5}), kBlack);
+  EXPECT_GT(seen(object, *paint, {20, 10, 5}), kWhite);
+}
+
 TEST_F(Layers, TurnCounterClockwiseAsOneSeesThem) {
   const auto image = painted(40, 40, [](int x, int) {
     return x < 20 ? std::array{0, 0, 0, 255} : std::array{255, 255, 255, 255};
