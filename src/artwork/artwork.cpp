@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "artwork/placement.h"
+#include "artwork/projector.h"
 #include "base/error.h"
 #include "base/run_scope.h"
 
@@ -137,25 +138,18 @@ bool hits(const Layer& layer, const TriangleMesh& mesh) {
   return false;
 }
 
-std::string shown(const Vec3& p) {
-  return fmt::format("{:.1f},{:.1f},{:.1f}", p.x(), p.y(), p.z());
-}
-
 [[noreturn]] void refuse_miss(const ArtworkLayer& layer, const PosedObject& posed) {
-  const Mat3 turn = posed.matrix().topLeftCorner<3, 3>() / posed.scale();
-  const Vec3 offset = posed.matrix().topRightCorner<3, 1>();
+  const ModelFrame frame(posed);
   std::string where = "the model has no surface there";
   if (layer.at_mm) {
-    const Vec3 at = turn * *layer.at_mm + offset;
-    if (const auto hit = posed.surface().closest_point(at, 1e9))
+    if (const auto hit = posed.surface().closest_point(frame.point(*layer.at_mm), 1e9))
       where = fmt::format(
           "from {} the surface is nearest at {} (mm, in the model's frame after --size)",
-          shown(*layer.at_mm), shown(turn.transpose() * (posed.surface().position(*hit) - offset)));
+          as_given(*layer.at_mm), as_given(frame.back(posed.surface().position(*hit))));
   }
   throw InputError(
       fmt::format("{}: the artwork hits nothing of the model, or only what is hidden from its "
-                  "side: {}; move it "
-                  "with --art-at, or turn it with --art-toward",
+                  "side: {}; move it with --art-at, or turn it with --art-toward",
                   name_of(layer), where));
 }
 

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "artwork/incidence.h"
 #include "base/filled.h"
 #include "base/run_scope.h"
 
@@ -128,17 +129,7 @@ class Unrolled {
 class Spreading {
  public:
   Spreading(const TriangleMesh& mesh, double farthest_mm)
-      : mesh_(mesh), farthest_(farthest_mm), polar_(mesh.positions.size()) {
-    begin_ = filled<std::uint32_t>(mesh.positions.size() + 1, 0);
-    for (const Triangle& t : mesh.triangles)
-      for (const std::int32_t v : t) ++begin_[std::size_t(v) + 1];
-    for (std::size_t v = 0; v + 1 < begin_.size(); ++v) begin_[v + 1] += begin_[v];
-    around_ = filled<std::uint32_t>(3 * mesh.triangles.size(), 0);
-    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      for (const std::int32_t v : mesh.triangles[t])
-        around_[next[std::size_t(v)]++] = std::uint32_t(t);
-  }
+      : mesh_(mesh), farthest_(farthest_mm), polar_(mesh.positions.size()), incidence_(mesh) {}
 
   void start(std::int32_t v, const Polar& polar) { offer(v, polar); }
 
@@ -149,8 +140,7 @@ class Spreading {
       const auto [distance, v] = front_.top();
       front_.pop();
       if (distance > polar_[std::size_t(v)].distance || distance > farthest_) continue;
-      for (std::uint32_t n = begin_[std::size_t(v)]; n < begin_[std::size_t(v) + 1]; ++n)
-        spread(v, mesh_.triangles[around_[n]]);
+      for (const std::uint32_t t : incidence_.around(v)) spread(v, mesh_.triangles[t]);
     }
   }
 
@@ -184,7 +174,7 @@ class Spreading {
   const TriangleMesh& mesh_;
   double farthest_;
   std::vector<Polar> polar_;
-  std::vector<std::uint32_t> begin_, around_;
+  Incidence incidence_;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front_;
 };
 

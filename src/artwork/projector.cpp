@@ -171,15 +171,11 @@ class BoxProjector : public Projector {
 
 // ---- what is chosen ----
 
-std::string shown(const Vec3& p) {
-  return fmt::format("{:.1f},{:.1f},{:.1f}", p.x(), p.y(), p.z());
-}
-
 Vec3 unit(const Vec3& direction, const char* what, const PlacementTask& task) {
   const double length = direction.norm();
   if (!(length > 1e-9) || !std::isfinite(length))
     throw InputError(fmt::format("{}: the artwork's direction {} ({}) has no length",
-                                 name_of(task.layer), what, shown(direction)));
+                                 name_of(task.layer), what, as_given(direction)));
   return direction / length;
 }
 
@@ -210,11 +206,11 @@ Extent extent(const TriangleMesh& mesh, const Vec3& direction) {
   const ModelFrame frame(task.posed);
   Box3 box;
   for (const Vec3& p : task.posed.mesh().positions) box.add(frame.back(p));
-  throw InputError(
-      fmt::format("{}: the artwork at {} lies beside the model, which reaches from {} to {} (mm, "
-                  "in the model's "
-                  "frame after --size); move it with --art-at",
-                  name_of(task.layer), shown(*task.layer.at_mm), shown(box.min), shown(box.max)));
+  throw InputError(fmt::format(
+      "{}: the artwork at {} lies beside the model, which reaches from {} to {} (mm, "
+      "in the model's "
+      "frame after --size); move it with --art-at",
+      name_of(task.layer), as_given(*task.layer.at_mm), as_given(box.min), as_given(box.max)));
 }
 
 // The way a planar picture goes: as told; else square to the surface where it is told to lie; else
@@ -347,6 +343,10 @@ Aimed aim_sphere(const PlacementTask& task) {
 
 }  // namespace
 
+std::string as_given(const Vec3& p) {
+  return fmt::format("{:.1f},{:.1f},{:.1f}", p.x(), p.y(), p.z());
+}
+
 ModelFrame::ModelFrame(const PosedObject& posed)
     : turn(posed.matrix().topLeftCorner<3, 3>() / posed.scale()),
       offset(posed.matrix().topRightCorner<3, 1>()) {}
@@ -361,8 +361,8 @@ SurfaceHit nearest_to(const PlacementTask& task, const Vec3& at) {
     throw InputError(fmt::format(
         "{}: the artwork at {} is {:.1f} mm away from the model, whose surface is nearest at {} "
         "(mm, in the model's frame after --size); move it there with --art-at",
-        name_of(task.layer), shown(*task.layer.at_mm), hit->t,
-        shown(frame.back(task.posed.surface().position(*hit)))));
+        name_of(task.layer), as_given(*task.layer.at_mm), hit->t,
+        as_given(frame.back(task.posed.surface().position(*hit)))));
   return *hit;
 }
 
@@ -396,7 +396,7 @@ Upright upright(const PlacementTask& task, const Vec3& toward) {
   if (!(right.norm() > 1e-3))
     throw InputError(
         fmt::format("{}: the artwork's up ({}) is the way it is projected; give another --art-up",
-                    name_of(task.layer), shown(task.layer.up.value_or(Vec3::Zero()))));
+                    name_of(task.layer), as_given(task.layer.up.value_or(Vec3::Zero()))));
   return {right.normalized(), right.normalized().cross(toward)};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "artwork/placement.h"
 
@@ -47,6 +48,9 @@ struct ModelFrame {
   Vec3 point(const Vec3& p) const { return turn * p + offset; }
   Vec3 back(const Vec3& posed) const { return turn.transpose() * (posed - offset); }
 };
+
+// "1.0,2.0,3.0", as options take it.
+std::string as_given(const Vec3& p);
 
 // The picture's directions for somebody who looks along `toward`: right and up, of length 1, square
 // to it. Throws InputError if the layer's own `up` is parallel to it.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "artwork/incidence.h"
 #include "base/disjoint_sets.h"
 #include "base/filled.h"
 #include "base/parallel.h"
@@ -225,24 +226,14 @@ void Shadow::darken_what_shows_through_holes() {
 }
 
 Slope::Slope(const TriangleMesh& mesh) : corners_(mesh.triangles.size()) {
-  // Per vertex, its triangles: begin[v] to begin[v + 1].
-  std::vector<std::uint32_t> begin = filled<std::uint32_t>(mesh.positions.size() + 1, 0);
-  for (const Triangle& t : mesh.triangles)
-    for (const std::int32_t v : t) ++begin[std::size_t(v) + 1];
-  for (std::size_t v = 0; v + 1 < begin.size(); ++v) begin[v + 1] += begin[v];
-  std::vector<std::uint32_t> around = filled<std::uint32_t>(3 * mesh.triangles.size(), 0);
-  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::int32_t v : mesh.triangles[t])
-      around[next[std::size_t(v)]++] = std::uint32_t(t);
+  const Incidence incidence(mesh);
   parallel_for(mesh.triangles.size(), kElementGrain, [&](std::size_t first, std::size_t end) {
     for (std::size_t t = first; t < end; ++t) {
       const Vec3 own = face_normal(mesh, int(t));
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto v = std::size_t(mesh.triangles[t][k]);
         Vec3 sum = Vec3::Zero();
-        for (std::uint32_t i = begin[v]; i < begin[v + 1]; ++i) {
-          const Vec3 normal = face_normal(mesh, int(around[i]));
+        for (const std::uint32_t other : incidence.around(mesh.triangles[t][k])) {
+          const Vec3 normal = face_normal(mesh, int(other));
           if (normal.dot(own) > kBluntCosine) sum += normal;
         }
         corners_[t][k] = (sum.norm() > 0 ? sum.normalized() : own).cast<float>();

@@ -357,7 +357,8 @@ bool JpegReader::read_rows(Image& image, std::uint8_t* row, bool inks) {
     const std::uint8_t* in = row;
     for (int x = 0; x < image.width_px; ++x, out += 4, in += four_inks ? 4 : 3) {
       if (inks) {
-        for (int c = 0; c < 4; ++c) out[c] = std::uint8_t(info.saw_Adobe_marker ? 255 - in[c] : in[c]);
+        for (int c = 0; c < 4; ++c)
+          out[c] = std::uint8_t(info.saw_Adobe_marker ? 255 - in[c] : in[c]);
         continue;
       }
       if (four_inks) {

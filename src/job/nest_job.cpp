@@ -70,8 +70,7 @@ Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet,
   config.design.dpi = sheet.design.dpi;
   PreparedObject prepared = prepare_object(config.model, config.object, context, config.design.dpi,
                                            config.design.inverse.samples_per_axis);
-  if (config.object.artwork.empty())
-    require_appearance(prepared.posed.object(), prepared.picture_problems, config.model);
+  require_appearance(prepared, config.model);
   const TriangleMesh& mesh = prepared.posed.mesh();
   Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
   config.design.film =

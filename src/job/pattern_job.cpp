@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "artwork/artwork.h"
+#include "artwork/projector.h"
 #include "artwork/tile_place.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -43,20 +44,18 @@ DippedObject trial_dip(const JobConfig& config, const PreparedObject& prepared, 
 }
 
 std::vector<Vec3> posed_spots(const PatternRequest& request, const PosedObject& posed) {
-  const Mat3 turn = posed.matrix().topLeftCorner<3, 3>() / posed.scale();
-  const Vec3 offset = posed.matrix().topRightCorner<3, 1>();
+  const ModelFrame frame(posed);
   const double size = posed.mesh().bounds().size().norm();
   std::vector<Vec3> spots;
   for (const PatternRequest::Spot& spot : request.spots) {
-    spots.emplace_back(turn * spot.at_mm + offset);
+    spots.push_back(frame.point(spot.at_mm));
     const auto hit = posed.surface().closest_point(spots.back(), 100 * size);
     if (hit && hit->t <= spot.radius_mm) continue;
-    const Vec3 there = hit ? Vec3(turn.transpose() * (posed.surface().position(*hit) - offset))
-                           : Vec3(Vec3::Zero());
     throw InputError(fmt::format(
-        "--keep {:.1f},{:.1f},{:.1f}: the spot is away from the model, whose surface is nearest at "
-        "{:.1f},{:.1f},{:.1f} (mm, in the model's frame after --size)",
-        spot.at_mm.x(), spot.at_mm.y(), spot.at_mm.z(), there.x(), there.y(), there.z()));
+        "--keep {}: the spot is away from the model, whose surface is nearest at {} (mm, in the "
+        "model's frame after --size)",
+        as_given(spot.at_mm),
+        hit ? as_given(frame.back(posed.surface().position(*hit))) : "no place"));
   }
   return spots;
 }

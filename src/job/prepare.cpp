@@ -91,4 +91,9 @@ void require_appearance(const Object& object, const std::vector<std::string>& pi
       model.string()));
 }
 
+void require_appearance(const PreparedObject& prepared, const std::filesystem::path& model) {
+  if (prepared.artwork.empty())
+    require_appearance(prepared.posed.object(), prepared.picture_problems, model);
+}
+
 }  // namespace hydrodip

@@ -36,6 +36,9 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
 void require_appearance(const Object& object, const std::vector<std::string>& picture_problems,
                         const std::filesystem::path& model);
 
+// The same for an object that may have artwork, which is an appearance.
+void require_appearance(const PreparedObject& prepared, const std::filesystem::path& model);
+
 // Throws InputError if the sheet's pictures cannot fit the memory that there is.
 void require_memory(const DesignOptions& options);
 

@@ -55,8 +55,7 @@ JobResult print_job(const JobConfig& config, const RunContext& context) {
     return prepare_object(config.model, config.object, context, config.design.dpi,
                           config.design.inverse.samples_per_axis);
   });
-  if (config.object.artwork.empty())
-    require_appearance(prepared.posed.object(), prepared.picture_problems, config.model);
+  require_appearance(prepared, config.model);
   const DesignOptions& options = config.design;
   const TriangleMesh& mesh = prepared.posed.mesh();
   const Trajectory trajectory = make_trajectory(options.trajectory, mesh.positions);

@@ -199,20 +199,45 @@ TEST_F(Layers, ShadowsAreTheSameInSmallTriangles) {
   });
 }
 
-TEST_F(Layers, TransparentEdgesHaveNoDarkFringe) {
-  // Red, cut out by alpha; the hidden colour of the rest is black. On white, nothing between red
-  // and white is darker than red.
-  const auto image = painted(40, 40, [](int x, int) {
-    return x < 20 ? std::array{255, 0, 0, 255} : std::array{0, 0, 0, 0};
+TEST_F(Layers, TransparentEdgesHaveNoFringe) {
+  // Red, cut out by alpha; the hidden colour of the rest is black, or white. On white, nothing
+  // between red and white is darker than red, or lighter than it is covered.
+  for (const int hidden : {0, 255}) {
+    const auto image = painted(40, 40, [=](int x, int) {
+      return x < 20 ? std::array{255, 0, 0, 255} : std::array{hidden, hidden, hidden, 0};
+    });
+    const PosedObject object = posed(box({0, 0, 0}, {40, 40, 5}));
+    const auto paint = laid(object, {downward(picture(image), 40)});
+    for (double x = 15; x < 25; x += 0.01) {
+      const auto hit = object.surface().closest_point(moved(object, {x, 20, 5}), 0.01);
+      const LinearColor color = paint->color_at({hit->triangle, hit->u, hit->v});
+      EXPECT_NEAR(color.r, 1, 1e-5);
+      EXPECT_NEAR(color.g, color.b, 1e-6);
+      EXPECT_NEAR(color.g, std::clamp(x - 19.5, 0.0, 1.0), 0.01);
+    }
+  }
+}
+
+TEST_F(Layers, StandUpright) {
+  const auto image = painted(40, 40, [](int, int y) {
+    return y < 20 ? std::array{0, 0, 0, 255} : std::array{255, 255, 255, 255};
   });
   const PosedObject object = posed(box({0, 0, 0}, {40, 40, 5}));
   const auto paint = laid(object, {downward(picture(image), 40)});
-  for (double x = 15; x < 25; x += 0.01) {
-    const auto hit = object.surface().closest_point(moved(object, {x, 20, 5}), 0.01);
-    const LinearColor color = paint->color_at({hit->triangle, hit->u, hit->v});
-    EXPECT_NEAR(color.r, 1, 1e-5);
-    EXPECT_NEAR(color.g, color.b, 1e-6);
-  }
+  EXPECT_LT(seen(object, *paint, {20, 30, 5}), kBlack);
+  EXPECT_GT(seen(object, *paint, {20, 10, 5}), kWhite);
+}
+
+TEST_F(Layers, TurnCounterClockwiseAsOneSeesThem) {
+  const auto image = painted(40, 40, [](int x, int) {
+    return x < 20 ? std::array{0, 0, 0, 255} : std::array{255, 255, 255, 255};
+  });
+  const PosedObject object = posed(box({0, 0, 0}, {40, 40, 5}));
+  ArtworkLayer layer = downward(picture(image), 40);
+  layer.turn_deg = 90;  // what was left is below
+  const auto paint = laid(object, {layer});
+  EXPECT_LT(seen(object, *paint, {20, 10, 5}), kBlack);
+  EXPECT_GT(seen(object, *paint, {20, 30, 5}), kWhite);
 }
 
 TEST_F(Layers, LieOverEachOtherInOrder) {

@@ -112,6 +112,16 @@ TEST(Planar, ByDefaultComesFromBelowAndFillsTheModel) {
   });
 }
 
+TEST(Planar, AsLargeAsFitsCountsTheTurn) {
+  const PosedObject object = posed(box({0, 0, 0}, {60, 40, 30}));
+  ArtworkLayer layer = layer_of(Projection::kPlanar, 0);
+  layer.turn_deg = 90;
+  EXPECT_NEAR(place(layer, object, 2.0).size_mm.x(), 40, 1e-9);  // upright: its width is high
+  layer.turn_deg = 45;
+  // A square on its corner: its diagonal is as long as the model is wide.
+  EXPECT_NEAR(place(layer, object, 1.0).size_mm.x(), 40 / std::sqrt(2.0), 1e-9);
+}
+
 TEST(Planar, ByItsPlaceAloneGoesSquareToTheSurface) {
   const PosedObject object = posed(box({0, 0, 0}, {60, 40, 30}));
   ArtworkLayer layer = layer_of(Projection::kPlanar);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "base/error.h"
 #include "contains.h"
 #include "samples/samples.h"
@@ -48,6 +50,27 @@ TEST(Appearance, IsAskedForWithTheWayToMend) {
     EXPECT_TRUE(contains(error.what(), "--texture"));
   }
   EXPECT_NO_THROW(require_appearance(make_sample("box"), {}, "box"));
+}
+
+TEST(Appearance, ArtworkIsOne) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "hydrodip_artwork_appearance";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "plate.obj") << "v 0 0 0\nv 40 0 0\nv 40 40 0\nv 0 40 0\nf 1 2 3 4\n";
+  ObjectOptions options;
+  const RunContext context;
+  EXPECT_THROW(require_appearance(prepare_object(folder / "plate.obj", options, context), "plate"),
+               InputError);
+  options.artwork.emplace_back();
+  options.artwork[0].text = "7";
+  const PreparedObject prepared = prepare_object(folder / "plate.obj", options, context);
+  EXPECT_NO_THROW(require_appearance(prepared, "plate"));
+  ASSERT_EQ(prepared.artwork.size(), 1U);
+  EXPECT_NEAR(prepared.artwork[0].size_mm.y(), 40, 1e-6);  // a 7 is higher than wide
+  options.artwork[0].text = "";
+  options.artwork[0].image = folder / "nowhere.png";
+  EXPECT_THROW(prepare_object(folder / "no_model_either.obj", options, context), InputError);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Appearance, OfOneColourNamesThePictureThatIsMissing) {
