@@ -71,10 +71,18 @@ bool ends_movement(const Fault& fault) {
           fault.lasts_s > 2);
 }
 
+// Without a link a stage runs to the end of its leash, at whatever pace it has.
+double longest_stop_s(const Emulator& machine) {
+  const bool loses_link = machine.ever(FaultKind::kSilence) || machine.ever(FaultKind::kUnplug) ||
+                          machine.ever(FaultKind::kSlowReplies);
+  const double pace = 1 - std::min(machine.worst(FaultKind::kSlow), 0.99);
+  return kLongestStop_s / (loses_link ? pace : 1);
+}
+
 void tell_what_is_due(const Fault& fault, Emulator& machine, VirtualClock& clock) {
   if (machine.homing() && leaves_homing_alone(fault.kind)) return;
   if (ends_everything(fault.kind) || (machine.moving() && ends_movement(fault)))
-    machine.stop_due(clock.now_s() + kLongestStop_s);
+    machine.stop_due(clock.now_s() + longest_stop_s(machine));
 }
 
 }  // namespace
@@ -103,7 +111,7 @@ void Referee::look() {
   const double lag_mm = std::abs(start_mm_ + std::copysign(done_mm, way_mm) - place_mm);
   const bool steady = mm_per_s_ > 0;
   if (now_s - moved_s_ > kStuck_s || (steady && lag_mm > allowed_lag_mm(mm_per_s_)))
-    machine_.stop_due(now_s + kLongestStop_s);
+    machine_.stop_due(now_s + longest_stop_s(machine_));
 }
 
 std::string broken_promise(VirtualBench& bench, const Outcome& outcome, const ShortDip& dip) {
@@ -159,7 +167,7 @@ std::string draw_faults(unsigned seed, double until_s, Emulator& machine, Virtua
     story += fmt::format("Ctrl-C at {:.3f} s{}; ", at_s, twice ? ", and again" : "");
     clock.at(at_s, [&machine, &clock, &context] {
       context.cancel();
-      if (!machine.homing()) machine.stop_due(clock.now_s() + kLongestStop_s);
+      if (!machine.homing()) machine.stop_due(clock.now_s() + longest_stop_s(machine));
     });
     if (twice) clock.at(at_s + between(0, 0.4), [&context] { context.cancel(); });
   }
