@@ -138,9 +138,9 @@ std::vector<std::string> SimulationStore::oddities(const std::vector<std::string
     std::size_t all = 0, foreign = 0;
     for (const auto& [subject, count] : about.of_subject) {
       all += count;
-      const bool ours =
-          std::any_of(subjects.begin(), subjects.end(),
-                      [&](const std::string& known) { return subject.starts_with(known); });
+      const bool ours = std::any_of(
+          subjects.begin(), subjects.end(),
+          [&, &of = subject](const std::string& known) { return of.starts_with(known); });
       if (!ours) foreign += count;
     }
     if (foreign > 0 && about.file != file_)

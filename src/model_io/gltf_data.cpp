@@ -199,13 +199,9 @@ void GltfData::parse(std::string_view text) {
     if (c == ']' || c == '}') --depth;
     if (depth > kMaxDepth) refuse("its JSON is nested too deeply");
   }
-  *root_ = json::parse(
-      WatchedText(text.data(), cancel), WatchedText(text.data() + text.size(), cancel),
-      [&](int, json::parse_event_t, json&) {
-        cancel();
-        return true;
-      },
-      false);
+  // Without a callback: with one, nlohmann's parser looks through a list again after every entry.
+  *root_ = json::parse(WatchedText(text.data(), cancel),
+                       WatchedText(text.data() + text.size(), cancel), nullptr, false);
   if (root_->is_discarded() || !root_->is_object()) refuse("not glTF, its JSON cannot be parsed");
 }
 

@@ -94,6 +94,18 @@ void Emulator::reply(const std::string& line) {
   outgoing_.push_back({now_s_ + 0.002 + strength(FaultKind::kSlowReplies), bytes + "\r\n"});
 }
 
+bool Emulator::ever(FaultKind kind) const {
+  return std::any_of(faults_.begin(), faults_.end(),
+                     [&](const Fault& fault) { return fault.kind == kind; });
+}
+
+double Emulator::worst(FaultKind kind) const {
+  double worst = 0;
+  for (const Fault& fault : faults_)
+    if (fault.kind == kind) worst = std::max(worst, fault.value);
+  return worst;
+}
+
 double Emulator::strength(FaultKind kind) const {
   double strongest = 0;
   for (const Fault& fault : faults_)

@@ -78,6 +78,9 @@ class Emulator {
   // Mean speed between two places during the last passage down, mm/min; for the test of constancy.
   double measured_speed_mm_per_min(double from_mm, double to_mm) const;
   bool unplugged() const { return master_ < 0; }
+  // Whether a fault of that kind strikes it, now or ever, and the greatest value of those.
+  bool ever(FaultKind kind) const;
+  double worst(FaultKind kind) const;
 
  protected:
   virtual void handle(const std::string& line) = 0;

@@ -527,6 +527,16 @@ TEST_F(Gltf, IsGivenUpInsideALongString) {
   EXPECT_GE(context.checks(), kLeastLooks);
 }
 
+// Looked at again after every entry, a list of so many would take minutes.
+TEST_F(Gltf, ListsOfManyEntriesStayLinear) {
+  std::string entries = "{}";
+  for (int i = 1; i < 300000; ++i) entries += ",{}";
+  EXPECT_TRUE(
+      contains(refusal_of(folder_.write("a.gltf", "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[" +
+                                                      entries + "],\"extras\":[" + entries + "]}")),
+               "no triangles"));
+}
+
 class ThreeMf : public Formats {
  protected:
   static std::string model(const std::string& inside, const std::string& unit = "millimeter") {

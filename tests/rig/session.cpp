@@ -71,10 +71,21 @@ bool ends_movement(const Fault& fault) {
           fault.lasts_s > 2);
 }
 
+bool loses_link(const Emulator& machine) {
+  return machine.ever(FaultKind::kSilence) || machine.ever(FaultKind::kUnplug) ||
+         machine.ever(FaultKind::kSlowReplies);
+}
+
+// Without a link a stage runs to the end of its leash, at whatever pace it has.
+double longest_stop_s(const Emulator& machine) {
+  const double pace = 1 - std::min(machine.worst(FaultKind::kSlow), 0.99);
+  return kLongestStop_s / (loses_link(machine) ? pace : 1);
+}
+
 void tell_what_is_due(const Fault& fault, Emulator& machine, VirtualClock& clock) {
   if (machine.homing() && leaves_homing_alone(fault.kind)) return;
   if (ends_everything(fault.kind) || (machine.moving() && ends_movement(fault)))
-    machine.stop_due(clock.now_s() + kLongestStop_s);
+    machine.stop_due(clock.now_s() + longest_stop_s(machine));
 }
 
 }  // namespace
@@ -103,19 +114,26 @@ void Referee::look() {
   const double lag_mm = std::abs(start_mm_ + std::copysign(done_mm, way_mm) - place_mm);
   const bool steady = mm_per_s_ > 0;
   if (now_s - moved_s_ > kStuck_s || (steady && lag_mm > allowed_lag_mm(mm_per_s_)))
-    machine_.stop_due(now_s + kLongestStop_s);
+    machine_.stop_due(now_s + longest_stop_s(machine_));
+}
+
+bool runs_out_later(const Emulator& machine, const std::string& message) {
+  return loses_link(machine) && machine.ever(FaultKind::kStick) &&
+         message.find("could not be asked") != std::string::npos;
 }
 
 std::string broken_promise(VirtualBench& bench, const Outcome& outcome, const ShortDip& dip) {
   Emulator& machine = *bench.emulator;
   const bool confirmed = outcome.rest && outcome.rest->confirmed;
   const bool homing = outcome.rest && outcome.rest->homing && !confirmed;
+  const bool later = runs_out_later(machine, outcome.message);
+  if (later) bench.clock.sleep(kLongestFault_s);
   if (machine.moving() && !homing) return "the run is over and the machine moves";
   const double place_mm = machine.position_mm();
   bench.clock.sleep(5);
   if (!homing && machine.position_mm() != place_mm) return "the machine moved after the run";
   if (machine.moved_unhomed()) return "the machine was moved without a home";
-  if (machine.disobeyed_s())
+  if (machine.disobeyed_s() && !later)
     return fmt::format("a stop was due, and at {:.3f} s the machine moved", *machine.disobeyed_s());
   if (outcome.finished) {
     if (std::abs(place_mm - dip.start_mm) > kStep_mm) return "it says done and is elsewhere";
@@ -145,7 +163,7 @@ std::string draw_faults(unsigned seed, double until_s, Emulator& machine, Virtua
   const int count = std::uniform_int_distribution<int>(1, 3)(random);
   for (int i = 0; i < count; ++i) {
     Fault fault{kDrawn[std::uniform_int_distribution<std::size_t>(0, kDrawn.size() - 1)(random)],
-                between(0, until_s), between(0.02, 1), between(0.05, 20)};
+                between(0, until_s), between(0.02, 1), between(0.05, kLongestFault_s)};
     if (fault.kind == FaultKind::kSilence) fault.lasts_s = 1e9;
     if (fault.kind == FaultKind::kSlip) fault.value *= 10;
     story += fmt::format("{} ({:.2f}) at {:.3f} s for {:.2f} s; ", name(fault.kind), fault.value,
@@ -159,7 +177,7 @@ std::string draw_faults(unsigned seed, double until_s, Emulator& machine, Virtua
     story += fmt::format("Ctrl-C at {:.3f} s{}; ", at_s, twice ? ", and again" : "");
     clock.at(at_s, [&machine, &clock, &context] {
       context.cancel();
-      if (!machine.homing()) machine.stop_due(clock.now_s() + kLongestStop_s);
+      if (!machine.homing()) machine.stop_due(clock.now_s() + longest_stop_s(machine));
     });
     if (twice) clock.at(at_s + between(0, 0.4), [&context] { context.cancel(); });
   }

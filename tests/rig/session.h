@@ -48,6 +48,13 @@ inline Outcome run_dip(VirtualBench& bench, const ShortDip& dip, const OnPoint& 
   return outcome;
 }
 
+// Of those that are drawn and end.
+inline constexpr double kLongestFault_s = 20;
+
+// A stage that was stuck when its link was lost goes on to the end of its leash once it comes free;
+// whoever could not ask it says so.
+bool runs_out_later(const Emulator& machine, const std::string& message);
+
 // Why the outcome is not as promised; "" if it is. Lets some time pass, for late movements.
 std::string broken_promise(VirtualBench& bench, const Outcome& outcome, const ShortDip& dip);
 
