@@ -25,7 +25,8 @@ std::string general_help() {
       "  hydrodip sample mask -o models\n"
       "  hydrodip print models/mask.obj --film a4 -o mask-print\n\n"
       "'hydrodip COMMAND --help' shows a command's options. Lengths are in mm, angles in degrees.\n"
-      "Exit codes: 0 done, 2 bad input or usage, 3 the dip could not be computed, 130 cancelled.\n"
+      "Exit codes: 0 done, 2 bad input or usage, 3 the dip could not be computed,\n"
+      "4 do not dip it like this (with --strict), 130 cancelled.\n"
       "HYDRODIP_SIMD=baseline, avx2 or avx512 picks the instruction set by hand; results are the "
       "same.\n";
   return help;

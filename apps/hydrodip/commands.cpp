@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "calibrate_commands.h"
+#include "rig/rig.h"
 #include "rig_commands.h"
 #include "settings/params.h"
 
@@ -22,13 +23,27 @@ std::filesystem::path output_folder(const Request& request, const std::string& c
   return std::filesystem::path(request.model).stem().string() + "-" + command;
 }
 
+// One for each of several dips, beside its sheet.
+void add_run_sheets(JobResult& result, const RunContext& context) {
+  for (const std::string& dip : result.dips) {
+    context.progress("drawing the run sheets", 0);
+    const RunContext quiet = context.quiet();
+    rig_sheet(load_rig_job(result.folder / dip, {}), "", {}, quiet);
+    result.files.push_back(dip + "/run-sheet.pdf");
+  }
+  if (!result.dips.empty())
+    result.text += "and a run sheet for each dip: " + result.dips.front() + "/run-sheet.pdf ...\n";
+}
+
 void declare_print(CLI::App& app, Request& request) {
   declare_model(app, request);
   declare_output(app, request, "MODEL-print");
   declare_reporting(app, request);
+  declare_strict(app, request);
   declare_object(app, request);
   declare_artwork(app, request);
   declare_film_and_dip(app, request);
+  declare_dips(app, request);
   declare_ink(app, request);
   declare_resolution(app, request);
   declare_configuration(app, request);
@@ -38,7 +53,9 @@ JobResult run_print(const Request& request, const RunContext& context) {
   require_model(request.model, "print");
   JobConfig config = configure(request);
   config.output = output_folder(request, "print");
-  return print_job(config, context);
+  JobResult result = print_job(config, context);
+  add_run_sheets(result, context);
+  return result;
 }
 
 void declare_pattern_command(CLI::App& app, Request& request) {
@@ -108,6 +125,7 @@ void declare_simulate(CLI::App& app, Request& request) {
   declare_model(app, request);
   declare_output(app, request, "MODEL-simulate");
   declare_reporting(app, request);
+  declare_strict(app, request);
   declare_object(app, request);
   declare_artwork(app, request);
   declare_film_image(app, request);
@@ -135,6 +153,43 @@ void declare_inspect(CLI::App& app, Request& request) {
 JobResult run_inspect(const Request& request, const RunContext& context) {
   require_model(request.model, "inspect");
   return inspect_job(configure(request), context);
+}
+
+void declare_orient(CLI::App& app, Request& request) {
+  declare_model(app, request);
+  declare_output(app, request, "MODEL-orient");
+  declare_reporting(app, request);
+  declare_object(app, request);
+  declare_film_and_dip(app, request);
+  declare_configuration(app, request);
+}
+
+JobResult run_orient(const Request& request, const RunContext& context) {
+  require_model(request.model, "orient");
+  JobConfig config = configure(request);
+  config.plan.find_depth = config.plan.find_depth || !(config.design.trajectory.depth_mm > 0);
+  config.output = output_folder(request, "orient");
+  return orient_job(config, context);
+}
+
+void declare_plan(CLI::App& app, Request& request) {
+  declare_model(app, request);
+  declare_output(app, request, "MODEL-plan");
+  declare_reporting(app, request);
+  declare_object(app, request);
+  declare_film_and_dip(app, request);
+  declare_dips(app, request);
+  declare_configuration(app, request);
+}
+
+JobResult run_plan(const Request& request, const RunContext& context) {
+  require_model(request.model, "plan");
+  JobConfig config = configure(request);
+  if (config.plan.dips == 0 && config.dips.empty())
+    throw InputError("say how many dips to plan, as in 'hydrodip plan " + request.model +
+                     " --dips 4'");
+  config.output = output_folder(request, "plan");
+  return plan_job(config, context);
 }
 
 void declare_view(CLI::App& app, Request& request) {
@@ -188,6 +243,14 @@ std::vector<Command> own_commands() {
        declare_nest_command, run_nest},
       {"inspect", "size, mesh health, dip angles, what fits the film; no simulation",
        "With -o it writes angles.png and report.json.", declare_inspect, run_inspect},
+      {"orient", "the best ways to hold the model and how deep to dip it, found by trial dips",
+       "Prints the best few with their figures and ready commands; writes orient.json and\n"
+       "orient.png. 'hydrodip print MODEL --rotate auto --depth auto' takes the best one.",
+       declare_orient, run_orient},
+      {"plan", "several dips: how to hold it for each, and how deep",
+       "Prints what is covered after each dip; writes plan.toml, plan.json and plan.png.\n"
+       "'hydrodip print plan.toml' makes a sheet for each, with seams that are hard to see.",
+       declare_plan, run_plan},
       {"view", "open a job's report in the browser",
        "Where there is no browser, the report's path is printed.", declare_view, run_view},
       {"sample", "write a built-in sample model with its texture", "", declare_sample_command,

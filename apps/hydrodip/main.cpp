@@ -20,6 +20,7 @@ namespace {
 constexpr int kExitDone = 0;
 constexpr int kExitInput = 2;
 constexpr int kExitFailed = 3;
+constexpr int kExitDoNotDip = 4;
 
 JobResult run_with_progress(const CommandLine& line, const RunContext& context) {
   ProgressLine progress(::isatty(STDERR_FILENO) != 0);
@@ -31,6 +32,7 @@ JobResult run_with_progress(const CommandLine& line, const RunContext& context) 
 
 int run(const std::vector<std::string>& arguments) {
   const CommandLine line = parse_command_line(arguments);
+  bool refused = false;
   if (!line.command) {
     print_result(line.text);
   } else {
@@ -38,9 +40,10 @@ int run(const std::vector<std::string>& arguments) {
     const CancelOnInterrupt cancel_on_interrupt(context);
     const JobResult result = run_with_progress(line, context);
     print_result(line.request.json ? result.json : result.text);
+    refused = line.request.strict && result.do_not_dip;
   }
   finish_results();
-  return kExitDone;
+  return refused ? kExitDoNotDip : kExitDone;
 }
 
 int fail(int code, const std::string& sentence) {

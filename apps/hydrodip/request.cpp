@@ -1,5 +1,7 @@
 #include "request.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
@@ -52,7 +54,8 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
 }  // namespace
 
 void declare_model(CLI::App& app, Request& request) {
-  app.add_option("MODEL", request.model, "OBJ, PLY, STL, OFF, 3MF, glTF or GLB file")
+  app.add_option("MODEL", request.model,
+                 "OBJ, PLY, STL, OFF, 3MF, glTF or GLB file, or a job's TOML")
       ->type_name("");
 }
 
@@ -80,8 +83,8 @@ void declare_object(CLI::App& app, Request& request) {
   add("--size", "object.size_mm", "MM", "scale so that the largest extent is this");
   add("--down", "object.down", "+x|-x|+y|-y|+z|-z",
       "side that enters the water first (default: -z)");
-  add("--rotate", "object.rotate_deg", "X,Y,Z",
-      "then turn about fixed x, y, z in that order (degrees)");
+  add("--rotate", "object.rotate_deg", "X,Y,Z|auto",
+      "then turn about fixed x, y, z in that order (degrees); auto: as it dips best");
 }
 
 void declare_artwork(CLI::App& app, Request& request) {
@@ -146,14 +149,24 @@ void declare_film(CLI::App& app, Request& request) {
 
 void declare_film_and_dip(CLI::App& app, Request& request) {
   declare_film(app, request);
-  add_parameter_option(app, request, "--depth", "dip.depth_mm", "MM", kFilmGroup,
-                       "how deep to dip (default: the whole object)");
+  add_parameter_option(app, request, "--depth", "dip.depth_mm", "MM|auto", kFilmGroup,
+                       "how deep to dip; auto: as deep as is good (default: the whole object)");
   add_parameter_option(app, request, "--path", "path", "FILE.csv", kFilmGroup,
                        "the way into the water, one keyframe a row (default: straight down)");
   add_parameter_option(app, request, "--method", "dip.method", "full|single-step|projection",
                        kFilmGroup,
                        "how the film gets onto the object; the last two are simple baselines to "
                        "compare with (default: full)");
+}
+
+void declare_strict(CLI::App& app, Request& request) {
+  app.add_flag("--strict", request.strict, "exit with 4 if the verdict is not to dip it like this")
+      ->group(kOutputGroup);
+}
+
+void declare_dips(CLI::App& app, Request& request) {
+  add_parameter_option(app, request, "--dips", "plan.dips", "N", kFilmGroup,
+                       "so many dips, each with a sheet of its own (default: one)");
 }
 
 void declare_ink(CLI::App& app, Request& request) {
@@ -265,11 +278,18 @@ void declare_folder(CLI::App& app, Request& request) {
 
 JobConfig configure(const Request& request) {
   JobConfig config;
-  config.model = request.model;
   config.film_image = request.film_image;
   config.output = request.output;
   config.command_line = request.command_line;
-  apply_sources(config, request.sources);
+  SettingSources sources = request.sources;
+  const bool is_job = std::filesystem::path(request.model).extension() == ".toml";
+  if (is_job) sources.configs.insert(sources.configs.begin(), request.model);
+  apply_sources(config, sources);
+  if (!is_job) config.model = request.model;
+  if (is_job && config.model.empty())
+    throw InputError(
+        fmt::format("{}: the job names no model: begin it with file = \"MODEL\" under [object]",
+                    request.model));
   return config;
 }
 

@@ -32,6 +32,7 @@ struct Request {
   double clearance_mm = 0;
   SettingSources sources;
   bool quiet = false;
+  bool strict = false;  // a verdict against the dip is a failure
   bool json = false;
 };
 
@@ -43,6 +44,8 @@ void declare_object(CLI::App& app, Request& request);
 void declare_artwork(CLI::App& app, Request& request);
 void declare_film(CLI::App& app, Request& request);          // --film, --quality
 void declare_film_and_dip(CLI::App& app, Request& request);  // the same, --depth, --method
+void declare_strict(CLI::App& app, Request& request);        // --strict
+void declare_dips(CLI::App& app, Request& request);          // --dips
 void declare_ink(CLI::App& app, Request& request);
 void declare_resolution(CLI::App& app, Request& request);
 void declare_configuration(CLI::App& app, Request& request);

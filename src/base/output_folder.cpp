@@ -131,6 +131,8 @@ class Replacement {
 
   std::error_code replace(const std::string& name) {
     std::error_code error;
+    fs::create_directories((folder_ / name).parent_path(), error);
+    if (error) return error;
     const bool had_earlier = fs::exists(fs::symlink_status(folder_ / name, error));
     error.clear();
     if (had_earlier) error = keep_earlier(name);
@@ -148,6 +150,9 @@ class Replacement {
         fs::rename(earlier_ / name, folder_ / name, ignored);
       } else {
         fs::remove(folder_ / name, ignored);
+        // A folder that was made for it; one that holds anything else stays.
+        if ((folder_ / name).parent_path() != folder_)
+          fs::remove((folder_ / name).parent_path(), ignored);
       }
     }
     done_.clear();
@@ -158,7 +163,7 @@ class Replacement {
   // the earlier file is moved aside.
   std::error_code keep_earlier(const std::string& name) {
     std::error_code error;
-    fs::create_directory(earlier_, error);
+    fs::create_directories((earlier_ / name).parent_path(), error);
     if (error) return error;
     fs::create_hard_link(folder_ / name, earlier_ / name, error);
     if (error) {
@@ -226,10 +231,16 @@ void OutputFolder::announce(const std::vector<std::string>& names,
 
 fs::path OutputFolder::path(const std::string& name) {
   if (staging_.empty()) throw std::logic_error("OutputFolder::path() after commit()");
-  if (name.empty() || name.starts_with("..") || name == "." ||
-      name.find('/') != std::string::npos) {
+  const fs::path parts(name);
+  const bool is_plain = parts.is_relative() && parts.has_filename() &&
+                        std::none_of(parts.begin(), parts.end(), [](const fs::path& part) {
+                          return part == "." || part.string().starts_with("..");
+                        });
+  if (!is_plain)
     throw std::logic_error("OutputFolder::path(): not a plain file name: '" + name + "'");
-  }
+  std::error_code error;
+  fs::create_directories((staging_ / parts).parent_path(), error);
+  if (error) refuse_file(folder_ / parts, error.message());
   if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
   return staging_ / name;
 }

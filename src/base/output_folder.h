@@ -27,7 +27,8 @@ class OutputFolder {
   // Whether commit() has put new files in the place of earlier ones.
   bool replaced_earlier() const { return replaced_earlier_; }
 
-  // Where to write the file that will be called name.
+  // Where to write the file that will be called name; "part/name" lies in a folder inside this one,
+  // which is made.
   std::filesystem::path path(const std::string& name);
 
   // Moves every file asked for with path() to its final name; throws InputError if one is missing

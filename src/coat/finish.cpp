@@ -1,28 +1,44 @@
 #include "coat/finish.h"
 
+#include <algorithm>
+#include <optional>
+
 namespace hydrodip {
 namespace {
 
-// At the coat's own pose.
-LinearColor laid_over(const Coat& coat, const SurfacePoint& point, const LinearColor& under) {
+// At the coat's own pose; nothing where its film does not lie.
+std::optional<Vec2> film_point(const Coat& coat, const SurfacePoint& point) {
   const TriangleMesh& mesh = coat.dipped.posed.mesh();
-  return predicted_color(*coat.look, coat.raster, *coat.dipped.map, position_at(mesh, point),
-                         face_normal(mesh, point.triangle), under);
+  return coat.dipped.map->to_film(position_at(mesh, point), face_normal(mesh, point.triangle));
+}
+
+LinearColor laid_over(const Coat& coat, const Vec2& u, const LinearColor& under) {
+  const LinearColor ink = sample_film_image(*coat.look, coat.raster, u);
+  const float bare = 1 - ink.a;
+  return {ink.a * ink.r + bare * under.r, ink.a * ink.g + bare * under.g,
+          ink.a * ink.b + bare * under.b, 1};
 }
 
 }  // namespace
 
-LinearColor Finish::color_at(const SurfacePoint& point) const {
+LinearColor Finish::color_at(const SurfacePoint& point, const Vec2& later_off_mm) const {
   LinearColor color = paint_->base();
   for (std::size_t n = 0; n < coats_.size(); ++n) {
+    const auto u = film_point(coats_[n], point);
+    if (!u) continue;
     if (n == 0) {
-      color = laid_over(coats_[n], point, color);
+      color = laid_over(coats_[n], *u, color);
       continue;
     }
-    const LinearColor filter = laid_over(coats_[n], point, {1, 1, 1, 1});
+    const LinearColor filter = laid_over(coats_[n], *u + later_off_mm, {1, 1, 1, 1});
     color = {color.r * filter.r, color.g * filter.g, color.b * filter.b, 1};
   }
   return color;
+}
+
+bool Finish::has_film_at(const SurfacePoint& point) const {
+  return std::any_of(coats_.begin(), coats_.end(),
+                     [&](const Coat& coat) { return film_point(coat, point).has_value(); });
 }
 
 }  // namespace hydrodip

@@ -32,7 +32,11 @@ class Finish {
 
   // Predicted at a point of the object, linear and opaque. Ink is a filter: every coat leaves of
   // the light from below it what it leaves of white. Safe to ask from many threads.
-  LinearColor color_at(const SurfacePoint& point) const;
+  LinearColor color_at(const SurfacePoint& point) const { return color_at(point, Vec2::Zero()); }
+  // The same if every coat but the first has landed off by that much, in its film coordinates.
+  LinearColor color_at(const SurfacePoint& point, const Vec2& later_off_mm) const;
+  // Whether film of any coat lies there.
+  bool has_film_at(const SurfacePoint& point) const;
 
  private:
   std::shared_ptr<const Paint> paint_;

@@ -251,6 +251,13 @@ Json layers_json(const SceneSource& source, Packer& packer) {
   return list;
 }
 
+Json looks_json(const SceneSource& source, Packer& packer) {
+  Json list = Json::array();
+  for (const FinishLook& look : source.looks)
+    list.push_back({{"key", look.key}, {"object", object_json(look.object, packer)}});
+  return list;
+}
+
 // --- Sheet ---
 
 // The film image over the bare object's colour: what it leaves on the object, and a sheet to look
@@ -310,6 +317,8 @@ std::string scene_json(const SceneSource& source, const RunContext& context) {
   json["object"] = object_json(source.object, packer);
   context.progress(activity, 0.5);
   json["film"] = film_json(source, packer);
+  json["looks"] = looks_json(source, packer);
+  json["dips"] = source.dips;
   json["layers"] = layers_json(source, packer);
   context.progress(activity, 0.7);
   json["data"] = packer.finish();

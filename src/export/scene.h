@@ -12,6 +12,13 @@
 
 namespace hydrodip {
 
+// A finish of several coats, painted on the object: known to the page's table of overlays by its
+// key: "none" (the colours), "parts", "finish_error".
+struct FinishLook {
+  std::string key;
+  Object object;
+};
+
 struct SceneSource {
   const Object& object;
   const DippedFilm& film;
@@ -24,6 +31,9 @@ struct SceneSource {
   double tear_stretch = 0;       // the film's limit; 0: it never tears
   LinearColor base{1, 1, 1, 1};  // the bare object's colour
   std::vector<FilmLayer> layers = {};
+  // Not empty: what is predicted is these, and the film is one without triangles.
+  std::vector<FinishLook> looks = {};
+  int dips = 1;  // that made them
 };
 
 // One JSON object in ASCII without '<', so that it can stand in a script element. Lengths are

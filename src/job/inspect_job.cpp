@@ -10,6 +10,7 @@
 #include "image/files.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
+#include "job/ways.h"
 #include "object/dip_angles.h"
 #include "object/surface.h"
 #include "render/maps.h"
@@ -199,6 +200,7 @@ void write_angle_map(const std::filesystem::path& path, const Inspection& i,
   MapOptions options;
   options.width_px = i.config.preview_width_px;
   options.caption = map_caption(i.angles, nullptr);
+  options.standing = standing_of(i.prepared.posed, way_up(i.config));
   const std::vector<std::uint8_t> png = encode_png(render_angle_map(
       i.prepared.posed.mesh(), i.prepared.posed.surface(), i.direction_at, options, context));
   write_file(path, png.data(), png.size());
@@ -215,9 +217,11 @@ void write_files(const Inspection& i, const std::string& report, const RunContex
 
 }  // namespace
 
-JobResult inspect_job(const JobConfig& config, const RunContext& context) {
+JobResult inspect_job(const JobConfig& given, const RunContext& context) {
+  JobConfig config = given;
   const RunScope scope(context.with_threads(config.threads));
-  const PreparedObject prepared = prepare_object(config.model, config.object, context);
+  PreparedObject prepared = prepare_object(config.model, config.object, context);
+  find_what_is_asked(config, prepared, context);
   const TriangleMesh& mesh = prepared.posed.mesh();
   const FilmOptions& film = config.design.film;
   const Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "dip/travel.h"
+#include "report/findings.h"
 #include "settings/artwork_tables.h"
 #include "settings/params.h"
 
@@ -175,6 +176,7 @@ Report make_report(const JobRecord& record) {
   report.command_line = record.config.command_line;
   report.title = record.config.print.job_name;
   report.verdict = plain_verdict(record.dipped().coverage);
+  report.better_way = record.better_way;
   report.inputs = record.inputs;
   for (const Parameter& parameter : parameters())
     report.parameters.push_back(describe_parameter(parameter, record.config));
@@ -201,25 +203,19 @@ Report make_report(const JobRecord& record) {
   return report;
 }
 
-std::string short_verdict(const Coverage& coverage) {
-  if (!(coverage.film_on_object_mm2 > 0)) return plain_verdict(coverage);
-  return fmt::format("{:.0f} % of the downward side covered, stretched up to {:.2f} times, {}",
-                     100 * coverage.covered_downward_share(), coverage.stretch_max,
-                     coverage.torn_mm2 > 0
-                         ? fmt::format("{:.1f} % torn", 100 * coverage.torn_share())
-                         : std::string("no tears"));
-}
-
 JobResult describe_result(const Report& report, const std::filesystem::path& folder) {
   JobResult result;
   result.folder = folder;
-  result.text = fmt::format("wrote to {}:\n", folder.string());
+  const Concern concern = concern_of(findings(report));
+  result.do_not_dip = concern == Concern::kStop;
+  result.text = headline(concern) + ". " + report.verdict + "\n";
+  if (!report.better_way.empty()) result.text += "Better: " + report.better_way + "\n";
+  result.text += fmt::format("wrote to {}:\n", folder.string());
   for (const ReportOutput& output : report.outputs) {
     result.files.push_back(output.name);
     result.text += fmt::format("  {:<12} {}\n", output.name, output.description);
   }
   for (const std::string& warning : report.warnings) result.text += "warning: " + warning + "\n";
-  result.text += report.verdict + "\n";
 
   json machine = {{"folder", folder.string()}};
   machine.update(json::parse(report_json(report)));

@@ -27,7 +27,8 @@ struct JobRecord {
   const Timings& times;
   const RunContext& context;
   const InkResult* ink = nullptr;  // of print
-  std::string ink_model;           // how colours became inks
+  std::string ink_model = {};      // how colours became inks
+  std::string better_way = {};     // how else to dip it; empty: none is known
 
   const DippedObject& dipped() const { return finish.coats().front().dipped; }
   const Paint& paint() const { return finish.paint(); }
@@ -42,9 +43,6 @@ void announce_outputs(OutputFolder& folder, const std::string& command, const Jo
                       const std::vector<ReportInput>& inputs);
 
 Report make_report(const JobRecord& record);
-
-// A verdict that fits below a picture.
-std::string short_verdict(const Coverage& coverage);
 
 // What the command prints: in words, and the report with its folder as JSON.
 JobResult describe_result(const Report& report, const std::filesystem::path& folder);

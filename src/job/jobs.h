@@ -17,12 +17,15 @@ struct JobResult {
   std::vector<std::string> files;  // in folder
   std::string text;                // the result in words, several lines
   std::string json;                // the same for machines, one object
+  bool do_not_dip = false;         // the verdict
+  std::vector<std::string> dips;   // of several dips: the folders of their sheets, in folder
 };
 
 // The main job: simulates the dip and writes the film image that puts every colour in its place:
 // print.pdf, print.png, print.tif, film.ply, preview.png, maps.png, gamut.png, preview.glb,
-// report.json, report.html in config.output. All of them appear, or none. Throws InputError,
-// DipError, Cancelled.
+// report.json, report.html in config.output. All of them appear, or none. Of several dips
+// (config.dips or config.plan.dips) each has its folder, and one report is on the whole. Throws
+// InputError, DipError, Cancelled.
 JobResult print_job(const JobConfig& config, const RunContext& context);
 
 // Forward only: film.ply, preview.png, maps.png, preview.glb, report.json, report.html; with
@@ -68,6 +71,15 @@ struct NestRequest {
 // picture of each part. `sheet` says film, printer and output. Throws as print_job, and InputError
 // saying how many parts fit if not all do.
 JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const RunContext& context);
+
+// The best ways to hold the object and how deep to dip it: writes orient.json, and orient.png
+// unless pictures are off. The configuration's rotation is replaced, its depth is kept if it gives
+// one.
+JobResult orient_job(const JobConfig& config, const RunContext& context);
+
+// Several dips, chosen together: writes plan.toml, a job to print, plan.json and plan.png. Dips
+// that the configuration locks stay as they are.
+JobResult plan_job(const JobConfig& config, const RunContext& context);
 
 // Opens a job's report.html (`where`: it, or its folder) in the default browser; where there is
 // none, the result says its path. Throws InputError if there is no report.

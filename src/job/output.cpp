@@ -14,6 +14,7 @@
 #include "export/scene.h"
 #include "image/files.h"
 #include "image/resize.h"
+#include "job/ways.h"
 #include "object/bake.h"
 #include "render/maps.h"
 #include "render/preview.h"
@@ -112,6 +113,7 @@ std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
   PreviewOptions options;
   options.width_px = record.config.preview_width_px;
   options.base = record.paint().base();
+  options.standing = standing_of(dipped.posed, way_up(record.config));
   std::vector<PreviewPair> pairs(1);
   pairs[0].shown = shown;
   pairs[0].caption = caption;
@@ -142,6 +144,7 @@ Image draw_maps(const JobRecord& record) {
   MapOptions options;
   options.width_px = record.config.preview_width_px;
   options.tear_stretch = record.config.design.dip.material.tear_stretch;
+  options.standing = standing_of(dipped.posed, way_up(record.config));
   options.caption = map_caption(dipped.angles, &dipped.coverage);
   options.direction_at = dipped.direction_at;
   if (!dipped.air->pockets.empty())

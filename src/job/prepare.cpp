@@ -12,7 +12,7 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kTiny_mm = 5;
+constexpr double kTiny_mm = 5, kHuge_mm = 1000;
 
 // The film image as wanted, stretched, inked and seen, and what is written of it.
 constexpr double kBytesPerPixel = 32;
@@ -61,6 +61,17 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
         std::find(result.files.begin(), result.files.end(), layer.image) == result.files.end())
       result.files.push_back(layer.image);
   return result;
+}
+
+void require_size(const PosedObject& posed, const ObjectOptions& options,
+                  const std::filesystem::path& model) {
+  if (options.pose.size_mm > 0 || !options.load.units.empty()) return;
+  const double largest_mm = posed.mesh().bounds().size().maxCoeff();
+  if (largest_mm >= kTiny_mm && largest_mm <= kHuge_mm) return;
+  throw InputError(fmt::format(
+      "{}: is it really {:.3g} mm large? Say its --units (mm, cm, m or in), or the --size that its "
+      "largest extent shall have in mm",
+      model.string(), largest_mm));
 }
 
 void require_memory(const DesignOptions& options) {

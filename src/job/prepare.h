@@ -31,6 +31,11 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
                               const RunContext& context, double dpi = 300,
                               int samples_per_axis = 3);
 
+// Throws InputError that asks for --units or --size if neither is given and the object is smaller
+// or larger than anything that people dip.
+void require_size(const PosedObject& posed, const ObjectOptions& options,
+                  const std::filesystem::path& model);
+
 // Throws InputError saying what is missing, and how to mend it, if the model does not say which
 // colour goes where. picture_problems: as PreparedObject's.
 void require_appearance(const Object& object, const std::vector<std::string>& picture_problems,

@@ -10,24 +10,15 @@
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
+#include "job/print_dips.h"
+#include "job/sheet_of.h"
+#include "job/ways.h"
+#include "report/findings.h"
 #include "report/report.h"
 #include "session/sheet_files.h"
 
 namespace hydrodip {
 namespace {
-
-SheetOptions sheet_options(const JobConfig& config) {
-  SheetOptions sheet;
-  sheet.width_mm = config.design.film.width_mm;
-  sheet.height_mm = config.design.film.height_mm;
-  sheet.margin_mm = config.design.film.margin_mm;
-  sheet.dpi = config.design.dpi;
-  sheet.disc = config.design.film.shape == FilmShape::kDisc;
-  sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
-  sheet.job_name =
-      config.print.job_name.empty() ? config.model.filename().string() : config.print.job_name;
-  return sheet;
-}
 
 // A sheet without a drop on it is never what was meant.
 void require_ink(const Designed& designed, const JobConfig& config) {
@@ -45,17 +36,22 @@ void require_ink(const Designed& designed, const JobConfig& config) {
 
 }  // namespace
 
-JobResult print_job(const JobConfig& config, const RunContext& context) {
+JobResult print_job(const JobConfig& given, const RunContext& context) {
+  if (asks_for_several_dips(given)) return print_dips(given, context);
+  JobConfig config = given;
   const RunScope scope(context.with_threads(config.threads));
   require_memory(config.design);
   OutputFolder folder(config.output);
   Timings times;
 
-  const PreparedObject prepared = times.measure("load", [&] {
+  PreparedObject prepared = times.measure("load", [&] {
     return prepare_object(config.model, config.object, context, config.design.dpi,
                           config.design.inverse.samples_per_axis);
   });
+  require_size(prepared.posed, config.object, config.model);
   require_appearance(prepared, config.model);
+  if (config.plan.find_pose || config.plan.find_depth)
+    times.measure("find", [&] { find_what_is_asked(config, prepared, context); });
   const DesignOptions& options = config.design;
   const TriangleMesh& mesh = prepared.posed.mesh();
   const Trajectory trajectory = make_trajectory(options.trajectory, mesh.positions);
@@ -67,16 +63,24 @@ JobResult print_job(const JobConfig& config, const RunContext& context) {
   const Designed designed = design(
       {prepared.posed, *prepared.paint, Allotment(), *printer.model, options}, times, context);
   require_ink(designed, config);
-  times.measure("sheet", [&] {
-    write_sheet_files(folder, designed.ink.ink, printer, sheet_options(config), context);
-  });
+  const Coverage& coverage = designed.dipped.coverage;
+  const bool stop = concern_of(coverage) == Concern::kStop;
+  const std::string better =
+      stop ? times.measure("find",
+                           [&] { return better_way(config, prepared, designed.dipped, context); })
+           : "";
+  SheetOptions sheet = sheet_of(config);
+  if (stop) sheet.alarm = "DO NOT DIP: " + short_verdict(coverage);
+  times.measure("sheet",
+                [&] { write_sheet_files(folder, designed.ink.ink, printer, sheet, context); });
 
   const Finish finish(paint_as_dipped(prepared.paint, designed.dipped),
                       {{designed.dipped, designed.raster,
                         std::make_shared<const Image>(designed.ink.ink.on_object)}});
   const JobRecord record{"print", config,        prepared,
                          inputs,  finish,        times,
-                         context, &designed.ink, printer.model->name()};
+                         context, &designed.ink, printer.model->name(),
+                         better};
   const Previews previews =
       times.measure("preview", [&] { return write_previews(folder, record); });
   return finish_job(folder, record, previews);

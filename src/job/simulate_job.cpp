@@ -15,6 +15,8 @@
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
+#include "job/ways.h"
+#include "report/findings.h"
 #include "sheet/sheet.h"
 
 namespace hydrodip {
@@ -136,16 +138,20 @@ Image seen_on_object(const DippedObject& dipped, const PrintedFilm& printed,
 
 }  // namespace
 
-JobResult simulate_job(const JobConfig& config, const RunContext& context) {
+JobResult simulate_job(const JobConfig& given, const RunContext& context) {
+  JobConfig config = given;
   const RunScope scope(context.with_threads(config.threads));
   OutputFolder folder(config.output);
   Timings times;
 
   const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.design.film));
-  const PreparedObject prepared = times.measure("load", [&] {
+  PreparedObject prepared = times.measure("load", [&] {
     return prepare_object(config.model, config.object, context, config.design.dpi,
                           config.design.inverse.samples_per_axis);
   });
+  require_size(prepared.posed, config.object, config.model);
+  if (config.plan.find_pose || config.plan.find_depth)
+    times.measure("find", [&] { find_what_is_asked(config, prepared, context); });
   const TriangleMesh& mesh = prepared.posed.mesh();
   const Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
   require_fit(mesh, room_of(mesh, trajectory), config.design.film, config.bath, context);
@@ -165,8 +171,13 @@ JobResult simulate_job(const JobConfig& config, const RunContext& context) {
   });
   const Finish finish(prepared.paint,
                       {{dipped, printed.raster, std::make_shared<const Image>(std::move(seen))}});
+  const std::string better =
+      concern_of(dipped.coverage) == Concern::kStop
+          ? times.measure("find", [&] { return better_way(config, prepared, dipped, context); })
+          : "";
   const JobRecord record{
-      "simulate", config, prepared, inputs, finish, times, context, nullptr, printer.model->name()};
+      "simulate", config, prepared, inputs, finish, times, context, nullptr, printer.model->name(),
+      better};
   const Previews previews = times.measure("preview", [&] {
     return write_previews(folder, record,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");

@@ -68,7 +68,8 @@ MapLayout make_layout(const TriangleMesh& object, const std::array<Vec3, 2>& dir
   layout.footer = options.caption.empty() ? layout.margin : layout.px(72);
   layout.cell_width = (layout.width - 2 * layout.margin - layout.gap) / 2;
   for (std::size_t i = 0; i < 2; ++i) {
-    const double share = std::clamp(1 / projected_aspect(object, directions[i]), 0.55, 0.95);
+    const double share =
+        std::clamp(1 / projected_aspect(object, directions[i], options.standing), 0.55, 0.95);
     layout.cell_height[i] = std::max(8, int(std::lround(share * layout.cell_width)));
   }
   return layout;
@@ -237,9 +238,10 @@ struct View {
   int height_px;
 };
 
-View view_from(const TriangleMesh& object, const Vec3& direction, const MapLayout& layout,
-               int height_px) {
-  return {frame_object(object, direction, double(layout.cell_width) / height_px, 0.80), height_px};
+View view_from(const TriangleMesh& object, const Vec3& direction, const Standing& standing,
+               const MapLayout& layout, int height_px) {
+  return {frame_object(object, direction, double(layout.cell_width) / height_px, 0.80, standing),
+          height_px};
 }
 
 double mm_per_px(const TriangleMesh& object, const Camera& camera, int width_px) {
@@ -322,7 +324,8 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
       options.direction_at ? options.direction_at : straight_down_to(film.depth_mm);
   const MapScene scene{object,         normals, direction_at,
                        options.in_air, &map,    stretch_scale_end(film, options.tear_stretch)};
-  const std::array<Vec3, 2> directions = telling_directions(object, surface, film);
+  const std::array<Vec3, 2> directions =
+      telling_directions(object, surface, film, options.standing);
   const MapLayout layout = make_layout(object, directions, options);
 
   const int views_height = layout.cell_height[0] + layout.gap + layout.cell_height[1];
@@ -331,7 +334,8 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
   int y = layout.header;
   for (std::size_t i = 0; i < 2; ++i) {
     context.progress(activity, 0.1 + 0.45 * double(i));
-    const View view = view_from(object, directions[i], layout, layout.cell_height[i]);
+    const View view =
+        view_from(object, directions[i], options.standing, layout, layout.cell_height[i]);
     const ViewPair pair = render(scene, surface, view, layout, context);
     paste(page, pair.wanted, layout.cell_x(0), y);
     paste(page, pair.predicted, layout.cell_x(1), y);
@@ -358,14 +362,16 @@ Image render_angle_map(const TriangleMesh& object, const Surface& surface,
   context.progress(activity, 0);
   const std::vector<CornerNormals> normals = map_normals(object);
   const MapScene scene{object, normals, direction_at, options.in_air};
-  const std::array<Vec3, 2> directions = telling_directions(object, surface, DippedFilm{});
+  const std::array<Vec3, 2> directions =
+      telling_directions(object, surface, DippedFilm{}, options.standing);
   const MapLayout layout = make_layout(object, directions, options);
 
   const int height = std::max(layout.cell_height[0], layout.cell_height[1]);
   Image page = blank_page(layout.width, layout.header + height + layout.legend + layout.footer);
   for (int i = 0; i < 2; ++i) {
     context.progress(activity, 0.1 + 0.45 * i);
-    const View view = view_from(object, directions[std::size_t(i)], layout, height);
+    const View view =
+        view_from(object, directions[std::size_t(i)], options.standing, layout, height);
     const ViewPair pair = render(scene, surface, view, layout, context);
     paste(page, pair.wanted, layout.cell_x(i), layout.header);
   }

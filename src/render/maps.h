@@ -27,6 +27,7 @@ struct MapOptions {
   std::string caption;                 // one line under the picture
   DippingDirection direction_at = {};  // empty: straight down as deep as the film says
   InAir in_air = {};                   // where air keeps the water away; empty: nowhere
+  Standing standing = {};              // how the object is shown
 };
 
 // Both maps side by side, a row for each direction. `map` is the film's over the same object.

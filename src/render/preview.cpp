@@ -23,9 +23,9 @@ struct PageLayout {
 };
 
 PageLayout make_layout(const TriangleMesh& object, const std::array<Vec3, 2>& directions,
-                       int width_px, bool has_caption) {
+                       const PreviewOptions& options, bool has_caption) {
   PageLayout layout;
-  layout.width = std::clamp(width_px, 64, kWidestPicture_px);
+  layout.width = std::clamp(options.width_px, 64, kWidestPicture_px);
   layout.unit = layout.width / 1600.0;
   const auto px = [&](double length) { return int(std::lround(length * layout.unit)); };
   layout.margin = px(28);
@@ -35,7 +35,8 @@ PageLayout make_layout(const TriangleMesh& object, const std::array<Vec3, 2>& di
   layout.cell_width = (layout.width - 2 * layout.margin - layout.gap) / 2;
   layout.height = layout.header + layout.gap + layout.footer;
   for (std::size_t i = 0; i < 2; ++i) {
-    const double share = std::clamp(1 / projected_aspect(object, directions[i]), 0.55, 0.95);
+    const double share =
+        std::clamp(1 / projected_aspect(object, directions[i], options.standing), 0.55, 0.95);
     layout.cell_height[i] = std::max(8, int(std::lround(share * layout.cell_width)));
     layout.height += layout.cell_height[i];
   }
@@ -78,18 +79,21 @@ std::vector<Image> render_previews(const TriangleMesh& object, const Surface& su
   context.progress(stage, 0);
   const std::vector<CornerNormals> normals = corner_normals(object.positions, object.triangles);
   const Studio studio{object, surface, normals};
-  const std::array<Vec3, 2> directions = telling_directions(object, surface, film);
+  const std::array<Vec3, 2> directions =
+      options.whole ? telling_directions_of_all(object, surface, options.standing)
+                    : telling_directions(object, surface, film, options.standing);
 
   std::vector<PageLayout> layouts;
   std::vector<Image> pages;
   for (const PreviewPair& pair : pairs) {
-    layouts.push_back(make_layout(object, directions, options.width_px, !pair.caption.empty()));
+    layouts.push_back(make_layout(object, directions, options, !pair.caption.empty()));
     pages.push_back(blank_page(layouts.back().width, layouts.back().height));
   }
   for (std::size_t i = 0; i < 2 && !pairs.empty(); ++i) {
     context.progress(stage, 0.1 + 0.45 * double(i));
     const int width = layouts[0].cell_width, height = layouts[0].cell_height[i];
-    const Camera camera = frame_object(object, directions[i], double(width) / height, 0.80);
+    const Camera camera =
+        frame_object(object, directions[i], double(width) / height, 0.80, options.standing);
     const LitView view(studio, camera, width, height, context);
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       const PageLayout& layout = layouts[n];

@@ -8,12 +8,15 @@
 #include "base/context.h"
 #include "film/film.h"
 #include "render/appearance.h"
+#include "render/view.h"
 
 namespace hydrodip {
 
 struct PreviewOptions {
   int width_px = 1600;
   LinearColor base{1, 1, 1, 1};
+  Standing standing;   // how the object is shown
+  bool whole = false;  // from where most of the object is seen, not most of the film on it
 };
 
 // What one picture shows side by side.

@@ -87,7 +87,17 @@ Vec3 turntable(double azimuth_deg, double elevation_deg) {
   return {std::sin(a) * std::cos(e), std::sin(e), -std::cos(a) * std::cos(e)};
 }
 
-std::vector<Candidate> candidates() {
+// Turns y up and -z front into what stands.
+Mat3 turn_of(const Standing& standing) {
+  Mat3 turn;
+  turn.col(0) = standing.front.cross(standing.up);
+  turn.col(1) = standing.up;
+  turn.col(2) = -standing.front;
+  return turn;
+}
+
+std::vector<Candidate> candidates(const Standing& standing) {
+  const Mat3 placed = turn_of(standing);
   std::vector<Candidate> result;
   for (const double elevation : {12.0, 30.0, -15.0, 50.0, -40.0, 72.0, -68.0}) {
     for (int turn = 0; turn < 24; ++turn) {
@@ -95,7 +105,7 @@ std::vector<Candidate> candidates() {
       // Views from under the chin or onto the crown are odd; so, a little, is the back.
       const double tilt = elevation < 0 ? 0.10 - elevation / 150 : std::abs(elevation - 12) / 180;
       const double oddness = tilt + 0.1 * std::abs(azimuth) / 180;
-      result.push_back({turntable(azimuth, elevation), 1 - oddness});
+      result.push_back({placed * turntable(azimuth, elevation), 1 - oddness});
     }
   }
   return result;
@@ -147,12 +157,28 @@ double extent_of(const TriangleMesh& object) {
   return box.empty() ? 1 : std::max(1e-9, box.size().norm());
 }
 
+std::array<Vec3, 2> most_telling(const std::vector<Patch>& all, const Surface& surface,
+                                 double extent, const Standing& standing) {
+  const std::vector<Patch> patches = thinned(all);
+  const std::vector<Candidate> views = candidates(standing);
+  const auto clear = clarity(patches, views, surface, extent);
+  const std::vector<float> nothing(patches.size(), 0);
+  const std::size_t first = best_view(views, clear, patches, nothing);
+  std::vector<Candidate> others = views;
+  for (Candidate& view : others) {  // two pictures of nearly the same side would teach nothing
+    if (view.direction.dot(views[first].direction) > std::cos(35 * kDegree)) view.liking = 0;
+  }
+  const std::size_t second = best_view(others, clear, patches, clear[first]);
+  return {views[first].direction, others[second].direction};
+}
+
 // Axes of the screen for a direction of view.
-void aim(Camera& camera, const Vec3& direction) {
+void aim(Camera& camera, const Vec3& direction, const Standing& standing) {
   camera.back = direction.normalized();
-  Vec3 up = Vec3::UnitY() - camera.back.y() * camera.back;
-  // Straight from above or below the front (-z) stays on the near side.
-  if (up.norm() < 1e-3) up = camera.back.y() > 0 ? Vec3::UnitZ() : Vec3(-Vec3::UnitZ());
+  const double above = camera.back.dot(standing.up);
+  Vec3 up = standing.up - above * camera.back;
+  // Straight from above or below the front stays on the near side.
+  if (up.norm() < 1e-3) up = above > 0 ? Vec3(-standing.front) : standing.front;
   camera.up = (up - up.dot(camera.back) * camera.back).normalized();
   camera.right = camera.up.cross(camera.back);
 }
@@ -167,38 +193,43 @@ Box3 in_camera(const TriangleMesh& object, const Camera& camera) {
 
 }  // namespace
 
+Standing standing_of(const PosedObject& posed, ModelSide up) {
+  const auto direction = [&](int axis, double sign) {
+    return Vec3(sign * posed.matrix().col(axis).head<3>().normalized());
+  };
+  const int axis = int(up) / 2;
+  return {direction(axis, int(up) % 2 == 0 ? -1 : 1), direction(axis == 1 ? 2 : 1, -1)};
+}
+
 std::array<Vec3, 2> telling_directions(const TriangleMesh& object, const Surface& surface,
-                                       const DippedFilm& film) {
+                                       const DippedFilm& film, const Standing& standing) {
   std::vector<Patch> patches = film_patches(film);
   if (patches.empty()) patches = facing_down(object_patches(object));
-  patches = thinned(patches);
-  const std::vector<Candidate> views = candidates();
-  const auto clear = clarity(patches, views, surface, extent_of(object));
-  const std::vector<float> nothing(patches.size(), 0);
-  const std::size_t first = best_view(views, clear, patches, nothing);
-  std::vector<Candidate> others = views;
-  for (Candidate& view : others) {  // two pictures of nearly the same side would teach nothing
-    if (view.direction.dot(views[first].direction) > std::cos(35 * kDegree)) view.liking = 0;
-  }
-  const std::size_t second = best_view(others, clear, patches, clear[first]);
-  return {views[first].direction, others[second].direction};
+  return most_telling(patches, surface, extent_of(object), standing);
+}
+
+std::array<Vec3, 2> telling_directions_of_all(const TriangleMesh& object, const Surface& surface,
+                                              const Standing& standing) {
+  return most_telling(object_patches(object), surface, extent_of(object), standing);
 }
 
 Vec3 Camera::ray(double x, double y) const {
   return x * half_width * right + (y * half_height + shift_y) * up - back;
 }
 
-double projected_aspect(const TriangleMesh& object, const Vec3& direction) {
+double projected_aspect(const TriangleMesh& object, const Vec3& direction,
+                        const Standing& standing) {
   Camera camera;
-  aim(camera, direction);
+  aim(camera, direction, standing);
   const Vec3 size = in_camera(object, camera).size();
   return std::clamp(size.x() / std::max(size.y(), 1e-9), 1e-3, 1e3);
 }
 
-Camera frame_object(const TriangleMesh& object, const Vec3& direction, double aspect, double fill) {
+Camera frame_object(const TriangleMesh& object, const Vec3& direction, double aspect, double fill,
+                    const Standing& standing) {
   constexpr double kHalfFieldDeg = 9;
   Camera camera;
-  aim(camera, direction);
+  aim(camera, direction, standing);
   const double half = std::tan(kHalfFieldDeg * kDegree);
   camera.half_width = aspect >= 1 ? half : half * aspect;
   camera.half_height = camera.half_width / aspect;

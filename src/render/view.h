@@ -5,16 +5,30 @@
 
 #include "film/film.h"
 #include "object/object.h"
+#include "object/posed_object.h"
 #include "object/surface.h"
 
 namespace hydrodip {
 
+// Which way is up for a person who looks at the object, and which side is its front. Unit, in the
+// frame of the mesh that is shown, at right angles.
+struct Standing {
+  Vec3 up = Vec3::UnitY();
+  Vec3 front = -Vec3::UnitZ();
+};
+
+// Of a posed object whose model stands with `up` up: its front is then -y, or with +y or -y up -z.
+Standing standing_of(const PosedObject& posed, ModelSide up);
+
 // Two unit directions from the object towards the eye: the first sees most of the area where film
 // lies on the object, the second most of what the first does not see. Without any such film
 // what faces down counts, and without that the whole surface. Looking from below (-z, the side that
-// meets the film) is the front.
+// meets the film) is the front, unless `standing` says otherwise.
 std::array<Vec3, 2> telling_directions(const TriangleMesh& object, const Surface& surface,
-                                       const DippedFilm& film);
+                                       const DippedFilm& film, const Standing& standing = {});
+// The same for the whole surface, whatever lies on it.
+std::array<Vec3, 2> telling_directions_of_all(const TriangleMesh& object, const Surface& surface,
+                                              const Standing& standing);
 
 // A perspective camera. Screen coordinates: x right and y up, both in [-1, 1].
 struct Camera {
@@ -29,10 +43,12 @@ struct Camera {
 };
 
 // The object's extent across the picture over its extent up, as seen along `direction`.
-double projected_aspect(const TriangleMesh& object, const Vec3& direction);
+double projected_aspect(const TriangleMesh& object, const Vec3& direction,
+                        const Standing& standing = {});
 
 // The camera that sees the whole object from `direction`, filling `fill` of a picture of the given
-// aspect (width over height) in the tighter extent. +y is up wherever it can be.
-Camera frame_object(const TriangleMesh& object, const Vec3& direction, double aspect, double fill);
+// aspect (width over height) in the tighter extent. What stands up is up wherever it can be.
+Camera frame_object(const TriangleMesh& object, const Vec3& direction, double aspect, double fill,
+                    const Standing& standing = {});
 
 }  // namespace hydrodip

@@ -44,6 +44,14 @@ Finding no_film(const Coverage& c) {
 
 Finding coverage(const Coverage& c) {
   if (!(c.film_on_object_mm2 > 0)) return no_film(c);
+  // Beside film that is lost, a share of what faces down would tell little.
+  if (c.torn_mm2 > 0)
+    return {"coverage",
+            Concern::kCare,
+            "Coverage",
+            percent(c.covered_share()),
+            "of the object gets film that holds.",
+            "What stays bare shows the object's own colour: give it other dips, turned (--dips)."};
   const bool nearly_all = c.covered_downward_share() >= kNearlyAll;
   Finding finding{"coverage", nearly_all ? Concern::kNone : Concern::kCare,
                   "Coverage", percent(c.covered_downward_share()),
@@ -134,7 +142,13 @@ Finding stretch(const Coverage& c, double tear_stretch) {
       ""};
   finding.text = fmt::format("The area grows up to {:.2f} times, {:.2f} on average.",
                              c.area_ratio_max, c.area_ratio_mean);
-  if (tear_stretch > 0) finding.text += fmt::format(" This film bears {:.2f}.", tear_stretch);
+  const bool beyond = tear_stretch > 0 && c.stretch_max > tear_stretch;
+  if (beyond)
+    finding.text += fmt::format(
+        " A little of it is stretched beyond the {:.2f} that this film bears, and may tear.",
+        tear_stretch);
+  else if (tear_stretch > 0)
+    finding.text += fmt::format(" This film bears {:.2f}.", tear_stretch);
   const bool near_limit = tear_stretch > 0 && c.stretch_max > kNearLimit * tear_stretch;
   if (near_limit) {
     finding.concern = Concern::kCare;
@@ -246,6 +260,35 @@ Finding gamut(double share) {
   return finding;
 }
 
+Finding coverage_of_dips(const Coverage& c, std::size_t dips) {
+  const bool nearly_all = c.covered_share() >= kNearlyAll;
+  Finding finding{"coverage",
+                  nearly_all ? Concern::kNone : Concern::kCare,
+                  "Coverage",
+                  percent(c.covered_share()),
+                  fmt::format("of the object is under film after {} dips.", dips),
+                  ""};
+  if (!nearly_all)
+    finding.advice =
+        "What stays bare shows the object's own colour: plan more dips (--dips), or paint the "
+        "object to match (object.base_color).";
+  return finding;
+}
+
+Finding seams(const ReportSeams& s) {
+  const bool plain = s.error_mean > kPlainDifference;
+  return {
+      "seams",
+      plain ? Concern::kCare : Concern::kNone,
+      "Seams",
+      fmt::format("{:.0f} mm", s.length_mm),
+      fmt::format("long together, where two dips fade into each other over {:g} mm. Their "
+                  "colour error is {:.1f} on average (CIEDE2000), and {:.1f} if each later dip "
+                  "lands {:g} mm off.",
+                  s.overlap_mm, s.error_mean, s.error_mean_off, s.off_mm),
+      "Let each coat dry before the next dip, and hang the object by the run sheet of that dip."};
+}
+
 Finding warning(const std::string& sentence) {
   return {"warning", Concern::kCare, "Note", "", sentence, ""};
 }
@@ -256,7 +299,11 @@ std::vector<Finding> findings(const Report& report) {
   std::vector<Finding> list;
   if (report.coverage) {
     const Coverage& c = *report.coverage;
-    list.push_back(coverage(c));
+    const bool several = !report.dips.empty() && c.film_on_object_mm2 > 0;
+    list.push_back(several ? coverage_of_dips(c, report.dips.size()) : coverage(c));
+    if (!report.better_way.empty())
+      list.push_back({"better_way", Concern::kNone, "Better", "", report.better_way + ".", ""});
+    if (report.seams) list.push_back(seams(*report.seams));
     if (c.film_on_object_mm2 > 0) {
       list.push_back(tears(c));
       list.push_back(stretch(c, report.tear_stretch));
@@ -273,6 +320,11 @@ std::vector<Finding> findings(const Report& report) {
     if (!sentence.empty()) list.push_back(warning(sentence));
   }
   return list;
+}
+
+Concern concern_of(const Coverage& c) {
+  if (!(c.film_on_object_mm2 > 0)) return no_film(c).concern;
+  return std::max(coverage(c).concern, tears(c).concern);
 }
 
 Concern concern_of(const std::vector<Finding>& findings) {

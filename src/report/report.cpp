@@ -30,24 +30,45 @@ std::string plain_verdict(const Coverage& coverage) {
                  "with --rotate or --down."
                : "No film lies on the object: check --down and --depth.";
   }
+  if (coverage.torn_mm2 > 0)
+    return fmt::format(
+        "Where it holds, the film covers {} of the object; it tears: {} of what meets the object "
+        "is "
+        "lost. To keep it, turn steep sides down (--rotate, --down) or dip less (--depth) and the "
+        "rest in another turn.",
+        percent(coverage.covered_share()), percent(coverage.torn_share()));
   const std::string start = fmt::format(
       "The film covers {} of the surface that faces down ({} of all) and stretches up to "
       "{:.2f} times",
       percent(coverage.covered_downward_share()), percent(coverage.covered_share()),
       coverage.stretch_max);
-  if (coverage.torn_mm2 > 0)
-    return start + fmt::format(
-                       "; it tears: {} of what meets the object is lost. To keep it, turn steep "
-                       "sides down (--rotate, --down) or dip less (--depth) and the rest in "
-                       "another turn.",
-                       percent(coverage.torn_share()));
   if (coverage.covered_downward_share() < kNearlyAll)
     return start + "; it does not tear. What stays bare needs another dip, turned.";
   return start + "; it does not tear: dip it like this.";
 }
 
+std::string short_verdict(const Coverage& coverage) {
+  if (!(coverage.film_on_object_mm2 > 0))
+    return coverage.torn_mm2 > 0 ? "all film that meets the object tears"
+                                 : "no film lies on the object";
+  if (coverage.torn_mm2 > 0)
+    return fmt::format("{:.0f} % of the object covered, {:.1f} % of the film that meets it torn",
+                       100 * coverage.covered_share(), 100 * coverage.torn_share());
+  return fmt::format(
+      "{:.0f} % of the downward side covered, stretched up to {:.2f} times, no tears",
+      100 * coverage.covered_downward_share(), coverage.stretch_max);
+}
+
+std::string several_dips_verdict(const Coverage& coverage, std::size_t dips) {
+  return fmt::format("{} dips cover {} of the object; {}", dips, percent(coverage.covered_share()),
+                     coverage.torn_mm2 > 0 ? fmt::format("{} of the film that meets it tears.",
+                                                         percent(coverage.torn_share()))
+                                           : "nothing tears.");
+}
+
 std::string verdict_of(const Report& report) {
   if (!report.verdict.empty() || !report.coverage) return report.verdict;
+  if (!report.dips.empty()) return several_dips_verdict(*report.coverage, report.dips.size());
   return plain_verdict(*report.coverage);
 }
 

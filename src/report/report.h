@@ -88,6 +88,28 @@ struct ReportColors {
   double error_most_of = 0;  // 95 % of the surface has no more
 };
 
+// One of several dips, in the order in which they are made. Shares of the object's whole surface.
+struct ReportDip {
+  std::string down;  // "-z"
+  std::array<double, 3> rotate_deg{};
+  double depth_mm = 0;
+  std::string hold;          // in words
+  std::string folder;        // of its sheet: "dip-1"
+  double part_share = 0;     // printed by this dip
+  double gained_share = 0;   // under its film and no earlier one's
+  double covered_share = 0;  // under film after this dip
+  double torn_share = 0;     // of its film that meets the object
+};
+
+// Where several dips meet.
+struct ReportSeams {
+  double length_mm = 0;
+  double overlap_mm = 0;
+  double error_mean = 0;      // CIEDE2000 there
+  double off_mm = 0;          // if every later dip lands that far off:
+  double error_mean_off = 0;  // CIEDE2000 there, in the mean of four directions
+};
+
 struct Report {
   std::string tool_version;
   std::string command;                    // "print"
@@ -107,6 +129,10 @@ struct Report {
   std::optional<MeshHealth> mesh;
   std::optional<ReportInk> ink;
   std::optional<ReportColors> colors;
+  int dip_number = 0, dip_of = 0;  // of one among several dips; 0: it is the only one
+  std::vector<ReportDip> dips;     // several; `coverage` is then that of all together
+  std::optional<ReportSeams> seams;
+  std::string better_way;   // how else to dip it; empty: unknown, or there is none
   double tear_stretch = 0;  // the film's limit; 0: it never tears
   double bleed_mm = 0;
   std::vector<ReportFigure> figures;
@@ -118,6 +144,12 @@ struct Report {
 // The result in one plain sentence: how much is covered, how far the film stretches, whether it
 // tears.
 std::string plain_verdict(const Coverage& coverage);
+
+// Some words of it, for a caption or a band.
+std::string short_verdict(const Coverage& coverage);
+
+// The same for several dips together.
+std::string several_dips_verdict(const Coverage& coverage, std::size_t dips);
 
 // The report's own verdict, or else the plain one.
 std::string verdict_of(const Report& report);
@@ -133,7 +165,8 @@ std::string dip_angles_json(const DipAngles& angles);
 struct ReportPictures {
   std::vector<std::uint8_t> preview_png;  // the files' bytes; empty: none
   std::vector<std::uint8_t> maps_png;
-  std::string scene = {};  // scene_json() for the 3D view; empty: none
+  std::vector<std::uint8_t> dips_png = {};  // of several dips
+  std::string scene = {};                   // scene_json() for the 3D view; empty: none
 };
 
 // One self-contained page that needs no network; every text is escaped. Words and pictures come

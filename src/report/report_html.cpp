@@ -182,6 +182,32 @@ std::string section(const std::string& title, const std::string& rows) {
       rows);
 }
 
+std::string dips(const Report& report, const ReportPictures& pictures) {
+  if (report.dips.empty()) return "";
+  std::string rows =
+      "<tr><th scope=\"row\">Dip</th><td>held</td><td class=\"number\">depth</td><td "
+      "class=\"number\">prints</td><td class=\"number\">covered after it</td></tr>\n";
+  const auto percent = [](double share) { return fmt::format("{:.1f}\u00a0%", 100 * share); };
+  for (std::size_t k = 0; k < report.dips.size(); ++k) {
+    const ReportDip& dip = report.dips[k];
+    rows += fmt::format(
+        "<tr><th scope=\"row\">{} <code>{}/print.pdf</code></th><td>{}<br><code "
+        "class=\"soft\">--down "
+        "{} --rotate {:g},{:g},{:g}</code></td><td class=\"number\">{:.4g}\u00a0mm</td><td "
+        "class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
+        k + 1, escaped(dip.folder), escaped(dip.hold), escaped(dip.down), dip.rotate_deg[0],
+        dip.rotate_deg[1], dip.rotate_deg[2], dip.depth_mm, percent(dip.part_share),
+        percent(dip.covered_share));
+  }
+  return section("The dips, in order; let each dry before the next", rows) +
+         (pictures.dips_png.empty()
+              ? ""
+              : "<section>\n<h2>Which dip does what</h2>\n" +
+                    picture(pictures.dips_png,
+                            "The part of each dip, and the colour error, from two sides") +
+                    "</section>\n");
+}
+
 std::string row(const std::string& label, const std::string& value) {
   return fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td></tr>\n",
                      escaped(label), escaped(value));
@@ -346,6 +372,7 @@ std::string report_html(const Report& report, const ReportPictures& pictures) {
   html += heading(report);
   html += verdict(report);
   html += preview(pictures);
+  html += dips(report, pictures);
   html += key_figures(report);
   html += maps(pictures);
   html += outputs(report);

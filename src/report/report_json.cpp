@@ -182,6 +182,29 @@ Json colors_json(const ReportColors& colors) {
           {"error_95_percent_ciede2000", number(colors.error_most_of)}};
 }
 
+Json dips_json(const Report& report) {
+  Json list = Json::array();
+  for (const ReportDip& dip : report.dips)
+    list.push_back({{"down", dip.down},
+                    {"rotate_deg", dip.rotate_deg},
+                    {"depth_mm", number(dip.depth_mm)},
+                    {"hold", dip.hold},
+                    {"folder", dip.folder},
+                    {"part_share", number(dip.part_share)},
+                    {"gained_share", number(dip.gained_share)},
+                    {"covered_share", number(dip.covered_share)},
+                    {"torn_share", number(dip.torn_share)}});
+  return list;
+}
+
+Json seams_json(const ReportSeams& seams) {
+  return {{"length_mm", number(seams.length_mm)},
+          {"overlap_mm", number(seams.overlap_mm)},
+          {"error_mean_ciede2000", number(seams.error_mean)},
+          {"off_mm", number(seams.off_mm)},
+          {"error_mean_off_ciede2000", number(seams.error_mean_off)}};
+}
+
 Json seconds_json(const Report& report) {
   double total = 0;
   Json stages = Json::array();
@@ -219,6 +242,12 @@ std::string report_json(const Report& report) {
   }
   if (!report.way_in.empty()) json["way_in"] = way_json(report.way_in);
   if (report.air) json["air"] = air_json(*report.air);
+  if (report.coverage) json["short_verdict"] = short_verdict(*report.coverage);
+  if (report.dip_number > 0)
+    json["dip_of_several"] = {{"number", report.dip_number}, {"of", report.dip_of}};
+  if (!report.dips.empty()) json["dips"] = dips_json(report);
+  if (report.seams) json["seams"] = seams_json(*report.seams);
+  if (!report.better_way.empty()) json["better_way"] = report.better_way;
   if (report.angles) json["dip_angles"] = angles_json(*report.angles);
   if (report.mesh) json["mesh"] = mesh_json(*report.mesh);
   if (report.ink) json["ink"] = ink_json(*report.ink);

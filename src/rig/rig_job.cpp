@@ -147,6 +147,11 @@ void require_lowering_only(const RigJob& job) {
 
 RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& sources) {
   const Json report = read_report(folder);
+  if (report.contains("dips"))
+    throw InputError(fmt::format(
+        "{}: this job has several dips, each with a run sheet of its own: name one of them, as in "
+        "'{}'",
+        folder.string(), (folder / "dip-1").string()));
   RigJob job;
   job.folder = folder;
   job.title = title_of(report);
@@ -163,6 +168,14 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
   for (int k = 0; k < 3; ++k)
     if (size.is_array() && size.size() == 3 && size[std::size_t(k)].is_number())
       job.object_size_mm[k] = size[std::size_t(k)];
+  if (text_of(report, "concern") == "stop")
+    job.alarm = "Do not dip it like this: " + text_of(report, "short_verdict");
+  if (report.contains("dip_of_several") && report["dip_of_several"].is_object()) {
+    const Json& dip = report["dip_of_several"];
+    const int number = dip.value("number", 1), of = dip.value("of", 1);
+    job.earlier_dips = std::max(0, number - 1);
+    job.next_dip = number < of ? number + 1 : 0;
+  }
   if (report.contains("warnings") && report["warnings"].is_array())
     for (const Json& warning : report["warnings"])
       if (warning.is_string()) job.warnings.push_back(warning);

@@ -28,6 +28,9 @@ struct RigJob {
   Vec3 object_size_mm = Vec3::Zero();  // as posed
   std::string model_sha256;            // of config.model, when it was printed
   std::vector<std::string> warnings;
+  std::string alarm;     // "Do not dip it like this: ..."; empty: nothing forbids it
+  int earlier_dips = 0;  // of several dips: those that are done before
+  int next_dip = 0;      // of several dips: the one that follows; 0: none
 };
 
 // Reads FOLDER/report.json of a print or simulate job. Throws InputError if it is none.

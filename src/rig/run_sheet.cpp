@@ -11,6 +11,7 @@
 #include "rig/rig.h"
 #include "sheet/page_writer.h"
 #include "sheet/pdf_document.h"
+#include "sheet/winansi.h"
 
 namespace hydrodip {
 namespace {
@@ -64,9 +65,21 @@ class RunSheet {
     page_.text(page_.left(), page_.y, "Run sheet", kTitle_pt, PdfFont::kBold);
     page_.text(page_.left() + 46, page_.y, fitted(job_.title, page_.width() - 46, kHead_pt),
                kHead_pt);
+    draw_alarm();
     page_.y -= 1;
     page_.fill_in(page_.left(), {"Date", "Operator", "Run no."});
     page_.y -= 3;
+  }
+
+  // What the verdict forbids is seen first.
+  void draw_alarm() {
+    if (job_.alarm.empty()) return;
+    constexpr double kBand_mm = 8;
+    page_.y -= 3 + kBand_mm;
+    page_.pdf().fill_red({Vec2(page_.left(), page_.y), Vec2(page_.right(), page_.y + kBand_mm)});
+    const std::string words = to_winansi(fitted(job_.alarm, page_.width() - 8, kHead_pt));
+    page_.pdf().draw_text(
+        {words, Vec2(page_.left() + 4, page_.y + 2.6), kHead_pt, PdfFont::kBold, 0, 1});
   }
 
   std::string fitted(std::string words, double width_mm, double size_pt) const {
@@ -248,7 +261,13 @@ class RunSheet {
         fmt::format("Tape {:g} mm around all four edges, flat and without gaps; no slits. "
                     "Take the protective layer off the film.",
                     config.design.film.margin_mm));
-    page_.task("Object clean, dry and free of grease; hung as on page 1, over the film's middle.");
+    page_.task(
+        job_.earlier_dips > 0
+            ? fmt::format("Object dry from dip {}, its coat untouched; hung as on page 1, over "
+                          "the film's middle.",
+                          job_.earlier_dips)
+            : std::string("Object clean, dry and free of grease; hung as on page 1, over the "
+                          "film's middle."));
     if (!moves_aside(job_))
       page_.task("Stage homed; water level found without film on the water; object lifted clear.",
                  {"Level, mm"});
@@ -278,8 +297,10 @@ class RunSheet {
                            process_.dwell_s));
     page_.task(fmt::format("Lift at {:g} mm/min.", process_.lift_mm_per_min),
                {"Time", "Water, °C"});
-    page_.task(fmt::format("Dry for {:g} to {:g} h; clear coat if wanted.", process_.dry_min_h,
-                           process_.dry_max_h),
+    page_.task(fmt::format("Dry for {:g} to {:g} h; {}.", process_.dry_min_h, process_.dry_max_h,
+                           job_.next_dip > 0
+                               ? fmt::format("then dip {}, by its own run sheet", job_.next_dip)
+                               : std::string("clear coat if wanted")),
                {"Dry at"});
   }
 

@@ -17,13 +17,14 @@ void write_rgb_pdf(const std::filesystem::path& path, const Image& look, const P
 }  // namespace
 
 void write_sheet_files(OutputFolder& folder, const FilmInk& ink, const Printer& printer,
-                       const SheetOptions& options, const RunContext& context) {
+                       const SheetOptions& options, const RunContext& context,
+                       const std::string& inside) {
   RunContext job = context;
   const ColorModel& model = *printer.model;
   const InkImage& inks = ink.inking.inks;
   const Image look = look_on_film(inks, ink.wanted, model);
-  const auto png = folder.path("print.png"), tiff = folder.path("print.tif"),
-             pdf = folder.path("print.pdf");
+  const auto png = folder.path(inside + "print.png"), tiff = folder.path(inside + "print.tif"),
+             pdf = folder.path(inside + "print.pdf");
   context.side_by_side("writing the sheet",
                        {[&] { write_print_tiff(tiff, inks, model.profile(), options); },
                         [&] {

@@ -8,8 +8,9 @@
 
 namespace hydrodip {
 
-// print.png, print.tif and print.pdf.
+// print.png, print.tif and print.pdf, in a folder inside that one if `inside` names it ("dip-1/").
 void write_sheet_files(OutputFolder& folder, const FilmInk& ink, const Printer& printer,
-                       const SheetOptions& options, const RunContext& context);
+                       const SheetOptions& options, const RunContext& context,
+                       const std::string& inside = "");
 
 }  // namespace hydrodip

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,24 @@ struct PartEntry {
   int count = 1;
 };
 
+// One of several dips, as a job's [[dip]] table gives it. What is not given is looked for.
+struct DipEntry {
+  std::optional<ModelSide> down;
+  std::optional<Vec3> rotate_deg;
+  std::optional<double> depth_mm;
+  std::vector<Keyframe> path;  // the way in; empty: straight down
+  bool locked = false;         // planning leaves it as it is
+};
+
+// What is looked for, and how several dips share the object.
+struct PlanOptions {
+  bool find_pose = false;            // object.rotate_deg = auto
+  bool find_depth = false;           // dip.depth_mm = auto
+  int dips = 0;                      // how many to plan; 0: as many as the job names, or one
+  double overlap_mm = 2;             // how wide neighbouring dips fade into each other
+  std::filesystem::path importance;  // a picture of what matters; empty: the paint says it
+};
+
 struct JobConfig {
   std::filesystem::path model;
   std::filesystem::path film_image;  // simulate: the image that was printed; may be empty
@@ -87,6 +106,9 @@ struct JobConfig {
   ProcessOptions process;
   StageOptions stage;
   std::vector<PartEntry> parts;
+  PlanOptions plan;
+  std::vector<DipEntry> dips;  // none: one dip, by object, film and design
+  std::string up;              // of the model as it stands, "+z"; empty: as its format has it
   int preview_width_px = 1600;
   int preview_texture_px = 2048;
   bool pictures = true;  // preview.png, maps.png, gamut.png and the 3D view of report.html

@@ -26,6 +26,7 @@ Parameter number(std::string name, std::string unit, double min, double max, Acc
               min,
               max,
               std::move(zero),
+              "",
               {},
               std::move(help),
               {},
@@ -43,6 +44,7 @@ Parameter integer(std::string name, std::string unit, int min, int max, Access<i
               double(min),
               double(max),
               std::move(zero),
+              "",
               {},
               std::move(help),
               {},
@@ -53,7 +55,7 @@ Parameter integer(std::string name, std::string unit, int min, int max, Access<i
 }
 
 Parameter text(std::string name, ParameterType type, Access<std::string> access, std::string help) {
-  Parameter p{std::move(name), "", type, 0, 0, "", {}, std::move(help), {}, {}};
+  Parameter p{std::move(name), "", type, 0, 0, "", "", {}, std::move(help), {}, {}};
   p.get = [access](const JobConfig& c) { return ParameterValue(read(access, c)); };
   p.set = [access](JobConfig& c, const ParameterValue& v) { access(c) = std::get<std::string>(v); };
   return p;
@@ -61,7 +63,8 @@ Parameter text(std::string name, ParameterType type, Access<std::string> access,
 
 // In files and options sRGB, "#rrggbb"; inside linear light.
 Parameter color(std::string name, Access<LinearColor> access, std::string help) {
-  Parameter p{std::move(name), "", ParameterType::kColor, 0, 0, "", {}, std::move(help), {}, {}};
+  Parameter p{
+      std::move(name), "", ParameterType::kColor, 0, 0, "", "", {}, std::move(help), {}, {}};
   p.get = [access](const JobConfig& c) {
     const LinearColor& color = read(access, c);
     return ParameterValue(fmt::format("#{:02x}{:02x}{:02x}", linear_to_srgb8(color.r),
@@ -78,7 +81,7 @@ Parameter color(std::string name, Access<LinearColor> access, std::string help) 
 }
 
 Parameter path(std::string name, Access<std::filesystem::path> access, std::string help) {
-  Parameter p{std::move(name), "", ParameterType::kPath, 0, 0, "", {}, std::move(help), {}, {}};
+  Parameter p{std::move(name), "", ParameterType::kPath, 0, 0, "", "", {}, std::move(help), {}, {}};
   p.get = [access](const JobConfig& c) { return ParameterValue(read(access, c).string()); };
   p.set = [access](JobConfig& c, const ParameterValue& v) { access(c) = std::get<std::string>(v); };
   return p;
@@ -91,6 +94,7 @@ Parameter vector(std::string name, std::string unit, double min, double max, Acc
               ParameterType::kVector,
               min,
               max,
+              "",
               "",
               {},
               std::move(help),
@@ -108,7 +112,8 @@ Parameter vector(std::string name, std::string unit, double min, double max, Acc
 }
 
 Parameter way_in(std::string name, Access<std::vector<Keyframe>> access, std::string help) {
-  Parameter p{std::move(name), "", ParameterType::kWayIn, 0, 0, "", {}, std::move(help), {}, {}};
+  Parameter p{
+      std::move(name), "", ParameterType::kWayIn, 0, 0, "", "", {}, std::move(help), {}, {}};
   p.get = [access](const JobConfig& c) { return ParameterValue(rows_of(read(access, c))); };
   p.set = [access](JobConfig& c, const ParameterValue& v) {
     const auto& rows = std::get<std::string>(v);
@@ -117,11 +122,25 @@ Parameter way_in(std::string name, Access<std::vector<Keyframe>> access, std::st
   return p;
 }
 
+// The same parameter, for which "auto" may stand: then `flag` is set, and the value looked for.
+Parameter or_auto(Parameter p, Access<bool> flag) {
+  p.word = "auto";
+  p.get = [flag, get = p.get](const JobConfig& c) {
+    return read(flag, c) ? ParameterValue(std::string("auto")) : get(c);
+  };
+  p.set = [flag, set = p.set](JobConfig& c, const ParameterValue& v) {
+    flag(c) = std::holds_alternative<std::string>(v);
+    if (!flag(c)) set(c, v);
+  };
+  return p;
+}
+
 // The choices are the enumerators' names in order.
 template <class Enum>
 Parameter choice(std::string name, std::vector<std::pair<std::string, Enum>> values,
                  Access<Enum> access, std::string help) {
-  Parameter p{std::move(name), "", ParameterType::kChoice, 0, 0, "", {}, std::move(help), {}, {}};
+  Parameter p{
+      std::move(name), "", ParameterType::kChoice, 0, 0, "", "", {}, std::move(help), {}, {}};
   for (const auto& [label, value] : values) p.choices.push_back(label);
   p.get = [access, values](const JobConfig& c) {
     for (const auto& [label, value] : values)
@@ -156,6 +175,9 @@ using C = JobConfig;
 
 std::vector<Parameter> object_records() {
   return {
+      path(
+          "object.file", [](C& c) -> std::filesystem::path& { return c.model; },
+          "the model, in a job's file: relative to that file"),
       choice(
           "object.units", {"", "mm", "cm", "m", "in"},
           [](C& c) -> std::string& { return c.object.load.units; },
@@ -169,10 +191,15 @@ std::vector<Parameter> object_records() {
                             ModelSide::kPlusY, ModelSide::kMinusX, ModelSide::kPlusX}),
           [](C& c) -> ModelSide& { return c.object.pose.down; },
           "the model's side that enters the water first"),
-      vector(
-          "object.rotate_deg", "deg", -3600, 3600,
-          [](C& c) -> Vec3& { return c.object.pose.rotate_deg; },
-          "then turn about the fixed axes x, y, z, in that order"),
+      or_auto(vector(
+                  "object.rotate_deg", "deg", -3600, 3600,
+                  [](C& c) -> Vec3& { return c.object.pose.rotate_deg; },
+                  "then turn about the fixed axes x, y, z, in that order; auto: as it dips best"),
+              [](C& c) -> bool& { return c.plan.find_pose; }),
+      choice(
+          "object.up", {"", "+y", "+z", "+x", "-x", "-y", "-z"},
+          [](C& c) -> std::string& { return c.up; },
+          "the model's way up when it stands, for pictures; empty: as its format has it"),
       path(
           "object.texture", [](C& c) -> std::filesystem::path& { return c.object.load.texture; },
           "image that replaces the model's textures; in a file: relative to that file"),
@@ -229,10 +256,11 @@ std::vector<Parameter> dip_records() {
           "dip.air_cells", "", 0, 100000000, [](C& c) -> int& { return c.design.air.cells; },
           "cubes into which the space around the object is cut to look for trapped air; 0: none is "
           "looked for"),
-      number(
-          "dip.depth_mm", "mm", 0.001, 5000,
-          [](C& c) -> double& { return c.design.trajectory.depth_mm; },
-          "how deep the object is dipped", "the whole object"),
+      or_auto(number(
+                  "dip.depth_mm", "mm", 0.001, 5000,
+                  [](C& c) -> double& { return c.design.trajectory.depth_mm; },
+                  "how deep the object is dipped; auto: as deep as is good", "the whole object"),
+              [](C& c) -> bool& { return c.plan.find_depth; }),
       number(
           "dip.tilt_deg", "deg", -85, 85,
           [](C& c) -> double& { return c.design.trajectory.tilt_deg; },
@@ -451,6 +479,20 @@ std::vector<Parameter> stage_records() {
   };
 }
 
+std::vector<Parameter> plan_records() {
+  return {
+      integer(
+          "plan.dips", "", 1, 24, [](C& c) -> int& { return c.plan.dips; }, "how many dips to plan",
+          "as many as the job names"),
+      number(
+          "plan.overlap_mm", "mm", 0, 50, [](C& c) -> double& { return c.plan.overlap_mm; },
+          "how wide the inks of neighbouring dips fade into each other"),
+      path(
+          "plan.importance", [](C& c) -> std::filesystem::path& { return c.plan.importance; },
+          "picture over the model's UVs of what matters: white in full, black not at all"),
+  };
+}
+
 std::vector<Parameter> run_records() {
   return {
       integer(
@@ -474,8 +516,9 @@ std::vector<Parameter> run_records() {
 const std::vector<Parameter>& parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list;
-    for (auto table : {object_records, film_records, bath_records, dip_records, material_records,
-                       ink_records, print_records, process_records, stage_records, run_records})
+    for (auto table :
+         {object_records, film_records, bath_records, dip_records, material_records, ink_records,
+          print_records, process_records, stage_records, plan_records, run_records})
       for (Parameter& p : table()) list.push_back(std::move(p));
     return list;
   }();

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "settings/artwork_tables.h"
+#include "settings/dip_tables.h"
 #include "settings/part_tables.h"
 #include "settings/path_file.h"
 
@@ -64,7 +65,8 @@ std::string quoted_list(const std::vector<std::string>& items) {
 // What the value has to be, to follow "must be".
 std::string expectation(const Parameter& p) {
   const std::string range = with_unit(fmt::format("{} to {}", p.min, p.max), p);
-  const std::string or_zero = p.zero.empty() ? "" : fmt::format(", or 0 ({})", p.zero);
+  const std::string or_zero = (p.zero.empty() ? "" : fmt::format(", or 0 ({})", p.zero)) +
+                              (p.word.empty() ? "" : fmt::format(", or {}", p.word));
   switch (p.type) {
     case ParameterType::kNumber:
       return "a number from " + range + or_zero;
@@ -79,7 +81,7 @@ std::string expectation(const Parameter& p) {
     case ParameterType::kColor:
       return "a colour such as #ffcc00";
     case ParameterType::kVector:
-      return "three numbers X,Y,Z, each from " + range;
+      return "three numbers X,Y,Z, each from " + range + or_zero;
     case ParameterType::kWayIn:
       return "the name of a CSV file, or in a configuration rows of six numbers (lower, shift x, "
              "shift y, turn x, turn y, turn z)";
@@ -149,7 +151,13 @@ std::string checked_text(const Parameter& p, const Setting& setting) {
   return *text;
 }
 
+bool is_word(const Parameter& p, const Setting& setting) {
+  const auto* text = std::get_if<std::string>(&setting.value);
+  return text && !p.word.empty() && trimmed(*text) == p.word;
+}
+
 ParameterValue checked(const Parameter& p, const Setting& setting) {
+  if (is_word(p, setting)) return p.word;
   switch (p.type) {
     case ParameterType::kNumber:
     case ParameterType::kInteger:
@@ -207,7 +215,9 @@ const Parameter& find_parameter(const std::string& name, const std::string& orig
 
 void apply_settings(JobConfig& config, const std::vector<Setting>& settings) {
   for (const Setting& setting : settings) {
-    if (apply_artwork_setting(config, setting) || apply_part_setting(config, setting)) continue;
+    if (apply_artwork_setting(config, setting) || apply_part_setting(config, setting) ||
+        apply_dip_setting(config, setting))
+      continue;
     const Parameter& p = find_parameter(setting.name, setting.origin);
     p.set(config, checked(p, setting));
   }
@@ -225,7 +235,8 @@ std::string show_range(const Parameter& p) {
     case ParameterType::kInteger:
     case ParameterType::kVector:
       return with_unit(fmt::format("{} to {}", p.min, p.max), p) +
-             (p.zero.empty() ? "" : fmt::format(", or 0 ({})", p.zero));
+             (p.zero.empty() ? "" : fmt::format(", or 0 ({})", p.zero)) +
+             (p.word.empty() ? "" : fmt::format(", or {}", p.word));
     case ParameterType::kChoice: {
       std::string list;
       for (const std::string& choice : p.choices)
@@ -280,6 +291,7 @@ std::string parameters_json() {
       entry["choices"] = p.choices;
     }
     if (!p.zero.empty()) entry["zero_means"] = p.zero;
+    if (!p.word.empty()) entry["word"] = p.word;
     entry["help"] = p.help;
     list.push_back(std::move(entry));
   }

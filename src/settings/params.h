@@ -24,6 +24,7 @@ struct Parameter {
   ParameterType type = ParameterType::kNumber;
   double min = 0, max = 0;           // inclusive; of numbers and vector components
   std::string zero;                  // what 0 stands for where it is allowed beside the range
+  std::string word;                  // what may stand instead of a value: "auto"; mostly empty
   std::vector<std::string> choices;  // of kChoice
   std::string help;                  // one line
   std::function<ParameterValue(const JobConfig&)> get;
@@ -47,7 +48,8 @@ struct Setting {
   std::string origin;  // "--set", "jobs/a.toml:3"
 };
 
-// Checks every setting and applies them in order, so that later ones win. Throws InputError naming
+// Checks every setting and applies them in order, so that later ones win. "dip[2].rotate_deg" is
+// the second of the job's dips, which is made if it is new. Throws InputError naming
 // parameter, value, range and origin.
 void apply_settings(JobConfig& config, const std::vector<Setting>& settings);
 

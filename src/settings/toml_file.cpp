@@ -29,7 +29,7 @@ namespace {
 constexpr std::size_t kLargestFile = 1 << 20;
 
 // Tables that may stand several times.
-constexpr const char *kArtworkTables = "artwork", *kPartTables = "part";
+constexpr const char *kArtworkTables = "artwork", *kPartTables = "part", *kDipTables = "dip";
 
 struct Located {
   Setting setting;
@@ -131,30 +131,52 @@ class SettingReader {
       const std::string name = prefix + std::string(key.str());
       if (const toml::table* inner = node.as_table())
         collect(*inner, name + ".");
-      else if ((name == kArtworkTables || name == kPartTables) && node.is_array_of_tables())
+      else if ((name == kArtworkTables || name == kPartTables || name == kDipTables) &&
+               node.is_array_of_tables())
         collect_tables(*node.as_array(), name);
       else
         add(name, key.source().begin, node);
     }
   }
 
-  // [[artwork]], once for each layer: artwork[1].size_mm and so on. [[part]] likewise.
+  // [[artwork]], once for each layer: artwork[1].size_mm and so on. [[part]] and [[dip]] likewise.
   void collect_tables(const toml::array& tables, const std::string& name) {
     int number = 0;
-    for (const toml::node& table : tables)
-      collect(*table.as_table(), fmt::format("{}[{}].", name, ++number));
+    for (const toml::node& table : tables) {
+      const std::string prefix = fmt::format("{}[{}].", name, ++number);
+      // A dip of which nothing is said is one all the same.
+      if (name == kDipTables) {
+        const auto& at = table.source().begin;
+        found_.push_back({{prefix + "locked", "false", true, "false",
+                           fmt::format("{}:{}", file_.string(), at.line)},
+                          at.line,
+                          at.column});
+      }
+      collect(*table.as_table(), prefix);
+    }
   }
 
   // As a parameter of that type is read.
   static ParameterType type_of(const std::string& name, const std::string& origin) {
+    if (name.starts_with("dip["))
+      return name.ends_with("].path") ? ParameterType::kWayIn : ParameterType::kText;
     const bool table = name.starts_with("artwork[") || name.starts_with("part[");
     if (!table) return find_parameter(name, origin).type;
     return is_artwork_path(name) || name.ends_with("].job") ? ParameterType::kPath
                                                             : ParameterType::kText;
   }
 
-  void add(const std::string& name, const toml::source_position& at, const toml::node& node) {
+  // [dips] says what holds for all [[dip]]s: TOML has no room for a [dip] beside them.
+  static std::string known_name(const std::string& name) {
+    return name.starts_with("dips.") ? "dip." + name.substr(5) : name;
+  }
+  static bool is_switch(const std::string& name) {
+    return is_artwork_switch(name) || (name.starts_with("dip[") && name.ends_with("].locked"));
+  }
+
+  void add(const std::string& given, const toml::source_position& at, const toml::node& node) {
     const std::string origin = fmt::format("{}:{}", file_.string(), at.line);
+    const std::string name = known_name(given);
     const ParameterType type = type_of(name, origin);
     Located located;
     located.line = at.line;
@@ -167,7 +189,7 @@ class SettingReader {
       setting.value = type == ParameterType::kPath || type == ParameterType::kWayIn
                           ? beside_file(*text)
                           : *text;
-    else if (const auto* flag = node.as_boolean(); flag && is_artwork_switch(name))
+    else if (const auto* flag = node.as_boolean(); flag && is_switch(name))
       setting.value = std::string(flag->get() ? "true" : "false");
     else
       setting.value = type == ParameterType::kWayIn ? as_rows(node) : as_numbers(node);

@@ -59,6 +59,7 @@ class MarkMaker {
     }
     make_slots();
     orientation();
+    alarm();
     reminders();
     job_name();
     return marks_;
@@ -183,6 +184,28 @@ class MarkMaker {
       marks_.warnings.push_back(
           "The film is too small for the orientation texts; mark its top yourself.");
     }
+  }
+
+  // Where its text stands, and as wide as the margin lets it be.
+  void alarm() {
+    if (options_.alarm.empty()) return;
+    const std::size_t before = marks_.texts.size();
+    const std::string whole = to_winansi(options_.alarm);
+    const std::string shorter = whole.substr(0, whole.find(':'));
+    if (!place(whole, {kLeftLower, kRightLower}) && !place(shorter, {kLeftLower, kRightLower})) {
+      warn("has no room for the alarm");
+      return;
+    }
+    const MarkText text = marks_.texts[before];
+    marks_.texts.pop_back();
+    const double cap_mm = kCapHeight * text.size_pt * kMmPerPt, pad_mm = 0.6 * cap_mm;
+    // Reads upward on the left edge, downward on the right one.
+    const bool up = text.quarter_turns > 0;
+    Box2 box;
+    box.add(text.start + Vec2(up ? -cap_mm - pad_mm : -pad_mm, up ? -pad_mm : pad_mm));
+    box.add(text.start + Vec2(up ? pad_mm : cap_mm + pad_mm,
+                              up ? text.length_mm + pad_mm : -text.length_mm - pad_mm));
+    marks_.bands.push_back({box, text});
   }
 
   // Points to the sheet's top edge.

@@ -29,21 +29,29 @@ struct MarkCircle {
   double radius_mm;
 };
 
+// White text on red.
+struct MarkBand {
+  Box2 box;
+  MarkText text;
+};
+
 struct Marks {
   double line_mm = 0.2;
   std::vector<MarkLine> lines;
   std::vector<std::array<Vec2, 3>> filled;  // triangles
   std::vector<MarkText> texts;
   std::vector<MarkCircle> dashed;
+  std::vector<MarkBand> bands;
   std::vector<std::string> warnings;  // what was left out, a sentence each
 };
 
 // Width of a Windows-1252 text at font size 1.
 using TextWidth = std::function<double(const std::string& text)>;
 
-// Centre ticks, ruler, orientation, the reminder to print unscaled, the sheet's size, the job's
-// name; on a disc its rim as well. Everything stays inside the margin. In margins under 7 mm all
-// shrinks; texts that would be illegible or do not fit are left out, with a warning if they matter.
+// Centre ticks, ruler, orientation, the alarm along the left edge, the reminder to print unscaled,
+// the sheet's size, the job's name; on a disc its rim as well. Everything stays inside the margin.
+// In margins under 7 mm all shrinks; texts that would be illegible or do not fit are left out, with
+// a warning if they matter.
 Marks make_marks(const SheetOptions& options, const TextWidth& text_width);
 
 }  // namespace hydrodip

@@ -21,6 +21,11 @@ void draw_marks(PdfDocument& document, const SheetOptions& options, const RunCon
   for (const MarkText& text : marks.texts)
     document.draw_text(
         {text.text, text.start, text.size_pt, PdfFont::kRegular, text.quarter_turns, 0});
+  for (const MarkBand& band : marks.bands) {
+    document.fill_red(band.box);
+    document.draw_text({band.text.text, band.text.start, band.text.size_pt, PdfFont::kRegular,
+                        band.text.quarter_turns, 1});
+  }
   for (const std::string& warning : marks.warnings) context.warn(warning);
 }
 

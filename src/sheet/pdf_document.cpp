@@ -341,6 +341,13 @@ void PdfDocument::fill_rectangle(const Box2& box, double gray) {
   HPDF_Page_Fill(impl_->page);
 }
 
+void PdfDocument::fill_red(const Box2& box) {
+  HPDF_Page_SetRGBFill(impl_->page, HPDF_REAL(0.78), HPDF_REAL(0.06), HPDF_REAL(0.10));
+  HPDF_Page_Rectangle(impl_->page, pt(box.min.x()), pt(box.min.y()), pt(box.max.x() - box.min.x()),
+                      pt(box.max.y() - box.min.y()));
+  HPDF_Page_Fill(impl_->page);
+}
+
 void PdfDocument::fill_triangle(const std::array<Vec2, 3>& corners, double gray) {
   HPDF_Page_SetGrayFill(impl_->page, static_cast<HPDF_REAL>(gray));
   HPDF_Page_MoveTo(impl_->page, pt(corners[0].x()), pt(corners[0].y()));

@@ -54,6 +54,7 @@ class PdfDocument {
   void draw_dashed_circle(const Vec2& center, double radius_mm);
   void draw_rectangle(const Box2& box);
   void fill_rectangle(const Box2& box, double gray);
+  void fill_red(const Box2& box);  // of an alarm
   void fill_triangle(const std::array<Vec2, 3>& corners, double gray);
   void draw_text(const PdfText& text);
 

@@ -20,6 +20,7 @@ struct SheetOptions {
   bool disc = false;        // draw the disc's rim as well
   bool ink_side_up = true;  // false: mirrored, for film laid ink side down
   std::string job_name;     // printed in the margin; any UTF-8, shortened to fit
+  std::string alarm;        // "DO NOT DIP: ..." in a red band of the margin; empty: none
   std::string date;         // ISO date recorded in the PDF, empty: none (reproducible)
 };
 
@@ -43,9 +44,9 @@ CmykFile read_cmyk_tiff(const std::filesystem::path& path);
 // One page of the film's size with the picture over the whole page (it covers the full sheet,
 // margin included; its margin is blank), centre ticks on all four sides, orientation text
 // ("this side up", "this edge left" ...), and a 100 mm ruler (shorter, and saying so, on sheets
-// under 125 mm). All marks in the margin, pure black. An sRGB picture carries `profile` itself;
-// inks go to the printer as they are, and the profile says what they were made for (the output
-// intent). Throws InputError if it cannot be written.
+// under 125 mm). All marks in the margin, pure black but for the alarm. An sRGB picture carries
+// `profile` itself; inks go to the printer as they are, and the profile says what they were made
+// for (the output intent). Throws InputError if it cannot be written.
 void write_print_pdf(const std::filesystem::path& path, const Picture& picture,
                      const std::vector<std::uint8_t>& profile, const SheetOptions& options,
                      const RunContext& context);

@@ -91,6 +91,19 @@ SurfacePoint between(const std::array<SurfacePoint, 4>& p, double x, double y) {
   return {p[0].triangle, mix(&SurfacePoint::u), mix(&SurfacePoint::v)};
 }
 
+// Darker than that no ink is, so that a part of it can be told.
+constexpr float kDarkest = 0.003F;
+
+// A part of the ink that makes `base` look like `wanted`: ink is a filter, so that the parts of
+// several films multiply to what the whole ink leaves of the light.
+LinearColor part_of_ink(const LinearColor& wanted, const LinearColor& base, float share) {
+  const auto part = [&](float w, float b) {
+    if (!(b > 0)) return w;
+    return b * std::pow(std::clamp(w / b, kDarkest, 1.0F), share);
+  };
+  return {part(wanted.r, base.r), part(wanted.g, base.g), part(wanted.b, base.b), wanted.a};
+}
+
 // What is printed of a point of the object.
 class Printed {
  public:
@@ -99,10 +112,12 @@ class Printed {
 
   // `film`: where on the film it is printed.
   LinearColor at(const SurfacePoint& point, const Vec2& film) const {
-    LinearColor color =
+    const LinearColor color =
         depends_on_film_ ? paint_.color_on_film(point, film) : paint_.color_at(point);
-    if (!allotment_.is_full()) color.a *= allotment_.at(point);
-    return color;
+    const float share = allotment_.at(point);
+    if (share >= 1) return color;
+    if (share <= 0) return {0, 0, 0, 0};
+    return part_of_ink(color, paint_.base(), share);
   }
 
  private:

@@ -37,8 +37,10 @@ struct InverseOptions {
   int samples_per_axis = 3;  // supersampling: squared per pixel
 };
 
-// The image to print: opaque where ink goes, transparent elsewhere (partial alpha along edges, and
-// where the allotment gives this film a part of the ink only).
+// The image to print: opaque where ink goes, transparent elsewhere (partial alpha along edges).
+// Where the allotment gives this film a part s of the ink, it is paler: the light that the ink
+// leaves of the base's is that of the whole ink to the power of s, so that films whose parts add up
+// to 1 look like the whole ink when they lie over each other.
 Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& raster,
                  const InverseOptions& options, const Allotment& allotment,
                  const RunContext& context);

@@ -192,9 +192,35 @@ TEST_F(OutputFolderTest, TrailingSlashAndEmptyPathAreFolders) {
 
 TEST_F(OutputFolderTest, OnlyPlainNamesAreAccepted) {
   OutputFolder folder(root_);
-  for (const char* bad : {"", ".", "..", "a/b", "/etc/passwd", "../x"}) {
+  for (const char* bad : {"", ".", "..", "a/", "a/../b", "./a", "/etc/passwd", "../x"}) {
     EXPECT_THROW(folder.path(bad), std::logic_error) << bad;
   }
+}
+
+TEST_F(OutputFolderTest, FilesInFoldersInsideAppearTogetherWithTheOthers) {
+  {
+    OutputFolder folder(root_);
+    write(folder.path("part-1/a.txt"), "1");
+    write(folder.path("a.txt"), "2");
+    EXPECT_FALSE(fs::exists(root_ / "part-1"));
+    folder.commit();
+  }
+  EXPECT_EQ(read(root_ / "part-1" / "a.txt"), "1");
+  EXPECT_EQ(read(root_ / "a.txt"), "2");
+  {
+    OutputFolder folder(root_);
+    write(folder.path("part-1/a.txt"), "3");
+    write(folder.path("part-2/a.txt"), "4");
+    // never committed
+  }
+  EXPECT_EQ(read(root_ / "part-1" / "a.txt"), "1");
+  EXPECT_FALSE(fs::exists(root_ / "part-2"));
+  {
+    OutputFolder folder(root_);
+    write(folder.path("part-1/a.txt"), "5");
+    folder.commit();
+  }
+  EXPECT_EQ(read(root_ / "part-1" / "a.txt"), "5");
 }
 
 TEST_F(OutputFolderTest, InputsAreNotOverwritten) {

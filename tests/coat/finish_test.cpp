@@ -11,7 +11,7 @@ namespace hydrodip {
 namespace {
 
 // Everything, or in halves with a gap at x = 0, of the sample box's flat bottom.
-enum class Part { kAll, kLeft, kRight };
+enum class Part { kAll, kLeft, kRight, kThird, kTwoThirds };
 
 class TwoCoats : public testing::Test {
  protected:
@@ -25,6 +25,8 @@ class TwoCoats : public testing::Test {
     options.rounds_max = 1;
     const Allotment allotment([this, part](const SurfacePoint& point) {
       const double x = position_at(posed_.mesh(), point).x();
+      if (part == Part::kThird) return 1 / 3.0F;
+      if (part == Part::kTwoThirds) return 2 / 3.0F;
       const bool left = x < 0;
       return part == Part::kAll || left == (part == Part::kLeft) ? 1.0F : 0.0F;
     });
@@ -69,6 +71,31 @@ TEST_F(TwoCoats, HalvesMakeTheWhole) {
               EXPECT_NEAR(a.b, b.b, 0.01);
             }),
             200);
+}
+
+TEST_F(TwoCoats, PartsOfTheInkMakeTheWhole) {
+  const Finish whole(paint_, {coat(Part::kAll, true)});
+  const Finish parts(paint_, {coat(Part::kThird, true), coat(Part::kTwoThirds, false)});
+  EXPECT_GT(for_points([&](const SurfacePoint& point) {
+              const LinearColor a = whole.color_at(point), b = parts.color_at(point);
+              EXPECT_NEAR(a.r, b.r, 0.012);
+              EXPECT_NEAR(a.g, b.g, 0.012);
+              EXPECT_NEAR(a.b, b.b, 0.012);
+            }),
+            200);
+}
+
+TEST_F(TwoCoats, OnlyLaterCoatsLandOff) {
+  const Finish halves(paint_, {coat(Part::kLeft, true), coat(Part::kRight, false)});
+  // The right half moved by 4 mm to the left lies over the left one, and leaves a gap at its end.
+  const auto at = [&](double x) {
+    const auto hit = posed_.surface().first_hit({x, 5, -1}, {0, 0, 1}, 0, 10);
+    return SurfacePoint{hit->triangle, hit->u, hit->v};
+  };
+  const Vec2 off(4, 0);
+  EXPECT_EQ(halves.color_at(at(-8), off).g, halves.color_at(at(-8)).g);
+  EXPECT_LT(halves.color_at(at(-2), off).g, halves.color_at(at(-2)).g - 0.01);
+  EXPECT_TRUE(halves.has_film_at(at(-8)));
 }
 
 TEST_F(TwoCoats, TwiceTheSameFilmFiltersTwice) {

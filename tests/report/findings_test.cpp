@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace hydrodip {
@@ -89,6 +90,57 @@ TEST(Findings, WithoutFilmOnTheObjectNothingElseMatters) {
 TEST(Findings, RegistrationErrorGrowsWithStretch) {
   const std::vector<Finding> list = findings(good_report());
   EXPECT_EQ(find(list, "registration")->figure, "1.2 mm");
+}
+
+// Film that is lost and a share near 100 % of what faces down would contradict each other.
+TEST(Findings, BesideTearsCoverageIsOfTheWholeObject) {
+  Report report = good_report();
+  report.coverage->covered_downward_mm2 = report.coverage->downward_mm2;
+  report.coverage->torn_mm2 = 200;
+  const std::vector<Finding> list = findings(report);
+  const Coverage& c = *report.coverage;
+  EXPECT_EQ(std::stod(find(list, "coverage")->figure), std::round(100 * c.covered_share()));
+  EXPECT_EQ(plain_verdict(c).find("100 %"), std::string::npos);
+  EXPECT_EQ(short_verdict(c).find("100 %"), std::string::npos);
+}
+
+TEST(Findings, StretchBeyondTheLimitIsSaidToBeThat) {
+  Report report = good_report();
+  report.tear_stretch = 1.4;
+  report.coverage->stretch_max = 1.49;
+  EXPECT_NE(find(findings(report), "stretch")->text.find("beyond the 1.40"), std::string::npos);
+}
+
+TEST(Findings, OnlyCoverageAndTearsForbidADip) {
+  Report report = good_report();
+  for (const double torn_mm2 : {0.0, 20.0, 200.0}) {
+    report.coverage->torn_mm2 = torn_mm2;
+    EXPECT_EQ(concern_of(findings(report)) == Concern::kStop,
+              concern_of(*report.coverage) == Concern::kStop);
+  }
+  EXPECT_EQ(concern_of(Coverage{}), Concern::kStop);
+}
+
+TEST(Findings, SeveralDipsAreJudgedTogether) {
+  Report report = good_report();
+  report.dips.resize(3);
+  report.coverage->covered_mm2 = 0.95 * report.coverage->object_mm2;
+  report.seams = ReportSeams{120, 2, 1.2, 1, 3.5};
+  std::vector<Finding> list = findings(report);
+  EXPECT_EQ(find(list, "coverage")->figure, "95 %");
+  EXPECT_EQ(find(list, "coverage")->concern, Concern::kNone);
+  EXPECT_EQ(find(list, "seams")->figure, "120 mm");
+  report.coverage->covered_mm2 = 0.5 * report.coverage->object_mm2;
+  EXPECT_EQ(concern(report, "coverage"), Concern::kCare);
+  const auto json = nlohmann::json::parse(report_json(report));
+  EXPECT_EQ(json["dips"].size(), 3u);
+  EXPECT_EQ(json["seams"]["error_mean_off_ciede2000"], 3.5);
+}
+
+TEST(Findings, TheBetterWayIsQuoted) {
+  Report report = good_report();
+  report.better_way = "lying on its -x side";
+  EXPECT_NE(find(findings(report), "better_way")->text.find("-x side"), std::string::npos);
 }
 
 TEST(Findings, AreInTheJson) {

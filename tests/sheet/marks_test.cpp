@@ -222,5 +222,36 @@ TEST(Marks, WhatANarrowMarginCannotHoldIsLeftOutWithAWarning) {
   EXPECT_TRUE(none.lines.empty());
 }
 
+TEST(Alarm, StandsInABandOfTheMarginAndPushesNothingOut) {
+  for (const double margin : {7.0, 10.0, 20.0}) {
+    SheetOptions options = sheet(210, 297, margin);
+    const std::size_t before = make_marks(options, half_em).texts.size();
+    EXPECT_TRUE(make_marks(options, half_em).bands.empty());
+    options.alarm = "DO NOT DIP: 17 % of the object covered, 39.0 % of the film that meets it torn";
+    const Marks marks = make_marks(options, half_em);
+    ASSERT_EQ(marks.bands.size(), 1U);
+    EXPECT_GE(marks.texts.size() + 1, before);
+    const MarkBand& band = marks.bands[0];
+    EXPECT_TRUE(band.text.text.starts_with("DO NOT DIP"));
+    // In the margin's left or right strip, and around its text.
+    EXPECT_TRUE((band.box.min.x() > 0 && band.box.max.x() < margin) ||
+                (band.box.min.x() > 210 - margin && band.box.max.x() < 210));
+    EXPECT_GT(band.box.min.y(), 0);
+    EXPECT_LT(band.box.max.y(), 297);
+    EXPECT_GT(band.box.max.y() - band.box.min.y(), band.text.length_mm);
+  }
+}
+
+TEST(Alarm, IsShortenedOrMissedWithAWarningWhereThereIsNoRoom) {
+  SheetOptions options = sheet(60, 60, 10);
+  options.alarm = "DO NOT DIP: 17 % of the object covered, 39.0 % of the film that meets it torn";
+  const Marks marks = make_marks(options, half_em);
+  if (marks.bands.empty()) {
+    EXPECT_FALSE(marks.warnings.empty());
+  } else {
+    EXPECT_EQ(marks.bands[0].text.text, "DO NOT DIP");
+  }
+}
+
 }  // namespace
 }  // namespace hydrodip

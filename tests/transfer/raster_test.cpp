@@ -259,8 +259,12 @@ TEST(FilmImage, PrintsTheShareThatIsAllotted) {
       [&](const SurfacePoint& point) { return position_at(mesh, point).x() > 0 ? 0.25F : 0.0F; }));
   const Vec2 right = raster.to_pixel({10, 3}), left = raster.to_pixel({-10, 3});
   const std::uint8_t* pixel = part.pixel(int(right.x()), int(right.y()));
-  EXPECT_EQ(int(pixel[3]), 64);
-  EXPECT_EQ(int(pixel[1]), 200);  // the colour itself stays
+  EXPECT_EQ(int(pixel[3]), 255);
+  // A quarter of the ink lets through the fourth root of the light: four such films make the whole.
+  for (const auto& [channel, value] : {std::pair(1, 200), std::pair(2, 30)}) {
+    const double light = double(srgb8_to_linear(pixel[channel]));
+    EXPECT_NEAR(std::pow(light, 4), double(srgb8_to_linear(std::uint8_t(value))), 0.01);
+  }
   EXPECT_EQ(int(part.pixel(int(left.x()), int(left.y()))[3]), 0);
 }
 

@@ -41,7 +41,8 @@ class Viewer {
   build() {
     const button = (label, action, pressed) =>
       make('button', { type: 'button', onclick: action, 'aria-pressed': pressed }, label);
-    this.viewButtons = VIEWS.map(([view, label]) => {
+    const hasFilm = this.scene.film.index.length > 0; // a finish of several dips is painted on the object
+    this.viewButtons = VIEWS.filter(([view]) => hasFilm || view !== 'dip').map(([view, label]) => {
       const element = button(label, () => this.setView(view), 'false');
       element.dataset.view = view;
       return element;
@@ -66,14 +67,14 @@ class Viewer {
         { class: 'tools' },
         make('div', { class: 'group', role: 'group', 'aria-label': 'View' }, ...this.viewButtons),
         make('label', {}, 'Show ', this.overlaySelect),
-        make('label', {}, this.gridBox, ' 5 mm film grid'),
+        make('label', { hidden: !hasFilm }, this.gridBox, ' 5 mm film grid'),
         this.sideButtons,
       ),
       make(
         'div',
         { class: 'panes' },
         make('div', { class: 'main-pane' }, this.stageBox, this.dipRow, this.legend),
-        make('figure', { class: 'sheet-pane' }, this.sheet.box,
+        make('figure', { class: 'sheet-pane', hidden: !hasFilm }, this.sheet.box,
           make('figcaption', {}, 'The film image, from above. Blue line: lands on the object.', this.scene.film.torn.length ? ' Red line: tears.' : '')),
       ),
       this.readout,
@@ -188,7 +189,7 @@ class Viewer {
   pointAtStage(x, y) {
     const hit = this.stage.pick(x, y);
     if (hit?.film) this.show({ film: hit.film });
-    else this.show(hit ? { text: BARE } : null);
+    else this.show(hit && !this.scene.looks.length ? { text: BARE } : null);
   }
 
   pointAtSheet(u) {

@@ -30,6 +30,25 @@ function ticks(low, high) {
   return list;
 }
 
+// Of one dip; several dips' finish is painted on the object and has looks instead.
+const hasFilm = (scene) => scene.film.index.length > 0;
+
+function lookOverlay(key, label, title, patches) {
+  return {
+    key,
+    label,
+    available: (scene) => scene.looks.some((look) => look.key === key),
+    film: null,
+    torn: null,
+    object: () => ({ mode: MODE.picture }),
+    legend: (scene) => ({ title, patches: patches(scene) }),
+  };
+}
+
+const DIP_COLORS = ['#0072b2', '#e69f00', '#009e73', '#cc79a7', '#56b4e9', '#d55e00', '#f0e442'];
+const dipPatches = (scene) =>
+  Array.from({ length: Math.min(scene.dips ?? 0, DIP_COLORS.length) }, (_, k) => ({ color: DIP_COLORS[k], label: `dip ${k + 1}` }));
+
 function layerOverlay(key, label, title, least) {
   const end = (scene) => Math.max(least, Math.ceil(scene.layers[key].largest));
   return {
@@ -61,7 +80,7 @@ export const OVERLAYS = [
   {
     key: 'stretch',
     label: 'stretch',
-    available: () => true,
+    available: hasFilm,
     film: (scene) => ({ mode: MODE.amount, ramp: 'stretch', low: 1, high: stretchEnd(scene) }),
     torn: () => hatch,
     object: () => flat(NEUTRAL),
@@ -91,7 +110,7 @@ export const OVERLAYS = [
   {
     key: 'tears',
     label: 'tears',
-    available: () => true,
+    available: hasFilm,
     film: () => flat(PALE),
     torn: () => hatch,
     object: () => flat(NEUTRAL),
@@ -103,7 +122,7 @@ export const OVERLAYS = [
   {
     key: 'coverage',
     label: 'coverage',
-    available: () => true,
+    available: hasFilm,
     film: () => flat(COVERED),
     torn: () => hatch,
     object: () => ({ mode: MODE.reach }),
@@ -120,4 +139,13 @@ export const OVERLAYS = [
   layerOverlay('color_error', 'colour error', 'Predicted against wanted colour (CIEDE2000; 1 is just visible)', 10),
   layerOverlay('pressed', 'wrinkles', 'How far the film is pressed together (percent); wrinkles show from about 5 on', 10),
   layerOverlay('out_of_gamut', 'out of gamut', 'How far the wanted colour is from what can be printed (CIEDE2000)', 5),
+  lookOverlay('parts', 'which dip', 'Which dip does what; where two meet they fade into each other', (scene) => [
+    ...dipPatches(scene),
+    { color: '#a0a0a0', label: 'no film' },
+  ]),
+  lookOverlay('finish_error', 'colour error', 'Predicted against wanted colour (CIEDE2000; 1 is just visible)', () => [
+    { color: '#cbcbcb', label: '0' },
+    { color: '#d0714b', label: '5' },
+    { color: '#da0000', label: '10 and more' },
+  ]),
 ];

@@ -82,6 +82,7 @@ export async function readScene(text) {
     data: null,
     object: readObject(data, scene.object),
     film,
+    looks: scene.looks.map(({ key, object }) => ({ key, object: readObject(data, object) })),
     travel_mm: film.poses ? film.levels.at(-1) : scene.depth_mm,
     layers,
   };

@@ -62,7 +62,18 @@ export class Stage {
   // --- What there is to see ---
 
   makeObject() {
-    const { object } = this.scene;
+    [this.object, this.objectMaterials] = this.makeMesh(this.scene.object);
+    const { geometry } = this.object;
+    geometry.computeBoundingBox();
+    geometry.computeBoundingSphere();
+    this.bounds = geometry.boundingBox;
+    this.looks = this.scene.looks.map(({ key, object }) => {
+      const [mesh, materials] = this.makeMesh(object);
+      return { key, mesh, materials };
+    });
+  }
+
+  makeMesh(object) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', attribute(object.position, 3));
     geometry.setAttribute('normal', attribute(object.normal, 3));
@@ -71,7 +82,7 @@ export class Stage {
     geometry.setIndex(attribute(object.index, 1));
     for (const g of object.groups) geometry.addGroup(g.start, g.count, g.material);
     const maps = new Map(); // one for each picture and way of wrapping
-    this.objectMaterials = object.materials.map((m) => {
+    const materials = object.materials.map((m) => {
       const key = `${m.texture} ${m.wrap}`;
       if (m.texture >= 0 && !maps.has(key)) {
         const texture = pictureTexture(object.textures[m.texture], this.invalidate);
@@ -81,10 +92,7 @@ export class Stage {
       const map = maps.get(key);
       return surfaceMaterial(this.scene, this.shared, { ...m, map, tinted: Boolean(object.color) });
     });
-    this.object = new THREE.Mesh(geometry, this.objectMaterials);
-    geometry.computeBoundingBox();
-    geometry.computeBoundingSphere();
-    this.bounds = geometry.boundingBox;
+    return [new THREE.Mesh(geometry, materials), materials];
   }
 
   makeFilm() {
@@ -117,7 +125,7 @@ export class Stage {
     this.lying = part(film.lying, cell);
     this.torn = part(film.torn, cell);
     this.result = new THREE.Group();
-    this.result.add(this.lying, this.torn);
+    this.result.add(this.lying, this.torn, ...this.looks.map(({ mesh }) => mesh));
     // The side that met the film (-z) to the front, +y up.
     this.result.rotation.y = Math.PI;
     this.result.position.set(0, -this.center().y, this.center().z);
@@ -326,6 +334,13 @@ export class Stage {
 
   dressFor(what, overlayKey) {
     const overlay = OVERLAYS.find((entry) => entry.key === overlayKey);
+    const look = what === 'predicted' && this.looks.find(({ key }) => key === overlayKey);
+    for (const { mesh } of this.looks) mesh.visible = false;
+    this.object.visible = !look;
+    if (look) {
+      look.mesh.visible = true;
+      for (const material of look.materials) dress(material, { mode: MODE.picture }, this.scene, this.shared);
+    }
     const dressObject = (look) => {
       for (const material of this.objectMaterials) dress(material, look, this.scene, this.shared);
     };

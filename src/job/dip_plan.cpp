@@ -1,0 +1,158 @@
+#include "job/dip_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+// Ink stiffens film, and what is next to it stretches more: planned dips count film as torn that
+// much below what it bears, so that what is counted on stays whole with its ink.
+constexpr double kStretchKept = 0.96;
+constexpr double kDeeper_mm = 3;
+
+PoseOptions pose_of(const DipEntry& entry, const PoseOptions& base) {
+  PoseOptions pose = base;
+  if (entry.down) pose.down = *entry.down;
+  if (entry.rotate_deg) pose.rotate_deg = *entry.rotate_deg;
+  return pose;
+}
+
+bool is_given(const DipEntry& entry, bool again) {
+  return again ? entry.locked
+               : entry.rotate_deg.has_value() || entry.down.has_value() || !entry.path.empty();
+}
+
+[[noreturn]] void refuse_dip(std::size_t number, const Trial* trial) {
+  throw InputError(
+      fmt::format("dip {} {}: turn it with rotate_deg, or leave that out and let it be found",
+                  number, trial ? "reaches nothing at any depth" : "does not fit film and bath"));
+}
+
+class Planning {
+ public:
+  Planning(const JobConfig& config, const PreparedObject& prepared, const Targets& targets,
+           bool again, const RunContext& context)
+      : config_(config),
+        again_(again),
+        context_(context),
+        task_(job_trials(config, prepared, targets)) {
+    task_.torn_price = kTornPriceAmongSeveral;
+    task_.dip.material.tear_stretch *= kStretchKept;
+  }
+
+  DipPlan run() {
+    find_given();
+    const int wanted = std::max(config_.plan.dips, int(config_.dips.size()));
+    if (int(given_.size()) < wanted)
+      search(wanted);
+    else
+      plan_.dips = given_;
+    if (plan_.dips.empty())
+      throw InputError(
+          "no way to hold the object was found in which film stays whole on it: use film that "
+          "bears more (material.tear_stretch), or a smaller object");
+    count_up();
+    return std::move(plan_);
+  }
+
+ private:
+  void find_given() {
+    for (std::size_t i = 0; i < config_.dips.size(); ++i) {
+      const DipEntry& entry = config_.dips[i];
+      if (!is_given(entry, again_)) continue;
+      context_.progress("dipping what is given", double(i) / double(config_.dips.size()));
+      if (!entry.path.empty()) {
+        given_.push_back(by_path(entry));
+        continue;
+      }
+      TrialTask task = task_;
+      if (entry.depth_mm) task.depth_mm = *entry.depth_mm;
+      const auto trial = fine(task, pose_of(entry, config_.object.pose), 0);
+      if (!trial || !(trial->depth_mm > 0)) refuse_dip(i + 1, trial ? &*trial : nullptr);
+      given_.push_back(*trial);
+    }
+  }
+
+  // A path is taken as it is given, down to its end.
+  Trial by_path(const DipEntry& entry) {
+    const PosedObject posed(task_.object, pose_of(entry, config_.object.pose));
+    TrajectoryOptions way = config_.design.trajectory;
+    way.path = entry.path;
+    Timings unheard;
+    const DippedObject dipped = dip_object(
+        posed, std::make_shared<const FilmMesh>(make_film_mesh(task_.film)),
+        make_trajectory(way, posed.mesh().positions), task_.dip, unheard, context_.quiet());
+    Trial trial = judge_dip(task_, pose_of(entry, config_.object.pose), dipped);
+    trial.path = entry.path;
+    return trial;
+  }
+
+  std::optional<Trial> fine(const TrialTask& task, const PoseOptions& pose, double depth_most_mm) {
+    RunContext quiet = context_.quiet();
+    return try_pose(task, pose, depth_most_mm, quiet);
+  }
+
+  void search(int wanted) {
+    SearchOptions options;
+    options.confirm = false;
+    options.refined = std::max(options.refined, wanted);
+    const SearchResult found = search_holds(task_, config_.object.pose, options, context_);
+    plan_.trial_dips = found.trials.size();
+    const TrialTask coarse = trial_task(task_);
+    ChoiceOptions choice;
+    choice.dips = wanted;
+    choice.kept = given_;
+    plan_.dips = choose_dips(coarse, found.trials, choice, context_);
+    for (std::size_t i = given_.size(); i < plan_.dips.size(); ++i) {
+      context_.progress("dipping them for good", double(i) / double(plan_.dips.size()));
+      Trial& dip = plan_.dips[i];
+      if (const auto sure = fine(task_, dip.pose, dip.depth_mm + kDeeper_mm)) dip = *sure;
+    }
+    context_.progress("dipping them for good", 1);
+  }
+
+  void count_up() {
+    std::vector<const Trial*> so_far;
+    for (const Trial& dip : plan_.dips) {
+      so_far.push_back(&dip);
+      plan_.covered_after.push_back(covered_share_of(task_.targets, so_far));
+    }
+  }
+
+  const JobConfig& config_;
+  const bool again_;
+  const RunContext& context_;
+  TrialTask task_;
+  std::vector<Trial> given_;
+  DipPlan plan_;
+};
+
+}  // namespace
+
+DipPlan plan_dips(const JobConfig& config, const PreparedObject& prepared, const Targets& targets,
+                  bool again, const RunContext& context) {
+  const RunScope scope(context);
+  return Planning(config, prepared, targets, again, context).run();
+}
+
+std::vector<DipEntry> entries_of(const DipPlan& plan, const std::vector<DipEntry>& earlier) {
+  std::vector<DipEntry> entries;
+  for (const Trial& dip : plan.dips) {
+    DipEntry entry;
+    entry.down = dip.pose.down;
+    entry.rotate_deg = dip.pose.rotate_deg;
+    if (dip.path.empty()) entry.depth_mm = dip.depth_mm;
+    entry.path = dip.path;
+    entry.locked = std::any_of(earlier.begin(), earlier.end(), [&](const DipEntry& other) {
+      return other.locked && other.rotate_deg && *other.rotate_deg == *entry.rotate_deg;
+    });
+    entries.push_back(entry);
+  }
+  return entries;
+}
+
+}  // namespace hydrodip

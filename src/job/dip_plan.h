@@ -1,0 +1,26 @@
+// Several dips of one object: how each is held and how deep it goes.
+#pragma once
+
+#include <vector>
+
+#include "job/ways.h"
+#include "plan/choice.h"
+
+namespace hydrodip {
+
+struct DipPlan {
+  std::vector<Trial> dips;            // by the job's own dips, in the order in which they are made
+  std::vector<double> covered_after;  // share of the surface under film after each
+  std::size_t trial_dips = 0;         // made to find them; 0: none had to be found
+};
+
+// As many dips as the job says (plan.dips, or one for each of config.dips). Those of config.dips
+// that give a rotation keep it; with `again`, only those that are locked. What is not given is
+// chosen, together. Throws InputError if one of the given does not fit, or none is found.
+DipPlan plan_dips(const JobConfig& config, const PreparedObject& prepared, const Targets& targets,
+                  bool again, const RunContext& context);
+
+// The plan's dips as the job's, everything given.
+std::vector<DipEntry> entries_of(const DipPlan& plan, const std::vector<DipEntry>& earlier);
+
+}  // namespace hydrodip

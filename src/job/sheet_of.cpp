@@ -1,0 +1,18 @@
+#include "job/sheet_of.h"
+
+namespace hydrodip {
+
+SheetOptions sheet_of(const JobConfig& config) {
+  SheetOptions sheet;
+  sheet.width_mm = config.design.film.width_mm;
+  sheet.height_mm = config.design.film.height_mm;
+  sheet.margin_mm = config.design.film.margin_mm;
+  sheet.dpi = config.design.dpi;
+  sheet.disc = config.design.film.shape == FilmShape::kDisc;
+  sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
+  sheet.job_name =
+      config.print.job_name.empty() ? config.model.filename().string() : config.print.job_name;
+  return sheet;
+}
+
+}  // namespace hydrodip

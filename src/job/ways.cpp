@@ -1,0 +1,127 @@
+#include "job/ways.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "image/files.h"
+
+namespace hydrodip {
+namespace {
+
+// A better way has to be that much better to be worth a word.
+constexpr double kWorthSaying = 0.02;
+// Shorter than that is nothing torn, for people.
+constexpr double kHardlyTorn = 0.0005;
+
+std::shared_ptr<const Paint> importance_paint(const std::filesystem::path& file,
+                                              const Object& model) {
+  if (model.uvs.empty())
+    throw InputError(fmt::format(
+        "{}: plan.importance is laid on by the model's texture coordinates, and it has none",
+        file.string()));
+  auto object = std::make_shared<Object>(model);
+  object->textures = {std::make_shared<const Image>(load_image(file))};
+  object->colors.clear();
+  object->materials.assign(1, Material{.name = "importance", .texture = 0});
+  object->material_of.assign(object->triangles.size(), 0);
+  return model_paint(object);
+}
+
+std::string percent(double share) {
+  return share > 0 && share < 0.1 ? fmt::format("{:.1f} %", 100 * share)
+                                  : fmt::format("{:.0f} %", 100 * share);
+}
+
+}  // namespace
+
+Targets job_targets(const JobConfig& config, const PreparedObject& prepared,
+                    const RunContext& context) {
+  const RunScope scope(context);
+  const Object& object = prepared.posed.object();
+  Targets targets = spread_targets(object);
+  if (!(targets.area > 0))
+    throw InputError(fmt::format("{}: the model has no surface to dip", config.model.string()));
+  if (config.plan.importance.empty())
+    weigh_by_paint(targets, *prepared.paint);
+  else
+    weigh_by_picture(targets, *importance_paint(config.plan.importance, object));
+  return targets;
+}
+
+TrialTask job_trials(const JobConfig& config, const PreparedObject& prepared,
+                     const Targets& targets) {
+  TrialTask task{prepared.posed.shared_object(), targets, config.design.film, config.design.dip,
+                 config.bath};
+  return task;
+}
+
+ModelSide way_up(const JobConfig& config) {
+  for (const ModelSide side : {ModelSide::kMinusX, ModelSide::kPlusX, ModelSide::kMinusY,
+                               ModelSide::kPlusY, ModelSide::kMinusZ, ModelSide::kPlusZ})
+    if (config.up == side_name(side)) return side;
+  std::string extension = config.model.extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  // What the exporters of modelling programs do; glTF's y is turned up on loading.
+  return extension == ".obj" ? ModelSide::kPlusY : ModelSide::kPlusZ;
+}
+
+void find_what_is_asked(JobConfig& config, PreparedObject& prepared, const RunContext& context) {
+  if (!config.plan.find_pose && !config.plan.find_depth) return;
+  const TrajectoryOptions& way = config.design.trajectory;
+  if (!way.path.empty() || way.tilt_deg != 0 || way.roll_deg != 0)
+    throw InputError(
+        "auto looks for ways straight down: leave out the path, dip.tilt_deg and dip.roll_deg, or "
+        "give "
+        "rotation and depth");
+  const RunScope scope(context);
+  const Targets targets = job_targets(config, prepared, context);
+  TrialTask task = job_trials(config, prepared, targets);
+  if (!config.plan.find_depth) task.depth_mm = config.design.trajectory.depth_mm;
+  std::optional<Trial> found;
+  if (config.plan.find_pose) {
+    found = search_holds(task, config.object.pose, {}, context).best.front();
+  } else {
+    context.progress("looking for the depth", 0);
+    RunContext quiet = context.quiet();
+    found = try_pose(task, config.object.pose, 0, quiet);
+    context.progress("looking for the depth", 1);
+  }
+  if (!found || !(found->depth_mm > 0))
+    throw InputError(fmt::format(
+        "{}: no depth was found at which film lies on the object held like this; turn it with "
+        "--rotate, or let --rotate auto find out how",
+        config.model.string()));
+  context.log("found: " + describe_trial(*found, way_up(config)));
+  config.object.pose = found->pose;
+  if (config.plan.find_depth) config.design.trajectory.depth_mm = found->depth_mm;
+  config.plan.find_pose = config.plan.find_depth = false;
+  prepared.posed = PosedObject(prepared.posed.shared_object(), config.object.pose);
+}
+
+std::string describe_trial(const Trial& trial, ModelSide up) {
+  const TrialFigures& figures = trial.figures;
+  return fmt::format("{}, {:.4g} mm deep: {} covered, {}", describe_hold(trial.pose, up),
+                     trial.depth_mm, percent(figures.covered_share),
+                     figures.torn_share > kHardlyTorn ? percent(figures.torn_share) + " torn"
+                                                      : std::string("nothing torn"));
+}
+
+std::string trial_options(const Trial& trial) {
+  return fmt::format("{} --depth {:.4g}", hold_options(trial.pose), trial.depth_mm);
+}
+
+std::string better_way(const JobConfig& config, const PreparedObject& prepared,
+                       const DippedObject& dipped, const RunContext& context) {
+  const Targets targets = job_targets(config, prepared, context);
+  const TrialTask task = job_trials(config, prepared, targets);
+  const Trial made = judge_dip(task, config.object.pose, dipped);
+  try {
+    const Trial best = search_holds(task, config.object.pose, quick_search(), context).best.front();
+    if (best.figures.score < made.figures.score + kWorthSaying) return "";
+    return fmt::format("{} ({})", describe_trial(best, way_up(config)), trial_options(best));
+  } catch (const InputError&) {
+    return "";  // it fits in no other way
+  }
+}
+
+}  // namespace hydrodip

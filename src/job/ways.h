@@ -1,0 +1,40 @@
+// How the pipelines look for ways to dip their object.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "job/prepare.h"
+#include "plan/search.h"
+#include "settings/config.h"
+
+namespace hydrodip {
+
+// The object's surface, weighed by what matters: by plan.importance, else by the paint. Throws
+// InputError for a picture that cannot be read, or a model without UVs to lay it on.
+Targets job_targets(const JobConfig& config, const PreparedObject& prepared,
+                    const RunContext& context);
+
+// Trials at the job's own quality. Refers to the targets.
+TrialTask job_trials(const JobConfig& config, const PreparedObject& prepared,
+                     const Targets& targets);
+
+// The way up of the model as it stands: object.up, or what its format says.
+ModelSide way_up(const JobConfig& config);
+
+// Puts in place what the job leaves to be found (object.rotate_deg and dip.depth_mm = auto), in the
+// configuration and on the object.
+void find_what_is_asked(JobConfig& config, PreparedObject& prepared, const RunContext& context);
+
+// "lying on its -x side, 16 mm deep: 24 % covered, nothing torn"
+std::string describe_trial(const Trial& trial, ModelSide up);
+// "--rotate 0,90,0 --depth 16"
+std::string trial_options(const Trial& trial);
+
+// The best way that a short search finds, in words with its options; empty if it is no better than
+// the dip that was made.
+std::string better_way(const JobConfig& config, const PreparedObject& prepared,
+                       const DippedObject& dipped, const RunContext& context);
+
+}  // namespace hydrodip

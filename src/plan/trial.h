@@ -1,0 +1,64 @@
+// Trial dips: what one way to hold an object is worth, and how deep it should go.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/context.h"
+#include "coat/dipped_object.h"
+#include "film/film.h"
+#include "plan/fit.h"
+#include "plan/targets.h"
+
+namespace hydrodip {
+
+// Shares of the object's whole surface unless said otherwise.
+struct TrialFigures {
+  double covered_share = 0;   // under whole film
+  double doubtful_share = 0;  // of that: stretched so far that it may tear after all
+  double torn_share = 0;      // of the film that meets the object, as Coverage has it
+  double air_mm2 = 0;         // surface under trapped air; trial dips do not look for it
+  // How much of what is wanted lands well: 1 is everything; below 0 more is spoilt than gained.
+  double score = 0;
+};
+
+struct Trial {
+  PoseOptions pose;
+  double depth_mm = 0;
+  std::vector<Keyframe> path = {};  // the way in, of a dip that was given one; empty: straight down
+  TrialFigures figures = {};
+  // Per target: what the film there is worth; 0: none, 1: whole and little stretched.
+  std::vector<float> worth = {};
+};
+
+// Of a single dip. Where another dip does what this one's torn film leaves, torn film is blank and
+// harmless, and costs little.
+inline constexpr double kTornPrice = 3;
+inline constexpr double kTornPriceAmongSeveral = 0.3;
+
+// What all trials of an object have in common. Refers to what it does not share.
+struct TrialTask {
+  std::shared_ptr<const Object> object;
+  const Targets& targets;  // of the object's triangles, in its own frame
+  FilmOptions film;
+  DipOptions dip;
+  BathOptions bath;
+  double depth_mm = 0;  // 0: the best one is looked for
+  // Torn film costs so many times its area: its flaps spoil what lies around, and are cleaned off.
+  double torn_price = kTornPrice;
+};
+
+// One dip in that pose, as deep as makes sense, and the best depth on its way: film that has
+// touched stays, so that the dip passes through every shallower one. Nothing if the object fits
+// neither film nor bath like that. `depth_most_mm` bounds the depth; 0: it does not.
+std::optional<Trial> try_pose(const TrialTask& task, const PoseOptions& pose, double depth_most_mm,
+                              const RunContext& context);
+
+// The same of a dip that was made, at its own depth.
+Trial judge_dip(const TrialTask& task, const PoseOptions& pose, const DippedObject& dipped);
+
+// The object with as many triangles as trial dips can make out, for a large scan; else itself.
+std::shared_ptr<const Object> simplified_for_trials(std::shared_ptr<const Object> object);
+
+}  // namespace hydrodip

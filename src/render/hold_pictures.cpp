@@ -1,0 +1,86 @@
+#include "render/hold_pictures.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/run_scope.h"
+#include "render/canvas.h"
+#include "render/normals.h"
+#include "render/studio.h"
+#include "render/view.h"
+
+namespace hydrodip {
+namespace {
+
+// The camera's up is +y: the object lies on its back so that its own up is up.
+Vec3 upright(const Vec3& p) { return {p.x(), p.z(), -p.y()}; }
+
+constexpr double kAspect = 4.0 / 3;
+constexpr float kDryPaleness = 0.55F;
+
+LinearColor paler(const LinearColor& c) {
+  const auto mix = [](float v) { return v + kDryPaleness * (0.75F - v); };
+  return {mix(c.r), mix(c.g), mix(c.b), 1};
+}
+
+// One picture of it: upright, or as it is.
+Image picture(const HoldPicture& hold, bool from_below, int width_px, int height_px,
+              const RunContext& context) {
+  const auto turned = [&](const Vec3& p) { return from_below ? p : upright(p); };
+  std::vector<Vec3> positions;
+  positions.reserve(hold.object.positions.size());
+  for (const Vec3& p : hold.object.positions) positions.push_back(turned(p));
+  const Surface surface(positions, hold.object.triangles);
+  TriangleMesh mesh;
+  mesh.positions = std::move(positions);
+  mesh.triangles = hold.object.triangles;
+  const std::vector<CornerNormals> normals = corner_normals(mesh.positions, mesh.triangles);
+  Appearance appearance;
+  appearance.wanted = [&](const SurfacePoint& point, const Vec3&, const Vec3&) {
+    const Vec3 position = position_at(hold.object, point);
+    const LinearColor color = hold.look(point, position, face_normal(hold.object, point.triangle));
+    return position.z() > hold.depth_mm ? paler(color) : color;
+  };
+  appearance.predicted = appearance.wanted;
+  const Vec3 direction = from_below ? Vec3(-Vec3::UnitZ()) : Vec3(0.25, -0.22, 1).normalized();
+  const Camera camera = frame_object(mesh, direction, double(width_px) / height_px, 0.82);
+  const Studio studio{mesh, surface, normals};
+  return LitView(studio, camera, width_px, height_px, context).show(appearance).wanted;
+}
+
+}  // namespace
+
+Image render_holds(const std::vector<HoldPicture>& holds, int width_px, const RunContext& context) {
+  const RunScope scope(context);
+  const std::string stage = "drawing the ways to hold it";
+  const int width = std::clamp(width_px, 64, kWidestPicture_px);
+  const double unit = width / 1600.0;
+  const auto px = [&](double length) { return int(std::lround(length * unit)); };
+  const int margin = px(28), gap = px(12), header = px(64), footer = px(64);
+  const int cell_width = std::max(8, (width - 2 * margin - gap) / 2);
+  const int cell_height = std::max(8, int(std::lround(0.5 * cell_width * kAspect)));
+  const int row = header + cell_height + footer;
+  Image page = blank_page(width, std::max(8, int(holds.size()) * row));
+  TextStyle title, line;
+  title.size_px = 25 * unit;
+  title.color = kTitleInk;
+  line.size_px = 19 * unit;
+  line.color = kLabelInk;
+  const double room = width - 2.0 * margin;
+  for (std::size_t i = 0; i < holds.size(); ++i) {
+    context.progress(stage, double(i) / double(holds.size()));
+    const int top = int(i) * row;
+    draw_centered(page, fit_text(holds[i].title, title, room), 0.5 * width, top + 42 * unit, title);
+    paste(page, picture(holds[i], false, cell_width, cell_height, context), margin, top + header);
+    paste(page, picture(holds[i], true, cell_width, cell_height, context),
+          margin + cell_width + gap, top + header);
+    draw_centered(page, fit_text(holds[i].caption, line, room), 0.5 * width,
+                  top + header + cell_height + 34 * unit, line);
+  }
+  context.progress(stage, 1);
+  return page;
+}
+
+}  // namespace hydrodip

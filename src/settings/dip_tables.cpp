@@ -1,0 +1,111 @@
+#include "settings/dip_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "base/error.h"
+#include "base/nearest_name.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr const char* kStart = "dip[";
+constexpr int kMostDips = 24;
+
+struct DipKey {
+  int number = 0;  // from 1
+  std::string key;
+};
+
+// Of "dip[2].depth_mm"; number 0 for other names.
+DipKey dip_key(const std::string& name) {
+  DipKey key;
+  if (!name.starts_with(kStart)) return key;
+  const std::size_t end = name.find("].");
+  if (end == std::string::npos) return key;
+  const char* const first = name.data() + std::string(kStart).size();
+  const auto [rest, error] = std::from_chars(first, name.data() + end, key.number);
+  if (error != std::errc() || rest != name.data() + end) return {};
+  key.key = name.substr(end + 2);
+  return key;
+}
+
+// The value as that parameter of a single dip would take it.
+JobConfig checked_as(const std::string& parameter, const Setting& setting) {
+  Setting renamed = setting;
+  renamed.name = parameter;
+  JobConfig config;
+  apply_settings(config, {renamed});
+  return config;
+}
+
+bool checked_flag(const Setting& setting) {
+  const auto* text = std::get_if<std::string>(&setting.value);
+  if (text && (*text == "true" || *text == "false")) return *text == "true";
+  throw InputError(fmt::format("{}: {} must be true or false, not {}", setting.origin, setting.name,
+                               setting.shown));
+}
+
+}  // namespace
+
+const std::vector<std::string>& dip_keys() {
+  static const std::vector<std::string> keys = {"down", "rotate_deg", "depth_mm", "path", "locked"};
+  return keys;
+}
+
+bool apply_dip_setting(JobConfig& config, const Setting& setting) {
+  const DipKey at = dip_key(setting.name);
+  if (at.number == 0) return false;
+  if (at.number < 1 || at.number > kMostDips)
+    throw InputError(fmt::format("{}: a job has at most {} dips", setting.origin, kMostDips));
+  if (std::find(dip_keys().begin(), dip_keys().end(), at.key) == dip_keys().end())
+    throw InputError(fmt::format(
+        "{}: unknown value '{}' of a [[dip]] table{}; it has down, rotate_deg, depth_mm, path and "
+        "locked, and what holds for all dips is given with --set or in a profile",
+        setting.origin, at.key, did_you_mean(at.key, dip_keys())));
+  if (int(config.dips.size()) < at.number) config.dips.resize(std::size_t(at.number));
+  DipEntry& dip = config.dips[std::size_t(at.number - 1)];
+  if (at.key == "down") {
+    dip.down = checked_as("object.down", setting).object.pose.down;
+  } else if (at.key == "rotate_deg") {
+    const JobConfig value = checked_as("object.rotate_deg", setting);
+    dip.rotate_deg.reset();
+    if (!value.plan.find_pose) dip.rotate_deg = value.object.pose.rotate_deg;
+  } else if (at.key == "depth_mm") {
+    const JobConfig value = checked_as("dip.depth_mm", setting);
+    dip.depth_mm.reset();
+    if (!value.plan.find_depth) dip.depth_mm = value.design.trajectory.depth_mm;
+  } else if (at.key == "path") {
+    dip.path = checked_as("path", setting).design.trajectory.path;
+  } else {
+    dip.locked = checked_flag(setting);
+  }
+  return true;
+}
+
+std::string path_text(const std::vector<Keyframe>& path) {
+  std::string rows;
+  for (const Keyframe& k : path)
+    rows += fmt::format("{}[{}, {}, {}, {}, {}, {}]", rows.empty() ? "" : ", ", k.lower_mm,
+                        k.shift_x_mm, k.shift_y_mm, k.turn_x_deg, k.turn_y_deg, k.turn_z_deg);
+  return "[" + rows + "]";
+}
+
+std::string dip_tables_toml(const std::vector<DipEntry>& dips) {
+  std::string text;
+  for (const DipEntry& dip : dips) {
+    text += "\n[[dip]]\n";
+    if (dip.down) text += fmt::format("down = \"{}\"\n", side_name(*dip.down));
+    if (dip.rotate_deg)
+      text += fmt::format("rotate_deg = [{:g}, {:g}, {:g}]\n", dip.rotate_deg->x(),
+                          dip.rotate_deg->y(), dip.rotate_deg->z());
+    if (dip.depth_mm) text += fmt::format("depth_mm = {:g}\n", *dip.depth_mm);
+    if (!dip.path.empty()) text += fmt::format("path = {}\n", path_text(dip.path));
+    if (dip.locked) text += "locked = true\n";
+  }
+  return text;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,88 @@
+#!/bin/sh
+# How to hold it and several dips: orient, plan, job files, --rotate auto, --strict, and what is
+# refused.
+. "$(dirname "$0")/common.sh"
+
+write_colored colored.ply
+small="--film 120x120 --set film.elements=800 --set dip.step_mm=1 --set preview.width_px=200"
+
+# shellcheck disable=SC2086
+"$hydrodip" orient colored.ply $small -o ways --json > ways.json || fail "orient: $?"
+cmp ways.json ways/orient.json || fail 'orient --json is not orient.json'
+[ -s ways/orient.png ] || fail 'orient.png'
+for key in poses rotate_deg depth_mm covered_share torn_share doubtful_share air_mm2 score command; do
+  grep -q "\"$key\"" ways.json || fail "orient --json has no $key"
+done
+# shellcheck disable=SC2086
+"$hydrodip" orient colored.ply $small --set preview.pictures=off --threads 1 -o one --quiet > /dev/null ||
+  fail 'orient with one thread'
+# The commands differ in what was typed; all else does not depend on threads.
+grep -v command ways.json > a; grep -v command one/orient.json > b
+cmp a b || fail 'orient depends on the number of threads'
+# The command it gives does what it says.
+command=$(sed -n 's/.*"command": "hydrodip \(print .*\)".*/\1/p' ways.json | head -n 1)
+# shellcheck disable=SC2086
+"$hydrodip" $command --dpi 72 --set print.samples=1 -o out --quiet > said.txt || fail "its command: $command"
+grep -q '^Good to dip\|^Can be dipped\|^Do not dip' said.txt || fail 'print does not say the headline first'
+
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $small --dpi 72 --set print.samples=1 --rotate auto --depth auto -o auto \
+  --quiet > /dev/null || fail 'rotate auto'
+cmp auto/print.png out/print.png || fail 'auto is not the first of orient'
+
+# Several dips: the plan is a job; the job and its parts print; the same bytes from anywhere.
+# shellcheck disable=SC2086
+"$hydrodip" plan colored.ply $small --dips 2 -o plan --json > plan.json || fail "plan: $?"
+grep -q '"gained_share"' plan.json || fail 'plan --json'
+[ "$(grep -c '^\[\[dip\]\]' plan/plan.toml)" -le 2 ] || fail 'plan.toml has too many dips'
+"$hydrodip" print plan/plan.toml --dpi 72 --set print.samples=1 -o dips --quiet > dips.txt ||
+  fail "print of a plan: $?"
+for file in dip-1/print.pdf dip-1/print.tif dip-1/report.json dip-1/run-sheet.pdf report.html report.json \
+  preview.png dips.png; do
+  [ -s "dips/$file" ] || fail "no dips/$file"
+done
+(cd plan && "$hydrodip" print plan.toml --dpi 72 --set print.samples=1 -o ../again --quiet > /dev/null) ||
+  fail 'print of a plan from its folder'
+for file in dip-1/print.pdf dip-1/print.png preview.png; do
+  cmp "dips/$file" "again/$file" || fail "$file depends on the folder"
+done
+
+# refused WHY COMMAND...: exits with 2 and says so in one line.
+refused() {
+  why=$1
+  shift
+  "$hydrodip" "$@" > out.txt 2> err.txt
+  code=$?
+  [ "$code" -eq 2 ] || fail "$*: exit $code"
+  [ "$(wc -l < err.txt)" -eq 1 ] || fail "$*: $(cat err.txt)"
+  grep -q -e "$why" err.txt || fail "$*: $(cat err.txt)"
+}
+refused 'how many dips' plan colored.ply
+printf '[object]\nfile = "colored.ply"\n[[dip]]\nrotate_deg = [0, 0]\n' > bad.toml
+refused 'bad.toml:4' print bad.toml
+printf '[object]\nfile = "colored.ply"\n[[dip]]\nrotat_deg = [0, 0, 0]\n' > bad.toml
+refused 'rotate_deg' print bad.toml
+printf '[[dip]]\n' > bad.toml
+refused 'names no model' print bad.toml
+refused 'straight down' print colored.ply --rotate auto --set dip.tilt_deg=10
+
+# A size that was forgotten is asked about before anything is computed.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' > tiny.obj
+refused 'is it really 1 mm' simulate tiny.obj
+"$hydrodip" simulate tiny.obj --units cm --film 60x60 --set film.elements=200 --set dip.step_mm=1 \
+  --set preview.pictures=off -o tiny --quiet > /dev/null || fail 'units are given'
+
+# --strict: a dip that should not be made is a failure of its own; the files are there all the same.
+"$hydrodip" sample sphere -o samples > /dev/null
+strict="simulate samples/sphere.obj --film 120x120 --set film.elements=2000 --set dip.step_mm=1
+        --set preview.pictures=off"
+# shellcheck disable=SC2086
+"$hydrodip" $strict --strict -o strict --quiet > strict.txt
+[ $? -eq 4 ] || fail '--strict does not exit with 4'
+grep -q '^Do not dip it like this' strict.txt || fail 'the headline does not come first'
+grep -q '^Better: ' strict.txt || fail 'no better way is quoted'
+[ -s strict/report.json ] || fail 'strict writes nothing'
+# shellcheck disable=SC2086
+"$hydrodip" $strict -o lax --quiet > /dev/null || fail 'without --strict'
+
+finish

@@ -1,0 +1,154 @@
+#include "plan/seams.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace hydrodip {
+namespace {
+
+constexpr double kHalf = 20;
+
+// A plate in x, y whose paint has one stripe without ink, or a hollow, or nothing special.
+class StripedPaint : public Paint {
+ public:
+  StripedPaint(const TriangleMesh& mesh, double from, double to)
+      : Paint({1, 1, 1, 1}), mesh_(mesh), from_(from), to_(to) {}
+  LinearColor color_at(const SurfacePoint& point) const override {
+    const double x = position_at(mesh_, point).x();
+    return x > from_ && x < to_ ? LinearColor{1, 1, 1, 1} : LinearColor{0.1F, 0.1F, 0.2F, 1};
+  }
+  bool says_anything() const override { return true; }
+
+ private:
+  const TriangleMesh& mesh_;
+  double from_, to_;
+};
+
+class Plate : public testing::Test {
+ protected:
+  Plate() {
+    mesh_->positions = {
+        {-kHalf, -kHalf, 0}, {kHalf, -kHalf, 0}, {kHalf, kHalf, 0}, {-kHalf, kHalf, 0}};
+    mesh_->triangles = {{0, 1, 2}, {0, 2, 3}};
+  }
+
+  // The first dip reaches up to x = 10, the second down to x = -10.
+  SharedSurface divide(const Paint& paint, double overlap_mm) {
+    const auto nodes = std::make_shared<const SurfaceNodes>(spread_targets(*mesh_, 6000));
+    std::vector<std::vector<float>> worth(2);
+    for (const Target& node : nodes->nodes()) {
+      worth[0].push_back(node.position.x() < 10 ? 1.0F : 0.0F);
+      worth[1].push_back(node.position.x() > -10 ? 1.0F : 0.0F);
+    }
+    const Surface surface(mesh_->positions, mesh_->triangles);
+    RunContext context;
+    return {{nodes, worth, paint, surface, 1, overlap_mm}, context};
+  }
+
+  std::vector<float> at(const SharedSurface& shared, double x, double y) {
+    return shared.shares_at({x, y, 0}, Vec3::UnitZ());
+  }
+
+  // Where the first dip's part falls to a half.
+  double seam_at(const SharedSurface& shared, double y) {
+    double low = -kHalf, high = kHalf;
+    for (int i = 0; i < 40; ++i) {
+      const double middle = 0.5 * (low + high);
+      (at(shared, middle, y)[0] > 0.5F ? low : high) = middle;
+    }
+    return low;
+  }
+
+  std::shared_ptr<TriangleMesh> mesh_ = std::make_shared<TriangleMesh>();
+};
+
+TEST_F(Plate, SharesAddUpAndComeFromFilmThatIsThere) {
+  const SharedSurface shared = divide(StripedPaint(*mesh_, 0, 0), 2);
+  for (double x = -19.5; x < 20; x += 0.37)
+    for (double y = -19; y < 20; y += 3.1) {
+      const std::vector<float> shares = at(shared, x, y);
+      EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0F), 1, 1e-5);
+      if (x > 10.5) {
+        EXPECT_EQ(shares[0], 0);
+      }
+      if (x < -10.5) {
+        EXPECT_EQ(shares[1], 0);
+      }
+    }
+  EXPECT_NEAR(shared.covered_share(), 1, 1e-9);
+}
+
+TEST_F(Plate, TheSeamGoesWhereNoInkIs) {
+  const SharedSurface shared = divide(StripedPaint(*mesh_, 4, 6), 2);
+  for (double y = -18; y < 19; y += 2) {
+    EXPECT_GT(seam_at(shared, y), 3.4) << y;
+    EXPECT_LT(seam_at(shared, y), 6.6) << y;
+  }
+  // About as long as the plate is wide: without ink it costs little to wind.
+  EXPECT_NEAR(shared.seam_mm(), 2 * kHalf, 15);
+}
+
+TEST_F(Plate, TheFadeIsAsWideAsTheOverlapAndLinear) {
+  for (const double overlap : {2.0, 6.0}) {
+    const SharedSurface shared = divide(StripedPaint(*mesh_, -1, 1), overlap);
+    double off = 0, count = 0;
+    for (double y = -15; y < 16; y += 1) {
+      const double seam = seam_at(shared, y);
+      for (double t = -0.8; t <= 0.8; t += 0.1) {
+        const double expected = std::clamp(0.5 - t, 0.0, 1.0);
+        const float share = at(shared, seam + t * overlap, y)[0];
+        off += std::abs(double(share) - expected);
+        ++count;
+      }
+    }
+    EXPECT_LT(off / count, 0.08) << overlap;  // nodes are half a millimetre apart
+  }
+}
+
+TEST_F(Plate, TheFadeKeepsOffTheBorderOfAFilm) {
+  const SharedSurface shared = divide(StripedPaint(*mesh_, 0, 0), 2);
+  for (double y = -18; y < 19; y += 2) EXPECT_LT(std::abs(seam_at(shared, y)), 9) << y;
+}
+
+TEST_F(Plate, AnAllotmentIsWhatOneDipGets) {
+  const SharedSurface shared = divide(StripedPaint(*mesh_, 0, 0), 2);
+  const Allotment first = shared.allotment(0, mesh_), second = shared.allotment(1, mesh_);
+  for (int i = 0; i < 200; ++i) {
+    const SurfacePoint point{i % 2, (i % 20) / 40.0, (i / 20) / 40.0};
+    EXPECT_NEAR(first.at(point) + second.at(point), 1, 1e-5);
+    EXPECT_EQ(first.at(point), shared.shares_at(position_at(*mesh_, point), Vec3::UnitZ())[0]);
+  }
+}
+
+TEST_F(Plate, OneDipDoesAll) {
+  const auto nodes = std::make_shared<const SurfaceNodes>(spread_targets(*mesh_, 500));
+  const Surface surface(mesh_->positions, mesh_->triangles);
+  RunContext context;
+  const StripedPaint paint(*mesh_, 0, 0);
+  const SharedSurface shared({nodes, {std::vector<float>(500, 1.0F)}, paint, surface, 1, 2},
+                             context);
+  EXPECT_EQ(at(shared, 3, 4), std::vector<float>{1});
+  EXPECT_TRUE(shared.seam_nodes().empty());
+  EXPECT_EQ(shared.seam_mm(), 0);
+}
+
+// Both sides of a thin plate are far from each other.
+TEST(SurfaceNodes, AThinWallHasTwoSides) {
+  TriangleMesh wall;
+  wall.positions = {{0, 0, 0},   {10, 0, 0},   {10, 10, 0},   {0, 10, 0},
+                    {0, 0, 0.1}, {10, 0, 0.1}, {10, 10, 0.1}, {0, 10, 0.1}};
+  wall.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}};
+  const SurfaceNodes nodes(spread_targets(wall, 1000));
+  std::vector<std::int32_t> found;
+  nodes.near({5, 5, 0.1}, Vec3::UnitZ(), 2, found);
+  EXPECT_FALSE(found.empty());
+  for (const std::int32_t i : found) EXPECT_GT(nodes.nodes()[std::size_t(i)].position.z(), 0.05);
+  for (const auto& [a, b] : nodes.neighbors())
+    EXPECT_NEAR(nodes.nodes()[std::size_t(a)].position.z(),
+                nodes.nodes()[std::size_t(b)].position.z(), 1e-9);
+}
+
+}  // namespace
+}  // namespace hydrodip

@@ -1,0 +1,123 @@
+#include "settings/job_file.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "base/error.h"
+#include "contains.h"
+#include "settings/dip_tables.h"
+#include "settings/settings.h"
+
+namespace hydrodip {
+namespace {
+
+class JobFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("job_file_") + info->name());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  JobConfig read(const std::string& text) {
+    std::ofstream(folder_ / "job.toml", std::ios::binary) << text;
+    JobConfig config;
+    apply_settings(config, read_settings(folder_ / "job.toml"));
+    return config;
+  }
+
+  std::string refusal(const std::string& text) {
+    try {
+      read(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(JobFile, NamesItsModelFromWhereItLies) {
+  EXPECT_EQ(read("[object]\nfile = \"models/a.obj\"\n").model, folder_ / "models/a.obj");
+}
+
+TEST_F(JobFile, HasDips) {
+  const JobConfig config = read(
+      "[[dip]]\ndown = \"+x\"\nrotate_deg = [1, 2, 3]\ndepth_mm = 20\nlocked = true\n"
+      "[[dip]]\nrotate_deg = \"auto\"\n[[dip]]\n"
+      "[[dip]]\npath = [[0, 0, 0, 0, 0, 0], [20, 5, 0, 0, 10, 0]]\n");
+  ASSERT_EQ(config.dips.size(), 4U);
+  EXPECT_EQ(config.dips[0].down, ModelSide::kPlusX);
+  EXPECT_EQ(*config.dips[0].rotate_deg, Vec3(1, 2, 3));
+  EXPECT_EQ(config.dips[0].depth_mm, 20);
+  EXPECT_TRUE(config.dips[0].locked);
+  EXPECT_FALSE(config.dips[1].rotate_deg || config.dips[1].depth_mm || config.dips[1].locked);
+  EXPECT_FALSE(config.dips[2].down || config.dips[2].rotate_deg);
+  ASSERT_EQ(config.dips[3].path.size(), 2U);
+  EXPECT_EQ(config.dips[3].path[1].turn_y_deg, 10);
+}
+
+TEST_F(JobFile, WhatHoldsForAllDipsStandsInDips) {
+  const JobConfig config = read("[dips]\nstep_mm = 0.3\n[[dip]]\n[[dip]]\n");
+  EXPECT_EQ(config.design.dip.step_mm, 0.3);
+  EXPECT_EQ(config.dips.size(), 2U);
+}
+
+TEST_F(JobFile, ReadsWhatItWrites) {
+  JobConfig config;
+  config.model = folder_ / "a \"b\" \\ c.obj";
+  config.object.pose.size_mm = 80;
+  config.object.base = {0.2F, 0.3F, 0.4F, 1};
+  config.design.film.width_mm = 300.5;
+  config.design.dip.step_mm = 0.25;
+  config.design.dip.material.tear_stretch = 1.3;
+  config.plan.overlap_mm = 3;
+  config.dips.resize(3);
+  config.dips[0].rotate_deg = Vec3(10, -20, 30);
+  config.dips[0].depth_mm = 12.3;
+  config.dips[1].down = ModelSide::kMinusY;
+  config.dips[1].locked = true;
+  config.dips[2].path = {{}, {15, 1, 2, 3, 4, 5}};
+  const JobConfig again = read(job_file(config, folder_));
+  EXPECT_TRUE(std::filesystem::weakly_canonical(again.model) ==
+              std::filesystem::weakly_canonical(config.model));
+  for (const Parameter& p : parameters()) {
+    if (p.name == "object.file") continue;
+    EXPECT_TRUE(p.get(again) == p.get(config)) << p.name;
+  }
+  ASSERT_EQ(again.dips.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(again.dips[k].down, config.dips[k].down);
+    EXPECT_EQ(again.dips[k].rotate_deg, config.dips[k].rotate_deg);
+    EXPECT_EQ(again.dips[k].depth_mm, config.dips[k].depth_mm);
+    EXPECT_EQ(again.dips[k].locked, config.dips[k].locked);
+  }
+  EXPECT_EQ(again.dips[2].path[1].turn_z_deg, 5);
+}
+
+TEST_F(JobFile, IsRefusedWhereItIsWrong) {
+  EXPECT_TRUE(contains(refusal("[[dip]]\ndepth = 3\n"), "did you mean"));
+  EXPECT_TRUE(contains(refusal("[[dip]]\ndepth = 3\n"), "job.toml:2"));
+  EXPECT_TRUE(contains(refusal("[[dip]]\nlocked = 1\n"), "true or false"));
+  EXPECT_TRUE(contains(refusal("[[dip]]\nrotate_deg = 7\n"), "three numbers"));
+  EXPECT_TRUE(contains(refusal("[[dip]]\ndepth_mm = -1\n"), "job.toml:2"));
+  std::string many;
+  for (int i = 0; i < 25; ++i) many += "[[dip]]\n";
+  EXPECT_TRUE(contains(refusal(many), "at most 24"));
+}
+
+TEST(Auto, StandsForPoseAndDepth) {
+  JobConfig config;
+  apply_settings(config, {parse_set("object.rotate_deg=auto"), parse_set("dip.depth_mm=auto")});
+  EXPECT_TRUE(config.plan.find_pose && config.plan.find_depth);
+  EXPECT_EQ(std::get<std::string>(find_parameter("dip.depth_mm", "").get(config)), "auto");
+  apply_settings(config, {parse_set("object.rotate_deg=1,2,3"), parse_set("dip.depth_mm=4")});
+  EXPECT_FALSE(config.plan.find_pose || config.plan.find_depth);
+  EXPECT_EQ(config.design.trajectory.depth_mm, 4);
+}
+
+}  // namespace
+}  // namespace hydrodip
