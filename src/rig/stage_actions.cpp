@@ -20,12 +20,12 @@ const std::vector<std::string>& action_names() {
 }
 
 JobResult words(const std::string& text) {
-  return {{},
-          {},
-          text,
-          nlohmann::ordered_json{{"text", text}}.dump(2, ' ', false,
-                                                      nlohmann::json::error_handler_t::replace) +
-              "\n"};
+  JobResult result;
+  result.text = text;
+  result.json = nlohmann::ordered_json{{"text", text}}.dump(
+                    2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                "\n";
+  return result;
 }
 
 bool needs_job(const std::string& action) {
