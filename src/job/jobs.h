@@ -13,12 +13,12 @@
 namespace hydrodip {
 
 struct JobResult {
-  std::filesystem::path folder;    // empty: nothing was written
-  std::vector<std::string> files;  // in folder
-  std::string text;                // the result in words, several lines
-  std::string json;                // the same for machines, one object
-  bool do_not_dip = false;         // the verdict
-  std::vector<std::string> dips;   // of several dips: the folders of their sheets, in folder
+  std::filesystem::path folder;        // empty: nothing was written
+  std::vector<std::string> files;      // in folder
+  std::string text;                    // the result in words, several lines
+  std::string json;                    // the same for machines, one object
+  bool do_not_dip = false;             // the verdict
+  std::vector<std::string> dips = {};  // of several: the folders of their sheets, in folder
 };
 
 // The main job: simulates the dip and writes the film image that puts every colour in its place:

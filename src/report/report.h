@@ -165,8 +165,8 @@ std::string dip_angles_json(const DipAngles& angles);
 struct ReportPictures {
   std::vector<std::uint8_t> preview_png;  // the files' bytes; empty: none
   std::vector<std::uint8_t> maps_png;
-  std::vector<std::uint8_t> dips_png = {};  // of several dips
   std::string scene = {};                   // scene_json() for the 3D view; empty: none
+  std::vector<std::uint8_t> dips_png = {};  // of several dips
 };
 
 // One self-contained page that needs no network; every text is escaped. Words and pictures come
