@@ -185,12 +185,15 @@ class DeafPrinter : public Link, public Clock {
     if (says("M114"))
       answer_ += fmt::format("X:0.00 Y:0.00 Z:{:.2f} E:0.00 Count X:0 Y:0 Z:{}\n",
                              tells_its_goal_ ? 150.0 : double(steps) / 400, steps);
-    answer_ += "ok\n";
+    if (says("G1 ")) ++sent_on;
+    answer_ += says("M112") ? "Error:Printer halted. kill() called!\n" : "ok\n";
   }
   std::string receive(double) override {
     now_s_ += 0.0005;
     return std::exchange(answer_, "");
   }
+
+  int sent_on = 0;
 
  private:
   double steps_per_s_;
@@ -206,12 +209,24 @@ TEST(MarlinStage, NeverStandsWhileItGoesOn) {
     const auto stage = marlin_stage(printer, printer);
     stage->connect();
     stage->state();
+    printer.sleep(4);
+    EXPECT_TRUE(stage->state().moving) << "whoever sent it";
     stage->stop();
     for (int look = 0; look < 300; ++look) {
       ASSERT_TRUE(stage->state().moving) << steps_per_s << " steps/s, look " << look;
       printer.sleep(0.001);
     }
   }
+}
+
+TEST(MarlinStage, AHaltedPrinterIsNotSentOn) {
+  DeafPrinter printer(0, false);
+  const auto stage = marlin_stage(printer, printer);
+  stage->connect();
+  stage->halt();
+  EXPECT_THROW(stage->aim(50), StageError);
+  EXPECT_EQ(printer.sent_on, 0);
+  EXPECT_FALSE(stage->state().fault.empty());
 }
 
 // Two wrong bits in a command looked right, and sent it 0.005 mm further than promised.
