@@ -1,6 +1,10 @@
 #include "rig/mover.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
 
 #include "session.h"
 
@@ -156,6 +160,73 @@ TEST(ZaberStage, OverheatedBeforeTheStartMovesNothing) {
   const Outcome outcome = run_dip(bench, {});
   EXPECT_NE(outcome.message.find("too hot"), std::string::npos) << outcome.message;
   EXPECT_EQ(bench.emulator->position_mm(), place_mm);
+}
+
+// A printer that says ok to its stop and goes on, as when two wrong bits made another command of
+// it.
+class DeafPrinter : public Link, public Clock {
+ public:
+  DeafPrinter(double steps_per_s, bool tells_its_goal)
+      : steps_per_s_(steps_per_s), tells_its_goal_(tells_its_goal) {}
+
+  double now_s() override { return now_s_; }
+  bool wait_readable(int, double seconds) override {
+    now_s_ += seconds;
+    return false;
+  }
+  std::string utc() override { return ""; }
+
+  void send(const std::string& bytes) override {
+    const auto says = [&](const char* command) { return bytes.find(command) != std::string::npos; };
+    const long steps = std::lround(12000 + now_s_ * steps_per_s_);
+    if (says("M115")) answer_ += "FIRMWARE_NAME:deaf SOURCE_CODE\n";
+    if (says("M92")) answer_ += "M92 X80.00 Z400.00\n";
+    if (says("M211")) answer_ += "Min: X0.00 Z0.00 Max: X200.00 Z200.00\n";
+    if (says("M114"))
+      answer_ += fmt::format("X:0.00 Y:0.00 Z:{:.2f} E:0.00 Count X:0 Y:0 Z:{}\n",
+                             tells_its_goal_ ? 150.0 : double(steps) / 400, steps);
+    if (says("G1 ")) ++sent_on;
+    answer_ += says("M112") ? "Error:Printer halted. kill() called!\n" : "ok\n";
+  }
+  std::string receive(double) override {
+    now_s_ += 0.0005;
+    return std::exchange(answer_, "");
+  }
+
+  int sent_on = 0;
+
+ private:
+  double steps_per_s_;
+  bool tells_its_goal_;
+  double now_s_ = 0;
+  std::string answer_;
+};
+
+TEST(MarlinStage, NeverStandsWhileItGoesOn) {
+  // Slower than anybody sees in a while, but it says where it goes; or a step in every few looks.
+  for (const auto& [steps_per_s, tells_its_goal] : {std::pair{0.5, true}, {200.0, false}}) {
+    DeafPrinter printer(steps_per_s, tells_its_goal);
+    const auto stage = marlin_stage(printer, printer);
+    stage->connect();
+    stage->state();
+    printer.sleep(4);
+    EXPECT_TRUE(stage->state().moving) << "whoever sent it";
+    stage->stop();
+    for (int look = 0; look < 300; ++look) {
+      ASSERT_TRUE(stage->state().moving) << steps_per_s << " steps/s, look " << look;
+      printer.sleep(0.001);
+    }
+  }
+}
+
+TEST(MarlinStage, AHaltedPrinterIsNotSentOn) {
+  DeafPrinter printer(0, false);
+  const auto stage = marlin_stage(printer, printer);
+  stage->connect();
+  stage->halt();
+  EXPECT_THROW(stage->aim(50), StageError);
+  EXPECT_EQ(printer.sent_on, 0);
+  EXPECT_FALSE(stage->state().fault.empty());
 }
 
 // Two wrong bits in a command looked right, and sent it 0.005 mm further than promised.

@@ -386,12 +386,16 @@ TEST(PaperBench, AStageThatTremblesForEverIsGivenUp) {
 TEST(PaperBench, ASecondCtrlCHaltsAtOnce) {
   PaperBench bench;
   bench.mover.home();
+  bench.stage.looks = 0;
   bench.stage.spoil = [&](StageState& state) {
-    state.moving = bench.stage.halts == 0;
-    if (bench.stage.looks == 6) bench.context.cancel();
-    if (bench.stage.looks == 9) bench.context.cancel();
+    state.moving = bench.stage.looks > 1 && bench.stage.halts == 0;
+    if (bench.stage.looks == 4 || bench.stage.looks == 7) bench.context.cancel();
   };
-  EXPECT_THROW(bench.mover.move_to("dip", 50, 60, false), StageError);
+  EXPECT_THROW(bench.mover.move_to("dip", 50, 60, false), Cancelled);
+  EXPECT_EQ(bench.stage.stops, 1);
+  EXPECT_EQ(bench.stage.halts, 1);
+  ASSERT_TRUE(bench.mover.last_rest());
+  EXPECT_TRUE(bench.mover.last_rest()->confirmed);
 }
 
 // A homed stage of either make on which the home is lost or which grows too hot between two looks:
