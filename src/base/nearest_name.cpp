@@ -8,6 +8,8 @@ namespace {
 
 // Names longer than this are not typing errors; it also bounds the work.
 constexpr std::size_t kLongestName = 64;
+// Fewer letters begin too many names.
+constexpr std::size_t kLeastOfName = 4;
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -42,6 +44,9 @@ std::string nearest_name(const std::string& name, const std::vector<std::string>
     std::size_t distance = edit_distance(wanted, lower(candidate));
     if (wanted.find('.') == std::string::npos && candidate.find('.') != std::string::npos)
       distance = std::min(distance, edit_distance(wanted, lower(last_part(candidate))));
+    // Cut short, as in 'depth' for 'depth_mm'.
+    if (wanted.size() >= kLeastOfName && lower(candidate).rfind(wanted, 0) == 0)
+      distance = std::min<std::size_t>(distance, 1);
     if (distance < best_distance) {
       best_distance = distance;
       best = candidate;

@@ -149,6 +149,7 @@ TEST_F(WorkspaceTest, ArtworkIsSeenAndItsFileWatched) {
     save_png(picture, image);
   };
   plain(0);
+  dip();
   design_it();
   project_.artwork.emplace_back();
   project_.artwork[0].image = picture;
