@@ -282,6 +282,11 @@ TEST_F(GuideTest, ThePlanLeadsThroughTheWaterAtConstantSpeed) {
   EXPECT_EQ(plan[1].to_height_mm, -29.5);
   EXPECT_EQ(plan[1].mm_per_min, 100);
   EXPECT_EQ(plan.front().from_height_mm, plan.back().to_height_mm);
+  // Constant speed begins where the approach ends: below the place where the object hangs clear.
+  EXPECT_EQ(plan.front().from_height_mm, job.config.stage.clearance_mm);
+  EXPECT_EQ(plan[1].from_height_mm,
+            std::min(job.config.stage.approach_mm, job.config.stage.clearance_mm));
+  EXPECT_LT(plan[1].from_height_mm, plan.front().from_height_mm);
   StageOptions minus;
   minus.down = StageDown::kMinus;
   EXPECT_EQ(stage_position_mm({}, 100, -29.5), 129.5);

@@ -398,6 +398,27 @@ TEST(PaperBench, ASecondCtrlCHaltsAtOnce) {
   EXPECT_TRUE(bench.mover.last_rest()->confirmed);
 }
 
+// What arrives over a bad link may be an answer of long ago, and the stop may have been lost on it.
+TEST(PaperBench, OverABadLinkTheStopIsRepeatedAndOldAnswersDoNotCount) {
+  PaperBench bench;
+  bench.mover.home();
+  bench.stage.looks = 0;
+  bool lost = false;
+  double lost_s = 0;
+  bench.stage.spoil = [&](StageState&) {
+    if (bench.stage.looks == 4) bench.context.cancel();
+    if (bench.stage.stops == 0 || lost) return;
+    lost = true;
+    lost_s = bench.clock.now_s();
+    throw LinkError("nothing was heard");
+  };
+  EXPECT_THROW(bench.mover.move_to("dip", 50, 60, false), Cancelled);
+  EXPECT_EQ(bench.stage.stops, 2);
+  EXPECT_GE(bench.clock.now_s() - lost_s, 2.5);
+  ASSERT_TRUE(bench.mover.last_rest());
+  EXPECT_TRUE(bench.mover.last_rest()->confirmed);
+}
+
 // A homed stage of either make on which the home is lost or which grows too hot between two looks:
 // already the answer to the next command says so.
 TEST_P(Watched, TheDriverRefusesToAimAStageWithoutHomeOrWithAFault) {

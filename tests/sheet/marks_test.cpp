@@ -242,6 +242,23 @@ TEST(Alarm, StandsInABandOfTheMarginAndPushesNothingOut) {
   }
 }
 
+// The narrower the sheet, the more texts share its long edges.
+TEST(Alarm, LeavesEveryTextAPlaceOfItsOwn) {
+  for (double width_mm = 16; width_mm <= 120; width_mm += 4)
+    for (const char* alarm :
+         {"", "DO NOT DIP: 17 % of the object covered, 39.0 % of the film torn"}) {
+      SheetOptions options = sheet(width_mm, 300, 7);
+      options.alarm = alarm;
+      const Marks marks = make_marks(options, half_em);
+      std::vector<Box2> boxes;
+      for (const MarkText& text : marks.texts) boxes.push_back(box_of(text));
+      for (const MarkBand& band : marks.bands) boxes.push_back(band.box);
+      for (std::size_t i = 0; i < boxes.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+          EXPECT_FALSE(overlap(boxes[i], boxes[k])) << width_mm << " mm, " << i << " and " << k;
+    }
+}
+
 TEST(Alarm, IsShortenedOrMissedWithAWarningWhereThereIsNoRoom) {
   SheetOptions options = sheet(60, 60, 10);
   options.alarm = "DO NOT DIP: 17 % of the object covered, 39.0 % of the film that meets it torn";

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <fstream>
 #include <sstream>
 #include <tuple>
@@ -393,6 +395,37 @@ TEST_F(PrintPdf, AFullDiskIsNoticed) {
         write_print_pdf("/dev/full", patterned_image(options), srgb_profile(), options, context_),
         InputError);
   }
+}
+
+// Whatever the library says of its writing: a file without its end is none.
+TEST_F(PrintPdf, AFileThatIsCutShortIsNoticed) {
+  const SheetOptions options = sheet(80, 90, 10, 72);
+  rlimit whole{};
+  getrlimit(RLIMIT_FSIZE, &whole);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit cut{3000, whole.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &cut);
+  EXPECT_THROW(write_print_pdf(folder_ / "cut.pdf", patterned_image(options), srgb_profile(),
+                               options, context_),
+               InputError);
+  setrlimit(RLIMIT_FSIZE, &whole);
+  std::signal(SIGXFSZ, handler);
+}
+
+TEST_F(PrintPdf, ViewersMayNotScaleIt) {
+  const SheetOptions options = sheet(80, 90, 10, 72);
+  write_print_pdf(folder_ / "print.pdf", patterned_image(options), srgb_profile(), options,
+                  context_);
+  const auto bytes = read_file(folder_ / "print.pdf");
+  EXPECT_NE(std::string(bytes.begin(), bytes.end()).find("/PrintScaling /None"), std::string::npos);
+}
+
+TEST_F(PrintPdf, WarnsOfMarksThatHaveNoRoom) {
+  const SheetOptions tiny = sheet(30, 30, 3, 72), roomy = sheet(200, 200, 10, 72);
+  write_print_pdf(folder_ / "roomy.pdf", patterned_image(roomy), srgb_profile(), roomy, context_);
+  EXPECT_TRUE(context_.warnings().empty());
+  write_print_pdf(folder_ / "tiny.pdf", patterned_image(tiny), srgb_profile(), tiny, context_);
+  EXPECT_FALSE(context_.warnings().empty());
 }
 
 TEST_F(PrintPdf, CanBeCancelled) {

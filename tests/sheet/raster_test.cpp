@@ -87,6 +87,34 @@ TEST_F(PrintRaster, TheTiffIsReadBack) {
   EXPECT_EQ(file.inks.cmyk, inks.cmyk);
 }
 
+TEST_F(PrintRaster, ResolutionsInCentimetresAreConverted) {
+  const SheetOptions options = sheet(52, 61, 5, 150);
+  const std::string path = (folder_ / "print.tif").string();
+  write_print_tiff(path, patterned_inks(options), device_profile(), options);
+  TIFF* tiff = TIFFOpen(path.c_str(), "r+");
+  TIFFSetField(tiff, TIFFTAG_RESOLUTIONUNIT, RESUNIT_CENTIMETER);
+  TIFFSetField(tiff, TIFFTAG_XRESOLUTION, 100.0F);
+  TIFFSetField(tiff, TIFFTAG_YRESOLUTION, 100.0F);
+  TIFFRewriteDirectory(tiff);
+  TIFFClose(tiff);
+  EXPECT_NEAR(read_cmyk_tiff(path).dpi, 254, 1e-3);
+}
+
+TEST_F(PrintRaster, ThreeInksAreNotFour) {
+  const std::string path = (folder_ / "three.tif").string();
+  TIFF* tiff = TIFFOpen(path.c_str(), "w");
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 4);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 3);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 3);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_SEPARATED);
+  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  std::uint8_t row[12] = {};
+  for (std::uint32_t y = 0; y < 3; ++y) TIFFWriteScanline(tiff, row, y, 0);
+  TIFFClose(tiff);
+  EXPECT_THROW(read_cmyk_tiff(path), InputError);
+}
+
 TEST_F(PrintRaster, OtherFilesAreNoInks) {
   const SheetOptions options = sheet(52, 61, 5, 150);
   std::ofstream(folder_ / "text.tif") << "II*";
