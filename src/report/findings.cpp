@@ -78,6 +78,21 @@ Finding tears(const Coverage& c) {
           "another turn, or use a film that bears more. The overlay \"tears\" shows where."};
 }
 
+bool is_of_several(const Report& report) { return !report.dips.empty() || report.dip_of > 1; }
+
+// No dip inks what it tears, and another one brings what belongs there: what stays bare is the
+// coverage's matter.
+Finding tears_of_several(const Coverage& c) {
+  if (!(c.torn_mm2 > 0)) return tears(c);
+  return {"tears",
+          Concern::kCare,
+          "Tears",
+          percent(c.torn_share()),
+          "of the film that meets the object tears. Nothing is printed on it; another dip brings "
+          "what belongs there.",
+          "Take torn film off the water and the object before it dries."};
+}
+
 // Pressed together, or lifted out of the water on the way: only where there is any worth naming.
 void add_slack_film(const Coverage& c, std::vector<Finding>& list) {
   if (c.wrinkled_mm2 > kFewWrinkles * c.covered_mm2)
@@ -305,7 +320,7 @@ std::vector<Finding> findings(const Report& report) {
       list.push_back({"better_way", Concern::kNone, "Better", "", report.better_way + ".", ""});
     if (report.seams) list.push_back(seams(*report.seams));
     if (c.film_on_object_mm2 > 0) {
-      list.push_back(tears(c));
+      list.push_back(is_of_several(report) ? tears_of_several(c) : tears(c));
       list.push_back(stretch(c, report.tear_stretch));
       add_slack_film(c, list);
       if (report.air) add_air(*report.air, c, list);
