@@ -11,6 +11,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "base/error.h"
 #include "base/run_scope.h"
@@ -109,9 +110,12 @@ void add_triangles(RTCScene scene, const std::vector<Vec3>& positions,
 // among triangles hit exactly on their common edge. So every thread builds alone: all places in
 // Embree's arena are kept for those who join (see device()), and one joins at a time.
 void build(RTCScene scene) {
-  static std::timed_mutex one_at_a_time;
+  static std::mutex one_at_a_time;
   std::unique_lock lock(one_at_a_time, std::defer_lock);
-  while (!lock.try_lock_for(std::chrono::milliseconds(5))) check_cancelled();
+  while (!lock.try_lock()) {
+    check_cancelled();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   bool stopped = false;
   const auto go_on = [](void* stopped, double) {
     try {
