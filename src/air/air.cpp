@@ -18,7 +18,7 @@
 #include "base/parallel.h"
 #include "base/run_scope.h"
 #include "dip/travel.h"
-#include "dip/wetting.h"
+#include "object/append.h"
 
 namespace hydrodip {
 
@@ -308,7 +308,7 @@ class Search {
       AirPocket pocket = close(hollow, &lids);
       PocketSurface::Part part = measure(hollow, pocket);
       if (!(pocket.area_mm2 > 0) || !lean(hollow, pocket)) continue;
-      add(lids, air.lids);
+      append(air.lids, lids);
       pockets.emplace_back(std::move(pocket), std::move(part.triangles));
     }
     std::ranges::stable_sort(pockets, std::greater<>(),
@@ -446,13 +446,6 @@ class Search {
     }
     pocket.escapes_share = 1 - least / then;
     return true;
-  }
-
-  static void add(const TriangleMesh& more, TriangleMesh& all) {
-    const auto base = std::int32_t(all.positions.size());
-    all.positions.insert(all.positions.end(), more.positions.begin(), more.positions.end());
-    for (const Triangle& t : more.triangles)
-      all.triangles.push_back({base + t[0], base + t[1], base + t[2]});
   }
 
   Plane plane_at(double travelled_mm) const { return water_at(travel_.at(travelled_mm)); }

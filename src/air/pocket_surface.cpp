@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <tuple>
 
+#include "base/disjoint_sets.h"
 #include "base/run_scope.h"
 
 namespace hydrodip {
@@ -35,28 +35,6 @@ void for_fan(const Polygon& polygon, const Visit& visit) {
     visit(0.5 * (b - a).cross(c - a).norm(), Vec3((a + b + c) / 3));
   }
 }
-
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), std::int32_t(0));
-  }
-  std::int32_t of(std::int32_t i) {
-    while (parent_[std::size_t(i)] != i) {
-      parent_[std::size_t(i)] = parent_[std::size_t(parent_[std::size_t(i)])];
-      i = parent_[std::size_t(i)];
-    }
-    return i;
-  }
-  void join(std::int32_t a, std::int32_t b) {
-    a = of(a);
-    b = of(b);
-    parent_[std::size_t(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 
 }  // namespace
 
@@ -87,7 +65,7 @@ PocketSurface::Part PocketSurface::part(
     const Plane& water, const std::optional<Plane>& below,
     const std::function<bool(const Vec3&, const Vec3&, const Vec3&)>& holds,
     double reach_mm) const {
-  Sets pieces(mesh_.triangles.size());
+  DisjointSets pieces(mesh_.triangles.size());
   const auto height = [&](std::int32_t v) { return water.height(mesh_.positions[std::size_t(v)]); };
   for (const Shared& shared : shared_)
     if (std::max(height(shared.a), height(shared.b)) > 0) pieces.join(shared.one, shared.other);
@@ -112,7 +90,7 @@ PocketSurface::Part PocketSurface::part(
     const auto& v = mesh_.triangles[t];
     if (height(v[0]) <= 0 && height(v[1]) <= 0 && height(v[2]) <= 0) continue;
     const Vec3 normal = normal_of(t);
-    const auto piece = std::size_t(pieces.of(std::int32_t(t)));
+    const auto piece = pieces.find(std::int32_t(t));
     for_fan(above(t), [&](double area, const Vec3& middle) {
       if (!(area > 0)) return;
       all[piece] += area;
@@ -125,7 +103,7 @@ PocketSurface::Part PocketSurface::part(
   Part part;
   double highest = -std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-    const auto piece = std::size_t(pieces.of(std::int32_t(t)));
+    const auto piece = pieces.find(std::int32_t(t));
     if (!(in_pocket[piece] > 0.5 * all[piece])) continue;
     Polygon polygon = above(t);
     if (polygon.size() < 3) continue;

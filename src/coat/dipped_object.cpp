@@ -4,6 +4,7 @@
 
 #include "base/run_scope.h"
 #include "dip/wetting.h"
+#include "object/append.h"
 
 namespace hydrodip {
 
@@ -19,10 +20,7 @@ DipResult dip_around_air(const PosedObject& posed, const TriangleMesh& lids,
                          const DipObserver& observe) {
   const auto all = std::make_shared<TriangleMesh>(posed.mesh());
   const std::size_t own = all->triangles.size();
-  const auto base = std::int32_t(all->positions.size());
-  all->positions.insert(all->positions.end(), lids.positions.begin(), lids.positions.end());
-  for (const Triangle& t : lids.triangles)
-    all->triangles.push_back({base + t[0], base + t[1], base + t[2]});
+  append(*all, lids);
   const Surface surface(all);
   DipResult result =
       dip(film, all->positions, all->triangles, surface, trajectory, options, context, observe);
