@@ -157,9 +157,9 @@ void announce_outputs(OutputFolder& folder, const std::string& command, const Jo
 // So many moments of a way that is not straight down, for those who have to go it.
 constexpr int kWayRows = 12;
 
-std::vector<ReportWay> way_in(const JobConfig& config, const TriangleMesh& mesh) {
+std::vector<WayPoint> way_in(const JobConfig& config, const TriangleMesh& mesh) {
   const Trajectory way = make_trajectory(config.design.trajectory, mesh.positions);
-  std::vector<ReportWay> rows;
+  std::vector<WayPoint> rows;
   if (way.is_straight_down()) return rows;
   const Travel travel(way, mesh.positions, mesh.triangles);
   for (int row = 0; row <= kWayRows; ++row) {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "air/air.h"
-#include "dip/trajectory.h"
+#include "dip/way_point.h"
 #include "object/dip_angles.h"
 #include "object/health.h"
 #include "transfer/coverage.h"
@@ -61,12 +61,6 @@ struct ReportRound {
   std::string process;  // "dip", "ink"
   int round = 0;
   std::vector<ReportFigure> figures;
-};
-
-// Where the object is on its way into the water, and how far its fastest wetted point has come.
-struct ReportWay {
-  double travelled_mm = 0;
-  Keyframe pose;
 };
 
 struct ReportOutput {
@@ -122,7 +116,7 @@ struct Report {
   std::vector<ReportStage> stages;  // in the order they ran
   double total_seconds = 0;         // 0: the sum of the stages
   std::vector<ReportRound> rounds;
-  std::vector<ReportWay> way_in;          // empty: straight down
+  std::vector<WayPoint> way_in;           // empty: straight down
   std::optional<Coverage> coverage;       // nothing was dipped: absent
   std::shared_ptr<const TrappedAir> air;  // likewise
   std::optional<DipAngles> angles;

@@ -83,9 +83,9 @@ Json coverage_json(const Coverage& c) {
 
 Json point_json(const Vec3& p) { return {number(p.x()), number(p.y()), number(p.z())}; }
 
-Json way_json(const std::vector<ReportWay>& way) {
+Json way_json(const std::vector<WayPoint>& way) {
   Json rows = Json::array();
-  for (const ReportWay& w : way)
+  for (const WayPoint& w : way)
     rows.push_back({{"travelled_mm", number(w.travelled_mm)},
                     {"lower_mm", number(w.pose.lower_mm)},
                     {"shift_x_mm", number(w.pose.shift_x_mm)},

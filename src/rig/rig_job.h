@@ -7,17 +7,11 @@
 #include <vector>
 
 #include "base/math.h"
-#include "dip/trajectory.h"
+#include "dip/way_point.h"
 #include "settings/config.h"
 #include "settings/settings.h"
 
 namespace hydrodip {
-
-// Where the object is on its way into the water, and how far its fastest wetted point has come.
-struct WayPoint {
-  double travelled_mm = 0;
-  Keyframe pose;
-};
 
 struct RigJob {
   std::filesystem::path folder;

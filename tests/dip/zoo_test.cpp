@@ -76,38 +76,30 @@ void expect_sound(const shapes::Shape& shape, const FilmOptions& film_options, D
   }
 }
 
-class Zoo : public ::testing::TestWithParam<int> {};
-
-TEST_P(Zoo, EndsSoundlyWithTears) {
-  const auto animal = shapes::zoo()[std::size_t(GetParam())];
-  SCOPED_TRACE(animal.name);
-  RunContext context;
+class Zoo : public ::testing::TestWithParam<int> {
+ protected:
+  Zoo() { options.step_mm = 0.5; }
+  void expect_ends_soundly(const TrajectoryOptions& way = {}) {
+    const auto animal = shapes::zoo()[std::size_t(GetParam())];
+    SCOPED_TRACE(animal.name);
+    expect_sound(animal.shape, coarse_film(), options, RunContext(), way);
+  }
   DipOptions options;
-  options.step_mm = 0.5;
-  expect_sound(animal.shape, coarse_film(), options, context);
-}
+};
+
+TEST_P(Zoo, EndsSoundlyWithTears) { expect_ends_soundly(); }
 
 TEST_P(Zoo, EndsSoundlyRolledIn) {
-  const auto animal = shapes::zoo()[std::size_t(GetParam())];
-  SCOPED_TRACE(animal.name);
-  RunContext context;
-  DipOptions options;
-  options.step_mm = 0.5;
   TrajectoryOptions way;
   way.tilt_deg = 10;
   way.tilt_toward_deg = 30;
   way.roll_deg = 25;
-  expect_sound(animal.shape, coarse_film(), options, context, way);
+  expect_ends_soundly(way);
 }
 
 TEST_P(Zoo, EndsSoundlyWithoutTears) {
-  const auto animal = shapes::zoo()[std::size_t(GetParam())];
-  SCOPED_TRACE(animal.name);
-  RunContext context;
-  DipOptions options;
-  options.step_mm = 0.5;
   options.material.tear_stretch = 0;
-  expect_sound(animal.shape, coarse_film(), options, context);
+  expect_ends_soundly();
 }
 
 INSTANTIATE_TEST_SUITE_P(Slow, Zoo, ::testing::Range(0, int(shapes::zoo().size())),
