@@ -19,8 +19,6 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr LinearColor kBare{0.55F, 0.55F, 0.55F, 1};
-constexpr LinearColor kCovered{0.05F, 0.3F, 0.36F, 1};
 constexpr LinearColor kTorn{0.55F, 0.02F, 0.02F, 1};
 
 std::string command_for(const JobConfig& config, const Trial& trial) {
@@ -81,8 +79,8 @@ Image draw_holds(const JobConfig& config, const PreparedObject& prepared,
     const auto look = [&paint, &d](const SurfacePoint& point, const Vec3& position,
                                    const Vec3& normal) {
       if (d.map->to_film(position, normal))
-        return paint.says_anything() ? paint.color_at(point) : kCovered;
-      return d.map->torn_at(position, normal) ? kTorn : kBare;
+        return paint.says_anything() ? paint.color_at(point) : kHoldCovered;
+      return d.map->torn_at(position, normal) ? kTorn : kHoldBare;
     };
     pictures.push_back({d.posed.mesh(), d.posed.surface(), look, best[i].depth_mm,
                         fmt::format("{}. {}, {:.4g} mm deep", i + 1,

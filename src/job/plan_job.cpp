@@ -17,9 +17,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr LinearColor kBare{0.55F, 0.55F, 0.55F, 1};
 constexpr LinearColor kEarlier{0.33F, 0.42F, 0.5F, 1};
-constexpr LinearColor kCovered{0.05F, 0.3F, 0.36F, 1};
 
 double gained(const DipPlan& plan, std::size_t k) {
   return plan.covered_after[k] - (k > 0 ? plan.covered_after[k - 1] : 0);
@@ -101,8 +99,8 @@ Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPla
       };
       for (std::size_t j = 0; j < k; ++j)
         if (lies(dipped[j])) return kEarlier;
-      if (!lies(dipped[k])) return kBare;
-      return paint.says_anything() ? paint.color_at(point) : kCovered;
+      if (!lies(dipped[k])) return kHoldBare;
+      return paint.says_anything() ? paint.color_at(point) : kHoldCovered;
     };
     const Trial& dip = plan.dips[k];
     pictures.push_back(

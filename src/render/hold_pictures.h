@@ -11,6 +11,10 @@
 
 namespace hydrodip {
 
+// Of what stays without film, and of film where no picture is.
+inline constexpr LinearColor kHoldBare{0.55F, 0.55F, 0.55F, 1};
+inline constexpr LinearColor kHoldCovered{0.05F, 0.3F, 0.36F, 1};
+
 // In its posed-object frame. Refers to mesh and surface.
 struct HoldPicture {
   const TriangleMesh& object;
