@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dip/principal_stretch.h"
+
 namespace hydrodip {
 
 namespace {
@@ -49,16 +51,11 @@ TriangleMeasure measure_triangle(const FilmMesh& film, const DipState& state, st
   m.flat_area = 0.5 * cross2(film.u[std::size_t(v[1])] - film.u[std::size_t(v[0])],
                              film.u[std::size_t(v[2])] - film.u[std::size_t(v[0])]);
   m.area = 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
-  const RestTriangle rest = rest_triangle(film.u[std::size_t(v[0])], film.u[std::size_t(v[1])],
-                                          film.u[std::size_t(v[2])]);
-  // Singular values of dX/du, from the metric G = (dX/du)^T (dX/du).
-  Eigen::Matrix<double, 3, 2> J = Eigen::Matrix<double, 3, 2>::Zero();
-  for (std::size_t k = 0; k < 3; ++k) J += at(k) * rest.gradient.row(Eigen::Index(k));
-  const Mat2 G = J.transpose() * J;
-  const double half = 0.5 * G.trace();
-  const double apart = std::sqrt(std::max(0.0, half * half - G.determinant()));
-  m.stretch = std::sqrt(half + apart);
-  m.least_stretch = std::sqrt(std::max(0.0, half - apart));
+  const PrincipalStretches stretches = principal_stretches(
+      {film.u[std::size_t(v[0])], film.u[std::size_t(v[1])], film.u[std::size_t(v[2])]},
+      {at(0), at(1), at(2)});
+  m.stretch = stretches.largest;
+  m.least_stretch = stretches.least;
   m.flat_share = voronoi_shares(flat, m.flat_area);
   return m;
 }

@@ -1,12 +1,12 @@
 #include "export/film_layer.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "base/parallel.h"
+#include "dip/principal_stretch.h"
 #include "film/locate.h"
 #include "image/color_difference.h"
 
@@ -30,20 +30,15 @@ FilmLayer empty_layer(const std::string& key, const Box2& extent) {
   return layer;
 }
 
-// Smallest singular value of dX/du.
 double least_stretch(const DippedFilm& film, std::size_t triangle) {
   const auto& v = film.mesh().triangles[triangle];
-  const auto corner = [&](std::size_t k) { return film.position[std::size_t(v[k])]; };
-  const auto flat = [&](std::size_t k) { return film.mesh().u[std::size_t(v[k])]; };
-  Mat2 du;
-  du << flat(1) - flat(0), flat(2) - flat(0);
-  Eigen::Matrix<double, 3, 2> dx;
-  dx << corner(1) - corner(0), corner(2) - corner(0);
-  const Eigen::Matrix<double, 3, 2> J = dx * du.inverse();
-  const Mat2 metric = J.transpose() * J;
-  const double half = 0.5 * metric.trace();
-  const double apart = std::sqrt(std::max(0.0, half * half - metric.determinant()));
-  return std::sqrt(std::max(0.0, half - apart));
+  std::array<Vec2, 3> flat;
+  std::array<Vec3, 3> placed;
+  for (std::size_t k = 0; k < 3; ++k) {
+    flat[k] = film.mesh().u[std::size_t(v[k])];
+    placed[k] = film.position[std::size_t(v[k])];
+  }
+  return principal_stretches(flat, placed).least;
 }
 
 struct Mean {
