@@ -92,16 +92,16 @@ std::string parameters_reference() {
     const std::string this_group = p.name.substr(0, p.name.find('.'));
     if (this_group != group)
       text += "\n## " + this_group +
-              "\n\n| parameter | default | range | what it does |\n|---|---|---|---|\n";
+              "\n\n| parameter | what it does | default | range |\n|---|---|---|---|\n";
     group = this_group;
-    text += "| " + code(p.name) + " | " + cell(show_value(p, p.default_value())) + " | " +
-            cell(show_range(p)) + " | " + cell(p.help) + " |\n";
+    text += "| " + code(p.name) + " | " + cell(p.help) + " | " +
+            cell(show_value(p, p.default_value())) + " | " + cell(show_range(p)) + " |\n";
   }
   text +=
       "\n## artwork tables\n\nLayers on the object, the bottom one first, each an `[[artwork]]` "
-      "table.\n\n| key | what it has to be | what it does |\n|---|---|---|\n";
+      "table.\n\n| key | what it does | what it has to be |\n|---|---|---|\n";
   for (const LayerKey& key : layer_keys())
-    text += "| " + code(key.name) + " | " + cell(key.range) + " | " + cell(key.help) + " |\n";
+    text += "| " + code(key.name) + " | " + cell(key.help) + " | " + cell(key.range) + " |\n";
   return text;
 }
 
