@@ -13,7 +13,7 @@ say() { printf '== %s\n' "$*"; }
 source=$(cd "$(dirname "$0")/.." && pwd)
 mkdir -p "$roots"
 root=$(cd "$roots" && pwd)/arm64
-tools='ca-certificates cmake ninja-build pkg-config g++ g++-aarch64-linux-gnu dpkg-dev file git gzip qemu-user-static
+tools='ca-certificates cmake ninja-build pkg-config g++ g++-aarch64-linux-gnu dpkg-dev file git gzip qemu-user-static esbuild
   libeigen3-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev'
 libraries='libc6-dev libstdc++-12-dev libembree-dev libtbb-dev zlib1g-dev libssl-dev libpng-dev libtiff-dev libjpeg-dev
   libwebp-dev libgif-dev libhpdf-dev liblcms2-dev libzip-dev libdraco-dev libmeshoptimizer-dev librsvg2-dev libfmt-dev
@@ -33,7 +33,6 @@ mount -t proc proc "$root/proc"
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp LC_ALL=C.UTF-8 \
   sh -c 'cd "$1" && shift && exec "$@"' sh "$source" "$@"; }
 
-# The page of the reports is bundled on the machine itself: esbuild is not Debian's there.
 say 'building for arm64'
 inside git config --global --add safe.directory "$source"
 inside cmake --preset arm64 --log-level=WARNING

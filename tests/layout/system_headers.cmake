@@ -1,0 +1,18 @@
+# The rooms that compute name no header of one operating system: those are for whoever writes files,
+# drives the stage or talks to a terminal. cmake -D SOURCE=src -P system_headers.cmake
+set(system "unistd\\.h|fcntl\\.h|sys/[a-z]+\\.h|linux/[a-z]+\\.h|termios\\.h|poll\\.h|sched\\.h|pthread\\.h|signal\\.h|csignal|dirent\\.h|dlfcn\\.h|malloc\\.h|windows\\.h")
+set(may base calibrate job rig sweep history register studio)
+file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/*.cpp ${SOURCE}/*.h)
+if(NOT files)
+  message(FATAL_ERROR "${SOURCE} holds no sources.")
+endif()
+foreach(file IN LISTS files)
+  string(REGEX REPLACE "/.*" "" room ${file})
+  if(room IN_LIST may)
+    continue()
+  endif()
+  file(STRINGS ${SOURCE}/${file} lines REGEX "^#include <(${system})>")
+  if(lines)
+    message(SEND_ERROR "src/${file}: ${lines}: rooms that compute do without the operating system.")
+  endif()
+endforeach()
