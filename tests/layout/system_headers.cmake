@@ -1,5 +1,6 @@
 # The rooms that compute name no header of one operating system: those are for whoever writes files,
 # drives the stage or talks to a terminal. cmake -D SOURCE=src -P system_headers.cmake
+cmake_minimum_required(VERSION 3.25)
 set(system "unistd\\.h|fcntl\\.h|sys/[a-z]+\\.h|linux/[a-z]+\\.h|termios\\.h|poll\\.h|sched\\.h|pthread\\.h|signal\\.h|csignal|dirent\\.h|dlfcn\\.h|malloc\\.h|windows\\.h")
 set(may base calibrate job rig sweep history register studio)
 file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/*.cpp ${SOURCE}/*.h)
