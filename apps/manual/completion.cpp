@@ -109,7 +109,8 @@ std::string bash_action(const ValueText& value) {
     case ValueKind::kWords:
       return "_hydrodip_words " + quoted(joined(value.words, " "));
     case ValueKind::kFile:
-      return "_hydrodip_files " + quoted(joined(value.extensions, "|"));
+      return "_hydrodip_files " + quoted(joined(value.extensions, "|")) +
+             (value.profiles ? "; _hydrodip_profiles" : "");
     case ValueKind::kFolder:
       return "_hydrodip_folders";
     case ValueKind::kParameter:
@@ -247,6 +248,16 @@ _hydrodip_files() {
   COMPREPLY=()
   for file in $(compgen -f -- "$current"); do
     if [[ -d $file || -z $1 || ${file##*.} =~ ^($1)$ ]]; then COMPREPLY+=("$file"); fi
+  done
+}
+
+# The profiles in the user's folder, by name, besides what is offered already.
+_hydrodip_profiles() {
+  local file
+  for file in "${XDG_CONFIG_HOME:-$HOME/.config}"/hydrodip/profiles/*.toml; do
+    file=${file##*/}
+    if [[ -n $current && ${file%.toml} != "$current"* ]]; then continue; fi
+    if [[ $file != '*.toml' ]]; then COMPREPLY+=("${file%.toml}"); fi
   done
 }
 

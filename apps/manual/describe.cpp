@@ -39,7 +39,7 @@ const std::vector<std::string> kModelExtensions = {"obj", "ply",  "stl", "off",
                                                    "3mf", "gltf", "glb", "toml"};
 
 ValueText value_of(const std::string& shown) {
-  ValueText value{ValueKind::kFree, shown, {}, {}};
+  ValueText value{ValueKind::kFree, shown, {}, {}, false};
   if (shown == "NAME=VALUE") {
     value.kind = ValueKind::kParameter;
   } else if (shown == "DIR" || shown.ends_with("_DIR")) {
@@ -50,10 +50,14 @@ ValueText value_of(const std::string& shown) {
   } else if (shown == "IMG" || shown == "FILE" || shown.ends_with("SCAN") || shown == "PORT" ||
              shown == "PHOTO" || shown == "JOB") {
     value.kind = ValueKind::kFile;
-  } else if (shown.starts_with("FILE.")) {
+  } else if (shown.starts_with("FILE.") || shown.find("|FILE.") != std::string::npos) {
     value.kind = ValueKind::kFile;
-    for (const std::string& name : split(shown, '|'))
-      value.extensions.push_back(name.substr(name.find('.') + 1));
+    for (const std::string& part : split(shown, '|')) {
+      if (part.starts_with("FILE."))
+        value.extensions.push_back(part.substr(5));
+      else
+        value.profiles = value.profiles || part == "NAME";
+    }
   } else {
     for (const std::string& part : split(shown, '|'))
       if (is_word(part)) value.words.push_back(part);
@@ -66,7 +70,7 @@ ArgumentText argument_of(const CLI::Option& option, const Command& command, bool
   ArgumentText argument{option.get_name(true), option.get_description(),
                         option.get_expected_max() > 1, value_of(option.get_name(true))};
   if (first && !command.words.empty())
-    argument.value = {ValueKind::kWords, argument.name, command.words, {}};
+    argument.value = {ValueKind::kWords, argument.name, command.words, {}, false};
   return argument;
 }
 

@@ -22,6 +22,7 @@ struct ValueText {
   std::string shown;                    // "MM", "letter|a4|a3|WxH"; empty for switches
   std::vector<std::string> words;       // "letter", "a4", "a3"
   std::vector<std::string> extensions;  // "toml"
+  bool profiles = false;                // or the name of a profile in the user's folder
 };
 
 struct OptionText {

@@ -6,7 +6,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 touch part.stl picture.png job.toml notes.txt
-mkdir folder
+mkdir -p folder config/hydrodip/profiles
+touch config/hydrodip/profiles/our-film.toml
+export XDG_CONFIG_HOME="$work/config"
 failures=0
 
 # offered WORDS...: the candidates for the last word, sorted, on one line.
@@ -33,8 +35,10 @@ offers 'guide sheet stage' hydrodip rig ''
 offers 'kit' hydrodip calibrate k
 offers 'find' hydrodip rig stage f
 offers 'mask' hydrodip sample ma
-offers 'folder job.toml part.stl' hydrodip print ''
-offers 'folder job.toml' hydrodip print part.stl --profile ''
+offers 'config folder job.toml part.stl' hydrodip print ''
+offers 'config folder job.toml our-film' hydrodip print part.stl --profile ''
+offers 'our-film' hydrodip print part.stl --profile o
+offers 'show' hydrodip profile sh
 offers 'a3 a4' hydrodip print part.stl --film a
 offers 'a3 a4' hydrodip print part.stl --film = a
 offers 'letter' hydrodip print part.stl --film l
