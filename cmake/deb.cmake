@@ -1,6 +1,5 @@
 # Debian packages by CPack, one for each component; `./dev package` builds, checks and tries them.
-# Another component (as the Python module's, `python`) becomes a package of its own when its name,
-# its package's name and its texts stand in the list at the end.
+# Included after all components are known.
 option(HYDRODIP_DEB "Install what Debian packages have beside the program (preset package)" OFF)
 if(NOT HYDRODIP_DEB)
   return()
@@ -104,10 +103,17 @@ if(EXISTS ${CMAKE_SOURCE_DIR}/build/docs/index.html)
   set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
 endif()
 
-# A place for the Python module: its files installed with COMPONENT python, and here
-#   hydrodip_deb(python python3-hydrodip "film images for hydro-dipping: Python module" "${what}" "...")
-#   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-#   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-#   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
+# The Python module, where it is built: python/CMakeLists.txt installs it as component `python` and says
+# for which Python it is.
+if(TARGET hydrodip_python)
+  math(EXPR python_next "${HYDRODIP_PYTHON_MINOR} + 1")
+  hydrodip_deb(python python3-hydrodip "film images for hydro-dipping: Python module" "${what}"
+    "This package has the Python module: it simulates dips, designs film images and plans how to hold the object, with numpy arrays in and out.")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "python3 (>= 3.${HYDRODIP_PYTHON_MINOR}), python3 (<< 3.${python_next}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-meshio")
+endif()
 
 include(CPack)

@@ -55,7 +55,7 @@ def run_page(page, hydrodip, source, quick):
                 (work / comment[6:]).write_text("\n".join(lines) + "\n")
             elif kind == "sh" and not comment.startswith("not run"):
                 script = "set -e\n" + "\n".join(lines) + "\n"
-                done = subprocess.run(["sh", "-c", script], cwd=work, env={**os.environ, "PATH": path, "NO_COLOR": "1"},
+                done = subprocess.run(["sh", "-c", script], cwd=work, env={**os.environ, "PATH": path, "HOME": folder, "XDG_CONFIG_HOME": folder},
                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
                 ran += sum(1 for each in lines if each.strip() and not each.startswith("#"))
                 if done.returncode != 0:
