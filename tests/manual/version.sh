@@ -39,6 +39,11 @@ echo more > more && git add more && git commit -qm two
 says '7.8.9|7.8.9 (1 commits later, C)|2001-02-03' .
 git archive --prefix=later/ HEAD | tar -x -C "$work"
 says '7.8.9|7.8.9 (1 commits later, C)|2001-02-03' "$work/later"
+# What is written by hand says the same.
+grep -qx "version: $usual" "$source/CITATION.cff" || {
+  echo "FAILED: CITATION.cff does not say version: $usual"
+  failures=$((failures + 1))
+}
 # Unpacked within somebody else's repository it still says its own version.
 cp -r "$work/tagged" inner
 says '7.8.9|7.8.9|2001-02-03' "$work/tree/inner"
