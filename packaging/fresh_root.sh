@@ -43,7 +43,7 @@ inside apt-get -qq update
 names=$(for deb; do dpkg-deb -f "$deb" Package; done)
 # All that they need and a compiler, but not the packages themselves: those come and go alone.
 needed=$(inside sh -c 'cd /var/tmp && apt-get install -s --no-install-recommends ./*.deb' |
-  sed -n 's/^Inst \([^ ]*\) .*/\1/p' | grep -vxF "$names")
+  sed -n 's/^Inst \([^ ]*\) .*/\1/p' | grep -vxF "$names" || true)
 # shellcheck disable=SC2086
 inside apt-get -qq -o Dpkg::Use-Pty=0 install -y --no-install-recommends $needed g++ cmake make pkg-config \
   >"$roots/apt.log" 2>&1 || { tail -20 "$roots/apt.log"; die 'apt-get failed'; }
