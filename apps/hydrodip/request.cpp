@@ -4,11 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 
 #include "base/error.h"
+#include "base/parse_double.h"
 #include "settings/profiles.h"
 
 namespace hydrodip {
@@ -43,7 +43,7 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     double number = 0;
-    const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, number);
+    const auto [rest, error] = parse_double(text.data() + begin, text.data() + end, number);
     if (error != std::errc() || rest != text.data() + end || !std::isfinite(number)) break;
     numbers.push_back(number);
     if (end == text.size() && numbers.size() >= least && numbers.size() <= most) return numbers;
