@@ -28,8 +28,8 @@ constexpr double kFontSize = 100;
 constexpr double kLineSpacing = 1.2;
 // Around the letters, so that no outline is cut.
 constexpr double kTextPad = 1;
-// cairo's, and as many as fit 256 MiB, several times over where there are filters.
-constexpr double kLongestSide_px = 32767, kMostPixelsAtOnce = 1U << 26U;
+// cairo's, and as many as fit half a GiB, for each of the surfaces that librsvg mixes them on.
+constexpr double kLongestSide_px = 32767, kMostPixelsAtOnce = 1U << 27U;
 // Of drawings that need not be drawn at once: more than A3 at 3600 pixels an inch has.
 constexpr double kMostPixels = 4e9;
 
@@ -165,24 +165,29 @@ struct Drawing::Impl {
 
   bool has_text = false;
   std::string linked;
-  // librsvg draws filters and masks as large as the whole, whatever part is asked for.
   bool is_indivisible = false;
 
-  // A part of the drawing as large as `whole`, from its left upper corner on.
-  Image part(const Vec2& whole, int left, int top, int width, int height) const {
-    const Owned<cairo_surface_t> surface(
-        cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
-    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
-    const Owned<cairo_t> cairo(cairo_create(surface.get()));
+  // A part of the drawing as large as `whole`, from its left upper corner on; false with a reason.
+  bool draw(cairo_surface_t* surface, const Vec2& whole, int left, int top,
+            std::string& why) const {
+    const Owned<cairo_t> cairo(cairo_create(surface));
     cairo_translate(cairo.get(), -left, -top);
     // One factor for both directions would leave a strip of a rounded size blank.
     cairo_scale(cairo.get(), whole.x() / size.x(), whole.y() / size.y());
     const RsvgRectangle all{0, 0, size.x(), size.y()};
     GError* error = nullptr;
     check_cancelled();
-    if (!rsvg_handle_render_document(handle.get(), cairo.get(), &all, &error))
-      throw InputError(fmt::format("{}: the drawing cannot be drawn ({}); save it again.", name,
-                                   message_of(error)));
+    if (rsvg_handle_render_document(handle.get(), cairo.get(), &all, &error)) return true;
+    why = message_of(error);
+    return false;
+  }
+
+  Image part(const Vec2& whole, int left, int top, int width, int height) const {
+    const Owned<cairo_surface_t> surface = blank(width, height);
+    std::string why;
+    if (!draw(surface.get(), whole, left, top, why))
+      throw InputError(
+          fmt::format("{}: the drawing cannot be drawn ({}); save it again.", name, why));
     cairo_surface_flush(surface.get());
     const unsigned char* data = cairo_image_surface_get_data(surface.get());
     const auto stride = std::size_t(cairo_image_surface_get_stride(surface.get()));
@@ -190,6 +195,21 @@ struct Drawing::Impl {
     for (int y = 0; y < height; ++y)
       make_straight(data + std::size_t(y) * stride, width, image.pixel(0, y));
     return image;
+  }
+
+  // librsvg draws whatever is mixed as a whole (opacity, blending, filters, masks) as large as the
+  // drawing, whichever part is asked for, and fails where cairo has no such surface.
+  bool can_be_drawn_in_parts() const {
+    const Owned<cairo_surface_t> pixel = blank(1, 1);
+    std::string ignored;
+    return draw(pixel.get(), size * (1.25 * kLongestSide_px / size.maxCoeff()), 0, 0, ignored);
+  }
+
+ private:
+  static Owned<cairo_surface_t> blank(int width, int height) {
+    Owned<cairo_surface_t> surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
+    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
+    return surface;
   }
 };
 
@@ -208,8 +228,6 @@ Drawing Drawing::from_svg(const std::vector<std::uint8_t>& bytes, const std::str
         fmt::format("{}: damaged or truncated SVG drawing ({}); save it again.", name, why));
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   impl->has_text = has_element(text, "text");
-  impl->is_indivisible =
-      has_element(text, "filter") || text.find("filter:") != text.npos || has_element(text, "mask");
   impl->linked = first_linked_picture(text);
   if (impl->has_text) require_fonts(name);
   impl->size = natural_size(impl->handle.get());
@@ -218,6 +236,7 @@ Drawing Drawing::from_svg(const std::vector<std::uint8_t>& bytes, const std::str
         "{}: the SVG drawing has no size and nothing to see; give it a width and height, or a "
         "viewBox.",
         name));
+  impl->is_indivisible = !impl->can_be_drawn_in_parts();
   return Drawing(std::move(impl));
 }
 

@@ -34,8 +34,8 @@ class Drawing {
   bool has_text() const;
   // A picture that an SVG drawing takes from a file of its own and that is not shown; "" if none.
   const std::string& linked_picture() const;
-  // The largest that can be drawn: pixels in all, and a side's. A drawing with filters (blur,
-  // shadow) or masks must be drawn in one piece.
+  // The largest that can be drawn: pixels in all, and a side's. A drawing in which something is
+  // mixed as a whole (a group's opacity, blending, filters, masks) must be drawn in one piece.
   struct Limits {
     double pixels, side_px;
   };
