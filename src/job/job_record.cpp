@@ -121,10 +121,14 @@ std::vector<ReportFigure> figures(const DippedObject& dipped) {
           {"film_cell_mm", "Film grid spacing", film.mesh().cell_mm, "mm"}};
 }
 
-std::string role_of(const std::filesystem::path& file, const JobConfig& config) {
+std::string role_of(const std::filesystem::path& file, const JobConfig& config,
+                    const PreparedObject& prepared) {
   if (file == config.model) return "model";
   for (const ArtworkLayer& layer : config.object.artwork)
     if (file == layer.image) return "artwork";
+  for (const LaidLayer& layer : prepared.artwork)
+    for (const FontUse& font : layer.fonts)
+      if (file == font.file) return "font";
   const std::string extension = file.extension().string();
   if (extension == ".mtl" || extension == ".MTL") return "material";
   return extension == ".bin" ? "model data" : "texture";
@@ -136,7 +140,7 @@ std::vector<ReportInput> describe_inputs(const JobConfig& config, const Prepared
                                          const Printer& printer) {
   std::vector<ReportInput> inputs;
   for (const auto& file : prepared.files)
-    inputs.push_back(describe_input(role_of(file, config), file));
+    inputs.push_back(describe_input(role_of(file, config, prepared), file));
   if (!config.film_image.empty()) inputs.push_back(describe_input("film image", config.film_image));
   if (!printer.profile_file.empty())
     inputs.push_back({"printer profile", printer.profile_file.string(),

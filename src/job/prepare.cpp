@@ -56,10 +56,14 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
                                 result.posed, context);
   result.paint = std::move(artwork.paint);
   result.artwork = std::move(artwork.layers);
-  for (const ArtworkLayer& layer : options.artwork)
-    if (!layer.image.empty() &&
-        std::find(result.files.begin(), result.files.end(), layer.image) == result.files.end())
-      result.files.push_back(layer.image);
+  const auto add_file = [&](const std::filesystem::path& file) {
+    if (!file.empty() &&
+        std::find(result.files.begin(), result.files.end(), file) == result.files.end())
+      result.files.push_back(file);
+  };
+  for (const ArtworkLayer& layer : options.artwork) add_file(layer.image);
+  for (const LaidLayer& layer : result.artwork)
+    for (const FontUse& font : layer.fonts) add_file(font.file);
   return result;
 }
 
