@@ -501,7 +501,7 @@ export class Stage {
     const height = this.bounds.isEmpty() ? 0 : this.bounds.max.z;
     return {
       target: new THREE.Vector3(0, 0, 0.25 * (height + this.hover_mm)),
-      radius: Math.max(0.42 * Math.hypot(width_mm, height_mm), this.radius() * 1.15),
+      radius: Math.max(0.46 * Math.hypot(width_mm, height_mm), this.radius() * 1.15),
     };
   }
 
@@ -594,6 +594,7 @@ export class Stage {
     const gizmo = new TransformControls(this.cameras.bath, this.canvas);
     gizmo.setSpace('world');
     gizmo.setSize(0.85);
+    gizmo.setColors('#cc5a52', '#4f9d5d', '#4a7fc0', '#1f9aa6');
     gizmo.attach(this.proxy);
     this.lowered.add(this.proxy);
     const helper = gizmo.getHelper();

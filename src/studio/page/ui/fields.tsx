@@ -175,7 +175,7 @@ interface ButtonProps {
   label: string; // for the eye and the ear
   icon?: IconName;
   iconOnly?: boolean;
-  kind?: 'main' | 'plain' | 'quiet';
+  kind?: 'main' | 'mend' | 'plain' | 'quiet';
   pressed?: boolean;
   disabled?: boolean;
   changes?: boolean; // the job: not where it may only be looked at
@@ -207,12 +207,29 @@ export function Button({ label, icon, iconOnly, kind = 'plain', pressed, disable
 }
 
 // A choice of a few, side by side.
-export function Segments<T extends string>({ label, value, options, onChange }: { label: string; value: T; options: readonly (readonly [T, string])[]; onChange: (value: T) => void }) {
+interface SegmentsProps<T extends string> {
+  label: string;
+  value: T;
+  options: readonly (readonly [T, string])[];
+  always?: boolean;
+  onChange: (value: T) => void;
+}
+
+export function Segments<T extends string>({ label, value, options, always, onChange }: SegmentsProps<T>) {
   return (
     <div class="segments" role="group" aria-label={label}>
       {options.map(([key, text]) => (
-        <button key={key} type="button" aria-pressed={key === value} data-value={key} onClick={() => onChange(key)}>{text}</button>
+        <button key={key} type="button" aria-pressed={key === value} data-value={key} disabled={!always && readOnly.value} onClick={() => onChange(key)}>{text}</button>
       ))}
+    </div>
+  );
+}
+
+export function SegmentsField<T extends string>(props: SegmentsProps<T>) {
+  return (
+    <div class="field">
+      <span class="label" aria-hidden="true">{props.label}</span>
+      <Segments {...props} />
     </div>
   );
 }

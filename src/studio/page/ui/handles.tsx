@@ -63,6 +63,7 @@ interface Frame {
   center: Vec3; // posed frame
   right: Vec3;
   up: Vec3;
+  upright: Vec3; // before it is turned
   width: number;
   height: number;
 }
@@ -74,6 +75,8 @@ const unit = (a: Vec3): Vec3 => {
   const length = Math.hypot(...a) || 1;
   return [a[0] / length, a[1] / length, a[2] / length];
 };
+
+const PARALLEL = 0.99; // of directions; as in src/artwork/projector.cpp
 
 // Where the chosen layer is, as far as the page can tell; what the document leaves open is chosen alike.
 export function frameOf(entry: Layer): Frame | null {
@@ -104,14 +107,14 @@ export function frameOf(entry: Layer): Frame | null {
   }
   toward = unit(toward);
   const chosen: Vec3 = shown.directionToScaled(toward);
-  const upright: Vec3 = entry.up ?? (Math.abs(chosen[2]) > 0.9 ? [0, 1, 0] : [0, 0, 1]);
+  const upright: Vec3 = entry.up ?? (Math.abs(chosen[2]) < PARALLEL ? [0, 0, 1] : [0, 1, 0]);
   let up = shown.directionToPosed(upright);
   up = unit(plus(up, toward, -dot(up, toward)));
   const right = unit(cross(toward, up));
   const turn = ((entry.turn_deg ?? 0) * Math.PI) / 180;
   const turnedUp = plus(up.map((c) => c * Math.cos(turn)) as Vec3, right, -Math.sin(turn));
   const turnedRight = plus(right.map((c) => c * Math.cos(turn)) as Vec3, up, Math.sin(turn));
-  return { center: plus(center, toward, -0.5), right: turnedRight, up: turnedUp, width, height };
+  return { center: plus(center, toward, -0.5), right: turnedRight, up: turnedUp, upright: up, width, height };
 }
 
 type Grip = 'move' | 'scale' | 'turn';
@@ -147,7 +150,10 @@ export function ArtworkHandles() {
       }
       const flat = entry.projection === undefined || entry.projection === 'planar';
       const inward = shown.directionToScaled(hit.normal.map((c) => -c) as Vec3).map((c) => Math.round(c * 1000) / 1000 + 0) as Vec3;
-      set({ at_mm: shown.toScaled(hit.place).map(tenth) as Vec3, ...(flat ? { toward: inward } : {}) }, t.undo.layerMove, live);
+      // It stays upright as it was: else it would turn about where its own choice of up changes.
+      const upright = shown.directionToScaled(begun.frame.upright).map((c) => Math.round(c * 1000) / 1000 + 0) as Vec3;
+      const aims = Math.abs(dot(unit(upright), unit(inward))) < PARALLEL ? { toward: inward, up: upright } : { toward: inward };
+      set({ at_mm: shown.toScaled(hit.place).map(tenth) as Vec3, ...(flat ? aims : {}) }, t.undo.layerMove, live);
     } else if (begun.grip === 'scale') {
       const before = Math.hypot(begun.x, begun.y) || 1;
       const now = Math.hypot(x - begun.middle.x, y - begun.middle.y);

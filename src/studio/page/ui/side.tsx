@@ -30,7 +30,7 @@ function Mends({ mends }: { mends: Mend[] }) {
   return (
     <>
       {mends.map((mend) => (
-        <Button key={mend.text} name="mend" label={mend.text} icon="wrench" kind="main" changes onClick={() => applyMend(mend)} />
+        <Button key={mend.text} name="mend" label={mend.text} icon="wrench" kind="mend" changes onClick={() => applyMend(mend)} />
       ))}
     </>
   );

@@ -8,11 +8,11 @@ import {
   withoutDip, withoutLayer, withPose, withValue, type Json, type Layer, type Side, type Vec3,
 } from '../document.ts';
 import {
-  addFiles, allDips, change, changePose, chooseTool, defaults, goToStep, hello, job, layer, overlay, pose, readOnly, showView, stage, step,
+  addFiles, allDips, change, changePose, chooseTool, defaults, drawn, goToStep, hello, job, layer, overlay, pose, readOnly, showView, stage, step,
   STEPS, tool, value, type StepName,
 } from '../studio.ts';
 import { t } from '../strings.ts';
-import { Button, CheckField, ColorField, Files, NumberField, Segments, SelectField, TextField } from './fields.tsx';
+import { Button, CheckField, ColorField, Files, NumberField, SegmentsField, SelectField, TextField } from './fields.tsx';
 import { Icon } from './icons.tsx';
 import { Progress, taskOf } from './progress.tsx';
 
@@ -145,8 +145,7 @@ function ModelStep() {
 }
 
 function Extent() {
-  job.value?.mesh.value;
-  pose.value;
+  drawn.value;
   const size = stage.current?.extent();
   if (!size || size[0] === 0) return null;
   return <p class="fact"><span>{t.model.extent}</span><b>{t.size(...size)}</b></p>;
@@ -360,7 +359,7 @@ function LayerForm() {
         onChange={(next, live) => set({ size_mm: resized(entry, next) }, live, t.undo.layerSize)}
       />
       <NumberField name="layer-turn" label={t.artwork.turn} unit="°" step={5} min={-3600} max={3600} value={entry.turn_deg ?? 0} onChange={(next, live) => set({ turn_deg: next || undefined }, live, t.undo.layerTurn)} />
-      <Segments label={t.artwork.repeat} value={entry.repeat ?? 'once'} options={Object.entries(t.artwork.repeats) as [NonNullable<Layer['repeat']>, string][]} onChange={(repeat) => set({ repeat: repeat === 'once' ? undefined : repeat })} />
+      <SelectField name="repeat" label={t.artwork.repeat} value={entry.repeat ?? 'once'} options={Object.entries(t.artwork.repeats)} onChange={(repeat) => set({ repeat: repeat === 'once' ? undefined : (repeat as Layer['repeat']) })} />
       <NumberField name="opacity" label={t.artwork.opacity} unit="%" step={5} min={0} max={100} value={100 * (entry.opacity ?? 1)} onChange={(next, live) => set({ opacity: next === null || next === 100 ? undefined : next / 100 }, live)} />
       {laid && laid.size_mm && <p class="soft">{t.artwork.laid(...laid.size_mm)}{laid.stretch && laid.stretch[0] !== laid.stretch[1] ? `, ${t.artwork.stretched(...laid.stretch)}` : ''}</p>}
       {onFilm && <p class="soft">{t.artwork.patternHint}</p>}
@@ -521,7 +520,7 @@ function FilmStep() {
     );
   };
   const choice = (name: string, label: string, texts: Record<string, string>) => (
-    <Segments key={name} label={label} value={value<string>(name)} options={Object.entries(texts)} onChange={(next) => setValue(name, next, label)} />
+    <SegmentsField key={name} label={label} value={value<string>(name)} options={Object.entries(texts)} onChange={(next) => setValue(name, next, label)} />
   );
   return (
     <>

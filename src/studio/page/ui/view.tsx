@@ -179,6 +179,7 @@ function ViewBar() {
     <div class="viewbar">
       <Segments<View | 'sheet'>
         label={t.stage.views}
+        always
         value={shown}
         options={[['bath', t.stage.bath], ['object', t.stage.object], ['sheet', t.stage.sheet]]}
         onChange={(next) => (next === 'sheet' ? (bigSheet.value = true) : showView(next))}
@@ -279,7 +280,7 @@ function Inset() {
 function CompareBar() {
   return (
     <div class="bottombar">
-      <Segments<Compare> label={t.stage.compare} value={compare.value} options={Object.entries(t.stage.compares) as [Compare, string][]} onChange={(next) => (compare.value = next)} />
+      <Segments<Compare> always label={t.stage.compare} value={compare.value} options={Object.entries(t.stage.compares) as [Compare, string][]} onChange={(next) => (compare.value = next)} />
     </div>
   );
 }
