@@ -1,5 +1,6 @@
 // What the program answers, and how to ask it. The page asks nothing else of the outside world.
 import type { JobDocument, Json, Patch } from './document.ts';
+import { t } from './strings.ts';
 
 export type Concern = 'none' | 'care' | 'stop';
 export type Overlay = 'none' | 'stretch' | 'tears' | 'coverage' | 'angle' | 'air';
@@ -327,7 +328,11 @@ export class ApiError extends Error {
 }
 
 // The program cannot be reached.
-export class Unreachable extends Error {}
+export class Unreachable extends Error {
+  constructor() {
+    super(t.link.lost);
+  }
+}
 
 async function ask(path: string, init: RequestInit = {}): Promise<Response> {
   let response: Response;
@@ -335,7 +340,7 @@ async function ask(path: string, init: RequestInit = {}): Promise<Response> {
     response = await fetch(path, { ...init, headers: { 'X-Hydrodip': '1', ...(init.headers ?? {}) } });
   } catch (error) {
     if (error instanceof DOMException && error.name === 'AbortError') throw error;
-    throw new Unreachable(path);
+    throw new Unreachable();
   }
   if (response.ok) return response;
   const body = (await response.json().catch(() => ({}))) as Record<string, unknown>;
@@ -371,8 +376,7 @@ export const api = {
     json<DocumentAnswer>(`/api/jobs/${part(job)}/adopt`, 'POST', { files, at_mm, client }),
   put: (job: string, body: { client: string; base: number; document: JobDocument; live: boolean; dip: number }) =>
     json<DocumentAnswer>(`/api/jobs/${part(job)}/document`, 'PUT', body),
-  save: (job: string, name?: string) =>
-    json<{ where: string; saved_revision: number }>(`/api/jobs/${part(job)}/save`, 'POST', name ? { name } : {}),
+  save: (job: string) => json<{ where: string; saved_revision: number }>(`/api/jobs/${part(job)}/save`, 'POST', {}),
   pen: (job: string, client: string) => json<unknown>(`/api/jobs/${part(job)}/pen`, 'POST', { client }),
   thumbnail: (job: string, png: Blob) => ask(`/api/jobs/${part(job)}/thumbnail`, { method: 'PUT', body: png }),
   start: (job: string, body: { kind: TaskKind; best?: number; dips?: number }) =>

@@ -3,10 +3,10 @@
 import { computed, signal } from '@preact/signals';
 import { api, ApiError, Unreachable } from './api.ts';
 import type { DipFrames, DocumentAnswer, JobFile, JobState, MeshData, Problem, Result, Task, TaskKind } from './api.ts';
-import { dipCount, equal, type JobDocument } from './document.ts';
+import { dipCount, equal, layersOf, withLayer, type JobDocument, type Vec3 } from './document.ts';
 import { t } from './strings.ts';
 
-const MOST_STEPS = 1000;
+const MOST_STEPS = 50_000; // documents share what did not change
 const RETRY_MS = 1500;
 
 interface Step {
@@ -242,7 +242,8 @@ export class Job {
     return turn;
   }
 
-  async add(files: readonly File[], at_mm: readonly number[] | null): Promise<void> {
+  // Uploads files and takes them into the document; a first picture goes where it was dropped.
+  async add(files: readonly File[], at_mm: Vec3 | null): Promise<void> {
     if (!this.mayChange.value) return;
     try {
       const names: string[] = [];
@@ -251,19 +252,22 @@ export class Job {
         names.push((await api.upload(this.id, file, name)).file);
       }
       const before = this.document.value;
-      const answer: DocumentAnswer = await this.alone(() => api.adopt(this.id, names, at_mm, this.client));
-      this.adopted(before, answer);
+      const answer: DocumentAnswer = await this.alone(() => api.adopt(this.id, names, null, this.client));
+      this.adopted(before, answer, at_mm);
     } catch (error) {
       this.complain(error);
     }
   }
 
-  private adopted(before: JobDocument, answer: DocumentAnswer): void {
+  private adopted(before: JobDocument, answer: DocumentAnswer, at_mm: Vec3 | null): void {
     this.revision.value = Math.max(this.revision.value, answer.revision);
     if (answer.document && !equal(before, answer.document)) {
       this.past.value = [...this.past.value, { document: before, label: t.undo.files }];
       this.future.value = [];
-      this.document.value = answer.document;
+      const layers = layersOf(before).length;
+      const placed = at_mm && layersOf(answer.document).length > layers && before.object?.file === answer.document.object?.file;
+      if (placed) this.take(withLayer(answer.document, layers, { at_mm }));
+      else this.document.value = answer.document;
     }
     const unused = (answer.adopted ?? []).filter((file) => file.as === 'unused');
     if (unused.length) {
@@ -271,9 +275,15 @@ export class Job {
     }
   }
 
-  async save(name?: string): Promise<void> {
+  // Until what was changed has arrived there.
+  private async arrived(): Promise<void> {
+    while ((this.sending || this.next) && this.link.value === 'open') await new Promise((done) => setTimeout(done, 20));
+  }
+
+  async save(): Promise<void> {
     try {
-      const { where, saved_revision } = await api.save(this.id, name);
+      await this.arrived();
+      const { where, saved_revision } = await api.save(this.id);
       this.where.value = where;
       this.savedRevision.value = Math.max(this.savedRevision.value, saved_revision);
       this.notice.value = { kind: 'info', text: t.notice.saved(where) };
@@ -284,7 +294,7 @@ export class Job {
 
   async start(kind: TaskKind, more: { best?: number; dips?: number } = {}): Promise<void> {
     try {
-      while (this.sending || this.next) await new Promise((done) => setTimeout(done, 20));
+      await this.arrived();
       await api.start(this.id, { kind, ...more });
     } catch (error) {
       this.complain(error);
@@ -407,9 +417,9 @@ export class Job {
   }
 
   private changedElsewhere({ revision, document, client }: { revision: number; document: JobDocument; client: string }): void {
+    if (client === this.client) return; // the answer to the request has told it
     if (revision <= this.revision.value) return;
     this.revision.value = revision;
-    if (client === this.client && this.unsent.value) return;
     if (equal(document, this.document.value)) return;
     this.past.value = [...this.past.value, { document: this.document.value, label: t.undo.elsewhere }];
     this.future.value = [];

@@ -1,7 +1,7 @@
 // What the page shows beside the job: which step, view and tool, and what the keys do.
 import { computed, signal } from '@preact/signals';
 import { api, type Hello, type Overlay, type Recent } from './api.ts';
-import { layersOf, poseOf, valueOf, withPose, type Json, type JobDocument, type Pose } from './document.ts';
+import { layersOf, poseOf, valueOf, withPose, type Json, type JobDocument, type Pose, type Vec3 } from './document.ts';
 import { Job } from './job.ts';
 import type { Compare, Hit, Stage, Tool, View } from './stage/stage.ts';
 import { t } from './strings.ts';
@@ -132,7 +132,7 @@ export async function goToStart(): Promise<void> {
   recent.value = await api.recent().catch(() => recent.value);
 }
 
-export async function addFiles(files: readonly File[], at_mm: readonly number[] | null = null): Promise<void> {
+export async function addFiles(files: readonly File[], at_mm: Vec3 | null = null): Promise<void> {
   if (!files.length) return;
   const open = job.value ?? (await createJob());
   if (!open) return;

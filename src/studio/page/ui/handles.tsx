@@ -76,7 +76,7 @@ const unit = (a: Vec3): Vec3 => {
   return [a[0] / length, a[1] / length, a[2] / length];
 };
 
-const PARALLEL = 0.99; // of directions; as in src/artwork/projector.cpp
+const PARALLEL = 0.9; // of directions; as in src/artwork/projector.cpp
 
 // Where the chosen layer is, as far as the page can tell; what the document leaves open is chosen alike.
 export function frameOf(entry: Layer): Frame | null {

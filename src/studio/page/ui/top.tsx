@@ -69,6 +69,10 @@ export const nameOf = (): string => {
   return document?.name || document?.object?.file?.replace(/^.*\//, '').replace(/\.[^.]*$/, '') || t.top.untitled;
 };
 
+function rename(name: string): void {
+  if (name !== nameOf()) change(({ name: _, ...rest }) => (name ? { ...rest, name } : rest), t.undo.name);
+}
+
 function Name() {
   const open = job.value!;
   const typed = useSignal<string | null>(null);
@@ -76,7 +80,7 @@ function Name() {
   const settle = (): void => {
     const name = typed.value?.trim();
     typed.value = null;
-    if (name !== undefined && name !== nameOf()) change(({ name: _, ...rest }) => (name ? { ...rest, name } : rest), t.undo.name);
+    if (name !== undefined) rename(name);
   };
   return (
     <div class="jobname">
@@ -170,7 +174,8 @@ function SavePanel() {
       <div class="row wrap">
         <Button name="save-now" label={t.save.button} kind="main" onClick={() => {
           panel.value = 'none';
-          void open.save(name.value || undefined);
+          rename(name.value);
+          void open.save();
         }} />
         <a class="button plain" href={api.tomlUrl(open.id)} download><Icon name="download" /><span>{t.top.jobFile}</span></a>
         <a class="button plain" href={api.zipUrl(open.id)} download><Icon name="download" /><span>{t.top.jobZip}</span></a>

@@ -3,6 +3,7 @@ import { batch, effect, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import * as THREE from 'three';
 import type { MeshData, Overlay } from '../api.ts';
+import type { Vec3 } from '../document.ts';
 import { between, fateOf } from '../../../report/viewer/pick.js';
 import {
   allDips, bigSheet, changePose, chooseOverlay, chooseTool, compare, divider, drawn, job, layer, level, overlay,
@@ -387,10 +388,10 @@ function Readout() {
 }
 
 // Dropping a picture on the object: where it was let go is where it goes.
-export function droppedAt(event: DragEvent): readonly number[] | null {
+export function droppedAt(event: DragEvent): Vec3 | null {
   const shown = stage.current;
   const box = document.querySelector('.canvas-box canvas')?.getBoundingClientRect();
   if (!shown || !box || bigSheet.value) return null;
   const hit = shown.pick(event.clientX - box.left, event.clientY - box.top);
-  return hit ? shown.toScaled(hit.place).map((c) => Math.round(c * 10) / 10) : null;
+  return hit ? (shown.toScaled(hit.place).map((c) => Math.round(c * 10) / 10) as Vec3) : null;
 }
