@@ -50,13 +50,13 @@ export class Job {
   readonly loaded = signal(false);
   private readonly past = signal<readonly Step[]>([]);
   private readonly future = signal<readonly Step[]>([]);
+  private readonly savedDocument = signal<JobDocument | null>(null);
   private readonly revision = signal(0); // newest that the program has told of
-  private readonly savedRevision = signal(0);
   private readonly unsent = signal(false);
 
   readonly undoLabel = computed(() => this.past.value.at(-1)?.label ?? null);
   readonly redoLabel = computed(() => this.future.value.at(-1)?.label ?? null);
-  readonly saved = computed(() => !this.unsent.value && this.revision.value <= this.savedRevision.value);
+  readonly saved = computed(() => this.savedDocument.value !== null && equal(this.savedDocument.value, this.document.value));
   readonly pending = computed(() => this.unsent.value);
   // Whether what is shown is not yet the last word on the document.
   readonly draft = computed(() => {
@@ -91,7 +91,7 @@ export class Job {
     this.where.value = state.where;
     this.files.value = state.files;
     this.revision.value = state.revision;
-    this.savedRevision.value = state.saved_revision;
+    if (state.revision <= state.saved_revision) this.savedDocument.value = state.document;
     const tasks = new Map<TaskKind, Task>();
     for (const task of state.tasks) tasks.set(task.kind, task);
     this.tasks.value = tasks;
@@ -184,12 +184,12 @@ export class Job {
 
   private async flush(): Promise<void> {
     if (this.sending || !this.next || this.link.value === 'lost' || this.link.value === 'ended') return;
+    this.sending = true;
+    await this.busy;
     const { live } = this.next;
     const document = this.document.value;
     this.next = null;
-    this.sending = true;
     try {
-      await this.busy;
       const answer = await api.put(this.id, { client: this.client, base: this.revision.value, document, live, dip: this.dip.value });
       this.revision.value = Math.max(this.revision.value, answer.revision);
       if (!this.next && this.document.value === document) {
@@ -283,9 +283,10 @@ export class Job {
   async save(): Promise<void> {
     try {
       await this.arrived();
-      const { where, saved_revision } = await api.save(this.id);
+      const document = this.document.value;
+      const { where } = await api.save(this.id);
       this.where.value = where;
-      this.savedRevision.value = Math.max(this.savedRevision.value, saved_revision);
+      this.savedDocument.value = document;
       this.notice.value = { kind: 'info', text: t.notice.saved(where) };
     } catch (error) {
       this.complain(error);
@@ -348,14 +349,14 @@ export class Job {
     this.events = events;
     const on = <T>(name: string, action: (data: T) => void): void =>
       events.addEventListener(name, (event) => action(JSON.parse((event as MessageEvent<string>).data) as T));
-    on<{ run: string; pen: boolean; revision: number; saved_revision: number }>('hello', (hello) => this.greet(hello));
+    on<{ run: string; pen: boolean; revision: number }>('hello', (hello) => this.greet(hello));
     on<{ mine: boolean }>('pen', ({ mine }) => {
       this.pen.value = mine;
       if (!mine) this.next = null;
     });
     on<{ revision: number; document: JobDocument; client: string }>('document', (event) => this.changedElsewhere(event));
     on<{ saved_revision: number; where: string }>('saved', ({ saved_revision, where }) => {
-      this.savedRevision.value = saved_revision;
+      if (saved_revision === this.revision.value && !this.unsent.value) this.savedDocument.value = this.document.value;
       this.where.value = where;
     });
     on<{ mesh?: string | null; wanted?: string | null }>('mesh', (event) => void this.takeMesh(event));
@@ -371,13 +372,12 @@ export class Job {
     events.onerror = () => this.lose();
   }
 
-  private greet({ run, pen, revision, saved_revision }: { run: string; pen: boolean; revision: number; saved_revision: number }): void {
+  private greet({ run, pen, revision }: { run: string; pen: boolean; revision: number }): void {
     const another = this.run !== '' && this.run !== run;
     this.run = run;
     this.pen.value = pen;
     this.link.value = 'open';
     this.revision.value = another ? revision : Math.max(this.revision.value, revision);
-    this.savedRevision.value = saved_revision;
     if (another) {
       this.newest = { revision: -1, normal: false };
       if (this.result.value) this.result.value = { ...this.result.value, revision: -1 };
@@ -393,7 +393,6 @@ export class Job {
     try {
       const state = await api.job(this.id);
       this.revision.value = state.revision;
-      this.savedRevision.value = state.saved_revision;
       if (!equal(state.document, this.document.value) && this.pen.value) this.send(false);
       else this.acknowledged();
     } catch (error) {

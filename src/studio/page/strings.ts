@@ -76,7 +76,7 @@ export const t = {
     layers: (n: number) => (n === 0 ? 'the model’s own colours' : n === 1 ? '1 layer' : `${n} layers`),
     oneDip: (depth: string) => `one, ${depth}`,
     manyDips: (n: number, covered: number | null) => `${n} dips${covered === null ? '' : `, ${percent(covered)} covered`}`,
-    wholeDepth: 'the whole object',
+    wholeDepth: 'whole object',
     deep: (mm: number) => `${+mm.toFixed(1)} mm deep`,
     sheet: (name: string, dpi: number) => `${name}, ${dpi} dpi`,
   },
@@ -96,6 +96,7 @@ export const t = {
     sides: {
       '-z': 'Underside (−z)', '+z': 'Top (+z)', '-y': 'Front (−y)', '+y': 'Back (+y)', '-x': 'Left (−x)', '+x': 'Right (+x)',
     } as Record<string, string>,
+    shortSides: { '-z': 'Underside', '+z': 'Top', '-y': 'Front', '+y': 'Back', '-x': 'Left', '+x': 'Right' } as Record<string, string>,
     turn: 'Then turned about',
     depth: 'Depth',
     depthWhole: 'whole',

@@ -3,6 +3,7 @@ import { computed, signal } from '@preact/signals';
 import { api, type Hello, type Overlay, type Recent } from './api.ts';
 import { layersOf, poseOf, valueOf, withPose, type Json, type JobDocument, type Pose, type Vec3 } from './document.ts';
 import { Job } from './job.ts';
+import { heightOf, turnOf } from './stage/pose.ts';
 import type { Compare, Hit, Stage, Tool, View } from './stage/stage.ts';
 import { t } from './strings.ts';
 
@@ -34,14 +35,18 @@ export const stage: { current: Stage | null } = { current: null };
 
 export const defaults = computed(() => new Map<string, Json>((hello.value?.parameters ?? []).map((p) => [p.name, p.default])));
 export const readOnly = computed(() => narrow.value || (job.value !== null && !job.value.mayChange.value));
-export const pose = computed<Pose>(() => {
-  const open = job.value;
-  return open ? poseOf(open.document.value, open.dip.value) : { down: '-z', rotate_deg: [0, 0, 0], depth_mm: 0, shift_mm: [0, 0] };
-});
 export const scale = computed(() => {
   const size = value<number>('object.size_mm');
   const largest = job.value?.mesh.value?.largest_mm ?? 0;
   return size > 0 && largest > 0 ? size / largest : 1;
+});
+
+export const pose = computed<Pose>(() => {
+  const open = job.value;
+  if (!open) return { down: '-z', rotate_deg: [0, 0, 0], depth_mm: 0, shift_mm: [0, 0] };
+  const now = poseOf(open.document.value, open.dip.value);
+  const shifted = now.shift_mm.some((s) => s !== 0);
+  return shifted && now.depth_mm >= wholeDepth(now) ? { ...now, depth_mm: 0 } : now;
 });
 
 export function value<T extends Json>(name: string): T {
@@ -57,12 +62,21 @@ export function change(edit: (document: JobDocument) => JobDocument, label: stri
   else open.commit(next, label);
 }
 
+// A shifted way has to say how deep the whole object is, to a tenth of a millimetre.
+function wholeDepth(of: Pose): number {
+  const mesh = job.value?.mesh.value;
+  return mesh ? Math.floor(10 * heightOf(mesh.position, turnOf(of), scale.value)) / 10 : 0;
+}
+
 export function changePose(part: Partial<Pose>, live = false): void {
   const open = job.value;
   if (!open) return;
-  const height = stage.current?.extent()[2] ?? 0;
+  const now = poseOf(open.document.value, open.dip.value);
+  const shifted = now.shift_mm.some((s) => s !== 0);
+  if (shifted && now.depth_mm >= wholeDepth(now)) now.depth_mm = 0;
+  const next = { ...now, ...part };
   const label = part.depth_mm !== undefined && !part.rotate_deg ? t.undo.depth : part.shift_mm ? t.undo.shift : t.undo.turn;
-  change((document) => withPose(document, open.dip.value, { ...poseOf(document, open.dip.value), ...part }, Math.round(height * 10) / 10), label, live);
+  change((document) => withPose(document, open.dip.value, next, next.shift_mm.some((s) => s !== 0) ? wholeDepth(next) : 0), label, live);
 }
 
 export const chosenLayer = computed(() => {

@@ -40,6 +40,17 @@ export function turnedDown(turn: Quaternion, direction: Vector3): Quaternion {
   return more.multiply(turn);
 }
 
+export function heightOf(position: Float32Array, turn: Quaternion, scale: number): number {
+  const up = new Vector3(0, 0, scale).applyQuaternion(turn.clone().invert());
+  let [low, high] = [Infinity, -Infinity];
+  for (let i = 0; i < position.length; i += 3) {
+    const z = up.x * position[i]! + up.y * position[i + 1]! + up.z * position[i + 2]!;
+    if (z < low) low = z;
+    if (z > high) high = z;
+  }
+  return position.length ? high - low : 0;
+}
+
 // Model frame to posed frame: scaled, turned, its box centred over the film and standing on z = 0.
 export function placeOf(position: Float32Array, turn: Quaternion, scale: number): Matrix4 {
   const linear = new Matrix4().compose(new Vector3(), turn, new Vector3(scale, scale, scale));

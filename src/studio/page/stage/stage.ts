@@ -322,7 +322,7 @@ export class Stage {
     walls.position.z = -1.2 - bath.depth_mm / 2;
     box.dispose();
     const rim = new THREE.Mesh(this.rimShape(sheet), new THREE.MeshBasicMaterial({ color: 0xd9c7a0, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -1 }));
-    rim.position.z = 0.2;
+    rim.position.z = 0.7; // over the film's edge, which is drawn a little nearer than it is
     this.basin.add(water, walls, rim);
   }
 

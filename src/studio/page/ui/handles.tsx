@@ -41,7 +41,7 @@ export function DepthHandle() {
         const begun = drag.current;
         if (begun) set(begun.depth - (event.clientY - begun.y) * begun.pixel, true);
       }}
-      onPointerUp={(event) => {
+      onLostPointerCapture={(event) => {
         const begun = drag.current;
         drag.current = null;
         if (begun) set(begun.depth - (event.clientY - begun.y) * begun.pixel, false);
@@ -185,7 +185,7 @@ export function ArtworkHandles() {
         drag.current = { grip: what, ...offset, entry, frame, middle };
       }}
       onPointerMove={(event) => follow(event, true)}
-      onPointerUp={(event) => {
+      onLostPointerCapture={(event) => {
         follow(event, false);
         drag.current = null;
       }}

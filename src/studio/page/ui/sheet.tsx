@@ -158,7 +158,7 @@ export function Sheet({ big = false }: { big?: boolean }) {
               drag.current = { u: where(event).u, from: layersOf(job.value!.document.value)[chosen]!.at_mm ?? [0, 0, 0] };
             }}
             onPointerMove={(event) => (drag.current ? slide(event, true) : point(event))}
-            onPointerUp={(event) => {
+            onLostPointerCapture={(event) => {
               slide(event, false);
               drag.current = null;
             }}

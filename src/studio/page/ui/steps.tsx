@@ -461,7 +461,7 @@ function DipRow({ at }: { at: number }) {
         <DipThumbnail at={at} />
         <span>
           <b>{t.dips.dip(at + 1)}</b>
-          <small>{t.model.sides[dip.down ?? '-z']}, {depthText(dip.depth_mm ?? 0)}</small>
+          <small>{t.model.shortSides[dip.down ?? '-z']}, {depthText(dip.depth_mm ?? 0)}</small>
           {result && <small class={`mark ${result.verdict.concern}`}>{t.model.covered(result.figures['covered_share'] ?? 0)}</small>}
         </span>
       </button>

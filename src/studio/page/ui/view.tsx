@@ -104,7 +104,10 @@ function startStage(canvas: HTMLCanvasElement): Stage {
       if (!hit && layer.value !== null) layer.value = null;
     },
     point: (hit) => pointAt(hit),
-    drawn: () => (drawn.value = drawn.peek() + 1),
+    drawn: () => {
+      drawn.value = drawn.peek() + 1;
+      canvas.dataset['drawn'] = String(drawn.peek());
+    },
   });
 }
 
@@ -153,7 +156,6 @@ export function Center() {
           tabIndex={0}
           role="img"
           aria-label={t.stage.label}
-          data-drawn={drawn.value}
           onPointerDown={(event) => event.currentTarget.focus({ preventScroll: true })}
         />
         {broken.value && <p class="over-note">{t.stage.noGl}</p>}
