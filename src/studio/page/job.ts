@@ -302,6 +302,10 @@ export class Job {
     }
   }
 
+  async reload(): Promise<void> {
+    await api.reload(this.id).catch((error: unknown) => this.complain(error));
+  }
+
   async cancel(task: Task): Promise<void> {
     await api.cancel(this.id, task.task).catch((error: unknown) => this.complain(error));
   }

@@ -108,6 +108,7 @@ function ModelStep() {
       <Group>
         <div class="row">
           <span class="filename" title={document.object.file}><Icon name="file" /> {document.object.file}</span>
+          <Button name="reload" label={t.model.reload} icon="reload" iconOnly kind="quiet" onClick={() => void open.reload()} />
           <Files name="open-model" label={t.model.replace} accept={accept} many onFiles={(files) => void addFiles(files)} />
         </div>
         <NumberField
