@@ -7,6 +7,7 @@
 #include "calibrate/calibrate.h"
 #include "job/jobs.h"
 #include "settings/settings.h"
+#include "studio/studio.h"
 
 namespace CLI {
 class App;
@@ -27,6 +28,7 @@ struct Request {
   bool dry_run = false;
   bool yes = false;
   CalibrationRequest calibration;
+  StudioOptions studio;
   PatternRequest pattern;
   std::vector<std::string> jobs;  // of several parts
   double clearance_mm = 0;
@@ -54,6 +56,7 @@ void declare_pattern(CLI::App& app, Request& request);
 void declare_nest(CLI::App& app, Request& request);
 void declare_sample(CLI::App& app, Request& request);
 void declare_folder(CLI::App& app, Request& request);
+void declare_studio(CLI::App& app, Request& request);
 
 // The options as a job's configuration. Throws InputError.
 JobConfig configure(const Request& request);
