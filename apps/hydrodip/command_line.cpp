@@ -74,6 +74,12 @@ std::string group_help(const std::string& group) {
   return help;
 }
 
+std::string first_of_group(const std::string& group) {
+  const auto first = std::ranges::find_if(
+      commands(), [&](const Command& command) { return command.name.starts_with(group + " "); });
+  return first == commands().end() ? group : first->name;
+}
+
 bool is_command(const std::string& name) {
   return std::any_of(commands().begin(), commands().end(),
                      [&](const Command& command) { return command.name == name; });
@@ -87,9 +93,8 @@ std::size_t count_name_words(const std::vector<std::string>& arguments) {
     return arguments.size() > 1 && is_command(arguments[0] + " " + arguments[1]) ? 2 : 1;
   if (arguments.size() < 2)
     throw InputError(
-        fmt::format("name what to do, as in 'hydrodip {} sheet'; 'hydrodip {} --help' "
-                    "lists all",
-                    arguments[0], arguments[0]));
+        fmt::format("name what to do, as in 'hydrodip {}'; 'hydrodip {} --help' lists all",
+                    first_of_group(arguments[0]), arguments[0]));
   return 2;
 }
 

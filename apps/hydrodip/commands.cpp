@@ -8,6 +8,7 @@
 #include "rig/rig.h"
 #include "rig_commands.h"
 #include "settings/params.h"
+#include "shop_commands.h"
 
 namespace hydrodip {
 namespace {
@@ -43,6 +44,7 @@ void declare_print(CLI::App& app, Request& request) {
   declare_strict(app, request);
   declare_object(app, request);
   declare_artwork(app, request);
+  declare_film_image(app, request);
   declare_film_and_dip(app, request);
   declare_dips(app, request);
   declare_ink(app, request);
@@ -54,6 +56,7 @@ JobResult run_print(const Request& request, const RunContext& context) {
   require_model(request.model, "print");
   JobConfig config = configure(request);
   config.output = output_folder(request, "print");
+  if (!config.film_image.empty()) return print_film_image_job(config, context);
   JobResult result = print_job(config, context);
   add_run_sheets(result, context);
   return result;
@@ -280,7 +283,7 @@ std::vector<Command> own_commands() {
 const std::vector<Command>& commands() {
   static const std::vector<Command> table = [] {
     std::vector<Command> all = own_commands();
-    for (const auto& more : {calibrate_commands(), rig_commands()})
+    for (const auto& more : {calibrate_commands(), rig_commands(), shop_commands()})
       all.insert(all.end() - 1, more.begin(), more.end());  // params stays last
     return all;
   }();

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 #include "base/error.h"
+#include "settings/profiles.h"
 
 namespace hydrodip {
 namespace {
@@ -33,7 +35,8 @@ void add_parameter_option(CLI::App& app, Request& request, const std::string& op
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
 }
 
-// "1,2,3", from least to most numbers.
+}  // namespace
+
 std::vector<double> numbers_of(const std::string& option, const std::string& text,
                                std::size_t least, std::size_t most) {
   std::vector<double> numbers;
@@ -51,7 +54,15 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
                    " numbers with commas between them, not '" + text + "'");
 }
 
-}  // namespace
+std::filesystem::path profile_folder() {
+  const auto folder = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return std::filesystem::path(value != nullptr ? value : "");
+  };
+  const std::filesystem::path configured = folder("XDG_CONFIG_HOME");
+  return (configured.is_absolute() ? configured : folder("HOME") / ".config") / "hydrodip" /
+         "profiles";
+}
 
 void declare_model(CLI::App& app, Request& request) {
   app.add_option("MODEL", request.model,
@@ -59,11 +70,23 @@ void declare_model(CLI::App& app, Request& request) {
       ->type_name("");
 }
 
+void declare_no_clobber(CLI::App& app, Request& request) {
+  app.add_flag_callback(
+         "--no-clobber",
+         [&request] {
+           request.sources.options.push_back(
+               {"output.no_clobber", std::string("on"), false, "'on'", "--no-clobber"});
+         },
+         "refuse to replace an earlier result")
+      ->group(kOutputGroup);
+}
+
 void declare_output(CLI::App& app, Request& request, const std::string& default_folder) {
   app.add_option("-o,--output", request.output,
                  "output folder, made if needed (default: " + default_folder + ")")
       ->group(kOutputGroup)
       ->type_name("DIR");
+  declare_no_clobber(app, request);
 }
 
 void declare_reporting(CLI::App& app, Request& request) {
@@ -193,7 +216,18 @@ void declare_configuration(CLI::App& app, Request& request) {
         ->type_name("FILE.toml")
         ->allow_extra_args(false);
   };
-  add_files("--profile", request.sources.profiles, "film, printer, process: values for many jobs");
+  app.add_option_function<std::vector<std::string>>(
+         "--profile",
+         [&request](const std::vector<std::string>& names) {
+           request.sources.profiles.clear();
+           for (const std::string& name : names)
+             request.sources.profiles.push_back(find_profile(name, profile_folder()));
+         },
+         "film, printer, process: values for many jobs; a file, or the name of a profile that "
+         "'hydrodip profile' keeps")
+      ->group(kConfigGroup)
+      ->type_name("NAME|FILE.toml")
+      ->allow_extra_args(false);
   add_files("--config", request.sources.configs, "values for this job; wins over the profile");
   app.add_option_function<std::vector<std::string>>(
          "--set",
@@ -208,8 +242,8 @@ void declare_configuration(CLI::App& app, Request& request) {
 
 void declare_film_image(CLI::App& app, Request& request) {
   app.add_option("--film-image", request.film_image,
-                 "image of the whole sheet as printed (print.png): predicts what it leaves on the "
-                 "object")
+                 "image of the whole sheet, finished: predicts what it leaves on the object, and "
+                 "'print' prints it as it is")
       ->group(kFilmGroup)
       ->type_name("IMG");
 }

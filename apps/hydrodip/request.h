@@ -5,9 +5,11 @@
 #include <vector>
 
 #include "calibrate/calibrate.h"
+#include "history/history_job.h"
 #include "job/jobs.h"
 #include "settings/settings.h"
 #include "studio/studio.h"
+#include "sweep/sweep_jobs.h"
 
 namespace CLI {
 class App;
@@ -32,6 +34,14 @@ struct Request {
   PatternRequest pattern;
   std::vector<std::string> jobs;  // of several parts
   double clearance_mm = 0;
+  std::string name;  // of a profile
+  std::string file;  // to import
+  std::vector<std::string> unset;
+  std::string batch, label;  // of a piece
+  HistoryRequest history;
+  SweepPlanRequest sweep;
+  std::string shard;
+  SweepWork sweep_work;
   SettingSources sources;
   bool quiet = false;
   bool strict = false;  // a verdict against the dip is a failure
@@ -41,6 +51,7 @@ struct Request {
 // Groups of options, declared where a command has them.
 void declare_model(CLI::App& app, Request& request);
 void declare_output(CLI::App& app, Request& request, const std::string& default_folder);
+void declare_no_clobber(CLI::App& app, Request& request);  // is part of declare_output
 void declare_reporting(CLI::App& app, Request& request);  // --json, --quiet
 void declare_object(CLI::App& app, Request& request);
 void declare_artwork(CLI::App& app, Request& request);
@@ -57,6 +68,12 @@ void declare_nest(CLI::App& app, Request& request);
 void declare_sample(CLI::App& app, Request& request);
 void declare_folder(CLI::App& app, Request& request);
 void declare_studio(CLI::App& app, Request& request);
+
+// The person's folder of profiles: $XDG_CONFIG_HOME/hydrodip/profiles, or below ~/.config.
+std::filesystem::path profile_folder();
+// "1,2,3" as given to an option, from least to most numbers. Throws InputError.
+std::vector<double> numbers_of(const std::string& option, const std::string& text,
+                               std::size_t least, std::size_t most);
 
 // The options as a job's configuration. Throws InputError.
 JobConfig configure(const Request& request);

@@ -26,10 +26,22 @@ void declare_port(CLI::App& app, Request& request) {
       ->type_name("PORT");
 }
 
+void declare_piece(CLI::App& app, Request& request) {
+  app.add_option("--batch", request.batch, "that the piece belongs to")
+      ->group("Piece")
+      ->type_name("NAME");
+  app.add_option("--label", request.label, "of the piece, as in 7 or A-12")
+      ->group("Piece")
+      ->type_name("NAME");
+}
+
 RigJob load_job(const Request& request, const std::string& command) {
   if (request.model.empty())
     throw InputError("name the job's folder, as in 'hydrodip " + command + " mask-print'");
-  return load_rig_job(request.model, request.sources);
+  RigJob job = load_rig_job(request.model, request.sources);
+  job.batch = request.batch;
+  job.label = request.label;
+  return job;
 }
 
 void declare_sheet(CLI::App& app, Request& request) {
@@ -40,6 +52,7 @@ void declare_sheet(CLI::App& app, Request& request) {
   app.add_option("--paper", request.paper, "default: letter for letter film, else a4")
       ->group("Output")
       ->type_name("a4|letter");
+  declare_piece(app, request);
   declare_reporting(app, request);
   declare_configuration(app, request);
 }
@@ -64,6 +77,7 @@ struct RealBench {
 
 void declare_guide(CLI::App& app, Request& request) {
   declare_job(app, request);
+  declare_piece(app, request);
   declare_port(app, request);
   declare_reporting(app, request);
   declare_configuration(app, request);

@@ -146,7 +146,10 @@ void run(int moments) {
     for (int n = 0; n < count; ++n) {
       stops.push_back(stop_after(work, moment(random)));
       const Stop& stop = stops.back();
-      if (stop.latency_ms > kGoal_ms) fmt::print("{:5.1f} ms: {}\n", stop.latency_ms, stop.where);
+      if (stop.latency_ms > kGoal_ms) {
+        fmt::print("{:5.1f} ms: {}\n", stop.latency_ms, stop.where);
+        std::fflush(stdout);
+      }
       if (stop.latency_ms >= worst.latency_ms) worst = stop;
     }
     fmt::print("{:<12} {:6.2f} s, {:3} moments, largest {:5.1f} ms: {}\n", work.name, length, count,

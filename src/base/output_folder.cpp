@@ -179,7 +179,8 @@ class Replacement {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder.empty() ? "." : folder) {
+OutputFolder::OutputFolder(const fs::path& folder, EarlierResult earlier)
+    : folder_(folder.empty() ? "." : folder), earlier_(earlier) {
   const std::vector<fs::path> missing = missing_folders(folder_);
   std::error_code error;
   for (auto it = missing.rbegin(); it != missing.rend() && !error; ++it) {
@@ -216,6 +217,11 @@ void OutputFolder::announce(const std::vector<std::string>& names,
                         "another output folder with -o.",
                         input.string(), name));
     if (!fs::is_regular_file(file, ignored)) continue;  // commit() says what is in the way
+    if (earlier_ == EarlierResult::kKept)
+      throw InputError(
+          fmt::format("{}: there is a result already, and no_clobber keeps it; choose another "
+                      "output folder with -o, or allow it with --set output.no_clobber=off.",
+                      file.string()));
     if (names_hydrodip(file)) {
       ours = true;
     } else {

@@ -7,6 +7,9 @@
 
 namespace hydrodip {
 
+// What becomes of an earlier result of ours in the same place.
+enum class EarlierResult { kReplaced, kKept };
+
 // Opens (creating if needed) the folder and a hidden staging folder inside it. Files are written
 // to path(name) and moved to their final names by commit(); without commit() the destructor
 // removes everything, including folders that the constructor itself created. Staging folders of
@@ -14,14 +17,16 @@ namespace hydrodip {
 class OutputFolder {
  public:
   // Throws InputError if the folder cannot be created or written to.
-  explicit OutputFolder(const std::filesystem::path& folder);
+  explicit OutputFolder(const std::filesystem::path& folder,
+                        EarlierResult earlier = EarlierResult::kReplaced);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   // Says, before anything long is computed, which files will be written and which the job reads.
   // Throws InputError if one of them would overwrite an input, or a file that hydrodip did not
-  // write: one without hydrodip's name in it, and without a file among `names` beside it that has.
+  // write: one without hydrodip's name in it, and without a file among `names` beside it that has;
+  // and, if earlier results are kept, if one of the files is there at all.
   void announce(const std::vector<std::string>& names,
                 const std::vector<std::filesystem::path>& inputs);
   // Whether commit() has put new files in the place of earlier ones.
@@ -39,6 +44,7 @@ class OutputFolder {
 
  private:
   std::filesystem::path folder_;
+  EarlierResult earlier_;
   std::filesystem::path staging_;
   int lock_ = -1;  // on the staging folder, while this process lives
   std::vector<std::filesystem::path> created_;

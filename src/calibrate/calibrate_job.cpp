@@ -314,7 +314,7 @@ JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& reque
   const Calibration calibration = search.run(context);
   warn_of_edges(calibration, context);
 
-  OutputFolder folder(config.output);
+  OutputFolder folder(config.output, config.earlier_result);
   folder.announce({"profile.toml", "calibration.json", "error-surface.csv", "error-surface.png"},
                   files_of(subjects));
   write_file(folder.path("profile.toml"), profile_toml(calibration, subjects));

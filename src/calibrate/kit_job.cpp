@@ -135,7 +135,7 @@ JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
   const RunScope scope(context.with_threads(config.threads));
   for (const std::string& text : request.scans)
     calibration_object(text, config, context);  // refuses what does not fit the film
-  OutputFolder folder(config.output);
+  OutputFolder folder(config.output, config.earlier_result);
   JobResult result;
   for (const KitShape& shape : kit_shapes()) {
     const std::string name = std::string(shape.name) + ".stl";

@@ -147,7 +147,7 @@ JobResult measure_job(const JobConfig& config, const CalibrationRequest& request
                 "\n";
   if (config.output.empty()) return result;
 
-  OutputFolder folder(config.output);
+  OutputFolder folder(config.output, config.earlier_result);
   folder.announce({"error-map.png", "measure.json"}, files_of(subjects));
   save_png(folder.path("error-map.png"),
            draw_error_maps(maps, any_synthetic(subjects)

@@ -38,7 +38,7 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
   const DesignOptions fine = finer_film(finer_film(config.design));
   const FilmParameters truth = film_parameters(config.design);
   const CheckeredFilm film = checkered_film(fine, request.square_mm);
-  OutputFolder folder(config.output);
+  OutputFolder folder(config.output, config.earlier_result);
   JobResult result;
   const GridPlace reach = {int(0.5 * config.design.film.width_mm / request.square_mm),
                            int(0.5 * config.design.film.height_mm / request.square_mm)};

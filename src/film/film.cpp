@@ -172,6 +172,13 @@ void find_neighbors(FilmMesh& mesh) {
 
 }  // namespace
 
+bool is_free(const FilmOptions& options, const Vec2& u) {
+  const Vec2 half = 0.5 * Vec2(options.width_mm, options.height_mm);
+  const double margin = options.margin_mm;
+  if (options.shape == FilmShape::kDisc) return u.norm() < half.minCoeff() - margin;
+  return std::abs(u.x()) < half.x() - margin && std::abs(u.y()) < half.y() - margin;
+}
+
 FilmMesh make_film_mesh(const FilmOptions& options) {
   const Extent free = free_extent(options);
   FilmMesh mesh;

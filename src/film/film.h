@@ -46,6 +46,9 @@ struct FilmMesh {
   std::vector<std::int32_t> incident;
 };
 
+// Whether the point of the sheet is inside the taped margin's inner edge.
+bool is_free(const FilmOptions& options, const Vec2& u);
+
 // Throws InputError if the margin leaves no film or there are fewer than 8 triangles.
 FilmMesh make_film_mesh(const FilmOptions& options);
 

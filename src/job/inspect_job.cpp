@@ -207,7 +207,7 @@ void write_angle_map(const std::filesystem::path& path, const Inspection& i,
 }
 
 void write_files(const Inspection& i, const std::string& report, const RunContext& context) {
-  OutputFolder folder(i.config.output);
+  OutputFolder folder(i.config.output, i.config.earlier_result);
   folder.announce({"angles.png", "report.json"}, i.prepared.files);
   write_angle_map(folder.path("angles.png"), i, context);
   write_file(folder.path("report.json"), report);

@@ -23,7 +23,7 @@ std::vector<ReportOutput> outputs(const std::string& command, const JobConfig& c
                                       ink_side == InkSide::kUp ? "up" : "down")},
             {"print.png", "what the sheet will look like, sRGB"},
             {"print.tif", "the inks of the film image, CMYK with their ICC profile"}};
-  if (command == "print" && config.pictures)
+  if (command == "print" && config.pictures && config.film_image.empty())
     list.push_back({"gamut.png", "which colours cannot be reached, and by how much"});
   if (config.pictures)
     list.insert(list.end(), {{"preview.png", "what was asked for beside what will come out"},

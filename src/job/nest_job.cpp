@@ -294,7 +294,7 @@ std::vector<std::string> file_names(std::size_t parts) {
 JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const RunContext& context) {
   const RunScope scope(context.with_threads(sheet.threads));
   require_memory(sheet.design);
-  OutputFolder folder(sheet.output);
+  OutputFolder folder(sheet.output, sheet.earlier_result);
   Nest nest;
   std::vector<std::filesystem::path> inputs;
   for (const NestRequest::Part& part : request.parts) {

@@ -105,7 +105,7 @@ std::string in_words(const JobConfig& config, const SearchResult& found,
 
 JobResult orient_job(const JobConfig& config, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
-  OutputFolder folder(config.output);
+  OutputFolder folder(config.output, config.earlier_result);
   const PreparedObject prepared = prepare_object(config.model, config.object, context);
   require_size(prepared.posed, config.object, config.model);
   const std::vector<std::string> names = config.pictures

@@ -165,10 +165,7 @@ std::vector<FilmLayer> measure_layers(const JobRecord& record, const Appearance&
     layers.push_back(color_error_layer(dipped.posed.mesh(), *dipped.map, shown, record.context));
     previews.colors = colors_of(layers.back());
   }
-  if (record.ink != nullptr) {
-    layers.push_back(reach_layer(record, raster));
-    previews.ink = ink_amounts(record.ink->ink.inking.inks, record.config.design.inking.limit);
-  }
+  if (record.ink != nullptr) layers.push_back(reach_layer(record, raster));
   if (dipped.coverage.wrinkled_mm2 > 0)
     layers.push_back(pressed_layer(*dipped.film, dipped.map->covered()));
   return layers;
@@ -215,6 +212,8 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
   const Object looks = painted_object(dipped.posed.mesh(), record.paint());
   const Appearance shown = appearance_of(record.finish);
   std::vector<FilmLayer> layers;
+  if (record.ink != nullptr)
+    previews.ink = ink_amounts(record.ink->ink.inking.inks, record.config.design.inking.limit);
   // The longest first.
   if (record.config.pictures) {
     layers = measure_layers(record, shown, raster, previews);

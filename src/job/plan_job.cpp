@@ -117,7 +117,7 @@ Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPla
 
 JobResult plan_job(const JobConfig& config, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
-  OutputFolder folder(config.output);
+  OutputFolder folder(config.output, config.earlier_result);
   const PreparedObject prepared = prepare_object(config.model, config.object, context);
   require_size(prepared.posed, config.object, config.model);
   std::vector<std::string> names = {"plan.toml", "plan.json"};

@@ -370,7 +370,7 @@ bool asks_for_several_dips(const JobConfig& config) {
 JobResult print_dips(const JobConfig& config, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   require_memory(config.design);
-  OutputFolder folder(config.output);
+  OutputFolder folder(config.output, config.earlier_result);
   Timings times;
   const PreparedObject prepared = times.measure("load", [&] {
     return prepare_object(config.model, config.object, context, config.design.dpi,

@@ -41,7 +41,7 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   JobConfig config = given;
   const RunScope scope(context.with_threads(config.threads));
   require_memory(config.design);
-  OutputFolder folder(config.output);
+  OutputFolder folder(config.output, config.earlier_result);
   Timings times;
 
   PreparedObject prepared = times.measure("load", [&] {

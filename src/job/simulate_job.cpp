@@ -15,8 +15,10 @@
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
+#include "job/sheet_of.h"
 #include "job/ways.h"
 #include "report/findings.h"
+#include "session/sheet_files.h"
 #include "sheet/sheet.h"
 
 namespace hydrodip {
@@ -136,12 +138,43 @@ Image seen_on_object(const DippedObject& dipped, const PrintedFilm& printed,
   return look_on_object(printed.inks, stretch.area_ratio, model, base);
 }
 
-}  // namespace
+// The rim is taped, and the sheet's marks stand there.
+void clear_margin(PrintedFilm& printed, const FilmOptions& film, const RunContext& context) {
+  bool cleared = false;
+  for (int y = 0; y < printed.inks.height_px; ++y)
+    for (int x = 0; x < printed.inks.width_px; ++x) {
+      std::uint8_t* laid = printed.inks.pixel(x, y);
+      if (is_free(film, printed.raster.to_film(x + 0.5, y + 0.5)) || is_blank(laid)) continue;
+      std::fill_n(laid, 4, std::uint8_t{0});
+      cleared = true;
+    }
+  if (cleared)
+    context.warn(fmt::format(
+        "The film image reaches into the {:g} mm that are taped; what lies there is not printed.",
+        film.margin_mm));
+}
 
-JobResult simulate_job(const JobConfig& given, const RunContext& context) {
+// The sheet as it was given, with marks.
+void write_given_sheet(OutputFolder& folder, const PrintedFilm& printed, const Printer& printer,
+                       const JobConfig& config, const Coverage& coverage,
+                       const RunContext& context) {
+  FilmInk film;
+  film.inking.inks = printed.inks;
+  film.wanted = Image(printed.inks.width_px, printed.inks.height_px);
+  for (std::size_t i = 0; i < printed.inks.cmyk.size(); i += 4)
+    film.wanted.rgba[i + 3] = is_blank(printed.inks.cmyk.data() + i) ? 0 : 255;
+  SheetOptions sheet = sheet_of(config);
+  sheet.dpi = printed.raster.dpi;
+  if (concern_of(coverage) == Concern::kStop)
+    sheet.alarm = "DO NOT DIP: " + short_verdict(coverage);
+  write_sheet_files(folder, film, printer, sheet, context);
+}
+
+JobResult forward_job(const std::string& command, const JobConfig& given,
+                      const RunContext& context) {
   JobConfig config = given;
   const RunScope scope(context.with_threads(config.threads));
-  OutputFolder folder(config.output);
+  OutputFolder folder(config.output, config.earlier_result);
   Timings times;
 
   const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.design.film));
@@ -157,9 +190,12 @@ JobResult simulate_job(const JobConfig& given, const RunContext& context) {
   require_fit(mesh, room_of(mesh, trajectory), config.design.film, config.bath, context);
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
-  announce_outputs(folder, "simulate", config, inputs);
-  const PrintedFilm printed =
-      times.measure("film image", [&] { return printed_film(config, *printer.model); });
+  announce_outputs(folder, command, config, inputs);
+  const PrintedFilm printed = times.measure("film image", [&] {
+    PrintedFilm film_image = printed_film(config, *printer.model);
+    if (command == "print") clear_margin(film_image, config.design.film, context);
+    return film_image;
+  });
 
   const DippedObject dipped =
       dip_object(prepared.posed, film, trajectory, dip_options(*film, printed, config), times,
@@ -175,14 +211,28 @@ JobResult simulate_job(const JobConfig& given, const RunContext& context) {
       concern_of(dipped.coverage) == Concern::kStop
           ? times.measure("find", [&] { return better_way(config, prepared, dipped, context); })
           : "";
+  if (command == "print")
+    times.measure("sheet", [&] {
+      write_given_sheet(folder, printed, printer, config, dipped.coverage, context);
+    });
   const JobRecord record{
-      "simulate", config, prepared, inputs, finish, times, context, nullptr, printer.model->name(),
+      command, config, prepared, inputs, finish, times, context, nullptr, printer.model->name(),
       better};
   const Previews previews = times.measure("preview", [&] {
     return write_previews(folder, record,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");
   });
   return finish_job(folder, record, previews);
+}
+
+}  // namespace
+
+JobResult simulate_job(const JobConfig& config, const RunContext& context) {
+  return forward_job("simulate", config, context);
+}
+
+JobResult print_film_image_job(const JobConfig& config, const RunContext& context) {
+  return forward_job("print", config, context);
 }
 
 }  // namespace hydrodip

@@ -292,7 +292,10 @@ JobResult rig_guide(const RigJob& job, Bench& bench, const RunContext& context) 
   record.note("start", {{"job", job.title},
                         {"depth_mm", job.depth_mm},
                         {"speed_mm_per_min", job.config.process.speed_mm_per_min},
-                        {"stage", job.config.stage.port}});
+                        {"stage", job.config.stage.port},
+                        {"report_sha256", job.report_sha256},
+                        {"batch", job.batch},
+                        {"label", job.label}});
   return finish_run(
       record, [&] { guide.run(broken); },
       [&] {

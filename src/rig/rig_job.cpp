@@ -83,10 +83,15 @@ void find_model(const Json& report, RigJob& job) {
   }
 }
 
-double film_area_mm2(const FilmOptions& film) {
-  if (film.shape == FilmShape::kRectangle) return film.width_mm * film.height_mm;
-  const double radius = 0.5 * std::min(film.width_mm, film.height_mm);
-  return std::numbers::pi * radius * radius;
+// Of all inks together.
+double ink_coverage(const Json& report) {
+  double sum = 0;
+  if (!report.contains("ink") || !report["ink"].is_object()) return 0;
+  const Json mean = report["ink"].value("mean", Json());
+  if (!mean.is_object()) return 0;
+  for (const auto& [ink, share] : mean.items())
+    if (share.is_number()) sum += share.get<double>();
+  return sum;
 }
 
 double letter_area_mm2() {
@@ -124,6 +129,12 @@ PlannedMove travel(const std::string& phase, double from_mm, double to_mm, doubl
 
 }  // namespace
 
+double film_area_mm2(const FilmOptions& film) {
+  if (film.shape == FilmShape::kRectangle) return film.width_mm * film.height_mm;
+  const double radius = 0.5 * std::min(film.width_mm, film.height_mm);
+  return std::numbers::pi * radius * radius;
+}
+
 bool moves_aside(const RigJob& job) {
   constexpr double kStill = 1e-9;
   return std::ranges::any_of(job.way_in, [&](const WayPoint& point) {
@@ -159,6 +170,8 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
   apply_sources(job.config, sources);
   job.way_in = way_in(report, folder / "report.json");
   find_model(report, job);
+  job.report_sha256 = sha256_hex(read_file(folder / "report.json"));
+  job.ink_coverage = ink_coverage(report);
   const Json& figures = report["figures"];
   if (!figures["depth_mm"].is_number() || !(figures["depth_mm"].get<double>() > 0))
     throw InputError(

@@ -23,6 +23,10 @@ struct RigJob {
   std::string model_sha256;            // of config.model, when it was printed
   std::vector<std::string> warnings;
   std::string alarm;     // "Do not dip it like this: ..."; empty: nothing forbids it
+  std::string report_sha256;
+  // Of report.json: what full coverage of each ink would take, as a part of it. 0: it is not known.
+  double ink_coverage = 0;
+  std::string batch, label;  // of the piece that is dipped; may be empty
   int earlier_dips = 0;  // of several dips: those that are done before
   int next_dip = 0;      // of several dips: the one that follows; 0: none
 };
@@ -41,6 +45,7 @@ struct Activator {
 };
 Activator activator_for(const JobConfig& config);  // scaled by area from a letter sheet
 double bath_litres(const BathOptions& bath);
+double film_area_mm2(const FilmOptions& film);  // of the sheet
 
 // The stage position at which the object's lowest point meets the water: stage.water_mm, else what
 // was found last and saved in the folder.

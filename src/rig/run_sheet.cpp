@@ -65,10 +65,20 @@ class RunSheet {
     page_.text(page_.left(), page_.y, "Run sheet", kTitle_pt, PdfFont::kBold);
     page_.text(page_.left() + 46, page_.y, fitted(job_.title, page_.width() - 46, kHead_pt),
                kHead_pt);
+    draw_piece();
     draw_alarm();
     page_.y -= 1;
     page_.fill_in(page_.left(), {"Date", "Operator", "Run no."});
     page_.y -= 3;
+  }
+
+  void draw_piece() {
+    std::string piece = job_.batch.empty() ? "" : "Batch " + job_.batch;
+    if (!job_.label.empty()) piece += (piece.empty() ? "Piece " : ", piece ") + job_.label;
+    if (piece.empty()) return;
+    page_.y -= 6;
+    page_.text(page_.left() + 46, page_.y, fitted(piece, page_.width() - 46, kBody_pt), kBody_pt,
+               PdfFont::kBold);
   }
 
   // What the verdict forbids is seen first.

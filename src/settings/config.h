@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "artwork/layer.h"
+#include "base/output_folder.h"
 #include "coat/design.h"
 #include "ink/printer.h"
 #include "model_io/load.h"
@@ -43,6 +44,16 @@ struct ProcessOptions {
   double dwell_s = 10;            // at depth, at least
   double lift_mm_per_min = 300;
   double dry_min_h = 2, dry_max_h = 3;
+};
+
+// What things cost, to add up what a piece does. Prices in a currency of the person's own.
+struct CostOptions {
+  std::string currency;
+  double film_per_m2 = 0;
+  double ink_per_ml = 0;
+  double ink_ml_per_m2 = 10;  // that full coverage of one ink takes; printers differ
+  double activator_per_g = 0;
+  double per_piece = 0;  // the bare part, coats, labour
 };
 
 enum class StageDriver { kZaber, kMarlin };
@@ -94,6 +105,7 @@ struct JobConfig {
   std::filesystem::path model;
   std::filesystem::path film_image;  // simulate: the image that was printed; may be empty
   std::filesystem::path output;      // folder
+  EarlierResult earlier_result = EarlierResult::kReplaced;  // in that folder
   // For the report only.
   std::vector<std::filesystem::path> settings_files;  // profiles and configs that were read
   std::vector<std::string> command_line;
@@ -104,6 +116,7 @@ struct JobConfig {
   PrinterOptions printer;
   PrintOptions print;
   ProcessOptions process;
+  CostOptions cost;
   StageOptions stage;
   std::vector<PartEntry> parts;
   PlanOptions plan;

@@ -13,7 +13,8 @@ namespace {
 
 // What belongs to the run or to the machine, not to the job.
 bool is_left_out(const Parameter& p) {
-  return p.name.starts_with("run.") || p.name.starts_with("stage.") || p.name == "plan.dips";
+  return p.name.starts_with("run.") || p.name.starts_with("stage.") ||
+         p.name.starts_with("output.") || p.name == "plan.dips";
 }
 
 std::string quoted(const std::string& text) {
@@ -30,7 +31,9 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
+// From no folder: absolute.
 std::string from_folder(const std::string& file, const std::filesystem::path& folder) {
+  if (folder.empty()) return file.empty() ? "" : std::filesystem::absolute(file).string();
   std::error_code error;
   const auto path = std::filesystem::relative(file, folder, error);
   return error || path.empty() ? std::filesystem::absolute(file).string() : path.string();
@@ -89,6 +92,19 @@ std::string job_file(const JobConfig& config, const std::filesystem::path& folde
     text += fmt::format("{} = {}\n", p.name.substr(dot + 1), value_text(p, value, folder));
   }
   return text + artwork_tables_toml(config.object.artwork, folder) + dip_tables_toml(config.dips);
+}
+
+std::string settings_file(const JobConfig& config, const std::vector<std::string>& names) {
+  std::string text, table;
+  for (const Parameter& p : parameters()) {
+    if (std::find(names.begin(), names.end(), p.name) == names.end()) continue;
+    const std::size_t dot = p.name.find('.');
+    const std::string own = p.name.substr(0, dot);
+    if (own != table) text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", own);
+    table = own;
+    text += fmt::format("{} = {}\n", p.name.substr(dot + 1), value_text(p, p.get(config), {}));
+  }
+  return text;
 }
 
 }  // namespace hydrodip

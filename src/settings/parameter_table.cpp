@@ -434,6 +434,30 @@ std::vector<Parameter> process_records() {
   };
 }
 
+std::vector<Parameter> cost_records() {
+  return {
+      text(
+          "cost.currency", ParameterType::kText,
+          [](C& c) -> std::string& { return c.cost.currency; }, "of the prices, as in EUR"),
+      number(
+          "cost.film_per_m2", "/m2", 0, 1e6, [](C& c) -> double& { return c.cost.film_per_m2; },
+          "price of film"),
+      number(
+          "cost.ink_per_ml", "/ml", 0, 1e6, [](C& c) -> double& { return c.cost.ink_per_ml; },
+          "price of ink"),
+      number(
+          "cost.ink_ml_per_m2", "ml/m2", 0, 1000,
+          [](C& c) -> double& { return c.cost.ink_ml_per_m2; },
+          "ink that full coverage of one colour takes; the printer's own figure"),
+      number(
+          "cost.activator_per_g", "/g", 0, 1e6,
+          [](C& c) -> double& { return c.cost.activator_per_g; }, "price of activator"),
+      number(
+          "cost.per_piece", "", 0, 1e9, [](C& c) -> double& { return c.cost.per_piece; },
+          "whatever else a piece costs: the bare part, coats, labour"),
+  };
+}
+
 std::vector<Parameter> stage_records() {
   return {
       choice<StageDriver>(
@@ -505,6 +529,10 @@ std::vector<Parameter> run_records() {
           "preview.pictures", {{"on", true}, {"off", false}},
           [](C& c) -> bool& { return c.pictures; },
           "preview.png, maps.png, gamut.png and the 3D view of report.html, which take seconds"),
+      choice<EarlierResult>(
+          "output.no_clobber", {{"off", EarlierResult::kReplaced}, {"on", EarlierResult::kKept}},
+          [](C& c) -> EarlierResult& { return c.earlier_result; },
+          "on: refuse to replace an earlier result in the output folder"),
       integer(
           "run.threads", "", 1, 1024, [](C& c) -> int& { return c.threads; },
           "processor threads; the result does not depend on it", "all cores"),
@@ -518,7 +546,7 @@ const std::vector<Parameter>& parameters() {
     std::vector<Parameter> list;
     for (auto table :
          {object_records, film_records, bath_records, dip_records, material_records, ink_records,
-          print_records, process_records, stage_records, plan_records, run_records})
+          print_records, process_records, cost_records, stage_records, plan_records, run_records})
       for (Parameter& p : table()) list.push_back(std::move(p));
     return list;
   }();

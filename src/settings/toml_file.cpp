@@ -14,6 +14,7 @@ constexpr void check(bool holds) {
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -41,11 +42,15 @@ class SettingReader {
  public:
   explicit SettingReader(const std::filesystem::path& file) : file_(file) {}
 
-  std::vector<Setting> read() {
+  toml::table table() const {
     const std::vector<std::uint8_t> bytes = read_file(file_);
     if (bytes.size() > kLargestFile)
       throw InputError(fmt::format("{}: too large for a configuration file", file_.string()));
-    collect(parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size())), "");
+    return parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  }
+
+  std::vector<Setting> read() {
+    collect(table(), "");
     // toml++ keeps keys sorted by name; the file's own order decides which error comes first.
     std::stable_sort(found_.begin(), found_.end(), [](const Located& a, const Located& b) {
       return std::pair(a.line, a.column) < std::pair(b.line, b.column);
@@ -255,7 +260,31 @@ class SettingReader {
   std::vector<Located> found_;
 };
 
+nlohmann::ordered_json as_json(const toml::node& node) {
+  using Json = nlohmann::ordered_json;
+  if (const toml::table* table = node.as_table()) {
+    Json object = Json::object();
+    for (const auto& [key, value] : *table) object[std::string(key.str())] = as_json(value);
+    return object;
+  }
+  if (const toml::array* array = node.as_array()) {
+    Json list = Json::array();
+    for (const toml::node& value : *array) list.push_back(as_json(value));
+    return list;
+  }
+  if (const auto* integer = node.as_integer()) return integer->get();
+  if (const auto* real = node.as_floating_point()) return real->get();
+  if (const auto* flag = node.as_boolean()) return flag->get();
+  if (const auto text = node.value_exact<std::string>()) return *text;
+  return nullptr;  // a date or time
+}
+
 }  // namespace
+
+std::string toml_as_json(const std::filesystem::path& file) {
+  return as_json(SettingReader(file).table())
+      .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
 
 std::vector<Setting> read_settings(const std::filesystem::path& file) {
   return SettingReader(file).read();

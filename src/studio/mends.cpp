@@ -96,7 +96,9 @@ std::string misfit(const JobConfig& config, const TriangleMesh& posed) {
 }
 
 Json orient_mend() {
-  return {{"text", "Look for a better way to hold it"}, {"task", {{"kind", "orient"}}}};
+  return {{"text", "Look for a better way to hold it"},
+          {"patch", Json::object()},
+          {"task", {{"kind", "orient"}}}};
 }
 
 Json tear_mends(const JobConfig& config, const DippedFilm& film) {

@@ -265,5 +265,18 @@ TEST_F(OutputFolderTest, ClearsWhatKilledProcessesLeft) {
   EXPECT_EQ(entries(root_), with_one + 1);  // the living one's is left alone
 }
 
+TEST_F(OutputFolderTest, KeepsAnEarlierResultWhereThatIsAsked) {
+  for (const char* text : {"hydrodip 1", "hydrodip 2"}) {
+    OutputFolder folder(root_);
+    folder.announce({"one.txt"}, {});
+    write(folder.path("one.txt"), text);
+    folder.commit();
+  }
+  EXPECT_EQ(read(root_ / "one.txt"), "hydrodip 2");
+  OutputFolder keeping(root_, EarlierResult::kKept);
+  EXPECT_THROW(keeping.announce({"two.txt", "one.txt"}, {}), InputError);
+  EXPECT_NO_THROW(keeping.announce({"two.txt"}, {}));
+}
+
 }  // namespace
 }  // namespace hydrodip

@@ -50,6 +50,7 @@ export interface JobFile {
 export interface Mend {
   text: string;
   patch: Patch;
+  task?: { kind: TaskKind }; // what helps is a search, and no change by itself
 }
 
 export interface Verdict {

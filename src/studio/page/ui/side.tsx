@@ -23,6 +23,7 @@ export function Side() {
 }
 
 export function applyMend(mend: Mend): void {
+  if (mend.task) return void job.value?.start(mend.task.kind);
   change((document) => patched(document, mend.patch), t.undo.mend(mend.text));
 }
 

@@ -1,0 +1,250 @@
+// The only place that knows SQLite.
+#include "history/history.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/nearest_name.h"
+#include "history/run_log.h"
+
+namespace hydrodip {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFile = "history.sqlite";
+constexpr int kPatience_ms = 5000;  // while another process writes
+
+// A table has what the logs say, another what people say about it, so that neither loses the other.
+constexpr const char* kSchema = R"(
+  CREATE TABLE IF NOT EXISTS hydrodip (schema_version INTEGER NOT NULL);
+  INSERT INTO hydrodip SELECT 1 WHERE NOT EXISTS (SELECT 1 FROM hydrodip);
+  CREATE TABLE IF NOT EXISTS reports (sha256 TEXT PRIMARY KEY, report TEXT NOT NULL);
+  CREATE TABLE IF NOT EXISTS runs (id TEXT PRIMARY KEY, started_utc TEXT NOT NULL,
+    report_sha256 TEXT NOT NULL);
+  CREATE TABLE IF NOT EXISTS readings (run TEXT NOT NULL, field TEXT NOT NULL, value TEXT NOT NULL,
+    PRIMARY KEY (run, field));
+  CREATE TABLE IF NOT EXISTS amendments (run TEXT NOT NULL, field TEXT NOT NULL,
+    value TEXT NOT NULL, PRIMARY KEY (run, field));
+)";
+
+struct NumberField {
+  const char* name;
+  std::optional<double> DipRun::*member;
+  double least, most;
+};
+constexpr std::array<NumberField, 7> kNumbers = {
+    {{"water_before_c", &DipRun::water_before_c, 0, 100},
+     {"water_after_c", &DipRun::water_after_c, 0, 100},
+     {"soak_s", &DipRun::soak_s, 0, 86400},
+     {"activator_g", &DipRun::activator_g, 0, 100000},
+     {"registration_x_mm", &DipRun::registration_x_mm, -1000, 1000},
+     {"registration_y_mm", &DipRun::registration_y_mm, -1000, 1000},
+     {"registration_deg", &DipRun::registration_deg, -360, 360}}};
+
+struct TextField {
+  const char* name;
+  std::string DipRun::*member;
+};
+constexpr std::array<TextField, 4> kTexts = {{{"batch", &DipRun::batch},
+                                              {"label", &DipRun::label},
+                                              {"outcome", &DipRun::outcome},
+                                              {"notes", &DipRun::notes}}};
+
+std::optional<double> number_of(const std::string& text) {
+  std::string with_point = text;
+  std::ranges::replace(with_point, ',', '.');
+  double value = 0;
+  const char* end = with_point.data() + with_point.size();
+  const auto [rest, error] = std::from_chars(with_point.data(), end, value);
+  if (error != std::errc() || rest != end || !std::isfinite(value)) return {};
+  return value;
+}
+
+void check_field(const std::string& name, const std::string& value) {
+  if (name == "outcome" && value != "good" && value != "failed")
+    throw InputError(fmt::format("outcome: a piece is good or failed, not '{}'", value));
+  for (const NumberField& field : kNumbers) {
+    if (name != field.name) continue;
+    const auto number = number_of(value);
+    if (!number || *number < field.least || *number > field.most)
+      throw InputError(fmt::format("{}: must be a number from {:g} to {:g}, not '{}'", name,
+                                   field.least, field.most, value));
+    return;
+  }
+  std::vector<std::string> names;
+  for (const TextField& field : kTexts) names.emplace_back(field.name);
+  if (std::ranges::find(names, name) != names.end()) return;
+  for (const NumberField& field : kNumbers) names.emplace_back(field.name);
+  throw InputError(fmt::format("a run has no field '{}'{}", name, did_you_mean(name, names)));
+}
+
+void set_field(DipRun& run, const std::string& name, const std::string& value) {
+  for (const NumberField& field : kNumbers)
+    if (name == field.name) run.*field.member = number_of(value);
+  for (const TextField& field : kTexts)
+    if (name == field.name) run.*field.member = value;
+}
+
+RunFields fields_of(const DipRun& run) {
+  RunFields fields;
+  for (const NumberField& field : kNumbers)
+    if (run.*field.member) fields[field.name] = fmt::format("{}", *(run.*field.member));
+  for (const TextField& field : kTexts)
+    if (!(run.*field.member).empty()) fields[field.name] = run.*field.member;
+  return fields;
+}
+
+}  // namespace
+
+struct History::Database {
+  explicit Database(const fs::path& path) : file(path) {
+    if (sqlite3_open(file.string().c_str(), &handle) != SQLITE_OK) fail();
+    sqlite3_busy_timeout(handle, kPatience_ms);
+    execute(kSchema);
+  }
+  ~Database() { sqlite3_close(handle); }
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  [[noreturn]] void fail() const {
+    const std::string why = sqlite3_errmsg(handle);
+    throw InputError(fmt::format(
+        "{}: the history cannot be read or written ({}); move the file away, and it is made anew "
+        "from the runs' logs",
+        file.string(), why));
+  }
+
+  void execute(const char* sql) const {
+    if (sqlite3_exec(handle, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+  }
+
+  using Row = std::vector<std::string>;
+  std::vector<Row> query(const char* sql, const std::vector<std::string>& values = {}) const {
+    sqlite3_stmt* statement = nullptr;
+    if (sqlite3_prepare_v2(handle, sql, -1, &statement, nullptr) != SQLITE_OK) fail();
+    const std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> owner(statement, sqlite3_finalize);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      sqlite3_bind_text(statement, int(i) + 1, values[i].data(), int(values[i].size()),
+                        SQLITE_TRANSIENT);
+    std::vector<Row> rows;
+    int result = 0;
+    while ((result = sqlite3_step(statement)) == SQLITE_ROW) {
+      Row row;
+      for (int i = 0; i < sqlite3_column_count(statement); ++i) {
+        const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement, i));
+        row.emplace_back(text != nullptr ? text : "");
+      }
+      rows.push_back(std::move(row));
+    }
+    if (result != SQLITE_DONE) fail();
+    return rows;
+  }
+
+  // All of it, or nothing.
+  template <class Work>
+  void transact(const Work& work) const {
+    execute("BEGIN IMMEDIATE");
+    try {
+      work();
+    } catch (...) {
+      sqlite3_exec(handle, "ROLLBACK", nullptr, nullptr, nullptr);
+      throw;
+    }
+    execute("COMMIT");
+  }
+
+  void put(const DipRun& run) const {
+    query("INSERT OR REPLACE INTO runs VALUES (?, ?, ?)",
+          {run.id, run.started_utc, run.report_sha256});
+    query("DELETE FROM readings WHERE run = ?", {run.id});
+    for (const auto& [field, value] : fields_of(run))
+      query("INSERT INTO readings VALUES (?, ?, ?)", {run.id, field, value});
+  }
+
+  fs::path file;
+  sqlite3* handle = nullptr;
+};
+
+History::History(const fs::path& job_folder)
+    : folder_(job_folder), database_(std::make_unique<Database>(job_folder / kFile)) {
+  std::vector<DipRun> logged;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end;
+       entry.increment(error))
+    if (entry->path().filename().string().starts_with("rig-") && entry->is_directory())
+      if (const auto run = read_run_log(entry->path())) logged.push_back(*run);
+  std::vector<std::uint8_t> report;
+  if (fs::exists(folder_ / "report.json", error)) report = read_file(folder_ / "report.json");
+  database_->transact([&] {
+    for (const DipRun& run : logged) database_->put(run);
+    if (!report.empty())
+      database_->query("INSERT OR IGNORE INTO reports VALUES (?, ?)",
+                       {sha256_hex(report), std::string(report.begin(), report.end())});
+  });
+}
+
+History::~History() = default;
+
+std::vector<DipRun> History::runs() const {
+  std::vector<DipRun> runs;
+  for (const auto& row : database_->query(
+           "SELECT id, started_utc, report_sha256 FROM runs ORDER BY started_utc, id")) {
+    DipRun run;
+    run.id = row[0];
+    run.started_utc = row[1];
+    run.report_sha256 = row[2];
+    for (const char* table : {"readings", "amendments"})
+      for (const auto& reading : database_->query(
+               fmt::format("SELECT field, value FROM {} WHERE run = ?", table).c_str(), {run.id}))
+        set_field(run, reading[0], reading[1]);
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+std::string History::add(const std::string& started_utc, const std::string& report_sha256,
+                         const RunFields& fields) {
+  DipRun run;
+  run.started_utc = started_utc;
+  run.report_sha256 = report_sha256;
+  run.outcome = "done";
+  for (const auto& [name, value] : fields) {
+    check_field(name, value);
+    set_field(run, name, value);
+  }
+  database_->transact([&] {
+    const auto count = database_->query("SELECT COUNT(*) FROM runs WHERE id LIKE 'hand-%'");
+    run.id = fmt::format("hand-{}", std::stol(count.front().front()) + 1);
+    database_->put(run);
+  });
+  return run.id;
+}
+
+void History::amend(const std::string& id, const RunFields& fields) {
+  for (const auto& [name, value] : fields) check_field(name, value);
+  std::vector<std::string> known;
+  for (const auto& row : database_->query("SELECT id FROM runs")) known.push_back(row[0]);
+  if (std::ranges::find(known, id) == known.end())
+    throw InputError(
+        fmt::format("there is no run '{}' in {}{}", id, folder_.string(),
+                    known.empty() ? "; nothing was dipped yet" : did_you_mean(id, known)));
+  database_->transact([&] {
+    for (const auto& [name, value] : fields)
+      database_->query("INSERT OR REPLACE INTO amendments VALUES (?, ?, ?)", {id, name, value});
+  });
+}
+
+std::string History::report(const std::string& sha256) const {
+  const auto rows = database_->query("SELECT report FROM reports WHERE sha256 = ?", {sha256});
+  return rows.empty() ? "" : rows.front().front();
+}
+
+}  // namespace hydrodip

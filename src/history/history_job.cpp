@@ -1,0 +1,188 @@
+#include "history/history_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Totals {
+  int dips = 0, good = 0, failed = 0, not_judged = 0;
+  DipUse use;
+};
+
+bool is_priced(const CostOptions& cost) {
+  return cost.film_per_m2 > 0 || cost.ink_per_ml > 0 || cost.activator_per_g > 0 ||
+         cost.per_piece > 0;
+}
+
+// A run that was given up before film lay on the water used none.
+bool used_film(const DipRun& run) {
+  return run.outcome == "good" || run.outcome == "failed" || run.outcome == "done" || run.soak_s ||
+         run.activator_g;
+}
+
+Totals totals_of(const std::vector<DipRun>& runs, const RigJob& job) {
+  Totals totals;
+  for (const DipRun& run : runs) {
+    if (!used_film(run)) continue;
+    ++totals.dips;
+    ++(run.outcome == "good"     ? totals.good
+       : run.outcome == "failed" ? totals.failed
+                                 : totals.not_judged);
+    const DipUse use = use_of(run, job);
+    totals.use.film_m2 += use.film_m2;
+    totals.use.ink_ml += use.ink_ml;
+    totals.use.activator_g += use.activator_g;
+    totals.use.cost += use.cost;
+  }
+  return totals;
+}
+
+std::string or_dash(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
+}
+
+std::string money(double value, const CostOptions& cost) {
+  return fmt::format("{:.2f}{}{}", value, cost.currency.empty() ? "" : " ", cost.currency);
+}
+
+std::string table(const std::vector<DipRun>& runs, const RigJob& job) {
+  const bool priced = is_priced(job.config.cost);
+  std::string text = fmt::format("{:<9} {:<17} {:<10} {:<10} {:<10} {:>11} {:>6} {:>11}{}  notes\n",
+                                 "run", "begun (UTC)", "batch", "label", "outcome", "water C",
+                                 "soak s", "activator g", priced ? "      cost" : "");
+  for (const DipRun& run : runs) {
+    const std::string water =
+        or_dash(run.water_before_c, 1) +
+        (run.water_after_c ? " to " + or_dash(run.water_after_c, 1) : std::string());
+    text += fmt::format("{:<9} {:<17} {:<10} {:<10} {:<10} {:>11} {:>6} {:>11}", run.id,
+                        run.started_utc.substr(0, 16), run.batch, run.label, run.outcome, water,
+                        or_dash(run.soak_s, 0), or_dash(run.activator_g, 1));
+    if (priced) text += fmt::format(" {:>9.2f}", use_of(run, job).cost);
+    text += run.notes.empty() ? "\n" : "  " + run.notes + "\n";
+  }
+  return text;
+}
+
+std::string sum(const Totals& totals, const RigJob& job) {
+  const CostOptions& cost = job.config.cost;
+  std::string text = fmt::format(
+      "\n{} dip{}: {} good, {} failed, {} not judged ('--run RUN --outcome good' or failed)\n"
+      "used: {:.3f} m2 of film, {}, {:.1f} g of activator\n",
+      totals.dips, totals.dips == 1 ? "" : "s", totals.good, totals.failed, totals.not_judged,
+      totals.use.film_m2,
+      job.ink_coverage > 0 ? fmt::format("about {:.2f} ml of ink", totals.use.ink_ml)
+                           : "ink not known",
+      totals.use.activator_g);
+  if (!is_priced(cost))
+    return text + "no prices are set: --set cost.film_per_m2=..., or in a profile\n";
+  text += fmt::format("cost: {}", money(totals.use.cost, cost));
+  if (totals.good > 0)
+    text += fmt::format("; a good piece: {}", money(totals.use.cost / totals.good, cost));
+  return text + "\n";
+}
+
+Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json json_of(const DipRun& run, const RigJob& job) {
+  const DipUse use = use_of(run, job);
+  return {{"run", run.id},
+          {"started_utc", run.started_utc},
+          {"report_sha256", run.report_sha256},
+          {"same_print", run.report_sha256 == job.report_sha256},
+          {"batch", run.batch},
+          {"label", run.label},
+          {"outcome", run.outcome},
+          {"water_before_c", or_null(run.water_before_c)},
+          {"water_after_c", or_null(run.water_after_c)},
+          {"soak_s", or_null(run.soak_s)},
+          {"activator_g", or_null(run.activator_g)},
+          {"registration_x_mm", or_null(run.registration_x_mm)},
+          {"registration_y_mm", or_null(run.registration_y_mm)},
+          {"registration_deg", or_null(run.registration_deg)},
+          {"notes", run.notes},
+          {"cost", use.cost}};
+}
+
+std::string json_of(const std::vector<DipRun>& runs, const Totals& totals, const RigJob& job) {
+  Json list = Json::array();
+  for (const DipRun& run : runs) list.push_back(json_of(run, job));
+  const Json json = {
+      {"job", job.folder.string()},
+      {"title", job.title},
+      {"currency", job.config.cost.currency},
+      {"runs", list},
+      {"totals",
+       {{"dips", totals.dips},
+        {"good", totals.good},
+        {"failed", totals.failed},
+        {"not_judged", totals.not_judged},
+        {"film_m2", totals.use.film_m2},
+        {"ink_ml", job.ink_coverage > 0 ? Json(totals.use.ink_ml) : Json()},
+        {"activator_g", totals.use.activator_g},
+        {"cost", totals.use.cost},
+        {"cost_per_good_piece", totals.good > 0 ? Json(totals.use.cost / totals.good) : Json()}}}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+// The report.json that a run was dipped by, as it was then.
+JobResult report_of_run(const History& history, const std::string& id) {
+  const std::vector<DipRun> runs = history.runs();
+  const auto run = std::ranges::find_if(runs, [&](const DipRun& r) { return r.id == id; });
+  if (run == runs.end())
+    throw InputError(
+        fmt::format("there is no run '{}'; 'hydrodip history JOB_DIR' lists them", id));
+  const std::string report = history.report(run->report_sha256);
+  if (report.empty())
+    throw InputError(
+        fmt::format("the settings of run '{}' were not kept: the job had been printed anew before "
+                    "its history was looked at",
+                    id));
+  JobResult result;
+  result.text = result.json = report;
+  return result;
+}
+
+}  // namespace
+
+DipUse use_of(const DipRun& run, const RigJob& job) {
+  DipUse use;
+  if (!used_film(run)) return use;
+  const CostOptions& cost = job.config.cost;
+  use.film_m2 = 1e-6 * film_area_mm2(job.config.design.film);
+  use.ink_ml = use.film_m2 * job.ink_coverage * cost.ink_ml_per_m2;
+  use.activator_g = run.activator_g.value_or(0);
+  use.cost = use.film_m2 * cost.film_per_m2 + use.ink_ml * cost.ink_per_ml +
+             use.activator_g * cost.activator_per_g + cost.per_piece;
+  return use;
+}
+
+JobResult history_job(const RigJob& job, const HistoryRequest& request, Clock& clock) {
+  History history(job.folder);
+  if (!request.settings_run.empty()) return report_of_run(history, request.settings_run);
+  JobResult result;
+  if (request.add)
+    result.text =
+        fmt::format("added {}\n\n", history.add(clock.utc(), job.report_sha256, request.fields));
+  if (!request.amend_run.empty()) history.amend(request.amend_run, request.fields);
+  std::vector<DipRun> runs = history.runs();
+  if (!request.batch_only.empty())
+    std::erase_if(runs, [&](const DipRun& run) { return run.batch != request.batch_only; });
+  const Totals totals = totals_of(runs, job);
+  result.folder = job.folder;
+  result.text += runs.empty()
+                     ? "nothing was dipped yet: 'hydrodip rig guide' keeps what was done, and "
+                       "'hydrodip history JOB_DIR --add' what was done without it\n"
+                     : table(runs, job) + sum(totals, job);
+  result.json = json_of(runs, totals, job);
+  return result;
+}
+
+}  // namespace hydrodip

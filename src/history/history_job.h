@@ -1,0 +1,35 @@
+// The command behind `hydrodip history`.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "history/history.h"
+#include "job/jobs.h"
+#include "rig/link.h"
+#include "rig/rig_job.h"
+
+namespace hydrodip {
+
+struct HistoryRequest {
+  bool add = false;       // a dip that was made without `rig guide`
+  std::string amend_run;  // whose fields are corrected; empty: none
+  RunFields fields;
+  std::string batch_only;    // shows this batch; empty: all
+  std::string settings_run;  // whose report.json is wanted instead; empty: none
+};
+
+// What one dip uses, by the job's sheet and what was weighed, and what that costs.
+struct DipUse {
+  double film_m2 = 0;
+  double ink_ml = 0;  // 0 too if the report does not say how much is laid
+  double activator_g = 0;
+  double cost = 0;
+};
+DipUse use_of(const DipRun& run, const RigJob& job);
+
+// Every dip with its readings; what was used; what a good piece costs, with those that failed
+// charged to it. Changes what the request says first.
+JobResult history_job(const RigJob& job, const HistoryRequest& request, Clock& clock);
+
+}  // namespace hydrodip

@@ -1,0 +1,49 @@
+// Doing the runs of a sweep, here or on many machines that share a file system.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "sweep/sweep_plan.h"
+
+namespace hydrodip {
+
+// Which of the runs: every run whose place, counted from 0, leaves the rest `number` - 1 when
+// divided by `of`.
+struct Shard {
+  int number = 1, of = 1;
+};
+// "3/8". Throws InputError.
+Shard parse_shard(const std::string& text);
+
+// What became of a run: FOLDER/runs/ID.json, which appears whole or not at all.
+struct SweepOutcome {
+  std::string error;  // empty: it went well
+  double seconds = 0;
+  std::string report;  // report.json's text; empty if it failed
+};
+std::optional<SweepOutcome> read_outcome(const std::filesystem::path& folder,
+                                         const std::string& id);
+
+struct SweepWork {
+  Shard shard;
+  std::string id;      // this one only; empty: all of the shard
+  bool again = false;  // runs that failed, too
+};
+
+struct SweepDone {
+  int done = 0, failed = 0;  // now
+  int before = 0;            // had an outcome already
+  int elsewhere = 0;         // another process was at them
+};
+
+// Does the runs that have no outcome yet, each on one thread, side by side on the context's. No run
+// is done twice, whoever else is at it: a lock on FOLDER/claims/ID tells, and goes with its
+// process. Throws InputError if the folder cannot be written to, Cancelled.
+SweepDone run_sweep(const std::filesystem::path& folder, const SweepPlan& plan,
+                    const SweepWork& work, const RunContext& context);
+
+}  // namespace hydrodip

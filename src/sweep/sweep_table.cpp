@@ -1,0 +1,117 @@
+#include "sweep/sweep_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "sweep/sweep_run.h"
+
+namespace hydrodip {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Parts of the report that are results; the rest is what was asked for, or text.
+constexpr const char* kParts[] = {"coverage", "stretch", "wrinkled_mm2", "lifted_mm2",       "air",
+                                  "figures",  "ink",     "seconds",      "peak_memory_bytes"};
+
+void flatten(const Json& value, const std::string& name, std::map<std::string, double>& figures,
+             std::vector<std::string>& order) {
+  if (value.is_object()) {
+    for (const auto& [key, inner] : value.items()) flatten(inner, name + "." + key, figures, order);
+  } else if (value.is_number() || value.is_boolean()) {
+    figures[name] = value.is_boolean() ? double(value.get<bool>()) : value.get<double>();
+    order.push_back(name);
+  }
+}
+
+std::string state_name(RunState state) {
+  switch (state) {
+    case RunState::kDone:
+      return "done";
+    case RunState::kFailed:
+      return "failed";
+    case RunState::kMissing:
+      return "missing";
+  }
+  return "";
+}
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+SweepTable make_table(const std::filesystem::path& folder, const SweepPlan& plan) {
+  SweepTable table;
+  std::vector<std::map<std::string, double>> figures(plan.runs.size());
+  for (std::size_t i = 0; i < plan.runs.size(); ++i) {
+    SweepRow row;
+    row.run = &plan.runs[i];
+    if (const auto outcome = read_outcome(folder, row.run->id)) {
+      row.state = outcome->error.empty() ? RunState::kDone : RunState::kFailed;
+      row.error = outcome->error;
+      if (row.state == RunState::kDone) {
+        const Json report = Json::parse(outcome->report);
+        row.verdict = report.value("concern", "");
+        std::vector<std::string> order;
+        for (const char* part : kParts)
+          if (report.contains(part)) flatten(report[part], part, figures[i], order);
+        for (const std::string& name : order)
+          if (std::ranges::find(table.figure_names, name) == table.figure_names.end())
+            table.figure_names.push_back(name);
+      }
+    }
+    table.rows.push_back(std::move(row));
+  }
+  for (std::size_t i = 0; i < table.rows.size(); ++i)
+    for (const std::string& name : table.figure_names) {
+      const auto found = figures[i].find(name);
+      table.rows[i].figures.push_back(found == figures[i].end() ? std::nullopt
+                                                                : std::optional(found->second));
+    }
+  return table;
+}
+
+std::string table_csv(const SweepTable& table, const SweepPlan& plan) {
+  std::string csv = "id,state";
+  for (const std::string& name : plan.varied) csv += "," + csv_cell(name);
+  csv += ",verdict";
+  for (const std::string& name : table.figure_names) csv += "," + name;
+  csv += ",error\n";
+  for (const SweepRow& row : table.rows) {
+    csv += row.run->id + "," + state_name(row.state);
+    for (const std::string& name : plan.varied) csv += "," + csv_cell(value_of(*row.run, name));
+    csv += "," + row.verdict;
+    for (const auto& figure : row.figures) csv += figure ? fmt::format(",{}", *figure) : ",";
+    csv += "," + csv_cell(row.error) + "\n";
+  }
+  return csv;
+}
+
+std::string table_json(const SweepTable& table, const SweepPlan& plan) {
+  Json rows = Json::array();
+  for (const SweepRow& row : table.rows) {
+    Json values = Json::object(), figures = Json::object();
+    for (const std::string& name : plan.varied) values[name] = value_of(*row.run, name);
+    for (std::size_t i = 0; i < table.figure_names.size(); ++i)
+      if (row.figures[i]) figures[table.figure_names[i]] = *row.figures[i];
+    Json entry = {{"id", row.run->id}, {"state", state_name(row.state)}, {"values", values}};
+    if (row.state == RunState::kDone) {
+      entry["verdict"] = row.verdict;
+      entry["figures"] = figures;
+    }
+    if (row.state == RunState::kFailed) entry["error"] = row.error;
+    rows.push_back(entry);
+  }
+  const Json json = {{"hydrodip_sweep_table", 1}, {"varied", plan.varied}, {"runs", rows}};
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,181 @@
+#include "history/history.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "contains.h"
+#include "history/history_job.h"
+#include "temporary_folder.h"
+
+namespace hydrodip {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FixedClock : Clock {
+  double now_s() override { return 0; }
+  bool wait_readable(int, double) override { return false; }
+  std::string utc() override { return "2026-02-03T04:05:06Z"; }
+};
+
+std::string guided_log(const std::string& started, const std::string& label,
+                       const std::string& end) {
+  return "{\"time\":\"" + started +
+         "\",\"elapsed_s\":0.0,\"event\":\"start\",\"job\":\"mask\",\"depth_mm\":12.0,"
+         "\"report_sha256\":\"abc\",\"batch\":\"B1\",\"label\":\"" +
+         label +
+         "\"}\n"
+         "{\"time\":\"t\",\"event\":\"water\",\"when\":\"before\",\"celsius\":28.5}\n"
+         "{\"time\":\"t\",\"event\":\"soaked\",\"seconds\":70.0}\n"
+         "{\"time\":\"t\",\"event\":\"activator\",\"used_g\":1.5}\n"
+         "{\"time\":\"t\",\"event\":\"activator\",\"used_g\":3.25}\n"
+         "{\"time\":\"t\",\"event\":\"water\",\"when\":\"after\",\"celsius\":27.5}\n" +
+         end;
+}
+const std::string kDone =
+    "{\"time\":\"t\",\"event\":\"end\",\"outcome\":\"done\",\"guided\":true}\n";
+
+void write_run(const TemporaryFolder& job, const std::string& name, const std::string& log) {
+  fs::create_directories(job / name);
+  write_file(job / name / "log.jsonl", log);
+}
+
+std::string refusal(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(History, TakesInWhatTheLogsSay) {
+  const TemporaryFolder job;
+  write_run(job, "rig-2", guided_log("2026-01-02T10:00:00Z", "8", kDone));
+  write_run(job, "rig-1", guided_log("2026-01-01T10:00:00Z", "7", kDone));
+  // Moving the stage is no dip.
+  write_run(job, "rig-3", "{\"time\":\"t\",\"event\":\"start\",\"action\":\"home\"}\n" + kDone);
+  const std::vector<DipRun> runs = History(job.path()).runs();
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(runs[0].id, "rig-1");
+  EXPECT_EQ(runs[0].label, "7");
+  EXPECT_EQ(runs[0].batch, "B1");
+  EXPECT_EQ(runs[0].outcome, "done");
+  EXPECT_EQ(runs[0].water_before_c, 28.5);
+  EXPECT_EQ(runs[0].water_after_c, 27.5);
+  EXPECT_EQ(runs[0].soak_s, 70);
+  EXPECT_EQ(runs[0].activator_g, 3.25);  // sprayed twice: the gun was weighed against the start
+  EXPECT_EQ(runs[1].label, "8");
+}
+
+// The computer went off in mid-line; and later the same run is read again.
+TEST(History, ForgivesABrokenLogAndReadsItAgain) {
+  const TemporaryFolder job;
+  write_run(job, "rig-1", guided_log("2026-01-01T10:00:00Z", "7", "{\"time\":\"t\",\"eve"));
+  EXPECT_EQ(History(job.path()).runs().front().outcome, "unfinished");
+  write_run(job, "rig-1", guided_log("2026-01-01T10:00:00Z", "7", kDone));
+  EXPECT_EQ(History(job.path()).runs().front().outcome, "done");
+}
+
+TEST(History, WhatPeopleSaidOutlastsTheLogsAndTheirFolders) {
+  const TemporaryFolder job;
+  write_run(job, "rig-1", guided_log("2026-01-01T10:00:00Z", "7", kDone));
+  History(job.path()).amend("rig-1", {{"outcome", "failed"}, {"registration_x_mm", "-0.4"}});
+  fs::remove_all(job / "rig-1");
+  const std::vector<DipRun> runs = History(job.path()).runs();
+  ASSERT_EQ(runs.size(), 1U);
+  EXPECT_EQ(runs[0].outcome, "failed");
+  EXPECT_EQ(runs[0].registration_x_mm, -0.4);
+  EXPECT_EQ(runs[0].activator_g, 3.25);
+}
+
+TEST(History, RefusesWhatNoRunHas) {
+  const TemporaryFolder job;
+  History history(job.path());
+  const std::string id = history.add("2026-01-01T10:00:00Z", "", {{"label", "1"}});
+  EXPECT_EQ(id, "hand-1");
+  EXPECT_TRUE(contains(refusal([&] { history.amend("hand-2", {{"label", "2"}}); }), "hand-1"));
+  EXPECT_TRUE(contains(refusal([&] { history.amend(id, {{"lable", "2"}}); }), "label"));
+  EXPECT_TRUE(contains(refusal([&] { history.amend(id, {{"outcome", "fine"}}); }), "good"));
+  EXPECT_TRUE(contains(refusal([&] { history.amend(id, {{"activator_g", "3,5 g"}}); }), "number"));
+  EXPECT_NE(refusal([&] { history.amend(id, {{"water_before_c", "282"}}); }), "");
+  history.amend(id, {{"activator_g", "3,5"}});  // as much of the world writes it
+  EXPECT_EQ(history.runs().front().activator_g, 3.5);
+  EXPECT_EQ(history.add("2026-01-01T10:00:00Z", "", {}), "hand-2");
+}
+
+TEST(History, SaysWhatIsWrongWithItsFile) {
+  const TemporaryFolder job;
+  write_file(job / "history.sqlite", std::string(5000, 'x'));
+  EXPECT_TRUE(contains(refusal([&] { History history(job.path()); }), "history.sqlite"));
+  EXPECT_NE(refusal([&] { History history(job / "nowhere"); }), "");
+}
+
+TEST(History, KeepsTheReportThatARunWasMadeBy) {
+  const TemporaryFolder job;
+  const std::string report = "{\"a\": 1}";
+  write_file(job / "report.json", report);
+  const std::string sha = sha256_hex({report.begin(), report.end()});
+  EXPECT_EQ(History(job.path()).report(sha), report);
+  write_file(job / "report.json", std::string("{\"a\": 2}"));
+  EXPECT_EQ(History(job.path()).report(sha), report);
+  EXPECT_EQ(History(job.path()).report("none"), "");
+}
+
+RigJob priced_job() {
+  RigJob job;
+  job.config.design.film.width_mm = 200;
+  job.config.design.film.height_mm = 300;  // 0.06 m2
+  job.ink_coverage = 0.5;
+  job.config.cost.film_per_m2 = 20;    // 1.2 a sheet
+  job.config.cost.ink_ml_per_m2 = 10;  // 0.3 ml
+  job.config.cost.ink_per_ml = 0.5;    // 0.15
+  job.config.cost.activator_per_g = 0.1;
+  job.config.cost.per_piece = 2;
+  return job;
+}
+
+TEST(Cost, IsWhatFilmInkActivatorAndPieceCost) {
+  DipRun run;
+  run.outcome = "good";
+  run.activator_g = 3;
+  const DipUse use = use_of(run, priced_job());
+  EXPECT_NEAR(use.film_m2, 0.06, 1e-12);
+  EXPECT_NEAR(use.ink_ml, 0.3, 1e-12);
+  EXPECT_NEAR(use.cost, 1.2 + 0.15 + 0.3 + 2, 1e-12);
+}
+
+// Given up before the film was on the water: nothing was used.
+TEST(Cost, OfARunThatNeverBeganIsNothing) {
+  DipRun run;
+  run.outcome = "cancelled";
+  EXPECT_EQ(use_of(run, priced_job()).cost, 0);
+  run.soak_s = 60;
+  EXPECT_GT(use_of(run, priced_job()).cost, 0);
+}
+
+TEST(HistoryJob, ChargesFailedPiecesToTheGoodOnes) {
+  const TemporaryFolder folder;
+  RigJob job = priced_job();
+  job.folder = folder.path();
+  job.config.cost.currency = "EUR";
+  FixedClock clock;
+  const auto dip = [&](const std::string& outcome) {
+    HistoryRequest request;
+    request.add = true;
+    request.fields = {{"outcome", outcome}};
+    return history_job(job, request, clock);
+  };
+  dip("good");
+  dip("failed");
+  const JobResult result = dip("good");
+  // Three times 3.35, for two pieces.
+  EXPECT_TRUE(contains(result.text, "cost: 10.05 EUR; a good piece: 5.03 EUR") ||
+              contains(result.text, "cost: 10.05 EUR; a good piece: 5.02 EUR"))
+      << result.text;
+  EXPECT_TRUE(contains(result.text, "3 dips: 2 good, 1 failed"));
+}
+
+}  // namespace
+}  // namespace hydrodip
