@@ -1,6 +1,6 @@
 // The studio's page as a person uses it: every action with real clicks and keys, against the real program.
-// Usage: node page.mjs HYDRODIP NODE_MODULES [CHROMIUM]; exit code 77 (skipped) where there is no Chromium.
-// HYDRODIP_PICTURES=DIR keeps pictures; HYDRODIP_ONLY=WORDS runs the tests whose names hold them.
+// Usage: node page.mjs HYDRODIP NODE_MODULES PART [CHROMIUM]; PART: object or artwork, which know nothing of each
+// other. Exit code 77 (skipped) where there is no Chromium. HYDRODIP_PICTURES=DIR keeps pictures.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -11,7 +11,8 @@ import { drag, documentOf, hasChromium, jobOf, kept, middleOf, newResult, openSa
 
 const hydrodip = resolve(process.argv[2]);
 const modules = resolve(process.argv[3]);
-const chromium = process.argv[4] || '/usr/bin/chromium';
+const wanted = process.argv[4];
+const chromium = process.argv[5] || '/usr/bin/chromium';
 if (!hasChromium(chromium)) {
   console.log(`skipped: there is no ${chromium}`);
   process.exit(77);
@@ -28,7 +29,8 @@ const picture = async (page, name) => {
 };
 
 const tests = [];
-const test = (name, body) => tests.push({ name, body });
+let part = 'object';
+const test = (name, body) => tests.push({ name, body, part });
 
 // ---- What people bring ----
 
@@ -375,6 +377,8 @@ test('a dip is added, kept, shown and removed', async () => {
 
 // ---- Artwork ----
 
+part = 'artwork';
+
 let dome;
 test('an STL and a PNG dropped together: the picture is on the object at once', async () => {
   dome = await session.page();
@@ -604,16 +608,16 @@ test('nothing is cut off at 1024 x 768, and dark is dark', async () => {
   await small.context().close();
 });
 
+part = wanted;
 test('no complaint on the console, and no request to anybody else', async () => {
   assert.deepEqual(session.complaints, []);
 });
 
 // ---- Running them ----
 
-const only = process.env.HYDRODIP_ONLY;
 let failures = 0;
-for (const { name, body } of tests) {
-  if (only && !name.includes(only) && !/^a sample opens|^an STL and a PNG/.test(name)) continue;
+for (const { name, body, part: of } of tests) {
+  if (of !== wanted) continue;
   const began = Date.now();
   try {
     await body();
