@@ -3,7 +3,7 @@ import type { JobDocument, Json, Patch } from './document.ts';
 import { t } from './strings.ts';
 
 export type Concern = 'none' | 'care' | 'stop';
-export type Overlay = 'none' | 'stretch' | 'tears' | 'coverage' | 'angle' | 'air';
+export type Overlay = 'none' | 'stretch' | 'tears' | 'wrinkles' | 'coverage' | 'angle' | 'air';
 export type Numbers = readonly number[];
 
 export interface Parameter {
@@ -184,6 +184,7 @@ export interface Film {
   wrinkled: Uint8Array;
   lying: number[]; // triangles on the object
   tornList: number[];
+  wrinkledList: number[]; // of those that lie
 }
 
 export interface Result {
@@ -286,9 +287,11 @@ export function readResult(buffer: ArrayBuffer): Result {
   };
   const lying: number[] = [];
   const tornList: number[] = [];
+  const wrinkledList: number[] = [];
   for (let t = 0; t < film.index.length / 3; ++t) {
     const met = [0, 1, 2].every((k) => film.state[film.index[3 * t + k]!] === 1);
     if (met) (film.torn[t] ? tornList : lying).push(t);
+    if (met && film.wrinkled[t] && !film.torn[t]) wrinkledList.push(t);
   }
   const surface = (name: string): Result['air'] => {
     const position = array<Float32Array>(`${name}.position`);
@@ -297,7 +300,7 @@ export function readResult(buffer: ArrayBuffer): Result {
   };
   return {
     ...(json as unknown as Result),
-    filmMesh: { ...film, lying, tornList },
+    filmMesh: { ...film, lying, tornList, wrinkledList },
     printed: demand(array<Uint8Array>('sheet.printed'), 'sheet.printed'),
     predicted: demand(array<Uint8Array>('sheet.predicted'), 'sheet.predicted'),
     air: surface('air'),

@@ -1,6 +1,6 @@
 // One open job: its document with undo, and the traffic with the program. What is shown follows from the
 // signals here; the document is only ever replaced, never changed.
-import { computed, signal } from '@preact/signals';
+import { batch, computed, signal } from '@preact/signals';
 import { api, ApiError, Unreachable } from './api.ts';
 import type { DipFrames, DocumentAnswer, JobFile, JobState, MeshData, Problem, Result, Task, TaskKind } from './api.ts';
 import { dipCount, equal, layersOf, withLayer, type JobDocument, type Vec3 } from './document.ts';
@@ -75,6 +75,7 @@ export class Job {
   private retry = 0;
   private newest = { revision: -1, normal: false };
   private meshes = new Map<string, MeshData>();
+  private meshTurn = 0;
 
   constructor(
     readonly id: string,
@@ -430,10 +431,15 @@ export class Job {
   }
 
   private async takeMesh({ mesh, wanted }: { mesh?: string | null; wanted?: string | null }): Promise<void> {
+    const turn = ++this.meshTurn;
     try {
-      if (mesh) this.mesh.value = await this.meshOf(mesh);
-      if (wanted) this.wanted.value = await this.meshOf(wanted);
-      else if (mesh && !this.wanted.value) this.wanted.value = this.mesh.value;
+      const own = mesh ? await this.meshOf(mesh) : null;
+      const painted = wanted ? await this.meshOf(wanted) : own;
+      if (turn !== this.meshTurn) return; // a newer one is on its way
+      batch(() => {
+        if (own) this.mesh.value = own;
+        if (painted) this.wanted.value = painted;
+      });
     } catch (error) {
       if (error instanceof Unreachable) this.lose();
       else if (!(error instanceof ApiError)) throw error;

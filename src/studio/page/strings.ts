@@ -203,7 +203,7 @@ export const t = {
     from: 'Look from',
     sides: { front: 'front', left: 'left', right: 'right', back: 'behind', above: 'above', below: 'below' } as Record<string, string>,
     overlay: 'Show',
-    overlays: { none: 'colours', coverage: 'coverage', stretch: 'stretch', tears: 'tears', angle: 'dip angle', air: 'air' } as Record<string, string>,
+    overlays: { none: 'colours', coverage: 'coverage', stretch: 'stretch', tears: 'tears', wrinkles: 'wrinkles', angle: 'dip angle', air: 'air' } as Record<string, string>,
     compare: 'Compare',
     compares: { both: 'wanted | predicted', wanted: 'wanted', predicted: 'predicted' } as Record<string, string>,
     wanted: 'wanted',

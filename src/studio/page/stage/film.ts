@@ -77,6 +77,7 @@ export type MakeMaterial = (options: { map: THREE.Texture; lift: number; side?: 
 export class FilmPicture {
   readonly lying;
   readonly torn;
+  readonly wrinkled;
   readonly afloat;
   readonly printed: THREE.DataTexture;
   readonly predicted: THREE.DataTexture;
@@ -88,14 +89,15 @@ export class FilmPicture {
     this.printed = sheetTexture(result.printed, sheet.width_px, sheet.height_px);
     this.predicted = sheetTexture(result.predicted, sheet.width_px, sheet.height_px);
     const uv = filmUv(result);
-    const part = (triangles: readonly number[]) => {
+    const part = (triangles: readonly number[], lift = result.film.cell_mm) => {
       const geometry = geometryOf(film.position, uv, film.stretch, turnedOver(film.index, triangles));
       vertexNormals(film.position, film.index, triangles, -1, geometry.getAttribute('normal').array as Float32Array);
       // Between its vertices the film lies a little inside the object.
-      return mesh(geometry, make({ map: this.predicted, lift: result.film.cell_mm, side: THREE.FrontSide }));
+      return mesh(geometry, make({ map: this.predicted, lift, side: THREE.FrontSide }));
     };
     this.lying = part(film.lying);
     this.torn = part(film.tornList);
+    this.wrinkled = part(film.wrinkledList, 1.3 * result.film.cell_mm);
     this.flat = new Float32Array(film.position.length);
     for (let i = 0; i < film.u.length / 2; ++i) this.flat.set([film.u[2 * i]!, film.u[2 * i + 1]!, 0], 3 * i);
     this.afloat = mesh(
@@ -149,7 +151,7 @@ export class FilmPicture {
   }
 
   dispose(): void {
-    for (const { geometry, material } of [this.lying, this.torn, this.afloat]) {
+    for (const { geometry, material } of [this.lying, this.torn, this.wrinkled, this.afloat]) {
       geometry.dispose();
       material.dispose();
     }

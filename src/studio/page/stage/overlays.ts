@@ -34,6 +34,7 @@ export interface OverlayEntry {
   key: Overlay;
   film: ((scene: Scene) => Look) | null;
   torn: ((scene: Scene) => Look) | null;
+  wrinkled?: (scene: Scene) => Look;
   object: (scene: Scene) => Look;
   legend: (scene: Scene) => LegendText | null;
 }
@@ -53,6 +54,20 @@ const air: OverlayEntry = {
   }),
 };
 
+const WRINKLED = '#8a3f9e';
+
+const wrinkles: OverlayEntry = {
+  key: 'wrinkles',
+  film: () => ({ mode: MODE.flat, color: PALE }),
+  torn: () => ({ mode: MODE.hatch }),
+  wrinkled: () => ({ mode: MODE.flat, color: WRINKLED }),
+  object: () => ({ mode: MODE.flat, color: BARE }),
+  legend: () => ({
+    title: 'Where the film is pressed together, and wrinkles',
+    patches: [{ color: WRINKLED, label: 'wrinkles' }, { color: PALE, label: 'lies smooth' }, { hatch: true, label: 'torn' }, { color: BARE, label: 'no film' }],
+  }),
+};
+
 const SHARED: Overlay[] = ['none', 'coverage', 'stretch', 'tears', 'angle'];
 const shared = (OVERLAYS as unknown as OverlayEntry[]).filter(({ key }) => SHARED.includes(key));
 for (const entry of shared) {
@@ -61,6 +76,7 @@ for (const entry of shared) {
 }
 export const STUDIO_OVERLAYS: readonly OverlayEntry[] = [
   ...SHARED.map((key) => shared.find((entry) => entry.key === key)!),
+  wrinkles,
   air,
 ];
 

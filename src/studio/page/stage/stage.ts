@@ -259,7 +259,7 @@ export class Stage {
     if (result && this.film) {
       this.film.afloat.name = 'afloat';
       this.bath.add(this.film.afloat);
-      this.filmGroup.add(this.film.lying, this.film.torn);
+      this.filmGroup.add(this.film.lying, this.film.torn, this.film.wrinkled);
       this.addAir(result);
     }
     this.updateUniforms();
@@ -439,6 +439,18 @@ export class Stage {
 
   extent(): Vec3 {
     return this.bounds.isEmpty() ? [0, 0, 0] : (this.bounds.getSize(new THREE.Vector3()).toArray() as Vec3);
+  }
+
+  // From where to where the object reaches along a direction of the posed frame.
+  reach([x, y, z]: Vec3): [number, number] {
+    const { position } = this.posed;
+    let [least, most] = [Infinity, -Infinity];
+    for (let i = 0; i < position.length; i += 3) {
+      const along = x * position[i]! + y * position[i + 1]! + z * position[i + 2]!;
+      if (along < least) least = along;
+      if (along > most) most = along;
+    }
+    return [least, most];
   }
 
   private center(): THREE.Vector3 {
@@ -863,6 +875,7 @@ export class Stage {
     if (!this.film) return;
     set(this.film.lying.material, this.base);
     set(this.film.torn.material, this.base);
+    set(this.film.wrinkled.material, this.base);
     set(this.film.afloat.material, FILM_BASE);
   }
 
@@ -892,6 +905,7 @@ export class Stage {
     if (film) {
       part(film.lying, predicted && overlay.film ? overlay.film(scene) : null);
       part(film.torn, predicted && overlay.torn ? overlay.torn(scene) : null);
+      part(film.wrinkled, predicted && overlay.wrinkled ? overlay.wrinkled(scene) : null);
       for (const mesh of this.airMeshes) mesh.visible = predicted && overlay.key === 'air';
     }
     for (const other of this.films.values()) part(other.lying, predicted && this.allDips && overlay.key === 'none' ? picture : null);

@@ -1,6 +1,7 @@
 // What is taken hold of in the 3D view: the water line, and the chosen layer's place, width and turn.
 import { useRef } from 'preact/hooks';
-import { layerName, withLayer, type Layer, type Vec3 } from '../document.ts';
+import { api } from '../api.ts';
+import { layerName, layerWidth, withLayer, type Layer, type Vec3 } from '../document.ts';
 import { changePose, change, chosenLayer, drawn, job, layer, pose, readOnly, stage, view } from '../studio.ts';
 import { t } from '../strings.ts';
 import { resized } from './steps.tsx';
@@ -78,43 +79,70 @@ const unit = (a: Vec3): Vec3 => {
 
 const PARALLEL = 0.9; // of directions; as in src/artwork/projector.cpp
 
-// Where the chosen layer is, as far as the page can tell; what the document leaves open is chosen alike.
+// Width over height of a picture or a text; 1 until it is known.
+const aspects = new Map<string, number>();
+function aspectOf(entry: Layer): number {
+  if (entry.text !== undefined) {
+    const context = document.createElement('canvas').getContext('2d')!;
+    context.font = `${entry.font?.includes('bold') ? 'bold ' : ''}100px sans-serif`;
+    const lines = entry.text.split('\n');
+    return Math.max(0.1, ...lines.map((line) => context.measureText(line).width)) / (110 * lines.length);
+  }
+  const url = api.fileUrl(job.value!.id, entry.image ?? '');
+  const known = aspects.get(url);
+  if (known) return known;
+  aspects.set(url, 1);
+  const image = new Image();
+  image.onload = () => {
+    if (image.naturalHeight) aspects.set(url, image.naturalWidth / image.naturalHeight);
+    stage.current?.invalidate();
+  };
+  image.src = url;
+  return 1;
+}
+
+// Where the chosen layer is. What the document leaves open is chosen as the program does
+// (src/artwork/projector.cpp), so that the handles lie on the picture.
 export function frameOf(entry: Layer): Frame | null {
   const shown = stage.current;
   if (!shown || entry.projection === 'film' || entry.projection === 'uv') return null;
-  const at = layer.value ?? 0;
-  const laid = job.value?.result.value?.artwork[at]?.size_mm;
-  const given = entry.size_mm;
-  const width = given === undefined ? (laid?.[0] ?? 0.4 * Math.max(...shown.extent())) : Array.isArray(given) ? given[0] : given;
-  const height = Array.isArray(given) ? given[1] : laid ? (width * laid[1]) / laid[0] : width;
   const flat = entry.projection === undefined || entry.projection === 'planar' || entry.projection === 'wrap';
+  const far = 2 * Math.hypot(...shown.extent());
   let toward: Vec3 | null = entry.toward && flat ? shown.directionToPosed(entry.toward) : null;
-  let center: Vec3;
-  if (entry.at_mm) {
-    center = shown.toPosed(entry.at_mm);
-    if (!toward) {
-      // Square onto the surface there.
-      const out = unit(plus(center, shown.center_mm, -1));
-      const reach = 2 * Math.hypot(...shown.extent());
-      const met = shown.meet(plus(center, out, reach), [-out[0], -out[1], -out[2]]);
-      toward = met ? (met.normal.map((c) => -c) as Vec3) : (out.map((c) => -c) as Vec3);
-    }
-  } else {
-    toward ??= [0, 0, 1];
-    const reach = 2 * Math.hypot(...shown.extent());
-    const met = shown.meet(plus(shown.center_mm, toward, -reach), toward);
-    center = met?.place ?? shown.center_mm;
+  const given = entry.at_mm ? shown.toPosed(entry.at_mm) : null;
+  if (given && !toward) {
+    // Square onto the surface there.
+    const out = unit(plus(given, shown.center_mm, -1));
+    const met = shown.meet(plus(given, out, far), [-out[0], -out[1], -out[2]]);
+    toward = (met ? met.normal : out).map((c) => -c) as Vec3;
   }
-  toward = unit(toward);
-  const chosen: Vec3 = shown.directionToScaled(toward);
+  toward = unit(toward ?? [0, 0, 1]);
+  const chosen = shown.directionToScaled(toward);
   const upright: Vec3 = entry.up ?? (Math.abs(chosen[2]) < PARALLEL ? [0, 0, 1] : [0, 1, 0]);
   let up = shown.directionToPosed(upright);
   up = unit(plus(up, toward, -dot(up, toward)));
   const right = unit(cross(toward, up));
+  const [across, along] = [shown.reach(right), shown.reach(up)];
+  const middle = plus(right.map((c) => (c * (across[0] + across[1])) / 2) as Vec3, up, (along[0] + along[1]) / 2);
+  const center = given ?? shown.meet(plus(middle, toward, -far), toward)?.place ?? middle;
   const turn = ((entry.turn_deg ?? 0) * Math.PI) / 180;
-  const turnedUp = plus(up.map((c) => c * Math.cos(turn)) as Vec3, right, -Math.sin(turn));
-  const turnedRight = plus(right.map((c) => c * Math.cos(turn)) as Vec3, up, Math.sin(turn));
-  return { center: plus(center, toward, -0.5), right: turnedRight, up: turnedUp, upright: up, width, height };
+  const [sine, cosine] = [Math.sin(turn), Math.cos(turn)];
+  const room = (direction: Vec3, [least, most]: [number, number]): number =>
+    Math.max(1, Math.min(dot(center, direction) - least, most - dot(center, direction)));
+  const tall = Array.isArray(entry.size_mm) ? entry.size_mm[1] / entry.size_mm[0] : 1 / aspectOf(entry);
+  const fits = 2 * Math.min(
+    room(right, across) / (Math.abs(cosine) + tall * Math.abs(sine)),
+    room(up, along) / (Math.abs(sine) + tall * Math.abs(cosine)),
+  );
+  const width = layerWidth(entry) ?? fits;
+  return {
+    center: plus(center, toward, -0.5),
+    right: plus(right.map((c) => c * cosine) as Vec3, up, sine),
+    up: plus(up.map((c) => c * cosine) as Vec3, right, -sine),
+    upright: up,
+    width,
+    height: width * tall,
+  };
 }
 
 type Grip = 'move' | 'scale' | 'turn';

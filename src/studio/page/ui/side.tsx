@@ -1,7 +1,7 @@
 // The right side: the sheet and what to mind.
 import type { Finding, Mend } from '../api.ts';
 import { patched } from '../document.ts';
-import { change, chooseOverlay, job, showView, stage, view } from '../studio.ts';
+import { change, chooseOverlay, goToStep, job, showView, stage, view } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button } from './fields.tsx';
 import { Icon } from './icons.tsx';
@@ -23,7 +23,11 @@ export function Side() {
 }
 
 export function applyMend(mend: Mend): void {
-  if (mend.task) return void job.value?.start(mend.task.kind);
+  if (mend.task) {
+    goToStep('model'); // its progress and what it finds are shown there
+    void job.value?.start(mend.task.kind, { best: 3 });
+    return;
+  }
   change((document) => patched(document, mend.patch), t.undo.mend(mend.text));
 }
 
@@ -31,7 +35,7 @@ function Mends({ mends }: { mends: Mend[] }) {
   return (
     <>
       {mends.map((mend) => (
-        <Button key={mend.text} name="mend" label={mend.text} icon="wrench" kind="mend" changes onClick={() => applyMend(mend)} />
+        <Button key={mend.text} name={mend.task ? 'search' : 'mend'} label={mend.text} icon="wrench" kind="mend" changes onClick={() => applyMend(mend)} />
       ))}
     </>
   );

@@ -59,6 +59,11 @@ export function Start() {
 }
 
 async function forget(id: string): Promise<void> {
-  await api.forget(id);
-  recent.value = await api.recent();
+  try {
+    await api.forget(id);
+    recent.value = await api.recent();
+    failure.value = '';
+  } catch (error) {
+    failure.value = error instanceof Error ? error.message : String(error);
+  }
 }
