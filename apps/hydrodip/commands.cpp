@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "calibrate_commands.h"
+#include "console.h"
 #include "rig/rig.h"
 #include "rig_commands.h"
 #include "samples/samples.h"
@@ -231,6 +232,16 @@ JobResult run_params(const Request&, const RunContext&) {
   return result;
 }
 
+JobResult run_studio(const Request& request, const RunContext& context) {
+  StudioOptions options = request.studio;
+  options.file = request.model;
+  options.announce = [](const std::string& address) {
+    print_result("the studio is at " + address + "\nCtrl-C ends it\n");
+    finish_results();
+  };
+  return studio_job(options, context);
+}
+
 std::vector<Command> own_commands() {
   return {
       {"print", "from a textured model to a film image, ready to print and dip",
@@ -261,6 +272,10 @@ std::vector<Command> own_commands() {
        "Prints what is covered after each dip; writes plan.toml, plan.json and plan.png.\n"
        "'hydrodip print plan.toml' makes a sheet for each, with seams that are hard to see.",
        declare_plan, run_plan},
+      {"studio", "all of it in the browser: turn it, put a picture on, watch the dip, print",
+       "Serves a page on this machine alone, and works without a network. What is not saved is\n"
+       "kept and found again. See docs/studio.md.",
+       declare_studio, run_studio},
       {"view", "open a job's report in the browser",
        "Where there is no browser, the report's path is printed.", declare_view, run_view},
       {"sample", "write a built-in sample model with its texture", "", declare_sample_command,

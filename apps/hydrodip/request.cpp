@@ -310,6 +310,29 @@ void declare_folder(CLI::App& app, Request& request) {
       ->type_name("");
 }
 
+void declare_studio(CLI::App& app, Request& request) {
+  constexpr const char* kStudioGroup = "Studio";
+  StudioOptions& studio = request.studio;
+  app.add_option("MODEL", request.model, "model, or a job's TOML, to begin with")->type_name("");
+  app.add_flag_callback(
+         "--no-browser", [&studio] { studio.browser = false; },
+         "open no browser: only print the address")
+      ->group(kStudioGroup);
+  app.add_option("--port", studio.port, "default: 4714, or the next that is free")
+      ->group(kStudioGroup)
+      ->type_name("PORT")
+      ->check(CLI::Range(1, 65535));
+  app.add_option("--listen", studio.address,
+                 "address to serve from, for other machines; needs a password (default: this "
+                 "machine alone)")
+      ->group(kStudioGroup)
+      ->type_name("ADDRESS");
+  app.add_option("--password-file", studio.password_file,
+                 "file whose first line is asked for in the browser")
+      ->group(kStudioGroup)
+      ->type_name("FILE");
+}
+
 JobConfig configure(const Request& request) {
   JobConfig config;
   config.film_image = request.film_image;

@@ -8,6 +8,7 @@
 #include "history/history_job.h"
 #include "job/jobs.h"
 #include "settings/settings.h"
+#include "studio/studio.h"
 #include "sweep/sweep_jobs.h"
 
 namespace CLI {
@@ -29,6 +30,7 @@ struct Request {
   bool dry_run = false;
   bool yes = false;
   CalibrationRequest calibration;
+  StudioOptions studio;
   PatternRequest pattern;
   std::vector<std::string> jobs;  // of several parts
   double clearance_mm = 0;
@@ -65,6 +67,7 @@ void declare_pattern(CLI::App& app, Request& request);
 void declare_nest(CLI::App& app, Request& request);
 void declare_sample(CLI::App& app, Request& request);
 void declare_folder(CLI::App& app, Request& request);
+void declare_studio(CLI::App& app, Request& request);
 
 // The person's folder of profiles: $XDG_CONFIG_HOME/hydrodip/profiles, or below ~/.config.
 std::filesystem::path profile_folder();

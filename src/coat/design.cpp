@@ -23,6 +23,15 @@ bool ink_matters(const DesignOptions& options) {
   return options.stiffness.ratio > 1 && options.dip.method != DipMethod::kProjection;
 }
 
+// What comes of the print on the object.
+void look_at(InkResult& result, const DesignTask& task) {
+  FilmInk& ink = result.ink;
+  ink.on_object =
+      look_on_object(ink.inking.inks, ink.stretch.area_ratio, task.model, task.paint.base());
+  result.reach = measure_reach(ink.wanted, ink.on_object, ink.stretch,
+                               raster_of(task.options.film, task.options.dpi));
+}
+
 // The rounds and the print that they lead to.
 class Settling {
  public:
@@ -115,11 +124,7 @@ class Settling {
 
   void finish(const InkRounds& rounds) {
     result_.ink = timings_.measure("invert", [&] { return rounds.print(options().dpi, true); });
-    FilmInk& ink = result_.ink;
-    ink.on_object =
-        look_on_object(ink.inking.inks, ink.stretch.area_ratio, task_.model, task_.paint.base());
-    result_.reach = measure_reach(ink.wanted, ink.on_object, ink.stretch,
-                                  raster_of(options().film, options().dpi));
+    look_at(result_, task_);
   }
 
   const DesignTask task_;
@@ -143,6 +148,19 @@ DesignOptions draft_of(DesignOptions options) {
 double InkResult::last_change_mm() const {
   const std::vector<InkRound>& last = rounds.size() > 1 ? rounds : coarse_rounds;
   return last.empty() ? 0 : last.back().change_mm;
+}
+
+Designed design_on(const DesignTask& task, const DippedObject& dipped, const RunContext& context) {
+  const RunScope scope(context);
+  InkResult result;
+  result.ink = print_by(task, task.options, *dipped.map, task.options.dpi, context);
+  look_at(result, task);
+  InkRound round;
+  round.printed_mm2 = printed_area_mm2(result.ink.wanted, task.options.dpi);
+  round.dip = dipped.statistics;
+  result.rounds.push_back(round);
+  result.settled = true;
+  return {dipped, std::move(result), raster_of(task.options.film, task.options.dpi)};
 }
 
 Designed design(const DesignTask& task, Timings& timings, const RunContext& context) {

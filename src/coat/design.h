@@ -81,6 +81,10 @@ struct DesignTask {
   const DesignOptions& options;
 };
 
+// What to print on film that was dipped without ink, and what comes of it: one round, which makes
+// no dip of its own. As design() with rounds_max 1.
+Designed design_on(const DesignTask& task, const DippedObject& dipped, const RunContext& context);
+
 // Dips until ink and film agree, at most rounds_max times. Where film tears, the first two rounds
 // are made on coarser film before: if they tell that ink and film never agree, the film itself is
 // dipped once. Warns where they do not agree.

@@ -46,12 +46,6 @@ double mean_way(const DippedFilm& from, const DippedFilm& to) {
   return count > 0 ? sum / count : 0;
 }
 
-double printed_area_mm2(const Image& wanted, double dpi) {
-  double pixels = 0;
-  for (std::size_t i = 3; i < wanted.rgba.size(); i += 4) pixels += wanted.rgba[i] / 255.0;
-  return pixels * (kMmPerInch / dpi) * (kMmPerInch / dpi);
-}
-
 double mean_of(const std::vector<double>& values) {
   if (values.empty()) return 1;
   double sum = 0;
@@ -60,6 +54,24 @@ double mean_of(const std::vector<double>& values) {
 }
 
 }  // namespace
+
+double printed_area_mm2(const Image& wanted, double dpi) {
+  double pixels = 0;
+  for (std::size_t i = 3; i < wanted.rgba.size(); i += 4) pixels += wanted.rgba[i] / 255.0;
+  return pixels * (kMmPerInch / dpi) * (kMmPerInch / dpi);
+}
+
+FilmInk print_by(const DesignTask& task, const DesignOptions& options, const FilmMap& map,
+                 double dpi, const RunContext& context) {
+  const SheetRaster raster = raster_of(options.film, dpi);
+  InkingOptions inking = options.inking;
+  inking.base = task.paint.base();
+  FilmInk ink;
+  ink.wanted = film_image(task.paint, map, raster, options.inverse, task.allotment, context);
+  ink.stretch = film_stretch(map, raster, options.inverse.bleed_mm, context);
+  ink.inking = ink_film(ink.wanted, ink.stretch.area_ratio, task.model, inking, context);
+  return ink;
+}
 
 InkRounds::InkRounds(const DesignTask& task, const DesignOptions& options,
                      const SharedFilmMesh& film, std::shared_ptr<const TrappedAir> air,
@@ -89,21 +101,10 @@ std::vector<double> InkRounds::modulus_of(const FilmMesh& film) const {
 }
 
 FilmInk InkRounds::print(double dpi, bool all) const {
-  if (!outline_.is_kept()) return print_by(*dipped_->map, dpi);
+  if (!outline_.is_kept()) return print_by(task_, options_, *dipped_->map, dpi, context_);
   const Surface& surface = dipped_->posed.surface();
   const DippedFilm kept = outline_.applied(*dipped_->film, surface, all);
-  return print_by(FilmMap(dipped_->posed.mesh(), surface, kept), dpi);
-}
-
-FilmInk InkRounds::print_by(const FilmMap& map, double dpi) const {
-  const SheetRaster raster = raster_of(options_.film, dpi);
-  InkingOptions inking = options_.inking;
-  inking.base = task_.paint.base();
-  FilmInk ink;
-  ink.wanted = film_image(task_.paint, map, raster, options_.inverse, task_.allotment, context_);
-  ink.stretch = film_stretch(map, raster, options_.inverse.bleed_mm, context_);
-  ink.inking = ink_film(ink.wanted, ink.stretch.area_ratio, task_.model, inking, context_);
-  return ink;
+  return print_by(task_, options_, FilmMap(dipped_->posed.mesh(), surface, kept), dpi, context_);
 }
 
 // False if the film cannot be dipped with its ink: then the last dip stays.

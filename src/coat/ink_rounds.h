@@ -14,6 +14,13 @@ namespace hydrodip {
 // What a round has led to.
 enum class Outcome { kGoesOn, kSettled, kUnsettled, kHopeless, kFailed };
 
+// What to print on film that lies like that.
+FilmInk print_by(const DesignTask& task, const DesignOptions& options, const FilmMap& map,
+                 double dpi, const RunContext& context);
+
+// Of a film image.
+double printed_area_mm2(const Image& wanted, double dpi);
+
 class InkRounds {
  public:
   // Refers to all of them. `film` is that of options.film, `air` what this way into the water
@@ -45,7 +52,6 @@ class InkRounds {
   Outcome outcome() const;
   void stiffen();
   std::vector<double> mixed(const std::vector<double>& modulus);
-  FilmInk print_by(const FilmMap& map, double dpi) const;
 
   const DesignTask task_;
   const DesignOptions& options_;

@@ -114,16 +114,18 @@ std::string finding_row(const Finding& finding) {
   return html + "</li>\n";
 }
 
-std::string verdict(const Report& report) {
+std::string verdict(const Report& report, const std::vector<Finding>& list) {
   const std::string sentence = verdict_of(report);
-  const std::vector<Finding> list = findings(report);
   if (sentence.empty() && list.empty()) return "";
   const Concern concern = concern_of(list);
-  std::string html = fmt::format(
+  return fmt::format(
       "<section class=\"verdict {}\" id=\"verdict\">\n<h2>{}</h2>\n<p>{}</p>\n</section>\n",
       concern_name(concern), headline(concern), escaped(sentence));
-  if (list.empty()) return html;
-  html += "<ul class=\"findings\">\n";
+}
+
+std::string finding_cards(const std::vector<Finding>& list) {
+  if (list.empty()) return "";
+  std::string html = "<ul class=\"findings\">\n";
   for (const Finding& finding : list) html += finding_row(finding);
   return html + "</ul>\n";
 }
@@ -353,6 +355,13 @@ std::string inputs(const Report& report) {
   return section("Files read", rows);
 }
 
+// For those who ask: out of the way of everybody else.
+std::string folded(const std::string& title, const std::string& sections) {
+  if (sections.empty()) return "";
+  return "<details class=\"folded\">\n<summary>" + title + "</summary>\n" + sections +
+         "</details>\n";
+}
+
 std::string foot(const Report& report) {
   std::string line;
   for (const std::string& word : report.command_line) line += (line.empty() ? "" : " ") + word;
@@ -369,20 +378,17 @@ std::string report_html(const Report& report, const ReportPictures& pictures) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
       escaped(title_of(report)) + " - hydrodip</title>\n<style>" + page_style() +
       "</style>\n</head>\n<body>\n<main>\n";
+  const std::vector<Finding> list = findings(report);
   html += heading(report);
-  html += verdict(report);
+  html += verdict(report, list);
   html += preview(pictures);
+  html += finding_cards(list);
   html += dips(report, pictures);
-  html += key_figures(report);
   html += maps(pictures);
   html += outputs(report);
-  html += coverage(report);
-  html += angles(report);
-  html += mesh(report);
-  html += rounds(report);
-  html += parameters(report);
-  html += times(report);
-  html += inputs(report);
+  html += folded("Figures, parameters, files",
+                 key_figures(report) + coverage(report) + angles(report) + mesh(report) +
+                     rounds(report) + parameters(report) + times(report) + inputs(report));
   html += foot(report);
   html += "</main>\n" + scripts(pictures);
   return html + "</body>\n</html>\n";

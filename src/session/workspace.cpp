@@ -279,6 +279,16 @@ struct Workspace::Impl {
     key.add(wanted.key.text());
     add(key, options);
     add(key, project.printer);
+    // Ink that does not stiffen the film changes nothing of the dip: another picture needs none.
+    if (options.rounds_max == 1) {
+      const auto blank = dipped(project, quality, context);
+      return node<Designed>(std::move(key), context, [&] {
+        const Printer printer = make_printer(project.printer);
+        const Allotment all;
+        return design_on({*hanging.value, *wanted.value->paint, all, *printer.model, options},
+                         *blank.value, context);
+      });
+    }
     return node<Designed>(std::move(key), context, [&] {
       return design(*hanging.value, *wanted.value->paint, options, make_printer(project.printer),
                     context);

@@ -99,9 +99,9 @@ std::string dip_tables_toml(const std::vector<DipEntry>& dips) {
     text += "\n[[dip]]\n";
     if (dip.down) text += fmt::format("down = \"{}\"\n", side_name(*dip.down));
     if (dip.rotate_deg)
-      text += fmt::format("rotate_deg = [{:g}, {:g}, {:g}]\n", dip.rotate_deg->x(),
-                          dip.rotate_deg->y(), dip.rotate_deg->z());
-    if (dip.depth_mm) text += fmt::format("depth_mm = {:g}\n", *dip.depth_mm);
+      text += fmt::format("rotate_deg = [{}, {}, {}]\n", dip.rotate_deg->x(), dip.rotate_deg->y(),
+                          dip.rotate_deg->z());
+    if (dip.depth_mm) text += fmt::format("depth_mm = {}\n", *dip.depth_mm);
     if (!dip.path.empty()) text += fmt::format("path = {}\n", path_text(dip.path));
     if (dip.locked) text += "locked = true\n";
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "settings/artwork_tables.h"
 #include "settings/dip_tables.h"
 #include "settings/params.h"
 
@@ -47,6 +48,32 @@ std::string value_text(const Parameter& p, const ParameterValue& value,
   return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]);
 }
 
+// A layer's value, which is text, as TOML has it.
+std::string layer_value_text(const std::string& key, const std::string& value,
+                             const std::filesystem::path& folder) {
+  static const std::vector<std::string> texts = {"text",       "font",   "text_color",
+                                                 "projection", "repeat", "blend"};
+  if (key == "image") return quoted(from_folder(value, folder));
+  if (std::find(texts.begin(), texts.end(), key) != texts.end()) return quoted(value);
+  return value.find(',') == std::string::npos ? value : "[" + value + "]";
+}
+
+std::string artwork_tables_toml(const std::vector<ArtworkLayer>& layers,
+                                const std::filesystem::path& folder) {
+  std::string text;
+  const std::vector<std::string> usual = layer_values({});
+  for (const ArtworkLayer& layer : layers) {
+    text += "\n[[artwork]]\n";
+    const std::vector<std::string> values = layer_values(layer);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const std::string& key = layer_keys()[k].name;
+      if (values[k] != usual[k])
+        text += fmt::format("{} = {}\n", key, layer_value_text(key, values[k], folder));
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string job_file(const JobConfig& config, const std::filesystem::path& folder) {
@@ -64,7 +91,7 @@ std::string job_file(const JobConfig& config, const std::filesystem::path& folde
     group = own;
     text += fmt::format("{} = {}\n", p.name.substr(dot + 1), value_text(p, value, folder));
   }
-  return text + dip_tables_toml(config.dips);
+  return text + artwork_tables_toml(config.object.artwork, folder) + dip_tables_toml(config.dips);
 }
 
 std::string settings_file(const JobConfig& config, const std::vector<std::string>& names) {

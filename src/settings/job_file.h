@@ -9,8 +9,8 @@
 
 namespace hydrodip {
 
-// TOML that sets everything in which the configuration differs from the defaults, its model and its
-// dips, to be written into `folder`: files that it names are given from there.
+// TOML that sets everything in which the configuration differs from the defaults, its model, its
+// artwork and its dips, to be written into `folder`: files that it names are given from there.
 std::string job_file(const JobConfig& config, const std::filesystem::path& folder);
 
 // TOML that sets the parameters of these names to the configuration's values. Named files are given

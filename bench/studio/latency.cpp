@@ -1,0 +1,170 @@
+// How long a person waits in the studio: from the end of a drag to the new colours, and how often a
+// drag is followed. Over HTTP, as a page asks for it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "base/file.h"
+#include "studio/served.h"
+
+namespace hydrodip {
+namespace {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double share(std::vector<double> values, double q) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0 : values[std::size_t(q * double(values.size() - 1) + 0.5)];
+}
+
+// What changes in a drag: the document after its n-th move.
+using Drag = std::function<void(json& document, int n)>;
+
+struct Measured {
+  double first_picture_s = 0;
+  std::vector<double> ends;  // from the end of a drag to its result, whole on this side
+  std::vector<double> updates_per_s, gaps;  // between what is shown
+  std::size_t bytes = 0;
+};
+
+constexpr int kDrags = 25, kMoves = 60;
+constexpr auto kFrame = std::chrono::milliseconds(16);
+
+class Page {
+ public:
+  Page(const Client& client, const std::string& job)
+      : client_(client), at_("/api/jobs/" + job), events_(client, at_ + "/events?client=c1") {
+    document = client_.get(at_).json()["document"];
+  }
+
+  long put(bool live) {
+    const json body = {{"client", "c1"}, {"document", document}, {"live", live}};
+    return client_.put(at_ + "/document", body.dump()).json()["revision"];
+  }
+
+  // The next result's revision, fetched whole; at most so long. 0: none came.
+  long result(double seconds, long least, std::size_t& bytes) {
+    const auto event = events_.next(
+        "result", [&](const json& e) { return e["revision"] >= least; }, seconds);
+    if (!event) return 0;
+    bytes = client_.get(at_ + "/results/" + event->data["result"].get<std::string>()).body.size();
+    return event->data["revision"];
+  }
+
+  json document;
+
+ private:
+  const Client client_;
+  const std::string at_;
+  Events events_;
+};
+
+void drag(Page& page, const Drag& move, int n, Measured& measured) {
+  const auto begun = Clock::now();
+  auto shown = begun;
+  int updates = 0;
+  std::size_t bytes = 0;
+  for (int step = 0; step < kMoves; ++step) {
+    const auto frame = Clock::now();
+    move(page.document, n * kMoves + step);
+    page.put(true);
+    // A page does this beside its moves; here what has come is taken between them.
+    const double left = std::chrono::duration<double>(kFrame).count() - seconds_since(frame);
+    if (page.result(std::max(0.001, left), 0, bytes) > 0) {
+      ++updates;
+      measured.gaps.push_back(seconds_since(shown));
+      shown = Clock::now();
+    }
+    std::this_thread::sleep_until(frame + kFrame);
+  }
+  measured.updates_per_s.push_back(updates / seconds_since(begun));
+  const auto end = Clock::now();
+  const long last = page.put(false);
+  page.result(60, last, measured.bytes);
+  measured.ends.push_back(seconds_since(end));
+}
+
+using Begin = std::function<std::string()>;  // a new job's name
+
+Measured measure(const Client& client, const Begin& begin, const json& changes, const Drag& move) {
+  Measured measured;
+  const auto begun = Clock::now();
+  const std::string job = begin();
+  Page page(client, job);
+  page.document.merge_patch(changes);
+  const long first = page.put(false);
+  page.result(60, first, measured.bytes);
+  measured.first_picture_s = seconds_since(begun);
+  for (int n = 0; n < kDrags; ++n) drag(page, move, n, measured);
+  return measured;
+}
+
+void show(const std::string& what, const Measured& m) {
+  fmt::print("{:<34} {:6.2f} s {:7.3f} s {:7.3f} s {:7.1f} /s {:7.3f} s {:7.1f} MB\n", what,
+             m.first_picture_s, share(m.ends, 0.5), share(m.ends, 0.95),
+             share(m.updates_per_s, 0.5), share(m.gaps, 0.95), double(m.bytes) / 1e6);
+  std::fflush(stdout);
+}
+
+int run(const std::vector<std::string>& models) {
+  const TemporaryFolder folder;
+  const Served studio(folder.path());
+  const Client client = studio.client();
+  fmt::print("{} drags of {} moves each, at 60 moves a second; 80 mm on A4, draft\n", kDrags,
+             kMoves);
+  fmt::print("{:<34} {:>8} {:>9} {:>9} {:>10} {:>9} {:>10}\n", "", "first", "end p50", "end p95",
+             "updates", "gap p95", "a result");
+  const json size = {{"object", {{"size_mm", 80}}}};
+  const Drag turn = [](json& document, int n) {
+    document["object"]["rotate_deg"] = {0.1 * (n % 300), 0, 0.5 * n};
+  };
+  const Drag deeper = [](json& document, int n) {
+    document["dip"]["depth_mm"] = 12 + 0.05 * (n % 200);
+  };
+  const Drag picture = [](json& document, int n) {
+    document["artwork"] = json::array(
+        {{{"text", "hydrodip"}, {"size_mm", 30}, {"turn_deg", n}, {"toward", {0, 0, 1}}}});
+  };
+  const auto show_all = [&](const std::string& name, const Begin& begin) {
+    show(name + ", turned", measure(client, begin, size, turn));
+    show(name + ", depth", measure(client, begin, size, deeper));
+    show(name + ", text turned", measure(client, begin, size, picture));
+  };
+  show_all("mask", [&]() -> std::string {
+    return client.post("/api/jobs", R"({"sample": "mask"})").json()["job"];
+  });
+  // As dropped on the page: with everything that lies beside it.
+  for (const std::string& model : models)
+    show_all(std::filesystem::path(model).filename().string(), [&]() -> std::string {
+      const std::string job = client.post("/api/jobs").json()["job"];
+      json files = json::array();
+      for (const auto& entry :
+           std::filesystem::directory_iterator(std::filesystem::path(model).parent_path())) {
+        if (entry.path().extension() == std::filesystem::path(model).extension() &&
+            entry.path() != model)
+          continue;
+        const auto bytes = read_file(entry.path());
+        const std::string name = entry.path().filename().string();
+        if (client
+                .put("/api/jobs/" + job + "/files/" + name, std::string(bytes.begin(), bytes.end()))
+                .status == 201)
+          files.push_back(name);
+      }
+      client.post("/api/jobs/" + job + "/adopt", json{{"files", files}, {"client", ""}}.dump());
+      return job;
+    });
+  return 0;
+}
+
+}  // namespace
+}  // namespace hydrodip
+
+int main(int argc, char** argv) { return hydrodip::run({argv + 1, argv + argc}); }

@@ -1,0 +1,59 @@
+// The studio's interface over HTTP: docs/studio-api.md.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "studio/guard.h"
+#include "studio/http.h"
+#include "studio/job_store.h"
+#include "studio/open_job.h"
+
+namespace hydrodip {
+
+class Api {
+ public:
+  // `quit`: what ends the program.
+  Api(JobStore store, Guard guard, std::string run, std::function<void()> quit);
+
+  // For HttpServer.
+  std::optional<HttpAnswer> admit(const HttpRequest& request) const;
+  HttpAnswer answer(HttpRequest& request);
+
+  // A file that the command line named, as a job of its own, or as that which was opened from it
+  // before and not saved. Throws InputError.
+  void open_file(const std::filesystem::path& file);
+
+  // Lets go of jobs that nobody looks at.
+  void tidy();
+  // Ends all events and all work; documents stay.
+  void end(const std::string& farewell);
+
+ private:
+  using Parts = std::vector<std::string>;
+
+  HttpAnswer route(HttpRequest& request);
+  HttpAnswer hello() const;
+  HttpAnswer new_job(HttpRequest& request);
+  HttpAnswer job_route(HttpRequest& request, const Parts& parts);
+  HttpAnswer read_job(const HttpRequest& request, const Parts& parts, OpenJob& job);
+  HttpAnswer command(HttpRequest& request, const Parts& parts, OpenJob& job);
+  HttpAnswer upload(HttpRequest& request, const std::string& name, OpenJob& job);
+  HttpAnswer events(const HttpRequest& request, const std::shared_ptr<OpenJob>& job);
+  HttpAnswer login(HttpRequest& request);
+  std::shared_ptr<OpenJob> job(const std::string& name);
+
+  const JobStore store_;
+  const Guard guard_;
+  const std::string run_;
+  const std::function<void()> quit_;
+  std::string opened_;
+  std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<OpenJob>> jobs_;
+};
+
+}  // namespace hydrodip

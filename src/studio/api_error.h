@@ -1,0 +1,23 @@
+// What the studio's interface says no to: docs/studio-api.md.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace hydrodip {
+
+struct ApiError : std::runtime_error {
+  ApiError(int http_status, std::string name, const std::string& sentence,
+           std::string value_name = "")
+      : std::runtime_error(sentence),
+        status(http_status),
+        code(std::move(name)),
+        field(std::move(value_name)) {}
+
+  int status;
+  std::string code;   // "no-token"
+  std::string field;  // "object.size_mm", where a value of the document is at fault
+};
+
+}  // namespace hydrodip

@@ -1,0 +1,25 @@
+// A job as the page has it: the job file as JSON. docs/studio-api.md.
+#pragma once
+
+#include <string>
+
+#include "settings/config.h"
+#include "studio/job_files.h"
+#include "studio/json.h"
+
+namespace hydrodip {
+
+inline constexpr std::size_t kLargestDocument = std::size_t(1) << 20U;
+
+// The configuration that a document stands for, checked as a job file is. Throws ApiError
+// bad-value, with the field.
+JobConfig config_of(const Json& document, const JobFiles& files);
+
+// What of a configuration differs from the defaults. Files that it names become the job's. Throws
+// InputError for what the studio has no room for (several parts).
+Json document_of(const JobConfig& config, JobFiles& files);
+
+// The document's name, or else that of its model.
+std::string name_of_job(const Json& document);
+
+}  // namespace hydrodip

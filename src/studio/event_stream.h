@@ -1,0 +1,37 @@
+// Server-sent events on their way to one tab.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <string>
+
+#include "studio/json.h"
+
+namespace hydrodip {
+
+// For any number of threads.
+class EventStream {
+ public:
+  // Of events that have not been sent yet, those of this name are replaced if `newest_only`.
+  void push(const std::string& event, const Json& data, bool newest_only = false);
+  // No more events; those that wait are still sent.
+  void close();
+
+  // What goes over the wire next; a comment after a while without events, so that a side that has
+  // gone is noticed. False at the end.
+  bool next(std::string& text, std::chrono::milliseconds at_most);
+
+ private:
+  struct Event {
+    std::string name, text;
+  };
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Event> waiting_;
+  bool closed_ = false;
+};
+
+}  // namespace hydrodip

@@ -1,0 +1,183 @@
+#include "studio/http.h"
+
+#include <httplib.h>
+#include <sys/socket.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace hydrodip {
+namespace {
+
+// A connection is held by its thread as long as it is open: a page's few requests at a time, and
+// its events.
+constexpr std::size_t kThreads = 64;
+// After that long without a request its thread is free again; opening another is cheap here.
+constexpr int kKeepAlive_s = 2;
+constexpr int kTimeout_s = 20;
+constexpr std::size_t kKeepAliveRequests = 1000;
+constexpr std::size_t kLongestPath = 1024;
+constexpr std::size_t kPiece = std::size_t(1) << 16;
+
+HttpRequest request_of(const httplib::Request& from) {
+  HttpRequest request;
+  request.method = from.method == "HEAD" ? "GET" : from.method;
+  request.path = from.path;
+  for (const auto& [key, value] : from.params) request.query.emplace(key, value);
+  request.header = [&from](const std::string& name) { return from.get_header_value(name); };
+  request.remote = from.remote_addr;
+  const bool chunked = from.has_header("Transfer-Encoding");
+  if (from.has_header("Content-Length"))
+    request.body_bytes = from.get_header_value<std::uint64_t>("Content-Length");
+  request.has_body = chunked || request.body_bytes.value_or(0) > 0;
+  return request;
+}
+
+// A provider that ends in failure is the one way to make cpp-httplib close the connection.
+void send_and_close(httplib::Response& to, const std::string& type, const std::string& body) {
+  to.set_header("Connection", "close");
+  to.set_content_provider(body.size(), type,
+                          [body](std::size_t at, std::size_t, httplib::DataSink& sink) {
+                            sink.write(body.data() + at, body.size() - at);
+                            return false;
+                          });
+}
+
+void send_file(httplib::Response& to, const HttpAnswer& answer) {
+  std::shared_ptr<std::FILE> file(std::fopen(answer.file.c_str(), "rb"), [](std::FILE* opened) {
+    if (opened) std::fclose(opened);
+  });
+  std::error_code gone;
+  const auto size = std::filesystem::file_size(answer.file, gone);
+  if (!file || gone) {
+    to.status = 404;
+    return;
+  }
+  if (size == 0) {
+    to.set_content("", answer.type.c_str());
+    return;
+  }
+  to.set_content_provider(std::size_t(size), answer.type,
+                          [file](std::size_t at, std::size_t left, httplib::DataSink& sink) {
+                            std::vector<char> piece(std::min(left, kPiece));
+                            if (std::fseek(file.get(), long(at), SEEK_SET) != 0) return false;
+                            const std::size_t count =
+                                std::fread(piece.data(), 1, piece.size(), file.get());
+                            return count > 0 && sink.write(piece.data(), count);
+                          });
+}
+
+void send(httplib::Response& to, const HttpAnswer& answer, bool and_close) {
+  to.status = answer.status;
+  for (const auto& [name, value] : answer.headers) to.set_header(name, value);
+  if (and_close) return send_and_close(to, answer.type, answer.body);
+  if (answer.stream) {
+    to.set_chunked_content_provider(
+        answer.type, [next = answer.stream](std::size_t, httplib::DataSink& sink) {
+          std::string piece;
+          if (next(piece)) return piece.empty() || sink.write(piece.data(), piece.size());
+          sink.done();
+          return true;
+        });
+  } else if (answer.bytes && !answer.bytes->empty()) {
+    to.set_content_provider(
+        answer.bytes->size(), answer.type,
+        [bytes = answer.bytes](std::size_t at, std::size_t left, httplib::DataSink& sink) {
+          return sink.write(reinterpret_cast<const char*>(bytes->data()) + at, left);
+        });
+  } else if (!answer.file.empty()) {
+    send_file(to, answer);
+  } else {
+    to.set_content(answer.body, answer.type.c_str());
+  }
+}
+
+}  // namespace
+
+struct HttpServer::Impl {
+  httplib::Server server;
+  HttpHandler handler;
+  std::function<std::optional<HttpAnswer>(const HttpRequest&)> admit;
+  int port = 0;
+
+  // Requests without a body are answered before any routing, which would only look for patterns.
+  httplib::Server::HandlerResponse before(const httplib::Request& from, httplib::Response& to) {
+    using Handled = httplib::Server::HandlerResponse;
+    HttpRequest request = request_of(from);
+    if (from.path.size() > kLongestPath) {
+      send(to, {.status = 414, .body = "{}"}, true);
+      return Handled::Handled;
+    }
+    if (const auto refusal = admit(request)) {
+      send(to, *refusal, request.has_body);
+      return Handled::Handled;
+    }
+    if (request.has_body && (from.method == "POST" || from.method == "PUT"))
+      return Handled::Unhandled;
+    if (request.has_body) {
+      send(to, {.status = 400, .body = "{}"}, true);
+      return Handled::Handled;
+    }
+    request.read_body = [](const auto&) { return true; };
+    send(to, handler(request), false);
+    return Handled::Handled;
+  }
+
+  void with_body(const httplib::Request& from, httplib::Response& to,
+                 const httplib::ContentReader& reader) {
+    HttpRequest request = request_of(from);
+    bool whole = false;
+    request.read_body = [&](const std::function<bool(const char*, std::size_t)>& take) {
+      whole = reader([&](const char* data, std::size_t size) { return take(data, size); });
+      return whole;
+    };
+    const HttpAnswer answer = handler(request);
+    send(to, answer, !whole);
+  }
+};
+
+HttpServer::HttpServer(HttpHandler handler,
+                       std::function<std::optional<HttpAnswer>(const HttpRequest&)> admit)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->handler = std::move(handler);
+  impl_->admit = std::move(admit);
+  httplib::Server& server = impl_->server;
+  Impl* const impl = impl_.get();
+  server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+  // Not SO_REUSEPORT, cpp-httplib's own choice: two studios would share a port.
+  server.set_socket_options([](int socket) {
+    const int yes = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
+  server.set_tcp_nodelay(true);
+  server.set_keep_alive_timeout(kKeepAlive_s);
+  server.set_keep_alive_max_count(kKeepAliveRequests);
+  server.set_read_timeout(kTimeout_s);
+  server.set_write_timeout(kTimeout_s);
+  server.set_pre_routing_handler([impl](const httplib::Request& from, httplib::Response& to) {
+    return impl->before(from, to);
+  });
+  const auto with_body = [impl](const httplib::Request& from, httplib::Response& to,
+                                const httplib::ContentReader& reader) {
+    impl->with_body(from, to, reader);
+  };
+  server.Post("/.*", with_body);
+  server.Put("/.*", with_body);
+}
+
+HttpServer::~HttpServer() = default;
+
+bool HttpServer::bind(const std::string& address, int port) {
+  if (port == 0) {
+    impl_->port = impl_->server.bind_to_any_port(address);
+    return impl_->port > 0;
+  }
+  impl_->port = port;
+  return impl_->server.bind_to_port(address, port);
+}
+
+int HttpServer::port() const { return impl_->port; }
+void HttpServer::run() { impl_->server.listen_after_bind(); }
+void HttpServer::stop() { impl_->server.stop(); }
+
+}  // namespace hydrodip

@@ -1,0 +1,50 @@
+// Where jobs live between runs of the studio: a folder for each, with its document as it was last
+// (autosave), what was uploaded, and what was printed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "studio/json.h"
+
+namespace hydrodip {
+
+// "~/dips/mask.toml"
+std::string shown_path(const std::filesystem::path& path);
+
+// The person's own folder for such things; made if needed. Throws InputError.
+std::filesystem::path studio_folder();
+
+// Appears whole, or the file stays as it was. Throws InputError.
+void write_whole(const std::filesystem::path& file, const std::string& text);
+
+class JobStore {
+ public:
+  explicit JobStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  // A new, empty job's name.
+  std::string create() const;
+  bool has(const std::string& job) const;
+  // Its folder: files/ (uploads), print/, thumbnail.png.
+  std::filesystem::path home(const std::string& job) const;
+
+  // Null if it cannot be read.
+  Json read(const std::string& job) const;
+  void write(const std::string& job, const Json& state) const;
+
+  // RECENT of docs/studio-api.md, latest first.
+  Json recent(std::size_t most) const;
+  // With all that was uploaded to it.
+  void forget(const std::string& job) const;
+
+  // The job that was opened last from that file, or "".
+  std::string opened_from(const std::filesystem::path& file) const;
+
+ private:
+  std::vector<std::string> jobs() const;
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace hydrodip

@@ -1,0 +1,159 @@
+#include "studio/live.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "base/error.h"
+#include "base/run_scope.h"
+#include "object/bake.h"
+
+namespace hydrodip {
+namespace {
+
+using Steady = std::chrono::steady_clock;
+
+constexpr std::size_t kWorkspaceBytes = std::size_t(768) << 20U;
+// The hand rests when nothing was asked for so long.
+constexpr auto kRest = std::chrono::milliseconds(400);
+constexpr auto kBetweenProgress = std::chrono::milliseconds(100);
+constexpr int kBaked_px = 1536, kBakedInDrag_px = 512;
+
+double seconds_since(Steady::time_point start) {
+  return std::chrono::duration<double>(Steady::now() - start).count();
+}
+
+}  // namespace
+
+Live::Live(LiveSinks sinks)
+    : sinks_(std::move(sinks)), workspace_(kWorkspaceBytes), thread_([this] { run(); }) {}
+
+Live::~Live() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+    if (current_) current_->cancel();
+    changed_.notify_all();
+  }
+  thread_.join();
+}
+
+void Live::ask(LiveRequest request) {
+  const std::lock_guard lock(mutex_);
+  if (current_ && !(request.dragging && drafting_a_drag_)) current_->cancel();
+  waiting_ = std::move(request);
+  changed_.notify_all();
+}
+
+Live::Counts Live::counts() const {
+  const std::lock_guard lock(mutex_);
+  return counts_;
+}
+
+void Live::run() {
+  while (true) {
+    std::optional<Turn> turn;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return ending_ || waiting_; });
+      if (ending_) return;
+      turn.emplace(Turn{std::move(*waiting_), workspace_.newest()});
+      waiting_.reset();
+      current_ = turn->context;
+      drafting_a_drag_ = turn->request.dragging;
+    }
+    compute(*turn);
+    {
+      const std::lock_guard lock(mutex_);
+      current_.reset();
+      drafting_a_drag_ = false;
+      if (waiting_ || ending_) continue;
+    }
+    sinks_.working(turn->request.revision, "", "", 1);
+  }
+}
+
+bool Live::rests() {
+  std::unique_lock lock(mutex_);
+  return !changed_.wait_for(lock, kRest, [&] { return ending_ || waiting_; });
+}
+
+void Live::compute(const Turn& turn) {
+  const auto count = [&](long Counts::*which) {
+    const std::lock_guard lock(mutex_);
+    ++(counts_.*which);
+  };
+  try {
+    if (!turn.request.config.model.empty()) show_model(turn);
+    show_look(turn, Quality::kDraft);
+    count(&Counts::drafts);
+    if (turn.request.dragging || !rests()) return;
+    show_look(turn, Quality::kNormal);
+    count(&Counts::normals);
+  } catch (const Cancelled&) {
+    count(&Counts::cancelled);
+  } catch (const ProblemFound& found) {
+    sinks_.problem(turn.request.revision, found.problem);
+  } catch (const std::bad_alloc&) {
+    sinks_.problem(turn.request.revision, {"memory", "There is not enough memory for this."});
+  } catch (const std::exception& error) {
+    sinks_.problem(turn.request.revision, {"input", error.what()});
+  }
+}
+
+// Before anything can be wrong with the dip, so that there is something to see.
+void Live::show_model(const Turn& turn) {
+  const RunContext reading = turn.context.quiet();
+  std::shared_ptr<const Model> model;
+  try {
+    model = workspace_.model(
+        project_of(config_of_dip(turn.request.config, turn.request.dip), Quality::kDraft), reading);
+  } catch (const InputError&) {
+    return;  // said by show_look()
+  }
+  if (model == shown_model_) return;
+  shown_model_ = model;
+  shown_paint_.reset();
+  shows_artwork_ = false;
+  model_warnings_ = reading.warnings();
+  sinks_.model(turn.request.revision, model, model_warnings_);
+}
+
+void Live::show_look(const Turn& turn, Quality quality) {
+  const std::string name = quality == Quality::kDraft ? "draft" : "normal";
+  const auto begun = Steady::now();
+  auto told = begun;
+  turn.context.on_progress([&](const std::string& activity, double fraction) {
+    if (Steady::now() - told < kBetweenProgress) return;
+    told = Steady::now();
+    sinks_.working(turn.request.revision, name, activity, fraction);
+  });
+  struct Silence {
+    const RunContext& context;
+    ~Silence() { context.on_progress({}); }
+  } const silence{turn.context};
+  const Look look = look_at_dip(workspace_, turn.request.config, turn.request.dip, quality,
+                                model_warnings_, turn.context);
+  sinks_.look(turn.request.revision, look, seconds_since(begun));
+  if (quality == Quality::kDraft) show_painted(turn, look);
+}
+
+void Live::show_painted(const Turn& turn, const Look& look) {
+  const bool artwork = !turn.request.config.object.artwork.empty();
+  if (!artwork) {
+    if (shows_artwork_) sinks_.painted(turn.request.revision, *look.model, *look.model->object);
+    shows_artwork_ = false;
+    shown_paint_.reset();
+    return;
+  }
+  if (look.paint == shown_paint_) return;
+  shows_artwork_ = true;
+  const RunScope scope(turn.context);
+  const int px = turn.request.dragging ? kBakedInDrag_px : kBaked_px;
+  const Object painted = painted_object(*look.model->object, *look.paint, px);
+  // What was baked in a drag is baked again when it ends.
+  shown_paint_ = turn.request.dragging ? nullptr : look.paint;
+  sinks_.painted(turn.request.revision, *look.model, painted);
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,89 @@
+// What is computed while somebody works: a draft after every change, the normal result when the
+// hand rests. One thread, one workspace.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "studio/look.h"
+
+namespace hydrodip {
+
+struct LiveRequest {
+  JobConfig config;
+  long revision = 0;
+  std::size_t dip = 0;
+  // In the middle of a drag. The draft that is being computed for an earlier such request is
+  // finished, so that something moves; any other computation is cancelled by a newer request.
+  bool dragging = false;
+};
+
+// Called on Live's own thread.
+struct LiveSinks {
+  std::function<void(long revision, std::shared_ptr<const Model>, const std::vector<std::string>&)>
+      model;
+  // What artwork makes of the model's colours.
+  std::function<void(long revision, const Model&, const Object& painted)> painted;
+  std::function<void(long revision, const Look&, double took_s)> look;
+  std::function<void(long revision, const Problem&)> problem;
+  // `quality` empty: it rests.
+  std::function<void(long revision, const std::string& quality, const std::string& activity,
+                     double fraction)>
+      working;
+};
+
+class Live {
+ public:
+  explicit Live(LiveSinks sinks);
+  // Cancels what is being computed.
+  ~Live();
+  Live(const Live&) = delete;
+  Live& operator=(const Live&) = delete;
+
+  void ask(LiveRequest request);
+
+  std::size_t memory_bytes() const { return workspace_.memory_bytes(); }
+  // How many drafts and normal results were finished, and how many were cancelled.
+  struct Counts {
+    long drafts = 0, normals = 0, cancelled = 0;
+  };
+  Counts counts() const;
+
+ private:
+  struct Turn {
+    LiveRequest request;
+    RunContext context;
+  };
+
+  void run();
+  void compute(const Turn& turn);
+  void show_model(const Turn& turn);
+  void show_painted(const Turn& turn, const Look& look);
+  void show_look(const Turn& turn, Quality quality);
+  // Whether nothing new was asked for so long.
+  bool rests();
+
+  const LiveSinks sinks_;
+  Workspace workspace_;
+  std::shared_ptr<const Model> shown_model_;
+  std::vector<std::string> model_warnings_;
+  std::shared_ptr<const Paint> shown_paint_;  // in full, and not only for a drag
+  bool shows_artwork_ = false;
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<LiveRequest> waiting_;
+  std::optional<RunContext> current_;
+  bool drafting_a_drag_ = false;
+  bool ending_ = false;
+  Counts counts_;
+  std::thread thread_;
+};
+
+}  // namespace hydrodip

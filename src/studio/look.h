@@ -1,0 +1,54 @@
+// What the page is shown of one dip: computed, and packed. docs/studio-api.md, "A result".
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hydrodip/workspace.h"
+#include "settings/config.h"
+#include "studio/json.h"
+
+namespace hydrodip {
+
+// A dip that cannot be shown, and what would help.
+struct Problem {
+  std::string code;  // "input"
+  std::string text;
+  Json mends = Json::array();
+};
+
+// Throws where there is a reason in it.
+struct ProblemFound : std::runtime_error {
+  explicit ProblemFound(Problem found)
+      : std::runtime_error(found.text), problem(std::move(found)) {}
+  Problem problem;
+};
+
+// The job as its dip of that number (from 0) is made.
+JobConfig config_of_dip(const JobConfig& config, std::size_t dip);
+
+// As the workspace takes it; a draft's picture is coarser too.
+Project project_of(const JobConfig& config, Quality quality);
+
+struct Look {
+  JobConfig config;  // of this dip
+  std::size_t dip = 0, dips = 1;
+  Quality quality = Quality::kDraft;
+  std::shared_ptr<const Model> model;
+  std::shared_ptr<const Paint> paint;
+  std::shared_ptr<const Designed> made;
+  std::vector<std::string> warnings;
+};
+
+// Throws ProblemFound, Cancelled. `known`: warnings of reading the model, which is done once.
+Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Quality quality,
+                 const std::vector<std::string>& known, const RunContext& context);
+
+// The bundle, without the numbers that only its job knows: `head` has them.
+std::vector<std::uint8_t> result_bundle(const Look& look, Json head, const RunContext& context);
+// Its way into the water.
+std::vector<std::uint8_t> dip_bundle(const DippedObject& dipped);
+
+}  // namespace hydrodip

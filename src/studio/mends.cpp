@@ -1,0 +1,153 @@
+#include "studio/mends.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "plan/fit.h"
+#include "settings/settings.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr double kTolerance_mm = 1e-6;
+// Film torn up to that share of what lies on the object at that depth is none for a hand.
+constexpr double kHardlyTorn = 0.003;
+
+std::vector<RoomFit> fits_of(const JobConfig& config, const TriangleMesh& posed,
+                             const FilmOptions& film) {
+  const Trajectory way = make_trajectory(config.design.trajectory, posed.positions);
+  return fits(posed, room_of(posed, way), film, config.bath);
+}
+
+bool all_fit(const std::vector<RoomFit>& list) {
+  return std::all_of(list.begin(), list.end(),
+                     [](const RoomFit& fit) { return fit.excess_mm() <= kTolerance_mm; });
+}
+
+std::string shown_name(std::string name) {
+  name[0] = char(std::toupper(static_cast<unsigned char>(name[0])));
+  return name;
+}
+
+Json mend(const std::string& text, Json patch) {
+  return {{"text", text}, {"patch", std::move(patch)}};
+}
+
+// The smallest sheet on which it fits, in either direction.
+void add_film(Json& list, const JobConfig& config, const TriangleMesh& posed) {
+  std::vector<FilmFormat> formats = film_formats();
+  std::sort(formats.begin(), formats.end(), [](const FilmFormat& a, const FilmFormat& b) {
+    return a.width_mm * a.height_mm < b.width_mm * b.height_mm;
+  });
+  for (const FilmFormat& format : formats)
+    for (const bool lying : {false, true}) {
+      FilmOptions film = config.design.film;
+      film.width_mm = lying ? format.height_mm : format.width_mm;
+      film.height_mm = lying ? format.width_mm : format.height_mm;
+      if (!sheet_fits_bath(film, config.bath) || !all_fit(fits_of(config, posed, film))) continue;
+      list.push_back(
+          mend(fmt::format("Choose {}{}", shown_name(format.name), lying ? ", lying" : ""),
+               {{"film", {{"width_mm", film.width_mm}, {"height_mm", film.height_mm}}}}));
+      return;
+    }
+}
+
+void add_size(Json& list, const JobConfig& config, const TriangleMesh& posed) {
+  double ratio = 1;
+  for (const RoomFit& fit : fits_of(config, posed, config.design.film))
+    if (fit.needed_mm > 0) ratio = std::min(ratio, fit.available_mm / fit.needed_mm);
+  // Largest extent of the model itself, which is what a size means, is not known here: the ratio
+  // is.
+  const double largest = config.object.pose.size_mm > 0 ? config.object.pose.size_mm
+                                                        : posed.bounds().size().maxCoeff();
+  const double size = std::floor(largest * ratio);
+  if (ratio > 0 && size >= 1)
+    list.push_back(mend(fmt::format("Make it {:.0f} mm", size), {{"object", {{"size_mm", size}}}}));
+}
+
+void add_depth(Json& list, const JobConfig& config, const TriangleMesh& posed) {
+  for (const RoomFit& fit : fits_of(config, posed, config.design.film)) {
+    const double depth = std::floor(fit.available_mm);
+    if (fit.what.starts_with("deep") && fit.excess_mm() > kTolerance_mm && depth >= 1)
+      list.push_back(
+          mend(fmt::format("Dip {:.0f} mm only", depth), {{"dip", {{"depth_mm", depth}}}}));
+  }
+}
+
+}  // namespace
+
+Json room_mends(const JobConfig& config, const TriangleMesh& posed) {
+  Json list = Json::array();
+  add_film(list, config, posed);
+  add_depth(list, config, posed);
+  add_size(list, config, posed);
+  return list;
+}
+
+std::string misfit(const JobConfig& config, const TriangleMesh& posed) {
+  for (const RoomFit& fit : fits_of(config, posed, config.design.film))
+    if (fit.excess_mm() > kTolerance_mm)
+      return fmt::format("Too large: {:.0f} mm {}, and {} has {:.0f} mm.", fit.needed_mm, fit.what,
+                         fit.room, fit.available_mm);
+  return "";
+}
+
+Json orient_mend() {
+  return {{"text", "Look for a better way to hold it"},
+          {"patch", Json::object()},
+          {"task", {{"kind", "orient"}}}};
+}
+
+Json tear_mends(const JobConfig& config, const DippedFilm& film) {
+  Json list = Json::array();
+  const FilmMesh& mesh = film.mesh();
+  std::vector<std::pair<double, double>> torn;  // when, and how much
+  double area = 0;
+  const auto area_of = [&](std::size_t t) {
+    const Triangle& v = mesh.triangles[t];
+    const Vec2 a = mesh.u[std::size_t(v[1])] - mesh.u[std::size_t(v[0])],
+               b = mesh.u[std::size_t(v[2])] - mesh.u[std::size_t(v[0])];
+    return 0.5 * std::abs(a.x() * b.y() - a.y() * b.x());
+  };
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (film.lies_on_object(t)) area += area_of(t);
+    if (std::isfinite(film.torn_at_mm[t])) torn.emplace_back(film.torn_at_mm[t], area_of(t));
+  }
+  std::sort(torn.begin(), torn.end());
+  double sum = 0, depth = film.depth_mm;
+  for (const auto& [at, how_much] : torn) {
+    sum += how_much;
+    if (sum <= kHardlyTorn * area) continue;
+    depth = std::floor(2 * at) / 2 - 0.5;  // a little before that
+    break;
+  }
+  const bool straight = config.design.trajectory.path.empty() &&
+                        config.design.trajectory.tilt_deg == 0 &&
+                        config.design.trajectory.roll_deg == 0;
+  if (straight && depth >= 2 && depth < film.depth_mm)
+    list.push_back(mend(fmt::format("Dip {:g} mm only", depth), {{"dip", {{"depth_mm", depth}}}}));
+  list.push_back(orient_mend());
+  return list;
+}
+
+Json air_mends(const TrappedAir& air) {
+  Json list = Json::array();
+  if (!air.pockets.empty() && air.pockets.front().lets_out) {
+    const Tilt& tilt = *air.pockets.front().lets_out;
+    list.push_back(
+        mend(fmt::format("Tilt it by {:.0f} degrees", tilt.tilt_deg),
+             {{"dip", {{"tilt_deg", tilt.tilt_deg}, {"tilt_toward_deg", tilt.toward_deg}}}}));
+  }
+  return list;
+}
+
+Json size_mends() {
+  return {mend("It is in metres", {{"object", {{"units", "m"}}}}),
+          mend("It is in inches", {{"object", {{"units", "in"}}}}),
+          mend("Make it 80 mm", {{"object", {{"size_mm", 80}}}})};
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,28 @@
+// What would help: changes of the document that a button makes. docs/studio-api.md, MEND.
+#pragma once
+
+#include "coat/dipped_object.h"
+#include "settings/config.h"
+#include "studio/json.h"
+
+namespace hydrodip {
+
+// For an object that does not fit film or bath: a larger sheet, a smaller object, less depth.
+Json room_mends(const JobConfig& config, const TriangleMesh& posed);
+
+// How it does not fit, in one sentence; empty if it does.
+std::string misfit(const JobConfig& config, const TriangleMesh& posed);
+
+// Other ways to hold it: a task, and not a change.
+Json orient_mend();
+
+// For film that tears: the depth up to which nothing does, and other ways to hold the object.
+Json tear_mends(const JobConfig& config, const DippedFilm& film);
+
+// For air that stays.
+Json air_mends(const TrappedAir& air);
+
+// For an object of a size that nobody dips.
+Json size_mends();
+
+}  // namespace hydrodip

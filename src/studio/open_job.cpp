@@ -1,0 +1,685 @@
+#include "studio/open_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+
+#include "base/error.h"
+#include "settings/job_file.h"
+#include "settings/settings.h"
+#include "studio/api_error.h"
+#include "studio/document.h"
+#include "studio/plain_words.h"
+#include "studio/zip.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr std::array<const char*, 5> kTextureWords = {"texture", "albedo", "diffuse", "basecolor",
+                                                      "color"};
+constexpr std::size_t kMeshesKept = 6, kResultsKept = 6, kMostTabs = 12;
+
+ApiError input_error(const std::string& sentence) {
+  return {422, "bad-file", in_plain_words(sentence)};
+}
+
+// A name for a file from what a person calls a job.
+std::string file_name_of(const std::string& name) {
+  std::string safe;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool fine = byte >= 0x80 || std::isalnum(byte) || c == '-' || c == '_' || c == ' ' ||
+                      c == ',' || c == '+';
+    safe += fine ? c : '-';
+  }
+  while (!safe.empty() && (safe.front() == ' ' || safe.front() == '-')) safe.erase(0, 1);
+  return safe.empty() ? "job" : safe.substr(0, 120);
+}
+
+// The picture that a model with texture coordinates and without colours must mean: the only one,
+// and named like the model or like a texture.
+std::string texture_for(const Model& model, const std::string& name,
+                        const std::vector<std::string>& names) {
+  if (model.object->uvs.empty() || model.object->has_appearance()) return "";
+  std::vector<std::string> pictures;
+  for (const std::string& other : names)
+    if (kind_of_file(other) == "picture") pictures.push_back(other);
+  if (pictures.size() != 1) return "";
+  std::string stem = std::filesystem::path(pictures[0]).stem().string();
+  for (char& c : stem) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const bool meant = stem.starts_with(std::filesystem::path(name).stem().string()) ||
+                     std::any_of(kTextureWords.begin(), kTextureWords.end(), [&](const char* word) {
+                       return stem.find(word) != std::string::npos;
+                     });
+  return meant ? pictures[0] : "";
+}
+
+bool is_job_file(const std::filesystem::path& file) { return file.extension() == ".toml"; }
+
+}  // namespace
+
+OpenJob::OpenJob(JobStore store, std::string job, std::string run)
+    : store_(std::move(store)),
+      job_(std::move(job)),
+      run_(std::move(run)),
+      home_(store_.home(job_)),
+      files_(home_ / "files") {
+  std::error_code ignored;
+  std::filesystem::create_directories(files_.uploads(), ignored);
+  const Json state = store_.read(job_);
+  if (state.is_object()) {
+    files_.set_granted(state.value("granted", Json::object()));
+    document_ = state.value("document", Json::object());
+    revision_ = state.value("revision", 1L);
+    saved_revision_ = state.value("saved_revision", 1L);
+    where_ = state.value("where", "");
+    origin_ = state.value("origin", "");
+    try {
+      config_ = config_of(document_, files_);
+    } catch (const ApiError&) {
+      // A file of it has gone: the page says so when it asks for a result.
+    }
+  }
+  unwatched_since_ = std::chrono::steady_clock::now();
+  tasks_ = std::make_unique<Tasks>([this](const Json& task) {
+    const std::lock_guard lock(mutex_);
+    tell("task", task);
+  });
+  live_ = std::make_unique<Live>(sinks());
+  ask(false);
+}
+
+OpenJob::~OpenJob() {
+  live_.reset();
+  tasks_.reset();
+}
+
+// ---- the document ----
+
+Json OpenJob::describe() const {
+  const Json tasks = tasks_->list();
+  const std::lock_guard lock(mutex_);
+  return {{"job", job_},
+          {"name", name_of_job(document_)},
+          {"where", where_.empty() ? "" : shown_path(where_)},
+          {"revision", revision_},
+          {"saved_revision", saved_revision_},
+          {"document", document_},
+          {"files", files_json()},
+          {"mesh", mesh_.empty() ? Json() : Json(mesh_)},
+          {"tasks", tasks},
+          {"result", results_.empty() ? Json() : Json(results_.front().id)}};
+}
+
+JobConfig OpenJob::checked(const Json& document) const {
+  if (text_of(document).size() > kLargestDocument)
+    throw ApiError(413, "too-large", "The job's document is too large.");
+  return config_of(document, files_);
+}
+
+Json OpenJob::put(const Change& change) {
+  const std::lock_guard lock(mutex_);
+  require_pen(change.client);
+  if (change.base >= 0 && change.base != revision_)
+    throw ApiError(409, "stale", "The job was changed meanwhile.");
+  const JobConfig config = checked(change.document);
+  accept(change.document, config, change.client, change.live, change.dip, false);
+  Json answer;
+  answer["revision"] = revision_;
+  return answer;
+}
+
+// With the lock.
+void OpenJob::accept(const Json& document, const JobConfig& config, const std::string& client,
+                     bool live, std::size_t dip, bool tell_client) {
+  document_ = document;
+  config_ = config;
+  dip_ = dip;
+  ++revision_;
+  if (!live) autosave();
+  ask(live);
+  const Json event = {{"revision", revision_}, {"document", document_}, {"client", client}};
+  for (const Tab& tab : tabs_)
+    if (tell_client || tab.client != client) tab.stream->push("document", event, true);
+}
+
+// With the lock.
+void OpenJob::ask(bool live) { live_->ask({config_, revision_, dip_, live}); }
+
+// With the lock.
+void OpenJob::autosave() const {
+  store_.write(job_, {{"version", 1},
+                      {"name", name_of_job(document_)},
+                      {"where", where_.string()},
+                      {"origin", origin_.string()},
+                      {"revision", revision_},
+                      {"saved_revision", saved_revision_},
+                      {"open", !tabs_.empty()},
+                      {"granted", files_.granted()},
+                      {"document", document_}});
+}
+
+void OpenJob::open_file(const std::filesystem::path& file) {
+  JobConfig config;
+  const auto whole = std::filesystem::absolute(file).lexically_normal();
+  if (is_job_file(file)) {
+    SettingSources sources;
+    sources.configs = {whole};
+    apply_sources(config, sources);
+    if (config.model.empty())
+      throw InputError(
+          fmt::format("{}: the job names no model: begin it with file = \"MODEL\" under [object]",
+                      file.string()));
+  } else {
+    config.model = whole;
+  }
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(config.model, error))
+    throw InputError(fmt::format("{}: there is no such file", config.model.string()));
+  const std::lock_guard lock(mutex_);
+  const Json document = document_of(config, files_);
+  if (is_job_file(file)) where_ = whole;
+  origin_ = whole;
+  accept(document, config_of(document, files_), "", false, 0, true);
+  if (is_job_file(file)) saved_revision_ = revision_;
+  autosave();
+}
+
+Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& client) {
+  std::unique_lock lock(mutex_);
+  require_pen(client);
+  Json adopted = Json::array();
+  const auto note = [&](const std::string& name, const std::string& as, const std::string& text) {
+    adopted.push_back({{"file", name}, {"as", as}, {"text", text}});
+  };
+  std::vector<std::string> names;
+  for (const std::string& name : given) {
+    files_.find(name);
+    if (kind_of_file(name) != "archive") {
+      names.push_back(name);
+      continue;
+    }
+    const std::uintmax_t used = files_.uploaded_bytes();
+    try {
+      unpack_zip(files_.find(name), used < kMostJobBytes ? kMostJobBytes - used : 0,
+                 [&](const std::string& inner) -> std::filesystem::path {
+                   if (kind_of_file(inner) == "unknown" || kind_of_file(inner) == "archive" ||
+                       files_.has(inner))
+                     return {};
+                   names.push_back(inner);
+                   return files_.uploads() / inner;
+                 });
+    } catch (const InputError& error) {
+      throw input_error(error.what());
+    }
+    std::error_code ignored;
+    std::filesystem::remove(files_.find(name), ignored);
+  }
+
+  Json document = document_;
+  const auto first = [&](const std::string& kind) {
+    const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+      return kind_of_file(name) == kind;
+    });
+    return found == names.end() ? std::string() : *found;
+  };
+  std::set<std::string> taken;
+  try {
+    if (const std::string job = first("job"); !job.empty()) {
+      JobConfig config;
+      SettingSources sources;
+      sources.configs = {files_.find(job)};
+      apply_sources(config, sources);
+      // Such a file may name anything on this machine: only what came with it is taken.
+      JobFiles uploaded(files_.uploads());
+      document = document_of(config, uploaded);
+      if (!uploaded.granted().empty()) {
+        const std::string missing = uploaded.granted().begin().key();
+        throw ApiError(
+            422, "bad-file",
+            fmt::format("The job needs {}: drop it here together with {}.", missing, job));
+      }
+      note(job, "job", "");
+      taken.insert(names.begin(), names.end());
+    } else if (const std::string model = first("model"); !model.empty()) {
+      document["object"]["file"] = model;
+      document["object"].erase("texture");
+      note(model, "model", "");
+      taken.insert(model);
+      // Reading it tells which pictures are its own.
+      if (names.size() > 1) {
+        const std::filesystem::path path = files_.find(model);
+        lock.unlock();
+        const Model read = load(path, {}, RunContext());
+        lock.lock();
+        for (const auto& file : read.files) taken.insert(files_.grant(file));
+        if (const std::string texture = texture_for(read, model, names); !texture.empty()) {
+          document["object"]["texture"] = texture;
+          taken.insert(texture);
+        }
+      }
+    }
+    for (const std::string& name : names) {
+      const std::string kind = kind_of_file(name);
+      if (kind == "job" || (kind == "model" && taken.contains(name))) continue;
+      if (taken.contains(name)) {
+        note(name, "part", "");
+      } else if (kind == "picture") {
+        Json layer;
+        layer["image"] = name;
+        document["artwork"].push_back(layer);
+        note(name, "layer", "");
+      } else {
+        note(name, "unused", "The studio does not know what to do with this file.");
+      }
+    }
+  } catch (const InputError& error) {
+    throw input_error(error.what());
+  }
+  accept(document, config_of(document, files_), client, false, 0, true);
+  tell("files", files_event());
+  return {{"revision", revision_}, {"document", document_}, {"adopted", adopted}};
+}
+
+std::string OpenJob::job_toml(const std::filesystem::path& folder) const {
+  const std::lock_guard lock(mutex_);
+  return job_file(config_, folder);
+}
+
+Json OpenJob::save(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  if (!name.empty()) document_["name"] = name.substr(0, 200);
+  if (where_.empty()) {
+    // Beside the model that was named on the command line; what was dropped here stays here.
+    const std::filesystem::path folder = origin_.empty() ? files_.uploads() : origin_.parent_path();
+    const std::string stem = file_name_of(name_of_job(document_));
+    where_ = folder / (stem + ".toml");
+    std::error_code ignored;
+    for (int number = 2; std::filesystem::exists(where_, ignored); ++number)
+      where_ = folder / fmt::format("{}-{}.toml", stem, number);
+  }
+  try {
+    write_whole(where_, job_file(config_, where_.parent_path()));
+  } catch (const InputError& error) {
+    throw ApiError(422, "bad-file", error.what());
+  }
+  saved_revision_ = revision_;
+  autosave();
+  const Json saved = {{"saved_revision", saved_revision_}, {"where", shown_path(where_)}};
+  tell("saved", saved);
+  return saved;
+}
+
+std::filesystem::path OpenJob::pack() const {
+  std::vector<std::pair<std::string, std::filesystem::path>> files;
+  const std::filesystem::path folder = home_ / "packed";
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+  std::filesystem::create_directories(folder, ignored);
+  JobConfig config;
+  std::shared_ptr<const Model> model;
+  std::string name;
+  {
+    const std::lock_guard lock(mutex_);
+    config = config_;
+    model = model_;
+    name = file_name_of(name_of_job(document_));
+  }
+  // Every file gets the place beside the job file from which the job names it.
+  std::set<std::string> used;
+  const auto put = [&](std::filesystem::path& file) {
+    if (file.empty()) return;
+    std::string inner = file.filename().string();
+    for (int number = 2; used.contains(inner); ++number)
+      inner = fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string());
+    used.insert(inner);
+    files.emplace_back(inner, file);
+    file = folder / inner;
+  };
+  if (model)
+    for (const auto& file : model->files) {
+      if (file == config.model || file == config.object.load.texture) continue;
+      std::string inner = file.lexically_relative(config.model.parent_path()).string();
+      if (inner.empty() || inner.starts_with("..")) inner = file.filename().string();
+      if (used.insert(inner).second) files.emplace_back(inner, file);
+    }
+  put(config.model);
+  put(config.object.load.texture);
+  put(config.printer.profile);
+  put(config.plan.importance);
+  for (ArtworkLayer& layer : config.object.artwork) put(layer.image);
+  const std::filesystem::path toml = folder / (name + ".toml");
+  write_whole(toml, job_file(config, folder));
+  files.insert(files.begin(), {name + ".toml", toml});
+  const std::filesystem::path archive = folder / (name + ".zip");
+  pack_zip(archive, files);
+  return archive;
+}
+
+void OpenJob::reload() {
+  const std::lock_guard lock(mutex_);
+  config_ = checked(document_);
+  ask(false);
+}
+
+std::string OpenJob::name() const {
+  const std::lock_guard lock(mutex_);
+  return name_of_job(document_);
+}
+
+// ---- files ----
+
+// With the lock.
+Json OpenJob::files_json() const {
+  Json list = Json::array();
+  for (const std::string& name : files_.names()) {
+    std::error_code none;
+    const std::uintmax_t bytes = std::filesystem::file_size(files_.find(name), none);
+    list.push_back({{"file", name}, {"kind", kind_of_file(name)}, {"bytes", none ? 0 : bytes}});
+  }
+  return list;
+}
+
+// With the lock.
+Json OpenJob::files_event() const {
+  Json event;
+  event["files"] = files_json();
+  return event;
+}
+
+OpenJob::Upload OpenJob::begin_upload(const std::string& wanted) {
+  const std::lock_guard lock(mutex_);
+  const std::uintmax_t used = files_.uploaded_bytes();
+  require_plain_name(wanted);
+  if (kind_of_file(wanted) == "unknown")
+    throw ApiError(422, "bad-file",
+                   "This is no model, picture, job file or ZIP archive that the studio knows.");
+  return {wanted, home_ / fmt::format("upload-{}.part", ++number_),
+          std::min(kMostFileBytes, used < kMostJobBytes ? kMostJobBytes - used : 0)};
+}
+
+Json OpenJob::end_upload(const Upload& upload) {
+  const std::lock_guard lock(mutex_);
+  const std::string name = files_.name_for_upload(upload.name);
+  const std::filesystem::path file = files_.uploads() / name;
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  std::filesystem::rename(upload.file, file, error);
+  if (error) throw ApiError(500, "failed", "The file cannot be kept; free some space.");
+  tell("files", files_event());
+  return {{"file", name}, {"kind", kind_of_file(name)}};
+}
+
+std::filesystem::path OpenJob::file(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  return files_.find(name);
+}
+
+// ---- tabs ----
+
+std::shared_ptr<EventStream> OpenJob::connect(const std::string& client) {
+  const Json tasks = tasks_->list();
+  const std::lock_guard lock(mutex_);
+  if (tabs_.size() >= kMostTabs)
+    throw ApiError(503, "busy", "The job is open in too many tabs; close some.");
+  auto stream = std::make_shared<EventStream>();
+  // The same tab anew: its old line is dead.
+  for (const Tab& tab : tabs_)
+    if (tab.client == client) tab.stream->close();
+  std::erase_if(tabs_, [&](const Tab& tab) { return tab.client == client; });
+  tabs_.push_back({client, stream});
+  unwatched_since_.reset();
+  if (pen_.empty()) pen_ = client;
+  const bool mine = pen_ == client;
+  stream->push("hello", {{"run", run_},
+                         {"client", client},
+                         {"pen", mine},
+                         {"revision", revision_},
+                         {"saved_revision", saved_revision_}});
+  if (!mesh_event_.is_null()) stream->push("mesh", mesh_event_);
+  if (!results_.empty()) stream->push("result", results_.front().event);
+  if (!problem_event_.is_null()) stream->push("problem", problem_event_);
+  for (const Json& task : tasks) stream->push("task", task);
+  return stream;
+}
+
+void OpenJob::disconnect(const std::string& client, const std::shared_ptr<EventStream>& stream) {
+  const std::lock_guard lock(mutex_);
+  const auto gone = std::erase_if(tabs_, [&](const Tab& tab) { return tab.stream == stream; });
+  if (gone == 0) return;
+  if (tabs_.empty()) unwatched_since_ = std::chrono::steady_clock::now();
+  if (pen_ == client) hand_pen_on();
+}
+
+// With the lock: to the tab that came next.
+void OpenJob::hand_pen_on() {
+  pen_ = tabs_.empty() ? "" : tabs_.front().client;
+  tell_pen();
+}
+
+// With the lock.
+void OpenJob::tell_pen() {
+  for (const Tab& tab : tabs_) {
+    Json event;
+    event["mine"] = tab.client == pen_;
+    tab.stream->push("pen", event);
+  }
+}
+
+void OpenJob::take_pen(const std::string& client) {
+  const std::lock_guard lock(mutex_);
+  const bool known =
+      std::any_of(tabs_.begin(), tabs_.end(), [&](const Tab& t) { return t.client == client; });
+  if (!known) throw ApiError(404, "not-found", "This tab gets no events yet; connect first.");
+  pen_ = client;
+  tell_pen();
+}
+
+// With the lock.
+void OpenJob::require_pen(const std::string& client) const {
+  if (pen_.empty() || pen_ == client) return;
+  throw ApiError(409, "no-pen", "The job is open in another tab; take over there or here.");
+}
+
+std::optional<std::chrono::steady_clock::time_point> OpenJob::idle_since() const {
+  if (tasks_->any_running()) return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  return unwatched_since_;
+}
+
+void OpenJob::say_goodbye(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  for (const Tab& tab : tabs_) {
+    Json event;
+    event["text"] = text;
+    tab.stream->push("bye", event);
+    tab.stream->close();
+  }
+  tabs_.clear();
+  autosave();
+}
+
+// With the lock.
+void OpenJob::tell(const std::string& event, const Json& data, bool newest_only) {
+  for (const Tab& tab : tabs_) tab.stream->push(event, data, newest_only);
+}
+
+// ---- what was computed ----
+
+// With the lock.
+std::string OpenJob::new_id(char kind) {
+  return fmt::format("{}-{}{}", run_.substr(0, 8), kind, ++number_);
+}
+
+std::string OpenJob::show_mesh(const Model& model, const Object& object) {
+  std::string id;
+  {
+    const std::lock_guard lock(mutex_);
+    id = new_id('m');
+  }
+  auto made = std::make_shared<const ShownMesh>(
+      shown_mesh(model, object, id, address() + "/meshes/" + id, RunContext()));
+  const std::lock_guard lock(mutex_);
+  meshes_.emplace_front(id, std::move(made));
+  // The model's own mesh stays.
+  for (auto old = std::prev(meshes_.end()); meshes_.size() > kMeshesKept; --old)
+    if (old->first != mesh_) old = meshes_.erase(old);
+  return id;
+}
+
+// With the lock.
+void OpenJob::tell_mesh(long revision, const std::string& wanted) {
+  mesh_event_ = {{"revision", revision}, {"mesh", mesh_}, {"wanted", wanted}};
+  tell("mesh", mesh_event_, true);
+}
+
+LiveSinks OpenJob::sinks() {
+  LiveSinks sinks;
+  sinks.model = [this](long revision, std::shared_ptr<const Model> model,
+                       const std::vector<std::string>&) {
+    const std::string id = show_mesh(*model, *model->object);
+    const std::lock_guard lock(mutex_);
+    model_ = std::move(model);
+    mesh_ = id;
+    tell_mesh(revision, id);
+  };
+  sinks.painted = [this](long revision, const Model& model, const Object& painted) {
+    const bool own = &painted == model.object.get();
+    const std::string id = own ? "" : show_mesh(model, painted);
+    const std::lock_guard lock(mutex_);
+    tell_mesh(revision, own ? mesh_ : id);
+  };
+  sinks.look = [this](long revision, const Look& look, double took_s) {
+    Shown shown;
+    shown.revision = revision;
+    {
+      const std::lock_guard lock(mutex_);
+      shown.id = new_id('r');
+    }
+    shown.made = look.made;
+    shown.bundle = std::make_shared<const std::vector<std::uint8_t>>(
+        result_bundle(look, {{"result", shown.id}, {"revision", revision}}, RunContext()));
+    shown.event = {{"revision", revision},
+                   {"quality", look.quality == Quality::kDraft ? "draft" : "normal"},
+                   {"dip", look.dip},
+                   {"result", shown.id},
+                   {"took_s", took_s}};
+    const std::lock_guard lock(mutex_);
+    problem_event_ = nullptr;
+    tell("result", shown.event, true);
+    results_.push_front(std::move(shown));
+    if (results_.size() > kResultsKept) results_.pop_back();
+  };
+  sinks.problem = [this](long revision, const Problem& problem) {
+    const std::lock_guard lock(mutex_);
+    problem_event_ = {{"revision", revision},
+                      {"code", problem.code},
+                      {"text", problem.text},
+                      {"mends", problem.mends}};
+    tell("problem", problem_event_, true);
+  };
+  sinks.working = [this](long revision, const std::string& quality, const std::string& activity,
+                         double fraction) {
+    Json event = {{"revision", revision}, {"quality", quality.empty() ? Json() : Json(quality)}};
+    if (!quality.empty()) {
+      event["activity"] = activity;
+      event["fraction"] = fraction;
+    }
+    const std::lock_guard lock(mutex_);
+    tell("working", event, true);
+  };
+  return sinks;
+}
+
+std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::mesh(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [known, shown] : meshes_)
+    if (known == id) return {shown, &shown->bundle};
+  return nullptr;
+}
+
+std::optional<ShownMesh::Picture> OpenJob::texture(const std::string& id,
+                                                   std::size_t number) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [known, shown] : meshes_)
+    if (known == id && number < shown->textures.size()) return shown->textures[number];
+  return std::nullopt;
+}
+
+std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::result(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  for (const Shown& shown : results_)
+    if (shown.id == id) return shown.bundle;
+  return nullptr;
+}
+
+std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::dip(const std::string& id) const {
+  std::shared_ptr<const Designed> made;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const Shown& shown : results_)
+      if (shown.id == id) made = shown.made;
+  }
+  if (!made) return nullptr;
+  return std::make_shared<const std::vector<std::uint8_t>>(dip_bundle(made->dipped));
+}
+
+Json OpenJob::counts() const {
+  const Live::Counts counts = live_->counts();
+  return {{"drafts", counts.drafts},
+          {"normals", counts.normals},
+          {"cancelled", counts.cancelled},
+          {"memory_bytes", live_->memory_bytes()}};
+}
+
+// ---- long work ----
+
+std::string OpenJob::start_task(const Json& request) {
+  const std::string kind = request.value("kind", "");
+  if (kind != "print" && kind != "orient" && kind != "plan")
+    throw ApiError(400, "bad-request", "A task is print, orient or plan.");
+  TaskRequest task;
+  task.kind = kind;
+  task.address = address() + "/tasks";
+  const std::lock_guard lock(mutex_);
+  task.config = checked(document_);
+  task.revision = revision_;
+  if (task.config.model.empty())
+    throw ApiError(422, "no-model", "There is no model yet: drop one here, or open a sample.");
+  if (kind == "plan") {
+    task.config.plan.dips = request.value("dips", 2);
+    if (task.config.plan.dips < 1 || task.config.plan.dips > 24)
+      throw ApiError(422, "bad-value", "A job has 1 to 24 dips.", "plan.dips");
+  }
+  if (kind == "orient") {
+    // Looked for anew, whatever is said now; the depth too.
+    task.config.design.trajectory = TrajectoryOptions{};
+    task.config.dips.clear();
+  }
+  if (kind == "print") {
+    task.job = home_ / "job.toml";
+    write_whole(task.job, job_file(task.config, home_));
+    const std::string name =
+        where_.empty() ? file_name_of(name_of_job(document_)) : where_.stem().string();
+    const bool ours = where_.empty() || where_.parent_path() == files_.uploads();
+    task.folder = ours ? home_ / "print" / name : where_.parent_path() / (name + "-print");
+  } else {
+    task.folder = home_ / "found" / fmt::format("{}-{}", kind, ++number_);
+  }
+  std::error_code ignored;
+  std::filesystem::create_directories(task.folder.parent_path(), ignored);
+  return tasks_->start(std::move(task));
+}
+
+void OpenJob::cancel_task(const std::string& task) {
+  if (!tasks_->cancel(task)) throw ApiError(404, "not-found", "There is no such task.");
+}
+
+std::filesystem::path OpenJob::task_folder(const std::string& task) const {
+  return tasks_->folder(task);
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,152 @@
+// A job that is being worked on: its document, who looks at it, what was computed of it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studio/event_stream.h"
+#include "studio/job_files.h"
+#include "studio/job_store.h"
+#include "studio/json.h"
+#include "studio/live.h"
+#include "studio/shown_mesh.h"
+#include "studio/tasks.h"
+
+namespace hydrodip {
+
+inline constexpr std::uintmax_t kMostFileBytes = std::uintmax_t(512) << 20U;
+inline constexpr std::uintmax_t kMostJobBytes = std::uintmax_t(2) << 30U;
+
+// For any number of threads. Everything throws ApiError.
+class OpenJob {
+ public:
+  // `run`: this run's name. The job is in the store.
+  OpenJob(JobStore store, std::string job, std::string run);
+  ~OpenJob();
+  OpenJob(const OpenJob&) = delete;
+  OpenJob& operator=(const OpenJob&) = delete;
+
+  // ---- the document ----
+
+  // Answer of GET /api/jobs/J.
+  Json describe() const;
+  struct Change {
+    std::string client;
+    long base = -1;  // negative: whatever is there
+    Json document;
+    bool live = false;
+    std::size_t dip = 0;
+  };
+  // Answer of PUT .../document. Throws ApiError stale with the newest in describe().
+  Json put(const Change& change);
+  // A model or a job's file from this machine, as the command line names it.
+  void open_file(const std::filesystem::path& file);
+  Json adopt(const std::vector<std::string>& files, const std::string& client);
+  Json save(const std::string& name);
+  // The job file's text, as it would be written into that folder.
+  std::string job_toml(const std::filesystem::path& folder) const;
+  // Everything that the job needs, in an archive that is made anew.
+  std::filesystem::path pack() const;
+  void reload();
+  std::string name() const;
+
+  // ---- files ----
+
+  // Where an upload is to be written, and its name when it is whole.
+  struct Upload {
+    std::string name;
+    std::filesystem::path file;
+    std::uintmax_t most_bytes = 0;
+  };
+  Upload begin_upload(const std::string& name);
+  Json end_upload(const Upload& upload);
+  std::filesystem::path file(const std::string& name) const;
+  std::filesystem::path thumbnail() const { return home_ / "thumbnail.png"; }
+
+  // ---- tabs ----
+
+  std::shared_ptr<EventStream> connect(const std::string& client);
+  void disconnect(const std::string& client, const std::shared_ptr<EventStream>& stream);
+  void take_pen(const std::string& client);
+  // Since when nobody has looked at it and nothing is done; nothing: it is in use.
+  std::optional<std::chrono::steady_clock::time_point> idle_since() const;
+  void say_goodbye(const std::string& text);
+
+  // ---- what was computed ----
+
+  std::shared_ptr<const std::vector<std::uint8_t>> mesh(const std::string& id) const;
+  std::optional<ShownMesh::Picture> texture(const std::string& id, std::size_t number) const;
+  std::shared_ptr<const std::vector<std::uint8_t>> result(const std::string& id) const;
+  std::shared_ptr<const std::vector<std::uint8_t>> dip(const std::string& id) const;
+  Json counts() const;
+
+  // ---- long work ----
+
+  std::string start_task(const Json& request);
+  void cancel_task(const std::string& task);
+  std::filesystem::path task_folder(const std::string& task) const;
+
+ private:
+  struct Tab {
+    std::string client;
+    std::shared_ptr<EventStream> stream;
+  };
+  struct Shown {
+    long revision = 0;
+    std::string id;
+    std::shared_ptr<const std::vector<std::uint8_t>> bundle;
+    std::shared_ptr<const Designed> made;
+    Json event;
+  };
+
+  std::string address() const { return "/api/jobs/" + job_; }
+  std::string new_id(char kind);
+  JobConfig checked(const Json& document) const;
+  void accept(const Json& document, const JobConfig& config, const std::string& client, bool live,
+              std::size_t dip, bool tell_client);
+  void ask(bool live);
+  void autosave() const;
+  void tell(const std::string& event, const Json& data, bool newest_only = false);
+  void hand_pen_on();
+  void require_pen(const std::string& client) const;
+  Json files_json() const;
+  Json files_event() const;
+  std::string show_mesh(const Model& model, const Object& object);
+  void tell_mesh(long revision, const std::string& wanted);
+  void tell_pen();
+  LiveSinks sinks();
+
+  const JobStore store_;
+  const std::string job_, run_;
+  const std::filesystem::path home_;
+
+  mutable std::mutex mutex_;
+  JobFiles files_;
+  Json document_ = Json::object();
+  JobConfig config_;
+  std::size_t dip_ = 0;
+  long revision_ = 1, saved_revision_ = 1;
+  std::filesystem::path where_;   // the job file that it was opened from or saved to
+  std::filesystem::path origin_;  // what the command line named
+  std::vector<Tab> tabs_;
+  std::string pen_;  // client
+  std::optional<std::chrono::steady_clock::time_point> unwatched_since_;
+  long number_ = 0;
+  std::list<std::pair<std::string, std::shared_ptr<const ShownMesh>>> meshes_;
+  std::shared_ptr<const Model> model_;
+  std::string mesh_;  // of the model in its own colours
+  Json mesh_event_, problem_event_;
+  std::list<Shown> results_;
+
+  std::unique_ptr<Tasks> tasks_;
+  std::unique_ptr<Live> live_;  // last: ends first
+};
+
+}  // namespace hydrodip

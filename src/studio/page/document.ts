@@ -1,0 +1,228 @@
+// The job as one immutable value, and every way to change it. Nothing here knows of the screen or the program.
+
+export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+export type Patch = { [key: string]: Json };
+export type Vec3 = [number, number, number];
+export type Side = '-z' | '+z' | '-y' | '+y' | '-x' | '+x';
+export type Projection = 'planar' | 'cylinder' | 'sphere' | 'box' | 'uv' | 'wrap' | 'film';
+
+export interface Layer {
+  image?: string;
+  text?: string;
+  font?: string;
+  text_color?: string;
+  projection?: Projection;
+  at_mm?: Vec3;
+  toward?: Vec3;
+  up?: Vec3;
+  size_mm?: number | [number, number];
+  turn_deg?: number;
+  repeat?: 'once' | 'tile' | 'mirror';
+  through?: boolean;
+  fade_deg?: number;
+  opacity?: number;
+  blend?: 'normal' | 'multiply';
+}
+
+export type Way = number[][]; // keyframes: lower, shift x, y, turn x, y, z
+
+export interface Dip {
+  down?: Side;
+  rotate_deg?: Vec3;
+  depth_mm?: number;
+  path?: Way | null;
+  locked?: boolean;
+}
+
+type Group = { [name: string]: Json | undefined };
+
+export interface JobDocument {
+  name?: string;
+  page?: Group;
+  object?: Group & { file?: string; size_mm?: number; down?: Side; rotate_deg?: Vec3 };
+  film?: Group;
+  dip?: Group;
+  path?: Way | null;
+  artwork?: Layer[];
+  dips?: Dip[];
+  [group: string]: Group | string | Way | Layer[] | Dip[] | null | undefined;
+}
+
+// --- Values by their parameters' names ---
+
+export type Defaults = ReadonlyMap<string, Json>;
+
+export function valueOf<T extends Json>(document: JobDocument, defaults: Defaults, name: string): T {
+  const [group = '', key = ''] = name.split('.');
+  const held = document[group] as Group | undefined;
+  return (held?.[key] ?? defaults.get(name) ?? null) as T;
+}
+
+const same = (a: unknown, b: unknown): boolean => JSON.stringify(a) === JSON.stringify(b);
+
+// A value that is the default leaves the document, so that going back gives the same document.
+export function withValue(document: JobDocument, defaults: Defaults, name: string, value: Json): JobDocument {
+  const [group = '', key = ''] = name.split('.');
+  const { [key]: _, ...rest } = (document[group] as Group | undefined) ?? {};
+  if (!same(value, defaults.get(name) ?? null)) rest[key] = value;
+  const { [group]: __, ...others } = document;
+  return (Object.keys(rest).length ? { ...document, [group]: rest } : others) as JobDocument;
+}
+
+// RFC 7386.
+export function merged(target: Json | undefined, patch: Json): Json {
+  if (patch === null || typeof patch !== 'object' || Array.isArray(patch)) return patch;
+  const result: { [key: string]: Json } =
+    target && typeof target === 'object' && !Array.isArray(target) ? { ...target } : {};
+  for (const [key, value] of Object.entries(patch)) {
+    if (value === null) delete result[key];
+    else result[key] = merged(result[key], value);
+  }
+  return result;
+}
+
+export const patched = (document: JobDocument, patch: Patch): JobDocument =>
+  merged(document as Json, patch) as unknown as JobDocument;
+
+export const equal = (a: JobDocument, b: JobDocument): boolean => canonical(a as Json) === canonical(b as Json);
+
+function canonical(value: Json | undefined): string {
+  if (Array.isArray(value)) return `[${value.map(canonical).join(',')}]`;
+  if (value && typeof value === 'object') {
+    const keys = Object.keys(value).filter((key) => value[key] !== undefined).sort();
+    return `{${keys.map((key) => `${JSON.stringify(key)}:${canonical(value[key])}`).join(',')}}`;
+  }
+  return JSON.stringify(value ?? null);
+}
+
+// --- The pose of one dip ---
+
+export interface Pose {
+  down: Side;
+  rotate_deg: Vec3;
+  depth_mm: number; // 0: the whole object
+  shift_mm: [number, number];
+}
+
+export const dipCount = (document: JobDocument): number => Math.max(1, document.dips?.length ?? 0);
+
+const numbers = (value: Json | undefined, fallback: Vec3): Vec3 =>
+  Array.isArray(value) && value.length === 3 ? (value as Vec3) : fallback;
+const plain = (value: Json | undefined): number => (typeof value === 'number' ? value : 0);
+
+// A way that only shifts is what the shift fields make; any other stays as it is.
+function shiftOf(way: Way | null | undefined): [number, number] {
+  const [first, last] = [way?.[0], way?.at(-1)];
+  if (!way || way.length !== 2 || !first || !last) return [0, 0];
+  const straight = [1, 2, 3, 4, 5].every((k) => first[k] === last[k]) && [3, 4, 5].every((k) => !first[k]);
+  return straight ? [first[1] ?? 0, first[2] ?? 0] : [0, 0];
+}
+
+export function poseOf(document: JobDocument, dip: number): Pose {
+  const object = document.object ?? {};
+  const own = document.dips?.[dip];
+  const way = own ? own.path : document.path;
+  const depth = own ? own.depth_mm : document.dip?.['depth_mm'];
+  const shift_mm = shiftOf(way);
+  const shifted = shift_mm[0] !== 0 || shift_mm[1] !== 0;
+  return {
+    down: (own ? own.down : object.down) ?? '-z',
+    rotate_deg: numbers(own ? own.rotate_deg : object.rotate_deg, [0, 0, 0]),
+    depth_mm: shifted ? (way?.at(-1)?.[0] ?? 0) : plain(depth),
+    shift_mm,
+  };
+}
+
+function without<T extends object>(value: T, ...keys: (keyof T)[]): T {
+  const copy = { ...value };
+  for (const key of keys) delete copy[key];
+  return copy;
+}
+
+// `height_mm`: of the posed object, needed where a shifted way has to say how deep "the whole object" is.
+export function withPose(document: JobDocument, dip: number, pose: Pose, height_mm: number): JobDocument {
+  const [x, y] = pose.shift_mm;
+  const deep = pose.depth_mm || height_mm;
+  const way: Way | null = x || y ? [[0, x, y, 0, 0, 0], [deep, x, y, 0, 0, 0]] : null;
+  const own = document.dips?.[dip];
+  if (own) {
+    // Of a dip among several, what is absent would be searched.
+    const next: Dip = { ...without(own, 'depth_mm', 'path'), down: pose.down, rotate_deg: pose.rotate_deg };
+    if (way) next.path = way;
+    else if (own.path && shiftOf(own.path).every((s) => s === 0)) next.path = own.path;
+    if (!way) next.depth_mm = pose.depth_mm;
+    return { ...document, dips: document.dips!.map((d, k) => (k === dip ? next : d)) };
+  }
+  const object: NonNullable<JobDocument['object']> = without(document.object ?? {}, 'down', 'rotate_deg');
+  if (pose.down !== '-z') object.down = pose.down;
+  if (pose.rotate_deg.some((angle) => angle !== 0)) object.rotate_deg = pose.rotate_deg;
+  const settings = without(document.dip ?? {}, 'depth_mm');
+  if (pose.depth_mm && !way) settings['depth_mm'] = pose.depth_mm;
+  const result: JobDocument = { ...document, object };
+  delete result.dip;
+  if (Object.keys(settings).length) result.dip = settings;
+  const kept = document.path && shiftOf(document.path).every((s) => s === 0) ? document.path : null;
+  delete result.path;
+  if (way ?? kept) result.path = way ?? kept;
+  return result;
+}
+
+// One dip more, turned over, so that it brings what the others leave bare.
+export function withAnotherDip(document: JobDocument): JobDocument {
+  const dips = document.dips?.length ? document.dips : [dipFrom(poseOf(document, 0))];
+  const last = dips.at(-1)!;
+  const over: Record<Side, Side> = { '-z': '+z', '+z': '-z', '-y': '+y', '+y': '-y', '-x': '+x', '+x': '-x' };
+  return { ...document, dips: [...dips, { ...without(last, 'locked', 'path'), down: over[last.down ?? '-z'] }] };
+}
+
+const dipFrom = (pose: Pose): Dip => ({ down: pose.down, rotate_deg: pose.rotate_deg, depth_mm: pose.depth_mm });
+
+export function withoutDip(document: JobDocument, dip: number): JobDocument {
+  const dips = (document.dips ?? []).filter((_, k) => k !== dip);
+  const rest = without(document, 'dips');
+  if (dips.length > 1) return { ...rest, dips };
+  if (!dips[0]) return rest;
+  const pose = poseOf({ dips }, 0);
+  return withPose(rest, 0, pose, pose.depth_mm);
+}
+
+export const withDip = (document: JobDocument, dip: number, change: Partial<Dip>): JobDocument => ({
+  ...document,
+  dips: (document.dips ?? []).map((d, k) => (k === dip ? { ...d, ...change } : d)),
+});
+
+// --- Layers; the list's last lies on top ---
+
+export const layersOf = (document: JobDocument): readonly Layer[] => document.artwork ?? [];
+
+function withLayers(document: JobDocument, layers: Layer[]): JobDocument {
+  const rest = without(document, 'artwork');
+  return layers.length ? { ...rest, artwork: layers } : rest;
+}
+
+export const withNewLayer = (document: JobDocument, layer: Layer): JobDocument =>
+  withLayers(document, [...layersOf(document), layer]);
+
+export function withLayer(document: JobDocument, at: number, change: Partial<Layer>): JobDocument {
+  const layers = layersOf(document).map((layer, k) => {
+    if (k !== at) return layer;
+    const next: { [key: string]: unknown } = { ...layer, ...change };
+    for (const key of Object.keys(next)) if (next[key] === undefined) delete next[key];
+    return next as Layer;
+  });
+  return withLayers(document, layers);
+}
+
+export const withoutLayer = (document: JobDocument, at: number): JobDocument =>
+  withLayers(document, layersOf(document).filter((_, k) => k !== at));
+
+export function withLayerMoved(document: JobDocument, from: number, to: number): JobDocument {
+  const layers = [...layersOf(document)];
+  const [layer] = layers.splice(from, 1);
+  if (layer) layers.splice(to, 0, layer);
+  return withLayers(document, layers);
+}
+
+export const layerName = (layer: Layer): string => layer.text ?? layer.image ?? '';
+export const layerWidth = (layer: Layer): number | null =>
+  layer.size_mm === undefined ? null : Array.isArray(layer.size_mm) ? layer.size_mm[0] : layer.size_mm;

@@ -1,0 +1,961 @@
+// The 3D view. Two views of one posed object: in the bath over its film, and as it comes out, from the
+// side that met the film. It draws when something has changed, never waits for the program, and knows
+// nothing of jobs: it is told what to show and tells what was done to it.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { TransformControls } from 'three/examples/jsm/controls/TransformControls.js';
+import { dress, MODE, sharedTextures, surfaceMaterial } from '../../../report/viewer/surface.js';
+import { castRay } from '../../../report/viewer/pick.js';
+import type { DipFrames, MeshData, Overlay, Result } from '../api.ts';
+import type { Pose, Vec3 } from '../document.ts';
+import { FilmPicture, surfaceOf } from './film.ts';
+import { AIR, overlayOf, sceneOf, type Scene } from './overlays.ts';
+import { anglesOf, placeOf, turnedDown, turnOf } from './pose.ts';
+
+export type View = 'bath' | 'object';
+export type Tool = 'none' | 'turn' | 'move' | 'face';
+export type Compare = 'both' | 'wanted' | 'predicted';
+export type LookFrom = 'home' | 'front' | 'left' | 'right' | 'back' | 'above' | 'below';
+
+export interface FilmSpot {
+  triangle: number;
+  weights: [number, number, number];
+}
+
+export interface Hit {
+  film: FilmSpot | null;
+  place: Vec3; // posed frame
+  normal: Vec3;
+}
+
+export interface SheetShape {
+  width_mm: number;
+  height_mm: number;
+  margin_mm: number;
+  disc: boolean;
+}
+
+export interface StageEvents {
+  pose(change: Partial<Pose>, live: boolean): void;
+  click(hit: Hit | null): void;
+  point(hit: Hit | null): void;
+  drawn(): void;
+}
+
+const FIELD_OF_VIEW = 28;
+const HALF = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+const WRAPS: Record<string, THREE.Wrapping> = {
+  repeat: THREE.RepeatWrapping,
+  mirror: THREE.MirroredRepeatWrapping,
+  clamp: THREE.ClampToEdgeWrapping,
+  decal: THREE.ClampToEdgeWrapping,
+};
+const DIRECTIONS: Record<View, Record<LookFrom, Vec3>> = {
+  bath: {
+    home: [0.5, -1, 0.52],
+    front: [0, -1, 0.28],
+    left: [-1, -0.1, 0.28],
+    right: [1, -0.1, 0.28],
+    back: [0, 1, 0.28],
+    above: [0.001, -0.02, 1],
+    below: [0.3, -0.7, -0.8],
+  },
+  object: {
+    home: [-0.35, 0.2, -1],
+    front: [0, 0.02, -1],
+    left: [1, 0.15, -0.25],
+    right: [-1, 0.15, -0.25],
+    back: [0.3, 0.2, 1],
+    above: [0, 1, -0.05],
+    below: [0, -1, -0.05],
+  },
+};
+const WHITE = [1, 1, 1];
+const FILM_BASE = [0.80, 0.80, 0.78]; // wet film, linear
+
+interface Painted {
+  geometry: THREE.BufferGeometry;
+  materials: THREE.ShaderMaterial[];
+  data: MeshData;
+}
+
+const linear = (hex: string): number[] => new THREE.Color(hex).toArray();
+
+export class Stage {
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly root = new THREE.Scene();
+  private readonly bath = new THREE.Group();
+  private readonly lowered = new THREE.Group();
+  private readonly finished = new THREE.Group();
+  private readonly filmGroup = new THREE.Group(); // glued to the object
+  private readonly otherFilms = new THREE.Group();
+  private readonly basin = new THREE.Group();
+  private readonly waterLine: THREE.LineLoop;
+  private readonly marker = new THREE.Group();
+  private readonly facet: THREE.Mesh;
+  private readonly gizmo: TransformControls;
+  private readonly proxy = new THREE.Object3D();
+  private readonly cameras: Record<View, THREE.PerspectiveCamera>;
+  private readonly orbits: Record<View, OrbitControls>;
+  private readonly shared;
+  private readonly meshes: Record<View, THREE.Mesh>;
+  private scene: Scene = sceneOf(null, WHITE);
+  private painted: Painted | null = null;
+  private film: FilmPicture | null = null;
+  private films = new Map<number, FilmPicture>(); // of the other dips
+  private airMeshes: THREE.Mesh[] = [];
+  private model: MeshData | null = null;
+  private matrix = new THREE.Matrix4();
+  private turn = new THREE.Quaternion();
+  private pose: Pose | null = null;
+  private scale = 1;
+  private bounds = new THREE.Box3();
+  private posed = { position: new Float32Array(0), normal: new Float32Array(0) };
+  private base = WHITE;
+  private size = { width: 1, height: 1 };
+  private waiting = false;
+  private flight = 0;
+  private framed: Record<View, boolean> = { bath: false, object: false };
+  private start: { turn: THREE.Quaternion; pose: Pose } | null = null;
+  private sheetShape: SheetShape = { width_mm: 210, height_mm: 297, margin_mm: 10, disc: false };
+  private lost = false;
+
+  view: View = 'bath';
+  overlay: Overlay = 'none';
+  compare: Compare = 'both';
+  divider = 0.5;
+  tool: Tool = 'none';
+  level = -1; // how deep the object is in the bath view; negative: above the water
+  allDips = false;
+  inset: { x: number; y: number; width: number; height: number } | null = null; // CSS pixels, from the bottom left
+  readOnly = false;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly events: StageEvents,
+  ) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.autoClear = false;
+    this.shared = sharedTextures(this.scene);
+    const empty = new THREE.BufferGeometry();
+    this.meshes = { bath: new THREE.Mesh(empty), object: new THREE.Mesh(empty) };
+    for (const mesh of Object.values(this.meshes)) mesh.frustumCulled = false;
+    const camera = (up: Vec3): THREE.PerspectiveCamera => {
+      const result = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 1, 10000);
+      result.up.set(...up);
+      return result;
+    };
+    this.cameras = { bath: camera([0, 0, 1]), object: camera([0, 1, 0]) };
+    this.orbits = { bath: new OrbitControls(this.cameras.bath, canvas), object: new OrbitControls(this.cameras.object, canvas) };
+    for (const orbit of Object.values(this.orbits)) {
+      orbit.addEventListener('change', this.invalidate);
+      orbit.addEventListener('start', () => this.stopFlight());
+    }
+    this.waterLine = new THREE.LineLoop(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1f6f78 }));
+    this.lowered.add(this.meshes.bath, this.waterLine);
+    this.bath.add(this.lowered, this.basin);
+    this.finished.add(this.meshes.object, this.filmGroup, this.otherFilms);
+    this.facet = this.makeFacet();
+    this.makeMarker();
+    this.gizmo = this.makeGizmo();
+    this.root.add(this.bath, this.finished);
+    this.listen();
+    this.setView('bath');
+  }
+
+  // --- What there is to see ---
+
+  setModel(model: MeshData | null): void {
+    const another = model?.mesh !== this.model?.mesh;
+    this.model = model;
+    if (!model) this.paint(null, []);
+    if (another) this.framed = { bath: false, object: false };
+    this.place();
+  }
+
+  // The model in the colours that are wanted of it, with its textures loaded.
+  paint(data: MeshData | null, textures: readonly THREE.Texture[]): void {
+    const old = this.painted;
+    if (!data) {
+      this.painted = null;
+      for (const mesh of Object.values(this.meshes)) mesh.visible = false;
+    } else {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(data.position.length), 3));
+      geometry.setAttribute('normal', new THREE.BufferAttribute(new Float32Array(data.position.length), 3));
+      if (data.uv) geometry.setAttribute('uv', new THREE.BufferAttribute(data.uv, 2));
+      if (data.color) geometry.setAttribute('tint', new THREE.BufferAttribute(data.color, 4));
+      geometry.setIndex(new THREE.BufferAttribute(data.index, 1));
+      for (const group of data.groups) geometry.addGroup(group.start, group.count, group.material);
+      const maps = new Map<string, THREE.Texture>();
+      const materials = data.materials.map((m) => {
+        const key = `${m.texture} ${m.wrap}`;
+        const picture = textures[m.texture];
+        if (picture && !maps.has(key)) {
+          const texture = picture.clone();
+          texture.wrapS = WRAPS[m.wrap[0]] ?? THREE.RepeatWrapping;
+          texture.wrapT = WRAPS[m.wrap[1]] ?? THREE.RepeatWrapping;
+          texture.needsUpdate = true;
+          maps.set(key, texture);
+        }
+        return surfaceMaterial(this.scene, this.shared, { ...m, map: maps.get(key), tinted: Boolean(data.color) });
+      });
+      if (!data.groups.length) geometry.addGroup(0, data.index.length, 0);
+      if (!materials.length) materials.push(surfaceMaterial(this.scene, this.shared, { tinted: Boolean(data.color) }));
+      this.painted = { geometry, materials, data };
+      for (const mesh of Object.values(this.meshes)) {
+        mesh.geometry = geometry;
+        mesh.material = materials;
+        mesh.visible = true;
+      }
+      this.place();
+    }
+    if (old) {
+      old.geometry.dispose();
+      for (const material of old.materials) {
+        const map = material.uniforms['map']?.value as THREE.Texture | null;
+        if (material.uniforms['textured']?.value) map?.dispose();
+        material.dispose();
+      }
+    }
+    this.updateUniforms();
+    this.invalidate();
+  }
+
+  setPose(pose: Pose, scale: number): void {
+    this.pose = pose;
+    this.scale = scale;
+    this.turn = turnOf(pose);
+    this.place();
+  }
+
+  setBase(color: string): void {
+    this.base = linear(color);
+    this.updateUniforms();
+    this.invalidate();
+  }
+
+  setSheet(shape: SheetShape, bath: { width_mm: number; height_mm: number; depth_mm: number }): void {
+    this.sheetShape = shape;
+    this.makeBasin(shape, bath);
+    this.invalidate();
+  }
+
+  // The last whole result of the dip that is shown, or nothing.
+  setResult(result: Result | null): void {
+    if (this.film?.result === result) return;
+    this.film?.dispose();
+    this.film = result && new FilmPicture(result, (options) =>
+      surfaceMaterial(this.scene, this.shared, { ...options, film: true }) as THREE.ShaderMaterial);
+    this.scene = sceneOf(result, this.base);
+    this.filmGroup.clear();
+    for (const mesh of this.airMeshes) {
+      mesh.geometry.dispose();
+      (mesh.material as THREE.Material).dispose();
+    }
+    this.airMeshes = [];
+    for (const child of [...this.bath.children]) if (child.name === 'afloat') this.bath.remove(child);
+    if (result && this.film) {
+      this.film.afloat.name = 'afloat';
+      this.bath.add(this.film.afloat);
+      this.filmGroup.add(this.film.lying, this.film.torn, this.film.wrinkled);
+      this.addAir(result);
+    }
+    this.updateUniforms();
+    this.glue();
+    this.setLevel(this.level);
+  }
+
+  setFrames(result: Result, frames: DipFrames): void {
+    if (this.film?.result !== result) return;
+    this.film.setFrames(frames);
+    this.setLevel(this.level);
+  }
+
+  // Results of the other dips, to show the finish as a whole.
+  setOtherResults(results: readonly Result[]): void {
+    for (const film of this.films.values()) film.dispose();
+    this.films.clear();
+    this.otherFilms.clear();
+    for (const result of results) {
+      const film = new FilmPicture(result, (options) =>
+        surfaceMaterial(this.scene, this.shared, { ...options, film: true }) as THREE.ShaderMaterial);
+      this.films.set(result.dip, film);
+      film.lying.matrixAutoUpdate = false;
+      this.otherFilms.add(film.lying);
+    }
+    this.glue();
+    this.invalidate();
+  }
+
+  private addAir({ air, lids }: Result): void {
+    const add = (surface: Result['air'], options: THREE.MeshBasicMaterialParameters): void => {
+      if (!surface) return;
+      const mesh = surfaceOf(surface, new THREE.MeshBasicMaterial({ side: THREE.DoubleSide, ...options }));
+      this.airMeshes.push(mesh);
+      this.filmGroup.add(mesh);
+    };
+    add(air, { color: AIR, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -8 });
+    add(lids, { color: AIR, transparent: true, opacity: 0.25, depthWrite: false });
+  }
+
+  private makeBasin(sheet: SheetShape, bath: { width_mm: number; height_mm: number; depth_mm: number }): void {
+    this.basin.traverse((child) => {
+      const { geometry, material } = child as THREE.Mesh;
+      geometry?.dispose();
+      (material as THREE.Material | undefined)?.dispose();
+    });
+    this.basin.clear();
+    // Bath and sheet may lie either way round.
+    const along = sheet.width_mm > sheet.height_mm === bath.width_mm > bath.height_mm;
+    const width = Math.max(along ? bath.width_mm : bath.height_mm, sheet.width_mm);
+    const height = Math.max(along ? bath.height_mm : bath.width_mm, sheet.height_mm);
+    const water = new THREE.Mesh(
+      new THREE.PlaneGeometry(width, height),
+      new THREE.MeshBasicMaterial({ color: 0x7fa6b8, transparent: true, opacity: 0.22, side: THREE.DoubleSide, depthWrite: false }),
+    );
+    water.position.z = -1.2;
+    water.renderOrder = 2;
+    const box = new THREE.BoxGeometry(width, height, bath.depth_mm);
+    const walls = new THREE.LineSegments(new THREE.EdgesGeometry(box), new THREE.LineBasicMaterial({ color: 0x8a9299, transparent: true, opacity: 0.5 }));
+    walls.position.z = -1.2 - bath.depth_mm / 2;
+    box.dispose();
+    const rim = new THREE.Mesh(this.rimShape(sheet), new THREE.MeshBasicMaterial({ color: 0xd9c7a0, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -1 }));
+    rim.position.z = 0.7; // over the film's edge, which is drawn a little nearer than it is
+    this.basin.add(water, walls, rim);
+  }
+
+  // The taped rim, at true size.
+  private rimShape({ width_mm, height_mm, margin_mm, disc }: SheetShape): THREE.ShapeGeometry {
+    const outer = new THREE.Shape();
+    const inner = new THREE.Path();
+    const [w, h] = [width_mm / 2, height_mm / 2];
+    outer.moveTo(-w, -h).lineTo(w, -h).lineTo(w, h).lineTo(-w, h).closePath();
+    if (disc) inner.absarc(0, 0, Math.max(1, Math.min(w, h) - margin_mm), 0, 2 * Math.PI, true);
+    else {
+      const [x, y] = [Math.max(1, w - margin_mm), Math.max(1, h - margin_mm)];
+      inner.moveTo(-x, -y).lineTo(-x, y).lineTo(x, y).lineTo(x, -y).closePath();
+    }
+    outer.holes.push(inner);
+    return new THREE.ShapeGeometry(outer, 48);
+  }
+
+  private makeFacet(): THREE.Mesh {
+    const facet = new THREE.Mesh(
+      new THREE.RingGeometry(0.72, 1, 40),
+      new THREE.MeshBasicMaterial({ color: 0x1f6f78, side: THREE.DoubleSide, depthTest: false, transparent: true, opacity: 0.9 }),
+    );
+    facet.visible = false;
+    facet.renderOrder = 6;
+    this.lowered.add(facet);
+    return facet;
+  }
+
+  private makeMarker(): void {
+    const ball = (options: THREE.MeshBasicMaterialParameters): THREE.Mesh =>
+      new THREE.Mesh(new THREE.SphereGeometry(1, 20, 14), new THREE.MeshBasicMaterial(options));
+    const through = ball({ color: 0xe3007b, transparent: true, opacity: 0.35, depthTest: false });
+    through.renderOrder = 5;
+    this.marker.add(ball({ color: 0xe3007b }), through);
+    this.marker.visible = false;
+  }
+
+  // --- Where things are ---
+
+  private place(): void {
+    const { model, painted } = this;
+    if (!model || !this.pose) return;
+    this.matrix = placeOf(model.position, this.turn, this.scale);
+    const shown = painted?.data ?? model;
+    const position = new Float32Array(shown.position.length);
+    const normal = new Float32Array(shown.position.length);
+    const e = this.matrix.elements;
+    const s = this.scale || 1;
+    this.bounds.makeEmpty();
+    const p = new THREE.Vector3();
+    for (let i = 0; i < position.length; i += 3) {
+      const x = shown.position[i]!, y = shown.position[i + 1]!, z = shown.position[i + 2]!;
+      const nx = shown.normal[i]!, ny = shown.normal[i + 1]!, nz = shown.normal[i + 2]!;
+      for (let k = 0; k < 3; ++k) {
+        position[i + k] = e[k]! * x + e[4 + k]! * y + e[8 + k]! * z + e[12 + k]!;
+        normal[i + k] = (e[k]! * nx + e[4 + k]! * ny + e[8 + k]! * nz) / s;
+      }
+      this.bounds.expandByPoint(p.fromArray(position, i));
+    }
+    this.posed = { position, normal };
+    if (painted) {
+      const { geometry } = painted;
+      (geometry.getAttribute('position') as THREE.BufferAttribute).copyArray(position).needsUpdate = true;
+      (geometry.getAttribute('normal') as THREE.BufferAttribute).copyArray(normal).needsUpdate = true;
+    }
+    this.finished.position.copy(this.center()).negate();
+    this.marker.children.forEach((child) => child.scale.setScalar(this.radius() / 55));
+    this.placeGizmo();
+    this.glue();
+    this.placeWaterLine();
+    if (!this.framed[this.view]) this.fit(false);
+    this.setLevel(this.level);
+  }
+
+  // Film stays on the object where the last result left it until a newer one is whole.
+  private glue(): void {
+    const move = (matrix: readonly number[]): THREE.Matrix4 =>
+      this.matrix.clone().multiply(new THREE.Matrix4().fromArray([...matrix]).invert());
+    if (this.film) {
+      this.filmGroup.matrixAutoUpdate = false;
+      this.filmGroup.matrix.copy(this.model ? move(this.film.result.matrix) : new THREE.Matrix4());
+      this.filmGroup.matrixWorldNeedsUpdate = true;
+    }
+    for (const { result, lying } of this.films.values()) {
+      lying.matrix.copy(move(result.matrix));
+      lying.matrixWorldNeedsUpdate = true;
+    }
+  }
+
+  // Whether the object still is where the result has it.
+  private get fresh(): boolean {
+    if (!this.film || !this.model) return false;
+    const then = this.film.result.matrix;
+    return this.matrix.elements.every((value, i) => Math.abs(value - then[i]!) < 1e-2);
+  }
+
+  private placeWaterLine(): void {
+    const depth = this.depth();
+    const { min, max } = this.bounds;
+    const gap = Math.max(3, 0.06 * this.radius());
+    this.waterLine.geometry.setFromPoints([
+      new THREE.Vector3(min.x - gap, min.y - gap, depth),
+      new THREE.Vector3(max.x + gap, min.y - gap, depth),
+      new THREE.Vector3(max.x + gap, max.y + gap, depth),
+      new THREE.Vector3(min.x - gap, max.y + gap, depth),
+    ]);
+  }
+
+  depth(): number {
+    const height = this.bounds.max.z;
+    return this.pose?.depth_mm ? Math.min(this.pose.depth_mm, height) : height;
+  }
+
+  extent(): Vec3 {
+    return this.bounds.isEmpty() ? [0, 0, 0] : (this.bounds.getSize(new THREE.Vector3()).toArray() as Vec3);
+  }
+
+  // From where to where the object reaches along a direction of the posed frame.
+  reach([x, y, z]: Vec3): [number, number] {
+    const { position } = this.posed;
+    let [least, most] = [Infinity, -Infinity];
+    for (let i = 0; i < position.length; i += 3) {
+      const along = x * position[i]! + y * position[i + 1]! + z * position[i + 2]!;
+      if (along < least) least = along;
+      if (along > most) most = along;
+    }
+    return [least, most];
+  }
+
+  private center(): THREE.Vector3 {
+    return this.bounds.isEmpty() ? new THREE.Vector3() : this.bounds.getCenter(new THREE.Vector3());
+  }
+
+  private radius(): number {
+    return this.bounds.isEmpty() ? 50 : this.bounds.getSize(new THREE.Vector3()).length() / 2;
+  }
+
+  get hover_mm(): number {
+    return Math.max(12, 0.35 * this.radius());
+  }
+
+  // How far the object travels in the bath, once that is known.
+  travel(): number {
+    return this.film && this.fresh ? this.film.travel_mm : this.depth();
+  }
+
+  setLevel(level: number): void {
+    this.level = level;
+    const fresh = this.fresh;
+    const film = this.film;
+    const moved = film?.moveTo(fresh ? level : -1);
+    this.lowered.matrixAutoUpdate = false;
+    const [x, y] = this.pose?.shift_mm ?? [0, 0];
+    if (moved?.pose) this.lowered.matrix.fromArray(moved.pose);
+    else this.lowered.matrix.makeTranslation(x, y, -level);
+    this.lowered.matrixWorldNeedsUpdate = true;
+    if (film) {
+      film.afloat.matrixAutoUpdate = false;
+      film.afloat.matrix.identity();
+      if (moved?.inObjectFrame) film.afloat.matrix.copy(this.lowered.matrix);
+      film.afloat.matrixWorldNeedsUpdate = true;
+    }
+    this.invalidate();
+  }
+
+  attachedArea(): number | null {
+    return this.film?.attachedArea() ?? null;
+  }
+
+  get hasFrames(): boolean {
+    return this.film?.hasFrames ?? false;
+  }
+
+  // --- Cameras ---
+
+  setView(view: View): void {
+    this.view = view;
+    for (const [key, orbit] of Object.entries(this.orbits)) orbit.enabled = key === view;
+    if (!this.framed[view] && this.model) this.fit(false);
+    this.setTool(this.tool);
+    this.invalidate();
+  }
+
+  private home(view: View): { target: THREE.Vector3; radius: number } {
+    if (view === 'object') return { target: new THREE.Vector3(), radius: this.radius() };
+    const { width_mm, height_mm } = this.sheetShape;
+    const height = this.bounds.isEmpty() ? 0 : this.bounds.max.z;
+    return {
+      target: new THREE.Vector3(0, 0, 0.25 * (height + this.hover_mm)),
+      radius: Math.max(0.46 * Math.hypot(width_mm, height_mm), this.radius() * 1.15),
+    };
+  }
+
+  fit(animated = true): void {
+    this.look('home', animated);
+  }
+
+  look(from: LookFrom, animated = true): void {
+    this.lookAlong(this.view, new THREE.Vector3(...DIRECTIONS[this.view][from]), animated);
+    if (!animated) {
+      const other = this.view === 'bath' ? 'object' : 'bath';
+      if (!this.framed[other] && this.model) this.lookAlong(other, new THREE.Vector3(...DIRECTIONS[other].home), false);
+    }
+  }
+
+  private lookAlong(view: View, direction: THREE.Vector3, animated: boolean): void {
+    const { target, radius } = this.home(view);
+    const distance = (1.02 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / Math.min(1, this.aspect());
+    const place = direction.normalize().multiplyScalar(distance).add(target);
+    const camera = this.cameras[view];
+    camera.near = distance / 60;
+    camera.far = distance * 20;
+    this.orbits[view].minDistance = 0.1 * distance;
+    this.orbits[view].maxDistance = 5 * distance;
+    if (this.model) this.framed[view] = true;
+    this.fly(view, place, target, animated);
+  }
+
+  private fly(view: View, place: THREE.Vector3, target: THREE.Vector3, animated: boolean): void {
+    this.stopFlight();
+    const camera = this.cameras[view];
+    const orbit = this.orbits[view];
+    const end = (): void => {
+      camera.position.copy(place);
+      orbit.target.copy(target);
+      orbit.update();
+      this.invalidate();
+    };
+    if (!animated || matchMedia('(prefers-reduced-motion: reduce)').matches) return end();
+    const from = { offset: camera.position.clone().sub(orbit.target), target: orbit.target.clone() };
+    const to = place.clone().sub(target);
+    const began = performance.now();
+    const turnTo = new THREE.Quaternion().setFromUnitVectors(from.offset.clone().normalize(), to.clone().normalize());
+    const step = (now: number): void => {
+      const t = Math.min(1, Math.max(0, (now - began) / 350));
+      const eased = t * t * (3 - 2 * t);
+      if (t >= 1) return end();
+      const turned = from.offset.clone().applyQuaternion(new THREE.Quaternion().slerp(turnTo, eased));
+      turned.setLength(THREE.MathUtils.lerp(from.offset.length(), to.length(), eased));
+      orbit.target.lerpVectors(from.target, target, eased);
+      camera.position.copy(orbit.target).add(turned);
+      camera.lookAt(orbit.target);
+      this.invalidate();
+      this.flight = requestAnimationFrame(step);
+    };
+    this.flight = requestAnimationFrame(step);
+  }
+
+  private stopFlight(): void {
+    cancelAnimationFrame(this.flight);
+  }
+
+  // Flies to a place of the posed object, seen from outside.
+  showPlace(place: Vec3): void {
+    const outward = new THREE.Vector3(...place).sub(this.center());
+    if (outward.lengthSq() < 1) outward.set(0, 0, -1);
+    outward.normalize().add(new THREE.Vector3(-0.1, 0.1, -0.55)).normalize();
+    if (this.view === 'bath') outward.z = Math.max(0.25, outward.z);
+    const { target, radius } = this.home(this.view);
+    const distance = (0.75 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / Math.min(1, this.aspect());
+    const toward = this.view === 'object' ? new THREE.Vector3(...place).sub(this.center()).multiplyScalar(0.5) : target;
+    this.fly(this.view, outward.multiplyScalar(distance).add(toward), toward, true);
+    this.mark(place);
+  }
+
+  // --- Tools ---
+
+  setTool(tool: Tool): void {
+    this.tool = tool;
+    const gizmo = !this.readOnly && this.view === 'bath' && this.model && (tool === 'turn' || tool === 'move');
+    this.gizmo.enabled = Boolean(gizmo);
+    this.gizmo.getHelper().visible = Boolean(gizmo);
+    if (gizmo) this.gizmo.setMode(tool === 'turn' ? 'rotate' : 'translate');
+    this.facet.visible = false;
+    this.canvas.style.cursor = tool === 'face' ? 'crosshair' : '';
+    this.invalidate();
+  }
+
+  private makeGizmo(): TransformControls {
+    const gizmo = new TransformControls(this.cameras.bath, this.canvas);
+    gizmo.setSpace('world');
+    gizmo.setSize(0.85);
+    gizmo.setColors('#cc5a52', '#4f9d5d', '#4a7fc0', '#1f9aa6');
+    gizmo.attach(this.proxy);
+    this.lowered.add(this.proxy);
+    const helper = gizmo.getHelper();
+    helper.visible = false;
+    this.bath.add(helper);
+    gizmo.addEventListener('change', this.invalidate);
+    gizmo.addEventListener('dragging-changed', ({ value }) => {
+      this.orbits.bath.enabled = !value && this.view === 'bath';
+      if (value && this.pose) this.start = { turn: this.turn.clone(), pose: this.pose };
+      else this.endGizmo();
+    });
+    gizmo.addEventListener('objectChange', () => this.followGizmo(true));
+    return gizmo;
+  }
+
+  private followGizmo(live: boolean): void {
+    if (!this.start) return;
+    const { turn, pose } = this.start;
+    if (this.tool === 'turn') {
+      const turned = this.proxy.quaternion.clone().multiply(turn);
+      this.events.pose({ rotate_deg: anglesOf(turned, pose.down) }, live);
+    } else {
+      const moved = this.proxy.position.clone().sub(this.proxy.userData['from'] as THREE.Vector3);
+      const tenth = (value: number): number => Math.round(value * 10) / 10 + 0;
+      const change: Partial<Pose> = {};
+      if (moved.x || moved.y) change.shift_mm = [tenth(pose.shift_mm[0] + moved.x), tenth(pose.shift_mm[1] + moved.y)];
+      if (Math.abs(moved.z) > 0.04) {
+        const height = this.bounds.max.z;
+        const depth = Math.min(height, Math.max(0.5, (pose.depth_mm || height) - moved.z));
+        change.depth_mm = depth > height - 0.05 ? 0 : tenth(depth);
+      }
+      this.events.pose(change, live);
+    }
+  }
+
+  private endGizmo(): void {
+    if (!this.start) return;
+    this.followGizmo(false);
+    this.start = null;
+    this.placeGizmo();
+    this.invalidate();
+  }
+
+  private placeGizmo(): void {
+    if (this.start) return;
+    this.proxy.position.copy(this.center());
+    this.proxy.quaternion.identity();
+    this.proxy.userData['from'] = this.proxy.position.clone();
+  }
+
+  private listen(): void {
+    let down: { x: number; y: number } | null = null;
+    const where = (event: PointerEvent): [number, number] => {
+      const box = this.canvas.getBoundingClientRect();
+      return [event.clientX - box.left, event.clientY - box.top];
+    };
+    this.canvas.addEventListener('pointerdown', (event) => {
+      const [x, y] = where(event);
+      down = { x, y };
+    });
+    this.canvas.addEventListener('pointerup', (event) => {
+      const [x, y] = where(event);
+      const still = down && Math.hypot(x - down.x, y - down.y) < 5;
+      down = null;
+      if (!still || this.gizmo.axis || event.button !== 0) return;
+      const hit = this.pick(x, y);
+      if (this.tool === 'face') this.putDown(hit);
+      else this.events.click(hit);
+    });
+    this.canvas.addEventListener('pointermove', (event) => {
+      if (event.buttons) return;
+      const hit = this.pick(...where(event));
+      if (this.tool === 'face') this.showFacet(hit);
+      else this.events.point(hit);
+    });
+    this.canvas.addEventListener('pointerleave', () => {
+      this.events.point(null);
+      this.facet.visible = false;
+      this.invalidate();
+    });
+    this.canvas.addEventListener('webglcontextlost', (event) => {
+      event.preventDefault();
+      this.lost = true;
+    });
+    this.canvas.addEventListener('webglcontextrestored', () => {
+      this.lost = false;
+      this.invalidate();
+    });
+    window.addEventListener('keydown', (event) => this.snap(event.shiftKey));
+    window.addEventListener('keyup', (event) => this.snap(event.shiftKey));
+  }
+
+  private snap(on: boolean): void {
+    this.gizmo.setRotationSnap(on ? Math.PI / 12 : null);
+    this.gizmo.setTranslationSnap(on ? 5 : null);
+  }
+
+  private showFacet(hit: Hit | null): void {
+    this.facet.visible = Boolean(hit);
+    if (hit) {
+      const normal = new THREE.Vector3(...hit.normal);
+      (this.view === 'bath' ? this.lowered : this.finished).add(this.facet);
+      this.facet.scale.setScalar(this.radius() * 0.13);
+      this.facet.position.set(...hit.place).addScaledVector(normal, 0.02 * this.radius());
+      this.facet.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);
+    }
+    this.invalidate();
+  }
+
+  private putDown(hit: Hit | null): void {
+    if (!hit || !this.pose) return;
+    this.facet.visible = false;
+    const turned = turnedDown(this.turn, new THREE.Vector3(...hit.normal));
+    this.events.pose({ rotate_deg: anglesOf(turned, this.pose.down) }, false);
+  }
+
+  // --- Pointing ---
+
+  private aspect(): number {
+    return this.size.width / Math.max(1, this.size.height);
+  }
+
+  private group(): THREE.Group {
+    return this.view === 'bath' ? this.lowered : this.finished;
+  }
+
+  // What lies under a point of the canvas (CSS pixels from its corner).
+  pick(x: number, y: number): Hit | null {
+    if (!this.painted) return null;
+    const camera = this.cameras[this.view];
+    camera.aspect = this.aspect();
+    camera.updateProjectionMatrix();
+    camera.updateMatrixWorld();
+    this.root.updateMatrixWorld();
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(new THREE.Vector2((2 * x) / this.size.width - 1, 1 - (2 * y) / this.size.height), camera);
+    const ray = (matrix: THREE.Matrix4): [number[], number[]] => {
+      const inverse = matrix.clone().invert();
+      return [
+        caster.ray.origin.clone().applyMatrix4(inverse).toArray(),
+        caster.ray.direction.clone().transformDirection(inverse).toArray(),
+      ];
+    };
+    const { index } = this.painted.data;
+    const object = castRay(this.posed.position, index, null, ...ray(this.group().matrixWorld));
+    const place = object && this.pointOf(object.triangle, object.weights as [number, number, number]);
+    let spot: FilmSpot | null = null;
+    if (this.film && this.view === 'object' && this.compare !== 'wanted') {
+      const { filmMesh, film } = this.film.result;
+      const met = castRay(filmMesh.position, filmMesh.index, [...filmMesh.lying, ...filmMesh.tornList], ...ray(this.filmGroup.matrixWorld));
+      if (met && (!object || met.t < object.t + 2 * film.cell_mm)) spot = met as unknown as FilmSpot;
+    }
+    return place ? { film: spot, ...place } : null;
+  }
+
+  private pointOf(triangle: number, weights: readonly number[]): { place: Vec3; normal: Vec3 } {
+    const { position } = this.posed;
+    const { index } = this.painted!.data;
+    const [a, b, c] = [0, 1, 2].map((k) => new THREE.Vector3().fromArray(position, 3 * index[3 * triangle + k]!)) as [
+      THREE.Vector3,
+      THREE.Vector3,
+      THREE.Vector3,
+    ];
+    const normal = b.clone().sub(a).cross(c.clone().sub(a)).normalize();
+    const place = a.multiplyScalar(weights[0]!).addScaledVector(b, weights[1]!).addScaledVector(c, weights[2]!);
+    return { place: place.toArray() as Vec3, normal: normal.toArray() as Vec3 };
+  }
+
+  // The surface that a ray of the posed frame meets first.
+  meet(origin: Vec3, direction: Vec3): { place: Vec3; normal: Vec3 } | null {
+    if (!this.painted) return null;
+    const hit = castRay(this.posed.position, this.painted.data.index, null, origin, direction);
+    return hit && this.pointOf(hit.triangle, hit.weights);
+  }
+
+  // A place of the posed frame on the canvas; `behind`: not in front of the camera.
+  project(place: Vec3): { x: number; y: number; behind: boolean } {
+    const camera = this.cameras[this.view];
+    camera.aspect = this.aspect();
+    camera.updateProjectionMatrix();
+    camera.updateMatrixWorld();
+    this.root.updateMatrixWorld();
+    const p = new THREE.Vector3(...place).applyMatrix4(this.group().matrixWorld).project(camera);
+    return { x: (0.5 + 0.5 * p.x) * this.size.width, y: (0.5 - 0.5 * p.y) * this.size.height, behind: p.z > 1 };
+  }
+
+  // How many millimetres a pixel is at a place.
+  pixel_mm(place: Vec3): number {
+    const camera = this.cameras[this.view];
+    const p = new THREE.Vector3(...place).applyMatrix4(this.group().matrixWorld);
+    return (2 * HALF * p.distanceTo(camera.position)) / Math.max(1, this.size.height);
+  }
+
+  // Where on the canvas the water line can be taken hold of.
+  waterLineEnd(): { x: number; y: number; behind: boolean } {
+    const gap = Math.max(3, 0.06 * this.radius());
+    const corners: Vec3[] = [];
+    for (const x of [this.bounds.min.x - gap, this.bounds.max.x + gap])
+      for (const y of [this.bounds.min.y - gap, this.bounds.max.y + gap]) corners.push([x, y, this.depth()]);
+    return corners.map((corner) => this.project(corner)).reduce((a, b) => (b.x > a.x ? b : a));
+  }
+
+  toScaled(place: Vec3): Vec3 {
+    const model = new THREE.Vector3(...place).applyMatrix4(this.matrix.clone().invert());
+    return model.multiplyScalar(this.scale).toArray() as Vec3;
+  }
+
+  toPosed(scaled: Vec3): Vec3 {
+    return new THREE.Vector3(...scaled).divideScalar(this.scale || 1).applyMatrix4(this.matrix).toArray() as Vec3;
+  }
+
+  directionToScaled(direction: Vec3): Vec3 {
+    return new THREE.Vector3(...direction).applyQuaternion(this.turn.clone().invert()).toArray() as Vec3;
+  }
+
+  directionToPosed(direction: Vec3): Vec3 {
+    return new THREE.Vector3(...direction).applyQuaternion(this.turn).toArray() as Vec3;
+  }
+
+  get center_mm(): Vec3 {
+    return this.center().toArray() as Vec3;
+  }
+
+  mark(place: Vec3 | null): void {
+    this.marker.visible = Boolean(place);
+    if (place) {
+      this.group().add(this.marker);
+      this.marker.position.set(...place);
+    }
+    this.invalidate();
+  }
+
+  // --- Drawing ---
+
+  resize(width: number, height: number): void {
+    if (width < 1 || height < 1) return;
+    const first = this.size.width === 1;
+    this.size = { width, height };
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.setSize(width, height, false);
+    if (first && this.model) this.framed = { bath: false, object: false };
+    if (!this.framed[this.view] && this.model) this.fit(false);
+    this.invalidate();
+  }
+
+  readonly invalidate = (): void => {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      if (this.lost) return;
+      this.render();
+      this.events.drawn();
+    });
+  };
+
+  private updateUniforms(): void {
+    this.scene.base = this.base;
+    const set = (material: THREE.ShaderMaterial, base: number[]): void => {
+      const u = material.uniforms;
+      (u['base']!.value as THREE.Vector3).set(...(base as Vec3));
+      (u['sheet']!.value as THREE.Vector2).set(this.scene.sheet.width_mm, this.scene.sheet.height_mm);
+      u['depth']!.value = this.scene.depth_mm || Infinity;
+    };
+    for (const material of this.painted?.materials ?? []) set(material, this.base);
+    if (!this.film) return;
+    set(this.film.lying.material, this.base);
+    set(this.film.torn.material, this.base);
+    set(this.film.wrinkled.material, this.base);
+    set(this.film.afloat.material, FILM_BASE);
+  }
+
+  private dressFor(what: 'bath' | 'wanted' | 'predicted'): void {
+    const { film, scene, shared } = this;
+    const inBath = what === 'bath';
+    this.bath.visible = inBath;
+    this.finished.visible = !inBath;
+    const object = (look: object): void => {
+      for (const material of this.painted?.materials ?? []) dress(material, look, scene, shared);
+    };
+    const part = (mesh: FilmPicture['lying'], look: object | null): void => {
+      mesh.visible = Boolean(look);
+      if (look) dress(mesh.material, look, scene, shared);
+    };
+    const picture = { mode: MODE.picture };
+    if (inBath) {
+      // In the water the object is bare: the film brings the colours.
+      object(this.level > 0 ? { mode: MODE.bare } : picture);
+      if (film) part(film.afloat, picture);
+      return;
+    }
+    const predicted = what === 'predicted' && film !== null;
+    const overlay = overlayOf(predicted ? this.overlay : 'none');
+    if (!predicted) object(picture);
+    else object(overlay.object(scene));
+    if (film) {
+      part(film.lying, predicted && overlay.film ? overlay.film(scene) : null);
+      part(film.torn, predicted && overlay.torn ? overlay.torn(scene) : null);
+      part(film.wrinkled, predicted && overlay.wrinkled ? overlay.wrinkled(scene) : null);
+      for (const mesh of this.airMeshes) mesh.visible = predicted && overlay.key === 'air';
+    }
+    for (const other of this.films.values()) part(other.lying, predicted && this.allDips && overlay.key === 'none' ? picture : null);
+  }
+
+  private pane(view: View, what: 'bath' | 'wanted' | 'predicted', at: { x: number; y: number; width: number; height: number }, from = 0, to = 1): void {
+    const { renderer } = this;
+    const camera = this.cameras[view];
+    camera.aspect = at.width / at.height;
+    camera.updateProjectionMatrix();
+    renderer.setViewport(at.x, at.y, at.width, at.height);
+    const x = at.x + Math.round(from * at.width);
+    renderer.setScissor(x, at.y, at.x + Math.round(to * at.width) - x, at.height);
+    renderer.clear();
+    this.dressFor(what);
+    renderer.render(this.root, camera);
+  }
+
+  private render(): void {
+    const { width, height } = this.size;
+    this.renderer.setScissorTest(true);
+    const whole = { x: 0, y: 0, width, height };
+    this.panes(this.view, whole, this.divider);
+    if (this.inset && this.painted) this.panes(this.view === 'bath' ? 'object' : 'bath', this.inset, 0);
+  }
+
+  private panes(view: View, at: { x: number; y: number; width: number; height: number }, divider: number): void {
+    if (view === 'bath') return this.pane('bath', 'bath', at);
+    if (!this.film || this.compare === 'wanted') return this.pane('object', 'wanted', at);
+    const from = this.compare === 'predicted' ? 0 : divider;
+    if (from > 0) this.pane('object', 'wanted', at, 0, from);
+    if (from < 1) this.pane('object', 'predicted', at, from, 1);
+  }
+
+  // A small picture of the finished object.
+  async thumbnail(width = 320, height = 240): Promise<Blob | null> {
+    if (!this.painted) return null;
+    const canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [width, height];
+    const ratio = this.renderer.getPixelRatio();
+    const at = { x: 0, y: 0, width: Math.min(width, this.size.width), height: Math.min(height, this.size.height) };
+    const held = this.overlay;
+    this.overlay = 'none';
+    this.renderer.setScissorTest(true);
+    this.pane('object', this.film ? 'predicted' : 'wanted', at);
+    this.overlay = held;
+    const context = canvas.getContext('2d')!;
+    const source = this.renderer.domElement;
+    context.drawImage(source, 0, source.height - at.height * ratio, at.width * ratio, at.height * ratio, 0, 0, width, height);
+    this.invalidate();
+    return new Promise((done) => canvas.toBlob(done, 'image/png'));
+  }
+}

@@ -1,0 +1,211 @@
+// What the page shows beside the job: which step, view and tool, and what the keys do.
+import { computed, signal } from '@preact/signals';
+import { api, type Hello, type Overlay, type Recent } from './api.ts';
+import { layersOf, poseOf, valueOf, withPose, type Json, type JobDocument, type Pose, type Vec3 } from './document.ts';
+import { Job } from './job.ts';
+import { heightOf, turnOf } from './stage/pose.ts';
+import type { Compare, Hit, Stage, Tool, View } from './stage/stage.ts';
+import { t } from './strings.ts';
+
+export type StepName = 'model' | 'artwork' | 'dips' | 'film';
+export const STEPS: readonly StepName[] = ['model', 'artwork', 'dips', 'film'];
+export type Panel = 'none' | 'verdict' | 'print' | 'keys' | 'save';
+
+export const hello = signal<Hello | null>(null);
+export const recent = signal<readonly Recent[]>([]);
+export const job = signal<Job | null>(null);
+export const failure = signal('');
+export const step = signal<StepName>('model');
+export const view = signal<View>('bath');
+export const compare = signal<Compare>('both');
+export const overlay = signal<Overlay>('none');
+export const tool = signal<Tool>('none');
+export const panel = signal<Panel>('none');
+export const bigSheet = signal(false);
+export const divider = signal(0.5);
+export const level = signal(-1); // mm; negative: over the water
+export const playing = signal(false);
+export const layer = signal<number | null>(null);
+export const allDips = signal(false);
+export const pointed = signal<{ hit: Hit | null; u: [number, number] | null }>({ hit: null, u: null });
+export const drawn = signal(0); // counts pictures of the 3D view, for what has to follow them
+export const dropping = signal(false);
+export const narrow = signal(false);
+export const stage: { current: Stage | null } = { current: null };
+
+export const defaults = computed(() => new Map<string, Json>((hello.value?.parameters ?? []).map((p) => [p.name, p.default])));
+export const readOnly = computed(() => narrow.value || (job.value !== null && !job.value.mayChange.value));
+export const scale = computed(() => {
+  const size = value<number>('object.size_mm');
+  const largest = job.value?.mesh.value?.largest_mm ?? 0;
+  return size > 0 && largest > 0 ? size / largest : 1;
+});
+
+export const pose = computed<Pose>(() => {
+  const open = job.value;
+  if (!open) return { down: '-z', rotate_deg: [0, 0, 0], depth_mm: 0, shift_mm: [0, 0] };
+  const now = poseOf(open.document.value, open.dip.value);
+  const shifted = now.shift_mm.some((s) => s !== 0);
+  return shifted && now.depth_mm >= wholeDepth(now) ? { ...now, depth_mm: 0 } : now;
+});
+
+export function value<T extends Json>(name: string): T {
+  return valueOf<T>(job.value?.document.value ?? {}, defaults.value, name);
+}
+
+// Every change of the job goes through here.
+export function change(edit: (document: JobDocument) => JobDocument, label: string, live = false): void {
+  const open = job.value;
+  if (!open || readOnly.value) return;
+  const next = edit(open.document.value);
+  if (live) open.drag(next);
+  else open.commit(next, label);
+}
+
+// A shifted way has to say how deep the whole object is, to a tenth of a millimetre.
+function wholeDepth(of: Pose): number {
+  const mesh = job.value?.mesh.value;
+  return mesh ? Math.floor(10 * heightOf(mesh.position, turnOf(of), scale.value)) / 10 : 0;
+}
+
+export function changePose(part: Partial<Pose>, live = false): void {
+  const open = job.value;
+  if (!open) return;
+  const now = poseOf(open.document.value, open.dip.value);
+  const shifted = now.shift_mm.some((s) => s !== 0);
+  if (shifted && now.depth_mm >= wholeDepth(now)) now.depth_mm = 0;
+  const next = { ...now, ...part };
+  const label = part.depth_mm !== undefined && !part.rotate_deg ? t.undo.depth : part.shift_mm ? t.undo.shift : t.undo.turn;
+  change((document) => withPose(document, open.dip.value, next, next.shift_mm.some((s) => s !== 0) ? wholeDepth(next) : 0), label, live);
+}
+
+export const chosenLayer = computed(() => {
+  const at = layer.value;
+  return at === null ? null : (layersOf(job.value?.document.value ?? {})[at] ?? null);
+});
+
+// --- Opening ---
+
+const CLIENT = (() => {
+  const known = sessionStorage.getItem('hydrodip-client');
+  // A duplicated tab brings the first one's storage along: it must not pass for it.
+  const fresh = `c${crypto.getRandomValues(new Uint32Array(2)).join('')}`;
+  const navigation = performance.getEntriesByType('navigation')[0] as PerformanceNavigationTiming | undefined;
+  const client = known && navigation?.type === 'reload' ? known : fresh;
+  sessionStorage.setItem('hydrodip-client', client);
+  return client;
+})();
+
+export async function openJob(id: string): Promise<Job | null> {
+  if (job.value?.id === id) return job.value;
+  job.value?.close();
+  resetView();
+  const next = new Job(id, CLIENT);
+  try {
+    await next.open();
+  } catch (error) {
+    failure.value = error instanceof Error ? error.message : String(error);
+    job.value = null;
+    return null;
+  }
+  failure.value = '';
+  job.value = next;
+  const hash = `#job=${encodeURIComponent(id)}`;
+  if (location.hash !== hash) history.pushState(null, '', hash);
+  return next;
+}
+
+function resetView(): void {
+  step.value = 'model';
+  view.value = 'bath';
+  overlay.value = 'none';
+  tool.value = 'none';
+  panel.value = 'none';
+  bigSheet.value = false;
+  level.value = -1;
+  layer.value = null;
+  playing.value = false;
+  allDips.value = false;
+}
+
+export async function createJob(from: { sample?: string; job?: string } = {}): Promise<Job | null> {
+  try {
+    const { job: id } = await api.create(from);
+    return await openJob(id);
+  } catch (error) {
+    failure.value = error instanceof Error ? error.message : String(error);
+    return null;
+  }
+}
+
+export async function goToStart(): Promise<void> {
+  job.value?.close();
+  job.value = null;
+  resetView();
+  history.pushState(null, '', location.pathname);
+  recent.value = await api.recent().catch(() => recent.value);
+}
+
+export async function addFiles(files: readonly File[], at_mm: Vec3 | null = null): Promise<void> {
+  if (!files.length) return;
+  const open = job.value ?? (await createJob());
+  if (!open) return;
+  const before = layersOf(open.document.value).length;
+  await open.add(files, at_mm);
+  const now = layersOf(open.document.value).length;
+  if (now > before) {
+    layer.value = now - 1;
+    if (before || open.document.value.object?.file) step.value = 'artwork';
+  }
+}
+
+const jobOfAddress = (): string | null => new URLSearchParams(location.hash.slice(1)).get('job');
+
+export async function begin(): Promise<void> {
+  const answer = await api.hello();
+  hello.value = answer;
+  recent.value = answer.recent;
+  const wanted = jobOfAddress() ?? answer.opened;
+  if (wanted) await openJob(wanted);
+  window.addEventListener('popstate', () => {
+    const id = jobOfAddress();
+    if (id) void openJob(id);
+    else if (job.value) void goToStart();
+  });
+  window.addEventListener('beforeunload', (event) => {
+    if (job.value?.pending.value) event.preventDefault();
+  });
+}
+
+// --- View ---
+
+export function goToStep(name: StepName): void {
+  step.value = name;
+  bigSheet.value = false;
+  if (name === 'artwork') showView('object');
+  if (name === 'model' || name === 'dips') showView('bath');
+}
+
+export function showView(name: View): void {
+  view.value = name;
+  bigSheet.value = false;
+  if (name === 'object') tool.value = tool.value === 'face' ? 'face' : 'none';
+  if (name === 'object') playing.value = false;
+}
+
+export function chooseTool(name: Tool): void {
+  if (readOnly.value) return;
+  tool.value = tool.value === name ? 'none' : name;
+  if (tool.value === 'turn' || tool.value === 'move') showView('bath');
+  if (tool.value !== 'none') {
+    playing.value = false;
+    level.value = -1;
+  }
+  bigSheet.value = false;
+}
+
+export function chooseOverlay(key: Overlay): void {
+  overlay.value = key;
+  if (key !== 'none') showView('object');
+  if (key !== 'none' && compare.value === 'wanted') compare.value = 'both';
+}

@@ -1,0 +1,262 @@
+// Form fields. A number's text is the user's while it is being typed: it never jumps, and counts when it is
+// left or Enter is pressed; the arrow keys count at once.
+import { useSignal } from '@preact/signals';
+import type { ComponentChildren } from 'preact';
+import { useId } from 'preact/hooks';
+import { readOnly } from '../studio.ts';
+import { Icon, type IconName } from './icons.tsx';
+
+const shown = (value: number): string => String(+value.toFixed(3));
+
+interface NumberProps {
+  label: string;
+  value: number | null;
+  unit?: string;
+  min?: number;
+  max?: number;
+  step?: number;
+  empty?: string; // what no number means
+  hint?: string;
+  name?: string;
+  inline?: boolean;
+  onChange: (value: number | null, live: boolean) => void;
+}
+
+export function NumberField({ label, value, unit, min, max, step = 1, empty, hint, name, inline, onChange }: NumberProps) {
+  const id = useId();
+  const typed = useSignal<string | null>(null);
+  const bad = useSignal(false);
+  const stepping = useSignal(false);
+  const held = value === null ? '' : shown(value);
+  const limited = (number: number): number => Math.min(max ?? Infinity, Math.max(min ?? -Infinity, number));
+  const read = (text: string): number | null | undefined => {
+    const plain = text.trim().replace(',', '.');
+    if (plain === '') return empty === undefined ? undefined : null;
+    const number = Number(plain);
+    return Number.isFinite(number) ? number : undefined;
+  };
+  const settle = (): void => {
+    stepping.value = false;
+    if (typed.value === null) return;
+    const number = read(typed.value);
+    typed.value = null;
+    bad.value = false;
+    if (number === undefined) return;
+    onChange(number === null ? null : limited(number), false);
+  };
+  const type = (text: string): void => {
+    typed.value = text;
+    const number = read(text);
+    bad.value = number === undefined || (typeof number === 'number' && number !== limited(number));
+  };
+  const nudge = (by: number): void => {
+    const from = read(typed.value ?? held) ?? 0;
+    const next = limited(Math.round((from + by) * 1000) / 1000);
+    typed.value = shown(next);
+    bad.value = false;
+    stepping.value = true;
+    onChange(next, true);
+  };
+  return (
+    <div class={inline ? 'field inline' : 'field'}>
+      <label for={id} title={hint}>{label}</label>
+      <span class="entry">
+        <input
+          id={id}
+          name={name}
+          type="text"
+          inputMode="decimal"
+          autocomplete="off"
+          spellcheck={false}
+          disabled={readOnly.value}
+          placeholder={empty}
+          value={typed.value ?? held}
+          aria-invalid={bad.value}
+          onInput={(event) => type(event.currentTarget.value)}
+          onBlur={settle}
+          onKeyDown={(event) => {
+            if (event.key === 'Enter') settle();
+            else if (event.key === 'Escape' && typed.value !== null) {
+              typed.value = null;
+              bad.value = false;
+              event.stopPropagation();
+            } else if (event.key === 'ArrowUp' || event.key === 'ArrowDown') {
+              event.preventDefault();
+              nudge((event.key === 'ArrowUp' ? step : -step) * (event.shiftKey ? 10 : 1));
+            }
+          }}
+          onKeyUp={(event) => {
+            if (stepping.value && (event.key === 'ArrowUp' || event.key === 'ArrowDown')) settle();
+          }}
+        />
+        {unit && <span class="unit" aria-hidden="true">{unit}</span>}
+      </span>
+    </div>
+  );
+}
+
+interface SelectProps {
+  label: string;
+  value: string;
+  options: readonly (readonly [value: string, text: string])[];
+  name?: string;
+  hideLabel?: boolean;
+  always?: boolean; // of the view, so usable where nothing may be changed
+  onChange: (value: string) => void;
+}
+
+export function SelectField({ label, value, options, name, hideLabel, always, onChange }: SelectProps) {
+  const id = useId();
+  return (
+    <div class={hideLabel ? 'field bare' : 'field'}>
+      <label for={id} class={hideLabel ? 'hidden' : ''}>{label}</label>
+      <select id={id} name={name} disabled={!always && readOnly.value} value={value} onChange={(event) => onChange(event.currentTarget.value)}>
+        {options.map(([key, text]) => <option key={key} value={key}>{text}</option>)}
+      </select>
+    </div>
+  );
+}
+
+export function TextField({ label, value, name, rows, onChange }: { label: string; value: string; name?: string; rows?: number; onChange: (value: string) => void }) {
+  const id = useId();
+  const typed = useSignal<string | null>(null);
+  const settle = (): void => {
+    if (typed.value === null) return;
+    const text = typed.value;
+    typed.value = null;
+    onChange(text);
+  };
+  const common = { id, name, disabled: readOnly.value, value: typed.value ?? value, onBlur: settle };
+  return (
+    <div class="field">
+      <label for={id}>{label}</label>
+      {rows ? (
+        <textarea {...common} rows={rows} onInput={(event) => (typed.value = event.currentTarget.value)} />
+      ) : (
+        <input
+          {...common}
+          type="text"
+          onInput={(event) => (typed.value = event.currentTarget.value)}
+          onKeyDown={(event) => event.key === 'Enter' && settle()}
+        />
+      )}
+    </div>
+  );
+}
+
+export function ColorField({ label, value, name, onChange }: { label: string; value: string; name?: string; onChange: (value: string, live: boolean) => void }) {
+  const id = useId();
+  return (
+    <div class="field">
+      <label for={id}>{label}</label>
+      <input
+        id={id}
+        name={name}
+        type="color"
+        disabled={readOnly.value}
+        value={value}
+        onInput={(event) => onChange(event.currentTarget.value, true)}
+        onChange={(event) => onChange(event.currentTarget.value, false)}
+      />
+    </div>
+  );
+}
+
+export function CheckField({ label, checked, name, onChange }: { label: string; checked: boolean; name?: string; onChange: (checked: boolean) => void }) {
+  return (
+    <label class="check">
+      <input type="checkbox" name={name} disabled={readOnly.value} checked={checked} onChange={(event) => onChange(event.currentTarget.checked)} />
+      <span>{label}</span>
+    </label>
+  );
+}
+
+interface ButtonProps {
+  label: string; // for the eye and the ear
+  icon?: IconName;
+  iconOnly?: boolean;
+  kind?: 'main' | 'mend' | 'plain' | 'quiet';
+  pressed?: boolean;
+  disabled?: boolean;
+  changes?: boolean; // the job: not where it may only be looked at
+  title?: string;
+  name?: string;
+  expanded?: boolean;
+  onClick: () => void;
+  children?: ComponentChildren;
+}
+
+export function Button({ label, icon, iconOnly, kind = 'plain', pressed, disabled, changes, title, name, expanded, onClick, children }: ButtonProps) {
+  return (
+    <button
+      type="button"
+      class={`button ${kind}${iconOnly ? ' icon-only' : ''}`}
+      aria-pressed={pressed}
+      aria-expanded={expanded}
+      aria-label={iconOnly ? label : undefined}
+      title={title ?? (iconOnly ? label : undefined)}
+      data-name={name}
+      disabled={disabled || (changes && readOnly.value)}
+      onClick={onClick}
+    >
+      {icon && <Icon name={icon} />}
+      {!iconOnly && <span>{label}</span>}
+      {children}
+    </button>
+  );
+}
+
+// A choice of a few, side by side.
+interface SegmentsProps<T extends string> {
+  label: string;
+  value: T;
+  options: readonly (readonly [T, string])[];
+  always?: boolean;
+  onChange: (value: T) => void;
+}
+
+export function Segments<T extends string>({ label, value, options, always, onChange }: SegmentsProps<T>) {
+  return (
+    <div class="segments" role="group" aria-label={label}>
+      {options.map(([key, text]) => (
+        <button key={key} type="button" aria-pressed={key === value} data-value={key} disabled={!always && readOnly.value} onClick={() => onChange(key)}>{text}</button>
+      ))}
+    </div>
+  );
+}
+
+export function SegmentsField<T extends string>(props: SegmentsProps<T>) {
+  return (
+    <div class="field">
+      <span class="label" aria-hidden="true">{props.label}</span>
+      <Segments {...props} />
+    </div>
+  );
+}
+
+export function Files({ label, icon, kind, accept, many, name, onFiles }: { label: string; icon?: IconName; kind?: 'main' | 'plain'; accept?: string; many?: boolean; name?: string; onFiles: (files: File[]) => void }) {
+  const id = useId();
+  const off = readOnly.value;
+  return (
+    <span class="files">
+      <input
+        id={id}
+        class="hidden"
+        type="file"
+        name={name}
+        accept={accept}
+        multiple={many}
+        disabled={off}
+        onChange={(event) => {
+          const files = [...(event.currentTarget.files ?? [])];
+          event.currentTarget.value = '';
+          onFiles(files);
+        }}
+      />
+      <label for={id} class={`button ${kind ?? 'plain'}${off ? ' off' : ''}`}>
+        {icon && <Icon name={icon} />}
+        <span>{label}</span>
+      </label>
+    </span>
+  );
+}

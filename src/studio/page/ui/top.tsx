@@ -1,0 +1,198 @@
+// The bar above: what is worked on, whether it is kept, and the verdict.
+import { useSignal } from '@preact/signals';
+import { api, type Concern } from '../api.ts';
+import { change, goToStart, job, narrow, panel, type Panel } from '../studio.ts';
+import { t } from '../strings.ts';
+import { Button, TextField } from './fields.tsx';
+import { Icon } from './icons.tsx';
+import { PrintPanel } from './print.tsx';
+import { CONCERN_ICON, FindingCard, sorted } from './side.tsx';
+
+const toggle = (name: Panel): void => {
+  panel.value = panel.value === name ? 'none' : name;
+};
+
+export function askPrint(): void {
+  const open = job.value;
+  if (!open) return;
+  panel.value = 'print';
+  const task = open.tasks.value.get('print');
+  if (task?.state !== 'running') void open.start('print');
+}
+
+export function askSave(): void {
+  const open = job.value;
+  if (!open) return;
+  if (open.where.value) void open.save();
+  else toggle('save');
+}
+
+export function Mark() {
+  return (
+    <svg class="mark-drop" width="22" height="22" viewBox="0 0 22 22" aria-hidden="true">
+      <path d="M11 2.5c3.4 4.1 5.6 6.9 5.6 10a5.6 5.6 0 0 1-11.2 0c0-3.1 2.2-5.9 5.6-10z" />
+      <path class="wave" d="M1.5 14.5c1.6 0 1.6 1.2 3.2 1.2s1.6-1.2 3.1-1.2 1.6 1.2 3.2 1.2 1.6-1.2 3.1-1.2 1.6 1.2 3.2 1.2 1.6-1.2 3.2-1.2" />
+    </svg>
+  );
+}
+
+export function TopBar() {
+  const open = job.value!;
+  return (
+    <header class="top">
+      <button type="button" class="home" aria-label={t.top.home} title={t.top.home} onClick={() => void goToStart()}><Mark /></button>
+      <Name />
+      <div class="row tight">
+        <Button name="undo" label={t.top.undo(open.undoLabel.value)} icon="undo" iconOnly kind="quiet" changes disabled={!open.undoLabel.value} onClick={() => open.undo()} />
+        <Button name="redo" label={t.top.redo(open.redoLabel.value)} icon="redo" iconOnly kind="quiet" changes disabled={!open.redoLabel.value} onClick={() => open.redo()} />
+      </div>
+      <VerdictLine />
+      <div class="row tight actions">
+        <Button name="keys" label={t.top.keys} icon="help" iconOnly kind="quiet" expanded={panel.value === 'keys'} onClick={() => toggle('keys')} />
+        {!narrow.value && (
+          <>
+            <Button name="save" label={t.top.save} changes expanded={panel.value === 'save'} onClick={askSave} />
+            <Button name="print" label={t.top.print} kind="main" changes disabled={!open.document.value.object?.file} expanded={panel.value === 'print'} onClick={() => (panel.value === 'print' ? toggle('print') : askPrint())} />
+          </>
+        )}
+      </div>
+      {panel.value === 'verdict' && <VerdictPanel />}
+      {panel.value === 'print' && <PrintPanel />}
+      {panel.value === 'save' && <SavePanel />}
+      {panel.value === 'keys' && <KeysPanel />}
+    </header>
+  );
+}
+
+export const nameOf = (): string => {
+  const document = job.value?.document.value;
+  return document?.name || document?.object?.file?.replace(/^.*\//, '').replace(/\.[^.]*$/, '') || t.top.untitled;
+};
+
+function rename(name: string): void {
+  if (name !== nameOf()) change(({ name: _, ...rest }) => (name ? { ...rest, name } : rest), t.undo.name);
+}
+
+function Name() {
+  const open = job.value!;
+  const typed = useSignal<string | null>(null);
+  const state = open.pending.value ? t.top.sending : open.saved.value ? t.top.saved : open.where.value ? t.top.kept : t.top.keptNoFile;
+  const settle = (): void => {
+    const name = typed.value?.trim();
+    typed.value = null;
+    if (name !== undefined) rename(name);
+  };
+  return (
+    <div class="jobname">
+      <input
+        aria-label={t.top.name}
+        name="job-name"
+        value={typed.value ?? nameOf()}
+        disabled={!open.mayChange.value || narrow.value}
+        size={Math.max(6, Math.min(28, (typed.value ?? nameOf()).length))}
+        onInput={(event) => (typed.value = event.currentTarget.value)}
+        onBlur={settle}
+        onKeyDown={(event) => {
+          if (event.key === 'Enter') event.currentTarget.blur();
+          if (event.key === 'Escape') {
+            typed.value = null;
+            event.currentTarget.blur();
+          }
+        }}
+      />
+      <small data-saved={open.saved.value} title={open.where.value}>{state}</small>
+    </div>
+  );
+}
+
+interface Said {
+  concern: Concern | 'wait';
+  text: string;
+}
+
+function said(): Said {
+  const open = job.value!;
+  const problem = open.problem.value;
+  if (!open.document.value.object?.file) return { concern: 'wait', text: t.verdict.empty };
+  if (problem) return { concern: problem.code === 'no-model' ? 'wait' : 'stop', text: problem.text };
+  const verdict = open.result.value?.verdict;
+  return verdict ? { concern: verdict.concern, text: verdict.text || verdict.headline } : { concern: 'wait', text: t.verdict.waiting };
+}
+
+function VerdictLine() {
+  const open = job.value!;
+  const { concern, text } = said();
+  const draft = concern !== 'wait' && open.draft.value && !open.problem.value;
+  const working = open.working.value;
+  return (
+    <button
+      type="button"
+      class={`verdict ${concern}`}
+      data-draft={draft}
+      aria-expanded={panel.value === 'verdict'}
+      aria-label={concern === 'wait' ? text : t.verdict.label(t.verdict.level[concern], text)}
+      title={text}
+      onClick={() => toggle('verdict')}
+    >
+      {concern === 'wait' ? <span class="spinner" data-still={!working} /> : <Icon name={CONCERN_ICON[concern]} />}
+      <span class="sentence" aria-live="polite">{text}</span>
+      {draft && <span class="badge" title={t.verdict.draftHelp}>{t.verdict.draft}</span>}
+      {working?.fraction !== undefined && <i class="thin" style={{ width: `${100 * working.fraction}%` }} />}
+    </button>
+  );
+}
+
+function VerdictPanel() {
+  const result = job.value!.result.value;
+  return (
+    <section class="panel verdict-panel" aria-label={t.verdict.restsOn}>
+      <PanelHead title={result?.verdict.headline ?? t.verdict.waiting} />
+      {result && <p>{result.verdict.text}</p>}
+      <ul class="findings">{sorted(result?.findings ?? []).map((finding) => <FindingCard key={finding.key} finding={finding} />)}</ul>
+      {result && result.warnings.length > 0 && <ul class="notes">{result.warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>}
+    </section>
+  );
+}
+
+export function PanelHead({ title }: { title: string }) {
+  return (
+    <div class="panel-head">
+      <h2>{title}</h2>
+      <Button name="close-panel" label={t.keys.close} icon="close" iconOnly kind="quiet" onClick={() => (panel.value = 'none')} />
+    </div>
+  );
+}
+
+function SavePanel() {
+  const open = job.value!;
+  const name = useSignal(nameOf());
+  return (
+    <section class="panel right" aria-label={t.save.title}>
+      <PanelHead title={t.save.title} />
+      <p class="soft">{open.where.value ? t.save.where(open.where.value) : t.save.new}</p>
+      <TextField name="save-name" label={t.save.name} value={name.value} onChange={(next) => (name.value = next)} />
+      <div class="row wrap">
+        <Button name="save-now" label={t.save.button} kind="main" onClick={() => {
+          panel.value = 'none';
+          rename(name.value);
+          void open.save();
+        }} />
+        <a class="button plain" href={api.tomlUrl(open.id)} download><Icon name="download" /><span>{t.top.jobFile}</span></a>
+        <a class="button plain" href={api.zipUrl(open.id)} download><Icon name="download" /><span>{t.top.jobZip}</span></a>
+      </div>
+    </section>
+  );
+}
+
+function KeysPanel() {
+  return (
+    <section class="panel right keys" aria-label={t.keys.title}>
+      <PanelHead title={t.keys.title} />
+      <dl>
+        {t.keys.list.map(([key, what]) => (
+          <div key={key}><dt>{key.split(', ').map((k) => <kbd key={k}>{k}</kbd>)}</dt><dd>{what}</dd></div>
+        ))}
+      </dl>
+    </section>
+  );
+}

@@ -1,0 +1,122 @@
+#include "studio/studio.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "job/browser.h"
+#include "studio/api.h"
+#include "studio/page_assets.h"
+#include "studio/run_file.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr int kUsualPort = 4714, kPortsTried = 20;
+constexpr auto kLook = std::chrono::milliseconds(20);
+constexpr auto kBetweenTidying = std::chrono::seconds(5);
+constexpr std::size_t kShortestPassword = 8;
+
+bool is_here(const std::string& address) {
+  return address == "127.0.0.1" || address == "localhost";
+}
+
+std::string password_of(const StudioOptions& options) {
+  if (options.password_file.empty()) {
+    if (is_here(options.address)) return "";
+    throw InputError(fmt::format(
+        "--listen {}: whoever reaches this address could work with your files; name a file that "
+        "holds a password, with --password-file FILE",
+        options.address));
+  }
+  const std::vector<std::uint8_t> bytes = read_file(options.password_file);
+  std::string line(bytes.begin(), bytes.end());
+  line = line.substr(0, line.find_first_of("\r\n"));
+  if (line.size() < kShortestPassword)
+    throw InputError(fmt::format("{}: the password in its first line needs {} characters or more",
+                                 options.password_file.string(), kShortestPassword));
+  return line;
+}
+
+void bind(HttpServer& server, const StudioOptions& options, int earlier) {
+  if (options.port != 0) {
+    if (server.bind(options.address, options.port)) return;
+    throw InputError(
+        fmt::format("--port {}: another program has it, or the address {} is not this machine's; "
+                    "choose another",
+                    options.port, options.address));
+  }
+  if (earlier != 0 && server.bind(options.address, earlier)) return;
+  for (int port = kUsualPort; port < kUsualPort + kPortsTried; ++port)
+    if (server.bind(options.address, port)) return;
+  if (server.bind(options.address, 0)) return;
+  throw InputError(
+      fmt::format("the address {} cannot be served from; is it this machine's?", options.address));
+}
+
+Guard guard_of(const StudioOptions& options, const std::string& token, const std::string& password,
+               int port) {
+  Guard guard;
+  guard.token = token;
+  guard.password = password;
+  guard.cookie = fmt::format("hydrodip-{}", port);
+  for (const char* name : {"127.0.0.1", "localhost"})
+    guard.hosts.push_back(fmt::format("{}:{}", name, port));
+  if (!is_here(options.address)) {
+    guard.hosts.push_back(fmt::format("{}:{}", options.address, port));
+    guard.numbers = true;
+  }
+  return guard;
+}
+
+}  // namespace
+
+JobResult studio_job(const StudioOptions& options, const RunContext& context) {
+  if (studio_script().empty())
+    throw InputError(
+        "this hydrodip was built without the studio's page: build it with -DHYDRODIP_VIEWER=ON");
+  const std::string password = password_of(options);
+  const std::filesystem::path folder = studio_folder();
+  RunFile run_file(folder);
+  const std::string token = run_file.token().empty() ? random_hex(24) : run_file.token();
+
+  // The port is part of what the guard knows: the interface is made when it is had.
+  std::optional<Api> api;
+  HttpServer server([&](HttpRequest& request) { return api->answer(request); },
+                    [&](const HttpRequest& request) { return api->admit(request); });
+  bind(server, options, run_file.port());
+  RunContext ending = context;
+  api.emplace(JobStore(folder), guard_of(options, token, password, server.port()), random_hex(8),
+              [ending] { ending.cancel(); });
+  if (!options.file.empty()) api->open_file(options.file);
+  run_file.keep(server.port(), token);
+
+  std::thread serving([&] { server.run(); });
+  const std::string shown = is_here(options.address) ? "127.0.0.1" : options.address;
+  const std::string address =
+      password.empty() ? fmt::format("http://{}:{}/?token={}", shown, server.port(), token)
+                       : fmt::format("http://{}:{}/", shown, server.port());
+  if (options.announce) options.announce(address);
+  if (options.browser && has_screen()) open_in_browser(address);
+
+  auto tidied = std::chrono::steady_clock::now();
+  while (!context.cancelled()) {
+    std::this_thread::sleep_for(kLook);
+    if (std::chrono::steady_clock::now() - tidied < kBetweenTidying) continue;
+    api->tidy();
+    tidied = std::chrono::steady_clock::now();
+  }
+  api->end("The studio was ended. Start it again with 'hydrodip studio' to go on.");
+  server.stop();
+  serving.join();
+  JobResult result;
+  result.text = "the studio has ended; what was not saved is kept, and found under recent jobs\n";
+  result.json = "{\"command\": \"studio\"}\n";
+  return result;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,378 @@
+#include "studio/tasks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <new>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "image/files.h"
+#include "job/jobs.h"
+#include "rig/rig.h"
+#include "settings/settings.h"
+#include "studio/api_error.h"
+#include "studio/job_store.h"
+#include "studio/plain_words.h"
+
+namespace hydrodip {
+namespace {
+
+using Steady = std::chrono::steady_clock;
+
+constexpr auto kBetweenReports = std::chrono::milliseconds(150);
+
+// ---- what is done ----
+
+// As `hydrodip print JOB.toml` does it, and a run sheet for the bench beside each sheet.
+JobResult print_from(const TaskRequest& request, const RunContext& context) {
+  JobConfig config;
+  SettingSources sources;
+  sources.configs = {request.job};
+  apply_sources(config, sources);
+  config.output = request.folder;
+  JobResult result = print_job(config, context);
+  std::vector<std::string> sheets = result.dips;
+  if (sheets.empty()) sheets.emplace_back();
+  for (const std::string& dip : sheets) {
+    context.progress("drawing the run sheets", 0);
+    rig_sheet(load_rig_job(result.folder / dip, {}), "", {}, context.quiet());
+  }
+  return result;
+}
+
+Json files_json(const TaskRequest& request) {
+  static const std::vector<std::pair<std::string, std::string>> known = {
+      {"print.pdf", "the sheet: print it at 100 %, no scaling"},
+      {"run-sheet.pdf", "what to do at the bath, step by step"},
+      {"report.html", "everything about this job"},
+      {"preview.png", "what was asked for beside what comes out"},
+      {"print.png", "the film image, with its resolution"},
+      {"print.tif", "the film image in the printer's inks"},
+      {"dips.png", "which dip does which part"},
+      {"maps.png", "where the film stretches and tears"},
+      {"gamut.png", "where colours cannot be reached"},
+      {"preview.glb", "the result in 3D"},
+      {"film.ply", "the film after the dip"},
+      {"report.json", "the report for programs"}};
+  std::vector<std::pair<std::string, std::filesystem::path>> found;
+  std::error_code error;
+  for (auto entry = std::filesystem::recursive_directory_iterator(request.folder, error);
+       !error && entry != std::filesystem::recursive_directory_iterator(); entry.increment(error))
+    if (entry->is_regular_file(error))
+      found.emplace_back(entry->path().lexically_relative(request.folder).string(), entry->path());
+  std::sort(found.begin(), found.end());
+  Json list = Json::array();
+  for (const auto& [what, text] : known)
+    for (const auto& [name, path] : found) {
+      if (path.filename() != what) continue;
+      std::error_code none;
+      list.push_back({{"file", name},
+                      {"text", text},
+                      {"bytes", std::filesystem::file_size(path, none)},
+                      {"url", request.address + "/files/" + name}});
+    }
+  return list;
+}
+
+Json print_result(const TaskRequest& request, const RunContext& context) {
+  const JobResult done = print_from(request, context);
+  const Json report = Json::parse(done.json);
+  const std::string verdict = report.value("verdict", "");
+  Json result = {{"where", shown_path(request.folder)},
+                 {"verdict",
+                  {{"concern", done.do_not_dip ? "stop" : "none"},
+                   {"headline", done.text.substr(0, done.text.find('.'))},
+                   {"text", in_plain_words(verdict)}}},
+                 {"files", files_json(request)},
+                 {"zip", request.address + "/files.zip"},
+                 {"warnings", Json::array()}};
+  if (!done.do_not_dip && result["verdict"]["headline"] != "Good to dip")
+    result["verdict"]["concern"] = "care";
+  for (const std::string& warning : context.warnings())
+    result["warnings"].push_back(in_plain_words(warning));
+  return result;
+}
+
+// Rows of one picture, each as a file of its own.
+std::vector<std::string> cut_rows(const std::filesystem::path& picture,
+                                  const std::filesystem::path& folder, std::size_t rows) {
+  const Image whole = load_image(picture);
+  std::vector<std::string> names;
+  const int height = whole.height_px / int(std::max<std::size_t>(1, rows));
+  for (std::size_t row = 0; row < rows; ++row) {
+    Image part(whole.width_px, height);
+    std::copy_n(whole.pixel(0, int(row) * height), part.rgba.size(), part.rgba.begin());
+    names.push_back(fmt::format("way-{}.png", row + 1));
+    save_png(folder / names.back(), part);
+  }
+  return names;
+}
+
+Json orient_result(const TaskRequest& request, const RunContext& context) {
+  JobConfig config = request.config;
+  config.output = request.folder;
+  config.plan.find_depth = config.plan.find_depth || !(config.design.trajectory.depth_mm > 0);
+  config.preview_width_px = 1000;
+  const JobResult done = orient_job(config, context);
+  const Json found = Json::parse(done.json);
+  const auto names = cut_rows(request.folder / "orient.png", request.folder, found["poses"].size());
+  Json ways = Json::array();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const Json& pose = found["poses"][k];
+    ways.push_back(
+        {{"text", pose["text"]},
+         {"covered_share", pose["covered_share"]},
+         {"torn_share", pose["torn_share"]},
+         {"doubtful_share", pose["doubtful_share"]},
+         {"score", pose["score"]},
+         {"picture", request.address + "/files/" + names[k]},
+         {"patch",
+          {{"object", {{"down", pose["down"]}, {"rotate_deg", pose["rotate_deg"]}}},
+           {"dip", {{"depth_mm", pose["depth_mm"]}, {"tilt_deg", nullptr}, {"roll_deg", nullptr}}},
+           {"path", nullptr}}}});
+  }
+  Json result;
+  result["ways"] = ways;
+  return result;
+}
+
+Json plan_result(const TaskRequest& request, const RunContext& context) {
+  JobConfig config = request.config;
+  config.output = request.folder;
+  config.preview_width_px = 1000;
+  const JobResult done = plan_job(config, context);
+  const Json found = Json::parse(done.json);
+  const auto names = cut_rows(request.folder / "plan.png", request.folder, found["dips"].size());
+  Json dips = Json::array(), patch = Json::array(), covered = Json::array();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const Json& dip = found["dips"][k];
+    covered.push_back(dip["covered_share"]);
+    dips.push_back({{"text", dip["text"]},
+                    {"gained_share", dip["gained_share"]},
+                    {"covered_share", dip["covered_share"]},
+                    {"torn_share", dip["torn_share"]},
+                    {"picture", request.address + "/files/" + names[k]}});
+    Json entry = {{"down", dip["down"]}, {"rotate_deg", dip["rotate_deg"]}};
+    if (dip["path"].is_null())
+      entry["depth_mm"] = dip["depth_mm"];
+    else
+      entry["path"] = dip["path"];
+    // What was locked stays so.
+    for (const DipEntry& given : request.config.dips)
+      if (given.locked && given.rotate_deg &&
+          Json({given.rotate_deg->x(), given.rotate_deg->y(), given.rotate_deg->z()}) ==
+              dip["rotate_deg"])
+        entry["locked"] = true;
+    patch.push_back(entry);
+  }
+  return {{"covered_share", covered}, {"dips", dips}, {"patch", {{"dips", patch}}}};
+}
+
+Json do_task(const TaskRequest& request, const RunContext& context) {
+  if (request.kind == "print") return print_result(request, context);
+  if (request.kind == "orient") return orient_result(request, context);
+  return plan_result(request, context);
+}
+
+}  // namespace
+
+// ---- progress ----
+
+// The weights are the share of each step in jobs of the samples and of spot; what a job does not
+// have is passed over.
+TaskProgress::TaskProgress(const std::string& kind) {
+  if (kind == "print")
+    steps_ = {{"loading", 3},
+              {"laying artwork", 3},
+              {"looking for trapped air", 4},
+              {"dipping", 45},
+              {"writing the sheet", 15},
+              {"drawing the previews", 25},
+              {"drawing the run sheets", 5}};
+  else if (kind == "orient")
+    steps_ = {{"loading", 3}, {"trying", 60}, {"dipping the best", 25}, {"drawing", 12}};
+  else
+    steps_ = {{"loading", 3},       {"dipping what is given", 5},
+              {"trying", 55},       {"trying poses like", 10},
+              {"dipping them", 17}, {"drawing", 10}};
+}
+
+void TaskProgress::update(const std::string& activity, double fraction) {
+  double before = 0;
+  const Step* step = nullptr;
+  double start = 0;
+  for (const Step& s : steps_) {
+    // The longest beginning counts.
+    if (activity.starts_with(s.activity) && (!step || s.activity.size() > step->activity.size())) {
+      step = &s;
+      start = before;
+    }
+    before += s.weight;
+  }
+  if (!step) return;
+  if (step->activity != step_) {
+    step_ = step->activity;
+    done_ = 0;
+  } else if (fraction < last_) {
+    done_ += (1 - done_) / 2;
+  }
+  last_ = fraction;
+  // Nobody knows how often a step comes again: each time it has half of what is left.
+  const double own = done_ + (1 - done_) / 2 * fraction;
+  fraction_ = std::max(fraction_, (start + step->weight * own) / before);
+}
+
+double TaskProgress::left_s(double elapsed_s) const {
+  if (fraction_ < 0.08 || elapsed_s < 0.5) return -1;
+  return elapsed_s * (1 - fraction_) / fraction_;
+}
+
+// ---- tasks ----
+
+struct Tasks::Task {
+  Task(std::string its_name, TaskRequest its_request)
+      : name(std::move(its_name)), request(std::move(its_request)), progress(request.kind) {}
+
+  const std::string name;
+  const TaskRequest request;
+  RunContext context;
+  TaskProgress progress;
+  std::string state = "running", activity = "beginning";
+  Json error, result;
+  Steady::time_point begun = Steady::now(), told = {};
+  double took_s = 0;
+  std::thread thread;
+};
+
+Tasks::Tasks(std::function<void(const Json& task)> tell) : tell_(std::move(tell)) {}
+
+Tasks::~Tasks() {
+  for (const auto& task : tasks_) task->context.cancel();
+  for (const auto& task : tasks_) task->thread.join();
+}
+
+std::string Tasks::start(TaskRequest request) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& task : tasks_)
+    if (task->state == "running" && task->request.kind == request.kind)
+      throw ApiError(409, "busy", "That is being done already; cancel it first.");
+  const std::string name = fmt::format("t{}", ++number_);
+  request.address += "/" + name;
+  tasks_.push_back(std::make_unique<Task>(name, std::move(request)));
+  Task& task = *tasks_.back();
+  task.thread = std::thread([this, &task] { run(task); });
+  return name;
+}
+
+void Tasks::change(Task& task, const std::function<void()>& how, bool always) {
+  Json told;
+  {
+    const std::lock_guard lock(mutex_);
+    how();
+    if (!always && Steady::now() - task.told < kBetweenReports) return;
+    task.told = Steady::now();
+    told = json_of(task);
+  }
+  tell_(told);
+}
+
+void Tasks::run(Task& task) {
+  change(
+      task, [] {}, true);
+  task.context.on_progress([&](const std::string& activity, double fraction) {
+    change(
+        task,
+        [&] {
+          task.activity = activity;
+          task.progress.update(activity, fraction);
+        },
+        false);
+  });
+  std::string state = "failed";
+  Json error, result;
+  const auto failed = [&](const char* code, const std::string& text) {
+    error = {{"code", code}, {"text", in_plain_words(text)}};
+  };
+  try {
+    result = do_task(task.request, task.context);
+    state = "done";
+  } catch (const Cancelled&) {
+    state = "cancelled";
+  } catch (const InputError& problem) {
+    failed("input", problem.what());
+  } catch (const DipError& problem) {
+    failed("dip", problem.what());
+  } catch (const std::bad_alloc&) {
+    failed("memory", "There is not enough memory for this.");
+  } catch (const std::exception& problem) {
+    failed("failed", problem.what());
+  }
+  change(
+      task,
+      [&] {
+        task.state = state;
+        task.error = error;
+        task.result = result;
+        task.took_s = std::chrono::duration<double>(Steady::now() - task.begun).count();
+      },
+      true);
+}
+
+Json Tasks::json_of(const Task& task) const {
+  const bool running = task.state == "running";
+  const double elapsed =
+      running ? std::chrono::duration<double>(Steady::now() - task.begun).count() : task.took_s;
+  const double left = running ? task.progress.left_s(elapsed) : -1;
+  return {{"task", task.name},
+          {"kind", task.request.kind},
+          {"state", task.state},
+          {"revision", task.request.revision},
+          {"activity", task.activity},
+          {"fraction", task.state == "done" ? 1 : task.progress.fraction()},
+          {"elapsed_s", std::round(10 * elapsed) / 10},
+          {"left_s", left < 0 ? Json() : Json(std::round(10 * left) / 10)},
+          {"error", task.error},
+          {"result", task.result}};
+}
+
+bool Tasks::cancel(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& task : tasks_)
+    if (task->name == name) {
+      task->context.cancel();
+      return true;
+    }
+  return false;
+}
+
+Json Tasks::list() const {
+  const std::lock_guard lock(mutex_);
+  Json list = Json::array();
+  for (const char* kind : {"print", "orient", "plan"})
+    for (auto task = tasks_.rbegin(); task != tasks_.rend(); ++task)
+      if ((*task)->request.kind == kind) {
+        list.push_back(json_of(**task));
+        break;
+      }
+  return list;
+}
+
+std::filesystem::path Tasks::folder(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& task : tasks_)
+    if (task->name == name) return task->request.folder;
+  return {};
+}
+
+bool Tasks::any_running() const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(tasks_.begin(), tasks_.end(),
+                     [](const auto& task) { return task->state == "running"; });
+}
+
+}  // namespace hydrodip

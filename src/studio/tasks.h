@@ -1,0 +1,82 @@
+// Long work that was asked for, in the background: print, orient, plan.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/context.h"
+#include "settings/config.h"
+#include "studio/json.h"
+
+namespace hydrodip {
+
+struct TaskRequest {
+  std::string kind;  // "print"
+  long revision = 0;
+  JobConfig config;              // of orient and plan: as it is
+  std::filesystem::path job;     // of print: its job file, from which the bytes are made
+  std::filesystem::path folder;  // where its files go
+  std::string address;           // of these files for the page
+};
+
+// How far a task is, from what its steps say of themselves. Rises only.
+class TaskProgress {
+ public:
+  explicit TaskProgress(const std::string& kind);
+
+  void update(const std::string& activity, double fraction);
+
+  double fraction() const { return fraction_; }
+  // What it will still take; negative: that cannot be told yet.
+  double left_s(double elapsed_s) const;
+
+ private:
+  struct Step {
+    std::string activity;  // begins with
+    double weight;
+  };
+  std::vector<Step> steps_;
+  std::string step_;
+  double last_ = 0;  // of the present step
+  double done_ = 0;  // of it, when it last began again
+  double fraction_ = 0;
+};
+
+class Tasks {
+ public:
+  // `tell` is called by any thread whenever a task has changed.
+  explicit Tasks(std::function<void(const Json& task)> tell);
+  // Cancels all.
+  ~Tasks();
+  Tasks(const Tasks&) = delete;
+  Tasks& operator=(const Tasks&) = delete;
+
+  // Its name. Throws ApiError busy if one of that kind is running.
+  std::string start(TaskRequest request);
+  // False: there is no such task.
+  bool cancel(const std::string& task);
+  // TASKs of docs/studio-api.md: the last of each kind.
+  Json list() const;
+  // The folder of a task's files; empty if there is none.
+  std::filesystem::path folder(const std::string& task) const;
+  bool any_running() const;
+
+ private:
+  struct Task;
+
+  void run(Task& task);
+  Json json_of(const Task& task) const;
+  void change(Task& task, const std::function<void()>& how, bool always);
+
+  const std::function<void(const Json&)> tell_;
+  mutable std::mutex mutex_;
+  std::vector<std::unique_ptr<Task>> tasks_;
+  int number_ = 0;
+};
+
+}  // namespace hydrodip

@@ -1,0 +1,108 @@
+#include "studio/zip.h"
+
+#include <fmt/format.h>
+#include <zip.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "base/error.h"
+#include "studio/api_error.h"
+#include "studio/job_files.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr std::size_t kPiece = std::size_t(1) << 16;
+constexpr zip_int64_t kMostFiles = 2000;
+constexpr double kMostRatio = 200, kFreely = 64e6;  // of bombs, and of what is small anyway
+
+[[noreturn]] void refuse(const std::filesystem::path& archive, const std::string& why) {
+  throw InputError(fmt::format("{}: {}", archive.filename().string(), why));
+}
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+bool is_plain(const std::string& name) {
+  try {
+    require_plain_name(name);
+    return !name.starts_with("__MACOSX/");
+  } catch (const ApiError&) {
+    return false;
+  }
+}
+
+void unpack_file(zip_t* zip, zip_uint64_t index, const std::filesystem::path& archive,
+                 const std::filesystem::path& to, double& left) {
+  const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> from(zip_fopen_index(zip, index, 0),
+                                                               zip_fclose);
+  if (!from) refuse(archive, "this archive is damaged, or locked by a password");
+  std::error_code ignored;
+  std::filesystem::create_directories(to.parent_path(), ignored);
+  const std::unique_ptr<std::FILE, CloseFile> out(std::fopen(to.c_str(), "wbx"));
+  if (!out) refuse(archive, "it cannot be unpacked; free some space");
+  std::vector<char> piece(kPiece);
+  while (true) {
+    const zip_int64_t count = zip_fread(from.get(), piece.data(), piece.size());
+    if (count < 0) refuse(archive, "this archive is damaged");
+    if (count == 0) return;
+    left -= double(count);
+    if (left < 0) refuse(archive, "it unpacks to far more than a job may have");
+    if (std::fwrite(piece.data(), 1, std::size_t(count), out.get()) != std::size_t(count))
+      refuse(archive, "it cannot be unpacked; free some space");
+  }
+}
+
+}  // namespace
+
+void unpack_zip(const std::filesystem::path& archive, std::uintmax_t most_bytes,
+                const std::function<std::filesystem::path(const std::string& name)>& place) {
+  int code = 0;
+  zip_t* const opened = zip_open(archive.c_str(), ZIP_RDONLY, &code);
+  if (!opened) refuse(archive, "this is no ZIP archive, or a damaged one");
+  const std::unique_ptr<zip_t, void (*)(zip_t*)> zip(opened, zip_discard);
+  const zip_int64_t count = zip_get_num_entries(opened, 0);
+  if (count > kMostFiles) refuse(archive, "there are too many files in it");
+  std::error_code none;
+  double left = std::min(double(most_bytes),
+                         kFreely + kMostRatio * double(std::filesystem::file_size(archive, none)));
+  for (zip_int64_t i = 0; i < count; ++i) {
+    const char* raw = zip_get_name(opened, zip_uint64_t(i), ZIP_FL_ENC_GUESS);
+    const std::string name = raw ? raw : "";
+    if (!is_plain(name)) continue;
+    const std::filesystem::path to = place(name);
+    if (to.empty()) continue;
+    try {
+      unpack_file(opened, zip_uint64_t(i), archive, to, left);
+    } catch (const InputError&) {
+      std::filesystem::remove(to, none);
+      throw;
+    }
+  }
+}
+
+void pack_zip(const std::filesystem::path& archive,
+              const std::vector<std::pair<std::string, std::filesystem::path>>& files) {
+  int code = 0;
+  zip_t* const zip = zip_open(archive.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
+  if (!zip) refuse(archive, "the archive cannot be written; free some space");
+  for (const auto& [name, path] : files) {
+    zip_source_t* const source = zip_source_file(zip, path.c_str(), 0, -1);
+    const zip_int64_t index =
+        source ? zip_file_add(zip, name.c_str(), source, ZIP_FL_ENC_UTF_8) : -1;
+    if (index < 0) {
+      if (source) zip_source_free(source);
+      zip_discard(zip);
+      refuse(archive, "the archive cannot be made");
+    }
+    constexpr zip_uint16_t kFirstDate = (1 << 5) | 1;  // 1980-01-01
+    zip_file_set_dostime(zip, zip_uint64_t(index), 0, kFirstDate, 0);
+  }
+  if (zip_close(zip) == 0) return;
+  zip_discard(zip);
+  refuse(archive, "the archive cannot be written; free some space");
+}
+
+}  // namespace hydrodip

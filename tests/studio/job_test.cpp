@@ -1,0 +1,436 @@
+// A job over HTTP: its document, what is computed of it, what is printed, and what outlives a run.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include "base/file.h"
+#include "job/jobs.h"
+#include "settings/job_file.h"
+#include "settings/settings.h"
+#include "studio/served.h"
+
+namespace hydrodip {
+namespace {
+
+using nlohmann::json;
+
+// A job of the pyramid that is quick to compute, by default.
+class JobTest : public testing::Test {
+ protected:
+  JobTest() { begin(); }
+
+  void begin() {
+    studio.reset();
+    studio = std::make_unique<Served>(folder.path(), "run-" + std::to_string(++runs));
+    client = std::make_unique<Client>(studio->client());
+  }
+  std::string sample(const std::string& name) {
+    const Reply reply = client->post("/api/jobs", json{{"sample", name}}.dump());
+    EXPECT_EQ(reply.status, 201) << reply.body;
+    return reply.json()["job"];
+  }
+  std::string at(const std::string& job, const std::string& rest = "") const {
+    return "/api/jobs/" + job + rest;
+  }
+  json describe(const std::string& job) const { return client->get(at(job)).json(); }
+  Reply put(const std::string& job, const json& document, bool live = false,
+            const std::string& who = "c1", long base = -1) const {
+    json body = {{"client", who}, {"document", document}, {"live", live}};
+    if (base >= 0) body["base"] = base;
+    return client->put(at(job, "/document"), body.dump());
+  }
+  static json quick(const json& document) {
+    json quick = document;
+    quick["film"] = {{"width_mm", 150}, {"height_mm", 150}, {"elements", 2000}};
+    quick["dip"]["step_mm"] = 1;
+    quick["dip"]["air_cells"] = 20000;
+    quick["print"]["dpi"] = 72;
+    quick["ink"]["rounds_max"] = 2;
+    quick["preview"] = {{"pictures", "off"}};
+    return quick;
+  }
+
+  TemporaryFolder folder;
+  int runs = 0;
+  std::unique_ptr<Served> studio;
+  std::unique_ptr<Client> client;
+};
+
+TEST_F(JobTest, ASampleIsShownAndItsResultIsWhole) {
+  const std::string job = sample("pyramid");
+  Events events(*client, at(job, "/events?client=c1"));
+  const auto hello = events.next("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_TRUE(hello->data["pen"]);
+  const long revision = put(job, quick(describe(job)["document"])).json()["revision"];
+  const auto told = events.next("result", [&](const json& e) { return e["revision"] == revision; });
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->data["quality"], "draft");
+
+  const ReadBundle result(
+      client->get(at(job, "/results/" + told->data["result"].get<std::string>())).body);
+  ASSERT_TRUE(result.head.is_object());
+  const auto u = result.array<float>("film.u"), position = result.array<float>("film.position");
+  const auto state = result.array<std::uint8_t>("film.state");
+  const auto torn = result.array<std::uint8_t>("film.torn");
+  const auto index = result.array<std::uint32_t>("film.index");
+  ASSERT_EQ(u.size(), 2 * state.size());
+  ASSERT_EQ(position.size(), 3 * state.size());
+  ASSERT_EQ(index.size(), 3 * torn.size());
+  for (const std::uint32_t v : index) ASSERT_LT(v, state.size());
+  const std::size_t pixels = result.head["sheet"]["width_px"].get<std::size_t>() *
+                             result.head["sheet"]["height_px"].get<std::size_t>();
+  EXPECT_EQ(result.array<std::uint8_t>("sheet.printed").size(), 4 * pixels);
+  EXPECT_EQ(result.array<std::uint8_t>("sheet.predicted").size(), 4 * pixels);
+
+  // The rim is where the sheet's margin says, and film on the object lies inside its box.
+  const double free_mm = 0.5 * 150 - result.head["film"]["margin_mm"].get<double>();
+  double covered = 0;
+  const ReadBundle mesh(
+      client->get(at(job, "/meshes/" + describe(job)["mesh"].get<std::string>())).body);
+  const json low = mesh.head["low_mm"], high = mesh.head["high_mm"];
+  for (std::size_t v = 0; v < state.size(); ++v) {
+    if (state[v] == 2)
+      EXPECT_NEAR(std::max(std::abs(u[2 * v]), std::abs(u[2 * v + 1])), free_mm, 1e-3);
+    if (state[v] != 1) continue;
+    EXPECT_GE(position[3 * v + 2], -0.1);
+    EXPECT_LE(position[3 * v + 2], high[2].get<double>() - low[2].get<double>() + 0.1);
+  }
+  for (std::size_t t = 0; t < torn.size(); ++t) {
+    const auto corner = [&](std::size_t k) {
+      const float* p = position.data() + 3 * index[3 * t + k];
+      return Vec3(double(p[0]), double(p[1]), double(p[2]));
+    };
+    bool lies = !torn[t];
+    for (std::size_t k = 0; k < 3; ++k) lies = lies && state[index[3 * t + k]] == 1;
+    if (lies) covered += 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+  }
+  EXPECT_NEAR(covered, result.head["figures"]["covered_mm2"].get<double>(), 1e-3 * covered);
+
+  // Somewhere on the sheet there is ink, and its margin is free of it.
+  const auto printed = result.array<std::uint8_t>("sheet.printed");
+  std::size_t inked = 0;
+  for (std::size_t i = 3; i < printed.size(); i += 4) inked += printed[i] > 0;
+  EXPECT_GT(inked, pixels / 50);
+  EXPECT_EQ(printed[3], 0);
+}
+
+TEST_F(JobTest, TheMeshIsTheModelInItsOwnFrame) {
+  const std::string job = sample("box");
+  Events events(*client, at(job, "/events?client=c1"));
+  const auto told = events.next("mesh");
+  ASSERT_TRUE(told);
+  const ReadBundle mesh(
+      client->get(at(job, "/meshes/" + told->data["mesh"].get<std::string>())).body);
+  const auto position = mesh.array<float>("position");
+  const auto index = mesh.array<std::uint32_t>("index");
+  EXPECT_EQ(index.size(), 3 * mesh.head["triangles"].get<std::size_t>());
+  for (std::size_t k = 0; k < 3; ++k) {
+    float low = 1e9F, high = -1e9F;
+    for (std::size_t v = k; v < position.size(); v += 3) {
+      low = std::min(low, position[v]);
+      high = std::max(high, position[v]);
+    }
+    EXPECT_FLOAT_EQ(low, mesh.head["low_mm"][k].get<float>());
+    EXPECT_FLOAT_EQ(high, mesh.head["high_mm"][k].get<float>());
+  }
+  const Reply texture = client->get(mesh.head["textures"][0].get<std::string>());
+  EXPECT_EQ(texture.status, 200);
+  EXPECT_TRUE(texture.headers.at("content-type").starts_with("image/"));
+}
+
+// Requests in a drag come faster than drafts: what is shown in the end is the newest, and the first
+// is not waited for.
+TEST_F(JobTest, ANewerRequestIsTheOneThatIsShown) {
+  const std::string job = sample("pyramid");
+  json document = quick(describe(job)["document"]);
+  Events events(*client, at(job, "/events?client=c1"));
+  long revision = 0;
+  for (int n = 0; n < 25; ++n) {
+    document["object"]["rotate_deg"] = {0, 0, 3 * n};
+    revision = put(job, document, n < 24).json()["revision"];
+  }
+  std::vector<long> shown;
+  const auto last = events.next("result", [&](const json& e) {
+    shown.push_back(e["revision"]);
+    return e["revision"] == revision && e["quality"] == "normal";
+  });
+  ASSERT_TRUE(last);
+  EXPECT_TRUE(std::is_sorted(shown.begin(), shown.end()));
+  EXPECT_LT(shown.size(), 20u);
+  EXPECT_FALSE(events.next("result", {}, 0.5));  // nothing older comes after it
+}
+
+// A normal result of a fine film would take many seconds: a newer request does not wait for it.
+TEST_F(JobTest, ANewerRequestCancelsTheOlder) {
+  const std::string job = sample("pyramid");
+  json document = describe(job)["document"];
+  document["film"]["elements"] = 640000;
+  document["dip"]["step_mm"] = 0.02;
+  Events events(*client, at(job, "/events?client=c1"));
+  const long first = put(job, document).json()["revision"];
+  ASSERT_TRUE(events.next("working", [&](const json& e) {
+    return e["revision"] == first && e["quality"] == "normal";
+  }));
+  const long cancelled = client->get(at(job, "/counts")).json()["cancelled"];
+  const long second = put(job, quick(document)).json()["revision"];
+  ASSERT_TRUE(events.next("result", [&](const json& e) { return e["revision"] == second; }));
+  EXPECT_EQ(client->get(at(job, "/counts")).json()["cancelled"], cancelled + 1);
+}
+
+TEST_F(JobTest, WhatDoesNotFitIsSaidAndTheMendMendsIt) {
+  const std::string job = sample("box");
+  json document = quick(describe(job)["document"]);
+  document["object"]["size_mm"] = 200;
+  document["film"] = {{"width_mm", 210}, {"height_mm", 297}, {"elements", 2000}};
+  Events events(*client, at(job, "/events?client=c1"));
+  const long revision = put(job, document).json()["revision"];
+  const auto problem =
+      events.next("problem", [&](const json& e) { return e["revision"] == revision; });
+  ASSERT_TRUE(problem);
+  EXPECT_EQ(problem->data["text"].get<std::string>().find("--"), std::string::npos);
+  ASSERT_FALSE(problem->data["mends"].empty());
+  for (const json& mend : problem->data["mends"]) {
+    json mended = document;
+    mended.merge_patch(mend["patch"]);
+    const long next = put(job, mended).json()["revision"];
+    EXPECT_TRUE(events.next("result", [&](const json& e) { return e["revision"] == next; }))
+        << mend;
+  }
+}
+
+TEST_F(JobTest, ADocumentSaysWhatItsJobFileSays) {
+  const std::string job = sample("pyramid");
+  json document = quick(describe(job)["document"]);
+  document["object"]["rotate_deg"] = {12.3456789012345, -7, 0.1};
+  document["dip"]["depth_mm"] = 17.123456789;
+  document["artwork"] = json::array({{{"text", "Hi \"you\""},
+                                      {"size_mm", {20, 10.5}},
+                                      {"at_mm", {0, 0.1, 3}},
+                                      {"through", true},
+                                      {"text_color", "#ff0080"}}});
+  document["dips"] =
+      json::array({{{"rotate_deg", {0, 33.333333333, 0}}, {"locked", true}}, json::object()});
+  ASSERT_EQ(put(job, document).status, 200);
+  const Reply saved = client->post(at(job, "/save"), R"({"name": "two dips"})");
+  ASSERT_EQ(saved.status, 200) << saved.body;
+
+  // Read by the command line's way, written again: the same text.
+  const std::filesystem::path file = folder.path() / "jobs" / job / "files" / "two dips.toml";
+  JobConfig config;
+  apply_sources(config, {.configs = {file}});
+  const auto bytes = read_file(file);
+  EXPECT_EQ(job_file(config, file.parent_path()), std::string(bytes.begin(), bytes.end()));
+  EXPECT_EQ(config.object.pose.rotate_deg.x(), 12.3456789012345);
+  EXPECT_EQ(config.object.artwork.front().text, "Hi \"you\"");
+  ASSERT_EQ(config.dips.size(), 2u);
+  EXPECT_EQ(config.dips[0].rotate_deg->y(), 33.333333333);
+
+  // Opened again from that file: the same document, but for its name.
+  const Reply zip = client->get(at(job, "/job.zip"));
+  EXPECT_EQ(zip.status, 200);
+  studio->api().open_file(file);
+  const std::string again = client->get("/api/hello").json()["opened"];
+  json reopened = describe(again)["document"];
+  document.erase("name");
+  EXPECT_EQ(reopened, document);
+}
+
+TEST_F(JobTest, WrongValuesAreRefusedWithTheirName) {
+  const std::string job = sample("pyramid");
+  const json before = describe(job)["document"];
+  const std::vector<std::pair<json, std::string>> cases = {
+      {{{"object", {{"size_mm", -3}}}}, "object.size_mm"},
+      {{{"object", {{"size_mn", 3}}}}, "object.size_mn"},
+      {{{"film", {{"shape", "star"}}}}, "film.shape"},
+      {{{"artwork", json::array({{{"image", "nothing.png"}}})}}, "artwork[1].image"},
+      {{{"dips", json::array({{{"depth_mm", "deep"}}})}}, "dip[1].depth_mm"},
+      {{{"path", json::array({{0, 0}})}}, "path"}};
+  for (const auto& [document, field] : cases) {
+    const Reply reply = put(job, document);
+    EXPECT_EQ(reply.status, 422) << reply.body;
+    EXPECT_EQ(reply.json()["error"].value("field", ""), field);
+  }
+  EXPECT_EQ(describe(job)["document"], before);
+}
+
+TEST_F(JobTest, TheSecondTabIsToldAndMayTakeOver) {
+  const std::string job = sample("pyramid");
+  const json document = quick(describe(job)["document"]);
+  Events first(*client, at(job, "/events?client=one"));
+  ASSERT_TRUE(first.next("hello")->data["pen"]);
+  Events second(*client, at(job, "/events?client=two"));
+  EXPECT_FALSE(second.next("hello")->data["pen"]);
+  EXPECT_EQ(put(job, document, false, "two").code(), "no-pen");
+  const long revision = put(job, document, false, "one").json()["revision"];
+  EXPECT_EQ(second.next("document")->data["revision"], revision);
+  EXPECT_EQ(client->post(at(job, "/pen"), R"({"client": "two"})").status, 200);
+  EXPECT_FALSE(first.next("pen")->data["mine"]);
+  EXPECT_TRUE(second.next("pen")->data["mine"]);
+  EXPECT_EQ(put(job, document, false, "two").status, 200);
+  EXPECT_EQ(put(job, document, false, "one").code(), "no-pen");
+}
+
+TEST_F(JobTest, WhoseTabIsGoneLeavesItToTheOther) {
+  const std::string job = sample("pyramid");
+  auto first = std::make_unique<Events>(*client, at(job, "/events?client=one"));
+  ASSERT_TRUE(first->next("hello"));
+  Events second(*client, at(job, "/events?client=two"));
+  ASSERT_TRUE(second.next("hello"));
+  first.reset();
+  const auto pen = second.next("pen");
+  ASSERT_TRUE(pen);
+  EXPECT_TRUE(pen->data["mine"]);
+}
+
+TEST_F(JobTest, AnOldBaseIsRefusedWithTheNewest) {
+  const std::string job = sample("pyramid");
+  const json document = describe(job)["document"];
+  const long base = describe(job)["revision"];
+  const long newest = put(job, document, true, "c1", base).json()["revision"];
+  const Reply stale = put(job, document, true, "c1", base);
+  EXPECT_EQ(stale.code(), "stale");
+  EXPECT_EQ(stale.json()["revision"], newest);
+  EXPECT_EQ(stale.json()["document"], document);
+}
+
+// Nothing is said to the run before: it might have been killed.
+TEST_F(JobTest, AnotherRunGoesOnWhereTheLastStood) {
+  const std::string job = sample("pyramid");
+  json document = quick(describe(job)["document"]);
+  document["name"] = "kept";
+  document["page"] = {{"camera", {1, 2, 3}}};
+  const long revision = put(job, document).json()["revision"];
+  const Served second(folder.path(), "another");  // while the first still stands
+  const Client again = second.client();
+  const json found = again.get(at(job)).json();
+  EXPECT_EQ(found["document"], document);
+  EXPECT_EQ(found["revision"], revision);
+  const json recent = again.get("/api/recent").json();
+  ASSERT_EQ(recent.size(), 1u);
+  EXPECT_EQ(recent[0]["name"], "kept");
+  EXPECT_TRUE(recent[0]["unsaved"]);
+  Events events(again, at(job, "/events?client=c1"));
+  EXPECT_EQ(events.next("hello")->data["run"], "another");
+  EXPECT_TRUE(events.next("result"));
+}
+
+json finished(Events& events, const std::string& kind) {
+  const auto event = events.next(
+      "task", [&](const json& t) { return t["kind"] == kind && t["state"] != "running"; }, 300);
+  return event ? event->data : json();
+}
+
+TEST_F(JobTest, ThePrintHasTheBytesOfTheCommandLine) {
+  const std::string job = sample("pyramid");
+  json document = quick(describe(job)["document"]);
+  document["artwork"] =
+      json::array({{{"text", "A"}, {"size_mm", 12}, {"at_mm", {3, 2, 5}}, {"toward", {0, 0, 1}}}});
+  put(job, document);
+  Events events(*client, at(job, "/events?client=c1"));
+  ASSERT_EQ(client->post(at(job, "/tasks"), R"({"kind": "print"})").status, 202);
+  EXPECT_EQ(client->post(at(job, "/tasks"), R"({"kind": "print"})").code(), "busy");
+  const json task = finished(events, "print");
+  ASSERT_EQ(task["state"], "done") << task;
+  std::map<std::string, std::string> urls;
+  for (const json& file : task["result"]["files"]) urls[file["file"]] = file["url"];
+  ASSERT_TRUE(urls.contains("run-sheet.pdf"));
+
+  client->post(at(job, "/save"), R"({"name": "job"})");
+  JobConfig config;
+  apply_sources(config, {.configs = {folder.path() / "jobs" / job / "files/job.toml"}});
+  config.output = folder / "by-command";
+  print_job(config, RunContext());
+  for (const char* name : {"print.png", "print.tif", "print.pdf", "film.ply"}) {
+    const auto bytes = read_file(folder.path() / "by-command" / name);
+    const std::string served = client->get(urls[name]).body;
+    EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), served.begin(), served.end(),
+                           [](std::uint8_t a, char b) { return char(a) == b; }))
+        << name;
+  }
+}
+
+TEST_F(JobTest, ATaskIsCancelledAndLeavesNothing) {
+  const std::string job = sample("pyramid");
+  json document = describe(job)["document"];
+  document["film"]["elements"] = 640000;
+  document["dip"]["step_mm"] = 0.02;
+  put(job, document, true);
+  Events events(*client, at(job, "/events?client=c1"));
+  const std::string task = client->post(at(job, "/tasks"), R"({"kind": "print"})").json()["task"];
+  ASSERT_TRUE(events.next("task", [](const json& t) { return t["fraction"] > 0; }));
+  EXPECT_EQ(client->remove(at(job, "/tasks/" + task)).status, 200);
+  EXPECT_EQ(finished(events, "print")["state"], "cancelled");
+  std::error_code none;
+  EXPECT_FALSE(
+      std::filesystem::exists(folder.path() / "jobs" / job / "print/pyramid/print.png", none));
+}
+
+// Each way that is offered can be taken, and does what it says.
+TEST_F(JobTest, AWayThatIsFoundCanBeTaken) {
+  const std::string job = sample("box");
+  const json document = quick(describe(job)["document"]);
+  put(job, document, true);
+  Events events(*client, at(job, "/events?client=c1"));
+  client->post(at(job, "/tasks"), R"({"kind": "orient"})");
+  const json task = finished(events, "orient");
+  ASSERT_EQ(task["state"], "done") << task;
+  const json ways = task["result"]["ways"];
+  ASSERT_FALSE(ways.empty());
+  EXPECT_TRUE(client->get(ways[0]["picture"]).body.starts_with("\x89PNG"));
+  json taken = document;
+  taken.merge_patch(ways[0]["patch"]);
+  const long revision = put(job, taken).json()["revision"];
+  const auto told = events.next("result", [&](const json& e) { return e["revision"] == revision; });
+  ASSERT_TRUE(told);
+  const ReadBundle result(
+      client->get(at(job, "/results/" + told->data["result"].get<std::string>())).body);
+  EXPECT_NEAR(result.head["figures"]["covered_share"], ways[0]["covered_share"], 0.05);
+}
+
+// A model and a picture dropped together: the picture is on it.
+TEST_F(JobTest, AModelAndAPictureBecomeAJob) {
+  const std::string job = client->post("/api/jobs").json()["job"];
+  const std::string stl =
+      "solid a\n"
+      "facet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 40 0\nvertex 40 0 "
+      "0\nendloop\nendfacet\n"
+      "facet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 40 0 0\nvertex 0 0 "
+      "20\nendloop\nendfacet\n"
+      "facet normal -1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 20\nvertex 0 40 "
+      "0\nendloop\nendfacet\n"
+      "facet normal 1 1 1\nouter loop\nvertex 40 0 0\nvertex 0 40 0\nvertex 0 0 "
+      "20\nendloop\nendfacet\n"
+      "endsolid\n";
+  const std::string svg =
+      "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='10'>"
+      "<rect width='20' height='10' fill='red'/></svg>";
+  ASSERT_EQ(client->put(at(job, "/files/part.stl"), stl).status, 201);
+  ASSERT_EQ(client->put(at(job, "/files/logo.svg"), svg).status, 201);
+  const Reply adopted = client->post(at(job, "/adopt"), R"({"files": ["logo.svg", "part.stl"]})");
+  ASSERT_EQ(adopted.status, 200) << adopted.body;
+  const json document = adopted.json()["document"];
+  EXPECT_EQ(document["object"]["file"], "part.stl");
+  EXPECT_EQ(document["artwork"][0]["image"], "logo.svg");
+  Events events(*client, at(job, "/events?client=c1"));
+  const auto told = events.next("result");
+  ASSERT_TRUE(told);
+  const ReadBundle result(
+      client->get(at(job, "/results/" + told->data["result"].get<std::string>())).body);
+  const auto printed = result.array<std::uint8_t>("sheet.printed");
+  bool red = false;
+  for (std::size_t i = 0; i < printed.size(); i += 4)
+    red = red || (printed[i + 3] > 200 && printed[i] > 150 && printed[i + 1] < 90);
+  EXPECT_TRUE(red);
+  EXPECT_EQ(client->put(at(job, "/files/part.stl"), stl).json()["file"], "part-2.stl");
+}
+
+TEST_F(JobTest, QuittingIsForThePageAsWell) {
+  EXPECT_EQ(client->post("/api/quit").status, 200);
+  EXPECT_TRUE(studio->quits());
+}
+
+}  // namespace
+}  // namespace hydrodip

@@ -1,0 +1,633 @@
+// The studio's page as a person uses it: every action with real clicks and keys, against the real program.
+// Usage: node page.mjs HYDRODIP NODE_MODULES PART [CHROMIUM]; PART: object or artwork, which know nothing of each
+// other. Exit code 77 (skipped) where there is no Chromium. HYDRODIP_PICTURES=DIR keeps pictures.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { deflateSync, crc32 } from 'node:zlib';
+import { drag, documentOf, hasChromium, jobOf, kept, middleOf, newResult, openSample, Program, resultOf, Session, stateOf, type, until } from './studio.mjs';
+
+const hydrodip = resolve(process.argv[2]);
+const modules = resolve(process.argv[3]);
+const wanted = process.argv[4];
+const chromium = process.argv[5] || '/usr/bin/chromium';
+if (!hasChromium(chromium)) {
+  console.log(`skipped: there is no ${chromium}`);
+  process.exit(77);
+}
+
+const work = mkdtempSync(join(tmpdir(), 'hydrodip-page-'));
+process.on('exit', () => rmSync(work, { recursive: true, force: true }));
+const pictures = process.env.HYDRODIP_PICTURES;
+if (pictures) mkdirSync(pictures, { recursive: true });
+const picture = async (page, name) => {
+  if (!pictures) return;
+  await page.waitForTimeout(400);
+  await page.screenshot({ path: join(pictures, `${name}.png`) });
+};
+
+const tests = [];
+let part = 'object';
+const test = (name, body) => tests.push({ name, body, part });
+
+// ---- What people bring ----
+
+function pngChunk(name, data) {
+  const body = Buffer.concat([Buffer.from(name), data]);
+  const length = Buffer.alloc(4);
+  length.writeUInt32BE(data.length);
+  const check = Buffer.alloc(4);
+  check.writeUInt32BE(crc32 ? crc32(body) : crcOf(body));
+  return Buffer.concat([length, body, check]);
+}
+
+function crcOf(bytes) {
+  let crc = ~0;
+  for (const byte of bytes) {
+    crc ^= byte;
+    for (let k = 0; k < 8; ++k) crc = (crc >>> 1) ^ (crc & 1 ? 0xedb88320 : 0);
+  }
+  return ~crc >>> 0;
+}
+
+// A picture of coloured quarters.
+function png(file, width = 64, height = 48) {
+  const rows = Buffer.alloc(height * (1 + 3 * width));
+  for (let y = 0; y < height; ++y)
+    for (let x = 0; x < width; ++x)
+      rows.set([x < width / 2 ? 220 : 30, y < height / 2 ? 60 : 160, (x < width / 2) === (y < height / 2) ? 40 : 200], y * (1 + 3 * width) + 1 + 3 * x);
+  const head = Buffer.alloc(13);
+  head.writeUInt32BE(width, 0);
+  head.writeUInt32BE(height, 4);
+  head.set([8, 2, 0, 0, 0], 8);
+  const signature = Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]);
+  writeFileSync(file, Buffer.concat([signature, pngChunk('IHDR', head), pngChunk('IDAT', deflateSync(rows)), pngChunk('IEND', Buffer.alloc(0))]));
+}
+
+// A dome, 60 mm wide and 20 mm deep, as people bring it: an STL without colours. It dips towards -z.
+function stl(file) {
+  const corner = (i, j) => {
+    const a = (2 * Math.PI * j) / 24;
+    const t = (Math.PI / 2) * (i / 8);
+    return [30 * Math.sin(t) * Math.cos(a), 30 * Math.sin(t) * Math.sin(a), 20 - 20 * Math.cos(t)];
+  };
+  const triangles = [];
+  for (let i = 0; i < 8; ++i)
+    for (let j = 0; j < 24; ++j) {
+      const [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+      if (i > 0) triangles.push([a, d, b]);
+      triangles.push([b, d, c]);
+    }
+  for (let j = 0; j < 24; ++j) triangles.push([[0, 0, 20], corner(8, j), corner(8, j + 1)]);
+  const text = triangles.map((t) => ` facet normal 0 0 0\n  outer loop\n${t.map((p) => `   vertex ${p.map((c) => c.toFixed(5)).join(' ')}\n`).join('')}  endloop\n endfacet\n`);
+  writeFileSync(file, `solid dome\n${text.join('')}endsolid dome\n`);
+}
+
+png(join(work, 'logo.png'));
+png(join(work, 'tile.png'), 32, 32);
+stl(join(work, 'dome.stl'));
+writeFileSync(join(work, 'broken.png'), 'This is no picture.');
+
+const program = new Program(hydrodip);
+await program.start();
+const session = await Session.start(modules, chromium, program);
+
+const undo = (page) => page.keyboard.press('Control+z');
+const redo = (page) => page.keyboard.press('Control+Shift+Z');
+const blur = (page) => page.evaluate(() => document.activeElement?.blur());
+const sameAs = async (page, document) => until('the document', async () => JSON.stringify(await documentOf(page)) === JSON.stringify(document));
+
+// ---- Begin ----
+
+test('the empty page: what this is, samples, a place to drop things', async () => {
+  const page = await session.page();
+  await page.waitForSelector('.dropzone');
+  assert.equal(await page.locator('.sample').count(), 3);
+  assert.match(page.url(), /^http:\/\/127\.0\.0\.1:\d+\/$/); // the token has left the address
+  await picture(page, 'start');
+  await page.context().close();
+});
+
+let mask;
+test('a sample opens with one click: object over its film, the sheet, a verdict', async () => {
+  mask = await session.page();
+  await openSample(mask, 'mask');
+  const verdict = await mask.textContent('.verdict .sentence');
+  assert.ok(verdict.length > 10);
+  assert.doesNotMatch(verdict, /--|_mm|\bdip\./); // in the user's words
+  assert.ok(await mask.locator('.canvas-box canvas').getAttribute('data-drawn') > 0);
+  await picture(mask, 'bath');
+});
+
+test('a draft says so, and becomes final by itself when the hand rests', async () => {
+  const before = await resultOf(mask);
+  await type(mask, 'turn-z', 10);
+  await mask.waitForSelector('.verdict[data-draft="true"] .badge');
+  await newResult(mask, before, true);
+  assert.equal(await mask.locator('.verdict .badge').count(), 0);
+  await undo(mask);
+  await kept(mask);
+});
+
+// ---- Pose ----
+
+test('numbers do not jump while they are typed, and count on Enter', async () => {
+  const first = await documentOf(mask);
+  const field = mask.locator('input[name="turn-z"]');
+  await field.click();
+  await field.fill('');
+  await field.pressSequentially('12.5');
+  assert.equal(await field.inputValue(), '12.5');
+  assert.deepEqual(await documentOf(mask), first);
+  await field.press('Enter');
+  await until('the turn', async () => (await documentOf(mask)).object.rotate_deg?.[2] === 12.5);
+  await field.fill('nonsense');
+  assert.equal(await field.getAttribute('aria-invalid'), 'true');
+  await field.press('Escape');
+  assert.equal(await field.inputValue(), '12.5');
+  await blur(mask);
+  await undo(mask);
+  await sameAs(mask, first);
+  await redo(mask);
+  await until('the turn again', async () => (await documentOf(mask)).object.rotate_deg?.[2] === 12.5);
+  await undo(mask);
+  await sameAs(mask, first);
+});
+
+test('the arrow keys step a number, and a burst of them is one step to undo', async () => {
+  const first = await documentOf(mask);
+  const field = mask.locator('input[name="turn-x"]');
+  await field.focus();
+  await mask.keyboard.down('ArrowUp');
+  await mask.keyboard.down('ArrowUp');
+  await mask.keyboard.down('ArrowUp');
+  await mask.keyboard.up('ArrowUp');
+  await until('three steps', async () => (await documentOf(mask)).object.rotate_deg?.[0] === 15);
+  await blur(mask);
+  await undo(mask);
+  await sameAs(mask, first);
+});
+
+test('R shows the gizmo; its ring turns the object, and one undo takes it back', async () => {
+  const first = await documentOf(mask);
+  await mask.keyboard.press('r');
+  await mask.waitForSelector('[data-name="tool-turn"][aria-pressed="true"]');
+  await mask.waitForTimeout(500);
+  await picture(mask, 'gizmo');
+  // The outer ring turns about the eye: somewhere on it, found as its size goes with the view's.
+  const box = await mask.locator('.canvas-box canvas').boundingBox();
+  const turned = async () => JSON.stringify((await documentOf(mask)).object.rotate_deg ?? [0, 0, 0]) !== JSON.stringify(first.object.rotate_deg ?? [0, 0, 0]);
+  for (let reach = 40; reach < 200 && !(await turned()); reach += 6) {
+    await drag(mask, { x: box.x + box.width / 2 + reach, y: box.y + box.height / 2 - 8 }, { x: -18, y: -50 }, { steps: 3 });
+    await kept(mask);
+  }
+  assert.ok(await turned(), 'no place of the gizmo turned the object');
+  await undo(mask);
+  await sameAs(mask, first);
+  await mask.keyboard.press('Escape');
+});
+
+test('F, and a click on a face: it goes down', async () => {
+  const first = await documentOf(mask);
+  await mask.keyboard.press('2');
+  await mask.keyboard.press('f');
+  await mask.waitForSelector('[data-name="tool-face"][aria-pressed="true"]');
+  const at = await middleOf(mask, '.canvas-box canvas');
+  await mask.mouse.click(at.x + 50, at.y + 30);
+  await until('another turn', async () => JSON.stringify((await documentOf(mask)).object.rotate_deg ?? 0) !== JSON.stringify(first.object.rotate_deg ?? 0));
+  await undo(mask);
+  await sameAs(mask, first);
+  await mask.keyboard.press('Escape');
+  await mask.keyboard.press('1');
+});
+
+test('M moves the object over the film; the fields say how far', async () => {
+  const first = await documentOf(mask);
+  const before = await resultOf(mask);
+  await type(mask, 'shift-x', 12);
+  await until('the shift', async () => (await documentOf(mask)).path?.[1][1] === 12);
+  await newResult(mask, before);
+  await blur(mask);
+  await undo(mask);
+  await sameAs(mask, first);
+});
+
+test('the water line is a handle for the depth; while it moves, drafts follow', async () => {
+  const first = await documentOf(mask);
+  const grip = await middleOf(mask, '[data-name="depth-handle"]');
+  const seen = new Set();
+  await mask.mouse.move(grip.x, grip.y);
+  await mask.mouse.down();
+  for (let k = 1; k <= 12; ++k) {
+    await mask.mouse.move(grip.x, grip.y + 2 * k);
+    await mask.waitForTimeout(120);
+    seen.add(await resultOf(mask));
+  }
+  assert.deepEqual((await documentOf(mask)).object, first.object);
+  await mask.mouse.up();
+  await until('a depth', async () => (await documentOf(mask)).dip?.depth_mm > 0);
+  assert.ok(seen.size >= 2, 'no draft came while the handle moved');
+  await blur(mask);
+  await undo(mask);
+  await sameAs(mask, first);
+  const slider = mask.locator('[data-name="depth-handle"]');
+  await slider.focus();
+  await slider.press('PageDown');
+  await until('a depth by keys', async () => (await documentOf(mask)).dip?.depth_mm > 0);
+  await blur(mask);
+  await undo(mask);
+  await sameAs(mask, first);
+});
+
+test('ways to hold it are suggested; one click takes one', async () => {
+  const first = await documentOf(mask);
+  await mask.click('[data-name="orient"]');
+  await mask.waitForSelector('.way', { timeout: 180000 });
+  assert.equal(await mask.locator('.way').count(), 3);
+  await picture(mask, 'orient');
+  const before = await resultOf(mask);
+  await mask.click('[data-way="1"]');
+  await until('another pose', async () => JSON.stringify(await documentOf(mask)) !== JSON.stringify(first));
+  await newResult(mask, before);
+  await undo(mask);
+  await sameAs(mask, first);
+});
+
+test('the sheet is chosen from presets, and can be turned', async () => {
+  const first = await documentOf(mask);
+  await mask.keyboard.press('4');
+  await mask.selectOption('[name="sheet"]', 'a3');
+  await until('A3', async () => (await documentOf(mask)).film?.height_mm === 420);
+  await mask.click('[data-name="turn-sheet"]');
+  await until('A3 across', async () => (await documentOf(mask)).film?.width_mm === 420);
+  await undo(mask);
+  await undo(mask);
+  await sameAs(mask, first);
+});
+
+test('every setting can be found by a word', async () => {
+  await mask.click('.everything summary');
+  await mask.fill('#search-setting', 'wrinkles');
+  await mask.waitForFunction(() => document.querySelectorAll('.any').length === 1);
+  await mask.fill('#search-setting', '');
+  await picture(mask, 'settings');
+  await mask.click('.everything summary');
+});
+
+// ---- Watch ----
+
+test('overlays colour the object and say what the colours mean', async () => {
+  for (const key of ['coverage', 'stretch', 'tears', 'angle', 'air']) {
+    await mask.selectOption('[name="overlay"]', key);
+    await mask.waitForSelector('.legend');
+    assert.ok((await mask.textContent('.legend')).length > 10);
+    if (key === 'stretch') await picture(mask, 'stretch');
+  }
+  await mask.selectOption('[name="overlay"]', 'none');
+  assert.equal(await mask.locator('.legend').count(), 0);
+});
+
+test('wanted and predicted lie side by side, with a line to drag', async () => {
+  await mask.click('[data-value="object"]');
+  const line = await middleOf(mask, '.divider');
+  await drag(mask, { x: line.x, y: line.y + 60 }, { x: 120, y: 0 });
+  assert.ok(Number(await mask.getAttribute('.divider', 'aria-valuenow')) > 55);
+  await mask.focus('.divider');
+  await mask.keyboard.press('ArrowLeft');
+  await picture(mask, 'compare');
+});
+
+test('pointing at the object shows the place on the sheet, and the other way round', async () => {
+  const at = await middleOf(mask, '.canvas-box canvas');
+  await until('a spot on the sheet', async () => {
+    await mask.mouse.move(at.x + 40 + Math.random() * 20, at.y + 20);
+    return (await mask.locator('.side .dot').count()) === 1;
+  });
+  assert.match(await mask.textContent('.readout'), /on the sheet/);
+  const sheet = await middleOf(mask, '.side .paper > canvas');
+  await mask.mouse.move(sheet.x, sheet.y);
+  await mask.waitForSelector('.side .lens');
+  await mask.mouse.move(5, 5);
+});
+
+test('the dip plays with Space, and its slider shows any moment', async () => {
+  await blur(mask);
+  await mask.click('[data-value="bath"]');
+  await mask.waitForTimeout(200);
+  await blur(mask);
+  await mask.keyboard.press('Space');
+  await until('it goes down', async () => /mm deep, \d+ cm/.test(await mask.textContent('.dipbar output')));
+  await picture(mask, 'dipping');
+  await blur(mask);
+  await mask.keyboard.press('Space');
+  await mask.locator('[name="level"]').fill('0');
+});
+
+test('a finding shows its place, and a mend is one click and one undo', async () => {
+  const first = await documentOf(mask);
+  const mends = mask.locator('.side [data-name="mend"]');
+  await mask.locator('.side [data-name="show"]').first().click();
+  await mask.waitForSelector('.legend');
+  if ((await mends.count()) === 0) return; // nothing to mend here; the toy has
+  await mends.first().click();
+  await until('the mend', async () => JSON.stringify(await documentOf(mask)) !== JSON.stringify(first));
+  await undo(mask);
+  await sameAs(mask, first);
+});
+
+test('the verdict opens what it rests on', async () => {
+  await mask.click('.verdict');
+  assert.ok((await mask.locator('.verdict-panel .finding').count()) > 1);
+  await picture(mask, 'verdict');
+  await mask.keyboard.press('Escape');
+  assert.equal(await mask.locator('.panel').count(), 0);
+});
+
+test('Tab shows the sheet large while the view has the focus', async () => {
+  const at = await middleOf(mask, '.canvas-box canvas');
+  await mask.mouse.click(at.x - 200, at.y);
+  await mask.keyboard.press('Tab');
+  await mask.waitForSelector('.sheet.big .paper');
+  await picture(mask, 'sheet');
+  await mask.click('[data-value="object"]');
+});
+
+// ---- Several dips ----
+
+test('a dip is added, kept, shown and removed', async () => {
+  const first = await documentOf(mask);
+  const before = await resultOf(mask);
+  await blur(mask);
+  await mask.keyboard.press('3');
+  await mask.click('[data-name="add-dip"]');
+  await until('two dips', async () => (await documentOf(mask)).dips?.length === 2);
+  await newResult(mask, before);
+  await mask.click('.dip:first-child .button[aria-pressed]');
+  await until('it is kept', async () => (await documentOf(mask)).dips[0].locked === true);
+  await picture(mask, 'dips');
+  await mask.click('[data-dip="0"]');
+  await mask.click('[name="all-dips"]');
+  await mask.click('.dip:last-child .button:last-child');
+  await until('one dip again', async () => !(await documentOf(mask)).dips);
+  for (let k = 0; k < 3; ++k) await undo(mask);
+  await sameAs(mask, first);
+});
+
+// ---- Artwork ----
+
+part = 'artwork';
+
+let dome;
+test('an STL and a PNG dropped together: the picture is on the object at once', async () => {
+  dome = await session.page();
+  await dome.waitForSelector('.dropzone');
+  const [model, image] = ['dome.stl', 'logo.png'].map((name) => readFileSync(join(work, name)).toString('base64'));
+  await dome.evaluate(async ([a, b]) => {
+    const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([bytes(a)], 'dome.stl'));
+    transfer.items.add(new File([bytes(b)], 'logo.png', { type: 'image/png' }));
+    for (const name of ['dragenter', 'dragover', 'drop']) {
+      document.querySelector('.dropzone').dispatchEvent(new DragEvent(name, { bubbles: true, cancelable: true, dataTransfer: transfer }));
+    }
+  }, [model, image]);
+  await newResult(dome, '');
+  const { object, artwork } = await documentOf(dome);
+  assert.equal(object.file, 'dome.stl');
+  assert.equal(artwork[0].image, 'logo.png');
+  await dome.waitForSelector('[data-grip="move"]');
+  await picture(dome, 'artwork');
+});
+
+test('the picture is dragged, scaled and turned by its handles; each is one step to undo', async () => {
+  const first = await documentOf(dome);
+  const steps = [['move', { x: 30, y: 12 }, 'at_mm'], ['scale', { x: -25, y: -25 }, 'size_mm'], ['turn', { x: 60, y: 30 }, 'turn_deg']];
+  for (const [grip, by, key] of steps) {
+    const before = (await documentOf(dome)).artwork[0][key];
+    await drag(dome, await middleOf(dome, `[data-grip="${grip}"]`), by, { hold: 30 });
+    await until(`${grip} changes ${key}`, async () => JSON.stringify((await documentOf(dome)).artwork[0][key]) !== JSON.stringify(before));
+  }
+  await kept(dome);
+  for (let k = 0; k < 3; ++k) await undo(dome);
+  await sameAs(dome, first);
+  for (let k = 0; k < 3; ++k) await redo(dome);
+  await kept(dome);
+});
+
+test('layers: projection, width in figures, text on top, order, removal by key', async () => {
+  await dome.selectOption('[name="projection"]', 'wrap');
+  await type(dome, 'layer-width', 18);
+  await until('the width', async () => (await documentOf(dome)).artwork[0].size_mm?.[0] === 18 || (await documentOf(dome)).artwork[0].size_mm === 18);
+  await dome.click('[data-name="add-text"]');
+  await until('a text', async () => (await documentOf(dome)).artwork.length === 2);
+  await dome.fill('[name="words"]', 'No. 7');
+  await dome.locator('[name="words"]').blur();
+  await until('the words', async () => (await documentOf(dome)).artwork[1].text === 'No. 7');
+  await dome.click('[aria-label="Further down: No. 7"]');
+  await until('the order', async () => (await documentOf(dome)).artwork[0].text === 'No. 7');
+  await blur(dome);
+  await dome.keyboard.press('Delete');
+  await until('it is gone', async () => (await documentOf(dome)).artwork.length === 1);
+  await undo(dome);
+  await until('it is back', async () => (await documentOf(dome)).artwork.length === 2);
+  await picture(dome, 'layers');
+});
+
+test('a pattern of the film is slid on the sheet', async () => {
+  await dome.setInputFiles('[name="add-pattern"]', join(work, 'tile.png'));
+  await until('a pattern', async () => (await documentOf(dome)).artwork.at(-1).projection === 'film');
+  await dome.waitForSelector('.paper canvas.slides');
+  await drag(dome, await middleOf(dome, '.side .paper > canvas'), { x: 20, y: -10 });
+  await until('it is slid', async () => (await documentOf(dome)).artwork.at(-1).at_mm?.[0] > 1);
+  await picture(dome, 'pattern');
+  await undo(dome);
+  await undo(dome);
+  await undo(dome);
+  await kept(dome);
+});
+
+test('a broken picture is a sentence, and nothing is lost', async () => {
+  const first = await documentOf(dome);
+  await dome.setInputFiles('[name="add-picture"]', join(work, 'broken.png'));
+  await until('a sentence', async () => (await dome.locator('.notice.error').count()) + (await dome.locator('[data-finding="problem"]').count()) > 0);
+  if (JSON.stringify(await documentOf(dome)) !== JSON.stringify(first)) await undo(dome);
+  await sameAs(dome, first);
+  const close = dome.locator('[data-name="close-notice"]');
+  if (await close.count()) await close.click();
+});
+
+// ---- Print and save ----
+
+test('print: progress, cancel, then the sheet and the run sheet', async () => {
+  await type(dome, 'layer-width', 18).catch(() => {});
+  await blur(dome);
+  await dome.keyboard.press('Control+p');
+  await dome.waitForSelector('[data-name="cancel-print"]');
+  await dome.click('[data-name="cancel-print"]');
+  await dome.waitForSelector('[data-name="print-again"]');
+  await dome.click('[data-name="print-again"]');
+  await dome.waitForSelector('[data-file="print.pdf"]', { timeout: 240000 });
+  await picture(dome, 'printed');
+  const url = await dome.getAttribute('[data-file="print.pdf"]', 'href');
+  const head = await dome.evaluate(async (path) => new TextDecoder().decode((await (await fetch(path)).arrayBuffer()).slice(0, 5)), url);
+  assert.equal(head, '%PDF-');
+});
+
+test('the saved job gives the same bytes by the command line', async () => {
+  const bytes = async (url) => Buffer.from(await dome.evaluate(async (path) => {
+    const data = new Uint8Array(await (await fetch(path)).arrayBuffer());
+    let text = '';
+    for (let i = 0; i < data.length; i += 32768) text += String.fromCharCode(...data.subarray(i, i + 32768));
+    return btoa(text);
+  }, url), 'base64');
+  const files = await dome.$$eval('[data-file]', (links) => links.map((link) => [link.dataset.file, link.getAttribute('href')]));
+  const printed = new Map();
+  for (const [file, url] of files) if (/print\.(png|tif|pdf)$|film\.ply$/.test(file)) printed.set(file, await bytes(url));
+  assert.ok(printed.size >= 2);
+  writeFileSync(join(work, 'job.zip'), await bytes(`/api/jobs/${jobOf(dome)}/job.zip`));
+  execFileSync('python3', ['-m', 'zipfile', '-e', 'job.zip', 'job'], { cwd: work });
+  const toml = execFileSync('sh', ['-c', 'ls job/*.toml'], { cwd: work }).toString().trim();
+  execFileSync(hydrodip, ['print', toml, '-o', 'by-hand', '--quiet'], { cwd: work });
+  for (const [file, data] of printed) assert.ok(data.equals(readFileSync(join(work, 'by-hand', file))), `${file} differs`);
+});
+
+test('Ctrl+S saves, and the name is the file\'s', async () => {
+  await dome.keyboard.press('Escape');
+  await dome.fill('[name="job-name"]', 'dome with a logo');
+  await dome.locator('[name="job-name"]').press('Enter');
+  await until('the name', async () => (await documentOf(dome)).name === 'dome with a logo');
+  await dome.keyboard.press('Control+s');
+  await dome.click('[data-name="save-now"]');
+  await dome.waitForFunction(() => document.querySelector('.jobname small')?.dataset.saved === 'true');
+  assert.match((await stateOf(dome)).where, /dome with a logo\.toml$/);
+  await undo(dome);
+  await dome.waitForFunction(() => document.querySelector('.jobname small')?.dataset.saved === 'false');
+  await redo(dome);
+});
+
+// ---- When something goes wrong ----
+
+test('a second tab is told, and may take over', async () => {
+  const second = await session.page({ context: dome.context(), address: dome.url() });
+  await second.waitForSelector('[data-name="take-pen"]');
+  assert.ok(await second.locator('[data-name="print"]').isDisabled());
+  await second.click('[data-name="take-pen"]');
+  await second.waitForFunction(() => !document.querySelector('.banner'));
+  await dome.waitForSelector('[data-name="take-pen"]');
+  await second.close();
+  await dome.click('[data-name="take-pen"]');
+  await dome.waitForFunction(() => !document.querySelector('.banner'));
+});
+
+test('the program is killed and started again: the page goes on, nothing is lost', async () => {
+  const port = new URL(program.address).port;
+  session.mayFail = true;
+  await program.end('SIGKILL');
+  await dome.waitForSelector('.banner.stop');
+  await blur(dome);
+  await dome.keyboard.press('1');
+  await type(dome, 'turn-z', 33); // while nobody listens
+  await program.start('--port', port);
+  await dome.waitForFunction(() => !document.querySelector('.banner'));
+  await until('the change has arrived', async () => (await documentOf(dome)).object.rotate_deg?.[2] === 33);
+  session.mayFail = false;
+  await newResult(dome, '');
+});
+
+test('a closed tab: the job is among the recent ones, as it was', async () => {
+  const document = await documentOf(dome);
+  const context = dome.context();
+  await dome.close();
+  dome = await session.page({ context, address: program.address });
+  await dome.waitForSelector('.recent button');
+  await picture(dome, 'recent');
+  await dome.locator('.recent b', { hasText: 'dome with a logo' }).first().click();
+  await newResult(dome, '');
+  assert.deepEqual(await documentOf(dome), document);
+});
+
+// ---- For everybody ----
+
+test('every control has a name for the ear, and the order of focus is that of the eye', async () => {
+  for (const step of ['1', '2', '3', '4']) {
+    await blur(dome);
+    await dome.keyboard.press(step);
+    const nameless = await dome.evaluate(() =>
+      [...document.querySelectorAll('button, input, select, textarea, a[href], [role=slider], [role=button]')].filter((e) => {
+        const labels = e.labels ? [...e.labels].map((l) => l.textContent).join('') : '';
+        return !(e.getAttribute('aria-label') || labels.trim() || e.textContent.trim() || e.title);
+      }).map((e) => e.outerHTML.slice(0, 120)));
+    assert.deepEqual(nameless, []);
+  }
+  await blur(dome);
+  await dome.keyboard.press('1');
+  const order = [];
+  for (let k = 0; k < 12; ++k) {
+    await dome.keyboard.press('Tab');
+    order.push(await dome.evaluate(() => (document.activeElement.closest('.top') ? 'top' : document.activeElement.closest('.steps') ? 'steps' : 'other')));
+  }
+  assert.ok(order.indexOf('top') === 0 && order.includes('steps') && order.lastIndexOf('top') < order.indexOf('steps'), order.join(' '));
+});
+
+test('? lists the keys', async () => {
+  await blur(dome);
+  await dome.keyboard.press('?');
+  assert.ok((await dome.locator('.keys dt').count()) > 10);
+  await picture(dome, 'keys');
+  await dome.keyboard.press('Escape');
+});
+
+test('a phone may look: verdict, object, sheet and findings, and nothing to change', async () => {
+  const phone = await session.page({ width: 390, height: 844, context: null });
+  await phone.waitForSelector('.recent button');
+  await phone.locator('.recent li > button').first().click();
+  await newResult(phone, '');
+  assert.equal(await phone.locator('.steps, [data-name="print"]').count(), 0);
+  const wide = await phone.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(wide <= 390, `${wide} px wide`);
+  await phone.click('[data-value="object"]');
+  await picture(phone, 'phone');
+  await phone.context().close();
+});
+
+test('nothing is cut off at 1024 x 768, and dark is dark', async () => {
+  const small = await session.page({ width: 1024, height: 768, dark: true });
+  await small.waitForSelector('.recent button');
+  await small.locator('.recent li > button').first().click();
+  await newResult(small, '');
+  const over = await small.evaluate(() => {
+    const wide = [...document.querySelectorAll('.top > *, .step > h2 > button, .viewbar')].filter((e) => e.getBoundingClientRect().right > innerWidth + 1);
+    return [document.documentElement.scrollWidth, wide.length];
+  });
+  assert.deepEqual(over, [1024, 0]);
+  const [back] = (await small.evaluate(() => getComputedStyle(document.body).backgroundColor)).match(/\d+/g).map(Number);
+  assert.ok(back < 60);
+  await picture(small, 'small-dark');
+  await small.context().close();
+});
+
+part = wanted;
+test('no complaint on the console, and no request to anybody else', async () => {
+  assert.deepEqual(session.complaints, []);
+});
+
+// ---- Running them ----
+
+let failures = 0;
+for (const { name, body, part: of } of tests) {
+  if (of !== wanted) continue;
+  const began = Date.now();
+  try {
+    await body();
+    console.log(`ok: ${name} (${((Date.now() - began) / 1000).toFixed(1)} s)`);
+  } catch (error) {
+    ++failures;
+    console.log(`FAILED: ${name}\n${error.stack}`);
+    if (pictures) for (const [k, page] of [mask, dome].entries()) await page?.screenshot({ path: join(pictures, `failed-${failures}-${k}.png`) }).catch(() => {});
+  }
+}
+await session.close();
+await program.end();
+process.exit(failures ? 1 : 0);

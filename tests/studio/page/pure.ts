@@ -1,0 +1,149 @@
+// What the page computes by itself: edits of the document, merge patches, and the pose. No browser.
+import assert from 'node:assert/strict';
+import { Matrix4, Quaternion, Vector3 } from 'three';
+import {
+  dipCount, equal, merged, patched, poseOf, withAnotherDip, withLayer, withLayerMoved, withNewLayer, withoutDip, withoutLayer, withPose,
+  withValue, type JobDocument, type Json, type Pose, type Side, type Vec3,
+} from '../../../src/studio/page/document.ts';
+import { anglesOf, placeOf, turnedDown, turnOf } from '../../../src/studio/page/stage/pose.ts';
+
+let seed = 7;
+const random = (): number => {
+  seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
+  return seed / 4294967296;
+};
+const angle = (): number => Math.round(3600 * (random() - 0.5)) / 10;
+const SIDES: Side[] = ['-z', '+z', '-y', '+y', '-x', '+x'];
+const AXES: Record<string, Vec3> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
+const outward = (side: Side): Vector3 => new Vector3(...AXES[side[1]!]!).multiplyScalar(side[0] === '-' ? -1 : 1);
+const close = (a: Vector3, b: Vector3, what: string, within = 1e-6): void =>
+  assert.ok(a.distanceTo(b) < within, `${what}: ${a.toArray()} is not ${b.toArray()}`);
+
+const tests: Record<string, () => void> = {
+  'merge patches do as RFC 7386 says, appendix A'() {
+    const cases: [Json, Json, Json][] = [
+      [{ a: 'b' }, { a: 'c' }, { a: 'c' }],
+      [{ a: 'b' }, { b: 'c' }, { a: 'b', b: 'c' }],
+      [{ a: 'b' }, { a: null }, {}],
+      [{ a: 'b', b: 'c' }, { a: null }, { b: 'c' }],
+      [{ a: ['b'] }, { a: 'c' }, { a: 'c' }],
+      [{ a: 'c' }, { a: ['b'] }, { a: ['b'] }],
+      [{ a: { b: 'c' } }, { a: { b: 'd', c: null } }, { a: { b: 'd' } }],
+      [{ a: [{ b: 'c' }] }, { a: [1] }, { a: [1] }],
+      [['a', 'b'], ['c', 'd'], ['c', 'd']],
+      [{ a: 'b' }, ['c'], ['c']],
+      [{ a: 'foo' }, null, null],
+      [{ a: 'foo' }, 'bar', 'bar'],
+      [{ e: null }, { a: 1 }, { e: null, a: 1 }],
+      [[1, 2], { a: 'b', c: null }, { a: 'b' }],
+      [{}, { a: { bb: { ccc: null } } }, { a: { bb: {} } }],
+    ];
+    for (const [target, patch, result] of cases) assert.deepEqual(merged(target, patch), result);
+  },
+
+  'a value set to its default leaves no trace'() {
+    const defaults = new Map<string, Json>([['film.width_mm', 210], ['dip.pivot_mm', [0, 0, 0]]]);
+    const first: JobDocument = { object: { file: 'a.stl' } };
+    const wide = withValue(first, defaults, 'film.width_mm', 297);
+    assert.deepEqual(wide.film, { width_mm: 297 });
+    assert.ok(equal(withValue(wide, defaults, 'film.width_mm', 210), first));
+    assert.ok(equal(withValue(first, defaults, 'dip.pivot_mm', [0, 0, 0]), first));
+  },
+
+  'no edit changes the document that it was made from'() {
+    const freeze = <T>(value: T): T => {
+      if (value && typeof value === 'object') Object.values(Object.freeze(value)).forEach(freeze);
+      return value;
+    };
+    const from = freeze<JobDocument>({ object: { file: 'a.stl' }, artwork: [{ image: 'a.png' }, { text: 'b' }], dips: [{}, { down: '+z' }] });
+    withPose(from, 1, { down: '+x', rotate_deg: [1, 2, 3], depth_mm: 4, shift_mm: [5, 6] }, 40);
+    withLayer(from, 0, { turn_deg: 3 });
+    withLayerMoved(from, 0, 1);
+    withNewLayer(from, { text: 'c' });
+    withoutLayer(from, 1);
+    withoutDip(from, 0);
+    patched(from, { film: { width_mm: 1 }, artwork: null });
+  },
+
+  'a pose written is the pose read, in one dip and in several'() {
+    const pose: Pose = { down: '-x', rotate_deg: [10, -20, 30.5], depth_mm: 16, shift_mm: [0, 0] };
+    for (const document of [{ object: { file: 'a.stl' } }, { dips: [{ down: '+z' as Side }, {}] }]) {
+      for (const shift_mm of [[0, 0], [12, -7.5]] as [number, number][]) {
+        assert.deepEqual(poseOf(withPose(document, 0, { ...pose, shift_mm }, 50), 0), { ...pose, shift_mm });
+      }
+    }
+    const plain: Pose = { down: '-z', rotate_deg: [0, 0, 0], depth_mm: 0, shift_mm: [0, 0] };
+    const start: JobDocument = { object: { file: 'a.stl' } };
+    assert.ok(equal(withPose(withPose(start, 0, pose, 50), 0, plain, 50), start));
+  },
+
+  'a way of more than a shift is left as it is'() {
+    const path = [[0, 0, 0, 0, 0, 0], [20, 6, 0, 0, 10, 0]];
+    const turned = withPose({ path }, 0, { down: '-z', rotate_deg: [0, 0, 9], depth_mm: 0, shift_mm: [0, 0] }, 50);
+    assert.deepEqual(turned.path, path);
+  },
+
+  'a second dip added and removed gives the first pose again'() {
+    const first = withPose({ object: { file: 'a.stl' } }, 0, { down: '-y', rotate_deg: [5, 0, 0], depth_mm: 12, shift_mm: [0, 0] }, 40);
+    const two = withAnotherDip(first);
+    assert.equal(dipCount(two), 2);
+    assert.deepEqual(poseOf(two, 0), poseOf(first, 0));
+    assert.equal(poseOf(two, 1).down, '+y');
+    assert.ok(equal(withoutDip(two, 1), first));
+  },
+
+  'the side that goes in first points down, and angles turn about fixed axes in order'() {
+    for (const down of SIDES) {
+      const turn = turnOf({ down, rotate_deg: [0, 0, 0] });
+      close(outward(down).applyQuaternion(turn), new Vector3(0, 0, -1), down);
+      // About z afterwards: what points down stays so.
+      const spun = turnOf({ down, rotate_deg: [0, 0, 77] });
+      close(outward(down).applyQuaternion(spun), new Vector3(0, 0, -1), `${down} spun`);
+    }
+    const rotate_deg: Vec3 = [30, -50, 110];
+    const about = (axis: Vec3, degrees: number): Matrix4 => new Matrix4().makeRotationAxis(new Vector3(...axis), (degrees * Math.PI) / 180);
+    const steps = about([0, 0, 1], 110).multiply(about([0, 1, 0], -50)).multiply(about([1, 0, 0], 30));
+    const p = new Vector3(1, 2, 3);
+    close(p.clone().applyQuaternion(turnOf({ down: '-z', rotate_deg })), p.clone().applyMatrix4(steps), 'x, then y, then z');
+  },
+
+  'angles read from a turn give that turn'() {
+    for (let i = 0; i < 200; ++i) {
+      const down = SIDES[i % 6]!;
+      const turn = turnOf({ down, rotate_deg: [angle(), angle(), angle()] });
+      const again = turnOf({ down, rotate_deg: anglesOf(turn, down) });
+      assert.ok(turn.angleTo(again) < 0.006, `${down} ${i}: off by ${turn.angleTo(again)}`); // angles are kept to a tenth of a degree
+    }
+  },
+
+  'a face put down points down'() {
+    for (let i = 0; i < 100; ++i) {
+      const turn = turnOf({ down: '-z', rotate_deg: [angle(), angle(), angle()] });
+      const normal = new Vector3(random() - 0.5, random() - 0.5, random() - 0.5).normalize();
+      const inModel = normal.clone().applyQuaternion(turn.clone().invert());
+      const more: Quaternion = turnedDown(turn, normal);
+      close(inModel.applyQuaternion(more), new Vector3(0, 0, -1), String(i));
+    }
+  },
+
+  'a placed object stands on the water in the middle of the film, at its size'() {
+    const position = Float32Array.from({ length: 300 }, () => 100 * random());
+    for (let i = 0; i < 20; ++i) {
+      const matrix = placeOf(position, turnOf({ down: SIDES[i % 6]!, rotate_deg: [angle(), angle(), angle()] }), 0.5);
+      const low = new Vector3(Infinity, Infinity, Infinity);
+      const high = low.clone().negate();
+      for (let k = 0; k < position.length; k += 3) {
+        const p = new Vector3().fromArray(position, k).applyMatrix4(matrix);
+        low.min(p);
+        high.max(p);
+      }
+      close(new Vector3(low.x + high.x, low.y + high.y, low.z), new Vector3(), String(i), 1e-3);
+      assert.ok(Math.abs(matrix.determinant() - 0.125) < 1e-9);
+    }
+  },
+};
+
+for (const [name, body] of Object.entries(tests)) {
+  body();
+  console.log(`ok: ${name}`);
+}

@@ -1,0 +1,156 @@
+// Starts `hydrodip studio` with a home of its own, and pages in Debian's Chromium that note every complaint.
+import { spawn, spawnSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+const FLAGS = ['--no-sandbox', '--disable-dev-shm-usage', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+// Said by the software renderer about itself, and by Chromium about requests to a program that was killed.
+const HARMLESS = /GPU stall|ReadPixels|software WebGL/;
+const WHILE_DOWN = /ERR_CONNECTION|ERR_EMPTY_RESPONSE|ERR_INCOMPLETE_CHUNKED|net::ERR/;
+
+export function hasChromium(chromium) {
+  return spawnSync(chromium, ['--version']).status === 0;
+}
+
+export class Program {
+  constructor(hydrodip) {
+    this.hydrodip = hydrodip;
+    this.home = mkdtempSync(join(tmpdir(), 'hydrodip-studio-'));
+    process.on('exit', () => {
+      this.process?.kill('SIGKILL');
+      rmSync(this.home, { recursive: true, force: true });
+    });
+  }
+
+  environment() {
+    const folder = (name) => {
+      const path = join(this.home, name);
+      mkdirSync(path, { recursive: true });
+      return path;
+    };
+    return {
+      ...process.env, HOME: this.home, XDG_DATA_HOME: folder('data'), XDG_STATE_HOME: folder('state'), XDG_CACHE_HOME: folder('cache'),
+      XDG_CONFIG_HOME: folder('config'), XDG_RUNTIME_DIR: folder('run'),
+    };
+  }
+
+  async start(...more) {
+    this.process = spawn(this.hydrodip, ['studio', '--no-browser', ...more], { cwd: this.home, env: this.environment() });
+    this.said = '';
+    this.errors = '';
+    this.process.stderr.on('data', (text) => (this.errors += text));
+    this.ended = new Promise((done) => this.process.on('exit', done));
+    this.address = await new Promise((done, fail) => {
+      this.process.stdout.on('data', (text) => {
+        this.said += text;
+        const found = this.said.match(/http:\S+/);
+        if (found) done(found[0]);
+      });
+      this.process.on('exit', (code) => fail(new Error(`hydrodip studio ended (${code}): ${this.errors}`)));
+    });
+    this.origin = new URL(this.address).origin;
+    return this.address;
+  }
+
+  async end(signal = 'SIGTERM') {
+    this.process.kill(signal);
+    await this.ended;
+  }
+}
+
+export class Session {
+  static async start(modules, chromium, program) {
+    const { chromium: driver } = createRequire(join(modules, 'x.js'))('playwright-core');
+    const session = new Session();
+    session.program = program;
+    session.browser = await driver.launch({ executablePath: chromium, args: FLAGS });
+    session.complaints = [];
+    session.mayFail = false;
+    return session;
+  }
+
+  // A page of its own, with its own cookies.
+  async page({ width = 1100, height = 760, dark = false, address = this.program.address, context = null } = {}) {
+    const own = context ?? (await this.browser.newContext({
+      viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', reducedMotion: 'reduce', acceptDownloads: true,
+    }));
+    const page = await own.newPage();
+    page.setDefaultTimeout(60000);
+    const complain = (text) => {
+      if (HARMLESS.test(text) || (this.mayFail && WHILE_DOWN.test(text))) return;
+      this.complaints.push(text);
+    };
+    page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complain(message.text()));
+    page.on('pageerror', (error) => complain(String(error.stack)));
+    page.on('request', (request) => {
+      const url = request.url();
+      if (!url.startsWith(this.program.origin) && !/^(data|blob):/.test(url)) complain(`asks for ${url}`);
+    });
+    await page.goto(address);
+    return page;
+  }
+
+  async close() {
+    await this.browser.close();
+  }
+}
+
+// ---- What the tests ask of a page ----
+
+export const jobOf = (page) => new URLSearchParams(new URL(page.url()).hash.slice(1)).get('job');
+
+// The job as the program has it.
+export const stateOf = (page) => page.evaluate(async (job) => (await fetch(`/api/jobs/${job}`)).json(), jobOf(page));
+export const documentOf = async (page) => (await stateOf(page)).document;
+
+export async function until(what, check, seconds = 60) {
+  const end = Date.now() + 1000 * seconds;
+  for (;;) {
+    const found = await check();
+    if (found) return found;
+    if (Date.now() > end) throw new Error(`waited in vain: ${what}`);
+    await new Promise((done) => setTimeout(done, 40));
+  }
+}
+
+// Everything that was changed has reached the program.
+export const kept = (page) => page.waitForFunction(() => !/keeping/.test(document.querySelector('.jobname small')?.textContent ?? 'keeping'));
+
+export const resultOf = (page) => page.getAttribute('.side .sheet', 'data-result');
+
+// A result for what the document now says; `final`: in normal quality.
+export async function newResult(page, before, final = false) {
+  await page.waitForFunction(([old, last]) => {
+    const now = document.querySelector('.side .sheet')?.dataset.result;
+    return now && now !== old && (!last || document.querySelector('.verdict')?.dataset.draft === 'false');
+  }, [before, final]);
+}
+
+export async function openSample(page, name) {
+  await page.click(`[data-sample="${name}"]`);
+  await page.waitForSelector('.work');
+  await newResult(page, '');
+}
+
+export async function type(page, name, value) {
+  const field = page.locator(`input[name="${name}"]`);
+  await field.fill(String(value));
+  await field.press('Enter');
+}
+
+export async function drag(page, from, by, { steps = 6, hold = 0 } = {}) {
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  for (let k = 1; k <= steps; ++k) {
+    await page.mouse.move(from.x + (by.x * k) / steps, from.y + (by.y * k) / steps);
+    if (hold) await page.waitForTimeout(hold);
+  }
+  await page.mouse.up();
+}
+
+export async function middleOf(page, selector) {
+  const box = await page.locator(selector).boundingBox();
+  return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+}

@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include "studio/bundle.h"
+#include "studio/client.h"
+#include "studio/event_stream.h"
+#include "studio/plain_words.h"
+#include "studio/run_file.h"
+#include "studio/tasks.h"
+#include "temporary_folder.h"
+
+namespace hydrodip {
+namespace {
+
+TEST(Bundle, ArraysLieWhereItSays) {
+  Json head;
+  head["name"] = "a";
+  Bundle bundle(head);
+  bundle.add("bytes", std::vector<std::uint8_t>{1, 2, 3}, 1);
+  bundle.add("floats", std::vector<float>{0.5F, -1, 2, 3}, 2);
+  bundle.add("none", std::vector<std::uint32_t>{}, 3);
+  const std::vector<std::uint8_t> bytes = bundle.finish();
+  const ReadBundle read(std::string(bytes.begin(), bytes.end()));
+  EXPECT_EQ(read.head["name"], "a");
+  EXPECT_EQ(read.array<std::uint8_t>("bytes"), (std::vector<std::uint8_t>{1, 2, 3}));
+  EXPECT_EQ(read.array<float>("floats"), (std::vector<float>{0.5F, -1, 2, 3}));
+  EXPECT_TRUE(read.array<std::uint32_t>("none").empty());
+  // Pages take arrays as they lie: from the whole answer's beginning, at multiples of eight.
+  EXPECT_EQ((bytes.size() - read.data.size()) % 8, 0u);
+  for (const auto& [name, at] : read.head["arrays"].items())
+    EXPECT_EQ(at["offset"].get<std::size_t>() % 8, 0u) << name;
+}
+
+TEST(EventStream, OnlyTheNewestOfAKindWaits) {
+  EventStream stream;
+  for (int n = 0; n < 5; ++n) stream.push("working", Json{{"n", n}, {"of", 5}}, true);
+  stream.push("result", Json{{"n", 7}, {"of", 5}});
+  std::string text;
+  ASSERT_TRUE(stream.next(text, std::chrono::milliseconds(1)));
+  EXPECT_EQ(
+      text,
+      "event: working\ndata: {\"n\":4,\"of\":5}\n\nevent: result\ndata: {\"n\":7,\"of\":5}\n\n");
+  ASSERT_TRUE(stream.next(text, std::chrono::milliseconds(1)));
+  EXPECT_EQ(text, ":\n\n");
+  stream.close();
+  EXPECT_FALSE(stream.next(text, std::chrono::milliseconds(1)));
+}
+
+TEST(PlainWords, HaveNoOptionsInThem) {
+  EXPECT_EQ(in_plain_words("Turn steep sides down (--rotate, --down), dip less deep (--depth)."),
+            "Turn steep sides down, dip less deep.");
+  EXPECT_EQ(in_plain_words("use a film that bears more (material.tear_stretch)."),
+            "use a film that bears more.");
+  EXPECT_EQ(in_plain_words("shrink it with --size 71 or less, turn it with --rotate, or take a "
+                           "larger --film"),
+            "shrink it to 71 mm or less, turn it, or take a larger sheet of film");
+  EXPECT_EQ(in_plain_words("12 mm (x) and 3 % (CIEDE2000)"), "12 mm (x) and 3 % (CIEDE2000)");
+}
+
+TEST(TaskProgress, OnlyRisesAndKnowsNoEndBeforeTheEnd) {
+  for (const char* kind : {"print", "orient", "plan"}) {
+    TaskProgress progress(kind);
+    double last = 0;
+    for (const char* activity :
+         {"loading", "dipping", "mapping", "dipping", "dipping", "dipping", "writing the sheet",
+          "trying directions", "dipping the best for good", "drawing the previews", "dipping"})
+      for (double f = 0; f <= 1; f += 0.25) {
+        progress.update(activity, f);
+        EXPECT_GE(progress.fraction(), last);
+        EXPECT_LT(progress.fraction(), 1);
+        last = progress.fraction();
+      }
+    EXPECT_GT(last, 0.5);
+  }
+}
+
+TEST(RunFile, ALaterRunFindsOnlyWhatAKilledOneLeft) {
+  const TemporaryFolder folder;
+  {
+    RunFile first(folder.path());
+    EXPECT_EQ(first.port(), 0);
+    first.keep(4714, "secret");
+    RunFile beside(folder.path());  // a second studio at the same time
+    EXPECT_EQ(beside.port(), 0);
+    EXPECT_EQ(beside.token(), "");
+    std::filesystem::copy(folder / "run.json", folder / "as-it-was.json");
+  }
+  EXPECT_EQ(RunFile(folder.path()).token(), "");  // that one had ended well
+  std::filesystem::copy(folder / "as-it-was.json", folder / "run.json",
+                        std::filesystem::copy_options::overwrite_existing);
+  RunFile next(folder.path());
+  EXPECT_EQ(next.port(), 4714);
+  EXPECT_EQ(next.token(), "secret");
+}
+
+}  // namespace
+}  // namespace hydrodip

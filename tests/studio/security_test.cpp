@@ -1,0 +1,218 @@
+// Who is let in, and what nobody gets.
+#include <gtest/gtest.h>
+#include <zip.h>
+
+#include <fstream>
+
+#include "base/file.h"
+#include "studio/served.h"
+
+namespace hydrodip {
+namespace {
+
+using Headers = std::map<std::string, std::string>;
+
+class SecurityTest : public testing::Test {
+ protected:
+  Headers with(const std::string& name, const std::string& value) const {
+    Headers headers = client.own_headers();
+    headers[name] = value;
+    return headers;
+  }
+  std::string own() const { return "127.0.0.1:" + std::to_string(studio.port()); }
+  std::string new_job() const { return client.post("/api/jobs").json()["job"]; }
+
+  TemporaryFolder folder;
+  Served studio{folder.path()};
+  Client client = studio.client();
+};
+
+TEST_F(SecurityTest, ThePageGetsIn) {
+  EXPECT_EQ(client.get("/api/hello").status, 200);
+  EXPECT_EQ(client.get("/").status, 200);
+  EXPECT_NE(client.get("/").headers["content-security-policy"].find("script-src 'self'"),
+            std::string::npos);
+}
+
+TEST_F(SecurityTest, TheTokenInTheAddressGivesACookieThatNoScriptSees) {
+  const Reply reply = client.send("GET", std::string("/?token=") + kToken, "", {});
+  EXPECT_EQ(reply.status, 303);
+  EXPECT_EQ(reply.headers.at("location"), "/");
+  const std::string cookie = reply.headers.at("set-cookie");
+  for (const char* part : {kToken, "HttpOnly", "SameSite=Strict"})
+    EXPECT_NE(cookie.find(part), std::string::npos) << part;
+}
+
+TEST_F(SecurityTest, NoTokenNoAnswer) {
+  for (const char* cookie : {"", "hydrodip=x", "hydrodip-1=0123456789abcdef0123456789abcdef"})
+    for (const char* path : {"/api/hello", "/api/recent", "/app.js", "/api/jobs/0123456789abcdef"})
+      EXPECT_EQ(client.send("GET", path, "", {{"Cookie", cookie}}).code(), "no-token") << path;
+  EXPECT_EQ(client.send("POST", "/api/jobs", "{}", {{"X-Hydrodip", "1"}}).code(), "no-token");
+  EXPECT_EQ(client.send("GET", "/?token=wrong", "", {}).status, 403);
+  EXPECT_FALSE(client.send("GET", "/?token=wrong", "", {}).headers.contains("set-cookie"));
+}
+
+// A name that somebody else points to this machine (DNS rebinding) still says itself in Host.
+TEST_F(SecurityTest, OnlyTheOwnHostIsAnswered) {
+  for (const std::string host :
+       {std::string("evil.example"), "evil.example:" + std::to_string(studio.port()),
+        std::string("127.0.0.1"), std::string("127.0.0.1:1"), std::string("")}) {
+    EXPECT_EQ(client.send("GET", "/api/hello", "", with("Host", host)).code(), "wrong-host");
+    EXPECT_EQ(client.send("GET", "/", "", with("Host", host)).code(), "wrong-host");
+    EXPECT_EQ(client.send("POST", "/api/jobs", "{}", with("Host", host)).code(), "wrong-host");
+  }
+}
+
+TEST_F(SecurityTest, OnlyTheOwnOriginCommands) {
+  for (const std::string origin : {std::string("http://evil.example"), std::string("null"),
+                                   "https://" + own(), std::string("http://127.0.0.1:1")}) {
+    EXPECT_EQ(client.send("POST", "/api/jobs", "{}", with("Origin", origin)).code(),
+              "wrong-origin");
+    EXPECT_EQ(client.send("GET", "/api/hello", "", with("Origin", origin)).code(), "wrong-origin");
+  }
+  EXPECT_EQ(client.send("POST", "/api/jobs", "{}", with("Origin", "http://" + own())).status, 201);
+  EXPECT_EQ(client.send("GET", "/api/hello", "", with("Sec-Fetch-Site", "cross-site")).code(),
+            "wrong-origin");
+  // A form of another page has neither.
+  Headers bare = client.own_headers();
+  bare.erase("X-Hydrodip");
+  EXPECT_EQ(client.send("POST", "/api/jobs", "{}", bare).code(), "wrong-origin");
+  bare["Origin"] = "http://" + own();
+  EXPECT_EQ(client.send("POST", "/api/jobs", "{}", bare).status, 201);
+}
+
+TEST_F(SecurityTest, NothingBeyondTheJobsFolderIsRead) {
+  const std::string job = new_job();
+  std::ofstream(folder / "secret.png") << "secret";
+  for (const char* name :
+       {"../../../secret.png", "..%2f..%2f..%2fsecret.png", "%2e%2e/%2e%2e/secret.png",
+        "/etc/passwd", "%2Fetc%2Fpasswd", "..\\..\\secret.png", "a/../../secret.png", "./x.png",
+        ".hidden.png", "state.json", "../state.json", "x%00.png", ""}) {
+    const Reply read = client.get("/api/jobs/" + job + "/files/" + name);
+    EXPECT_GE(read.status, 400) << name;
+    EXPECT_EQ(read.body.find("secret\n"), std::string::npos);
+    const Reply task = client.get("/api/jobs/" + job + "/tasks/t1/files/" + name);
+    EXPECT_GE(task.status, 400) << name;
+  }
+  for (const char* other : {"..", "../..", "%2e%2e", "0123456789abcdeg", "0123456789abcdef"})
+    EXPECT_EQ(client.get(std::string("/api/jobs/") + other).status, 404) << other;
+}
+
+TEST_F(SecurityTest, NothingBeyondTheJobsFolderIsWritten) {
+  const std::string job = new_job();
+  for (const char* name : {"../escaped.png", "..%2fescaped.png", "%2fetc%2fescaped.png",
+                           "a/../../escaped.png", ".hidden.png"}) {
+    EXPECT_GE(client.put("/api/jobs/" + job + "/files/" + name, "x").status, 400) << name;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "jobs" / job / "escaped.png"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "jobs" / job / "files"));
+}
+
+TEST_F(SecurityTest, ADocumentNamesNoFileOfTheMachine) {
+  const std::string job = new_job();
+  std::ofstream(folder / "model.stl") << "x";
+  const std::string outside = (folder / "model.stl").string();
+  for (const std::string& file : {outside, std::string("../../../model.stl")})
+    for (const std::string& document : {R"({"object": {"file": ")" + file + R"("}})",
+                                        R"({"artwork": [{"image": ")" + file + R"("}]})",
+                                        R"({"ink": {"profile": ")" + file + R"("}})"}) {
+      const Reply reply = client.put("/api/jobs/" + job + "/document",
+                                     R"({"client": "c1", "document": )" + document + "}");
+      EXPECT_GE(reply.status, 400) << document;
+      EXPECT_TRUE(reply.code() == "bad-name" || reply.code() == "bad-value") << reply.body;
+    }
+}
+
+// A job's file may name any file, but not when it was dropped on a page.
+TEST_F(SecurityTest, ADroppedJobReadsOnlyWhatWasDroppedWithIt) {
+  const std::string job = new_job();
+  std::ofstream(folder / "secret.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const std::string toml = "[object]\nfile = \"" + (folder / "secret.obj").string() + "\"\n";
+  ASSERT_EQ(client.put("/api/jobs/" + job + "/files/job.toml", toml).status, 201);
+  const Reply reply = client.post("/api/jobs/" + job + "/adopt", R"({"files": ["job.toml"]})");
+  EXPECT_EQ(reply.code(), "bad-file");
+  EXPECT_FALSE(client.get("/api/jobs/" + job).json()["document"].contains("object"));
+}
+
+TEST_F(SecurityTest, TooLargeIsRefusedBeforeItIsSent) {
+  const std::string job = new_job();
+  const std::string path = "/api/jobs/" + job + "/files/huge.stl";
+  // Two gigabytes are announced, and not one byte is sent: the answer does not wait for them.
+  EXPECT_EQ(client.send("PUT", path, "", with("Content-Length", "2147483648")).code(), "too-large");
+  EXPECT_EQ(
+      client.send("PUT", "/api/jobs/" + job + "/document", "", with("Content-Length", "2147483648"))
+          .code(),
+      "too-large");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "jobs" / job / "files"));
+  // What comes without a length is counted: a picture for the list of jobs has 256 kB.
+  Headers chunked = with("Transfer-Encoding", "chunked");
+  std::string body;
+  for (int n = 0; n < 300; ++n) body += "400\r\n" + std::string(1024, 'x') + "\r\n";
+  chunked["Content-Length"];  // none
+  chunked.erase("Content-Length");
+  const Reply reply =
+      client.send("PUT", "/api/jobs/" + job + "/thumbnail", body + "0\r\n\r\n", chunked);
+  EXPECT_TRUE(reply.status == 413 || reply.status == 0) << reply.status;
+}
+
+TEST_F(SecurityTest, AWrongRequestLeavesTheServerWell) {
+  for (const char* body :
+       {"", "{", "[]", "null", "\"x\"", "{\"client\": 3}", R"({"client": "c1", "document": 3})",
+        R"({"client": "c1", "document": {"object": 3}})",
+        R"({"client": "c1", "document": {"object": {"size_mm": "x"}}})",
+        R"({"client": "c1", "document": {"run": {"threads": 1}}})",
+        R"({"client": "c1", "document": {"nonsense": {"x": 1}}})",
+        R"({"client": "<script>", "document": {}})"}) {
+    const std::string job = new_job();
+    const Reply reply = client.put("/api/jobs/" + job + "/document", body);
+    EXPECT_GE(reply.status, 400) << body;
+    EXPECT_LT(reply.status, 500) << body;
+  }
+  EXPECT_EQ(client.get("/api/hello").status, 200);
+}
+
+// "name" in a ZIP archive, by libzip.
+void make_zip(const std::filesystem::path& file,
+              const std::vector<std::pair<std::string, std::string>>& files) {
+  zip_t* const zip = zip_open(file.c_str(), ZIP_CREATE, nullptr);
+  for (const auto& [name, text] : files)
+    zip_file_add(zip, name.c_str(), zip_source_buffer(zip, text.data(), text.size(), 0), 0);
+  zip_close(zip);
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+  const auto bytes = read_file(file);
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST_F(SecurityTest, AnArchiveUnpacksIntoTheJobAlone) {
+  const std::string job = new_job(), at = "/api/jobs/" + job;
+  make_zip(folder / "toy.zip", {{"../escaped.obj", "v 0 0 0\n"},
+                                {"/escaped.obj", "v 0 0 0\n"},
+                                {".hidden.obj", "v 0 0 0\n"},
+                                {"run.sh", "rm"},
+                                {"toy/toy.obj",
+                                 "v 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\n"
+                                 "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"}});
+  ASSERT_EQ(client.put(at + "/files/toy.zip", bytes_of(folder / "toy.zip")).status, 201);
+  const Reply reply = client.post(at + "/adopt", R"({"files": ["toy.zip"]})");
+  ASSERT_EQ(reply.status, 200) << reply.body;
+  EXPECT_EQ(reply.json()["document"]["object"]["file"], "toy/toy.obj");
+  std::vector<std::string> files;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(folder / "jobs" / job / "files"))
+    if (entry.is_regular_file()) files.push_back(entry.path().filename().string());
+  EXPECT_EQ(files, std::vector<std::string>{"toy.obj"});
+}
+
+TEST_F(SecurityTest, AnArchiveThatBlowsUpIsRefused) {
+  const std::string job = new_job(), at = "/api/jobs/" + job;
+  const std::string zeros(std::size_t(200) << 20U, '\0');
+  make_zip(folder / "bomb.zip", {{"a.stl", zeros}});
+  ASSERT_LT(std::filesystem::file_size(folder / "bomb.zip"), 1u << 20U);
+  ASSERT_EQ(client.put(at + "/files/bomb.zip", bytes_of(folder / "bomb.zip")).status, 201);
+  EXPECT_EQ(client.post(at + "/adopt", R"({"files": ["bomb.zip"]})").code(), "bad-file");
+}
+
+}  // namespace
+}  // namespace hydrodip
