@@ -1,7 +1,5 @@
 #include "request.h"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -334,19 +332,10 @@ void declare_studio(CLI::App& app, Request& request) {
 }
 
 JobConfig configure(const Request& request) {
-  JobConfig config;
+  JobConfig config = configured(request.model, request.sources);
   config.film_image = request.film_image;
   config.output = request.output;
   config.command_line = request.command_line;
-  SettingSources sources = request.sources;
-  const bool is_job = std::filesystem::path(request.model).extension() == ".toml";
-  if (is_job) sources.configs.insert(sources.configs.begin(), request.model);
-  apply_sources(config, sources);
-  if (!is_job) config.model = request.model;
-  if (is_job && config.model.empty())
-    throw InputError(
-        fmt::format("{}: the job names no model: begin it with file = \"MODEL\" under [object]",
-                    request.model));
   return config;
 }
 

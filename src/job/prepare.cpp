@@ -34,7 +34,7 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
                               const RunContext& context, double dpi, int samples_per_axis) {
   context.progress("loading", 0);
   std::vector<PictureSource> pictures = read_pictures(options.artwork);
-  LoadedObject loaded = load_object(model, options.load, context);
+  LoadedObject loaded = options.given ? *options.given : load_object(model, options.load, context);
   for (const std::string& finding : loaded.health.findings()) context.warn(finding);
   const auto object = std::make_shared<const Object>(std::move(loaded.object));
   PreparedObject result{.posed = PosedObject(object, options.pose),
