@@ -12,6 +12,7 @@
 #include "job/prepare.h"
 #include "job/print_dips.h"
 #include "job/sheet_of.h"
+#include "job/wanted.h"
 #include "job/ways.h"
 #include "report/findings.h"
 #include "report/report.h"
@@ -63,24 +64,23 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   const Designed designed = design(
       {prepared.posed, *prepared.paint, Allotment(), *printer.model, options}, times, context);
   require_ink(designed, config);
-  const Coverage& coverage = designed.dipped.coverage;
-  const bool stop = concern_of(coverage) == Concern::kStop;
-  const std::string better =
-      stop ? times.measure("find",
-                           [&] { return better_way(config, prepared, designed.dipped, context); })
-           : "";
-  SheetOptions sheet = sheet_of(config);
-  if (stop) sheet.alarm = "DO NOT DIP: " + short_verdict(coverage);
-  times.measure("sheet",
-                [&] { write_sheet_files(folder, designed.ink.ink, printer, sheet, context); });
-
   const Finish finish(paint_as_dipped(prepared.paint, designed.dipped),
                       {{designed.dipped, designed.raster,
                         std::make_shared<const Image>(designed.ink.ink.on_object)}});
-  const JobRecord record{"print", config,        prepared,
-                         inputs,  finish,        times,
-                         context, &designed.ink, printer.model->name(),
-                         better};
+  JobRecord record{"print", config,        prepared,
+                   inputs,  finish,        times,
+                   context, &designed.ink, printer.model->name()};
+  record.wanted = wanted_coverage(designed.dipped, finish.paint());
+  const Report first_look = make_report(record);
+  const bool stop = concern_of(findings(first_look)) == Concern::kStop;
+  if (stop)
+    record.better_way = times.measure(
+        "find", [&] { return better_way(config, prepared, designed.dipped, context); });
+  SheetOptions sheet = sheet_of(config);
+  if (stop) sheet.alarm = "DO NOT DIP: " + short_verdict(first_look);
+  times.measure("sheet",
+                [&] { write_sheet_files(folder, designed.ink.ink, printer, sheet, context); });
+
   const Previews previews =
       times.measure("preview", [&] { return write_previews(folder, record); });
   return finish_job(folder, record, previews);

@@ -16,6 +16,7 @@
 #include "job/output.h"
 #include "job/prepare.h"
 #include "job/sheet_of.h"
+#include "job/wanted.h"
 #include "job/ways.h"
 #include "report/findings.h"
 #include "session/sheet_files.h"
@@ -156,8 +157,7 @@ void clear_margin(PrintedFilm& printed, const FilmOptions& film, const RunContex
 
 // The sheet as it was given, with marks.
 void write_given_sheet(OutputFolder& folder, const PrintedFilm& printed, const Printer& printer,
-                       const JobConfig& config, const Coverage& coverage,
-                       const RunContext& context) {
+                       const JobConfig& config, const Report& report, const RunContext& context) {
   FilmInk film;
   film.inking.inks = printed.inks;
   film.wanted = Image(printed.inks.width_px, printed.inks.height_px);
@@ -165,8 +165,8 @@ void write_given_sheet(OutputFolder& folder, const PrintedFilm& printed, const P
     film.wanted.rgba[i + 3] = is_blank(printed.inks.cmyk.data() + i) ? 0 : 255;
   SheetOptions sheet = sheet_of(config);
   sheet.dpi = printed.raster.dpi;
-  if (concern_of(coverage) == Concern::kStop)
-    sheet.alarm = "DO NOT DIP: " + short_verdict(coverage);
+  if (concern_of(findings(report)) == Concern::kStop)
+    sheet.alarm = "DO NOT DIP: " + short_verdict(report);
   write_sheet_files(folder, film, printer, sheet, context);
 }
 
@@ -207,17 +207,16 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
   });
   const Finish finish(prepared.paint,
                       {{dipped, printed.raster, std::make_shared<const Image>(std::move(seen))}});
-  const std::string better =
-      concern_of(dipped.coverage) == Concern::kStop
-          ? times.measure("find", [&] { return better_way(config, prepared, dipped, context); })
-          : "";
+  JobRecord record{
+      command, config, prepared, inputs, finish, times, context, nullptr, printer.model->name()};
+  if (config.film_image.empty()) record.wanted = wanted_coverage(dipped, *prepared.paint);
+  const Report first_look = make_report(record);
+  if (concern_of(findings(first_look)) == Concern::kStop)
+    record.better_way =
+        times.measure("find", [&] { return better_way(config, prepared, dipped, context); });
   if (command == "print")
-    times.measure("sheet", [&] {
-      write_given_sheet(folder, printed, printer, config, dipped.coverage, context);
-    });
-  const JobRecord record{
-      command, config, prepared, inputs, finish, times, context, nullptr, printer.model->name(),
-      better};
+    times.measure(
+        "sheet", [&] { write_given_sheet(folder, printed, printer, config, first_look, context); });
   const Previews previews = times.measure("preview", [&] {
     return write_previews(folder, record,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");
