@@ -13,7 +13,9 @@
 #include "dip/principal_stretch.h"
 #include "elastic/corotated.h"
 #include "hydrodip/hydrodip.h"
+#include "job/job_record.h"
 #include "job/sheet_of.h"
+#include "job/wanted.h"
 #include "running.h"
 
 namespace hydrodip::python {
@@ -35,6 +37,17 @@ struct AirHandle {
 };
 
 std::array<double, 3> plain(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+// As `hydrodip print` would report it, whose verdict the sheet's margin bears.
+Report report_of(const Design& d, const RunContext& context) {
+  const std::vector<ReportInput> inputs;
+  const Timings times;
+  JobRecord record{"print", d.job->config,    d.job->prepared,
+                   inputs,  *d.finish,        times,
+                   context, &d.designed->ink, d.job->printer.model->name()};
+  record.wanted = wanted_coverage(d.dipped, d.finish->paint());
+  return make_report(record);
+}
 
 // ---- film ----
 
@@ -437,7 +450,7 @@ void bind_design(py::module_& m) {
           [](const Design& d, const std::filesystem::path& folder, const py::object& progress) {
             run(progress, [&](const RunContext& context) {
               write_sheet(folder, *d.designed, d.job->printer,
-                          sheet_of(d.job->config, d.dipped.coverage), context);
+                          sheet_of(d.job->config, report_of(d, context)), context);
             });
           },
           py::arg("folder"), py::arg("progress") = py::none(),

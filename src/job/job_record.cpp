@@ -179,7 +179,6 @@ Report make_report(const JobRecord& record) {
   report.command = record.command;
   report.command_line = record.config.command_line;
   report.title = record.config.print.job_name;
-  report.verdict = plain_verdict(record.dipped().coverage);
   report.better_way = record.better_way;
   report.inputs = record.inputs;
   for (const Parameter& parameter : parameters())
@@ -189,6 +188,9 @@ Report make_report(const JobRecord& record) {
   report.total_seconds = record.times.total_s();
   report.rounds = rounds(record);
   report.coverage = record.dipped().coverage;
+  report.wanted = record.wanted;
+  report.verdict = report.wanted ? plain_verdict(*report.coverage, *report.wanted)
+                                 : plain_verdict(*report.coverage);
   report.air = record.dipped().air;
   report.way_in = way_in(record.config, record.dipped().posed.mesh());
   report.angles = record.dipped().angles;

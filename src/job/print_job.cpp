@@ -13,6 +13,7 @@
 #include "job/prepare.h"
 #include "job/print_dips.h"
 #include "job/sheet_of.h"
+#include "job/wanted.h"
 #include "job/ways.h"
 #include "report/findings.h"
 #include "report/report.h"
@@ -64,18 +65,17 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   const DesignedJob made = designed(job, times, context);
   const DippedObject& dipped = made.designed.dipped;
   const InkResult& ink = made.designed.ink;
-  const bool stop = concern_of(dipped.coverage) == Concern::kStop;
-  const std::string better =
-      stop
-          ? times.measure("find", [&] { return better_way(config, job.prepared, dipped, context); })
-          : "";
-  const SheetOptions sheet = sheet_of(config, dipped.coverage);
+  JobRecord record{"print", config,      job.prepared,
+                   inputs,  made.finish, times,
+                   context, &ink,        job.printer.model->name()};
+  record.wanted = wanted_coverage(dipped, made.finish.paint());
+  const Report first_look = make_report(record);
+  if (concern_of(findings(first_look)) == Concern::kStop)
+    record.better_way =
+        times.measure("find", [&] { return better_way(config, job.prepared, dipped, context); });
+  const SheetOptions sheet = sheet_of(config, first_look);
   times.measure("sheet", [&] { write_sheet_files(folder, ink.ink, job.printer, sheet, context); });
 
-  const JobRecord record{"print", config,      job.prepared,
-                         inputs,  made.finish, times,
-                         context, &ink,        job.printer.model->name(),
-                         better};
   const Previews previews =
       times.measure("preview", [&] { return write_previews(folder, record); });
   return finish_job(folder, record, previews);

@@ -17,10 +17,10 @@ SheetOptions sheet_of(const JobConfig& config) {
   return sheet;
 }
 
-SheetOptions sheet_of(const JobConfig& config, const Coverage& coverage) {
+SheetOptions sheet_of(const JobConfig& config, const Report& report) {
   SheetOptions sheet = sheet_of(config);
-  if (concern_of(coverage) == Concern::kStop)
-    sheet.alarm = "DO NOT DIP: " + short_verdict(coverage);
+  if (concern_of(findings(report)) == Concern::kStop)
+    sheet.alarm = "DO NOT DIP: " + short_verdict(report);
   return sheet;
 }
 

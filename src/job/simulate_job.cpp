@@ -17,6 +17,7 @@
 #include "job/output.h"
 #include "job/prepare.h"
 #include "job/sheet_of.h"
+#include "job/wanted.h"
 #include "job/ways.h"
 #include "report/findings.h"
 #include "session/sheet_files.h"
@@ -157,14 +158,13 @@ void clear_margin(PrintedFilm& printed, const FilmOptions& film, const RunContex
 
 // The sheet as it was given, with marks.
 void write_given_sheet(OutputFolder& folder, const PrintedFilm& printed, const Printer& printer,
-                       const JobConfig& config, const Coverage& coverage,
-                       const RunContext& context) {
+                       const JobConfig& config, const Report& report, const RunContext& context) {
   FilmInk film;
   film.inking.inks = printed.inks;
   film.wanted = Image(printed.inks.width_px, printed.inks.height_px);
   for (std::size_t i = 0; i < printed.inks.cmyk.size(); i += 4)
     film.wanted.rgba[i + 3] = is_blank(printed.inks.cmyk.data() + i) ? 0 : 255;
-  SheetOptions sheet = sheet_of(config, coverage);
+  SheetOptions sheet = sheet_of(config, report);
   sheet.dpi = printed.raster.dpi;
   write_sheet_files(folder, film, printer, sheet, context);
 }
@@ -201,21 +201,19 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
     return film_image;
   });
   const SimulatedJob made = dipped_with(printed, job, film, times, context);
-  const Coverage& coverage = made.dipped.coverage;
 
-  const std::string better =
-      concern_of(coverage) == Concern::kStop
-          ? times.measure("find",
-                          [&] { return better_way(config, job.prepared, made.dipped, context); })
-          : "";
+  JobRecord record{command, config,      job.prepared,
+                   inputs,  made.finish, times,
+                   context, nullptr,     job.printer.model->name()};
+  if (config.film_image.empty()) record.wanted = wanted_coverage(made.dipped, *job.prepared.paint);
+  const Report first_look = make_report(record);
+  if (concern_of(findings(first_look)) == Concern::kStop)
+    record.better_way = times.measure(
+        "find", [&] { return better_way(config, job.prepared, made.dipped, context); });
   if (command == "print")
     times.measure("sheet", [&] {
-      write_given_sheet(folder, printed, job.printer, config, coverage, context);
+      write_given_sheet(folder, printed, job.printer, config, first_look, context);
     });
-  const JobRecord record{command, config,      job.prepared,
-                         inputs,  made.finish, times,
-                         context, nullptr,     job.printer.model->name(),
-                         better};
   const Previews previews = times.measure("preview", [&] {
     return write_previews(folder, record,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");
