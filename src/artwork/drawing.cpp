@@ -24,12 +24,16 @@ struct Unref {
 template <class Type>
 using Owned = std::unique_ptr<Type, Unref>;
 
-constexpr double kFontSize = 100;
+// librsvg asks FreeType for letters of font size times scale squared, which has a limit: the larger
+// the font, the larger it can be drawn, and the shorter a line can be (900 letters).
+constexpr double kFontSize = 4000, kLargestLetter_px = 15000;
 constexpr double kLineSpacing = 1.2;
 // Around the letters, so that no outline is cut.
-constexpr double kTextPad = 1;
+constexpr double kTextPad = 0.01 * kFontSize;
 // cairo's, and as many as fit half a GiB, for each of the surfaces that librsvg mixes them on.
 constexpr double kLongestSide_px = 32767, kMostPixelsAtOnce = 1U << 27U;
+// What cannot be drawn at this size is broken.
+constexpr int kSafeSide_px = 4096;
 // Of drawings that need not be drawn at once: more than A3 at 3600 pixels an inch has.
 constexpr double kMostPixels = 4e9;
 
@@ -79,6 +83,13 @@ std::size_t find_element(std::string_view svg, std::string_view name, std::size_
 
 bool has_element(std::string_view svg, std::string_view name) {
   return find_element(svg, name) != svg.npos;
+}
+
+// Whether anything may be mixed as a whole.
+bool may_mix(std::string_view svg) {
+  for (const char* word : {"opacity", "filter", "mask", "blend", "isolation"})
+    if (svg.find(word) != svg.npos) return true;
+  return false;
 }
 
 // The first picture in a file of its own that a drawing shows.
@@ -166,6 +177,7 @@ struct Drawing::Impl {
   bool has_text = false;
   std::string linked;
   bool is_indivisible = false;
+  double most_scale = 1e300;  // pixels per unit
 
   // A part of the drawing as large as `whole`, from its left upper corner on; false with a reason.
   bool draw(cairo_surface_t* surface, const Vec2& whole, int left, int top,
@@ -182,12 +194,10 @@ struct Drawing::Impl {
     return false;
   }
 
-  Image part(const Vec2& whole, int left, int top, int width, int height) const {
+  // Empty, with a reason, if it cannot be drawn.
+  Image part(const Vec2& whole, int left, int top, int width, int height, std::string& why) const {
     const Owned<cairo_surface_t> surface = blank(width, height);
-    std::string why;
-    if (!draw(surface.get(), whole, left, top, why))
-      throw InputError(
-          fmt::format("{}: the drawing cannot be drawn ({}); save it again.", name, why));
+    if (!draw(surface.get(), whole, left, top, why)) return {};
     cairo_surface_flush(surface.get());
     const unsigned char* data = cairo_image_surface_get_data(surface.get());
     const auto stride = std::size_t(cairo_image_surface_get_stride(surface.get()));
@@ -195,6 +205,11 @@ struct Drawing::Impl {
     for (int y = 0; y < height; ++y)
       make_straight(data + std::size_t(y) * stride, width, image.pixel(0, y));
     return image;
+  }
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw InputError(
+        fmt::format("{}: the drawing cannot be drawn ({}); save it again.", name, why));
   }
 
   // librsvg draws whatever is mixed as a whole (opacity, blending, filters, masks) as large as the
@@ -236,7 +251,8 @@ Drawing Drawing::from_svg(const std::vector<std::uint8_t>& bytes, const std::str
         "{}: the SVG drawing has no size and nothing to see; give it a width and height, or a "
         "viewBox.",
         name));
-  impl->is_indivisible = !impl->can_be_drawn_in_parts();
+  // Letters of such a size may be none that can be drawn.
+  impl->is_indivisible = impl->has_text ? may_mix(text) : !impl->can_be_drawn_in_parts();
   return Drawing(std::move(impl));
 }
 
@@ -247,7 +263,7 @@ Drawing Drawing::from_text(const std::string& text, const std::string& font,
   const std::string element = text_element(text, parse_font(font), color);
   std::string why;
   // Around the origin, so large that no line reaches its edge.
-  constexpr double kRoom = 1e5;
+  constexpr double kRoom = 1000 * kFontSize;
   const RsvgRectangle whole{-kRoom, -kRoom, 2 * kRoom, 2 * kRoom};
   const Owned<RsvgHandle> measured = parse(svg_around(element, whole), why);
   if (!measured) throw InputError(fmt::format("{} cannot be set: {}.", name, why));
@@ -265,6 +281,7 @@ Drawing Drawing::from_text(const std::string& text, const std::string& font,
   impl->handle = parse(svg_around(element, ink), why);
   if (!impl->handle) throw InputError(fmt::format("{} cannot be set: {}.", name, why));
   impl->size = {ink.width, ink.height};
+  impl->most_scale = kLargestLetter_px / kFontSize;
   return Drawing(std::move(impl));
 }
 
@@ -274,12 +291,16 @@ bool Drawing::has_text() const { return impl_->has_text; }
 const std::string& Drawing::linked_picture() const { return impl_->linked; }
 
 Drawing::Limits Drawing::limits() const {
-  if (impl_->is_indivisible) return {kMostPixelsAtOnce, kLongestSide_px};
-  return {kMostPixels, kMostPixels};
+  const double side_px = std::min(kMostPixels, impl_->most_scale * impl_->size.maxCoeff());
+  if (impl_->is_indivisible) return {kMostPixelsAtOnce, std::min(side_px, kLongestSide_px)};
+  return {kMostPixels, side_px};
 }
 
 Image Drawing::pixels(int width_px, int height_px) const {
-  return impl_->part(Vec2(width_px, height_px), 0, 0, width_px, height_px);
+  std::string why;
+  Image image = impl_->part(Vec2(width_px, height_px), 0, 0, width_px, height_px, why);
+  if (image.empty()) impl_->refuse(why);
+  return image;
 }
 
 std::optional<TiledImage> Drawing::tiles(int width_px, int height_px,
@@ -291,9 +312,13 @@ std::optional<TiledImage> Drawing::tiles(int width_px, int height_px,
   TiledImage image(width_px, height_px);
   for (int top = 0; top < height_px; top += height)
     for (int left = 0; left < width_px; left += width) {
-      image.put(impl_->part(Vec2(width_px, height_px), left, top, std::min(width, width_px - left),
-                            std::min(height, height_px - top)),
-                left, top);
+      std::string why;
+      const Image part =
+          impl_->part(Vec2(width_px, height_px), left, top, std::min(width, width_px - left),
+                      std::min(height, height_px - top), why);
+      if (part.empty() && std::max(width_px, height_px) > kSafeSide_px) return {};
+      if (part.empty()) impl_->refuse(why);
+      image.put(part, left, top);
       if (image.bytes() > most_bytes) return {};
     }
   return image;

@@ -42,7 +42,8 @@ class Drawing {
   Limits limits() const;
   // All of it, within the limits.
   Image pixels(int width_px, int height_px) const;
-  // The same in tiles, drawn piece by piece. Nothing if these would take more than so many bytes.
+  // The same in tiles, drawn piece by piece. Nothing if these would take more than so many bytes,
+  // or if letters are larger than can be drawn: a smaller size may do.
   std::optional<TiledImage> tiles(int width_px, int height_px, std::size_t most_bytes) const;
 
  private:
