@@ -2,6 +2,8 @@
 // drag is followed. Over HTTP, as a page asks for it.
 #include <fmt/format.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -20,6 +22,14 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// Of all threads of this process, the page's side included.
+double cpu_s() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  return double(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+         1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
 double share(std::vector<double> values, double q) {
   std::sort(values.begin(), values.end());
   return values.empty() ? 0 : values[std::size_t(q * double(values.size() - 1) + 0.5)];
@@ -30,12 +40,13 @@ using Drag = std::function<void(json& document, int n)>;
 
 struct Measured {
   double first_picture_s = 0;
+  std::vector<double> cpu;   // in that time, of all cores: what a busy machine does not change
   std::vector<double> ends;  // from the end of a drag to its result, whole on this side
   std::vector<double> updates_per_s, gaps;  // between what is shown
   std::size_t bytes = 0;
 };
 
-constexpr int kDrags = 25, kMoves = 60;
+constexpr int kDrags = 25, kMoves = 30;
 constexpr auto kFrame = std::chrono::milliseconds(16);
 
 class Page {
@@ -87,9 +98,11 @@ void drag(Page& page, const Drag& move, int n, Measured& measured) {
   }
   measured.updates_per_s.push_back(updates / seconds_since(begun));
   const auto end = Clock::now();
+  const double cpu_before = cpu_s();
   const long last = page.put(false);
   page.result(60, last, measured.bytes);
   measured.ends.push_back(seconds_since(end));
+  measured.cpu.push_back(cpu_s() - cpu_before);
 }
 
 using Begin = std::function<std::string()>;  // a new job's name
@@ -108,8 +121,8 @@ Measured measure(const Client& client, const Begin& begin, const json& changes, 
 }
 
 void show(const std::string& what, const Measured& m) {
-  fmt::print("{:<34} {:6.2f} s {:7.3f} s {:7.3f} s {:7.1f} /s {:7.3f} s {:7.1f} MB\n", what,
-             m.first_picture_s, share(m.ends, 0.5), share(m.ends, 0.95),
+  fmt::print("{:<34} {:6.2f} s {:7.3f} s {:7.3f} s {:7.3f} s {:7.1f} /s {:7.3f} s {:7.1f} MB\n",
+             what, m.first_picture_s, share(m.ends, 0.5), share(m.ends, 0.95), share(m.cpu, 0.95),
              share(m.updates_per_s, 0.5), share(m.gaps, 0.95), double(m.bytes) / 1e6);
   std::fflush(stdout);
 }
@@ -120,8 +133,8 @@ int run(const std::vector<std::string>& models) {
   const Client client = studio.client();
   fmt::print("{} drags of {} moves each, at 60 moves a second; 80 mm on A4, draft\n", kDrags,
              kMoves);
-  fmt::print("{:<34} {:>8} {:>9} {:>9} {:>10} {:>9} {:>10}\n", "", "first", "end p50", "end p95",
-             "updates", "gap p95", "a result");
+  fmt::print("{:<34} {:>8} {:>9} {:>9} {:>9} {:>10} {:>9} {:>10}\n", "", "first", "end p50",
+             "end p95", "CPU p95", "updates", "gap p95", "a result");
   const json size = {{"object", {{"size_mm", 80}}}};
   const Drag turn = [](json& document, int n) {
     document["object"]["rotate_deg"] = {0.1 * (n % 300), 0, 0.5 * n};

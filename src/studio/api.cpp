@@ -197,7 +197,8 @@ Json parameters_list() {
   Json own = Json::array();
   for (Json& p : list) {
     const auto name = p["name"].get<std::string>();
-    if (name.starts_with("run.") || name.starts_with("stage.")) continue;
+    if (name.starts_with("run.") || name.starts_with("stage.") || name.starts_with("output."))
+      continue;
     if (p.contains("zero_means")) p["zero"] = p["zero_means"];
     own.push_back(p);
   }
@@ -386,12 +387,11 @@ void Api::open_file(const std::filesystem::path& file) {
   const std::string earlier = store_.opened_from(file);
   if (!earlier.empty()) {
     const Json state = store_.read(earlier);
-    if (state.value("revision", 0L) != state.value("saved_revision", 0L)) {
-      job(earlier);
-      opened_ = earlier;
-      return;
-    }
-    store_.forget(earlier);
+    const bool unsaved = state.value("revision", 0L) != state.value("saved_revision", 0L);
+    if (!unsaved) job(earlier)->open_file(file);
+    job(earlier);
+    opened_ = earlier;
+    return;
   }
   const std::string name = store_.create();
   try {

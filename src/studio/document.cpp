@@ -22,7 +22,7 @@ constexpr std::size_t kMostForPage = std::size_t(64) << 10U, kLongestName = 200;
 
 // Of the run and the machine, not of the job.
 bool is_foreign(const std::string& name) {
-  return name.starts_with("run.") || name.starts_with("stage.");
+  return name.starts_with("run.") || name.starts_with("stage.") || name.starts_with("output.");
 }
 
 // ---- reading ----

@@ -3,7 +3,9 @@
 #include <httplib.h>
 #include <sys/socket.h>
 
+#include <chrono>
 #include <cstdio>
+#include <thread>
 #include <utility>
 
 namespace hydrodip {
@@ -17,6 +19,7 @@ constexpr int kKeepAlive_s = 2;
 constexpr int kTimeout_s = 20;
 constexpr std::size_t kKeepAliveRequests = 1000;
 constexpr std::size_t kLongestPath = 1024;
+constexpr int kTriesToStop = 200;
 constexpr std::size_t kPiece = std::size_t(1) << 16;
 
 HttpRequest request_of(const httplib::Request& from) {
@@ -178,6 +181,12 @@ bool HttpServer::bind(const std::string& address, int port) {
 
 int HttpServer::port() const { return impl_->port; }
 void HttpServer::run() { impl_->server.listen_after_bind(); }
-void HttpServer::stop() { impl_->server.stop(); }
+
+void HttpServer::stop() {
+  // A server that is about to begin would not hear of it.
+  for (int tries = 0; tries < kTriesToStop && !impl_->server.is_running(); ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  impl_->server.stop();
+}
 
 }  // namespace hydrodip

@@ -150,7 +150,8 @@ std::string JobStore::opened_from(const std::filesystem::path& file) const {
   const std::string whole = std::filesystem::absolute(file).lexically_normal().string();
   for (const std::string& job : jobs()) {
     const Json state = read(job);
-    if (state.is_object() && state.value("origin", "") == whole) return job;
+    if (!state.is_object()) continue;
+    if (state.value("origin", "") == whole || state.value("where", "") == whole) return job;
   }
   return "";
 }

@@ -38,7 +38,7 @@ class JobStore {
   // With all that was uploaded to it.
   void forget(const std::string& job) const;
 
-  // The job that was opened last from that file, or "".
+  // The job that was opened last from that file, or saved to it; or "".
   std::string opened_from(const std::filesystem::path& file) const;
 
  private:

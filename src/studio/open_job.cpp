@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "settings/job_file.h"
 #include "settings/settings.h"
 #include "studio/api_error.h"
@@ -180,7 +181,10 @@ void OpenJob::open_file(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(config.model, error))
     throw InputError(fmt::format("{}: there is no such file", config.model.string()));
   const std::lock_guard lock(mutex_);
-  const Json document = document_of(config, files_);
+  Json document = document_of(config, files_);
+  // What a job file does not say.
+  for (const char* own : {"name", "page"})
+    if (document_.contains(own)) document[own] = document_[own];
   if (is_job_file(file)) where_ = whole;
   origin_ = whole;
   accept(document, config_of(document, files_), "", false, 0, true);
@@ -289,20 +293,51 @@ std::string OpenJob::job_toml(const std::filesystem::path& folder) const {
   return job_file(config_, folder);
 }
 
+// With the lock. Pictures that were dropped on a job whose file lies elsewhere are copied beside
+// it: nobody would look for them here.
+void OpenJob::bring_along(JobConfig& config) const {
+  const std::filesystem::path folder = where_.parent_path();
+  if (folder == files_.uploads()) return;
+  const auto bring = [&](std::filesystem::path& file) {
+    if (file.empty() || file.parent_path() != files_.uploads()) return;
+    const std::vector<std::uint8_t> bytes = read_file(file);
+    std::filesystem::path to = folder / file.filename();
+    std::error_code ignored;
+    for (int number = 2; std::filesystem::exists(to, ignored); ++number) {
+      if (read_file(to) == bytes) break;
+      to = folder / fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string());
+    }
+    if (!std::filesystem::exists(to, ignored)) write_file(to, bytes.data(), bytes.size());
+    file = to;
+  };
+  for (ArtworkLayer& layer : config.object.artwork) bring(layer.image);
+  bring(config.object.load.texture);
+  bring(config.plan.importance);
+  bring(config.printer.profile);
+}
+
 Json OpenJob::save(const std::string& name) {
   const std::lock_guard lock(mutex_);
   if (!name.empty()) document_["name"] = name.substr(0, 200);
+  const std::string stem = file_name_of(name_of_job(document_));
+  // The studio's own files follow the job's name.
+  if (where_.parent_path() == files_.uploads() && where_.stem() != stem) {
+    std::error_code ignored;
+    std::filesystem::remove(where_, ignored);
+    where_.clear();
+  }
   if (where_.empty()) {
     // Beside the model that was named on the command line; what was dropped here stays here.
     const std::filesystem::path folder = origin_.empty() ? files_.uploads() : origin_.parent_path();
-    const std::string stem = file_name_of(name_of_job(document_));
     where_ = folder / (stem + ".toml");
     std::error_code ignored;
     for (int number = 2; std::filesystem::exists(where_, ignored); ++number)
       where_ = folder / fmt::format("{}-{}.toml", stem, number);
   }
   try {
-    write_whole(where_, job_file(config_, where_.parent_path()));
+    JobConfig config = config_;
+    bring_along(config);
+    write_whole(where_, job_file(config, where_.parent_path()));
   } catch (const InputError& error) {
     throw ApiError(422, "bad-file", error.what());
   }

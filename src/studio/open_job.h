@@ -113,6 +113,7 @@ class OpenJob {
               std::size_t dip, bool tell_client);
   void ask(bool live);
   void autosave() const;
+  void bring_along(JobConfig& config) const;
   void tell(const std::string& event, const Json& data, bool newest_only = false);
   void hand_pen_on();
   void require_pen(const std::string& client) const;

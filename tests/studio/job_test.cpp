@@ -228,10 +228,10 @@ TEST_F(JobTest, ADocumentSaysWhatItsJobFileSays) {
   ASSERT_EQ(config.dips.size(), 2u);
   EXPECT_EQ(config.dips[0].rotate_deg->y(), 33.333333333);
 
-  // Opened again from that file: the same document, but for its name.
-  const Reply zip = client->get(at(job, "/job.zip"));
-  EXPECT_EQ(zip.status, 200);
-  studio->api().open_file(file);
+  // Opened elsewhere, by somebody else: the same document, but for its name.
+  EXPECT_EQ(client->get(at(job, "/job.zip")).status, 200);
+  std::filesystem::copy(file.parent_path(), folder / "elsewhere");
+  studio->api().open_file(folder / "elsewhere/two dips.toml");
   const std::string again = client->get("/api/hello").json()["opened"];
   json reopened = describe(again)["document"];
   document.erase("name");

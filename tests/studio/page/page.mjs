@@ -1,6 +1,7 @@
 // The studio's page as a person uses it: every action with real clicks and keys, against the real program.
 // Usage: node page.mjs HYDRODIP NODE_MODULES PART [CHROMIUM]; PART: object or artwork, which know nothing of each
-// other. Exit code 77 (skipped) where there is no Chromium. HYDRODIP_PICTURES=DIR keeps pictures.
+// other. Exit code 77 (skipped) where there is no Chromium. HYDRODIP_PICTURES=DIR keeps pictures;
+// HYDRODIP_ONLY=WORDS runs the tests whose names match (and those that open what they need).
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -615,9 +616,10 @@ test('no complaint on the console, and no request to anybody else', async () => 
 
 // ---- Running them ----
 
+const only = process.env.HYDRODIP_ONLY && new RegExp(`${process.env.HYDRODIP_ONLY}|opens with one click|dropped together`);
 let failures = 0;
 for (const { name, body, part: of } of tests) {
-  if (of !== wanted) continue;
+  if (of !== wanted || (only && !only.test(name))) continue;
   const began = Date.now();
   try {
     await body();

@@ -70,8 +70,9 @@ function pressed(event: KeyboardEvent): void {
   if (isTyped(event.target)) return;
   const target = event.target as HTMLElement;
   if (key === 'Tab') {
-    // Only from the view, and only where a pointer put the focus there: else it leads on, as everywhere.
-    if (event.shiftKey || !(target.matches('.canvas-box canvas') || bigSheet.value) || target.matches(':focus-visible')) return;
+    // Only where a pointer put the focus into the view: else it leads on, as everywhere.
+    const back = bigSheet.value && target === document.body;
+    if (event.shiftKey || !(back || target.dataset['byPointer'])) return;
     event.preventDefault();
     bigSheet.value = !bigSheet.value;
     return;

@@ -156,7 +156,11 @@ export function Center() {
           tabIndex={0}
           role="img"
           aria-label={t.stage.label}
-          onPointerDown={(event) => event.currentTarget.focus({ preventScroll: true })}
+          onPointerDown={(event) => {
+            event.currentTarget.dataset['byPointer'] = 'yes';
+            event.currentTarget.focus({ preventScroll: true });
+          }}
+          onBlur={(event) => delete event.currentTarget.dataset['byPointer']}
         />
         {broken.value && <p class="over-note">{t.stage.noGl}</p>}
         {empty && !broken.value && <p class="over-note"><b>{t.stage.empty}</b><br />{t.stage.emptyHint}</p>}
