@@ -208,11 +208,11 @@ std::optional<Trial> try_way(const TrialTask& task, const PosedObject& posed,
                                            {.options = task.air, .found = {}});
     Trial trial = judge_dip(task, pose, dipped);
     trial.path = task.way.path;
-    if (depth_mm > 0) trial.depth_mm = depth_mm;
+    if (depth_mm > 0 && depth_mm < kWholeObject_mm) trial.depth_mm = depth_mm;
     if (!best || trial.figures.score > best->figures.score) best = std::move(trial);
   };
   if (!task.way.path.empty() || task.depth_mm > 0) {
-    dip_to(task.depth_mm);
+    dip_to(task.way.path.empty() ? task.depth_mm : 0);
     return best;
   }
   const Vec3 size = mesh.bounds().size();

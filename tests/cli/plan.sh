@@ -64,7 +64,12 @@ printf '[object]\nfile = "colored.ply"\n[[dip]]\nrotat_deg = [0, 0, 0]\n' > bad.
 refused 'rotate_deg' print bad.toml
 printf '[[dip]]\n' > bad.toml
 refused 'names no model' print bad.toml
-refused 'straight down' print colored.ply --rotate auto --set dip.tilt_deg=10
+printf 'lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_z_deg\n0,0,0,0,0,0\n5,0,0,0,0,0\n' > way.csv
+refused 'a path says how deep' print colored.ply --depth auto --path way.csv
+
+# Another way in than straight down is looked for in its own dips.
+# shellcheck disable=SC2086
+"$hydrodip" inspect colored.ply $small --rotate auto --path way.csv --quiet > /dev/null || fail 'rotate auto with a path'
 
 # A size that was forgotten is asked about before anything is computed.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' > tiny.obj
