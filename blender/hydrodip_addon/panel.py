@@ -7,7 +7,7 @@ import bpy
 from . import operators
 
 
-def _wrapped(layout, text, width=32):
+def _wrapped(layout, text, width=28):
     for line in textwrap.wrap(text, width):
         layout.label(text=line)
 
