@@ -3,10 +3,13 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
+#include <utility>
 #include <vector>
+
+#include "workers.h"
 
 namespace hydrodip::python {
 
@@ -57,25 +60,30 @@ class Mailbox {
 }  // namespace
 
 void run(const py::object& progress, const std::function<void(const RunContext&)>& work) {
+  struct Run {
+    Mailbox mailbox;
+    std::exception_ptr failure;
+  };
   const RunContext context;
-  Mailbox mailbox;
+  const auto shared = std::make_shared<Run>();  // the worker may leave it last
   if (!progress.is_none())
-    context.on_progress(
-        [&](const std::string& activity, double fraction) { mailbox.add(activity, fraction); });
-  std::exception_ptr failure, raised;
-  std::thread worker([&] {
+    context.on_progress([shared](const std::string& activity, double fraction) {
+      shared->mailbox.add(activity, fraction);
+    });
+  start_on_worker([shared, context, &work] {
     try {
       work(context);
     } catch (...) {
-      failure = std::current_exception();
+      shared->failure = std::current_exception();
     }
-    mailbox.close();
+    shared->mailbox.close();
   });
+  std::exception_ptr raised;
   for (bool ended = false; !ended;) {
     std::vector<News> news;
     {
       const py::gil_scoped_release release;
-      ended = mailbox.wait(news);
+      ended = shared->mailbox.wait(news);
     }
     if (raised) continue;
     try {
@@ -86,9 +94,8 @@ void run(const py::object& progress, const std::function<void(const RunContext&)
       context.cancel();
     }
   }
-  worker.join();
   if (raised) std::rethrow_exception(raised);
-  if (failure) std::rethrow_exception(failure);
+  if (shared->failure) std::rethrow_exception(std::exchange(shared->failure, nullptr));
 }
 
 }  // namespace hydrodip::python

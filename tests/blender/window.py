@@ -16,6 +16,7 @@ import scenes  # noqa: E402
 
 folder = sys.argv[-1]
 steps = []
+bpy.context.preferences.view.show_splash = False
 begun = time.time()
 
 
@@ -28,30 +29,28 @@ def view(context):
 def set_up():
     for each in list(bpy.data.objects):
         bpy.data.objects.remove(each)
+    # The first tab is the one that is shown; no program can choose another.
+    panel = scenes.hydrodip_addon.panel.HYDRODIP_PT_panel
+    panel.bl_category, panel.bl_order = "Item", -1
     scenes.hydrodip_addon.register()
     scene = bpy.context.scene
     scene.unit_settings.scale_length = 0.001
     settings = scene.hydrodip
     settings.film, settings.film_mm, settings.output = "own", (110, 90), folder
+    settings.depth_mm = 9
     settings.options = "--set film.elements=4000 --set dip.step_mm=0.5"
     target = scenes.keel(1.0, location_mm=(0, 0, 0), turn_deg=(0, 0, 0))
     target.select_set(True)
     area, _ = view(bpy.context)
     space = area.spaces.active
     space.show_region_ui = True
-    space.shading.type = "MATERIAL"
+    space.shading.type, space.shading.color_type = "SOLID", "TEXTURE"  # quick without a graphics card
     space.clip_end = 10000
-    space.region_3d.view_distance = 160
+    space.region_3d.view_distance = 110
     # From below, where the film comes from.
     from mathutils import Euler
 
     space.region_3d.view_rotation = Euler((2.2, 0, 0.5)).to_quaternion()
-    for region in area.regions:
-        if region.type == "UI":
-            try:
-                region.active_panel_category = "hydrodip"
-            except (AttributeError, TypeError):
-                pass  # before 4.2 the tab cannot be chosen by a program
     with bpy.context.temp_override(area=area, region=view(bpy.context)[1]):
         bpy.ops.hydrodip.run("INVOKE_DEFAULT", command="print")
 
@@ -69,6 +68,7 @@ def look():
     for each in bpy.data.objects:
         each.select_set(False)
     scenes.brought("film").hide_set(False)
+    scenes.brought("sheet").hide_set(True)
     return None
 
 
