@@ -44,16 +44,19 @@ set_target_properties(
              # Until 1.0 every minor version may change the interface.
              SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
-install(TARGETS hydrodip_library EXPORT hydrodipTargets)
-install(DIRECTORY ${staged_headers}/ TYPE INCLUDE)
+install(TARGETS hydrodip_library EXPORT hydrodipTargets
+        LIBRARY COMPONENT library NAMELINK_COMPONENT dev)
+install(DIRECTORY ${staged_headers}/ TYPE INCLUDE COMPONENT dev)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hydrodip)
-install(EXPORT hydrodipTargets NAMESPACE hydrodip:: DESTINATION ${package_dir})
+install(EXPORT hydrodipTargets NAMESPACE hydrodip:: DESTINATION ${package_dir} COMPONENT dev)
 configure_package_config_file(cmake/hydrodipConfig.cmake.in package/hydrodipConfig.cmake
                               INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/hydrodipConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/package/hydrodipConfig.cmake
-              ${CMAKE_BINARY_DIR}/package/hydrodipConfigVersion.cmake DESTINATION ${package_dir})
+              ${CMAKE_BINARY_DIR}/package/hydrodipConfigVersion.cmake DESTINATION ${package_dir}
+        COMPONENT dev)
 file(RELATIVE_PATH up_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/hydrodip.pc.in package/hydrodip.pc @ONLY)
-install(FILES ${CMAKE_BINARY_DIR}/package/hydrodip.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${CMAKE_BINARY_DIR}/package/hydrodip.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+        COMPONENT dev)

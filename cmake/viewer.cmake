@@ -11,7 +11,8 @@ file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/viewer)
 if(HYDRODIP_VIEWER)
   find_program(NPM npm)
   find_program(ESBUILD esbuild)
-  if(NOT NPM OR NOT ESBUILD)
+  # npm is not needed where the packages are there already, as when cross-compiling.
+  if(NOT ESBUILD OR (NOT NPM AND NOT EXISTS ${HYDRODIP_NPM_DIR}/fetched))
     message(FATAL_ERROR "npm and esbuild are needed for the 3D view in reports: install the Debian "
                         "packages npm and esbuild, or configure with -DHYDRODIP_VIEWER=OFF.")
   endif()

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -20,6 +21,7 @@ class TemporaryFolder {
   }
   ~TemporaryFolder() {
     std::error_code ignored;
+    keep_described_files();
     std::filesystem::remove_all(path_, ignored);
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
@@ -29,6 +31,26 @@ class TemporaryFolder {
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
  private:
+  // Into the folder that HYDRODIP_TEST_FILES names, if it names one: what JSON Schemas describe,
+  // for tests/schemas/validate.py.
+  void keep_described_files() const {
+    namespace fs = std::filesystem;
+    const char* const kept = std::getenv("HYDRODIP_TEST_FILES");
+    if (kept == nullptr) return;
+    std::error_code error;
+    for (fs::recursive_directory_iterator at(path_, error), end; !error && at != end;
+         at.increment(error)) {
+      const std::string name = at->path().filename().string();
+      if (name != "report.json" && name != "plan.json" && name != "orient.json" &&
+          name != "nest.json" && name != "plan.toml" && name != "profile.toml")
+        continue;
+      const fs::path to = fs::path(kept) / path_.filename() / at->path().lexically_relative(path_);
+      std::error_code ignored;
+      fs::create_directories(to.parent_path(), ignored);
+      fs::copy_file(at->path(), to, fs::copy_options::overwrite_existing, ignored);
+    }
+  }
+
   std::filesystem::path path_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "build_version.h"
 
 namespace hydrodip {
 namespace {
@@ -20,15 +21,15 @@ std::string general_help() {
       "Usage: hydrodip COMMAND [OPTIONS]\n\nCommands:\n";
   for (const Command& command : commands())
     help += fmt::format("  {:<10} {}\n", command.name, command.summary);
+  help += "\nTry it:\n";
+  for (const std::string& command : first_commands()) help += "  " + command + "\n";
   help +=
-      "\nTry it:\n"
-      "  hydrodip sample mask -o models\n"
-      "  hydrodip print models/mask.obj --film a4 -o mask-print\n\n"
-      "'hydrodip COMMAND --help' shows a command's options. Lengths are in mm, angles in degrees.\n"
-      "Exit codes: 0 done, 2 bad input or usage, 3 the dip could not be computed,\n"
-      "4 do not dip it like this (with --strict), 130 cancelled.\n"
-      "HYDRODIP_SIMD=baseline, avx2 or avx512 picks the instruction set by hand; results are the "
-      "same.\n";
+      "\n'hydrodip COMMAND --help' shows a command's options. Lengths are in mm, angles in "
+      "degrees.\nExit codes:\n";
+  for (const Remark& code : exit_codes())
+    help += fmt::format("  {:<4} {}\n", code.what, code.means);
+  for (const Remark& variable : environment_variables())
+    help += variable.what + " " + variable.means + ".\n";
   return help;
 }
 
@@ -138,26 +139,57 @@ CommandLine parse_command(const Command& command, std::vector<std::string> argum
   line.request.command_line = {"hydrodip", command.name};
   line.request.command_line.insert(line.request.command_line.end(), arguments.begin(),
                                    arguments.end());
-  CLI::App app(command.summary, "hydrodip " + command.name);
-  app.allow_extras();
-  app.formatter(std::make_shared<HelpFormatter>());
-  app.footer(command.details);
-  command.declare(app, line.request);
+  const std::unique_ptr<CLI::App> app = command_options(command, line.request);
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
   try {
-    app.parse(arguments);
+    app->parse(arguments);
   } catch (const CLI::CallForHelp&) {
-    line.text = app.help();
+    line.text = app->help();
     return line;
   } catch (const CLI::ParseError& error) {
     throw InputError(fmt::format("{}; see {}", error.what(), usage(command)));
   }
-  refuse_rest(app, command, app.remaining());
+  refuse_rest(*app, command, app->remaining());
   line.command = &command;
   return line;
 }
 
 }  // namespace
+
+std::unique_ptr<CLI::App> command_options(const Command& command, Request& request) {
+  auto app = std::make_unique<CLI::App>(command.summary, "hydrodip " + command.name);
+  app->allow_extras();
+  app->formatter(std::make_shared<HelpFormatter>());
+  app->footer(command.details);
+  command.declare(*app, request);
+  return app;
+}
+
+const std::vector<Remark>& exit_codes() {
+  static const std::vector<Remark> codes = {
+      {"0", "done"},
+      {"2", "bad input or usage"},
+      {"3", "the dip could not be computed"},
+      {"4", "do not dip it like this (with --strict)"},
+      {"130", "cancelled"},
+  };
+  return codes;
+}
+
+const std::vector<Remark>& environment_variables() {
+  static const std::vector<Remark> variables = {
+      {"HYDRODIP_SIMD",
+       "baseline, avx2 or avx512 picks the instruction set by hand; results are the "
+       "same"},
+  };
+  return variables;
+}
+
+const std::vector<std::string>& first_commands() {
+  static const std::vector<std::string> all = {
+      "hydrodip sample mask -o models", "hydrodip print models/mask.obj --film a4 -o mask-print"};
+  return all;
+}
 
 CommandLine parse_command_line(const std::vector<std::string>& arguments) {
   const std::string first = arguments.empty() ? "" : arguments.front();
@@ -167,7 +199,7 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
   const bool asks = arguments.size() == 2 && (arguments[1] == "--help" || arguments[1] == "-h");
   if (asks && !group_help(first).empty() && !is_command(first))
     return {nullptr, {}, "Usage: hydrodip COMMAND [OPTIONS]\n\n" + group_help(first)};
-  if (first == "--version") return {nullptr, {}, "hydrodip " HYDRODIP_VERSION "\n"};
+  if (first == "--version") return {nullptr, {}, fmt::format("hydrodip {}\n", build_version())};
   const std::size_t words = count_name_words(arguments);
   const std::string name = words == 2 ? first + " " + arguments[1] : first;
   return parse_command(find_command(name),

@@ -1,12 +1,25 @@
 // From argv to a command and its request.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "commands.h"
 
 namespace hydrodip {
+
+// A command's arguments and options, which parsing writes into `request`.
+std::unique_ptr<CLI::App> command_options(const Command& command, Request& request);
+
+// Two columns of the general help.
+struct Remark {
+  std::string what;
+  std::string means;
+};
+const std::vector<Remark>& exit_codes();             // "2", "bad input or usage"
+const std::vector<Remark>& environment_variables();  // "HYDRODIP_SIMD", ...
+const std::vector<std::string>& first_commands();    // to try, in order
 
 struct CommandLine {
   const Command* command = nullptr;  // null: only text is to be shown

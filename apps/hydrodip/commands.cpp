@@ -7,6 +7,7 @@
 #include "console.h"
 #include "rig/rig.h"
 #include "rig_commands.h"
+#include "samples/samples.h"
 #include "settings/params.h"
 #include "shop_commands.h"
 
@@ -218,6 +219,12 @@ JobResult run_sample(const Request& request, const RunContext& context) {
   return sample_job(request.sample, request.output.empty() ? "." : request.output, context);
 }
 
+std::vector<std::string> sample_names() {
+  std::vector<std::string> names;
+  for (const SampleInfo& sample : samples()) names.push_back(sample.name);
+  return names;
+}
+
 JobResult run_params(const Request&, const RunContext&) {
   JobResult result;
   result.text = parameters_table();
@@ -272,7 +279,7 @@ std::vector<Command> own_commands() {
       {"view", "open a job's report in the browser",
        "Where there is no browser, the report's path is printed.", declare_view, run_view},
       {"sample", "write a built-in sample model with its texture", "", declare_sample_command,
-       run_sample},
+       run_sample, sample_names()},
       {"params", "list every parameter: name, default, range, what it does", "", declare_reporting,
        run_params},
   };

@@ -16,6 +16,7 @@ struct Command {
   std::string details;  // shown below the options; may be empty
   void (*declare)(CLI::App& app, Request& request);
   JobResult (*run)(const Request& request, const RunContext& context);
+  std::vector<std::string> words = {};  // one of which the first argument has to be; none: any text
 };
 
 const std::vector<Command>& commands();

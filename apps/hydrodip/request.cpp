@@ -1,14 +1,12 @@
 #include "request.h"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 
 #include "base/error.h"
+#include "base/parse_double.h"
 #include "settings/profiles.h"
 
 namespace hydrodip {
@@ -43,7 +41,7 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     double number = 0;
-    const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, number);
+    const auto [rest, error] = parse_double(text.data() + begin, text.data() + end, number);
     if (error != std::errc() || rest != text.data() + end || !std::isfinite(number)) break;
     numbers.push_back(number);
     if (end == text.size() && numbers.size() >= least && numbers.size() <= most) return numbers;
@@ -334,19 +332,10 @@ void declare_studio(CLI::App& app, Request& request) {
 }
 
 JobConfig configure(const Request& request) {
-  JobConfig config;
+  JobConfig config = configured(request.model, request.sources);
   config.film_image = request.film_image;
   config.output = request.output;
   config.command_line = request.command_line;
-  SettingSources sources = request.sources;
-  const bool is_job = std::filesystem::path(request.model).extension() == ".toml";
-  if (is_job) sources.configs.insert(sources.configs.begin(), request.model);
-  apply_sources(config, sources);
-  if (!is_job) config.model = request.model;
-  if (is_job && config.model.empty())
-    throw InputError(
-        fmt::format("{}: the job names no model: begin it with file = \"MODEL\" under [object]",
-                    request.model));
   return config;
 }
 

@@ -129,7 +129,8 @@ std::vector<Command> rig_commands() {
        "Without --port the object is dipped by hand. Writes JOB_DIR/rig-N. Ctrl-C stops the stage\n"
        "softly, a second one at once.",
        declare_guide, run_guide},
-      {"rig stage", "drive a Zaber stage or a Marlin printer's Z axis",
+      {"rig stage",
+       "drive a Zaber stage or a Marlin printer's Z axis",
        "find      what answers on the serial ports\n"
        "status    where the stage is\n"
        "home      move to its home\n"
@@ -138,7 +139,9 @@ std::vector<Command> rig_commands() {
        "dip       approach, dip by the job's depth, dwell\n"
        "retract   lift the object out\n"
        "Nothing moves before a yes. Ctrl-C stops softly, a second one at once. See docs/rig.md.",
-       declare_stage, run_stage},
+       declare_stage,
+       run_stage,
+       {"find", "status", "home", "jog", "approach", "dip", "retract"}},
   };
 }
 

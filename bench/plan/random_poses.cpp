@@ -63,7 +63,8 @@ int run(int argc, char** argv) {
   fmt::print("search: {:.2f} s, {} trial dips, first answer after {:.2f} s\n", seconds_since(start),
              found.trials.size(), first_s);
   for (std::size_t i = 0; i < found.best.size(); ++i) {
-    show("found", found.best[i]);
+    show(i < found.drafted.size() ? "found" : "trial", found.best[i]);
+    if (i >= found.drafted.size()) continue;
     fmt::print("           its trial dip said {:.4f} ({:+.2f} %)\n", found.drafted[i],
                100 * (found.drafted[i] / found.best[i].figures.score - 1));
   }

@@ -25,6 +25,7 @@
 #include "coat/design.h"
 #include "coat/finish.h"
 #include "dip/trajectory.h"
+#include "elastic/table_law.h"
 #include "ink/printer.h"
 #include "model_io/load.h"
 #include "object/paint.h"

@@ -20,7 +20,7 @@ namespace {
 constexpr float kNothing = 1.0F / 1024;
 
 struct Layer {
-  std::shared_ptr<const Image> image;
+  Pixels pixels;
   PictureFrame frame;
   std::unique_ptr<const Placement> placement;  // none: on the film
   Vec2 film_centre_mm{0, 0};
@@ -30,7 +30,7 @@ struct Layer {
 
 // Premultiplied.
 LinearColor shown_by(const Layer& layer, const Vec2& place_mm, float share) {
-  LinearColor color = sample(*layer.image, layer.frame, place_mm);
+  LinearColor color = sample(layer.pixels, layer.frame, place_mm);
   const float part = layer.opacity * share;
   return {part * color.r, part * color.g, part * color.b, part * color.a};
 }
@@ -114,27 +114,67 @@ bool lies_within(const PictureFrame& frame, const Vec2& place_mm) {
   return frame.repeat() != Repeat::kOnce || (t.x() >= 0 && t.x() <= 1 && t.y() >= 0 && t.y() <= 1);
 }
 
-// Looked at on a grid, so fine that no picture falls through.
-bool hits(const Layer& layer, const TriangleMesh& mesh) {
-  const double step = layer.frame.size_mm().minCoeff() / 48;
-  constexpr int kMost = 400;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    check_cancelled();
-    const Triangle& v = mesh.triangles[t];
-    const Vec3& a = mesh.positions[std::size_t(v[0])];
-    const Vec3& b = mesh.positions[std::size_t(v[1])];
-    const Vec3& c = mesh.positions[std::size_t(v[2])];
-    const double edge = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    const int n = int(std::clamp(std::ceil(edge / step), 1.0, double(kMost)));
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; i + j < n; ++j) {
-        const SurfacePoint point{int(t), (i + 1.0 / 3) / n, (j + 1.0 / 3) / n};
-        Spot spot;
-        if (layer.placement->find(point, spot) && lies_within(layer.frame, spot.place_mm) &&
-            layer.placement->is_lit(point))
-          return true;
-      }
+// Looks for a place where a picture shows: triangles are cut into four wherever the picture may lie
+// on them, so that none is too small to be found on large ones.
+class Search {
+ public:
+  Search(const Layer& layer, const TriangleMesh& mesh)
+      : layer_(layer), mesh_(mesh), finest_mm_(layer.frame.size_mm().minCoeff() / kPerPicture) {}
+
+  bool finds(std::size_t triangle) const {
+    const Triangle& v = mesh_.triangles[triangle];
+    const Vec3& a = mesh_.positions[std::size_t(v[0])];
+    const Vec3& b = mesh_.positions[std::size_t(v[1])];
+    const Vec3& c = mesh_.positions[std::size_t(v[2])];
+    const double edge_mm = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    // Where nothing is known of a part, or the picture goes on for ever, it is cut no finer.
+    const double coarse_mm = std::max(finest_mm_, edge_mm / kPerTriangle);
+    return finds_in(int(triangle), {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}, edge_mm, coarse_mm);
   }
+
+ private:
+  static constexpr double kPerPicture = 48, kPerTriangle = 256;
+
+  bool finds_in(int triangle, const std::array<Vec2, 3>& part, double edge_mm,
+                double coarse_mm) const {
+    check_cancelled();
+    const Vec2 middle = (part[0] + part[1] + part[2]) / 3;
+    Spot spot;
+    const SurfacePoint point{triangle, middle.x(), middle.y()};
+    if (layer_.placement->find(point, spot) && lies_within(layer_.frame, spot.place_mm) &&
+        layer_.placement->is_lit(point))
+      return true;
+    bool known = layer_.frame.repeat() == Repeat::kOnce;
+    Box2 box;
+    for (const Vec2& corner : part) {
+      known &= layer_.placement->find({triangle, corner.x(), corner.y()}, spot);
+      if (known) box.add(spot.place_mm);
+    }
+    if (known) {
+      const Vec2 bulge = box.max - box.min;  // if the picture's plane is a curved one
+      box.min -= bulge;
+      box.max += bulge;
+      if (layer_.frame.misses(box)) return false;
+    }
+    if (edge_mm <= (known ? finest_mm_ : coarse_mm)) return false;
+    const Vec2 ab = 0.5 * (part[0] + part[1]), bc = 0.5 * (part[1] + part[2]),
+               ca = 0.5 * (part[2] + part[0]);
+    const std::array<std::array<Vec2, 3>, 4> quarters = {
+        {{ab, bc, ca}, {part[0], ab, ca}, {ab, part[1], bc}, {ca, bc, part[2]}}};
+    return std::any_of(quarters.begin(), quarters.end(), [&](const auto& quarter) {
+      return finds_in(triangle, quarter, 0.5 * edge_mm, coarse_mm);
+    });
+  }
+
+  const Layer& layer_;
+  const TriangleMesh& mesh_;
+  double finest_mm_;
+};
+
+bool hits(const Layer& layer, const TriangleMesh& mesh) {
+  const Search search(layer, mesh);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (search.finds(t)) return true;
   return false;
 }
 
@@ -155,15 +195,6 @@ bool hits(const Layer& layer, const TriangleMesh& mesh) {
 
 // ---- laying ----
 
-bool shows_anything(const Image& image) {
-  CheckEvery check(1 << 20);
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
-    check();
-    if (image.rgba[i] > 0) return true;
-  }
-  return false;
-}
-
 // What is said of a layer though its projection has no use for it.
 void warn_of_idle_words(const ArtworkLayer& layer, const RunContext& context) {
   const bool uv = layer.projection == Projection::kUv, film = layer.projection == Projection::kFilm;
@@ -183,6 +214,31 @@ void warn_of_idle_words(const ArtworkLayer& layer, const RunContext& context) {
                              uv     ? "laid by UVs"
                              : film ? "left on the film"
                                     : "wrapped"));
+}
+
+void warn_of_coarse(const ArtworkLayer& layer, double share, double dpi,
+                    const RunContext& context) {
+  if (share < 1)
+    context.warn(
+        fmt::format("{}: so large a drawing takes too much memory; it is drawn as for {:.0f} dpi "
+                    "instead of {:.0f}: edges are softer",
+                    name_of(layer), std::floor(share * dpi), dpi));
+}
+
+void warn_of_what_lies_outside(const ArtworkLayer& layer, const PictureSource& picture,
+                               const RunContext& context) {
+  if (!picture.linked_picture().empty())
+    context.warn(fmt::format("{}: '{}' is not in the drawing's file and not shown; embed it",
+                             name_of(layer), picture.linked_picture()));
+  if (picture.has_text())
+    context.warn(fmt::format(
+        "{}: its text is set in the fonts of this machine; convert it to paths in the drawing "
+        "program if it must look the same everywhere",
+        name_of(layer)));
+  const std::vector<FontUse> fonts = picture.fonts();
+  if (!fonts.empty() && !fonts.front().is_wanted)
+    context.warn(fmt::format("{}: the font '{}' is not installed; {} is taken instead",
+                             name_of(layer), layer.font, fonts.front().name));
 }
 
 void warn_of_wrap(const ArtworkLayer& layer, const WrapReport& report, const RunContext& context) {
@@ -232,19 +288,22 @@ Vec2 size_on_film(const ArtworkLayer& layer, const PictureSource& picture) {
 Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask& task,
           const PosedObject& posed, LaidLayer& laid, const RunContext& context) {
   warn_of_idle_words(wanted, context);
+  warn_of_what_lies_outside(wanted, picture, context);
   Placed placed;
   if (wanted.projection == Projection::kFilm)
     placed.size_mm = size_on_film(wanted, picture);
   else
     placed = place({wanted, picture.aspect(), posed, task.closed}, laid, context);
   const double pixels_per_mm = task.dpi / kMmPerInch * task.samples_per_axis;
-  Layer layer{picture.pixels(placed.size_mm.x(), placed.size_mm.y(), pixels_per_mm),
+  PictureSource::Shown shown = picture.pixels(placed.size_mm, pixels_per_mm);
+  warn_of_coarse(wanted, shown.share, task.dpi, context);
+  Layer layer{std::move(shown.pixels),
               PictureFrame(placed.size_mm, wanted.turn_deg, wanted.repeat),
               std::move(placed.placement),
               wanted.at_mm ? Vec2(wanted.at_mm->head<2>()) : Vec2(Vec2::Zero()),
               float(wanted.opacity),
               wanted.blend};
-  if (!shows_anything(*layer.image))
+  if (!layer.pixels.shows_anything())
     throw InputError(name_of(wanted) +
                      ": the picture is transparent everywhere; nothing would show");
   if (layer.placement && !hits(layer, posed.mesh())) refuse_miss(wanted, posed);
@@ -258,6 +317,8 @@ std::string describe(const LaidLayer& layer) {
   if (layer.stretch_least < layer.stretch_most)
     text +=
         fmt::format(", stretched {:.2f} to {:.2f} times", layer.stretch_least, layer.stretch_most);
+  for (std::size_t n = 0; n < layer.fonts.size(); ++n)
+    text += (n == 0 ? ", set in " : ", ") + layer.fonts[n].name;
   return text;
 }
 
@@ -274,7 +335,7 @@ Artwork lay_artwork(ArtworkTask task, const PosedObject& posed, const RunContext
   Artwork artwork;
   for (std::size_t n = 0; n < task.layers.size(); ++n) {
     context.progress("laying artwork", double(n) / double(task.layers.size()));
-    LaidLayer laid{.name = name_of(task.layers[n])};
+    LaidLayer laid{.name = name_of(task.layers[n]), .fonts = task.pictures[n].fonts()};
     Layer layer = lay(task.layers[n], task.pictures[n], task, paint->posed(), laid, context);
     laid.size_mm = layer.frame.size_mm();
     context.log(laid.name + ": " + describe(laid));

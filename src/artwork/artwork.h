@@ -32,9 +32,10 @@ struct LaidLayer {
   Vec2 size_mm{0, 0};
   // Wrapped: lengths on the surface over the picture's.
   double stretch_least = 1, stretch_most = 1;
+  std::vector<FontUse> fonts;  // of a text
 };
 
-// "40.0 x 20.0 mm, stretched 0.93 to 1.00 times".
+// "40.0 x 20.0 mm, stretched 0.93 to 1.00 times, set in DejaVu Sans Bold".
 std::string describe(const LaidLayer& layer);
 
 struct Artwork {

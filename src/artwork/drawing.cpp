@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "artwork/fonts.h"
 #include "base/error.h"
 #include "base/run_scope.h"
 
@@ -23,10 +24,18 @@ struct Unref {
 template <class Type>
 using Owned = std::unique_ptr<Type, Unref>;
 
-constexpr double kFontSize = 100;
+// librsvg asks FreeType for letters of font size times scale squared, which has a limit: the larger
+// the font, the larger it can be drawn, and the shorter a line can be (900 letters).
+constexpr double kFontSize = 4000, kLargestLetter_px = 15000;
 constexpr double kLineSpacing = 1.2;
 // Around the letters, so that no outline is cut.
-constexpr double kTextPad = 1;
+constexpr double kTextPad = 0.01 * kFontSize;
+// cairo's, and as many as fit half a GiB, for each of the surfaces that librsvg mixes them on.
+constexpr double kLongestSide_px = 32767, kMostPixelsAtOnce = 1U << 27U;
+// What cannot be drawn at this size is broken.
+constexpr int kSafeSide_px = 4096;
+// Of drawings that need not be drawn at once: more than A3 at 3600 pixels an inch has.
+constexpr double kMostPixels = 4e9;
 
 std::string message_of(GError* error) {
   const Owned<GError> owned(error);
@@ -59,6 +68,45 @@ Vec2 natural_size(RsvgHandle* handle) {
   return {ink.width, ink.height};
 }
 
+// Where the next element of that name begins its attributes: with or without a prefix, as "<text"
+// and
+// "<svg:text". Finds those in comments too.
+std::size_t find_element(std::string_view svg, std::string_view name, std::size_t from = 0) {
+  for (std::size_t at = svg.find(name, from); at != svg.npos; at = svg.find(name, at + 1)) {
+    const char before = at > 0 ? svg[at - 1] : ' ';
+    const std::size_t end = at + name.size();
+    const bool ends = end == svg.size() || std::string_view("> \n\t\r/").find(svg[end]) != svg.npos;
+    if ((before == '<' || before == ':') && ends) return end;
+  }
+  return svg.npos;
+}
+
+bool has_element(std::string_view svg, std::string_view name) {
+  return find_element(svg, name) != svg.npos;
+}
+
+// Whether anything may be mixed as a whole.
+bool may_mix(std::string_view svg) {
+  for (const char* word : {"opacity", "filter", "mask", "blend", "isolation"})
+    if (svg.find(word) != svg.npos) return true;
+  return false;
+}
+
+// The first picture in a file of its own that a drawing shows.
+std::string first_linked_picture(std::string_view svg) {
+  constexpr std::string_view kLink = "href=";
+  for (std::size_t at = find_element(svg, "image"); at != svg.npos;
+       at = find_element(svg, "image", at)) {
+    const std::string_view tag = svg.substr(at, svg.find('>', at) - at);
+    const std::size_t link = tag.find(kLink);
+    if (link == tag.npos || link + kLink.size() + 1 >= tag.size()) continue;
+    const std::string_view value = tag.substr(link + kLink.size() + 1);
+    if (!value.starts_with("data:"))
+      return std::string(value.substr(0, value.find(tag[link + kLink.size()])));
+  }
+  return "";
+}
+
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -76,32 +124,14 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-bool take_last_word(std::string& text, std::string_view word) {
-  if (text.size() < word.size() || !text.ends_with(word)) return false;
-  const std::size_t rest = text.size() - word.size();
-  if (rest > 0 && text[rest - 1] != ' ') return false;
-  text.resize(rest > 0 ? rest - 1 : 0);
-  return true;
+// As SVG's attributes.
+std::string font_attributes(const FontWish& wish) {
+  return fmt::format("font-family=\"{}\" font-weight=\"{}\" font-style=\"{}\"",
+                     escaped(wish.family), wish.bold ? "bold" : "normal",
+                     wish.italic ? "italic" : "normal");
 }
 
-// "DejaVu Serif bold italic" as SVG's attributes.
-std::string font_attributes(std::string font) {
-  bool bold = false, italic = false;
-  for (bool found = true; found;) {
-    found = take_last_word(font, "bold");
-    bold |= found;
-    const bool slanted = take_last_word(font, "italic");
-    italic |= slanted;
-    found |= slanted;
-  }
-  if (font.empty()) font = "sans";
-  if (font == "sans") font = "sans-serif";
-  return fmt::format("font-family=\"{}\" font-weight=\"{}\" font-style=\"{}\"", escaped(font),
-                     bold ? "bold" : "normal", italic ? "italic" : "normal");
-}
-
-std::string text_element(const std::string& text, const std::string& font,
-                         const LinearColor& color) {
+std::string text_element(const std::string& text, const FontWish& font, const LinearColor& color) {
   std::string element = fmt::format(
       "<text id=\"t\" xml:space=\"preserve\" text-anchor=\"middle\" font-size=\"{}\" "
       "fill=\"rgb({},{},{})\" {}>",
@@ -144,26 +174,57 @@ struct Drawing::Impl {
   Vec2 size;
   std::string name;
 
-  // Rows from `top` on.
-  void draw(Image& image, int top, int rows) const {
-    const Owned<cairo_surface_t> surface(
-        cairo_image_surface_create(CAIRO_FORMAT_ARGB32, image.width_px, rows));
-    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
-    const Owned<cairo_t> cairo(cairo_create(surface.get()));
-    cairo_translate(cairo.get(), 0, -top);
+  bool has_text = false;
+  std::string linked;
+  bool is_indivisible = false;
+  double most_scale = 1e300;  // pixels per unit
+
+  // A part of the drawing as large as `whole`, from its left upper corner on; false with a reason.
+  bool draw(cairo_surface_t* surface, const Vec2& whole, int left, int top,
+            std::string& why) const {
+    const Owned<cairo_t> cairo(cairo_create(surface));
+    cairo_translate(cairo.get(), -left, -top);
     // One factor for both directions would leave a strip of a rounded size blank.
-    cairo_scale(cairo.get(), image.width_px / size.x(), image.height_px / size.y());
+    cairo_scale(cairo.get(), whole.x() / size.x(), whole.y() / size.y());
     const RsvgRectangle all{0, 0, size.x(), size.y()};
     GError* error = nullptr;
     check_cancelled();
-    if (!rsvg_handle_render_document(handle.get(), cairo.get(), &all, &error))
-      throw InputError(fmt::format("{}: the drawing cannot be drawn ({}); save it again.", name,
-                                   message_of(error)));
+    if (rsvg_handle_render_document(handle.get(), cairo.get(), &all, &error)) return true;
+    why = message_of(error);
+    return false;
+  }
+
+  // Empty, with a reason, if it cannot be drawn.
+  Image part(const Vec2& whole, int left, int top, int width, int height, std::string& why) const {
+    const Owned<cairo_surface_t> surface = blank(width, height);
+    if (!draw(surface.get(), whole, left, top, why)) return {};
     cairo_surface_flush(surface.get());
     const unsigned char* data = cairo_image_surface_get_data(surface.get());
     const auto stride = std::size_t(cairo_image_surface_get_stride(surface.get()));
-    for (int y = 0; y < rows; ++y)
-      make_straight(data + std::size_t(y) * stride, image.width_px, image.pixel(0, top + y));
+    Image image(width, height);
+    for (int y = 0; y < height; ++y)
+      make_straight(data + std::size_t(y) * stride, width, image.pixel(0, y));
+    return image;
+  }
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw InputError(
+        fmt::format("{}: the drawing cannot be drawn ({}); save it again.", name, why));
+  }
+
+  // librsvg draws whatever is mixed as a whole (opacity, blending, filters, masks) as large as the
+  // drawing, whichever part is asked for, and fails where cairo has no such surface.
+  bool can_be_drawn_in_parts() const {
+    const Owned<cairo_surface_t> pixel = blank(1, 1);
+    std::string ignored;
+    return draw(pixel.get(), size * (1.25 * kLongestSide_px / size.maxCoeff()), 0, 0, ignored);
+  }
+
+ private:
+  static Owned<cairo_surface_t> blank(int width, int height) {
+    Owned<cairo_surface_t> surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
+    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
+    return surface;
   }
 };
 
@@ -180,22 +241,29 @@ Drawing Drawing::from_svg(const std::vector<std::uint8_t>& bytes, const std::str
   if (!impl->handle)
     throw InputError(
         fmt::format("{}: damaged or truncated SVG drawing ({}); save it again.", name, why));
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  impl->has_text = has_element(text, "text");
+  impl->linked = first_linked_picture(text);
+  if (impl->has_text) require_fonts(name);
   impl->size = natural_size(impl->handle.get());
   if (!(impl->size.minCoeff() > 0) || !impl->size.allFinite())
     throw InputError(fmt::format(
         "{}: the SVG drawing has no size and nothing to see; give it a width and height, or a "
         "viewBox.",
         name));
+  // Letters of such a size may be none that can be drawn.
+  impl->is_indivisible = impl->has_text ? may_mix(text) : !impl->can_be_drawn_in_parts();
   return Drawing(std::move(impl));
 }
 
 Drawing Drawing::from_text(const std::string& text, const std::string& font,
                            const LinearColor& color) {
-  const std::string element = text_element(text, font, color);
   const std::string name = "the text '" + text + "'";
+  require_fonts(name);
+  const std::string element = text_element(text, parse_font(font), color);
   std::string why;
   // Around the origin, so large that no line reaches its edge.
-  constexpr double kRoom = 1e5;
+  constexpr double kRoom = 1000 * kFontSize;
   const RsvgRectangle whole{-kRoom, -kRoom, 2 * kRoom, 2 * kRoom};
   const Owned<RsvgHandle> measured = parse(svg_around(element, whole), why);
   if (!measured) throw InputError(fmt::format("{} cannot be set: {}.", name, why));
@@ -204,8 +272,7 @@ Drawing Drawing::from_text(const std::string& text, const std::string& font,
   if (!rsvg_handle_get_geometry_for_layer(measured.get(), "#t", &viewport, &ink, &logical,
                                           nullptr) ||
       !(ink.width > 0 && ink.height > 0))
-    throw InputError(name +
-                     " shows nothing: write letters, and see to it that fonts are installed");
+    throw InputError(name + " shows nothing: write letters");
   ink.x -= kRoom;
   ink.y -= kRoom;
   ink = {ink.x - kTextPad, ink.y - kTextPad, ink.width + 2 * kTextPad, ink.height + 2 * kTextPad};
@@ -214,17 +281,46 @@ Drawing Drawing::from_text(const std::string& text, const std::string& font,
   impl->handle = parse(svg_around(element, ink), why);
   if (!impl->handle) throw InputError(fmt::format("{} cannot be set: {}.", name, why));
   impl->size = {ink.width, ink.height};
+  impl->most_scale = kLargestLetter_px / kFontSize;
   return Drawing(std::move(impl));
 }
 
 double Drawing::aspect() const { return impl_->size.x() / impl_->size.y(); }
 
+bool Drawing::has_text() const { return impl_->has_text; }
+const std::string& Drawing::linked_picture() const { return impl_->linked; }
+
+Drawing::Limits Drawing::limits() const {
+  const double side_px = std::min(kMostPixels, impl_->most_scale * impl_->size.maxCoeff());
+  if (impl_->is_indivisible) return {kMostPixelsAtOnce, std::min(side_px, kLongestSide_px)};
+  return {kMostPixels, side_px};
+}
+
 Image Drawing::pixels(int width_px, int height_px) const {
-  // In bands, so that memory holds the picture once.
-  constexpr int kBand_px = 1024;
-  Image image(width_px, height_px);
-  for (int top = 0; top < height_px; top += kBand_px)
-    impl_->draw(image, top, std::min(kBand_px, height_px - top));
+  std::string why;
+  Image image = impl_->part(Vec2(width_px, height_px), 0, 0, width_px, height_px, why);
+  if (image.empty()) impl_->refuse(why);
+  return image;
+}
+
+std::optional<TiledImage> Drawing::tiles(int width_px, int height_px,
+                                         std::size_t most_bytes) const {
+  // Small enough that a job that is cancelled ends soon.
+  constexpr int kPart_px = 32 * TiledImage::kTile_px;
+  const int width = impl_->is_indivisible ? width_px : std::min(width_px, kPart_px);
+  const int height = impl_->is_indivisible ? height_px : std::min(height_px, kPart_px);
+  TiledImage image(width_px, height_px);
+  for (int top = 0; top < height_px; top += height)
+    for (int left = 0; left < width_px; left += width) {
+      std::string why;
+      const Image part =
+          impl_->part(Vec2(width_px, height_px), left, top, std::min(width, width_px - left),
+                      std::min(height, height_px - top), why);
+      if (part.empty() && std::max(width_px, height_px) > kSafeSide_px) return {};
+      if (part.empty()) impl_->refuse(why);
+      image.put(part, left, top);
+      if (image.bytes() > most_bytes) return {};
+    }
   return image;
 }
 

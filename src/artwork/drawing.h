@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "artwork/tiled_image.h"
 #include "base/math.h"
 #include "image/image.h"
 
@@ -17,7 +19,8 @@ class Drawing {
   // Of a file's bytes; nothing outside of them is read. Throws InputError naming `name`: not SVG,
   // damaged, nothing to see.
   static Drawing from_svg(const std::vector<std::uint8_t>& bytes, const std::string& name);
-  // One or several lines, cut at the letters' outlines. Throws InputError if nothing would be seen.
+  // One or several lines, cut at the letters' outlines. A letter that no font has (fonts.h) becomes
+  // a box. Throws InputError if nothing would be seen, and on a machine without fonts.
   static Drawing from_text(const std::string& text, const std::string& font,
                            const LinearColor& color);
 
@@ -27,8 +30,21 @@ class Drawing {
 
   // Width over height.
   double aspect() const;
-  // All of it, at most 32767 px a side.
+  // Whether an SVG drawing has text, which is set in whatever fonts this machine has.
+  bool has_text() const;
+  // A picture that an SVG drawing takes from a file of its own and that is not shown; "" if none.
+  const std::string& linked_picture() const;
+  // The largest that can be drawn: pixels in all, and a side's. A drawing in which something is
+  // mixed as a whole (a group's opacity, blending, filters, masks) must be drawn in one piece.
+  struct Limits {
+    double pixels, side_px;
+  };
+  Limits limits() const;
+  // All of it, within the limits.
   Image pixels(int width_px, int height_px) const;
+  // The same in tiles, drawn piece by piece. Nothing if these would take more than so many bytes,
+  // or if letters are larger than can be drawn: a smaller size may do.
+  std::optional<TiledImage> tiles(int width_px, int height_px, std::size_t most_bytes) const;
 
  private:
   struct Impl;

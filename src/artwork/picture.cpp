@@ -9,19 +9,26 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/run_scope.h"
 #include "image/files.h"
 #include "image/resize.h"
 
 namespace hydrodip {
 namespace {
 
-// A drawing's pixels: as many as fit 1 GiB, and no side that cairo cannot draw.
-constexpr double kMostPixels = 1U << 28U;
-constexpr double kLongestSide_px = 32767;
+// What a drawing may take: of its tiles that have more than one colour, and as an image.
+constexpr std::size_t kMostBytes = std::size_t(1) << 30U;
+constexpr double kMostPixels = 1U << 28U, kLongestSide_px = 32767;
 // Finer pixels than this, in those of the print's samples, only take memory and make noise.
 constexpr double kFinest = 1.5;
 
 int side_px(double length) { return std::max(1, int(std::lround(length))); }
+
+// The share of a size at which it keeps to the limits.
+double share_within(const Vec2& size_px, const Drawing::Limits& limits) {
+  return std::min({1.0, limits.side_px / size_px.maxCoeff(),
+                   std::sqrt(limits.pixels / std::max(1.0, size_px.prod()))});
+}
 
 // Sixteen bits would hold it too, but sums of four are floats anyway.
 void add_texel(const std::uint8_t* pixel, float weight, const std::array<float, 256>& decode,
@@ -60,6 +67,24 @@ Pair pair_at(double t, int size, Repeat repeat) {
   return pair;
 }
 
+template <class Source>
+LinearColor sampled(const Source& image, int width_px, int height_px, const PictureFrame& frame,
+                    const Vec2& place_mm) {
+  const Vec2 t = frame.to_picture(place_mm);
+  const Repeat repeat = frame.repeat();
+  if (repeat == Repeat::kOnce && !(t.x() >= 0 && t.x() <= 1 && t.y() >= 0 && t.y() <= 1))
+    return {0, 0, 0, 0};
+  const Pair x = pair_at(repeated(t.x(), repeat), width_px, repeat);
+  const Pair y = pair_at(repeated(t.y(), repeat), height_px, repeat);
+  const std::array<float, 256>& decode = srgb8_table();
+  LinearColor sum{0, 0, 0, 0};
+  add_texel(image.pixel(x.first, y.first), (1 - x.weight) * (1 - y.weight), decode, sum);
+  add_texel(image.pixel(x.second, y.first), x.weight * (1 - y.weight), decode, sum);
+  add_texel(image.pixel(x.first, y.second), (1 - x.weight) * y.weight, decode, sum);
+  add_texel(image.pixel(x.second, y.second), x.weight * y.weight, decode, sum);
+  return sum;
+}
+
 }  // namespace
 
 std::string name_of(const ArtworkLayer& layer) {
@@ -74,6 +99,7 @@ PictureSource::PictureSource(const ArtworkLayer& layer) : name_(name_of(layer)) 
   if (layer.image.empty()) {
     if (layer.text.empty())
       throw InputError("a layer of artwork shows nothing: give it an image or a text");
+    fonts_ = fonts_for(layer.text, parse_font(layer.font), name_);
     drawing_ = Drawing::from_text(layer.text, layer.font, layer.text_color);
     return;
   }
@@ -91,20 +117,42 @@ double PictureSource::aspect() const {
   return drawing_ ? drawing_->aspect() : double(image_->width_px) / image_->height_px;
 }
 
-std::shared_ptr<const Image> PictureSource::pixels(double width_mm, double height_mm,
-                                                   double pixels_per_mm) {
-  const double width_px = width_mm * pixels_per_mm, height_px = height_mm * pixels_per_mm;
-  if (drawing_) {
-    const double shrink = std::min({1.0, kLongestSide_px / std::max(width_px, height_px),
-                                    std::sqrt(kMostPixels / std::max(1.0, width_px * height_px))});
-    return std::make_shared<const Image>(
-        drawing_->pixels(side_px(shrink * width_px), side_px(shrink * height_px)));
+PictureSource::Shown PictureSource::pixels(const Vec2& size_mm, double pixels_per_mm) {
+  const Vec2 size_px = size_mm * pixels_per_mm;
+  if (!drawing_) return {Pixels(averaged(size_px))};
+  // Where too many tiles have something to show, the next try is half as fine.
+  for (double share = share_within(size_px, drawing_->limits());; share /= 2) {
+    const Vec2 drawn = share * size_px;
+    if (auto tiles = drawing_->tiles(side_px(drawn.x()), side_px(drawn.y()), kMostBytes))
+      return {Pixels(std::move(*tiles)), share};
   }
+}
+
+std::shared_ptr<const Image> PictureSource::image(const Vec2& size_mm, double pixels_per_mm) {
+  const Vec2 size_px = size_mm * pixels_per_mm;
+  if (!drawing_) return averaged(size_px);
+  const Vec2 drawn = size_px * std::min(share_within(size_px, drawing_->limits()),
+                                        share_within(size_px, {kMostPixels, kLongestSide_px}));
+  return std::make_shared<const Image>(drawing_->pixels(side_px(drawn.x()), side_px(drawn.y())));
+}
+
+std::shared_ptr<const Image> PictureSource::averaged(const Vec2& size_px) {
   const std::shared_ptr<const Image> image = std::exchange(image_, nullptr);
-  if (image->width_px <= kFinest * width_px && image->height_px <= kFinest * height_px)
+  if (image->width_px <= kFinest * size_px.x() && image->height_px <= kFinest * size_px.y())
     return image;
-  return std::make_shared<const Image>(resize(*image, std::min(image->width_px, side_px(width_px)),
-                                              std::min(image->height_px, side_px(height_px))));
+  return std::make_shared<const Image>(
+      resize(*image, int(std::min(double(image->width_px), std::max(1.0, std::round(size_px.x())))),
+             int(std::min(double(image->height_px), std::max(1.0, std::round(size_px.y()))))));
+}
+
+bool Pixels::shows_anything() const {
+  if (!image_) return tiles_.shows_anything();
+  CheckEvery check(1 << 20);
+  for (std::size_t i = 3; i < image_->rgba.size(); i += 4) {
+    check();
+    if (image_->rgba[i] > 0) return true;
+  }
+  return false;
 }
 
 PictureFrame::PictureFrame(const Vec2& size_mm, double turn_deg, Repeat repeat)
@@ -128,19 +176,11 @@ bool PictureFrame::misses(const Box2& box_mm) const {
 }
 
 LinearColor sample(const Image& image, const PictureFrame& frame, const Vec2& place_mm) {
-  const Vec2 t = frame.to_picture(place_mm);
-  const Repeat repeat = frame.repeat();
-  if (repeat == Repeat::kOnce && !(t.x() >= 0 && t.x() <= 1 && t.y() >= 0 && t.y() <= 1))
-    return {0, 0, 0, 0};
-  const Pair x = pair_at(repeated(t.x(), repeat), image.width_px, repeat);
-  const Pair y = pair_at(repeated(t.y(), repeat), image.height_px, repeat);
-  const std::array<float, 256>& decode = srgb8_table();
-  LinearColor sum{0, 0, 0, 0};
-  add_texel(image.pixel(x.first, y.first), (1 - x.weight) * (1 - y.weight), decode, sum);
-  add_texel(image.pixel(x.second, y.first), x.weight * (1 - y.weight), decode, sum);
-  add_texel(image.pixel(x.first, y.second), (1 - x.weight) * y.weight, decode, sum);
-  add_texel(image.pixel(x.second, y.second), x.weight * y.weight, decode, sum);
-  return sum;
+  return sampled(image, image.width_px, image.height_px, frame, place_mm);
+}
+
+LinearColor sample(const Pixels& pixels, const PictureFrame& frame, const Vec2& place_mm) {
+  return sampled(pixels, pixels.width_px(), pixels.height_px(), frame, place_mm);
 }
 
 }  // namespace hydrodip

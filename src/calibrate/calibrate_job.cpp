@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -34,23 +33,6 @@ SearchOptions search_options(const CalibrationRequest& request) {
     throw InputError(fmt::format("the grid has {} points; {} are the most: take larger steps",
                                  points, kMostGridPoints));
   return options;
-}
-
-Shard parse_shard(const std::string& text) {
-  Shard shard;
-  if (text.empty()) return shard;
-  const std::size_t slash = text.find('/');
-  const auto number = [&](std::size_t begin, std::size_t end, int& value) {
-    const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-    return error == std::errc() && stop == text.data() + end;
-  };
-  const bool good = slash != std::string::npos && number(0, slash, shard.number) &&
-                    number(slash + 1, text.size(), shard.shards) && shard.shards >= 1 &&
-                    shard.shards <= 10000 && shard.number >= 1 && shard.number <= shard.shards;
-  if (!good)
-    throw InputError(
-        fmt::format("--shard '{}': give the part and the number of parts, as in 2/4", text));
-  return shard;
 }
 
 // A folder stands for the store in it.
@@ -274,12 +256,12 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
       "When all shards are done, run the same command without --shard and with --merge DIR for "
       "each "
       "of their folders.\n",
-      shard.number, shard.shards, total - missing, total, (config.output / kStoreName).string());
+      shard.number, shard.of, total - missing, total, (config.output / kStoreName).string());
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
   result.json = Json{{"command", "calibrate"},
                      {"folder", config.output.string()},
-                     {"shard", fmt::format("{}/{}", shard.number, shard.shards)},
+                     {"shard", fmt::format("{}/{}", shard.number, shard.of)},
                      {"simulations", total - missing},
                      {"missing", missing}}
                     .dump(2) +

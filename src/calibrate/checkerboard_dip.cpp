@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/parse_double.h"
 #include "ink/stiffness.h"
 #include "job/prepare.h"
 #include "samples/samples.h"
@@ -35,7 +35,7 @@ std::pair<std::string, double> split_depth(const std::string& text) {
   double depth = 0;
   const char* begin = text.data() + at + 1;
   const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(begin, end, depth);
+  const auto [stop, error] = parse_double(begin, end, depth);
   if (error != std::errc() || stop != end) return {text, 0};
   if (!(depth > 0 && depth < 5000))
     throw InputError(fmt::format("{}: the depth after '@' must be above 0 mm", text));

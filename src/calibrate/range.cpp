@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/parse_double.h"
 #include "calibrate/calibrate.h"
 
 namespace hydrodip {
@@ -14,7 +14,7 @@ constexpr std::size_t kMostValues = 1000;
 constexpr double kSlack = 1e-6;
 
 bool parse(const std::string& text, double& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = parse_double(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
 }
 

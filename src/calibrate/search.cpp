@@ -123,7 +123,7 @@ void Search::simulate_grid(const Shard& shard, const RunContext& context) {
   const std::vector<SimulationRequest> all = grid_requests(options_, subjects_.size());
   std::vector<SimulationRequest> mine;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (int(i % std::size_t(shard.shards)) == shard.number - 1) mine.push_back(all[i]);
+    if (shard.has(i)) mine.push_back(all[i]);
   search_film_.get(mine, "searching", context);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/shard.h"
 #include "calibrate/fit.h"
 #include "calibrate/resolution.h"
 #include "calibrate/simulations.h"
@@ -25,11 +26,6 @@ struct SearchOptions {
 
 // The grid's points in the order in which they are computed.
 std::vector<FilmParameters> grid_points(const SearchOptions& options);
-
-// One part of the grid, of `shards`; 1 is the first.
-struct Shard {
-  int number = 1, shards = 1;
-};
 
 // Eq. 4 over the grid.
 struct GridPointError {

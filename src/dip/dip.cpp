@@ -37,6 +37,7 @@ void check(const DipOptions& options, const FilmMesh& film) {
   if (!(options.material.poisson > -1 && options.material.poisson < 0.5))
     refuse("material.poisson must be above -1 and below 0.5");
   if (!(options.material.z_stretch >= 0)) refuse("material.z_stretch must not be negative");
+  if (options.material.law) check_law(*options.material.law);
   if (!options.modulus.empty() && options.modulus.size() != film.triangles.size())
     refuse("the stiffness field does not fit the film's mesh");
   if (!options.tears_at_mm.empty() && options.tears_at_mm.size() != film.triangles.size())

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "base/context.h"
 #include "dip/travel.h"
 #include "elastic/linear_solver.h"
+#include "elastic/material_law.h"
 #include "film/film.h"
 #include "object/surface.h"
 
@@ -35,6 +37,9 @@ struct FilmMaterial {
   // buckles at once, but swelling film takes up a little, and wrinkles only show from a few percent
   // on: at 5 % they are a fifteenth as high as they are apart.
   double wrinkle_stretch = 0.95;
+  // How film resists stretch, instead of the paper's Eq. 3 and `poisson`; null: those. Ink's
+  // modulus multiplies it.
+  std::shared_ptr<const MaterialLaw> law = {};
 };
 
 struct DipOptions {

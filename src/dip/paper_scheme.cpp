@@ -15,7 +15,8 @@ class PaperScheme : public Scheme {
       : set_(setting),
         film_(setting.film),
         state_(state),
-        energy_(setting.film, setting.options.modulus, setting.options.material.poisson),
+        energy_(setting.film, setting.options.modulus, setting.options.material.poisson,
+                setting.options.material.law),
         solver_(setting.options.make_solver(setting.film)),
         relaxation_(energy_, *solver_) {}
 

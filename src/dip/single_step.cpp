@@ -21,7 +21,8 @@ class SingleStep : public Scheme {
       : set_(setting),
         film_(setting.film),
         state_(state),
-        energy_(setting.film, setting.options.modulus, setting.options.material.poisson) {}
+        energy_(setting.film, setting.options.modulus, setting.options.material.poisson,
+                setting.options.material.law) {}
 
   void advance(const Moment& to) override {
     rise_to(to.level_mm, set_, state_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <numeric>
+#include <utility>
 
 #include "base/parallel.h"
 #include "elastic/kernel_variants.h"
@@ -20,10 +21,13 @@ Mat2 gradient_at(const FilmMesh& mesh, const RestTriangle& rest, std::size_t t,
 
 }  // namespace
 
-FilmEnergy::FilmEnergy(const FilmMesh& mesh, const std::vector<double>& modulus, double poisson)
+FilmEnergy::FilmEnergy(const FilmMesh& mesh, const std::vector<double>& modulus, double poisson,
+                       std::shared_ptr<const MaterialLaw> law)
     : mesh_(mesh),
+      law_(std::move(law)),
       grid_(mesh),
       lambda_per_mu_(lame(1, poisson).lambda / lame(1, poisson).mu),
+      modulus_per_mu_(1 / lame(1, poisson).mu),
       own_corner_(mesh.incident.size()) {
   for (auto& corner : gradient_)
     for (auto& component : corner) component = GridArray<double>(grid_.elements());
@@ -142,6 +146,7 @@ void FilmEnergy::build_pattern() const {
 }
 
 double FilmEnergy::value(const GridField& u) const {
+  if (law_) return value_by_law(u);
   const kernels::Elements elements = this->elements();
   // By the first row of a part, so that they are added up in the same order on any threads.
   std::vector<double> part(std::size_t(elements.ny), 0.0);
@@ -155,6 +160,7 @@ double FilmEnergy::value(const GridField& u) const {
 
 std::int64_t FilmEnergy::gradient(const GridField& u, const GridArray<double>& mask,
                                   GridField& out) const {
+  if (law_) return gradient_by_law(u, mask, out);
   const kernels::Elements elements = this->elements();
   std::atomic<std::int64_t> turned_over = 0;
   grid_.layout().for_rows(elements.ny, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -167,6 +173,11 @@ std::int64_t FilmEnergy::gradient(const GridField& u, const GridArray<double>& m
 
 void FilmEnergy::hessian(const VertexVector& u, bool definite, BlockMatrix& out) const {
   if (pattern_.row_begin.empty()) build_pattern();
+  if (law_) {
+    if (out.column.size() != pattern_.column.size()) out = pattern_;
+    hessian_by_law(u, definite, out);
+    return;
+  }
   std::vector<Polar> polars(mesh_.triangles.size());
   parallel_for(polars.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "elastic/corotated.h"
 #include "elastic/film_grid.h"
 #include "elastic/kernels.h"
+#include "elastic/material_law.h"
 #include "film/film.h"
 
 namespace hydrodip {
@@ -21,9 +23,10 @@ struct BlockMatrix {
 // Bound to a mesh and a modulus per triangle; the rest state changes from step to step.
 class FilmEnergy {
  public:
-  // modulus: relative Young's modulus per triangle, empty for 1 everywhere. Keeps a reference to
-  // the mesh.
-  FilmEnergy(const FilmMesh& mesh, const std::vector<double>& modulus, double poisson);
+  // modulus: relative Young's modulus per triangle, empty for 1 everywhere. law: instead of the
+  // paper's with that Poisson's ratio; may be null. Keeps a reference to the mesh.
+  FilmEnergy(const FilmMesh& mesh, const std::vector<double>& modulus, double poisson,
+             std::shared_ptr<const MaterialLaw> law = {});
 
   const FilmGrid& grid() const { return grid_; }
 
@@ -46,6 +49,9 @@ class FilmEnergy {
   }
   // All of it as arrays.
   kernels::Elements elements() const;
+  // Of one's own; null: the paper's.
+  const MaterialLaw* law() const { return law_.get(); }
+  double modulus(std::size_t t) const { return modulus_per_mu_ * mu_[grid_.element(t)]; }
 
   // The triangles in which film is stretched further than the limit at u, ascending.
   std::vector<std::int32_t> overstretched(const GridField& u, double limit) const;
@@ -64,12 +70,19 @@ class FilmEnergy {
 
  private:
   void build_pattern() const;
+  // film_energy_by_law.cpp
+  LawState law_state_at(std::size_t t, const RestTriangle& rest, const GridField& u) const;
+  double value_by_law(const GridField& u) const;
+  std::int64_t gradient_by_law(const GridField& u, const GridArray<double>& mask,
+                               GridField& out) const;
+  void hessian_by_law(const VertexVector& u, bool definite, BlockMatrix& out) const;
 
   const FilmMesh& mesh_;
+  std::shared_ptr<const MaterialLaw> law_;
   FilmGrid grid_;
   // Over elements (kernels::Elements).
   GridArray<double> gradient_[2][2], area_, mu_, film_, flat_area_;
-  double lambda_per_mu_;  // Poisson's ratio is the same everywhere
+  double lambda_per_mu_, modulus_per_mu_;  // Poisson's ratio is the same everywhere
   // Corner of mesh.triangles[mesh.incident[n]] that is the vertex itself.
   std::vector<std::uint8_t> own_corner_;
   mutable std::vector<std::int64_t> flags_;  // scratch of overstretched()

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "elastic/kernel_variants.h"
+#include "elastic/law_tangents.h"
 #include "elastic/linear_solver.h"
 #include "elastic/multigrid.h"
 
@@ -47,7 +48,10 @@ class MultigridSolver : public LinearSolver {
     const bool turned = definite != definite_;
     definite_ = definite;
     touch_masked(is_free, all);
-    linearize(energy, u, turned, all);
+    if (energy.law())
+      linearize_by_law(energy, u, turned);
+    else
+      linearize(energy, u, turned, all);
     compute_rows(energy);
     grid_.update(all);
     // Directions stay conjugate enough while it is the same film that moves.
@@ -115,6 +119,12 @@ class MultigridSolver : public LinearSolver {
           touch(std::size_t(corner));
   }
 
+  void linearize_by_law(const FilmEnergy& energy, const GridField& u, bool turned) {
+    const double tolerance = turned ? 0 : kOperatorTolerance;
+    for (const std::int32_t t : by_law_.update(energy, mesh_, u, definite_, tolerance))
+      for (const std::int32_t corner : mesh_.triangles[std::size_t(t)]) touch(std::size_t(corner));
+  }
+
   void linearize(const FilmEnergy& energy, const GridField& u, std::size_t t) {
     const std::size_t e = film_.element(t);
     const RestTriangle rest = energy.rest(t);
@@ -169,9 +179,23 @@ class MultigridSolver : public LinearSolver {
     for (auto n = std::size_t(mesh_.incident_begin[v]);
          n < std::size_t(mesh_.incident_begin[v + 1]); ++n) {
       const auto t = std::size_t(mesh_.incident[n]);
-      if (kept_.area[film_.element(t)] > 0) add_triangle(energy.material(t), t, v, row);
+      if (energy.law())
+        add_by_law(t, v, row);
+      else if (kept_.area[film_.element(t)] > 0)
+        add_triangle(energy.material(t), t, v, row);
     }
     return row;
+  }
+
+  void add_by_law(std::size_t t, std::size_t v, GridOperator::Row& row) const {
+    const Triangle& corners = mesh_.triangles[t];
+    const std::size_t a = std::size_t(corners[0]) == v ? 0 : std::size_t(corners[1]) == v ? 1 : 2;
+    for (std::size_t b = 0; b < 3; ++b) {
+      const auto &here = film_.node(v), &there = film_.node(std::size_t(corners[b]));
+      auto& block = row[std::size_t(3 * (there[1] - here[1] + 1) + there[0] - here[0] + 1)];
+      const LawTangents::Block& part = by_law_.block(t, a, b);
+      for (std::size_t e = 0; e < 4; ++e) block[e] += part[e];
+    }
   }
 
   void add_triangle(const Lame& material, std::size_t t, std::size_t v,
@@ -303,6 +327,7 @@ class MultigridSolver : public LinearSolver {
   std::vector<std::uint8_t> is_free_;
   std::vector<std::int64_t> differs_;
   Kept kept_;
+  LawTangents by_law_;
   std::vector<int> look_in_;  // by row of cells: after so many updates
   bool definite_ = false, restart_ = true;
   // Gradient and the one before, preconditioned gradient, direction, operator times direction.

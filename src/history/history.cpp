@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/nearest_name.h"
+#include "base/parse_double.h"
 #include "history/run_log.h"
 
 namespace hydrodip {
@@ -63,7 +63,7 @@ std::optional<double> number_of(const std::string& text) {
   std::ranges::replace(with_point, ',', '.');
   double value = 0;
   const char* end = with_point.data() + with_point.size();
-  const auto [rest, error] = std::from_chars(with_point.data(), end, value);
+  const auto [rest, error] = parse_double(with_point.data(), end, value);
   if (error != std::errc() || rest != end || !std::isfinite(value)) return {};
   return value;
 }

@@ -40,6 +40,8 @@ class Planning {
         again_(again),
         context_(context),
         task_(job_trials(config, prepared, targets)) {
+    task_.depth_mm = 0;
+    task_.keep_film = true;
     task_.torn_price = kTornPriceAmongSeveral;
     task_.dip.material.tear_stretch *= kStretchKept;
   }
@@ -63,32 +65,34 @@ class Planning {
   void find_given() {
     for (std::size_t i = 0; i < config_.dips.size(); ++i) {
       const DipEntry& entry = config_.dips[i];
-      if (!is_given(entry, again_)) continue;
-      context_.progress("dipping what is given", double(i) / double(config_.dips.size()));
-      if (!entry.path.empty()) {
-        given_.push_back(by_path(entry));
+      if (!is_given(entry, again_)) {
+        if (entry.depth_mm && !again_) hold_best(task_to(entry));
         continue;
       }
-      TrialTask task = task_;
-      if (entry.depth_mm) task.depth_mm = *entry.depth_mm;
+      context_.progress("dipping what is given", double(i) / double(config_.dips.size()));
+      const TrialTask task = task_to(entry);
       const auto trial = fine(task, pose_of(entry, config_.object.pose), 0);
       if (!trial || !(trial->depth_mm > 0)) refuse_dip(i + 1, trial ? &*trial : nullptr);
       given_.push_back(*trial);
     }
   }
 
-  // A path is taken as it is given, down to its end.
-  Trial by_path(const DipEntry& entry) {
-    const PosedObject posed(task_.object, pose_of(entry, config_.object.pose));
-    TrajectoryOptions way = config_.design.trajectory;
-    way.path = entry.path;
-    Timings unheard;
-    const DippedObject dipped = dip_object(
-        posed, std::make_shared<const FilmMesh>(make_film_mesh(task_.film)),
-        make_trajectory(way, posed.mesh().positions), task_.dip, unheard, context_.quiet());
-    Trial trial = judge_dip(task_, pose_of(entry, config_.object.pose), dipped);
-    trial.path = entry.path;
-    return trial;
+  TrialTask task_to(const DipEntry& entry) const {
+    TrialTask task = task_;
+    if (entry.depth_mm) task.depth_mm = *entry.depth_mm > 0 ? *entry.depth_mm : kWholeObject_mm;
+    if (!entry.path.empty()) task.way = {.path = entry.path, .pivot_mm = task.way.pivot_mm};
+    return task;
+  }
+
+  // One of which the depth alone is given: held so that it adds most to what is given so far.
+  void hold_best(const TrialTask& task) {
+    const PoseOptions& pose = config_.object.pose;
+    const SearchResult found = search_holds(task, pose, quick_search(), context_);
+    plan_.trial_dips += found.trials.size();
+    const ChoiceOptions choice{.dips = int(given_.size()) + 1, .kept = given_, .better = false};
+    const std::vector<Trial> chosen = choose_dips(trial_task(task), found.trials, choice, context_);
+    if (chosen.size() == given_.size()) return;
+    if (auto sure = fine(task, chosen.back().pose, 0)) given_.push_back(std::move(*sure));
   }
 
   std::optional<Trial> fine(const TrialTask& task, const PoseOptions& pose, double depth_most_mm) {
@@ -99,18 +103,24 @@ class Planning {
   void search(int wanted) {
     SearchOptions options;
     options.confirm = false;
+    options.first_elements = kDraftElements;
     options.refined = std::max(options.refined, wanted);
     const SearchResult found = search_holds(task_, config_.object.pose, options, context_);
-    plan_.trial_dips = found.trials.size();
+    plan_.trial_dips += found.trials.size();
     const TrialTask coarse = trial_task(task_);
     ChoiceOptions choice;
     choice.dips = wanted;
     choice.kept = given_;
-    plan_.dips = choose_dips(coarse, found.trials, choice, context_);
-    for (std::size_t i = given_.size(); i < plan_.dips.size(); ++i) {
-      context_.progress("dipping them for good", double(i) / double(plan_.dips.size()));
-      Trial& dip = plan_.dips[i];
-      if (const auto sure = fine(task_, dip.pose, dip.depth_mm + kDeeper_mm)) dip = *sure;
+    const std::vector<Trial> chosen = choose_dips(coarse, found.trials, choice, context_);
+    plan_.dips = given_;
+    for (std::size_t i = given_.size(); i < chosen.size(); ++i) {
+      context_.progress("dipping them for good", double(i) / double(chosen.size()));
+      try {
+        if (auto sure = fine(task_, chosen[i].pose, chosen[i].depth_mm + kDeeper_mm))
+          plan_.dips.push_back(std::move(*sure));
+      } catch (const DipError&) {
+        continue;  // none to recommend
+      }
     }
     context_.progress("dipping them for good", 1);
   }

@@ -121,10 +121,14 @@ std::vector<ReportFigure> figures(const DippedObject& dipped) {
           {"film_cell_mm", "Film grid spacing", film.mesh().cell_mm, "mm"}};
 }
 
-std::string role_of(const std::filesystem::path& file, const JobConfig& config) {
+std::string role_of(const std::filesystem::path& file, const JobConfig& config,
+                    const PreparedObject& prepared) {
   if (file == config.model) return "model";
   for (const ArtworkLayer& layer : config.object.artwork)
     if (file == layer.image) return "artwork";
+  for (const LaidLayer& layer : prepared.artwork)
+    for (const FontUse& font : layer.fonts)
+      if (file == font.file) return "font";
   const std::string extension = file.extension().string();
   if (extension == ".mtl" || extension == ".MTL") return "material";
   return extension == ".bin" ? "model data" : "texture";
@@ -136,7 +140,7 @@ std::vector<ReportInput> describe_inputs(const JobConfig& config, const Prepared
                                          const Printer& printer) {
   std::vector<ReportInput> inputs;
   for (const auto& file : prepared.files)
-    inputs.push_back(describe_input(role_of(file, config), file));
+    inputs.push_back(describe_input(role_of(file, config, prepared), file));
   if (!config.film_image.empty()) inputs.push_back(describe_input("film image", config.film_image));
   if (!printer.profile_file.empty())
     inputs.push_back({"printer profile", printer.profile_file.string(),
@@ -175,7 +179,6 @@ Report make_report(const JobRecord& record) {
   report.command = record.command;
   report.command_line = record.config.command_line;
   report.title = record.config.print.job_name;
-  report.verdict = plain_verdict(record.dipped().coverage);
   report.better_way = record.better_way;
   report.inputs = record.inputs;
   for (const Parameter& parameter : parameters())
@@ -185,6 +188,9 @@ Report make_report(const JobRecord& record) {
   report.total_seconds = record.times.total_s();
   report.rounds = rounds(record);
   report.coverage = record.dipped().coverage;
+  report.wanted = record.wanted;
+  report.verdict = report.wanted ? plain_verdict(*report.coverage, *report.wanted)
+                                 : plain_verdict(*report.coverage);
   report.air = record.dipped().air;
   report.way_in = way_in(record.config, record.dipped().posed.mesh());
   report.angles = record.dipped().angles;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,10 @@ struct JobRecord {
   const Finish& finish;
   const Timings& times;
   const RunContext& context;
-  const InkResult* ink = nullptr;  // of print
-  std::string ink_model = {};      // how colours became inks
-  std::string better_way = {};     // how else to dip it; empty: none is known
+  const InkResult* ink = nullptr;           // of print
+  std::string ink_model = {};               // how colours became inks
+  std::string better_way = {};              // how else to dip it; empty: none is known
+  std::optional<ReportWanted> wanted = {};  // where something shall be printed
 
   const DippedObject& dipped() const { return finish.coats().front().dipped; }
   const Paint& paint() const { return finish.paint(); }

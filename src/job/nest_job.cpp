@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "artwork/drawing.h"
+#include "artwork/fonts.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/output_folder.h"
@@ -294,6 +295,7 @@ std::vector<std::string> file_names(std::size_t parts) {
 JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const RunContext& context) {
   const RunScope scope(context.with_threads(sheet.threads));
   require_memory(sheet.design);
+  require_fonts("the pieces' names");
   OutputFolder folder(sheet.output, sheet.earlier_result);
   Nest nest;
   std::vector<std::filesystem::path> inputs;

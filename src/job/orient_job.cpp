@@ -1,18 +1,12 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
-#include "base/output_folder.h"
 #include "base/run_scope.h"
-#include "coat/dipped_object.h"
-#include "image/files.h"
 #include "job/command_text.h"
-#include "job/jobs.h"
-#include "job/prepare.h"
-#include "job/ways.h"
+#include "job/search_output.h"
 #include "render/hold_pictures.h"
+#include "transfer/film_map.h"
 
 namespace hydrodip {
 namespace {
@@ -52,37 +46,30 @@ std::string machine_readable(const JobConfig& config, const SearchResult& found)
 
 std::string figures_text(const Trial& trial) {
   const TrialFigures& f = trial.figures;
-  return fmt::format("{:.1f} % covered, {:.1f} % torn, {:.1f} % doubtful, score {:.3f}",
-                     100 * f.covered_share, 100 * f.torn_share, 100 * f.doubtful_share, f.score);
+  std::string text = fmt::format("{:.1f} % covered, {:.1f} % torn, {:.1f} % doubtful",
+                                 100 * f.covered_share, 100 * f.torn_share, 100 * f.doubtful_share);
+  if (f.air_mm2 > 0) text += fmt::format(", {:.0f} mm2 under trapped air", f.air_mm2);
+  return text + fmt::format(", score {:.3f}", f.score);
 }
 
-// The dip in that pose, for its picture.
-DippedObject dip_like(const JobConfig& config, const PreparedObject& prepared, const Trial& trial,
-                      const RunContext& context) {
-  const DesignOptions draft = draft_of(config.design);
-  Timings unheard;
-  RunContext quiet = context.quiet();
-  return dip_object(PosedObject(prepared.posed.shared_object(), trial.pose),
-                    std::make_shared<const FilmMesh>(make_film_mesh(draft.film)),
-                    Trajectory::straight_down(trial.depth_mm), draft.dip, unheard, quiet);
-}
-
-// Where film lies in the wanted colours, or in one where none are wanted.
+// Where its film lies in the wanted colours, or in one where none are wanted.
 Image draw_holds(const JobConfig& config, const PreparedObject& prepared,
                  const std::vector<Trial>& best, const RunContext& context) {
-  std::vector<DippedObject> dipped;
-  for (const Trial& trial : best) dipped.push_back(dip_like(config, prepared, trial, context));
   const Paint& paint = *prepared.paint;
+  std::vector<PosedObject> posed;
+  for (const Trial& trial : best) posed.emplace_back(prepared.posed.shared_object(), trial.pose);
+  std::vector<FilmMap> maps;
+  for (std::size_t i = 0; i < best.size(); ++i)
+    maps.emplace_back(posed[i].mesh(), posed[i].surface(), *best[i].film);
   std::vector<HoldPicture> pictures;
   for (std::size_t i = 0; i < best.size(); ++i) {
-    const DippedObject& d = dipped[i];
-    const auto look = [&paint, &d](const SurfacePoint& point, const Vec3& position,
-                                   const Vec3& normal) {
-      if (d.map->to_film(position, normal))
+    const auto look = [&paint, &map = maps[i]](const SurfacePoint& point, const Vec3& position,
+                                               const Vec3& normal) {
+      if (map.to_film(position, normal))
         return paint.says_anything() ? paint.color_at(point) : kHoldCovered;
-      return d.map->torn_at(position, normal) ? kTorn : kHoldBare;
+      return map.torn_at(position, normal) ? kTorn : kHoldBare;
     };
-    pictures.push_back({d.posed.mesh(), d.posed.surface(), look, best[i].depth_mm,
+    pictures.push_back({posed[i].mesh(), posed[i].surface(), look, best[i].depth_mm,
                         fmt::format("{}. {}, {:.4g} mm deep", i + 1,
                                     describe_hold(best[i].pose, way_up(config)), best[i].depth_mm),
                         figures_text(best[i]) + ": " + trial_options(best[i])});
@@ -90,14 +77,12 @@ Image draw_holds(const JobConfig& config, const PreparedObject& prepared,
   return render_holds(pictures, config.preview_width_px, context);
 }
 
-std::string in_words(const JobConfig& config, const SearchResult& found,
-                     const std::vector<std::string>& warnings) {
+std::string in_words(const JobConfig& config, const SearchResult& found) {
   std::string text = fmt::format("{} ways to hold it were tried; the best:\n", found.trials.size());
   for (std::size_t i = 0; i < found.best.size(); ++i)
     text +=
         fmt::format("{}. {}\n   {}\n   {}\n", i + 1, describe_trial(found.best[i], way_up(config)),
                     figures_text(found.best[i]), command_for(config, found.best[i]));
-  for (const std::string& warning : warnings) text += "warning: " + warning + "\n";
   return text;
 }
 
@@ -105,42 +90,10 @@ std::string in_words(const JobConfig& config, const SearchResult& found,
 
 JobResult orient_job(const JobConfig& config, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
-  OutputFolder folder(config.output, config.earlier_result);
-  const PreparedObject prepared = prepare_object(config.model, config.object, context);
-  require_size(prepared.posed, config.object, config.model);
-  const std::vector<std::string> names = config.pictures
-                                             ? std::vector<std::string>{"orient.json", "orient.png"}
-                                             : std::vector<std::string>{"orient.json"};
-  folder.announce(names, prepared.files);
-  const Targets targets = job_targets(config, prepared, context);
-  TrialTask task = job_trials(config, prepared, targets);
-  if (!config.plan.find_depth) task.depth_mm = config.design.trajectory.depth_mm;
-
-  std::string best_yet;
-  const SearchResult found =
-      search_holds(task, config.object.pose, {}, context, [&](const Trial& best) {
-        const std::string words = describe_trial(best, way_up(config));
-        if (words != best_yet) context.progress("best so far: " + words, 0);
-        best_yet = words;
-      });
-
-  JobResult result;
-  result.folder = folder.folder();
-  result.files = names;
-  result.json = machine_readable(config, found);
-  result.text = in_words(config, found, context.warnings());
-  write_file(folder.path("orient.json"), result.json);
-  if (config.pictures) {
-    const std::vector<std::uint8_t> png =
-        encode_png(draw_holds(config, prepared, found.best, context));
-    write_file(folder.path("orient.png"), png.data(), png.size());
-  }
-  context.check_cancelled();
-  folder.commit();
-  result.text += fmt::format("wrote to {}:", folder.folder().string());
-  for (const std::string& name : names) result.text += " " + name;
-  result.text += "\n";
-  return result;
+  SearchOutput output(config, "orient", {}, context);
+  const SearchResult found = find_holds(config, output.prepared(), output.targets(), context);
+  return output.finish(machine_readable(config, found), in_words(config, found),
+                       [&] { return draw_holds(config, output.prepared(), found.best, context); });
 }
 
 }  // namespace hydrodip

@@ -69,8 +69,8 @@ Report full_report(const JobRecord& record, const Previews& previews) {
 // The verdict in one line.
 std::string picture_caption(const Report& report) {
   const Coverage& coverage = *report.coverage;
-  if (!(coverage.film_on_object_mm2 > 0)) return short_verdict(coverage);
-  return headline(concern_of(findings(report))) + ": " + short_verdict(coverage);
+  if (!(coverage.film_on_object_mm2 > 0)) return short_verdict(report);
+  return headline(concern_of(findings(report))) + ": " + short_verdict(report);
 }
 
 // Grey where a colour comes out as wanted, from yellow to dark red where it cannot.

@@ -148,7 +148,7 @@ JobResult pattern_job(const JobConfig& given, const PatternRequest& request,
   const Vec2 tile_mm(request.tile_mm, request.tile_mm / source.aspect());
   const double pixels_per_mm =
       config.design.dpi / kMmPerInch * config.design.inverse.samples_per_axis;
-  const auto tile = source.pixels(tile_mm.x(), tile_mm.y(), pixels_per_mm);
+  const auto tile = source.image(tile_mm, pixels_per_mm);
 
   RunContext quiet = context.quiet();
   ObjectOptions bare = config.object;

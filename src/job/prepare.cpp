@@ -34,7 +34,7 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
                               const RunContext& context, double dpi, int samples_per_axis) {
   context.progress("loading", 0);
   std::vector<PictureSource> pictures = read_pictures(options.artwork);
-  LoadedObject loaded = load_object(model, options.load, context);
+  LoadedObject loaded = options.given ? *options.given : load_object(model, options.load, context);
   for (const std::string& finding : loaded.health.findings()) context.warn(finding);
   const auto object = std::make_shared<const Object>(std::move(loaded.object));
   PreparedObject result{.posed = PosedObject(object, options.pose),
@@ -56,10 +56,14 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
                                 result.posed, context);
   result.paint = std::move(artwork.paint);
   result.artwork = std::move(artwork.layers);
-  for (const ArtworkLayer& layer : options.artwork)
-    if (!layer.image.empty() &&
-        std::find(result.files.begin(), result.files.end(), layer.image) == result.files.end())
-      result.files.push_back(layer.image);
+  const auto add_file = [&](const std::filesystem::path& file) {
+    if (!file.empty() &&
+        std::find(result.files.begin(), result.files.end(), file) == result.files.end())
+      result.files.push_back(file);
+  };
+  for (const ArtworkLayer& layer : options.artwork) add_file(layer.image);
+  for (const LaidLayer& layer : result.artwork)
+    for (const FontUse& font : layer.fonts) add_file(font.file);
   return result;
 }
 

@@ -24,9 +24,9 @@ struct PreparedObject {
   std::vector<std::string> picture_problems;  // why some of the model's pictures are not shown
 };
 
-// Loads a model and poses it. Health findings become warnings. Pictures of artwork are read first.
-// `dpi`, `samples_per_axis`: of what is printed, to which drawings are matched; as by
-// DesignOptions and InverseOptions.
+// Loads a model, or takes the one that is given, and poses it. Health findings become warnings.
+// Pictures of artwork are read first. `dpi`, `samples_per_axis`: of what is printed, to which
+// drawings are matched; as by DesignOptions and InverseOptions.
 PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOptions& options,
                               const RunContext& context, double dpi = 300,
                               int samples_per_axis = 3);

@@ -6,12 +6,14 @@
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "coat/film_paint.h"
+#include "job/computed.h"
 #include "job/job_record.h"
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
 #include "job/print_dips.h"
 #include "job/sheet_of.h"
+#include "job/wanted.h"
 #include "job/ways.h"
 #include "report/findings.h"
 #include "report/report.h"
@@ -36,51 +38,44 @@ void require_ink(const Designed& designed, const JobConfig& config) {
 
 }  // namespace
 
+DesignedJob designed(const ReadyJob& job, Timings& times, const RunContext& context) {
+  const PreparedObject& prepared = job.prepared;
+  Designed made =
+      design({prepared.posed, *prepared.paint, Allotment(), *job.printer.model, job.config.design},
+             times, context);
+  require_ink(made, job.config);
+  Finish finish(
+      paint_as_dipped(prepared.paint, made.dipped),
+      {{made.dipped, made.raster, std::make_shared<const Image>(made.ink.ink.on_object)}});
+  return {std::move(made), std::move(finish)};
+}
+
 JobResult print_job(const JobConfig& given, const RunContext& context) {
   if (asks_for_several_dips(given)) return print_dips(given, context);
-  JobConfig config = given;
-  const RunScope scope(context.with_threads(config.threads));
-  require_memory(config.design);
-  OutputFolder folder(config.output, config.earlier_result);
+  const RunScope scope(context.with_threads(given.threads));
+  require_memory(given.design);
+  OutputFolder folder(given.output, given.earlier_result);
   Timings times;
 
-  PreparedObject prepared = times.measure("load", [&] {
-    return prepare_object(config.model, config.object, context, config.design.dpi,
-                          config.design.inverse.samples_per_axis);
-  });
-  require_size(prepared.posed, config.object, config.model);
-  require_appearance(prepared, config.model);
-  if (config.plan.find_pose || config.plan.find_depth)
-    times.measure("find", [&] { find_what_is_asked(config, prepared, context); });
-  const DesignOptions& options = config.design;
-  const TriangleMesh& mesh = prepared.posed.mesh();
-  const Trajectory trajectory = make_trajectory(options.trajectory, mesh.positions);
-  require_fit(mesh, room_of(mesh, trajectory), options.film, config.bath, context);
-  const Printer printer = make_printer(config.printer);
-  const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
+  const ReadyJob job = make_ready(given, true, times, context);
+  const JobConfig& config = job.config;
+  const std::vector<ReportInput> inputs = describe_inputs(config, job.prepared, job.printer);
   announce_outputs(folder, "print", config, inputs);
 
-  const Designed designed = design(
-      {prepared.posed, *prepared.paint, Allotment(), *printer.model, options}, times, context);
-  require_ink(designed, config);
-  const Coverage& coverage = designed.dipped.coverage;
-  const bool stop = concern_of(coverage) == Concern::kStop;
-  const std::string better =
-      stop ? times.measure("find",
-                           [&] { return better_way(config, prepared, designed.dipped, context); })
-           : "";
-  SheetOptions sheet = sheet_of(config);
-  if (stop) sheet.alarm = "DO NOT DIP: " + short_verdict(coverage);
-  times.measure("sheet",
-                [&] { write_sheet_files(folder, designed.ink.ink, printer, sheet, context); });
+  const DesignedJob made = designed(job, times, context);
+  const DippedObject& dipped = made.designed.dipped;
+  const InkResult& ink = made.designed.ink;
+  JobRecord record{"print", config,      job.prepared,
+                   inputs,  made.finish, times,
+                   context, &ink,        job.printer.model->name()};
+  record.wanted = wanted_coverage(dipped, made.finish.paint());
+  const Report first_look = make_report(record);
+  if (concern_of(findings(first_look)) == Concern::kStop)
+    record.better_way =
+        times.measure("find", [&] { return better_way(config, job.prepared, dipped, context); });
+  const SheetOptions sheet = sheet_of(config, first_look);
+  times.measure("sheet", [&] { write_sheet_files(folder, ink.ink, job.printer, sheet, context); });
 
-  const Finish finish(paint_as_dipped(prepared.paint, designed.dipped),
-                      {{designed.dipped, designed.raster,
-                        std::make_shared<const Image>(designed.ink.ink.on_object)}});
-  const JobRecord record{"print", config,        prepared,
-                         inputs,  finish,        times,
-                         context, &designed.ink, printer.model->name(),
-                         better};
   const Previews previews =
       times.measure("preview", [&] { return write_previews(folder, record); });
   return finish_job(folder, record, previews);

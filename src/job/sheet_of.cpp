@@ -1,5 +1,7 @@
 #include "job/sheet_of.h"
 
+#include "report/findings.h"
+
 namespace hydrodip {
 
 SheetOptions sheet_of(const JobConfig& config) {
@@ -12,6 +14,13 @@ SheetOptions sheet_of(const JobConfig& config) {
   sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
   sheet.job_name =
       config.print.job_name.empty() ? config.model.filename().string() : config.print.job_name;
+  return sheet;
+}
+
+SheetOptions sheet_of(const JobConfig& config, const Report& report) {
+  SheetOptions sheet = sheet_of(config);
+  if (concern_of(findings(report)) == Concern::kStop)
+    sheet.alarm = "DO NOT DIP: " + short_verdict(report);
   return sheet;
 }
 

@@ -11,11 +11,13 @@
 #include "image/files.h"
 #include "image/resize.h"
 #include "ink/stiffness.h"
+#include "job/computed.h"
 #include "job/job_record.h"
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
 #include "job/sheet_of.h"
+#include "job/wanted.h"
 #include "job/ways.h"
 #include "report/findings.h"
 #include "session/sheet_files.h"
@@ -156,68 +158,62 @@ void clear_margin(PrintedFilm& printed, const FilmOptions& film, const RunContex
 
 // The sheet as it was given, with marks.
 void write_given_sheet(OutputFolder& folder, const PrintedFilm& printed, const Printer& printer,
-                       const JobConfig& config, const Coverage& coverage,
-                       const RunContext& context) {
+                       const JobConfig& config, const Report& report, const RunContext& context) {
   FilmInk film;
   film.inking.inks = printed.inks;
   film.wanted = Image(printed.inks.width_px, printed.inks.height_px);
   for (std::size_t i = 0; i < printed.inks.cmyk.size(); i += 4)
     film.wanted.rgba[i + 3] = is_blank(printed.inks.cmyk.data() + i) ? 0 : 255;
-  SheetOptions sheet = sheet_of(config);
+  SheetOptions sheet = sheet_of(config, report);
   sheet.dpi = printed.raster.dpi;
-  if (concern_of(coverage) == Concern::kStop)
-    sheet.alarm = "DO NOT DIP: " + short_verdict(coverage);
   write_sheet_files(folder, film, printer, sheet, context);
+}
+
+SimulatedJob dipped_with(const PrintedFilm& printed, const ReadyJob& job,
+                         const SharedFilmMesh& film, Timings& times, const RunContext& context) {
+  const JobConfig& config = job.config;
+  DippedObject dipped =
+      dip_object(job.prepared.posed, film, job.trajectory, dip_options(*film, printed, config),
+                 times, context, {}, {.options = config.design.air, .found = {}});
+  Image seen = times.measure("look", [&] {
+    return seen_on_object(dipped, printed, *job.printer.model, job.prepared.paint->base(),
+                          !config.film_image.empty(), context);
+  });
+  Finish finish(job.prepared.paint,
+                {{dipped, printed.raster, std::make_shared<const Image>(std::move(seen))}});
+  return {std::move(dipped), std::move(finish)};
 }
 
 JobResult forward_job(const std::string& command, const JobConfig& given,
                       const RunContext& context) {
-  JobConfig config = given;
-  const RunScope scope(context.with_threads(config.threads));
-  OutputFolder folder(config.output, config.earlier_result);
+  const RunScope scope(context.with_threads(given.threads));
+  OutputFolder folder(given.output, given.earlier_result);
   Timings times;
 
-  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(config.design.film));
-  PreparedObject prepared = times.measure("load", [&] {
-    return prepare_object(config.model, config.object, context, config.design.dpi,
-                          config.design.inverse.samples_per_axis);
-  });
-  require_size(prepared.posed, config.object, config.model);
-  if (config.plan.find_pose || config.plan.find_depth)
-    times.measure("find", [&] { find_what_is_asked(config, prepared, context); });
-  const TriangleMesh& mesh = prepared.posed.mesh();
-  const Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
-  require_fit(mesh, room_of(mesh, trajectory), config.design.film, config.bath, context);
-  const Printer printer = make_printer(config.printer);
-  const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(given.design.film));
+  const ReadyJob job = make_ready(given, false, times, context);
+  const JobConfig& config = job.config;
+  const std::vector<ReportInput> inputs = describe_inputs(config, job.prepared, job.printer);
   announce_outputs(folder, command, config, inputs);
   const PrintedFilm printed = times.measure("film image", [&] {
-    PrintedFilm film_image = printed_film(config, *printer.model);
+    PrintedFilm film_image = printed_film(config, *job.printer.model);
     if (command == "print") clear_margin(film_image, config.design.film, context);
     return film_image;
   });
+  const SimulatedJob made = dipped_with(printed, job, film, times, context);
 
-  const DippedObject dipped =
-      dip_object(prepared.posed, film, trajectory, dip_options(*film, printed, config), times,
-                 context, {}, {.options = config.design.air, .found = {}});
-
-  Image seen = times.measure("look", [&] {
-    return seen_on_object(dipped, printed, *printer.model, prepared.paint->base(),
-                          !config.film_image.empty(), context);
-  });
-  const Finish finish(prepared.paint,
-                      {{dipped, printed.raster, std::make_shared<const Image>(std::move(seen))}});
-  const std::string better =
-      concern_of(dipped.coverage) == Concern::kStop
-          ? times.measure("find", [&] { return better_way(config, prepared, dipped, context); })
-          : "";
+  JobRecord record{command, config,      job.prepared,
+                   inputs,  made.finish, times,
+                   context, nullptr,     job.printer.model->name()};
+  if (config.film_image.empty()) record.wanted = wanted_coverage(made.dipped, *job.prepared.paint);
+  const Report first_look = make_report(record);
+  if (concern_of(findings(first_look)) == Concern::kStop)
+    record.better_way = times.measure(
+        "find", [&] { return better_way(config, job.prepared, made.dipped, context); });
   if (command == "print")
     times.measure("sheet", [&] {
-      write_given_sheet(folder, printed, printer, config, dipped.coverage, context);
+      write_given_sheet(folder, printed, job.printer, config, first_look, context);
     });
-  const JobRecord record{
-      command, config, prepared, inputs, finish, times, context, nullptr, printer.model->name(),
-      better};
   const Previews previews = times.measure("preview", [&] {
     return write_previews(folder, record,
                           config.film_image.empty() ? "10 mm checkerboard on the film: " : "");
@@ -226,6 +222,13 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
 }
 
 }  // namespace
+
+SimulatedJob simulated(const ReadyJob& job, const SharedFilmMesh& film, Timings& times,
+                       const RunContext& context) {
+  const PrintedFilm printed =
+      times.measure("film image", [&] { return printed_film(job.config, *job.printer.model); });
+  return dipped_with(printed, job, film, times, context);
+}
 
 JobResult simulate_job(const JobConfig& config, const RunContext& context) {
   return forward_job("simulate", config, context);

@@ -12,6 +12,7 @@ namespace {
 constexpr double kWorthSaying = 0.02;
 // Shorter than that is nothing torn, for people.
 constexpr double kHardlyTorn = 0.0005;
+constexpr double kSomeAir_mm2 = 1;
 
 std::shared_ptr<const Paint> importance_paint(const std::filesystem::path& file,
                                               const Object& model) {
@@ -52,7 +53,25 @@ TrialTask job_trials(const JobConfig& config, const PreparedObject& prepared,
                      const Targets& targets) {
   TrialTask task{prepared.posed.shared_object(), targets, config.design.film, config.design.dip,
                  config.bath};
+  task.way = config.design.trajectory;
+  task.way.depth_mm = 0;
+  task.air.cells = std::min(config.design.air.cells, kDraftAirCells);
+  if (!config.plan.find_depth)
+    task.depth_mm =
+        config.design.trajectory.depth_mm > 0 ? config.design.trajectory.depth_mm : kWholeObject_mm;
   return task;
+}
+
+SearchResult find_holds(const JobConfig& config, const PreparedObject& prepared,
+                        const Targets& targets, const RunContext& context) {
+  TrialTask task = job_trials(config, prepared, targets);
+  task.keep_film = true;
+  std::string best_yet;
+  return search_holds(task, config.object.pose, {}, context, [&](const Trial& best) {
+    const std::string words = describe_trial(best, way_up(config));
+    if (words != best_yet) context.progress("best so far: " + words, 0);
+    best_yet = words;
+  });
 }
 
 ModelSide way_up(const JobConfig& config) {
@@ -67,19 +86,14 @@ ModelSide way_up(const JobConfig& config) {
 
 void find_what_is_asked(JobConfig& config, PreparedObject& prepared, const RunContext& context) {
   if (!config.plan.find_pose && !config.plan.find_depth) return;
-  const TrajectoryOptions& way = config.design.trajectory;
-  if (!way.path.empty() || way.tilt_deg != 0 || way.roll_deg != 0)
-    throw InputError(
-        "auto looks for ways straight down: leave out the path, dip.tilt_deg and dip.roll_deg, or "
-        "give "
-        "rotation and depth");
+  if (config.plan.find_depth && !config.design.trajectory.path.empty())
+    throw InputError("a path says how deep it goes: leave out --depth auto");
   const RunScope scope(context);
   const Targets targets = job_targets(config, prepared, context);
-  TrialTask task = job_trials(config, prepared, targets);
-  if (!config.plan.find_depth) task.depth_mm = config.design.trajectory.depth_mm;
+  const TrialTask task = job_trials(config, prepared, targets);
   std::optional<Trial> found;
   if (config.plan.find_pose) {
-    found = search_holds(task, config.object.pose, {}, context).best.front();
+    found = find_holds(config, prepared, targets, context).best.front();
   } else {
     context.progress("looking for the depth", 0);
     RunContext quiet = context.quiet();
@@ -100,20 +114,26 @@ void find_what_is_asked(JobConfig& config, PreparedObject& prepared, const RunCo
 
 std::string describe_trial(const Trial& trial, ModelSide up) {
   const TrialFigures& figures = trial.figures;
-  return fmt::format("{}, {:.4g} mm deep: {} covered, {}", describe_hold(trial.pose, up),
-                     trial.depth_mm, percent(figures.covered_share),
-                     figures.torn_share > kHardlyTorn ? percent(figures.torn_share) + " torn"
-                                                      : std::string("nothing torn"));
+  std::string text =
+      fmt::format("{}, {:.4g} mm deep: {} covered, {}", describe_hold(trial.pose, up),
+                  trial.depth_mm, percent(figures.covered_share),
+                  figures.torn_share > kHardlyTorn ? percent(figures.torn_share) + " torn"
+                                                   : std::string("nothing torn"));
+  if (figures.air_mm2 >= kSomeAir_mm2)
+    text += fmt::format(", {:.0f} mm2 under trapped air", figures.air_mm2);
+  return text;
 }
 
 std::string trial_options(const Trial& trial) {
+  if (!trial.path.empty()) return hold_options(trial.pose);
   return fmt::format("{} --depth {:.4g}", hold_options(trial.pose), trial.depth_mm);
 }
 
 std::string better_way(const JobConfig& config, const PreparedObject& prepared,
                        const DippedObject& dipped, const RunContext& context) {
   const Targets targets = job_targets(config, prepared, context);
-  const TrialTask task = job_trials(config, prepared, targets);
+  TrialTask task = job_trials(config, prepared, targets);
+  task.depth_mm = 0;
   const Trial made = judge_dip(task, config.object.pose, dipped);
   try {
     const Trial best = search_holds(task, config.object.pose, quick_search(), context).best.front();

@@ -16,9 +16,15 @@ namespace hydrodip {
 Targets job_targets(const JobConfig& config, const PreparedObject& prepared,
                     const RunContext& context);
 
-// Trials at the job's own quality. Refers to the targets.
+// Trials at the job's own quality, in its way in, and at its depth unless that is looked for.
+// Refers to the targets.
 TrialTask job_trials(const JobConfig& config, const PreparedObject& prepared,
                      const Targets& targets);
+
+// The best ways to hold it, dipped as finely as the job, with their films. Tells the best so far as
+// progress. Throws as search_holds.
+SearchResult find_holds(const JobConfig& config, const PreparedObject& prepared,
+                        const Targets& targets, const RunContext& context);
 
 // The way up of the model as it stands: object.up, or what its format says.
 ModelSide way_up(const JobConfig& config);

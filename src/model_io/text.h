@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/parse_double.h"
+
 namespace hydrodip {
 
 inline bool is_blank(char c) {
@@ -54,7 +56,7 @@ inline std::string lower(std::string_view text) {
 // The whole word as a finite number that also fits a float.
 inline bool parse_number(std::string_view word, double& value) {
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, error] = parse_double(word.data(), word.data() + word.size(), value);
   return error == std::errc() && end == word.data() + word.size() && std::isfinite(float(value));
 }
 

@@ -1,5 +1,6 @@
 // 3MF: core, materials and production extensions; slices and beam lattices are passed over.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -482,7 +483,7 @@ class ThreeMfReader {
     if (items.empty())
       for (const auto& [id, object] : part.objects) items.push_back({"", id, Matrix4f::Identity()});
     for (const Component& item : items) place(root_, item, Matrix4f::Identity(), 0);
-    if (file_.face_end.empty()) refuse_model(input_.path, "it has no triangles");
+    if (file_.face_end.empty()) refuse_without_triangles();
     tell_what_is_left_out();
     return std::move(file_);
   }
@@ -600,6 +601,13 @@ class ThreeMfReader {
       }
     }
     file_.end_face(material);
+  }
+
+  [[noreturn]] void refuse_without_triangles() const {
+    std::string why = "it has no triangles";
+    if (!left_out_.features.empty())
+      why += fmt::format(", only {}, which are not read", fmt::join(left_out_.features, " and "));
+    refuse_model(input_.path, why);
   }
 
   void tell_what_is_left_out() const {

@@ -23,8 +23,12 @@ constexpr double kTrialStep_mm = 1;
 constexpr double kRings_deg[] = {14, 7, 4};
 constexpr int kAround = 6;
 constexpr double kTurn_deg = 30;
+// Hollows are looked for in so many cells.
+constexpr int kTrialAirCells = 20000;
 // One that is confirmed may go deeper than its trial by that much.
 constexpr double kDeeper_mm = 3;
+// Trial dips and the job's are that near to each other.
+constexpr double kClearlyBehind = 0.98;
 
 bool is_better(const Trial& a, const Trial& b) { return a.figures.score > b.figures.score; }
 
@@ -34,10 +38,13 @@ class Search {
          const RunContext& context, const std::function<void(const Trial&)>& watch)
       : fine_(task),
         coarse_(trial_task(task)),
+        rough_(coarse_),
         pose_(pose),
         options_(options),
         context_(context),
-        watch_(watch) {}
+        watch_(watch) {
+    rough_.film.elements = std::min(coarse_.film.elements, options.first_elements);
+  }
 
   SearchResult run() {
     look_around();
@@ -47,10 +54,13 @@ class Search {
           "the object fits film and bath in none of the poses that were tried: shrink it with "
           "--size, take a larger --film, or give the size of your bath with --set "
           "bath.width_mm=..., bath.height_mm, bath.depth_mm");
-    for (const double ring_deg : kRings_deg) better(found, ring_deg);
-    std::stable_sort(found.begin(), found.end(), is_better);
+    if (rough_.film.elements < coarse_.film.elements) dip_again(found);
+    for (const double ring_deg : kRings_deg) {
+      better(found, ring_deg);
+      // Those that fall behind are not followed any further.
+      found = best_of(found, std::max(options_.best, int(found.size()) - 1));
+    }
     found = best_of(found, options_.best);
-    for (const Trial& trial : found) result_.drafted.push_back(trial.figures.score);
     if (options_.confirm) confirm(found);
     result_.best = std::move(found);
     return std::move(result_);
@@ -62,8 +72,10 @@ class Search {
     for (const Vec3& down : spread_directions(options_.directions)) poses.push_back(roomiest(down));
     // The first round brings an answer early.
     const std::size_t first = std::min<std::size_t>(poses.size(), 14);
-    try_all({poses.begin(), poses.begin() + std::ptrdiff_t(first)}, "trying ways to hold it");
-    try_all({poses.begin() + std::ptrdiff_t(first), poses.end()}, "trying more ways to hold it");
+    try_all(rough_, {poses.begin(), poses.begin() + std::ptrdiff_t(first)},
+            "trying ways to hold it");
+    try_all(rough_, {poses.begin() + std::ptrdiff_t(first), poses.end()},
+            "trying more ways to hold it");
   }
 
   PoseOptions roomiest(const Vec3& down) const {
@@ -71,17 +83,17 @@ class Search {
     return hold(pose_, down, roomiest_turn_deg(coarse_.object->positions, pose, coarse_.film));
   }
 
-  std::vector<std::optional<Trial>> try_all(const std::vector<PoseOptions>& poses,
+  std::vector<std::optional<Trial>> try_all(const TrialTask& task,
+                                            const std::vector<PoseOptions>& poses,
                                             const std::string& stage) {
     std::vector<std::optional<Trial>> tried;
     constexpr std::size_t kRound = 16;
     for (std::size_t first = 0; first < poses.size(); first += kRound) {
       context_.progress(stage, double(first) / double(poses.size()));
       const std::size_t last = std::min(first + kRound, poses.size());
-      for (auto& trial :
-           try_poses(coarse_,
-                     {poses.begin() + std::ptrdiff_t(first), poses.begin() + std::ptrdiff_t(last)},
-                     context_)) {
+      for (auto& trial : try_poses(
+               task, {poses.begin() + std::ptrdiff_t(first), poses.begin() + std::ptrdiff_t(last)},
+               context_)) {
         if (trial) result_.trials.push_back(*trial);
         tried.push_back(std::move(trial));
       }
@@ -110,6 +122,15 @@ class Search {
     return best;
   }
 
+  // Those that were looked at on rougher film, on that of the others.
+  void dip_again(std::vector<Trial>& found) {
+    std::vector<PoseOptions> poses;
+    for (const Trial& trial : found) poses.push_back(trial.pose);
+    found.clear();
+    for (auto& trial : try_all(coarse_, poses, "trying the best again"))
+      if (trial) found.push_back(std::move(*trial));
+  }
+
   // Tries what lies around each of them.
   void better(std::vector<Trial>& found, double ring_deg) {
     std::vector<PoseOptions> poses;
@@ -126,34 +147,52 @@ class Search {
         of.push_back(i);
       }
     }
-    const auto tried = try_all(poses, "trying poses like the best");
+    const auto tried = try_all(coarse_, poses, "trying poses like the best");
     for (std::size_t n = 0; n < tried.size(); ++n)
       if (tried[n] && is_better(*tried[n], found[of[n]])) found[of[n]] = *tried[n];
   }
 
+  // The best is dipped as finely as the job, and what its trial dip put close behind it, until one
+  // that was dipped like that is the best. What cannot be computed so is none to recommend.
   void confirm(std::vector<Trial>& found) {
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      context_.progress("dipping the best for good", double(i) / double(found.size()));
-      RunContext quiet = context_.quiet();
-      if (auto sure = try_pose(fine_, found[i].pose, found[i].depth_mm + kDeeper_mm, quiet))
-        found[i] = std::move(*sure);
+    std::vector<Confirmed> sure, others;
+    for (const Trial& trial : found) {
+      context_.progress("dipping the best for good",
+                        double(sure.size() + others.size()) / double(found.size()));
+      const bool is_behind = std::any_of(sure.begin(), sure.end(), [&](const Confirmed& other) {
+        return other.trial.figures.score >= kClearlyBehind * trial.figures.score;
+      });
+      TrialTask task = is_behind ? coarse_ : fine_;
+      task.keep_film = fine_.keep_film;
+      try {
+        auto again = try_pose(task, trial.pose, trial.depth_mm + kDeeper_mm, context_.quiet());
+        if (again) (is_behind ? others : sure).push_back({std::move(*again), trial.figures.score});
+      } catch (const DipError&) {
+        continue;
+      }
     }
     context_.progress("dipping the best for good", 1);
-    std::vector<std::size_t> order(found.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return is_better(found[a], found[b]); });
-    std::vector<Trial> sorted;
-    std::vector<double> drafted;
-    for (const std::size_t i : order) {
-      sorted.push_back(std::move(found[i]));
-      drafted.push_back(result_.drafted[i]);
+    if (sure.empty())
+      throw DipError("none of the best ways to hold it could be computed with the job's film");
+    found.clear();
+    for (std::vector<Confirmed>* list : {&sure, &others}) {
+      std::stable_sort(list->begin(), list->end(), [](const Confirmed& a, const Confirmed& b) {
+        return is_better(a.trial, b.trial);
+      });
+      for (Confirmed& one : *list) {
+        if (list == &sure) result_.drafted.push_back(one.drafted);
+        found.push_back(std::move(one.trial));
+      }
     }
-    found = std::move(sorted);
-    result_.drafted = std::move(drafted);
   }
 
+  struct Confirmed {
+    Trial trial;
+    double drafted;
+  };
+
   const TrialTask fine_, coarse_;
+  TrialTask rough_;
   const PoseOptions pose_;
   const SearchOptions options_;
   const RunContext& context_;
@@ -164,13 +203,15 @@ class Search {
 }  // namespace
 
 SearchOptions quick_search() {
-  return {.best = 1, .directions = 26, .refined = 2, .apart_deg = 30, .confirm = false};
+  return {.best = 1, .directions = 26, .refined = 2, .confirm = false};
 }
 
 TrialTask trial_task(TrialTask task) {
   task.object = simplified_for_trials(task.object);
   task.film.elements = std::min(task.film.elements, kDraftElements);
   task.dip.step_mm = std::max(task.dip.step_mm, kTrialStep_mm);
+  task.air.cells = std::min(task.air.cells, kTrialAirCells);
+  task.keep_film = false;
   return task;
 }
 

@@ -15,15 +15,18 @@ struct SearchOptions {
   int directions = 74;  // tried before the best of them are bettered
   int refined = 4;      // so many of them, that far apart at least
   double apart_deg = 30;
-  bool confirm = true;  // dip the best ones as finely as the job
+  int first_elements = 5000;  // of the film in which the directions are tried
+  bool confirm = true;        // dip the best as finely as the job
 };
 
 // A shorter search, for a word of advice.
 SearchOptions quick_search();
 
 struct SearchResult {
-  std::vector<Trial> best;  // best first, apart from each other; confirmed ones by the job's dip
-  std::vector<double> drafted;  // per best: the score that its trial dip had
+  // Best first, apart from each other. The first `drafted.size()` by the job's dip, the others by
+  // trial dips that say they are clearly behind.
+  std::vector<Trial> best;
+  std::vector<double> drafted;  // per confirmed one: the score that its trial dip had
   std::vector<Trial> trials;    // all trial dips, in the order in which they were made
 };
 

@@ -3,12 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <unordered_map>
 #include <utility>
 
 #include "base/run_scope.h"
 #include "film/locate.h"
+#include "plan/dip_watch.h"
 #include "transfer/film_map.h"
 
 namespace hydrodip {
@@ -17,17 +16,21 @@ namespace {
 // Film is worth everything up to that part of its limit, and least at the limit.
 constexpr double kEasyShare = 0.88;
 constexpr double kLeastWorth = 0.6;
+constexpr double kWrinkledWorth = 0.5;
 constexpr double kDoubtfulShare = 0.95;
 // Film that never tears: from where on print blurs, and where it is worth least.
 constexpr double kSharpStretch = 1.3, kBlurredStretch = 2;
 // Deeper only for at least that much of the score.
 constexpr double kWorthDeeper = 0.0005;
-// A depth is given to a tenth, and rounded down.
+// Depths are given to a tenth.
 constexpr double kDepthStep_mm = 0.1;
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+// Air that is shut in costs its area: film over it bursts, and its edge is a line of drops.
+constexpr double kAirPrice = 0.5;
+// Of a way that is not straight down so many depths are tried.
+constexpr int kWayDepths = 6;
 
-struct TooMuchTorn {};
+constexpr double kNever = DipWatch::kNever;
 
 double worth_of(double stretch, double limit) {
   const double easy = limit > 0 ? kEasyShare * limit : kSharpStretch;
@@ -36,133 +39,37 @@ double worth_of(double stretch, double limit) {
   return 1 - (1 - kLeastWorth) * t;
 }
 
-// Follows a dip: when each film triangle came to lie on the object, and when it tore.
-class Watch {
- public:
-  // Given up where torn film costs more than all whole film can be worth.
-  Watch(const FilmMesh& film, const TrialTask& task)
-      : film_(film),
-        limit_(task.dip.material.tear_stretch),
-        hopeless_share_(1 / std::max(task.torn_price, 1e-6)),
-        landed_at_(film.triangles.size(), kNever),
-        torn_at_(film.triangles.size(), kNever),
-        stretch_(film.triangles.size(), 1),
-        flat_mm2_(film.triangles.size(), 0) {
-    for (std::size_t t = 0; t < film.triangles.size(); ++t)
-      flat_mm2_[t] = 0.5 * std::abs(twice_area(t));
-  }
-
-  void see(const Moment& moment, const std::vector<Vec3>& position,
-           const std::vector<VertexState>& state, bool may_stop) {
-    for (std::size_t t = 0; t < landed_at_.size(); ++t) {
-      if (landed_at_[t] < kNever || torn_at_[t] < kNever) continue;
-      int attached = 0;
-      for (const std::int32_t v : film_.triangles[t])
-        attached += state[std::size_t(v)] == VertexState::kAttached ? 1 : 0;
-      if (attached == 0) continue;
-      stretch_[t] = stretch_of(t, position);
-      if (limit_ > 0 && stretch_[t] > limit_) {
-        torn_at_[t] = moment.travelled_mm;
-        torn_mm2_ += flat_mm2_[t];
-      } else if (attached == 3) {
-        landed_at_[t] = moment.travelled_mm;
-        landed_mm2_ += flat_mm2_[t];
-      }
-    }
-    if (may_stop && torn_mm2_ > hopeless_share_ * landed_mm2_ && moment.travelled_mm > 2) {
-      stopped_ = {position, state, moment.travelled_mm};
-      throw TooMuchTorn();
-    }
-  }
-
-  // What the whole dip says of it is better known than what was seen on its way.
-  void take(const DippedFilm& film) {
-    for (std::size_t t = 0; t < landed_at_.size(); ++t) {
-      torn_at_[t] = film.torn[t] ? film.torn_at_mm[t] : kNever;
-      if (film.torn[t] && !(torn_at_[t] < kNever)) torn_at_[t] = film.depth_mm;
-      if (!film.lies_on_object(t)) {
-        landed_at_[t] = kNever;
-        continue;
-      }
-      landed_at_[t] = std::min(landed_at_[t], film.depth_mm);
-      stretch_[t] = stretch_of(t, film.position);
-    }
-  }
-
-  // The film at the moment when the watch was given up.
-  DippedFilm stopped_film(const SharedFilmMesh& mesh) const {
-    DippedFilm film;
-    film.shared_mesh = mesh;
-    film.position = stopped_.position;
-    film.state = stopped_.state;
-    film.area_ratio.assign(film.position.size(), 1);
-    film.stretch.assign(film.position.size(), 1);
-    film.torn_at_mm = torn_at_;
-    for (const double at : torn_at_) film.torn.push_back(at < kNever);
-    film.depth_mm = stopped_.depth_mm;
-    return film;
-  }
-
-  const std::vector<double>& landed_at() const { return landed_at_; }
-  const std::vector<double>& torn_at() const { return torn_at_; }
-  const std::vector<double>& stretch() const { return stretch_; }
-  const std::vector<double>& flat_mm2() const { return flat_mm2_; }
-
- private:
-  double twice_area(std::size_t t) const {
-    const Triangle& v = film_.triangles[t];
-    const Vec2& a = film_.u[std::size_t(v[0])];
-    return cross2(film_.u[std::size_t(v[1])] - a, film_.u[std::size_t(v[2])] - a);
-  }
-
-  // Largest singular value of the flat triangle's deformation.
-  double stretch_of(std::size_t t, const std::vector<Vec3>& position) const {
-    const Triangle& v = film_.triangles[t];
-    const Vec2& a = film_.u[std::size_t(v[0])];
-    const Vec2 p = film_.u[std::size_t(v[1])] - a, q = film_.u[std::size_t(v[2])] - a;
-    const Vec3& x = position[std::size_t(v[0])];
-    const Vec3 P = position[std::size_t(v[1])] - x, Q = position[std::size_t(v[2])] - x;
-    const double twice = cross2(p, q);
-    const Vec3 along_x = (q.y() * P - p.y() * Q) / twice, along_y = (p.x() * Q - q.x() * P) / twice;
-    const double xx = along_x.squaredNorm(), yy = along_y.squaredNorm(), xy = along_x.dot(along_y);
-    return std::sqrt(0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy));
-  }
-
-  struct Stopped {
-    std::vector<Vec3> position;
-    std::vector<VertexState> state;
-    double depth_mm = 0;
-  };
-
-  const FilmMesh& film_;
-  double limit_, hopeless_share_;
-  std::vector<double> landed_at_, torn_at_, stretch_, flat_mm2_;
-  double landed_mm2_ = 0, torn_mm2_ = 0;
-  Stopped stopped_;
+// A dip that was made, or given up.
+struct MadeDip {
+  const PosedObject& posed;
+  const FilmMap& map;
+  const DippedFilm& film;
+  const DipWatch& watch;
+  const TrappedAir* air = nullptr;
 };
 
-// The film triangle at a film coordinate is found by FilmMap; which one, by its place in the mesh.
+// Per target: when film landed there, and how well. The film triangle at a film coordinate is found
+// by its place in the mesh.
 class Landing {
  public:
-  Landing(const TrialTask& task, const PosedObject& posed, const DippedFilm& film,
-          const Watch& watch)
+  Landing(const TrialTask& task, const MadeDip& dip)
       : at_(task.targets.list.size(), kNever),
         worth_(task.targets.list.size(), 0),
         stretch_(worth_) {
-    const FilmMap map(posed.mesh(), posed.surface(), film);
     const double limit = task.dip.material.tear_stretch;
+    const PosedObject& posed = dip.posed;
     const Mat3 turn = posed.matrix().topLeftCorner<3, 3>() / posed.scale();
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const Target& target = task.targets.list[i];
       const Vec3 position = (posed.matrix() * target.position.homogeneous()).head<3>();
-      const auto u = map.to_film(position, turn * target.normal);
+      const auto u = dip.map.to_film(position, turn * target.normal);
       if (!u) continue;
-      const FilmLocation where = locate_flat(film.mesh(), *u);
-      const auto t = std::size_t(where.triangle);
-      if (!(watch.landed_at()[t] < kNever)) continue;
-      at_[i] = watch.landed_at()[t];
-      stretch_[i] = float(watch.stretch()[t]);
-      worth_[i] = float(worth_of(watch.stretch()[t], limit));
+      const auto t = std::size_t(locate_flat(dip.film.mesh(), *u).triangle);
+      if (!(dip.watch.landed_at()[t] < kNever)) continue;
+      at_[i] = dip.watch.landed_at()[t];
+      stretch_[i] = float(dip.watch.stretch()[t]);
+      worth_[i] = float(worth_of(dip.watch.stretch()[t], limit));
+      if (dip.film.wrinkled[t]) worth_[i] *= float(kWrinkledWorth);
     }
   }
 
@@ -175,14 +82,14 @@ class Landing {
   std::vector<float> worth_, stretch_;
 };
 
-// What happens at a depth: surface gets film, or film tears.
+// What happens at a depth: surface gets film, film tears, or air is shut in.
 struct Event {
   double at_mm;
   double gain;  // of the score
 };
 
-double best_depth(const TrialTask& task, const Landing& landing, const Watch& watch,
-                  double object_mm2, double reached_mm) {
+std::vector<Event> events_of(const TrialTask& task, const MadeDip& dip, const Landing& landing,
+                             double object_mm2) {
   std::vector<Event> events;
   const Targets& targets = task.targets;
   for (std::size_t i = 0; i < targets.list.size(); ++i) {
@@ -191,11 +98,19 @@ double best_depth(const TrialTask& task, const Landing& landing, const Watch& wa
       events.push_back({landing.at(i), target.area * target.importance * double(landing.worth(i)) /
                                            targets.weight});
   }
+  const DipWatch& watch = dip.watch;
   for (std::size_t t = 0; t < watch.torn_at().size(); ++t)
     if (watch.torn_at()[t] < kNever)
       events.push_back({watch.torn_at()[t], -task.torn_price * watch.flat_mm2()[t] / object_mm2});
+  if (dip.air)
+    for (const AirPocket& pocket : dip.air->pockets)
+      events.push_back({pocket.closed_at_mm, -kAirPrice * pocket.area_mm2 / object_mm2});
   std::stable_sort(events.begin(), events.end(),
                    [](const Event& a, const Event& b) { return a.at_mm < b.at_mm; });
+  return events;
+}
+
+double best_depth(const std::vector<Event>& events, double reached_mm) {
   double score = 0, best = 0, best_at = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
     score += events[i].gain;
@@ -209,72 +124,44 @@ double best_depth(const TrialTask& task, const Landing& landing, const Watch& wa
   return std::min(rounded, reached_mm);
 }
 
-Trial judged(const TrialTask& task, const PosedObject& posed, const PoseOptions& pose,
-             const DippedFilm& film, const Watch& watch, std::optional<double> depth_mm) {
-  const Landing landing(task, posed, film, watch);
+// Without a depth at the best one.
+Trial judged(const TrialTask& task, const PoseOptions& pose, const MadeDip& dip,
+             std::optional<double> depth_mm) {
+  const Landing landing(task, dip);
   const Targets& targets = task.targets;
-  const double scale = posed.scale();
+  const double scale = dip.posed.scale();
   const double object_mm2 = scale * scale * targets.area;
+  const std::vector<Event> events = events_of(task, dip, landing, object_mm2);
   Trial trial{.pose = pose};
-  trial.depth_mm =
-      depth_mm ? *depth_mm : best_depth(task, landing, watch, object_mm2, film.depth_mm);
+  trial.depth_mm = depth_mm ? *depth_mm : best_depth(events, dip.film.depth_mm);
+  TrialFigures& figures = trial.figures;
+  for (const Event& event : events)
+    if (event.at_mm <= trial.depth_mm) figures.score += event.gain;
   const double limit = task.dip.material.tear_stretch;
-  double torn_mm2 = 0, landed_mm2 = 0, gained = 0;
+  for (std::size_t i = 0; i < targets.list.size(); ++i) {
+    const Target& target = targets.list[i];
+    const bool lies = landing.at(i) <= trial.depth_mm;
+    trial.worth.push_back(lies ? landing.worth(i) : 0.0F);
+    if (!lies) continue;
+    figures.covered_share += target.area / targets.area;
+    if (limit > 0 && double(landing.stretch(i)) > kDoubtfulShare * limit)
+      figures.doubtful_share += target.area / targets.area;
+  }
+  const DipWatch& watch = dip.watch;
+  double torn_mm2 = 0, landed_mm2 = 0;
   for (std::size_t t = 0; t < watch.torn_at().size(); ++t) {
     if (watch.torn_at()[t] <= trial.depth_mm)
       torn_mm2 += watch.flat_mm2()[t];
     else if (watch.landed_at()[t] <= trial.depth_mm)
       landed_mm2 += watch.flat_mm2()[t];
   }
-  for (std::size_t i = 0; i < targets.list.size(); ++i) {
-    const Target& target = targets.list[i];
-    const bool lies = landing.at(i) <= trial.depth_mm;
-    trial.worth.push_back(lies ? landing.worth(i) : 0.0F);
-    if (!lies) continue;
-    trial.figures.covered_share += target.area / targets.area;
-    gained += target.area * target.importance * double(landing.worth(i));
-    if (limit > 0 && double(landing.stretch(i)) > kDoubtfulShare * limit)
-      trial.figures.doubtful_share += target.area / targets.area;
-  }
-  trial.figures.torn_share = Coverage::share(torn_mm2, torn_mm2 + landed_mm2);
-  trial.figures.score =
-      Coverage::share(gained, targets.weight) - task.torn_price * torn_mm2 / object_mm2;
+  figures.torn_share = Coverage::share(torn_mm2, torn_mm2 + landed_mm2);
+  if (dip.air)
+    for (const AirPocket& pocket : dip.air->pockets)
+      if (pocket.closed_at_mm <= trial.depth_mm) figures.air_mm2 += pocket.area_mm2;
+  if (task.keep_film)
+    trial.film = std::make_shared<const DippedFilm>(watch.film_at(trial.depth_mm, dip.film));
   return trial;
-}
-
-// Vertices that share a cell of a grid become one, in their middle.
-std::shared_ptr<const Object> drawn_together(const Object& object, double cells_across) {
-  const Box3 box = object.bounds();
-  const double cell = std::max(box.size().maxCoeff() / cells_across, 1e-12);
-  auto simple = std::make_shared<Object>();
-  std::unordered_map<std::uint64_t, std::int32_t> vertex_in;
-  std::vector<std::int32_t> moved(object.positions.size());
-  std::vector<double> count;
-  CheckEvery check(1 << 14);
-  for (std::size_t v = 0; v < object.positions.size(); ++v) {
-    check();
-    const Vec3 at = (object.positions[v] - box.min) / cell;
-    const std::uint64_t key =
-        (std::uint64_t(at.x()) << 40) | (std::uint64_t(at.y()) << 20) | std::uint64_t(at.z());
-    const auto [found, is_new] = vertex_in.emplace(key, std::int32_t(simple->positions.size()));
-    if (is_new) {
-      simple->positions.push_back(Vec3::Zero());
-      count.push_back(0);
-    }
-    moved[v] = found->second;
-    simple->positions[std::size_t(found->second)] += object.positions[v];
-    count[std::size_t(found->second)] += 1;
-  }
-  for (std::size_t v = 0; v < count.size(); ++v) simple->positions[v] /= count[v];
-  for (const Triangle& t : object.triangles) {
-    const Triangle turned = {moved[std::size_t(t[0])], moved[std::size_t(t[1])],
-                             moved[std::size_t(t[2])]};
-    if (turned[0] == turned[1] || turned[1] == turned[2] || turned[2] == turned[0]) continue;
-    simple->triangles.push_back(turned);
-  }
-  simple->material_of.assign(simple->triangles.size(), 0);
-  simple->materials.emplace_back();
-  return simple;
 }
 
 // The deepest at which the wetted part fits film and bath; negative if it does not even touch.
@@ -293,48 +180,104 @@ double deepest_fit(const TrialTask& task, const TriangleMesh& posed, double want
   return low;
 }
 
+bool goes_straight_down(const TrajectoryOptions& way) {
+  return way.path.empty() && way.tilt_deg == 0 && way.roll_deg == 0;
+}
+
+bool fits_on_its_way(const TrialTask& task, const TriangleMesh& posed, const Trajectory& way) {
+  const std::vector<RoomFit> list = fits(posed, room_of(posed, way), task.film, task.bath);
+  return std::all_of(list.begin(), list.end(),
+                     [](const RoomFit& fit) { return fit.excess_mm() <= 0; });
+}
+
+// On another way than straight down every depth is a way of its own, so that each is dipped: the
+// given one, or that of a path; else some, and some more around the best.
+std::optional<Trial> try_way(const TrialTask& task, const PosedObject& posed,
+                             const PoseOptions& pose, double depth_most_mm,
+                             const RunContext& context) {
+  const TriangleMesh& mesh = posed.mesh();
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(task.film));
+  std::optional<Trial> best;
+  const auto dip_to = [&](double depth_mm) {
+    TrajectoryOptions options = task.way;
+    options.depth_mm = depth_mm;
+    const Trajectory way = make_trajectory(options, mesh.positions);
+    if (!fits_on_its_way(task, mesh, way)) return;
+    Timings unheard;
+    const DippedObject dipped = dip_object(posed, film, way, task.dip, unheard, context, {},
+                                           {.options = task.air, .found = {}});
+    Trial trial = judge_dip(task, pose, dipped);
+    trial.path = task.way.path;
+    if (depth_mm > 0) trial.depth_mm = depth_mm;
+    if (!best || trial.figures.score > best->figures.score) best = std::move(trial);
+  };
+  if (!task.way.path.empty() || task.depth_mm > 0) {
+    dip_to(task.depth_mm);
+    return best;
+  }
+  const Vec3 size = mesh.bounds().size();
+  double most_mm = std::min(size.norm(), task.bath.depth_mm);
+  if (depth_most_mm > 0) most_mm = std::min(most_mm, depth_most_mm);
+  const auto rounded = [](double mm) { return std::max(1.0, std::round(mm)) * kDepthStep_mm; };
+  for (int part = 1; part <= kWayDepths; ++part)
+    dip_to(rounded(most_mm * part / kWayDepths / kDepthStep_mm));
+  for (const double nearer : {0.5, 0.25}) {
+    if (!best) return best;
+    const double at = best->depth_mm;
+    for (const double side : {-1.0, 1.0})
+      dip_to(rounded(std::min(most_mm, at + side * nearer * most_mm / kWayDepths) / kDepthStep_mm));
+  }
+  return best;
+}
+
 }  // namespace
 
 std::optional<Trial> try_pose(const TrialTask& task, const PoseOptions& pose, double depth_most_mm,
                               const RunContext& context) {
   const RunScope scope(context);
   const PosedObject posed(task.object, pose);
+  if (!goes_straight_down(task.way)) return try_way(task, posed, pose, depth_most_mm, context);
   const TriangleMesh& mesh = posed.mesh();
   double depth_mm = mesh.bounds().max.z();
   if (depth_most_mm > 0) depth_mm = std::min(depth_mm, depth_most_mm);
   if (task.depth_mm > 0) depth_mm = std::min(depth_mm, task.depth_mm);
   const double fitting_mm = deepest_fit(task, mesh, depth_mm);
   if (fitting_mm < (task.depth_mm > 0 ? depth_mm : 2 * task.dip.step_mm)) return std::nullopt;
-  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(task.film));
-  Watch watch(*film, task);
   const std::optional<double> given = task.depth_mm > 0 ? std::optional(fitting_mm) : std::nullopt;
+  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(task.film));
+  DipWatch watch(film, task.dip.material.tear_stretch, 1 / std::max(task.torn_price, 1e-6));
   try {
-    const DipResult dipped = dip(
-        film, mesh.positions, mesh.triangles, posed.surface(),
-        Trajectory::straight_down(fitting_mm), task.dip, context,
+    Timings unheard;
+    const DippedObject dipped = dip_object(
+        posed, film, Trajectory::straight_down(fitting_mm), task.dip, unheard, context,
         [&](int, int, const Moment& moment, const std::vector<Vec3>& position,
-            const std::vector<VertexState>& state) { watch.see(moment, position, state, !given); });
-    watch.take(dipped.film);
-    return judged(task, posed, pose, dipped.film, watch, given);
+            const std::vector<VertexState>& state) { watch.see(moment, position, state, !given); },
+        {.options = task.air, .found = {}});
+    watch.take(*dipped.film);
+    return judged(task, pose, {posed, *dipped.map, *dipped.film, watch, dipped.air.get()}, given);
   } catch (const TooMuchTorn&) {
-    return judged(task, posed, pose, watch.stopped_film(film), watch, given);
+    const DippedFilm stopped = watch.stopped_film();
+    const FilmMap map(mesh, posed.surface(), stopped);
+    return judged(task, pose, {posed, map, stopped, watch}, given);
   }
 }
 
-Trial judge_dip(const TrialTask& task, const PoseOptions& pose, const DippedObject& dipped) {
-  Watch watch(dipped.film->mesh(), task);
-  watch.take(*dipped.film);
-  Trial trial = judged(task, dipped.posed, pose, *dipped.film, watch, dipped.film->depth_mm);
-  if (dipped.air) trial.figures.air_mm2 = dipped.air->area_mm2();
-  return trial;
+std::vector<float> worth_at(const TrialTask& task, const PosedObject& posed,
+                            const DippedFilm& film) {
+  DipWatch watch(film.shared_mesh, task.dip.material.tear_stretch, 1);
+  watch.take(film);
+  const FilmMap map(posed.mesh(), posed.surface(), film);
+  const Landing landing(task, {posed, map, film, watch});
+  std::vector<float> worth(task.targets.list.size());
+  for (std::size_t i = 0; i < worth.size(); ++i) worth[i] = landing.worth(i);
+  return worth;
 }
 
-std::shared_ptr<const Object> simplified_for_trials(std::shared_ptr<const Object> object) {
-  constexpr std::size_t kMany = 60000;
-  std::shared_ptr<const Object> simple = object;
-  for (double cells = 200; simple->triangles.size() > kMany && cells > 20; cells /= 1.4)
-    simple = drawn_together(*object, cells);
-  return simple;
+Trial judge_dip(const TrialTask& task, const PoseOptions& pose, const DippedObject& dipped) {
+  DipWatch watch(dipped.film->shared_mesh, task.dip.material.tear_stretch, 1);
+  watch.take(*dipped.film);
+  return judged(task, pose, {dipped.posed, *dipped.map, *dipped.film, watch, dipped.air.get()},
+                dipped.film->depth_mm);
 }
 
 }  // namespace hydrodip

@@ -18,7 +18,7 @@ struct TrialFigures {
   double covered_share = 0;   // under whole film
   double doubtful_share = 0;  // of that: stretched so far that it may tear after all
   double torn_share = 0;      // of the film that meets the object, as Coverage has it
-  double air_mm2 = 0;         // surface under trapped air; trial dips do not look for it
+  double air_mm2 = 0;         // surface under trapped air
   // How much of what is wanted lands well: 1 is everything; below 0 more is spoilt than gained.
   double score = 0;
 };
@@ -30,7 +30,12 @@ struct Trial {
   TrialFigures figures = {};
   // Per target: what the film there is worth; 0: none, 1: whole and little stretched.
   std::vector<float> worth = {};
+  // As it lies at that depth, where the task keeps it.
+  std::shared_ptr<const DippedFilm> film = {};
 };
+
+// A depth that no object reaches: all of it goes in.
+inline constexpr double kWholeObject_mm = 1e9;
 
 // Of a single dip. Where another dip does what this one's torn film leaves, torn film is blank and
 // harmless, and costs little.
@@ -45,8 +50,13 @@ struct TrialTask {
   DipOptions dip;
   BathOptions bath;
   double depth_mm = 0;  // 0: the best one is looked for
+  // Other ways in than straight down: a path, which says the depth too; tilt or roll, whose depth
+  // is as above.
+  TrajectoryOptions way = {};
+  AirOptions air = {.cells = 0};
   // Torn film costs so many times its area: its flaps spoil what lies around, and are cleaned off.
   double torn_price = kTornPrice;
+  bool keep_film = false;
 };
 
 // One dip in that pose, as deep as makes sense, and the best depth on its way: film that has
@@ -57,6 +67,10 @@ std::optional<Trial> try_pose(const TrialTask& task, const PoseOptions& pose, do
 
 // The same of a dip that was made, at its own depth.
 Trial judge_dip(const TrialTask& task, const PoseOptions& pose, const DippedObject& dipped);
+
+// Per target: what film that lies on the object is worth there; 0: none.
+std::vector<float> worth_at(const TrialTask& task, const PosedObject& posed,
+                            const DippedFilm& film);
 
 // The object with as many triangles as trial dips can make out, for a large scan; else itself.
 std::shared_ptr<const Object> simplified_for_trials(std::shared_ptr<const Object> object);

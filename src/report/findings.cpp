@@ -11,6 +11,7 @@ namespace hydrodip {
 namespace {
 
 constexpr double kNearlyAll = 0.9;        // of what faces down; film ends a cell short of borders
+constexpr double kWholePicture = 0.98;    // of what shall be printed
 constexpr double kMuchTorn = 0.1;         // of the film that meets the object
 constexpr double kMuchAir = 0.02;         // of the object's surface
 constexpr double kSomeEscapes = 0.05;     // of a pocket
@@ -42,8 +43,24 @@ Finding no_film(const Coverage& c) {
   return finding;
 }
 
-Finding coverage(const Coverage& c) {
+Finding coverage_of_wanted(const ReportWanted& wanted) {
+  const bool nearly_all = wanted.covered_share() >= kWholePicture;
+  Finding finding{"coverage",
+                  nearly_all ? Concern::kNone : Concern::kCare,
+                  "Coverage",
+                  percent(wanted.covered_share()),
+                  "of what shall be printed gets film that holds.",
+                  ""};
+  if (!nearly_all)
+    finding.advice =
+        "Hold what shall be printed down (--rotate auto finds how), or give the rest other dips "
+        "(--dips).";
+  return finding;
+}
+
+Finding coverage(const Coverage& c, const std::optional<ReportWanted>& wanted) {
   if (!(c.film_on_object_mm2 > 0)) return no_film(c);
+  if (wanted) return coverage_of_wanted(*wanted);
   // Beside film that is lost, a share of what faces down would tell little.
   if (c.torn_mm2 > 0)
     return {"coverage",
@@ -65,10 +82,22 @@ Finding coverage(const Coverage& c) {
   return finding;
 }
 
-Finding tears(const Coverage& c) {
+// Torn film is a loss where something shall be printed.
+bool much_is_lost(const Coverage& c, const std::optional<ReportWanted>& wanted) {
+  return c.torn_share() > kMuchTorn && (!wanted || wanted->missed_share() > kMuchTorn);
+}
+
+Finding tears(const Coverage& c, const std::optional<ReportWanted>& wanted) {
   if (!(c.torn_mm2 > 0))
     return {"tears", Concern::kNone, "Tears", "none", "The film holds everywhere.", ""};
-  const bool much = c.torn_share() > kMuchTorn;
+  if (wanted && wanted->missed_share() < 1 - kWholePicture)
+    return {"tears",
+            Concern::kCare,
+            "Tears",
+            percent(c.torn_share()),
+            "of the film that meets the object tears, where nothing shall be printed.",
+            "Take torn film off the water and the object before it dries."};
+  const bool much = much_is_lost(c, wanted);
   return {"tears",
           much ? Concern::kStop : Concern::kCare,
           "Tears",
@@ -83,7 +112,7 @@ bool is_of_several(const Report& report) { return !report.dips.empty() || report
 // No dip inks what it tears, and another one brings what belongs there: what stays bare is the
 // coverage's matter.
 Finding tears_of_several(const Coverage& c) {
-  if (!(c.torn_mm2 > 0)) return tears(c);
+  if (!(c.torn_mm2 > 0)) return tears(c, std::nullopt);
   return {"tears",
           Concern::kCare,
           "Tears",
@@ -315,12 +344,12 @@ std::vector<Finding> findings(const Report& report) {
   if (report.coverage) {
     const Coverage& c = *report.coverage;
     const bool several = !report.dips.empty() && c.film_on_object_mm2 > 0;
-    list.push_back(several ? coverage_of_dips(c, report.dips.size()) : coverage(c));
+    list.push_back(several ? coverage_of_dips(c, report.dips.size()) : coverage(c, report.wanted));
     if (!report.better_way.empty())
       list.push_back({"better_way", Concern::kNone, "Better", "", report.better_way + ".", ""});
     if (report.seams) list.push_back(seams(*report.seams));
     if (c.film_on_object_mm2 > 0) {
-      list.push_back(is_of_several(report) ? tears_of_several(c) : tears(c));
+      list.push_back(is_of_several(report) ? tears_of_several(c) : tears(c, report.wanted));
       list.push_back(stretch(c, report.tear_stretch));
       add_slack_film(c, list);
       if (report.air) add_air(*report.air, c, list);
@@ -335,11 +364,6 @@ std::vector<Finding> findings(const Report& report) {
     if (!sentence.empty()) list.push_back(warning(sentence));
   }
   return list;
-}
-
-Concern concern_of(const Coverage& c) {
-  if (!(c.film_on_object_mm2 > 0)) return no_film(c).concern;
-  return std::max(coverage(c).concern, tears(c).concern);
 }
 
 Concern concern_of(const std::vector<Finding>& findings) {

@@ -23,9 +23,6 @@ struct Finding {
 // far as the report knows about them.
 std::vector<Finding> findings(const Report& report);
 
-// What coverage and tears alone say: all that can forbid a dip.
-Concern concern_of(const Coverage& coverage);
-
 // The gravest of all; kStop when the dip should not be done like this.
 Concern concern_of(const std::vector<Finding>& findings);
 

@@ -47,7 +47,26 @@ std::string plain_verdict(const Coverage& coverage) {
   return start + "; it does not tear: dip it like this.";
 }
 
-std::string short_verdict(const Coverage& coverage) {
+std::string plain_verdict(const Coverage& coverage, const ReportWanted& wanted) {
+  if (!(wanted.covered_mm2 > 0)) return plain_verdict(coverage);
+  std::string text =
+      fmt::format("The film covers {} of what shall be printed", percent(wanted.covered_share()));
+  if (coverage.torn_mm2 > 0)
+    return text + fmt::format(
+                      "; {} of the film that meets the object tears, and nothing is "
+                      "printed on it.",
+                      percent(coverage.torn_share()));
+  return text +
+         fmt::format(", stretches up to {:.2f} times and does not tear.", coverage.stretch_max);
+}
+
+std::string short_verdict(const Report& report) {
+  const Coverage& coverage = *report.coverage;
+  if (report.wanted && report.wanted->covered_mm2 > 0)
+    return fmt::format(
+        "{:.0f} % of what shall be printed covered, {:.1f} % of the film that meets "
+        "the object torn",
+        100 * report.wanted->covered_share(), 100 * coverage.torn_share());
   if (!(coverage.film_on_object_mm2 > 0))
     return coverage.torn_mm2 > 0 ? "all film that meets the object tears"
                                  : "no film lies on the object";

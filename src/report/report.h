@@ -82,6 +82,15 @@ struct ReportColors {
   double error_most_of = 0;  // 95 % of the surface has no more
 };
 
+// Where something shall be printed, if that is not everywhere: of the object's surface.
+struct ReportWanted {
+  double object_mm2 = 0;
+  double reached_mm2 = 0;  // of it: comes into the water and faces down
+  double covered_mm2 = 0;  // of it: gets whole film
+  double covered_share() const { return Coverage::share(covered_mm2, object_mm2); }
+  double missed_share() const { return Coverage::share(reached_mm2 - covered_mm2, reached_mm2); }
+};
+
 // One of several dips, in the order in which they are made. Shares of the object's whole surface.
 struct ReportDip {
   std::string down;  // "-z"
@@ -118,6 +127,7 @@ struct Report {
   std::vector<ReportRound> rounds;
   std::vector<WayPoint> way_in;           // empty: straight down
   std::optional<Coverage> coverage;       // nothing was dipped: absent
+  std::optional<ReportWanted> wanted;     // absent: unknown, or all of the surface
   std::shared_ptr<const TrappedAir> air;  // likewise
   std::optional<DipAngles> angles;
   std::optional<MeshHealth> mesh;
@@ -138,9 +148,11 @@ struct Report {
 // The result in one plain sentence: how much is covered, how far the film stretches, whether it
 // tears.
 std::string plain_verdict(const Coverage& coverage);
+// The same where only a part of the object shall be printed.
+std::string plain_verdict(const Coverage& coverage, const ReportWanted& wanted);
 
-// Some words of it, for a caption or a band.
-std::string short_verdict(const Coverage& coverage);
+// Some words of it, for a caption or a band. Of a report that has its coverage.
+std::string short_verdict(const Report& report);
 
 // The same for several dips together.
 std::string several_dips_verdict(const Coverage& coverage, std::size_t dips);

@@ -242,7 +242,7 @@ std::string report_json(const Report& report) {
   }
   if (!report.way_in.empty()) json["way_in"] = way_json(report.way_in);
   if (report.air) json["air"] = air_json(*report.air);
-  if (report.coverage) json["short_verdict"] = short_verdict(*report.coverage);
+  if (report.coverage) json["short_verdict"] = short_verdict(report);
   if (report.dip_number > 0)
     json["dip_of_several"] = {{"number", report.dip_number}, {"of", report.dip_of}};
   if (!report.dips.empty()) json["dips"] = dips_json(report);

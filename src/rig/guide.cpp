@@ -2,10 +2,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/parse_double.h"
 #include "rig/finish_run.h"
 #include "rig/rig.h"
 #include "rig/stage_session.h"
@@ -261,8 +261,7 @@ class Guide {
       std::string answer = person_.ask(question);
       std::replace(answer.begin(), answer.end(), ',', '.');
       double value = 0;
-      const auto [end, error] =
-          std::from_chars(answer.data(), answer.data() + answer.size(), value);
+      const auto [end, error] = parse_double(answer.data(), answer.data() + answer.size(), value);
       if (error == std::errc() && end == answer.data() + answer.size() && value >= 0 &&
           value <= most)
         return value;

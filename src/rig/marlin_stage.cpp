@@ -3,11 +3,11 @@
 // number and the XOR of their bytes, so that a garbled one is asked for again.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "base/parse_double.h"
 #include "rig/stage.h"
 
 namespace hydrodip {
@@ -39,7 +39,7 @@ std::optional<double> number_after(const std::string& line, const std::string& l
   const char* first = line.data() + at + label.size();
   while (first < line.data() + line.size() && *first == ' ') ++first;
   double value = 0;
-  const auto [end, error] = std::from_chars(first, line.data() + line.size(), value);
+  const auto [end, error] = parse_double(first, line.data() + line.size(), value);
   if (error != std::errc()) return {};
   return value;
 }

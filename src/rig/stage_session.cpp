@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
+
+#include "base/parse_double.h"
 
 namespace hydrodip {
 namespace {
@@ -22,7 +23,7 @@ std::unique_ptr<Link> open_link(const StageOptions& options, Bench& bench) {
 std::optional<double> parse_mm(const std::string& text) {
   const char* first = text.data() + (text.starts_with("+") ? 1 : 0);
   double value = 0;
-  const auto [end, error] = std::from_chars(first, text.data() + text.size(), value);
+  const auto [end, error] = parse_double(first, text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
   return value;
 }

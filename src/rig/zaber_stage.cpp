@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
+#include "base/parse_double.h"
 #include "rig/stage.h"
 #include "rig/zaber_message.h"
 
@@ -113,7 +113,7 @@ class ZaberStage : public Stage {
 
   static double number(const std::string& text, const std::string& command) {
     double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [end, error] = parse_double(text.data(), text.data() + text.size(), value);
     if (error == std::errc() && end == text.data() + text.size()) return value;
     throw StageError(fmt::format(
         "the stage answered '{}' to '{}', where one number was expected: a controller with several "

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "base/run_scope.h"
 #include "session/node_store.h"
@@ -53,8 +54,13 @@ void add(ContentKey& key, const TrajectoryOptions& way) {
   }
 }
 
-// A project's dips have no stiffness, tears or solver of their own.
+// A project's dips have no stiffness, tears or solver of their own, and no material law: values are
+// kept by their content, which it does not have.
 void add(ContentKey& key, const DipOptions& dip) {
+  if (dip.material.law)
+    throw InputError(
+        "a workspace takes no film with a material law of its own; use the steps of "
+        "hydrodip/hydrodip.h");
   key.add(dip.step_mm).add(dip.method).add(dip.scheme);
   key.add(dip.material.z_stretch).add(dip.material.poisson).add(dip.material.tear_stretch);
   key.add(dip.material.wrinkle_stretch);

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "base/parse_double.h"
 
 namespace hydrodip {
 namespace {
@@ -41,7 +42,7 @@ std::optional<Numbers> parse_list(const std::string& text) {
     std::string part = trimmed(text.substr(begin, end - begin));
     if (part.size() > 1 && part[0] == '+' && part[1] != '-') part.erase(0, 1);
     double value = 0;
-    const auto [rest, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    const auto [rest, error] = parse_double(part.data(), part.data() + part.size(), value);
     if (error != std::errc() || rest != part.data() + part.size()) return {};
     values.push_back(value);
     begin = end + 1;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,7 +20,9 @@
 namespace hydrodip {
 
 struct ObjectOptions {
-  LoadOptions load;                   // units, texture
+  LoadOptions load;  // units, texture
+  // A model in memory, in millimetres, instead of a file; null: the file.
+  std::shared_ptr<const LoadedObject> given = {};
   PoseOptions pose;                   // size, down, rotation
   LinearColor base{1, 1, 1, 1};       // of the bare object
   std::vector<ArtworkLayer> artwork;  // over the model's own colours, the bottom layer first

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "base/parse_double.h"
 #include "settings/artwork_tables.h"
 #include "settings/dip_tables.h"
 #include "settings/part_tables.h"
@@ -29,7 +29,7 @@ std::optional<double> parse_number(const std::string& untrimmed) {
   std::string text = trimmed(untrimmed);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.erase(0, 1);
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = parse_double(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
   return value;
 }

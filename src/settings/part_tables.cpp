@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/parse_double.h"
 
 namespace hydrodip {
 namespace {
@@ -34,7 +35,7 @@ int count_of(const Setting& setting) {
   double value = 0;
   if (const auto* number = std::get_if<double>(&setting.value)) value = *number;
   if (const auto* text = std::get_if<std::string>(&setting.value); text && !setting.typed)
-    std::from_chars(text->data(), text->data() + text->size(), value);
+    parse_double(text->data(), text->data() + text->size(), value);
   if (!(value >= 1 && value <= kMostCopies && value == std::floor(value)))
     refuse(setting, fmt::format("a whole number from 1 to {}", kMostCopies));
   return int(value);

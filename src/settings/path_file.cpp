@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/parse_double.h"
 
 namespace hydrodip {
 namespace {
@@ -40,7 +40,7 @@ std::vector<std::string_view> split(std::string_view text, char at) {
 double number(std::string_view text, const std::string& origin) {
   if (!text.empty() && text[0] == '+') text.remove_prefix(1);
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = parse_double(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
     throw InputError(fmt::format("{}: '{}' is not a number", origin, text.substr(0, 40)));
   return value;

@@ -119,4 +119,16 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
   apply_dependent_defaults(config, all);
 }
 
+JobConfig configured(const std::string& model, SettingSources sources) {
+  JobConfig config;
+  const bool is_job = std::filesystem::path(model).extension() == ".toml";
+  if (is_job) sources.configs.insert(sources.configs.begin(), model);
+  apply_sources(config, sources);
+  if (!is_job) config.model = model;
+  if (is_job && config.model.empty())
+    throw InputError(fmt::format(
+        "{}: the job names no model: begin it with file = \"MODEL\" under [object]", model));
+  return config;
+}
+
 }  // namespace hydrodip

@@ -51,4 +51,8 @@ struct SettingSources {
 // defaults to 1.
 void apply_sources(JobConfig& config, const SettingSources& sources);
 
+// A job's configuration: `model` is a model's file, or a job's (.toml) that names one. Throws
+// InputError.
+JobConfig configured(const std::string& model, SettingSources sources);
+
 }  // namespace hydrodip

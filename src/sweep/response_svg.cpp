@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "base/parse_double.h"
 #include "sweep/sweep_table.h"
 
 namespace hydrodip {
@@ -14,7 +14,6 @@ struct PlotFigure {
   const char* title;
 };
 constexpr PlotFigure kPlots[] = {{"coverage.covered_share", "covered, share"},
-                                 {"coverage.covered_mm2", "covered, mm²"},
                                  {"coverage.torn_mm2", "torn, mm²"},
                                  {"coverage.doubtful_mm2", "doubtful, mm²"},
                                  {"stretch.stretch_max", "largest stretch"},
@@ -27,12 +26,12 @@ struct Dot {
 
 std::optional<double> number_of(const std::string& text) {
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = parse_double(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return {};
   return value;
 }
 
-// Empty unless every run that has the value has a number.
+// Empty unless every run that has the value has a number, and the figures differ.
 std::vector<Dot> dots_of(const SweepTable& table, const std::string& axis, std::size_t figure) {
   std::vector<Dot> dots;
   for (const SweepRow& row : table.rows) {
@@ -41,6 +40,7 @@ std::vector<Dot> dots_of(const SweepTable& table, const std::string& axis, std::
     if (!x) return {};
     dots.push_back({*x, *row.figures[figure]});
   }
+  if (std::ranges::all_of(dots, [&](const Dot& dot) { return dot.y == dots.front().y; })) return {};
   std::ranges::stable_sort(dots, {}, &Dot::x);
   return dots;
 }

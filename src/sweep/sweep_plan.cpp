@@ -21,6 +21,28 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Values = std::vector<std::pair<std::string, std::string>>;
 
+constexpr std::pair<const char*, SweepCommand> kCommands[] = {{"simulate", SweepCommand::kSimulate},
+                                                              {"print", SweepCommand::kPrint},
+                                                              {"orient", SweepCommand::kOrient}};
+
+std::vector<std::string> command_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, command] : kCommands) names.emplace_back(name);
+  return names;
+}
+
+SweepCommand command_of(const std::string& wanted) {
+  for (const auto& [name, command] : kCommands)
+    if (name == wanted) return command;
+  throw InputError("a sweep knows no command '" + wanted + "'; plan it again");
+}
+
+std::string name_of(SweepCommand wanted) {
+  for (const auto& [name, command] : kCommands)
+    if (command == wanted) return name;
+  return "";
+}
+
 constexpr int kSchemaVersion = 1;
 constexpr std::size_t kMostRuns = 1000000, kIdDigits = 16;
 constexpr const char* kModel = "model";
@@ -319,7 +341,7 @@ std::string id_of(const SweepPlan& plan, const SweepRun& run, const fs::path& fo
     if (known.empty()) known = hash_of(folder / file);
     return known;
   };
-  Json content = {{"command", int(plan.command)},
+  Json content = {{"command", name_of(plan.command)},
                   {"quality", plan.quality},
                   {"job", hash(plan.job)},
                   {"model", hash(run.model)}};
@@ -335,9 +357,7 @@ std::string id_of(const SweepPlan& plan, const SweepRun& run, const fs::path& fo
 SweepPlan read_sweep(const fs::path& file, const fs::path& folder) {
   const SweepFile sweep(file);
   SweepPlan plan;
-  plan.command = sweep.choice("command", {"simulate", "print"}) == "print"
-                     ? SweepCommand::kPrint
-                     : SweepCommand::kSimulate;
+  plan.command = command_of(sweep.choice("command", command_names()));
   plan.quality = sweep.choice("quality", {"normal", "draft", "fine"});
   plan.keep_files = sweep.choice("keep", {"report", "all"}) == "all";
   const std::string method =
@@ -410,7 +430,7 @@ std::string manifest_json(const SweepPlan& plan) {
     runs.push_back({{"id", run.id}, {"model", run.model}, {"values", values}});
   }
   const Json json = {{"hydrodip_sweep", kSchemaVersion},
-                     {"command", plan.command == SweepCommand::kPrint ? "print" : "simulate"},
+                     {"command", name_of(plan.command)},
                      {"quality", plan.quality},
                      {"job", plan.job},
                      {"keep", plan.keep_files ? "all" : "report"},
@@ -433,7 +453,7 @@ SweepPlan read_manifest(const fs::path& folder) {
       throw InputError(
           fmt::format("{}: made by another version; plan the sweep again", file.string()));
     SweepPlan plan;
-    plan.command = json.at("command") == "print" ? SweepCommand::kPrint : SweepCommand::kSimulate;
+    plan.command = command_of(json.at("command").get<std::string>());
     plan.quality = json.at("quality").get<std::string>();
     plan.job = json.at("job").get<std::string>();
     plan.keep_files = json.at("keep") == "all";

@@ -11,7 +11,7 @@
 namespace hydrodip {
 
 // What each run does.
-enum class SweepCommand { kSimulate, kPrint };
+enum class SweepCommand { kSimulate, kPrint, kOrient };
 
 struct SweepRun {
   std::string id;     // 16 hexadecimal digits: a hash of command, inputs and values
@@ -31,7 +31,7 @@ struct SweepPlan {
 // Reads a sweep's file:
 //
 //   [sweep]
-//   command = "simulate"       # or "print"
+//   command = "simulate"       # or "print", "orient"
 //   method = "grid"            # every combination; or "list", "latin"
 //   runs = 100                 # of latin
 //   seed = 1                   # of latin

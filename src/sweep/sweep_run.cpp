@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -62,6 +61,18 @@ bool is_pending(const fs::path& folder, const std::string& id, bool again) {
   return !fs::exists(outcome_file(folder, id), ignored) || (again && has_failed(folder, id));
 }
 
+JobResult run_job(SweepCommand command, const JobConfig& config, const RunContext& context) {
+  switch (command) {
+    case SweepCommand::kSimulate:
+      return simulate_job(config, context);
+    case SweepCommand::kPrint:
+      return print_job(config, context);
+    case SweepCommand::kOrient:
+      return orient_job(config, context);
+  }
+  throw std::logic_error("an unknown command in a sweep");
+}
+
 // In a folder of its own, which is left only if its files are to be kept.
 std::string report_of(const SweepPlan& plan, const SweepRun& run, const fs::path& folder,
                       const RunContext& context) {
@@ -74,8 +85,7 @@ std::string report_of(const SweepPlan& plan, const SweepRun& run, const fs::path
     if (!plan.keep_files) fs::remove_all(files, ignored);
   };
   try {
-    const JobResult result = plan.command == SweepCommand::kPrint ? print_job(config, context)
-                                                                  : simulate_job(config, context);
+    const JobResult result = run_job(plan.command, config, context);
     remove();
     return result.json;
   } catch (...) {
@@ -92,8 +102,10 @@ Json independent_of_place(const std::string& text, const fs::path& folder) {
     const fs::path relative = fs::path(path.get<std::string>()).lexically_relative(folder);
     if (!relative.empty()) path = relative.string();
   };
-  for (Json& input : report.at("inputs")) from_folder(input.at("path"));
-  from_folder(report.at("parameters").at("object.file").at("value"));
+  if (report.contains("inputs"))
+    for (Json& input : report["inputs"]) from_folder(input.at("path"));
+  if (report.contains("parameters"))
+    from_folder(report["parameters"].at("object.file").at("value"));
   return report;
 }
 
@@ -137,9 +149,7 @@ bool do_run(const SweepPlan& plan, const SweepRun& run, const fs::path& folder,
 std::vector<const SweepRun*> chosen(const SweepPlan& plan, const SweepWork& work) {
   std::vector<const SweepRun*> runs;
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
-    const bool wanted = work.id.empty()
-                            ? int(i % std::size_t(work.shard.of)) == work.shard.number - 1
-                            : plan.runs[i].id == work.id;
+    const bool wanted = work.id.empty() ? work.shard.has(i) : plan.runs[i].id == work.id;
     if (wanted) runs.push_back(&plan.runs[i]);
   }
   if (runs.empty() && !work.id.empty())
@@ -148,19 +158,6 @@ std::vector<const SweepRun*> chosen(const SweepPlan& plan, const SweepWork& work
 }
 
 }  // namespace
-
-Shard parse_shard(const std::string& text) {
-  Shard shard;
-  const char* end = text.data() + text.size();
-  const auto [slash, first] = std::from_chars(text.data(), end, shard.number);
-  if (first == std::errc() && slash != end && *slash == '/') {
-    const auto [rest, second] = std::from_chars(slash + 1, end, shard.of);
-    if (second == std::errc() && rest == end && shard.number >= 1 && shard.number <= shard.of)
-      return shard;
-  }
-  throw InputError(
-      fmt::format("--shard: write I/N, as in 3/8 (the third of eight parts), not '{}'", text));
-}
 
 std::optional<SweepOutcome> read_outcome(const fs::path& folder, const std::string& id) {
   const fs::path file = outcome_file(folder, id);

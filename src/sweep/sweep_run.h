@@ -7,17 +7,10 @@
 #include <vector>
 
 #include "base/context.h"
+#include "base/shard.h"
 #include "sweep/sweep_plan.h"
 
 namespace hydrodip {
-
-// Which of the runs: every run whose place, counted from 0, leaves the rest `number` - 1 when
-// divided by `of`.
-struct Shard {
-  int number = 1, of = 1;
-};
-// "3/8". Throws InputError.
-Shard parse_shard(const std::string& text);
 
 // What became of a run: FOLDER/runs/ID.json, which appears whole or not at all.
 struct SweepOutcome {

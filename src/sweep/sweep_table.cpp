@@ -63,6 +63,8 @@ SweepTable make_table(const std::filesystem::path& folder, const SweepPlan& plan
         std::vector<std::string> order;
         for (const char* part : kParts)
           if (report.contains(part)) flatten(report[part], part, figures[i], order);
+        if (report.contains("poses") && !report["poses"].empty())
+          flatten(report["poses"].front(), "best", figures[i], order);
         for (const std::string& name : order)
           if (std::ranges::find(table.figure_names, name) == table.figure_names.end())
             table.figure_names.push_back(name);

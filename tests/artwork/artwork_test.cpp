@@ -316,6 +316,18 @@ TEST_F(Layers, WhatHitsNothingIsRefused) {
   EXPECT_THROW(laid(object, {by_uv}), InputError);
 }
 
+// A dot on a plate of two triangles a side: as found as a picture that is as large as the plate.
+TEST_F(Layers, TheSmallestPictureIsFound) {
+  const PosedObject object = posed(box({0, 0, 0}, {300, 300, 5}));
+  for (const double width : {1.0, 0.3, 0.01}) {
+    ArtworkLayer layer = downward(black(), width);
+    layer.at_mm = Vec3(123.4, 77.7, 5);
+    EXPECT_LT(seen(object, *laid(object, {layer}), {123.4, 77.7, 5}), kBlack) << width;
+    layer.at_mm = Vec3(300 + 0.6 * width, 77.7, 5);
+    EXPECT_THROW(laid(object, {layer}), InputError) << width;
+  }
+}
+
 TEST_F(Layers, DrawingsAreAsSharpAsThePrint) {
   const std::string svg =
       "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 40 20'><rect x='10.25' y='0' "
@@ -348,6 +360,17 @@ TEST_F(Layers, TextIsSet) {
   }
   EXPECT_GT(dark, 50);
   EXPECT_GT(light, 50);
+  // What it is set in is said.
+  std::vector<ArtworkLayer> layers = {layer};
+  std::vector<PictureSource> pictures = read_pictures(layers);
+  const RunContext context;
+  const auto artwork =
+      lay_artwork({layers, std::move(pictures), model_paint(object.shared_object()), true, 300, 3},
+                  object, context);
+  ASSERT_EQ(artwork.layers[0].fonts.size(), 1U);
+  EXPECT_NE(describe(artwork.layers[0]).find("set in " + artwork.layers[0].fonts[0].name),
+            std::string::npos);
+  EXPECT_TRUE(context.warnings().empty());
   layer.text = " ";
   EXPECT_THROW(laid(object, {layer}), InputError);
 }

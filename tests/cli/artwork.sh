@@ -133,6 +133,31 @@ if command -v transicc > /dev/null && command -v convert > /dev/null && [ -e "$i
   like "$(shown p3.png)" '180 120 90' "$p3"
 fi
 
+# Text: its fonts are named and hashed; another font than was asked for is said; a machine without any
+# cannot set it. So is a drawing that has text.
+# shellcheck disable=SC2086
+"$hydrodip" simulate plate.stl --art-text 'No. 7' --art-font 'No Such Font' $quick_simulate \
+  --set preview.pictures=off -o text --json > text.json 2> text.err || fail "a text: $?"
+grep -q "'No Such Font' is not installed; .* is taken instead" text.err || fail "font: $(cat text.err)"
+python3 - <<'PY' || fail 'the report does not know the font'
+import hashlib, json
+report = json.load(open('text.json'))
+fonts = [i for i in report['inputs'] if i['role'] == 'font']
+assert len(fonts) == 1 and fonts[0]['sha256'] == hashlib.sha256(open(fonts[0]['path'], 'rb').read()).hexdigest()
+assert 'set in ' in report['figures']['artwork_1'], report['figures']
+PY
+echo '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 30"><text y="20">A</text></svg>' > text.svg
+# shellcheck disable=SC2086
+"$hydrodip" simulate plate.stl --art text.svg $quick_simulate --set preview.pictures=off -o text-svg \
+  > /dev/null 2> text.err || fail "an SVG with text: $?"
+grep -q 'convert it to paths' text.err || fail "an SVG with text: $(cat text.err)"
+printf '<?xml version="1.0"?>\n<fontconfig><cachedir>%s</cachedir></fontconfig>\n' "$PWD/cache" > none.conf
+for art in '--art-text=A' '--art=text.svg'; do
+  FONTCONFIG_FILE=$PWD/none.conf "$hydrodip" simulate plate.stl "$art" -o nothing > /dev/null 2> none.err
+  [ $? -eq 2 ] || fail "$art without fonts: $?"
+  grep -q '^error: .*no fonts are installed' none.err || fail "$art without fonts: $(cat none.err)"
+done
+
 # refused FRAGMENT ARGUMENTS...
 refused() {
   fragment=$1

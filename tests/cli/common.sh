@@ -4,10 +4,22 @@ set -u
 
 hydrodip=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+trap 'keep_described_files; rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
 cd "$work" || exit 1
 failures=0
+
+# Into the folder that HYDRODIP_TEST_FILES names, if it names one: what JSON Schemas describe, for
+# tests/schemas/validate.py.
+keep_described_files() {
+  [ -n "${HYDRODIP_TEST_FILES:-}" ] || return 0
+  (cd "$work" && find . -type f \( -name report.json -o -name plan.json -o -name orient.json \
+    -o -name nest.json -o -name plan.toml -o -name profile.toml -o -name truth.toml \)) |
+    while read -r file; do
+      mkdir -p "$HYDRODIP_TEST_FILES/$(basename "$work")/$(dirname "$file")"
+      cp "$work/$file" "$HYDRODIP_TEST_FILES/$(basename "$work")/$file"
+    done
+}
 
 fail() {
   echo "FAILED: $*"

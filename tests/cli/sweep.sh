@@ -83,7 +83,7 @@ refused() {
 refused 'sweep plan' sweep run nowhere
 refused 'sweep' sweep
 refused 'no run' sweep run s --task 0123
-refused 'I/N' sweep run s --shard 5/4
+refused '2/4' sweep run s --shard 5/4
 refused 'name the sweep' sweep plan
 echo 'x = 1' > bad.toml
 refused "unknown 'x'" sweep plan bad.toml

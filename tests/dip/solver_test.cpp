@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "dip/dip.h"
+#include "elastic/table_law.h"
 #include "exact/dipping.h"
 #include "exact/shapes.h"
 
@@ -90,6 +91,26 @@ TEST(SolverSlow, MultigridGivesTheDirectSolversFilmOnHardInk) {
   exact::StraightDip options = usual_dip();
   options.modulus = checkerboard(film, 8);
   expect_the_same_film(options, film);
+}
+
+// The paper's energy as a law of one's own, and as a table of that: other loops, the same film.
+TEST(SolverSlow, PapersLawGivesTheBuiltInFilm) {
+  const FilmMesh film = coarse_film(kElements);
+  exact::StraightDip options = usual_dip();
+  options.modulus = checkerboard(film, 8);
+  for (const double poisson : {0.0, 0.35}) {
+    options.material.poisson = poisson;
+    options.material.law = nullptr;
+    const DippedFilm built_in = dipped(film, options);
+    const auto law = make_corotated_law(poisson);
+    const LawTable table = tabulated([&](double a, double b) { return law->at(a, b).energy; });
+    for (const auto& same : {law, make_table_law(table)}) {
+      options.material.law = same;
+      const double apart_mm = largest_distance(built_in, dipped(film, options));
+      testing::Test::RecordProperty("apart_mm", fmt::format("{:.2g}", apart_mm));
+      EXPECT_LT(apart_mm, kPrecision_mm) << poisson;
+    }
+  }
 }
 
 TEST(SolverSlow, IterationsDoNotGrowWithTheMesh) {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "elastic/by_vertex.h"
+#include "elastic/differences.h"
 #include "elastic/film_energy.h"
 #include "elastic/linear_solver.h"
 #include "elastic/relaxation.h"
@@ -13,39 +14,9 @@
 namespace hydrodip {
 namespace {
 
+using fixtures::RandomFilm;
+
 constexpr double kPoissonRatios[] = {-0.3, 0.0, 0.3, 0.49};
-
-// A small film with every triangle at its own rest shape, stiffness and strain.
-struct RandomFilm {
-  FilmMesh mesh =
-      make_film_mesh({.width_mm = 60, .height_mm = 50, .margin_mm = 5, .elements = 120});
-  std::vector<double> modulus;
-  std::vector<RestTriangle> rest;
-  VertexVector u;
-  std::vector<std::uint8_t> is_free;
-
-  explicit RandomFilm(unsigned seed) {
-    std::mt19937 generator(seed);
-    std::uniform_real_distribution<double> unit(-1, 1);
-    VertexVector x = mesh.u;
-    u = mesh.u;
-    for (std::size_t v = 0; v < x.size(); ++v) {
-      x[v] += 0.12 * mesh.cell_mm * Vec2(unit(generator), unit(generator));
-      u[v] = 0.8 * u[v] + 0.12 * mesh.cell_mm * Vec2(unit(generator), unit(generator));
-      is_free.push_back(!mesh.on_rim[v]);
-    }
-    for (const Triangle& t : mesh.triangles) {
-      modulus.push_back(std::exp(2 * unit(generator)));
-      rest.push_back(
-          rest_triangle(x[std::size_t(t[0])], x[std::size_t(t[1])], x[std::size_t(t[2])]));
-    }
-  }
-  FilmEnergy energy(double poisson) const {
-    FilmEnergy e(mesh, modulus, poisson);
-    e.set_rest(rest);
-    return e;
-  }
-};
 
 TEST(Corotated, EnergyVanishesExactlyForRotations) {
   for (double nu : kPoissonRatios)
@@ -88,62 +59,12 @@ TEST(Corotated, RestTriangleReproducesLinearMaps) {
   EXPECT_NEAR(in_space.area, 5, 1e-12);
 }
 
-TEST(FilmEnergy, GradientMatchesFiniteDifferences) {
+TEST(FilmEnergy, GradientAndHessianMatchFiniteDifferences) {
   for (double nu : kPoissonRatios) {
     const RandomFilm film(7);
     const FilmEnergy energy = film.energy(nu);
-    const VertexVector gradient = fixtures::gradient_by_vertex(energy, film.u, film.is_free);
-    double scale = 0, worst = 0;
-    for (std::size_t v = 0; v < film.u.size(); ++v) {
-      if (!film.is_free[v]) {
-        EXPECT_EQ(gradient[v].norm(), 0);
-        continue;
-      }
-      for (int k = 0; k < 2; ++k) {
-        const double h = 1e-4;
-        // Fourth-order central difference.
-        const auto at = [&](double d) {
-          VertexVector u = film.u;
-          u[v][k] += d;
-          return energy.value(energy.grid().field(u));
-        };
-        const double fd = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
-        scale = std::max(scale, std::abs(fd));
-        worst = std::max(worst, std::abs(fd - gradient[v][k]));
-      }
-    }
-    EXPECT_LT(worst, 1e-6 * scale) << nu;
-  }
-}
-
-TEST(FilmEnergy, HessianMatchesFiniteDifferences) {
-  for (double nu : kPoissonRatios) {
-    const RandomFilm film(8);
-    const FilmEnergy energy = film.energy(nu);
-    const std::vector<std::uint8_t> all(film.u.size(), 1);
-    BlockMatrix H;
-    energy.hessian(film.u, false, H);
-    double scale = 0, worst = 0;
-    for (std::size_t w = 0; w < film.u.size(); ++w)
-      for (int k = 0; k < 2; ++k) {
-        const double h = 1e-3;
-        const auto at = [&](double d) {
-          VertexVector u = film.u;
-          u[w][k] += d;
-          return fixtures::gradient_by_vertex(energy, u, all);
-        };
-        const VertexVector p1 = at(h), m1 = at(-h), p2 = at(2 * h), m2 = at(-2 * h);
-        for (std::size_t v = 0; v < film.u.size(); ++v) {
-          Vec2 analytic = Vec2::Zero();
-          for (auto s = H.row_begin[v]; s < H.row_begin[v + 1]; ++s)
-            if (std::size_t(H.column[std::size_t(s)]) == w)
-              analytic = H.block[std::size_t(s)].col(k);
-          const Vec2 fd = (8 * (p1[v] - m1[v]) - (p2[v] - m2[v])) / (12 * h);
-          scale = std::max(scale, fd.norm());
-          worst = std::max(worst, (fd - analytic).norm());
-        }
-      }
-    EXPECT_LT(worst, 1e-6 * scale) << nu;
+    fixtures::expect_gradient(energy, film.u, film.is_free, 1e-6);
+    fixtures::expect_hessian(energy, film.u, 1e-6);
   }
 }
 

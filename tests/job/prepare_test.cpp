@@ -29,6 +29,24 @@ TEST(PrepareObject, ScalesAreaAndVolumeWithTheObjectAndWarnsWhenItIsTiny) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(PrepareObject, TakesAModelInMemoryAsItsFile) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "hydrodip_prepare_given";
+  std::filesystem::create_directories(folder);
+  write_sample("box", make_sample("box"), folder);
+  const RunContext context;
+  ObjectOptions options;
+  options.pose.rotate_deg = Vec3(20, 0, 0);
+  const PreparedObject read = prepare_object(folder / "box.obj", options, context);
+  options.given =
+      std::make_shared<const LoadedObject>(load_object(folder / "box.obj", options.load, context));
+  std::filesystem::remove_all(folder);
+  const PreparedObject given = prepare_object("nowhere.obj", options, context);
+  EXPECT_EQ(given.posed.mesh().positions, read.posed.mesh().positions);
+  EXPECT_EQ(given.posed.mesh().triangles, read.posed.mesh().triangles);
+  EXPECT_EQ(given.health.volume_mm3, read.health.volume_mm3);
+}
+
 TEST(Appearance, IsAskedForWithTheWayToMend) {
   Object object;
   object.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

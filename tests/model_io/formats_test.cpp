@@ -634,6 +634,21 @@ TEST_F(ThreeMf, SlicesAreNoVerticesAndLatticesAreSaid) {
   EXPECT_TRUE(warned(loaded, "beam lattices"));
 }
 
+TEST_F(ThreeMf, OfALatticeWithoutTrianglesItIsSaidWhatItIs) {
+  const std::string lattice =
+      model("<resources><object id=\"1\"><mesh>" + std::string(kSquareVertices) +
+            "<triangles/><b:beamlattice radius=\"1\"><b:beams><b:beam v1=\"0\" v2=\"1\"/></b:beams>"
+            "</b:beamlattice></mesh></object></resources><build><item objectid=\"1\"/></build>");
+  try {
+    package({{"3D/3dmodel.model", lattice}});
+    ADD_FAILURE() << "it was loaded";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("only beam lattices, which are not read"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(ThreeMf, PaintOfSlicersIsNamed) {
   EXPECT_TRUE(warned(package({{"3D/3dmodel.model",
                                model("<resources><object id=\"1\">" + square("paint_color=\"4\"") +

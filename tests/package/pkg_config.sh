@@ -16,10 +16,10 @@ flags=$(echo "$flags" | sed 's|-I\([^ ]*eigen3\)|-isystem \1|')
 
 (cd "$prefix/include" && find hydrodip -name '*.h') > "$work/headers"
 [ -s "$work/headers" ] || { echo "FAILED: no header is installed"; exit 1; }
-# What people begin with, alone; all others together, in order and backwards, so that one that lacks
+# What people begin with, alone (hydrodip.h: in the program below); all others together, in order and backwards, so that one that lacks
 # something cannot always find it in those before. (That each stands alone is what ./dev lint sees:
 # every source names its own header first.)
-grep -v '/.*/' "$work/headers" | while read -r header; do
+grep -v -e '/.*/' -e '^hydrodip/hydrodip.h$' "$work/headers" | while read -r header; do
   printf '#include "%s"\n' "$header" > "$work/$(basename "$header" .h)-alone.cpp"
 done
 LC_ALL=C sort "$work/headers" | sed 's/.*/#include "&"/' > "$work/in-order.cpp"
@@ -34,7 +34,7 @@ printf '%s\n' '#include <hydrodip/hydrodip.h>' \
   'int main() { return hydrodip::sample("box").object->triangles.empty() ? 1 : 0; }' \
   > "$work/linked.cpp"
 # shellcheck disable=SC2086
-"$compiler" -std=c++20 $flags "$work/linked.cpp" -o "$work/linked" $libraries ||
+"$compiler" -std=c++20 -Wall -Wextra -Werror $flags "$work/linked.cpp" -o "$work/linked" $libraries ||
   { echo "FAILED: a program does not link"; exit 1; }
 LD_LIBRARY_PATH=$(pkg-config --variable=libdir hydrodip) "$work/linked" ||
   { echo "FAILED: a linked program does not run"; exit 1; }

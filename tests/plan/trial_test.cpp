@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "coat/design.h"
+#include "dip/zoo_shapes.h"
 #include "plan/choice.h"
 #include "plan/search.h"
 #include "samples/samples.h"
@@ -85,6 +86,49 @@ TEST_F(SphereTrial, SaysTheSameOfADipThatWasMade) {
   EXPECT_NEAR(judged.figures.covered_share, dipped.coverage.covered_share(), 0.006);
 }
 
+// A picture drawn from the film shows what the figures say.
+TEST_F(SphereTrial, KeepsTheFilmAsItLiesAtItsDepth) {
+  TrialTask keeping = task();
+  keeping.keep_film = true;
+  const auto trial = try_pose(keeping, {}, 0, context_);
+  ASSERT_TRUE(trial && trial->film);
+  EXPECT_EQ(trial->film->depth_mm, trial->depth_mm);
+  const PosedObject posed(sphere_, trial->pose);
+  EXPECT_EQ(worth_at(task(), posed, *trial->film), trial->worth);
+  // The dip went deeper, and that much tore.
+  for (std::size_t t = 0; t < trial->film->torn.size(); ++t) EXPECT_FALSE(trial->film->torn[t]);
+}
+
+// A sphere that leans is the same sphere.
+TEST_F(SphereTrial, AnotherWayInIsDippedToo) {
+  TrialTask given = task();
+  given.depth_mm = 10;
+  const auto straight = try_pose(given, {}, 0, context_);
+  given.way.tilt_deg = 25;
+  given.way.tilt_toward_deg = 40;
+  const auto leaning = try_pose(given, {}, 0, context_);
+  given.way = {.path = {{}, {.lower_mm = 10}}};
+  given.depth_mm = 0;
+  const auto path = try_pose(given, {}, 0, context_);
+  ASSERT_TRUE(straight && leaning && path);
+  EXPECT_EQ(leaning->depth_mm, 10);
+  EXPECT_NEAR(leaning->figures.covered_share, straight->figures.covered_share, 0.004);
+  EXPECT_NEAR(leaning->figures.score, straight->figures.score, 0.006);
+  EXPECT_NEAR(path->figures.score, straight->figures.score, 1e-6);
+  EXPECT_EQ(path->path.size(), 2U);
+}
+
+TEST_F(SphereTrial, TheDepthOfALeaningWayIsLookedFor) {
+  TrialTask leaning = task();
+  leaning.film.elements = 2000;
+  leaning.dip.step_mm = 1;
+  leaning.way.tilt_deg = 25;
+  const auto trial = try_pose(leaning, {}, 0, context_);
+  ASSERT_TRUE(trial);
+  EXPECT_NEAR(trial->depth_mm, 13.6, 4);
+  EXPECT_GT(trial->figures.score, 0.15);
+}
+
 TEST_F(SphereTrial, WhatDoesNotFitIsNotTried) {
   TrialTask small = task();
   small.film.width_mm = small.film.height_mm = 60;  // 40 mm of free film
@@ -141,6 +185,32 @@ TEST_F(SphereTrial, KeptDipsComeFirstAndStay) {
   ASSERT_EQ(chosen.size(), 3U);
   EXPECT_EQ(chosen[0].pose.rotate_deg, trials[9].pose.rotate_deg);
   EXPECT_EQ(chosen[0].worth, trials[9].worth);
+}
+
+// A cup keeps its air where it opens down, and none where it opens up.
+TEST(CupTrial, AirThatIsShutInCountsAgainstIt) {
+  const shapes::Shape shape = shapes::cup();
+  auto cup = std::make_shared<Object>();
+  cup->positions = shape.positions;
+  cup->triangles = shape.triangles;
+  cup->materials.emplace_back();
+  cup->material_of.assign(cup->triangles.size(), 0);
+  const Targets targets = spread_targets(*cup, 2000);
+  TrialTask task{cup, targets, {}, {}, {}};
+  task.film.elements = 2000;
+  task.dip.step_mm = 1;
+  task.dip.material.tear_stretch = 0;
+  task.depth_mm = 8;
+  const RunContext context;
+  const auto without = try_pose(task, {}, 0, context);
+  task.air.cells = 20000;
+  const auto opening_down = try_pose(task, {}, 0, context);
+  const auto opening_up = try_pose(task, hold({}, Vec3(0, 0, 1), 0), 0, context);
+  ASSERT_TRUE(without && opening_down && opening_up);
+  EXPECT_EQ(without->figures.air_mm2, 0);
+  EXPECT_GT(opening_down->figures.air_mm2, 500);
+  EXPECT_EQ(opening_up->figures.air_mm2, 0);
+  EXPECT_GT(opening_up->figures.score, opening_down->figures.score);
 }
 
 class BoxSearch : public testing::Test {

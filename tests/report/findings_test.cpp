@@ -101,7 +101,7 @@ TEST(Findings, BesideTearsCoverageIsOfTheWholeObject) {
   const Coverage& c = *report.coverage;
   EXPECT_EQ(std::stod(find(list, "coverage")->figure), std::round(100 * c.covered_share()));
   EXPECT_EQ(plain_verdict(c).find("100 %"), std::string::npos);
-  EXPECT_EQ(short_verdict(c).find("100 %"), std::string::npos);
+  EXPECT_EQ(short_verdict(report).find("100 %"), std::string::npos);
 }
 
 TEST(Findings, StretchBeyondTheLimitIsSaidToBeThat) {
@@ -111,14 +111,25 @@ TEST(Findings, StretchBeyondTheLimitIsSaidToBeThat) {
   EXPECT_NE(find(findings(report), "stretch")->text.find("beyond the 1.40"), std::string::npos);
 }
 
-TEST(Findings, OnlyCoverageAndTearsForbidADip) {
+// A logo that lands whole, on an object whose other film tears.
+TEST(Findings, FilmThatTearsWhereNothingIsPrintedForbidsNothing) {
   Report report = good_report();
-  for (const double torn_mm2 : {0.0, 20.0, 200.0}) {
-    report.coverage->torn_mm2 = torn_mm2;
-    EXPECT_EQ(concern_of(findings(report)) == Concern::kStop,
-              concern_of(*report.coverage) == Concern::kStop);
-  }
-  EXPECT_EQ(concern_of(Coverage{}), Concern::kStop);
+  report.coverage->torn_mm2 = 500;
+  EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
+  report.wanted = ReportWanted{100, 100, 100};
+  std::vector<Finding> list = findings(report);
+  EXPECT_EQ(concern_of(list), Concern::kCare);
+  EXPECT_EQ(find(list, "coverage")->figure, "100 %");
+  EXPECT_EQ(find(list, "coverage")->concern, Concern::kNone);
+  // A part of it stays out of the water: nothing is spoilt, but it is said.
+  report.wanted = ReportWanted{200, 100, 100};
+  list = findings(report);
+  EXPECT_EQ(find(list, "tears")->concern, Concern::kCare);
+  EXPECT_EQ(find(list, "coverage")->figure, "50 %");
+  EXPECT_EQ(find(list, "coverage")->concern, Concern::kCare);
+  // A fifth of it is torn.
+  report.wanted = ReportWanted{100, 100, 80};
+  EXPECT_EQ(concern(report, "tears"), Concern::kStop);
 }
 
 TEST(Findings, SeveralDipsAreJudgedTogether) {

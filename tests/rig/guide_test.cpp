@@ -187,6 +187,37 @@ TEST_F(GuideTest, NothingGoesLowerThanTheOperatorsLimit) {
   }
 }
 
+// The object touches at 57.5 mm, so that the dip ends at 87: told before the film swims, not in mid
+// dip.
+TEST_F(GuideTest, ADipWithoutRoomIsRefusedBeforeTheWaterIsMeasured) {
+  GuidedBench guided;
+  RigJob job = this->job(guided.emulator->port());
+  job.config.stage.lowest_mm = 86.9;
+  EXPECT_THROW(rig_guide(job, guided.bench, guided.context), StageError);
+  EXPECT_EQ(guided.person.times_asked("or here"), 3);
+  EXPECT_EQ(guided.person.times_asked("Temperature"), 0);
+  EXPECT_LT(guided.emulator->position_mm(), 57.6);
+}
+
+TEST_F(GuideTest, JoggingLowersWhicheverWayTheScaleRuns) {
+  for (const StageDown down : {StageDown::kPlus, StageDown::kMinus}) {
+    GuidedBench guided;
+    StageOptions stage = this->job(guided.emulator->port()).config.stage;
+    stage.down = down;
+    guided.bench.yes_given = true;
+    const auto jog = [&](double down_mm) {
+      StageAction action{"jog"};
+      action.jog_mm = down_mm;
+      rig_stage(action, nullptr, stage, guided.bench, guided.context);
+      return guided.emulator->position_mm();
+    };
+    const double sign = down == StageDown::kPlus ? 1 : -1;
+    const double home_mm = jog(sign * 40);  // up the scale, whichever way that is
+    EXPECT_NEAR(jog(5) - home_mm, 5 * sign, 0.001);
+    EXPECT_NEAR(jog(-2) - home_mm, 3 * sign, 0.001);
+  }
+}
+
 TEST_F(GuideTest, FortyRandomFaultSequencesLeaveNothingMoving) {
   int finished = 0;
   for (unsigned seed = 1; seed <= 20; ++seed)

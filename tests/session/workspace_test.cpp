@@ -6,6 +6,7 @@
 #include <chrono>
 #include <thread>
 
+#include "base/error.h"
 #include "image/files.h"
 #include "samples/samples.h"
 #include "temporary_folder.h"
@@ -46,6 +47,11 @@ class WorkspaceTest : public testing::Test {
   Workspace workspace_;
   RunContext context_;
 };
+
+TEST_F(WorkspaceTest, RefusesALawWhoseContentItCannotSee) {
+  project_.design.dip.material.law = make_corotated_law(0);
+  EXPECT_THROW(workspace_.dipped(project_, Quality::kNormal, context_), InputError);
+}
 
 TEST_F(WorkspaceTest, OnlyWhatAChangeTouchesIsComputedAgain) {
   EXPECT_EQ(dip(), 3U);  // model, pose, dip

@@ -397,18 +397,24 @@ TEST_F(PrintPdf, AFullDiskIsNoticed) {
   }
 }
 
-// Whatever the library says of its writing: a file without its end is none.
+// Whatever the library says of its writing: a file without its end is none. Of the last bytes,
+// which leave its buffer when the file is closed, it says nothing.
 TEST_F(PrintPdf, AFileThatIsCutShortIsNoticed) {
   const SheetOptions options = sheet(80, 90, 10, 72);
+  const auto write = [&](const char* name) {
+    write_print_pdf(folder_ / name, patterned_image(options), srgb_profile(), options, context_);
+  };
+  write("whole.pdf");
+  const auto size = rlim_t(std::filesystem::file_size(folder_ / "whole.pdf"));
   rlimit whole{};
   getrlimit(RLIMIT_FSIZE, &whole);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit cut{3000, whole.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &cut);
-  EXPECT_THROW(write_print_pdf(folder_ / "cut.pdf", patterned_image(options), srgb_profile(),
-                               options, context_),
-               InputError);
-  setrlimit(RLIMIT_FSIZE, &whole);
+  for (const rlim_t kept : {rlim_t(3000), size - 8}) {
+    const rlimit cut{kept, whole.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &cut);
+    EXPECT_THROW(write("cut.pdf"), InputError) << kept << " of " << size << " bytes";
+    setrlimit(RLIMIT_FSIZE, &whole);
+  }
   std::signal(SIGXFSZ, handler);
 }
 

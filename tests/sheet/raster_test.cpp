@@ -100,19 +100,21 @@ TEST_F(PrintRaster, ResolutionsInCentimetresAreConverted) {
   EXPECT_NEAR(read_cmyk_tiff(path).dpi, 254, 1e-3);
 }
 
-TEST_F(PrintRaster, ThreeInksAreNotFour) {
-  const std::string path = (folder_ / "three.tif").string();
-  TIFF* tiff = TIFFOpen(path.c_str(), "w");
-  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 4);
-  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 3);
-  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 3);
-  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
-  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_SEPARATED);
-  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
-  std::uint8_t row[12] = {};
-  for (std::uint32_t y = 0; y < 3; ++y) TIFFWriteScanline(tiff, row, y, 0);
-  TIFFClose(tiff);
-  EXPECT_THROW(read_cmyk_tiff(path), InputError);
+TEST_F(PrintRaster, ThreeOrFiveInksAreNotFour) {
+  for (const int inks : {3, 5}) {
+    const std::string path = (folder_ / "inks.tif").string();
+    TIFF* tiff = TIFFOpen(path.c_str(), "w");
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 4);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 3);
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, inks);
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_SEPARATED);
+    TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+    std::uint8_t row[20] = {};
+    for (std::uint32_t y = 0; y < 3; ++y) TIFFWriteScanline(tiff, row, y, 0);
+    TIFFClose(tiff);
+    EXPECT_THROW(read_cmyk_tiff(path), InputError) << inks;
+  }
 }
 
 TEST_F(PrintRaster, OtherFilesAreNoInks) {

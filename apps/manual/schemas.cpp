@@ -1,0 +1,198 @@
+#include "schemas.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "settings/artwork_tables.h"
+#include "settings/dip_tables.h"
+#include "settings/params.h"
+
+namespace hydrodip {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kDraft = "https://json-schema.org/draft/2020-12/schema";
+
+Json array_of(Json items, int least, int most) {
+  return {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}, {"maxItems", most}};
+}
+
+Json text(const char* type) { return {{"type", type}}; }
+
+// Beside what `schema` allows.
+Json or_else(Json schema, const Json& other) {
+  if (!schema.contains("anyOf")) schema = {{"anyOf", Json::array({std::move(schema)})}};
+  schema["anyOf"].push_back(other);
+  return schema;
+}
+
+Json number_schema(const Parameter& p) {
+  Json schema = text(p.type == ParameterType::kInteger ? "integer" : "number");
+  schema["minimum"] = p.min;
+  schema["maximum"] = p.max;
+  if (!p.zero.empty()) schema = or_else(std::move(schema), {{"const", 0}});
+  return schema;
+}
+
+// A keyframe as TOML's row of six numbers.
+Json rows_of_keyframes() {
+  Json rows = {{"type", "array"}, {"items", array_of(text("number"), 6, 6)}, {"minItems", 1}};
+  return rows;
+}
+
+// A parameter's value, without what it means.
+Json value_schema(const Parameter& p) {
+  Json schema;
+  switch (p.type) {
+    case ParameterType::kNumber:
+    case ParameterType::kInteger:
+      schema = number_schema(p);
+      break;
+    case ParameterType::kChoice:
+      schema = {{"enum", p.choices}};
+      break;
+    case ParameterType::kText:
+    case ParameterType::kPath:
+      schema = text("string");
+      break;
+    case ParameterType::kColor:
+      schema = {{"type", "string"}, {"pattern", "^#[0-9A-Fa-f]{6}$"}};
+      break;
+    case ParameterType::kVector:
+      schema = array_of({{"type", "number"}, {"minimum", p.min}, {"maximum", p.max}}, 3, 3);
+      break;
+    case ParameterType::kWayIn:
+      schema = or_else(text("string"), rows_of_keyframes());
+      break;
+  }
+  if (!p.word.empty()) schema = or_else(std::move(schema), {{"const", p.word}});
+  return schema;
+}
+
+// In a file, vectors may be text as for --set too.
+Json file_schema(const Parameter& p) {
+  Json schema = value_schema(p);
+  if (p.type == ParameterType::kVector) schema = or_else(std::move(schema), text("string"));
+  schema["description"] = p.help + (p.unit.empty() ? "" : " (" + p.unit + ")");
+  const ParameterValue usual = p.default_value();
+  std::visit([&](const auto& value) { schema["default"] = value; }, usual);
+  return schema;
+}
+
+Json closed_object(Json properties) {
+  return {
+      {"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+}
+
+std::vector<std::string> words_of(const std::string& list) {
+  std::vector<std::string> words(1);
+  for (const char c : list) {
+    if (c == ',')
+      words.emplace_back();
+    else if (c != ' ')
+      words.back() += c;
+  }
+  return words;
+}
+
+// From what a value of a layer "has to be", in words.
+Json layer_schema(const LayerKey& key) {
+  double min = 0, max = 0;
+  if (std::sscanf(key.range.c_str(), "a number from %lf to %lf", &min, &max) == 2)
+    return {{"type", "number"}, {"minimum", min}, {"maximum", max}};
+  if (key.range == "three numbers X,Y,Z") return array_of(text("number"), 3, 3);
+  if (key.range == "W or W,H, each more than 0") {
+    const Json length = {{"type", "number"}, {"exclusiveMinimum", 0}};
+    return or_else(length, array_of(length, 1, 2));
+  }
+  if (key.range.starts_with("one of ")) return {{"enum", words_of(key.range.substr(7))}};
+  if (key.range == "text" || key.range == "a file name") return text("string");
+  if (key.range == "true or false") return {{"enum", {true, false, "true", "false"}}};
+  if (key.range.starts_with("a colour"))
+    return {{"type", "string"}, {"pattern", "^#[0-9A-Fa-f]{6}$"}};
+  throw std::logic_error("no JSON Schema for artwork's " + key.name + ": " + key.range);
+}
+
+Json artwork_schema() {
+  Json properties = Json::object();
+  for (const LayerKey& key : layer_keys()) {
+    properties[key.name] = layer_schema(key);
+    properties[key.name]["description"] = key.help;
+  }
+  return {{"type", "array"}, {"items", closed_object(std::move(properties))}};
+}
+
+// A dip's values are those of a single dip's parameters.
+Json dips_schema() {
+  Json properties = Json::object();
+  for (const std::string& key : dip_keys()) {
+    if (key == "locked") {
+      properties[key] = {{"enum", {true, false, "true", "false"}},
+                         {"description", "planning leaves this dip as it is"}};
+      continue;
+    }
+    const std::string name = key == "path"       ? key
+                             : key == "depth_mm" ? "dip." + key
+                                                 : "object." + key;
+    properties[key] = file_schema(find_parameter(name, "job_schema"));
+    properties[key].erase("default");
+  }
+  return {{"type", "array"}, {"items", closed_object(std::move(properties))}};
+}
+
+Json parts_schema() {
+  Json part = closed_object(
+      {{"job", {{"type", "string"}, {"minLength", 1}, {"description", "a model, or a job's file"}}},
+       {"count", {{"type", "integer"}, {"minimum", 1}, {"maximum", 100}}}});
+  part["required"] = {"job"};
+  return {{"type", "array"}, {"items", std::move(part)}};
+}
+
+}  // namespace
+
+std::string job_schema() {
+  Json properties = Json::object();
+  for (const Parameter& p : parameters()) {
+    const std::size_t dot = p.name.find('.');
+    if (dot == std::string::npos) {
+      properties[p.name] = file_schema(p);
+      continue;
+    }
+    Json& group = properties[p.name.substr(0, dot)];
+    if (group.is_null()) group = closed_object(Json::object());
+    group["properties"][p.name.substr(dot + 1)] = file_schema(p);
+  }
+  properties["artwork"] = artwork_schema();
+  // A job has parameters for a single dip, [dip], or tables for several, [[dip]].
+  properties["dip"] = {{"anyOf", {properties["dip"], dips_schema()}}};
+  properties["part"] = parts_schema();
+  Json schema = {{"$schema", kDraft},
+                 {"$id", "job.schema.json"},
+                 {"title", "A hydrodip job file, configuration or profile: TOML, read as JSON"}};
+  schema.update(closed_object(std::move(properties)));
+  return schema.dump(2) + "\n";
+}
+
+std::string parameters_schema() {
+  Json properties = Json::object();
+  for (const Parameter& p : parameters()) {
+    Json entry = closed_object(
+        {{"value", value_schema(p)},
+         {"unit", {{"const", p.unit}}},
+         {"changed", {{"type", "boolean"}, {"description", "differs from the default"}}}});
+    entry["required"] = {"value", "unit", "changed"};
+    entry["description"] = p.help;
+    properties[p.name] = std::move(entry);
+  }
+  Json schema = {{"$schema", kDraft},
+                 {"$id", "parameters.schema.json"},
+                 {"title", "Every parameter of a job, as report.json has it"}};
+  schema.update(closed_object(std::move(properties)));
+  // Artwork, dips and parts are there by number.
+  schema["patternProperties"] = {{R"(^(artwork|dip|part)\[[0-9]+\]\.)", Json::object()}};
+  return schema.dump(2) + "\n";
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,51 @@
+# Which version this is: HYDRODIP_NUMBER (X.Y.Z of the last tag vX.Y.Z), HYDRODIP_VERSION_TEXT (the
+# same with what came after the tag) and HYDRODIP_DATE, from git, or in a tarball from
+# .git_archival.txt, which `git archive` fills in. Needs SOURCE_FOLDER.
+set(HYDRODIP_NUMBER 0.1.0) # before the first tag
+set(described "")
+set(commit "")
+set(HYDRODIP_DATE "")
+
+function(hydrodip_git result)
+  execute_process(COMMAND git ${ARGN} WORKING_DIRECTORY ${SOURCE_FOLDER} OUTPUT_VARIABLE output
+                  RESULT_VARIABLE code ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
+  if(NOT code EQUAL 0)
+    set(output "")
+  endif()
+  set(${result} "${output}" PARENT_SCOPE)
+endfunction()
+
+# Not if the sources only lie within somebody else's repository.
+if(EXISTS ${SOURCE_FOLDER}/.git)
+  hydrodip_git(described describe --tags --match "v[0-9]*")
+  hydrodip_git(commit rev-parse --short=7 HEAD)
+  hydrodip_git(HYDRODIP_DATE log -1 --format=%cs)
+elseif(EXISTS ${SOURCE_FOLDER}/.git_archival.txt)
+  file(STRINGS ${SOURCE_FOLDER}/.git_archival.txt lines)
+  foreach(line IN LISTS lines)
+    if(line MATCHES "^describe: (v[0-9].*)$")
+      set(described ${CMAKE_MATCH_1})
+    elseif(line MATCHES "^commit: ([0-9a-f]+)$")
+      string(SUBSTRING ${CMAKE_MATCH_1} 0 7 commit)
+    elseif(line MATCHES "^date: ([0-9-]+)$")
+      set(HYDRODIP_DATE ${CMAKE_MATCH_1})
+    endif()
+  endforeach()
+endif()
+
+if(described MATCHES "^v([0-9]+\\.[0-9]+\\.[0-9]+)$")
+  set(HYDRODIP_NUMBER ${CMAKE_MATCH_1})
+  set(HYDRODIP_VERSION_TEXT ${HYDRODIP_NUMBER})
+elseif(described MATCHES "^v([0-9]+\\.[0-9]+\\.[0-9]+)-([0-9]+)-g([0-9a-f]+)$")
+  set(HYDRODIP_NUMBER ${CMAKE_MATCH_1})
+  set(HYDRODIP_VERSION_TEXT "${HYDRODIP_NUMBER} (${CMAKE_MATCH_2} commits later, ${commit})")
+elseif(commit)
+  set(HYDRODIP_VERSION_TEXT "${HYDRODIP_NUMBER} (${commit})")
+else()
+  set(HYDRODIP_VERSION_TEXT ${HYDRODIP_NUMBER})
+endif()
+if(NOT "$ENV{SOURCE_DATE_EPOCH}" STREQUAL "")
+  string(TIMESTAMP HYDRODIP_DATE "%Y-%m-%d" UTC)
+elseif(NOT HYDRODIP_DATE)
+  set(HYDRODIP_DATE 2026-01-01)
+endif()

@@ -1,0 +1,157 @@
+#include "job/dips_pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <utility>
+
+#include "export/scene.h"
+#include "image/files.h"
+#include "job/output.h"
+#include "job/ways.h"
+#include "object/bake.h"
+#include "render/preview.h"
+#include "session/appearance_of.h"
+
+namespace hydrodip {
+namespace {
+
+// A colour for each dip, told apart by everybody (Okabe and Ito's, and paler ones after them).
+LinearColor dip_color(std::size_t dip) {
+  constexpr std::array<std::array<int, 3>, 7> kColors = {{{0, 114, 178},
+                                                          {230, 159, 0},
+                                                          {0, 158, 115},
+                                                          {204, 121, 167},
+                                                          {86, 180, 233},
+                                                          {213, 94, 0},
+                                                          {240, 228, 66}}};
+  const auto& c = kColors[dip % kColors.size()];
+  const float pale = dip < kColors.size() ? 0.0F : 0.5F;
+  const auto channel = [&](int v) {
+    const float linear = srgb8_to_linear(std::uint8_t(v));
+    return linear + pale * (1 - linear);
+  };
+  return {channel(c[0]), channel(c[1]), channel(c[2]), 1};
+}
+
+LinearColor error_color(double difference) {
+  const auto t = float(std::clamp(difference / 10, 0.0, 1.0));
+  return {0.6F + 0.1F * t, 0.6F * (1 - t), 0.6F * (1 - t) * (1 - t), 1};
+}
+
+using Look = std::function<LinearColor(const SurfacePoint&)>;
+
+// A look as a paint, to be baked.
+class LookPaint : public Paint {
+ public:
+  LookPaint(const LinearColor& base, Look look) : Paint(base), look_(std::move(look)) {}
+  LinearColor color_at(const SurfacePoint& point) const override { return look_(point); }
+  bool says_anything() const override { return true; }
+
+ private:
+  Look look_;
+};
+
+// Draws what the report shows of a finish.
+class FinishPictures {
+ public:
+  FinishPictures(const MadeDips& all, const SharedSurface& shared, const Finish& finish,
+                 const FinishCheck& check)
+      : all_(all),
+        shared_(shared),
+        finish_(finish),
+        check_(check),
+        posed_(all.prepared.posed.shared_object(), all.config.object.pose),
+        standing_(standing_of(posed_, way_up(all.config))) {}
+
+  DipsPictures draw(const std::string& caption, const RunContext& context) const {
+    PreviewOptions options;
+    options.width_px = all_.config.preview_width_px;
+    options.base = finish_.paint().base();
+    options.whole = true;
+    options.standing = standing_;
+    std::vector<PreviewPair> pairs(2);
+    pairs[0].shown = appearance_of(finish_);
+    pairs[0].caption = caption;
+    pairs[1].shown.wanted = [&](const SurfacePoint& p, const Vec3&, const Vec3&) {
+      return part_at(p);
+    };
+    pairs[1].shown.predicted = [&](const SurfacePoint& p, const Vec3&, const Vec3&) {
+      return error_at(p);
+    };
+    pairs[1].titles = {"which dip does what; grey: none", "colour error: grey 0, red 10 and more"};
+    pairs[1].caption = fmt::format(
+        "{:.0f} mm of seams, {:g} mm wide; colour error (CIEDE2000) over them {:.1f}, elsewhere "
+        "{:.1f}",
+        shared_.seam_mm(), all_.config.plan.overlap_mm, check_.seam_error(), check_.other_error());
+    const std::vector<Image> pages =
+        render_previews(posed_.mesh(), posed_.surface(), *all_.dips.front().made.dipped.film, pairs,
+                        options, context);
+    return {encode_png(pages[0]), encode_png(pages[1]), scene(context)};
+  }
+
+ private:
+  LinearColor part_at(const SurfacePoint& point) const {
+    if (!finish_.has_film_at(point)) return {0.35F, 0.35F, 0.35F, 1};
+    const TriangleMesh& model = all_.prepared.posed.object();
+    const std::vector<float> shares =
+        shared_.shares_at(position_at(model, point), face_normal(model, point.triangle));
+    LinearColor color{0, 0, 0, 1};
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const LinearColor own = dip_color(k);
+      color = {color.r + shares[k] * own.r, color.g + shares[k] * own.g,
+               color.b + shares[k] * own.b, 1};
+    }
+    return color;
+  }
+
+  LinearColor error_at(const SurfacePoint& point) const {
+    const TriangleMesh& model = all_.prepared.posed.object();
+    return error_color(
+        check_.error_near(position_at(model, point), face_normal(model, point.triangle)));
+  }
+
+  // The page's view shows a mesh with y up and its front towards -z.
+  std::string scene(const RunContext& context) const {
+    Mat3 turn;
+    turn.row(0) = standing_.front.cross(standing_.up);
+    turn.row(1) = standing_.up;
+    turn.row(2) = -standing_.front;
+    TriangleMesh mesh = posed_.mesh();
+    for (Vec3& p : mesh.positions) p = turn * p;
+    constexpr int kColors_px = 1024, kOthers_px = 512;
+    const auto baked = [&](const Look& look, int most_px) {
+      return painted_object(mesh, LookPaint(finish_.paint().base(), look), most_px);
+    };
+    const Object wanted = painted_object(mesh, finish_.paint());
+    const DippedFilm no_film;
+    const DipHistory no_history;
+    SceneSource source{wanted, no_film, no_history, Image()};
+    source.base = finish_.paint().base();
+    source.dips = int(all_.dips.size());
+    source.looks = {
+        {"none", baked([&](const auto& p) { return finish_.color_at(p); }, kColors_px)},
+        {"parts", baked([&](const auto& p) { return part_at(p); }, kOthers_px)},
+        {"finish_error", baked([&](const auto& p) { return error_at(p); }, kOthers_px)}};
+    return scene_json(source, context);
+  }
+
+  const MadeDips& all_;
+  const SharedSurface& shared_;
+  const Finish& finish_;
+  const FinishCheck& check_;
+  const PosedObject posed_;
+  const Standing standing_;
+};
+
+}  // namespace
+
+DipsPictures draw_dips(const MadeDips& all, const SharedSurface& shared, const Finish& finish,
+                       const FinishCheck& check, const std::string& caption,
+                       const RunContext& context) {
+  return FinishPictures(all, shared, finish, check).draw(caption, context);
+}
+
+}  // namespace hydrodip

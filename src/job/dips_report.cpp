@@ -1,0 +1,97 @@
+#include "job/dips_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "job/ways.h"
+
+namespace hydrodip {
+
+Coverage coverage_together(const MadeDips& all) {
+  Coverage sum;
+  const Targets& targets = all.nodes->targets();
+  const double scale = all.prepared.posed.scale();
+  sum.object_mm2 = sum.downward_mm2 = scale * scale * targets.area;
+  for (std::size_t i = 0; i < targets.list.size(); ++i)
+    if (std::any_of(all.worth.begin(), all.worth.end(), [&](const auto& w) { return w[i] > 0; }))
+      sum.covered_mm2 += scale * scale * targets.list[i].area;
+  sum.covered_downward_mm2 = sum.covered_mm2;
+  double stretch = 0, area_ratio = 0;
+  for (const MadeDip& dip : all.dips) {
+    const Coverage& c = dip.made.dipped.coverage;
+    sum.film_on_object_mm2 += c.film_on_object_mm2;
+    sum.torn_mm2 += c.torn_mm2;
+    sum.stretch_max = std::max(sum.stretch_max, c.stretch_max);
+    sum.area_ratio_max = std::max(sum.area_ratio_max, c.area_ratio_max);
+    stretch += c.stretch_mean * c.film_on_object_mm2;
+    area_ratio += c.area_ratio_mean * c.film_on_object_mm2;
+  }
+  if (sum.film_on_object_mm2 > 0) {
+    sum.stretch_mean = stretch / sum.film_on_object_mm2;
+    sum.area_ratio_mean = area_ratio / sum.film_on_object_mm2;
+  }
+  return sum;
+}
+
+std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& shared) {
+  std::vector<ReportDip> list;
+  const Targets& targets = all.nodes->targets();
+  const std::vector<double> parts = shared.shares_of_surface();
+  std::vector<std::uint8_t> covered(targets.list.size(), 0);
+  double so_far = 0;
+  for (std::size_t k = 0; k < all.dips.size(); ++k) {
+    const MadeDip& dip = all.dips[k];
+    double gained = 0;
+    for (std::size_t i = 0; i < covered.size(); ++i) {
+      if (covered[i] || !(all.worth[k][i] > 0)) continue;
+      covered[i] = 1;
+      gained += targets.list[i].area / targets.area;
+    }
+    so_far += gained;
+    const Vec3& rotate = dip.trial.pose.rotate_deg;
+    list.push_back({side_name(dip.trial.pose.down),
+                    {rotate.x(), rotate.y(), rotate.z()},
+                    dip.trial.depth_mm,
+                    describe_hold(dip.trial.pose, way_up(all.config)),
+                    dip.folder,
+                    parts[k],
+                    gained,
+                    so_far,
+                    dip.made.dipped.coverage.torn_share()});
+  }
+  return list;
+}
+
+std::vector<ReportOutput> outputs_of(const MadeDips& all) {
+  std::vector<ReportOutput> list;
+  const char* side = all.config.print.ink_side == InkSide::kUp ? "up" : "down";
+  for (std::size_t k = 0; k < all.dips.size(); ++k) {
+    const std::string& folder = all.dips[k].folder;
+    list.push_back(
+        {folder + "/print.pdf",
+         fmt::format("sheet {}: print it at 100 % (no scaling), ink side {}", k + 1, side)});
+  }
+  list.push_back({"dip-.../print.png, print.tif, film.ply, preview.glb, report.json",
+                  "what belongs to each dip"});
+  if (all.config.pictures) {
+    list.push_back({"preview.png", "the whole finish: what was asked for beside what comes out"});
+    list.push_back({"dips.png", "which dip does which part, and how far colours are off"});
+  }
+  list.push_back({"report.html", "everything about this job, for people"});
+  list.push_back({"report.json", "the same for programs"});
+  return list;
+}
+
+std::vector<std::string> file_names(const MadeDips& all) {
+  std::vector<std::string> names;
+  for (const MadeDip& dip : all.dips)
+    for (const char* name :
+         {"print.pdf", "print.png", "print.tif", "film.ply", "preview.glb", "report.json"})
+      names.push_back(dip.folder + "/" + name);
+  if (all.config.pictures) names.insert(names.end(), {"preview.png", "dips.png"});
+  names.insert(names.end(), {"report.html", "report.json"});
+  return names;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,23 @@
+// What the report says of several dips.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "job/made_dips.h"
+#include "plan/seams.h"
+#include "report/report.h"
+
+namespace hydrodip {
+
+// Of all films together: the surface under any of them, all film that meets the object.
+Coverage coverage_together(const MadeDips& all);
+
+// Which part each does, and what is covered after it.
+std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& shared);
+
+std::vector<ReportOutput> outputs_of(const MadeDips& all);
+// Every file, dip by dip: "dip-1/print.pdf".
+std::vector<std::string> file_names(const MadeDips& all);
+
+}  // namespace hydrodip

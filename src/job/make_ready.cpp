@@ -1,0 +1,26 @@
+#include <utility>
+
+#include "job/computed.h"
+#include "job/ways.h"
+
+namespace hydrodip {
+
+ReadyJob make_ready(const JobConfig& given, bool to_print, Timings& times,
+                    const RunContext& context) {
+  JobConfig config = given;
+  PreparedObject prepared = times.measure("load", [&] {
+    return prepare_object(config.model, config.object, context, config.design.dpi,
+                          config.design.inverse.samples_per_axis);
+  });
+  require_size(prepared.posed, config.object, config.model);
+  if (to_print) require_appearance(prepared, config.model);
+  if (config.plan.find_pose || config.plan.find_depth)
+    times.measure("find", [&] { find_what_is_asked(config, prepared, context); });
+  const TriangleMesh& mesh = prepared.posed.mesh();
+  Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
+  require_fit(mesh, room_of(mesh, trajectory), config.design.film, config.bath, context);
+  Printer printer = make_printer(config.printer);
+  return {std::move(config), std::move(prepared), std::move(trajectory), std::move(printer)};
+}
+
+}  // namespace hydrodip

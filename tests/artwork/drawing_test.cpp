@@ -1,0 +1,182 @@
+// Drawings and text: drawn in pieces as in one, as finely as the print, in fonts that are known.
+#include "artwork/drawing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "artwork/fonts.h"
+#include "artwork/picture.h"
+#include "artwork/tiled_image.h"
+#include "base/error.h"
+
+namespace hydrodip {
+namespace {
+
+std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+Drawing drawing_of(const std::string& inside) {
+  return Drawing::from_svg(
+      bytes_of("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 300 200'>" + inside +
+               "</svg>"),
+      "test.svg");
+}
+
+// By how much any channel of any pixel differs, colours weighted by how much they cover.
+double largest_difference(const Image& a, const TiledImage& b) {
+  double most = 0;
+  for (int y = 0; y < a.height_px; ++y)
+    for (int x = 0; x < a.width_px; ++x) {
+      const std::uint8_t *p = a.pixel(x, y), *q = b.pixel(x, y);
+      most = std::max(most, std::abs(double(p[3]) - q[3]));
+      for (int c = 0; c < 3; ++c)
+        most = std::max(most, std::abs(double(p[c]) * p[3] - double(q[c]) * q[3]) / 255);
+    }
+  return most;
+}
+
+TEST(TiledImage, GivesBackWhatWasPut) {
+  constexpr int kTile = TiledImage::kTile_px;
+  Image image(3 * kTile + 7, 2 * kTile + 1);
+  for (int y = 0; y < image.height_px; ++y)
+    for (int x = 0; x < image.width_px; ++x) {
+      std::uint8_t* pixel = image.pixel(x, y);
+      const bool plain = x < kTile;
+      pixel[0] = plain ? 9 : std::uint8_t(x * 7 + y * 13);
+      pixel[3] = plain ? 200 : std::uint8_t(x + y);
+    }
+  TiledImage tiles(image.width_px, image.height_px);
+  EXPECT_FALSE(tiles.shows_anything());
+  tiles.put(image, 0, 0);
+  EXPECT_EQ(largest_difference(image, tiles), 0);
+  EXPECT_TRUE(tiles.shows_anything());
+  // 4 columns of tiles in 3 rows; those of the first column have one colour.
+  EXPECT_EQ(tiles.bytes(), std::size_t(9 * 4 * kTile * kTile));
+  // The same from two pieces.
+  TiledImage pieces(image.width_px, image.height_px);
+  Image left(kTile, image.height_px), right(image.width_px - kTile, image.height_px);
+  for (int y = 0; y < image.height_px; ++y) {
+    std::copy_n(image.pixel(0, y), 4 * kTile, left.pixel(0, y));
+    std::copy_n(image.pixel(kTile, y), 4 * right.width_px, right.pixel(0, y));
+  }
+  pieces.put(right, kTile, 0);
+  pieces.put(left, 0, 0);
+  EXPECT_EQ(largest_difference(image, pieces), 0);
+}
+
+// Neither what is clipped nor groups, gradients, masks and blur show where one piece ends and the
+// next begins.
+TEST(Drawing, InPiecesIsAsInOne) {
+  const std::string shapes =
+      "<defs><linearGradient id='g'><stop stop-color='#f00'/><stop offset='1' stop-color='#00f' "
+      "stop-opacity='0.3'/></linearGradient><clipPath id='c'><circle cx='150' cy='100' "
+      "r='90'/></clipPath></defs>"
+      "<rect width='300' height='200' fill='url(#g)'/><g fill-opacity='0.5'><circle cx='150' "
+      "cy='100' "
+      "r='70'/><path d='M10 190L290 10' stroke='#0a0' stroke-width='7'/></g><g fill-opacity='0.7'>"
+      "<ellipse cx='200' cy='90' rx='80' ry='60' fill='#fc0'/></g><g clip-path='url(#c)'><rect "
+      "x='100' y='20' width='190' height='90' fill='#0cc'/></g>";
+  const Drawing plain = drawing_of(shapes);
+  constexpr int kWide = 4200, kHigh = 2800;  // three pieces by two
+  const auto tiles = plain.tiles(kWide, kHigh, std::size_t(1) << 30U);
+  ASSERT_TRUE(tiles.has_value());
+  // What cairo makes of an edge depends on where its surface begins, a little.
+  EXPECT_LE(largest_difference(plain.pixels(kWide, kHigh), *tiles), 16);
+  // Those that cannot be drawn in pieces are drawn in one.
+  const Drawing blurred = drawing_of(
+      "<filter id='b'><feGaussianBlur stdDeviation='6'/></filter><mask id='m'><rect x='50' "
+      "width='90' "
+      "height='200' fill='#fff'/></mask><circle cx='150' cy='100' r='60' filter='url(#b)' "
+      "mask='url(#m)'/>");
+  const auto soft = blurred.tiles(2250, 1500, std::size_t(1) << 30U);
+  ASSERT_TRUE(soft.has_value());
+  EXPECT_EQ(largest_difference(blurred.pixels(2250, 1500), *soft), 0);
+  EXPECT_LT(blurred.limits().pixels, plain.limits().pixels);
+  EXPECT_LT(drawing_of("<g opacity='0.5'><rect width='9' height='9'/></g>").limits().pixels,
+            plain.limits().pixels);
+}
+
+// Longer than what cairo can draw at once: a line across A3 at 1200 dpi.
+TEST(Drawing, IsSharpAcrossALargeSheet) {
+  const Drawing drawing = Drawing::from_svg(
+      bytes_of("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 420 1'><rect x='401.25' "
+               "width='10' height='1'/></svg>"),
+      "line.svg");
+  constexpr double kPixelsPerMm = 3 * 1200 / 25.4;
+  const int width = int(420 * kPixelsPerMm), height = int(kPixelsPerMm);
+  ASSERT_GT(width, 32767);
+  const auto tiles = drawing.tiles(width, height, std::size_t(1) << 30U);
+  ASSERT_TRUE(tiles.has_value());
+  const auto alpha = [&](double x_mm) {
+    return int(tiles->pixel(int(x_mm / 420 * width), height / 2)[3]);
+  };
+  EXPECT_EQ(alpha(401.24), 0);
+  EXPECT_EQ(alpha(401.26), 255);
+  EXPECT_EQ(alpha(411.24), 255);
+  EXPECT_EQ(alpha(411.26), 0);
+}
+
+// Letters of 70 mm, for a print of 1200 dpi: FreeType has a limit, and is not driven to
+// it.
+TEST(Drawing, LettersCanBeLarge) {
+  const Drawing text = Drawing::from_text("1", "sans bold", {});
+  const double high_mm = 70, pixels_per_mm = 3 * 1200 / 25.4;
+  const int height = int(high_mm * pixels_per_mm), width = int(height * text.aspect());
+  EXPECT_LE(std::max(width, height), text.limits().side_px);
+  const auto tiles = text.tiles(width, height, std::size_t(1) << 30U);
+  ASSERT_TRUE(tiles.has_value());
+  EXPECT_TRUE(tiles->shows_anything());
+}
+
+TEST(Drawing, KnowsWhatItsFileLacks) {
+  const std::string shape = "<rect width='9' height='9'/>";
+  EXPECT_FALSE(drawing_of(shape).has_text());
+  EXPECT_EQ(drawing_of(shape).linked_picture(), "");
+  EXPECT_TRUE(drawing_of(shape + "<text y='20'>A</text>").has_text());
+  EXPECT_FALSE(drawing_of(shape + "<g class='text' id='image'/>").has_text());
+  EXPECT_EQ(drawing_of(shape + "<image href='data:image/png;base64,'/><image width='3' "
+                               "href=\"photo 1.png\"/>")
+                .linked_picture(),
+            "photo 1.png");
+}
+
+TEST(Drawing, TakesNoMoreThanItMay) {
+  const Drawing noise = drawing_of(
+      "<defs><linearGradient id='g'><stop stop-color='#f00'/><stop offset='1' stop-color='#00f'/>"
+      "</linearGradient></defs><rect width='300' height='200' fill='url(#g)'/>");
+  EXPECT_FALSE(noise.tiles(3000, 2000, 1 << 20U).has_value());
+  EXPECT_TRUE(noise.tiles(300, 200, 1 << 20U).has_value());
+}
+
+TEST(Fonts, AreTakenApart) {
+  const FontWish wish = parse_font("DejaVu Serif bold italic");
+  EXPECT_EQ(wish.family, "DejaVu Serif");
+  EXPECT_TRUE(wish.bold && wish.italic);
+  EXPECT_EQ(parse_font("").family, "sans-serif");
+  EXPECT_EQ(parse_font("italic sans").family, "italic sans");
+  EXPECT_EQ(parse_font("Semibold").family, "Semibold");
+}
+
+TEST(Fonts, AreFilesOfThisMachine) {
+  const std::vector<FontUse> fonts = fonts_for("No. 7", parse_font("sans bold"), "test");
+  ASSERT_EQ(fonts.size(), 1U);
+  EXPECT_TRUE(std::filesystem::is_regular_file(fonts[0].file));
+  EXPECT_TRUE(fonts[0].is_wanted);
+  // By its own name it is found again; another is taken for one that nobody has.
+  const std::string family = fonts[0].name.substr(0, fonts[0].name.rfind(' '));
+  EXPECT_TRUE(fonts_for("7", parse_font(family), "test").front().is_wanted);
+  EXPECT_FALSE(fonts_for("7", parse_font("No Such Font 7"), "test").front().is_wanted);
+  EXPECT_TRUE(fonts_for(" ", parse_font("sans"), "test").empty());
+}
+
+TEST(Fonts, WhatCannotBeSetIsRefused) {
+  EXPECT_THROW(fonts_for("\xf4\x8f\xbf\xbd", parse_font("sans"), "test"), InputError);
+  EXPECT_THROW(fonts_for("a\xff", parse_font("sans"), "test"), InputError);
+  ArtworkLayer layer;
+  layer.text = "\xf4\x8f\xbf\xbd";
+  EXPECT_THROW(PictureSource{layer}, InputError);
+}
+
+}  // namespace
+}  // namespace hydrodip

@@ -1,0 +1,197 @@
+"""Arrays in and out: shapes, units, and whose memory they are."""
+
+import gc
+import unittest
+
+import numpy as np
+
+import hydrodip
+from common import QUICK, InFolder, address, cone, textured_cone
+
+
+class Meshes(InFolder):
+    def test_arrays_are_kept_without_a_copy(self):
+        vertices, faces, uv, texture = cone()
+        for kind in (np.int32, np.int64):
+            whole = faces.astype(kind)
+            mesh = hydrodip.Mesh(vertices, whole, uv=uv, texture=texture)
+            self.assertEqual(address(mesh.vertices), address(vertices))
+            self.assertEqual(address(mesh.faces), address(whole))
+            self.assertEqual(address(mesh.uv), address(uv))
+            self.assertEqual(address(mesh.texture), address(texture))
+
+    def test_other_types_and_orders_are_converted(self):
+        vertices, faces, _, _ = cone()
+        plain = hydrodip.simulate(hydrodip.Mesh(vertices, faces), **QUICK).film.positions
+        for v, f in (
+            (np.asfortranarray(vertices), np.asfortranarray(faces)),
+            (vertices.tolist(), faces.tolist()),
+            (vertices, faces.astype(np.uint16)),
+            (vertices[::-1][::-1], faces.astype(float)),
+        ):
+            again = hydrodip.simulate(hydrodip.Mesh(v, f), **QUICK).film.positions
+            np.testing.assert_array_equal(again, plain)
+
+    def test_a_changed_array_is_read_again(self):
+        vertices, faces, _, _ = cone()
+        mesh = hydrodip.Mesh(vertices, faces)
+        before = hydrodip.simulate(mesh, **QUICK)
+        vertices *= 0.5
+        after = hydrodip.simulate(mesh, **QUICK)
+        self.assertAlmostEqual(2 * np.ptp(after.vertices[:, 0]), np.ptp(before.vertices[:, 0]))
+
+    def test_whatever_has_vertices_and_faces_is_a_model(self):
+        vertices, faces, uv, texture = cone()
+
+        class Picture:  # as Pillow's
+            def convert(self, mode):
+                return np.dstack([texture, np.full((8, 8), 255, np.uint8)])
+
+        class Material:
+            image = Picture()
+
+        class Visual:
+            kind = "texture"
+            material = Material()
+
+        class Trimesh:
+            visual = Visual()
+
+        other = Trimesh()
+        other.vertices, other.faces, other.visual.uv = vertices, faces, uv
+        ours = hydrodip.design(textured_cone(), **QUICK, dpi=72, ink_rounds_max=1)
+        theirs = hydrodip.design(other, **QUICK, dpi=72, ink_rounds_max=1)
+        np.testing.assert_array_equal(theirs.film_image, ours.film_image)
+
+    def test_meshio_and_ply_come_back(self):
+        import meshio
+
+        vertices, faces, _, _ = cone()
+        mesh = hydrodip.Mesh(vertices, faces)
+        for name in ("cone.ply", "cone.stl", "cone.obj"):
+            mesh.save(name)
+            again = hydrodip.Mesh.load(name)
+            self.assertEqual(len(again.faces), len(faces))
+            self.assertTrue(again.closed)
+            np.testing.assert_allclose(np.ptp(again.vertices, axis=0), np.ptp(vertices, axis=0), rtol=1e-6)
+        from_meshio = hydrodip.simulate(meshio.read("cone.ply"), **QUICK)
+        from_file = hydrodip.simulate("cone.ply", **QUICK)
+        np.testing.assert_array_equal(from_meshio.film.positions, from_file.film.positions)
+
+    def test_what_is_no_mesh_is_refused(self):
+        vertices, faces, uv, texture = cone()
+        far = faces.copy()
+        far[0, 0] = 10**6
+        for bad in (
+            hydrodip.Mesh(vertices[:, :2], faces),
+            hydrodip.Mesh(vertices, far),
+            hydrodip.Mesh(vertices, faces[:0]),
+            hydrodip.Mesh(vertices, faces, uv=uv[:-1], texture=texture),
+            hydrodip.Mesh(vertices, faces, texture=texture),
+            hydrodip.Mesh(np.where(vertices > 19, np.nan, vertices), faces),
+        ):
+            with self.assertRaises(hydrodip.InputError):
+                hydrodip.simulate(bad, **QUICK)
+        with self.assertRaises(hydrodip.InputError):
+            hydrodip.Mesh(vertices, faces + 0.5)
+        with self.assertRaises(TypeError):
+            hydrodip.simulate(3.0)
+
+
+class Results(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.dip = hydrodip.simulate(textured_cone(), **QUICK)
+
+    def test_views_share_the_films_memory(self):
+        film = self.dip.film
+        for name in ("positions", "film_coordinates", "triangles", "state", "area_ratio", "stretch",
+                     "torn", "torn_at_mm", "wrinkled", "lifted"):
+            one, two = getattr(film, name), getattr(self.dip.film, name)
+            self.assertEqual(address(one), address(two), name)
+            self.assertFalse(one.flags.writeable, name)
+            self.assertFalse(one.flags.owndata, name)
+        self.assertEqual(address(self.dip.vertices), address(self.dip.vertices))
+
+    def test_views_outlive_what_they_came_from(self):
+        film = hydrodip.simulate(textured_cone(), **QUICK).film
+        positions = film.positions
+        copy = positions.copy()
+        del film
+        gc.collect()
+        np.zeros(10**6)  # something else in that memory, were it free
+        np.testing.assert_array_equal(positions, copy)
+
+    def test_shapes(self):
+        film = self.dip.film
+        n, m = len(film.positions), len(film.triangles)
+        self.assertEqual(film.positions.shape, (n, 3))
+        self.assertEqual(film.film_coordinates.shape, (n, 2))
+        self.assertEqual(film.triangles.dtype, np.int32)
+        self.assertLess(film.triangles.max(), n)
+        for name in ("state", "area_ratio", "stretch", "lifted"):
+            self.assertEqual(getattr(film, name).shape, (n,), name)
+        for name in ("torn", "torn_at_mm", "wrinkled", "on_object"):
+            self.assertEqual(getattr(film, name).shape, (m,), name)
+        self.assertEqual(film.torn.dtype, np.bool_)
+        self.assertEqual(film.deformation_gradient.shape, (m, 3, 2))
+        self.assertEqual(film.principal_stretches.shape, (m, 2))
+        self.assertTrue(set(film.state) <= {hydrodip.UNATTACHED, hydrodip.ATTACHED, hydrodip.CLAMPED})
+
+    def test_deformation_gradient_maps_edges_and_has_the_principal_stretches(self):
+        film = self.dip.film
+        flat, now = film.film_coordinates[film.triangles], film.positions[film.triangles]
+        for k in (1, 2):
+            mapped = np.einsum("tij,tj->ti", film.deformation_gradient, flat[:, k] - flat[:, 0])
+            np.testing.assert_allclose(mapped, now[:, k] - now[:, 0], atol=1e-12)
+        singular = np.linalg.svd(film.deformation_gradient, compute_uv=False)
+        np.testing.assert_allclose(film.principal_stretches, singular, atol=1e-7)
+
+    def test_there_and_back(self):
+        points = np.array([[5.0, -2.0], [3.0, 1.0], [-2.0, 4.0], [39.0, 29.0]])
+        there = self.dip.to_object(points)
+        self.assertTrue(np.isnan(there[3]).all())
+        # The film's triangles are chords over the object's: not quite the same point.
+        np.testing.assert_allclose(self.dip.to_film(there)[:3], points[:3], atol=0.05)
+
+    def test_pose_matrix_takes_the_model_to_its_place(self):
+        vertices = cone()[0] * 2
+        dip = hydrodip.simulate(hydrodip.Mesh(vertices, cone()[1]), **QUICK, size=30, rotate=(0, 0, 90))
+        self.assertAlmostEqual(np.ptp(dip.vertices[:, 0]), 30)
+        placed = vertices @ dip.pose_matrix[:3, :3].T + dip.pose_matrix[:3, 3]
+        np.testing.assert_allclose(placed.min(axis=0), dip.vertices.min(axis=0), atol=1e-9)
+        np.testing.assert_allclose(placed.max(axis=0), dip.vertices.max(axis=0), atol=1e-9)
+
+    def test_frames_go_from_flat_film_to_the_end(self):
+        frames = self.dip.frames
+        travelled = [t for t, _ in frames]
+        self.assertEqual(travelled, sorted(travelled))
+        self.assertEqual(np.ptp(frames[0][1][:, 2]), 0)
+        self.assertEqual(frames[-1][1].shape, self.dip.film.positions.shape)
+
+    def test_pictures(self):
+        made = hydrodip.design(textured_cone(), **QUICK, dpi=72, ink_rounds_max=1)
+        rows, columns = round(80 / 25.4 * 72), round(100 / 25.4 * 72)
+        self.assertEqual(made.film_image.shape, (rows, columns, 4))
+        self.assertEqual(made.inks.shape, made.film_image.shape)
+        self.assertEqual(address(made.film_image), address(made.film_image))
+        picture = hydrodip.render(made, 200)
+        self.assertEqual(picture.shape[1:], (200, 4))
+        self.assertGreater(len(np.unique(picture.reshape(-1, 4), axis=0)), 50)
+
+    def test_rays_meet_what_lies_there(self):
+        origins = np.array([[3.0, 1.0, -50.0], [100.0, 0.0, -50.0]])
+        face, weights, place, triangle, film_point = self.dip.see(origins, [0, 0, 1])
+        self.assertEqual((face[1], triangle[1]), (-1, -1))
+        corners = self.dip.vertices[self.dip.faces[face[0]]]
+        w = np.array([1 - weights[0].sum(), *weights[0]])
+        np.testing.assert_allclose(w @ corners, place[0], atol=1e-9)
+        np.testing.assert_allclose(place[0, :2], [3, 1], atol=1e-6)
+        np.testing.assert_allclose(self.dip.to_object(film_point[:1])[0], place[0], atol=0.05)
+        film = self.dip.film
+        flat = film.film_coordinates[film.triangles[triangle[0]]]
+        self.assertTrue((flat.min(axis=0) <= film_point[0]).all() and (film_point[0] <= flat.max(axis=0)).all())
+
+
+if __name__ == "__main__":
+    unittest.main()

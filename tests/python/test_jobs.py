@@ -1,0 +1,186 @@
+"""The module and the command line say the same, to the bit."""
+
+import json
+import os
+import unittest
+
+import numpy as np
+
+import hydrodip
+from common import QUICK, QUICK_OPTIONS, InFolder, run, textured_cone
+
+DESIGN = dict(QUICK, dpi=72, print_samples=1)
+DESIGN_OPTIONS = QUICK_OPTIONS + "--dpi 72 --set print.samples=1".split()
+
+
+def read(*path):
+    with open(os.path.join(*path), "rb") as file:
+        return file.read()
+
+
+class SameAsTheCommandLine(InFolder):
+    def setUp(self):
+        super().setUp()
+        run("sample", "sphere", "-o", ".")
+        self.pose = dict(size=40, depth=8)
+        self.pose_options = ["--size", "40", "--depth", "8"]
+
+    def test_simulate(self):
+        run("simulate", "sphere.obj", *self.pose_options, *QUICK_OPTIONS, "-o", "there")
+        dip = hydrodip.simulate("sphere.obj", **self.pose, **QUICK)
+        dip.film.write("film.ply")
+        self.assertEqual(read("film.ply"), read("there", "film.ply"))
+        report = json.loads(read("there", "report.json"))
+        self.assertEqual(dip.coverage.covered_mm2, report["coverage"]["covered_mm2"])
+
+    def test_design_and_what_its_print_leaves(self):
+        run("print", "sphere.obj", *self.pose_options, *DESIGN_OPTIONS, "-o", "there")
+        made = hydrodip.design("sphere.obj", **self.pose, **DESIGN)
+        made.film.write("film.ply")
+        made.write_sheet("here")
+        self.assertEqual(read("film.ply"), read("there", "film.ply"))
+        for name in ("print.png", "print.tif", "print.pdf"):
+            self.assertEqual(read("here", name), read("there", name), name)
+
+    def test_a_printed_picture_dipped_as_file_and_as_array(self):
+        rows, columns = 227, 283
+        picture = np.zeros((rows, columns, 4), np.uint8)
+        picture[80:150, 90:200] = (20, 20, 20, 255)
+        from hydrodip import _core
+
+        _core.write_png("printed.png", picture)
+        run("simulate", "sphere.obj", *self.pose_options, *QUICK_OPTIONS, "--film-image", "printed.png",
+            "-o", "there")
+        for given in ("printed.png", picture):
+            dip = hydrodip.simulate("sphere.obj", film_image=given, **self.pose, **QUICK)
+            dip.film.write("again.ply")
+            self.assertEqual(read("again.ply"), read("there", "film.ply"))
+        blank = hydrodip.simulate("sphere.obj", **self.pose, **QUICK)
+        self.assertGreater(np.abs(blank.film.positions - dip.film.positions).max(), 0.01)
+
+    def test_a_mesh_in_memory_is_what_its_file_is(self):
+        mesh = hydrodip.Mesh.load("sphere.obj")
+        from_file = hydrodip.simulate("sphere.obj", **self.pose, **QUICK)
+        for same in (mesh, hydrodip.Mesh(mesh.vertices, mesh.faces)):
+            dip = hydrodip.simulate(same, **self.pose, **QUICK)
+            np.testing.assert_array_equal(dip.film.positions, from_file.film.positions)
+
+    def test_a_job_file_is_a_job(self):
+        with open("job.toml", "w") as job:
+            job.write('[object]\nfile = "sphere.obj"\nsize_mm = 40\n[dip]\ndepth_mm = 8\n')
+        dip = hydrodip.simulate("job.toml", **QUICK)
+        by_hand = hydrodip.simulate("sphere.obj", **self.pose, **QUICK)
+        np.testing.assert_array_equal(dip.film.positions, by_hand.film.positions)
+
+    def test_orient(self):
+        textured_cone().save("cone.ply")
+        options = [*QUICK_OPTIONS, "--set", "film.elements=300", "--set", "dip.step_mm=4"]
+        said = json.loads(run("orient", "cone.ply", *options, "--json", "--quiet", "-o", "o").stdout)
+        found = hydrodip.orient("cone.ply", **dict(QUICK, film_elements=300, dip_step_mm=4.0))
+        self.assertEqual(len(found.poses), len(said["poses"]))
+        for ours, theirs in zip(found.poses, said["poses"]):
+            self.assertEqual(list(ours.rotate_deg), theirs["rotate_deg"])
+            self.assertEqual(ours.depth_mm, theirs["depth_mm"])
+            self.assertEqual(ours.score, theirs["score"])
+        self.assertNotIn("out", os.listdir("."))
+
+    def test_plan_and_print_of_several_dips(self):
+        tables = [{"rotate_deg": [0, 0, 0], "depth_mm": 8}, {"rotate_deg": [180, 0, 0], "depth_mm": 8}]
+        with open("job.toml", "w") as job:
+            job.write('[object]\nfile = "sphere.obj"\nsize_mm = 40\n')
+            for t in tables:
+                job.write(f"[[dip]]\nrotate_deg = {t['rotate_deg']}\ndepth_mm = 8\nlocked = true\n")
+        said = json.loads(run("plan", "job.toml", *QUICK_OPTIONS, "--json", "--quiet", "-o", "p").stdout)
+        found = hydrodip.plan("sphere.obj", size=40, dip_tables=[dict(t, locked=True) for t in tables], **QUICK)
+        self.assertEqual([d.covered_share for d in found.dips], [d["covered_share"] for d in said["dips"]])
+        self.assertEqual([list(d.rotate_deg) for d in found.dips], [t["rotate_deg"] for t in tables])
+
+    def test_scans(self):
+        quick = dict(film="110x110", film_elements=1000, dip_step_mm=1.0)
+        made = hydrodip.synth(["sphere"], output="scans", **quick)
+        self.assertIn("sphere-scan.obj", made.files)
+        said = json.loads(run("measure", "sphere=scans/sphere-scan.obj", "--film", "110x110", "--set",
+                              "film.elements=1000", "--set", "dip.step_mm=1", "--json", "--quiet").stdout)
+        found = hydrodip.measure({"sphere": "scans/sphere-scan.obj"}, **quick)
+        self.assertEqual(found.scans[0].methods["full"].rms_mm,
+                         said["scans"][0]["methods"]["full"]["rms_mm"])
+        fit = hydrodip.calibrate({"sphere": "scans/sphere-scan.obj"}, z_stretch="0.6,0.7", ratio="600",
+                                 poisson="0", output="fit", **quick)
+        self.assertAlmostEqual(fit.parameters.z_stretch, 0.65, delta=0.05)
+        self.assertEqual(fit.report, json.loads(read("fit", "calibration.json")))
+
+
+class Arguments(InFolder):
+    def refused(self, pattern, **arguments):
+        with self.assertRaisesRegex(hydrodip.InputError, pattern):
+            hydrodip.simulate(textured_cone(), **{**QUICK, **arguments})
+
+    def test_values_are_checked_as_by_the_program(self):
+        self.refused("film_elements: film.elements must be a whole number", film_elements=3.5)
+        self.refused("dip_step_mm", dip_step_mm=-1)
+        self.refused("object_down", object_down="sideways")
+        self.refused("rotate", rotate=(1, 2))
+        self.refused("film.elemnts.*film.elements", settings={"film.elemnts": 3})
+        self.refused("--film", film="a7")
+        self.refused("", quality="superb")
+        self.refused("not fit|wide|large", size=500)
+        with self.assertRaises(TypeError):
+            hydrodip.simulate(textured_cone(), elements=3)
+        with self.assertRaises(TypeError):
+            hydrodip.simulate(textured_cone(), depth=3, dip_depth_mm=4)
+
+    def test_no_file_and_no_colours_are_said(self):
+        with self.assertRaisesRegex(hydrodip.InputError, "nowhere.obj"):
+            hydrodip.simulate("nowhere.obj")
+        with self.assertRaisesRegex(hydrodip.InputError, "nothing to print"):
+            bare = textured_cone()
+            hydrodip.design(hydrodip.Mesh(bare.vertices, bare.faces), **DESIGN)
+
+    def test_a_dip_that_cannot_be_computed(self):
+        self.assertTrue(issubclass(hydrodip.DipError, RuntimeError))
+        self.assertTrue(issubclass(hydrodip.InputError, ValueError))
+
+    def test_numpy_values_and_settings_by_name(self):
+        by_keyword = hydrodip.simulate(textured_cone(), **QUICK, rotate=np.array([0, 0, 30]))
+        by_name = hydrodip.simulate(
+            textured_cone(), **dict(QUICK, film_elements=None, dip_step_mm=np.float32(1)),
+            settings={"film.elements": np.int64(800), "object.rotate_deg": "0,0,30"})
+        np.testing.assert_array_equal(by_keyword.film.positions, by_name.film.positions)
+
+    def test_a_way_in_as_rows(self):
+        rows = np.array([[0, 0, 0, 0, 0, 0], [10, 5, 0, 0, 0, 0]], dtype=float)
+        np.savetxt("way.csv", rows, delimiter=",", comments="",
+                   header="lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_z_deg")
+        dips = [hydrodip.simulate(textured_cone(), **QUICK, path=p) for p in (rows, "way.csv")]
+        np.testing.assert_array_equal(dips[0].film.positions, dips[1].film.positions)
+        straight = hydrodip.simulate(textured_cone(), **QUICK, depth=10)
+        self.assertGreater(np.abs(straight.film.positions - dips[0].film.positions).max(), 1)
+
+    def test_artwork(self):
+        picture = np.zeros((8, 8, 3), np.uint8)
+        picture[:, :4] = (255, 0, 0)
+        from hydrodip import _core
+
+        _core.write_png("art.png", picture)
+        bare = hydrodip.Mesh(textured_cone().vertices, textured_cone().faces)
+        made = hydrodip.design(bare, artwork=[{"image": "art.png", "size_mm": [20, 20]}], **DESIGN)
+        self.assertGreater(made.film_image[..., 3].max(), 0)
+
+    def test_every_parameter_is_a_keyword(self):
+        import inspect
+
+        names = set(inspect.signature(hydrodip.design).parameters)
+        short = {"object_units", "object_size_mm", "object_down", "object_rotate_deg", "object_texture",
+                 "dip_depth_mm", "dip_method", "plan_dips", "print_dpi", "ink_profile", "run_threads"}
+        for p in hydrodip.parameters():
+            if p.name.split(".")[0] not in ("process", "stage", "cost", "output") and p.name != "object.file":
+                self.assertIn(p.keyword, names | short)
+                self.assertTrue(p.help)
+        self.assertIn("default: 40000", hydrodip.simulate.__doc__)
+
+    def test_version_is_the_programs(self):
+        self.assertEqual(run("--version").stdout.decode().split()[:2], ["hydrodip", hydrodip.__version__])
+
+
+if __name__ == "__main__":
+    unittest.main()

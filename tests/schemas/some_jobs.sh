@@ -1,0 +1,37 @@
+# JSON Schemas against the files of a few jobs, one for every kind of report, and the job files of
+# examples/. some_jobs.sh HYDRODIP PYTHON SCHEMAS SOURCE
+. "$(dirname "$0")/../cli/common.sh"
+python=$2
+schemas=$3
+source=$4
+
+write_colored colored.ply
+write_tetrahedron tetra.obj
+"$hydrodip" sample sphere -o . --quiet > sample.txt || fail 'sample'
+# shellcheck disable=SC2086
+{
+  "$hydrodip" print colored.ply $quick -o print --quiet || fail 'print'
+  "$hydrodip" simulate colored.ply $quick_simulate --set dip.tilt_deg=20 -o simulate --quiet || fail 'simulate'
+  "$hydrodip" inspect tetra.obj -o inspect --quiet || fail 'inspect'
+  "$hydrodip" plan colored.ply $quick_simulate --dips 2 -o plan --quiet || fail 'plan'
+  "$hydrodip" print plan/plan.toml $quick -o dips --quiet || fail 'print of a plan'
+  "$hydrodip" orient colored.ply $quick_simulate -o orient --quiet || fail 'orient'
+  "$hydrodip" nest tetra.obj colored.ply --film a4 --set film.elements=800 --set dip.step_mm=1 --dpi 72 \
+    --set preview.width_px=200 -o nest --quiet || fail 'nest'
+} > jobs.txt
+"$python" "$source/tests/schemas/validate.py" "$schemas" . "$source"/examples/jobs/*.toml
+case $? in
+  0) ;;
+  77) exit 77 ;;
+  *) fail 'something is not as its schema says' ;;
+esac
+# A schema that takes anything would pass as well.
+for wrong in '[film]\nwidth_mm = 9\n' '[film]\nwidht_mm = 100\n' '[[artwork]]\nprojection = "round"\n' \
+  '[object]\nrotate_deg = [1, 2]\n' '[[dip]]\ndepth = 3\n' '[[part]]\ncount = 2\n'; do
+  # shellcheck disable=SC2059
+  printf "$wrong" > wrong.toml
+  ! "$python" "$source/tests/schemas/validate.py" "$schemas" wrong.toml > refused.txt || fail "taken: $wrong"
+done
+sed 's/"concern": "[a-z]*"/"concern": "perhaps"/' print/report.json > simulate/report.json
+! "$python" "$source/tests/schemas/validate.py" "$schemas" simulate > refused.txt || fail 'a wrong report is taken'
+finish

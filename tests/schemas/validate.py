@@ -1,0 +1,65 @@
+"""validate.py SCHEMAS PATH...: every report.json, plan.json, orient.json, nest.json, plan.toml and
+profile.toml in the folders given, and the job files given, against its schema. Says how many of each
+there were."""
+
+import collections
+import json
+import pathlib
+import sys
+import tomllib
+
+try:
+    import jsonschema
+except ImportError:
+    print("python3-jsonschema is not installed")
+    sys.exit(77)
+
+KINDS = {"report.json": "report", "plan.json": "plan", "orient.json": "orient", "nest.json": "nest",
+         "plan.toml": "job", "profile.toml": "job", "truth.toml": "job"}
+
+
+def validators(folder):
+    schemas = {p.name: json.loads(p.read_text()) for p in folder.glob("*.schema.json")}
+    for name, schema in schemas.items():
+        jsonschema.Draft202012Validator.check_schema(schema)
+        if schema["$id"] != name:
+            sys.exit(f"{name}: its $id is {schema['$id']}")
+    made = {}
+    for name, schema in schemas.items():
+        resolver = jsonschema.RefResolver("", schema, store=schemas)
+        made[name.removesuffix(".schema.json")] = jsonschema.Draft202012Validator(schema, resolver=resolver)
+    return made
+
+
+def read(path):
+    if path.suffix == ".toml":
+        return tomllib.loads(path.read_text())
+    return json.loads(path.read_text())
+
+
+def main():
+    by_kind = validators(pathlib.Path(sys.argv[1]))
+    counts = collections.Counter()
+    wrong = 0
+    for given in map(pathlib.Path, sys.argv[2:]):
+        for path in sorted(given.rglob("*")) if given.is_dir() else [given]:
+            kind = KINDS.get(path.name, "job" if path == given else None)
+            if kind is None or not path.is_file():
+                continue
+            content = read(path)
+            if kind == "report" and "tool" not in content:
+                counts["stand-in (a test's own)"] += 1  # of a job that the rig's tests need
+                continue
+            counts[kind] += 1
+            for error in by_kind[kind].iter_errors(content):
+                wrong += 1
+                where = "/".join(str(part) for part in error.absolute_path)
+                print(f"FAILED: {path}: {where}: {error.message[:300]}")
+    print(", ".join(f"{count} {kind}" for kind, count in sorted(counts.items())) or "no files")
+    if wrong:
+        sys.exit(1)
+    if not counts:
+        sys.exit("no file was found")
+
+
+main()
