@@ -6,6 +6,7 @@ cmake_minimum_required(VERSION 3.25)
 set(compiled_in
     "libeigen3-dev;MPL-2.0;https://eigen.tuxfamily.org;headers: linear algebra"
     "libcli11-dev;BSD-3-Clause;https://github.com/CLIUtils/CLI11;headers: the command line"
+    "libcpp-httplib-dev;MIT;https://github.com/yhirose/cpp-httplib;headers: the studio's server"
     "nlohmann-json3-dev;MIT;https://github.com/nlohmann/json;headers: JSON"
     "libtomlplusplus-dev;MIT;https://github.com/marzer/tomlplusplus;headers: TOML"
     "libfmt-dev;MIT;https://github.com/fmtlib/fmt;headers: formatting")

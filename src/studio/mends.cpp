@@ -13,6 +13,7 @@ namespace hydrodip {
 namespace {
 
 constexpr double kTolerance_mm = 1e-6;
+constexpr double kBesides_mm = 10;  // on both sides together
 // Film torn up to that share of what lies on the object at that depth is none for a hand.
 constexpr double kHardlyTorn = 0.003;
 
@@ -22,9 +23,13 @@ std::vector<RoomFit> fits_of(const JobConfig& config, const TriangleMesh& posed,
   return fits(posed, room_of(posed, way), film, config.bath);
 }
 
+// With film left beside the object to stretch.
+double comfort_mm(const RoomFit& fit) { return fit.room == "the bath" ? 0 : kBesides_mm; }
+
 bool all_fit(const std::vector<RoomFit>& list) {
-  return std::all_of(list.begin(), list.end(),
-                     [](const RoomFit& fit) { return fit.excess_mm() <= kTolerance_mm; });
+  return std::all_of(list.begin(), list.end(), [](const RoomFit& fit) {
+    return fit.excess_mm() + comfort_mm(fit) <= kTolerance_mm;
+  });
 }
 
 std::string shown_name(std::string name) {
@@ -58,7 +63,8 @@ void add_film(Json& list, const JobConfig& config, const TriangleMesh& posed) {
 void add_size(Json& list, const JobConfig& config, const TriangleMesh& posed) {
   double ratio = 1;
   for (const RoomFit& fit : fits_of(config, posed, config.design.film))
-    if (fit.needed_mm > 0) ratio = std::min(ratio, fit.available_mm / fit.needed_mm);
+    if (fit.needed_mm > 0)
+      ratio = std::min(ratio, (fit.available_mm - comfort_mm(fit)) / fit.needed_mm);
   // Largest extent of the model itself, which is what a size means, is not known here: the ratio
   // is.
   const double largest = config.object.pose.size_mm > 0 ? config.object.pose.size_mm

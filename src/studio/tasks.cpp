@@ -117,6 +117,7 @@ Json orient_result(const TaskRequest& request, const RunContext& context) {
   JobConfig config = request.config;
   config.output = request.folder;
   config.plan.find_depth = config.plan.find_depth || !(config.design.trajectory.depth_mm > 0);
+  config.pictures = true;
   config.preview_width_px = 1000;
   const JobResult done = orient_job(config, context);
   const Json found = Json::parse(done.json);
@@ -144,6 +145,7 @@ Json orient_result(const TaskRequest& request, const RunContext& context) {
 Json plan_result(const TaskRequest& request, const RunContext& context) {
   JobConfig config = request.config;
   config.output = request.folder;
+  config.pictures = true;
   config.preview_width_px = 1000;
   const JobResult done = plan_job(config, context);
   const Json found = Json::parse(done.json);

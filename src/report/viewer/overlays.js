@@ -125,7 +125,7 @@ export const OVERLAYS = [
     available: hasFilm,
     film: () => flat(COVERED),
     torn: () => hatch,
-    object: () => ({ mode: MODE.reach }),
+    object: () => ({ mode: MODE.reach, color: MISSED }),
     legend: () => ({
       title: 'What gets film',
       patches: [

@@ -187,9 +187,14 @@ export class Job {
     if (this.sending || !this.next || this.link.value === 'lost' || this.link.value === 'ended') return;
     this.sending = true;
     await this.busy;
-    const { live } = this.next;
+    const live = this.next?.live ?? true;
     const document = this.document.value;
+    const wanted = this.next !== null; // not if another tab has taken the pen meanwhile
     this.next = null;
+    if (!wanted) {
+      this.sending = false;
+      return;
+    }
     try {
       const answer = await api.put(this.id, { client: this.client, base: this.revision.value, document, live, dip: this.dip.value });
       this.revision.value = Math.max(this.revision.value, answer.revision);
@@ -222,8 +227,8 @@ export class Job {
       return;
     }
     if (error.code === 'no-pen') {
-      this.pen.value = false;
-      void this.load();
+      this.losePen();
+      void this.load().catch((failed: unknown) => this.complain(failed));
       return;
     }
     if (live) return;
@@ -317,6 +322,14 @@ export class Job {
     this.tasks.value = tasks;
   }
 
+  // Another tab changes the job now: what had not arrived yet is not sent over what is done there.
+  private losePen(): void {
+    this.pen.value = false;
+    this.next = null;
+    this.beforeDrag = null;
+    this.acknowledged();
+  }
+
   async takePen(): Promise<void> {
     try {
       await api.pen(this.id, this.client);
@@ -356,8 +369,8 @@ export class Job {
       events.addEventListener(name, (event) => action(JSON.parse((event as MessageEvent<string>).data) as T));
     on<{ run: string; pen: boolean; revision: number }>('hello', (hello) => this.greet(hello));
     on<{ mine: boolean }>('pen', ({ mine }) => {
-      this.pen.value = mine;
-      if (!mine) this.next = null;
+      if (mine) this.pen.value = true;
+      else this.losePen();
     });
     on<{ revision: number; document: JobDocument; client: string }>('document', (event) => this.changedElsewhere(event));
     on<{ saved_revision: number; where: string }>('saved', ({ saved_revision, where }) => {

@@ -394,8 +394,11 @@ test('an STL and a PNG dropped together: the picture is on the object at once', 
       document.querySelector('.dropzone').dispatchEvent(new DragEvent(name, { bubbles: true, cancelable: true, dataTransfer: transfer }));
     }
   }, [model, image]);
+  const { object, artwork } = await until('both are taken', async () => {
+    const document = jobOf(dome) && (await documentOf(dome));
+    return document?.artwork && document;
+  });
   await newResult(dome, '');
-  const { object, artwork } = await documentOf(dome);
   assert.equal(object.file, 'dome.stl');
   assert.equal(artwork[0].image, 'logo.png');
   await dome.waitForSelector('[data-grip="move"]');
@@ -466,7 +469,7 @@ test('print: progress, cancel, then the sheet and the run sheet', async () => {
   await blur(dome);
   await dome.keyboard.press('Control+p');
   await dome.waitForSelector('[data-name="cancel-print"]');
-  await dome.click('[data-name="cancel-print"]');
+  await dome.click('[data-name="cancel-print"]', { force: true }); // it need not stand still
   await dome.waitForSelector('[data-name="print-again"]');
   await dome.click('[data-name="print-again"]');
   await dome.waitForSelector('[data-file="print.pdf"]', { timeout: 240000 });

@@ -72,7 +72,7 @@ export class Session {
   }
 
   // A page of its own, with its own cookies.
-  async page({ width = 1100, height = 760, dark = false, address = this.program.address, context = null } = {}) {
+  async page({ width = 1000, height = 680, dark = false, address = this.program.address, context = null } = {}) {
     const own = context ?? (await this.browser.newContext({
       viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', reducedMotion: 'reduce', acceptDownloads: true,
     }));

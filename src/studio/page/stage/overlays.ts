@@ -1,6 +1,6 @@
 // What the object and its film can be coloured by: the report page's table, and air.
 import type { Overlay, Result } from '../api.ts';
-import { MISSED, OVERLAYS } from '../../../report/viewer/overlays.js';
+import { OVERLAYS } from '../../../report/viewer/overlays.js';
 import { MODE } from '../../../report/viewer/surface.js';
 
 export interface Look {
@@ -70,10 +70,6 @@ const wrinkles: OverlayEntry = {
 
 const SHARED: Overlay[] = ['none', 'coverage', 'stretch', 'tears', 'angle'];
 const shared = (OVERLAYS as unknown as OverlayEntry[]).filter(({ key }) => SHARED.includes(key));
-for (const entry of shared) {
-  if (entry.key !== 'coverage') continue;
-  entry.object = () => ({ mode: MODE.reach, color: MISSED });
-}
 export const STUDIO_OVERLAYS: readonly OverlayEntry[] = [
   ...SHARED.map((key) => shared.find((entry) => entry.key === key)!),
   wrinkles,
