@@ -7,6 +7,10 @@ target_link_libraries(hydrodip_manual PRIVATE hydrodip_command_line CLI11::CLI11
 
 set(HYDRODIP_SHARE ${CMAKE_BINARY_DIR}/share)
 file(GLOB schemas CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/docs/schemas/*.json)
+set(compress ${CMAKE_COMMAND} -E true)
+if(HYDRODIP_DEB)
+  set(compress find ${HYDRODIP_SHARE}/man -type f -exec gzip -9nf {} +)
+endif()
 add_custom_command(
   OUTPUT ${CMAKE_BINARY_DIR}/share_made
   COMMAND ${CMAKE_COMMAND} -E rm -rf ${HYDRODIP_SHARE}
@@ -16,6 +20,7 @@ add_custom_command(
           -D DATE=${HYDRODIP_DATE} -D VIEWER=${HYDRODIP_VIEWER}
           -D OUTPUT=${HYDRODIP_SHARE}/hydrodip/hydrodip.spdx.json
           -P ${CMAKE_SOURCE_DIR}/cmake/spdx.cmake
+  COMMAND ${compress}
   COMMAND ${CMAKE_COMMAND} -E touch ${CMAKE_BINARY_DIR}/share_made
   DEPENDS hydrodip_manual ${schemas} ${CMAKE_SOURCE_DIR}/cmake/spdx.cmake
           ${CMAKE_SOURCE_DIR}/src/report/viewer/package-lock.json
