@@ -1,6 +1,5 @@
 # Debian packages by CPack, one for each component; `./dev package` builds, checks and tries them.
 # Included after all components are known.
-option(HYDRODIP_DEB "Install what Debian packages have beside the program (preset package)" OFF)
 if(NOT HYDRODIP_DEB)
   return()
 endif()
@@ -50,30 +49,59 @@ file(WRITE ${CMAKE_BINARY_DIR}/deb/changelog
 execute_process(COMMAND gzip -9nkf ${CMAKE_BINARY_DIR}/deb/changelog)
 file(RENAME ${CMAKE_BINARY_DIR}/deb/changelog.gz ${CMAKE_BINARY_DIR}/deb/changelog.Debian.gz)
 
+# Lines of at most 76 characters, as a control file has them.
+function(hydrodip_wrap result text)
+  string(REPLACE " " ";" words "${text}")
+  set(line "")
+  set(lines "")
+  foreach(word IN LISTS words)
+    string(LENGTH "${line} ${word}" length)
+    if(line STREQUAL "")
+      set(line ${word})
+    elseif(length GREATER 76)
+      string(APPEND lines "${line}\n ")
+      set(line ${word})
+    else()
+      string(APPEND line " ${word}")
+    endif()
+  endforeach()
+  set(${result} "${lines}${line}" PARENT_SCOPE)
+endfunction()
+
 # hydrodip_deb(COMPONENT PACKAGE SUMMARY DESCRIPTION...): a paragraph of the description each.
 function(hydrodip_deb component package summary)
   string(TOUPPER ${component} upper)
-  list(JOIN ARGN "\n \n " text)
+  set(text "")
+  set(between "")
+  foreach(paragraph IN LISTS ARGN)
+    hydrodip_wrap(paragraph "${paragraph}")
+    string(APPEND text "${between}${paragraph}")
+    set(between "\n \n ")
+  endforeach()
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${package} PARENT_SCOPE)
   set(CPACK_COMPONENT_${upper}_DESCRIPTION "${summary}\n${text}" PARENT_SCOPE)
   set(CPACK_COMPONENTS_ALL ${CPACK_COMPONENTS_ALL} ${component} PARENT_SCOPE)
   install(FILES ${CMAKE_SOURCE_DIR}/packaging/deb/copyright ${CMAKE_BINARY_DIR}/deb/changelog.Debian.gz
           DESTINATION share/doc/${package} COMPONENT ${component})
-  set(overrides ${CMAKE_SOURCE_DIR}/packaging/deb/${component}.lintian-overrides)
-  if(EXISTS ${overrides})
-    file(READ ${overrides} text)
-    string(REPLACE @PACKAGE@ ${package} text "${text}")
-    file(WRITE ${CMAKE_BINARY_DIR}/deb/overrides/${package} "${text}")
-    install(FILES ${CMAKE_BINARY_DIR}/deb/overrides/${package} DESTINATION share/lintian/overrides
-            COMPONENT ${component})
-  endif()
+  # For all packages, and for this one.
+  set(overrides "")
+  foreach(file lintian-overrides ${component}.lintian-overrides)
+    if(EXISTS ${CMAKE_SOURCE_DIR}/packaging/deb/${file})
+      file(READ ${CMAKE_SOURCE_DIR}/packaging/deb/${file} text)
+      string(APPEND overrides "${text}")
+    endif()
+  endforeach()
+  string(REPLACE @PACKAGE@ ${package} overrides "${overrides}")
+  file(WRITE ${CMAKE_BINARY_DIR}/deb/overrides/${package} "${overrides}")
+  install(FILES ${CMAKE_BINARY_DIR}/deb/overrides/${package} DESTINATION share/lintian/overrides
+          COMPONENT ${component})
 endfunction()
 
 set(CPACK_COMPONENTS_ALL "")
 set(what "hydrodip is to hydro-dipping what a slicer is to 3D printing: a textured model goes in, and out comes a film image that, printed at true size on PVA film and dipped as told, puts every colour where the model has it.")
 
 hydrodip_deb(program hydrodip "film images for hydro-dipping, from textured models" "${what}"
-  "It simulates the floating film as the object comes down through it and draws the image backwards from that; it also finds the best way to hold the object, plans several dips, puts pictures on models that have no texture, and leads through the dip at the bath.")
+  "It simulates the floating film as the object comes down through it and draws the image backwards from that. It also finds the best way to hold the object, plans several dips, puts pictures on models that have no texture, and leads through the dip at the bath.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "fonts-dejavu-core, xdg-utils")
@@ -84,8 +112,9 @@ hydrodip_deb(library ${so} "film images for hydro-dipping: the library" "${what}
   "This package has the shared library.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION "libs${same}")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS ON)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
+set(CPACK_POST_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/cmake/deb_finish.cmake)
 
 hydrodip_deb(dev libhydrodip-dev "film images for hydro-dipping: headers of the library" "${what}"
   "This package has the headers, and what CMake and pkg-config need to find the library.")

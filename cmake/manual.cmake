@@ -7,6 +7,11 @@ target_link_libraries(hydrodip_manual PRIVATE hydrodip_command_line CLI11::CLI11
 
 set(HYDRODIP_SHARE ${CMAKE_BINARY_DIR}/share)
 file(GLOB schemas CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/docs/schemas/*.json)
+file(GLOB package_locks CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/*/*/package-lock.json)
+set(compress ${CMAKE_COMMAND} -E true)
+if(HYDRODIP_DEB)
+  set(compress find ${HYDRODIP_SHARE}/man -type f -exec gzip -9nf {} +)
+endif()
 add_custom_command(
   OUTPUT ${CMAKE_BINARY_DIR}/share_made
   COMMAND ${CMAKE_COMMAND} -E rm -rf ${HYDRODIP_SHARE}
@@ -16,13 +21,14 @@ add_custom_command(
           -D DATE=${HYDRODIP_DATE} -D VIEWER=${HYDRODIP_VIEWER}
           -D OUTPUT=${HYDRODIP_SHARE}/hydrodip/hydrodip.spdx.json
           -P ${CMAKE_SOURCE_DIR}/cmake/spdx.cmake
+  COMMAND ${compress}
   COMMAND ${CMAKE_COMMAND} -E touch ${CMAKE_BINARY_DIR}/share_made
   DEPENDS hydrodip_manual ${schemas} ${CMAKE_SOURCE_DIR}/cmake/spdx.cmake
-          ${CMAKE_SOURCE_DIR}/src/report/viewer/package-lock.json
+          ${package_locks}
   COMMENT "Manual pages, completion, schemas"
   VERBATIM)
 add_custom_target(hydrodip_share ALL DEPENDS ${CMAKE_BINARY_DIR}/share_made)
-configure_file(packaging/hydrodip.desktop.in desktop/hydrodip.desktop @ONLY)
+configure_file(packaging/hydrodip.desktop desktop/hydrodip.desktop COPYONLY)
 configure_file(packaging/hydrodip.metainfo.xml.in
                desktop/hydrodip.metainfo.xml @ONLY)
 
@@ -33,7 +39,6 @@ install(DIRECTORY ${HYDRODIP_SHARE}/bash-completion ${HYDRODIP_SHARE}/hydrodip
 install(DIRECTORY ${HYDRODIP_SHARE}/zsh/vendor-completions DESTINATION ${share}/zsh COMPONENT program)
 install(DIRECTORY ${HYDRODIP_SHARE}/fish/vendor_completions.d DESTINATION ${share}/fish
         COMPONENT program)
-install(PROGRAMS packaging/hydrodip-open DESTINATION ${CMAKE_INSTALL_LIBEXECDIR} COMPONENT program)
 install(FILES ${CMAKE_BINARY_DIR}/desktop/hydrodip.desktop DESTINATION ${share}/applications
         COMPONENT program)
 install(FILES packaging/hydrodip.xml DESTINATION ${share}/mime/packages COMPONENT program)

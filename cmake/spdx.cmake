@@ -60,7 +60,7 @@ foreach(i RANGE 0 ${last} 4)
 endforeach()
 
 if(VIEWER)
-  file(GLOB locks ${SOURCE}/src/report/viewer/package-lock.json ${SOURCE}/src/studio/web/package-lock.json)
+  file(GLOB locks ${SOURCE}/src/*/*/package-lock.json)
   set(seen "")
   foreach(lock IN LISTS locks)
     file(READ ${lock} text)

@@ -25,14 +25,17 @@ if command -v update-mime-database >/dev/null; then
 fi
 # What esbuild put into the page stands in the list, with the lock file's version.
 spdx=$build/share/hydrodip/hydrodip.spdx.json
-for package in $(grep -o '"node_modules/[^"]*": *{' "$source/src/report/viewer/package-lock.json" |
-  cut -d '"' -f 2 | sed 's|node_modules/||'); do
-  if grep -A 4 "\"node_modules/$package\"" "$source/src/report/viewer/package-lock.json" | grep -q '"dev": true'; then
-    ! grep -q "\"name\": \"$package\"" "$spdx" || fail "$package is not bundled, only tests use it"
-  else
-    grep -q "\"name\": \"$package\"" "$spdx" || fail "$package is bundled and not in $spdx"
-  fi
+for lock in "$source"/src/*/*/package-lock.json; do
+  for package in $(grep -o '"node_modules/[^"]*": *{' "$lock" | cut -d '"' -f 2); do
+    name=${package##*node_modules/}
+    if sed -n "\\|\"$package\": {|,/}/p" "$lock" | grep -q '"dev": true'; then
+      grep -q "\"node_modules/$name\"" "$source"/src/*/*/package-lock.json || fail "$name: read wrongly"
+    else
+      grep -q "\"name\": \"$name\"" "$spdx" || fail "$name is bundled and not in $spdx"
+    fi
+  done
 done
+! grep -q '"name": "gltf-validator"' "$spdx" || fail 'gltf-validator is not bundled, only tests use it'
 if command -v node >/dev/null; then
   node -e '
     const list = JSON.parse(require("fs").readFileSync(process.argv[1]));
