@@ -1,5 +1,6 @@
 #include "coat/dipped_object.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/run_scope.h"
@@ -36,6 +37,13 @@ DipResult dip_around_air(const PosedObject& posed, const TriangleMesh& lids,
 
 }  // namespace
 
+// Film that never tears is never doubtful.
+DoubtfulStretch doubtful_stretch(const FilmMaterial& material) {
+  if (!(material.tear_stretch > 0)) return {};
+  return {std::min(material.safe_stretch, material.tear_stretch),
+          std::max(material.lost_stretch, material.tear_stretch)};
+}
+
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
                         const Trajectory& trajectory, const DipOptions& options, Timings& timings,
                         const RunContext& context, const DipObserver& observe,
@@ -66,7 +74,8 @@ DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
     context.progress("mapping", 0);
     result.map = std::make_shared<const FilmMap>(mesh, posed.surface(), *result.film);
     result.direction_at = dipping_direction(trajectory, mesh.positions, mesh.triangles);
-    result.coverage = measure_coverage(mesh, *result.film, result.direction_at);
+    result.coverage = measure_coverage(mesh, *result.film, result.direction_at,
+                                       doubtful_stretch(options.material));
     result.angles = dip_angles(mesh, result.direction_at);
     context.progress("mapping", 1);
   });

@@ -34,6 +34,9 @@ struct AirSearch {
   std::shared_ptr<const TrappedAir> found = {};
 };
 
+// Where film may tear and may hold, by its material.
+DoubtfulStretch doubtful_stretch(const FilmMaterial& material);
+
 // Simulates the dip of an object on film that it fits; `observe` sees every step. No film gets
 // where air stays. Throws as dip().
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,

@@ -26,8 +26,9 @@ std::vector<ReportOutput> outputs(const std::string& command, const JobConfig& c
   if (command == "print" && config.pictures && config.film_image.empty())
     list.push_back({"gamut.png", "which colours cannot be reached, and by how much"});
   if (config.pictures)
-    list.insert(list.end(), {{"preview.png", "what was asked for beside what will come out"},
-                             {"maps.png", "dipping angle, stretch and tears on the object"}});
+    list.insert(list.end(),
+                {{"preview.png", "what was asked for beside what will come out"},
+                 {"maps.png", "dipping angle, stretch, doubt and tears on the object"}});
   list.insert(list.end(), {{"preview.glb", "the dipped object in 3D"},
                            {"film.ply", "the film after the dip"},
                            {"report.html", "everything about this job, for people"},
@@ -173,12 +174,18 @@ std::vector<WayPoint> way_in(const JobConfig& config, const TriangleMesh& mesh) 
   return rows;
 }
 
+ReportEquilibrium equilibrium_of(const DipStatistics& dip, const InkResult* ink) {
+  return {dip.steps, dip.unconverged_steps, dip.largest_residual_mm,
+          ink != nullptr && !ink->settled ? ink->last_change_mm() : 0};
+}
+
 Report make_report(const JobRecord& record) {
   Report report;
   report.tool_version = HYDRODIP_VERSION;
   report.command = record.command;
   report.command_line = record.config.command_line;
   report.title = record.config.print.job_name;
+  report.equilibrium = equilibrium_of(record.dipped().statistics, record.ink);
   report.better_way = record.better_way;
   report.inputs = record.inputs;
   for (const Parameter& parameter : parameters())
