@@ -196,8 +196,11 @@ Report make_report(const JobRecord& record) {
   report.rounds = rounds(record);
   report.coverage = record.dipped().coverage;
   report.wanted = record.wanted;
-  report.verdict = report.wanted ? plain_verdict(*report.coverage, *report.wanted)
-                                 : plain_verdict(*report.coverage);
+  report.verdict =
+      report.equilibrium.unconverged_steps > 0 && report.coverage->film_on_object_mm2 > 0
+          ? unknown_verdict(report.equilibrium)
+      : report.wanted ? plain_verdict(*report.coverage, *report.wanted)
+                      : plain_verdict(*report.coverage);
   report.air = record.dipped().air;
   report.way_in = way_in(record.config, record.dipped().posed.mesh());
   report.angles = record.dipped().angles;
