@@ -17,6 +17,7 @@
 #include "dip/torn_models.h"
 #include "exact/dipping.h"
 #include "exact/tear_lines.h"
+#include "film/locate.h"
 #include "transfer/film_map.h"
 
 namespace hydrodip {
@@ -27,6 +28,13 @@ using shapes::Shape;
 
 FilmOptions letter(int elements) {
   return {.width_mm = 215.9, .height_mm = 279.4, .elements = elements};
+}
+
+// As jobs dip.
+DipOptions defaults() {
+  DipOptions options;
+  options.asks_what_moves = true;
+  return options;
 }
 
 struct Dipped {
@@ -80,7 +88,7 @@ void print_meshes(const std::vector<Named>& models) {
       "largest, 99 %, rms (mm) | share later | covered, 40,000 (mm2) | 160,000 |\n"
       "|---|---|---|---|---|---|---|\n");
   for (const Named& model : models) {
-    const DipOptions options;
+    const DipOptions options = defaults();
     const Dipped coarse = dip_whole(model.shape, letter(40000), options, true);
     const Dipped fine = dip_whole(model.shape, letter(160000), options);
     const DippedFilm &c = coarse.result.film, &f = fine.result.film;
@@ -135,7 +143,7 @@ void print_times() {
       "unconverged | iterations a step, untorn and torn |\n|---|---|---|---|---|---|\n");
   const Shape sphere = shapes::full_sphere(30), cone = shapes::cone(30, 0.7);
   for (const int elements : {10000, 40000, 160000, 1000000}) {
-    const DipOptions options;
+    const DipOptions options = defaults();
     const Dipped untorn = dip_whole(cone, letter(elements), options);
     const Dipped torn = dip_whole(sphere, letter(elements), options);
     const DipStatistics &a = untorn.result.statistics, &b = torn.result.statistics;
@@ -157,7 +165,7 @@ void print_list(const std::vector<Named>& models) {
     double most = 0, covered = 0, doubtful = 0, seconds = 0;
     for (const Vec3& hold : shapes::holds_deg()) {
       const Shape shape = shapes::placed(model.shape, hold);
-      const DipOptions options;
+      const DipOptions options = defaults();
       const Dipped dipped = dip_whole(shape, letter(40000), options);
       const DipStatistics& s = dipped.result.statistics;
       steps += s.steps;

@@ -61,11 +61,14 @@ DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
       history->record(state...);
       if (observe) observe(state...);
     };
+    // What tears in a dip that was told when is known from another one.
+    DipOptions asking = options;
+    asking.asks_what_moves = options.tears_at_mm.empty();
     const TriangleMesh& lids = result.air->lids;
     DipResult dipped = lids.triangles.empty()
                            ? dip(film, mesh.positions, mesh.triangles, posed.surface(), trajectory,
-                                 options, context, watch)
-                           : dip_around_air(posed, lids, film, trajectory, options, context, watch);
+                                 asking, context, watch)
+                           : dip_around_air(posed, lids, film, trajectory, asking, context, watch);
     result.film = std::make_shared<const DippedFilm>(std::move(dipped.film));
     result.statistics = dipped.statistics;
     result.history = std::move(history);

@@ -153,7 +153,6 @@ void InkRounds::stiffen() {
   if (number() == kFreeRounds) {
     dip_options_.tears_at_mm = dipped_->film->torn_at_mm;
     dip_options_.moved_mm = dipped_->film->moved_mm;
-    dip_options_.asks_what_moves = false;
     outline_.keep(*dipped_->film);
   }
   std::vector<double> modulus = timings_.measure("stiffness", [&] { return modulus_of(*film_); });

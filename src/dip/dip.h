@@ -59,7 +59,7 @@ struct DipOptions {
   // What another dip found, so that two dips can be compared smoothly.
   std::vector<double> tears_at_mm;
   // Where film tears: dip twice more, on coarser film, to see what depends on how torn film falls.
-  bool asks_what_moves = true;
+  bool asks_what_moves = false;
   // DippedFilm::moved_mm that another dip found; then that is not asked again.
   std::vector<double> moved_mm = {};
   // Where more steps than this share fail, dip() gives up.

@@ -28,6 +28,7 @@ DipResult dipped(const shapes::Shape& shape, const DipOptions& options, double d
 DipOptions options_with(double step_mm) {
   DipOptions options;
   options.step_mm = step_mm;
+  options.asks_what_moves = true;
   return options;
 }
 

@@ -97,7 +97,6 @@ inline TearLine tear_line(const TearingBody& body, double limit, int elements,
   DipOptions options;
   options.step_mm = step_mm;
   options.material.tear_stretch = limit;
-  options.asks_what_moves = false;
   const DippedFilm film = dip(disc_film(elements), body.shape.positions, body.shape.triangles,
                               surface, make_trajectory({}, body.shape.positions), options, context)
                               .film;
