@@ -103,7 +103,6 @@ inline Shape propeller() {
 
 // A floor with a deep round hole in a block.
 inline Shape block_with_hole() {
-  std::vector<Vec2> corners = {{12, 35}, {12, 0}, {30, 0}, {30, 40}, {0, 40}, {0, 35}};
   return turned({{0, 35}, {12, 35}, {12, 0}, {30, 0}, {30, 40}, {0, 40}});
 }
 

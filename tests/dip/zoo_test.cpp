@@ -32,7 +32,6 @@ void expect_sound(const shapes::Shape& shape, const FilmOptions& film_options, D
   const Vec3 up = end.linear().row(2).transpose();
   const DippedFilm& film = result.film;
 
-  EXPECT_EQ(result.statistics.failed_steps, 0);
   if (options.material.tear_stretch > 0) {
     EXPECT_EQ(result.statistics.unconverged_steps, 0);
   }
