@@ -1,5 +1,6 @@
 #include "coat/dipped_object.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/run_scope.h"
@@ -36,6 +37,13 @@ DipResult dip_around_air(const PosedObject& posed, const TriangleMesh& lids,
 
 }  // namespace
 
+// Film that never tears is never doubtful.
+DoubtfulStretch doubtful_stretch(const FilmMaterial& material) {
+  if (!(material.tear_stretch > 0)) return {};
+  return {std::min(material.safe_stretch, material.tear_stretch),
+          std::max(material.lost_stretch, material.tear_stretch)};
+}
+
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
                         const Trajectory& trajectory, const DipOptions& options, Timings& timings,
                         const RunContext& context, const DipObserver& observe,
@@ -53,11 +61,14 @@ DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
       history->record(state...);
       if (observe) observe(state...);
     };
+    // What tears in a dip that was told when is known from another one.
+    DipOptions asking = options;
+    asking.asks_what_moves = options.tears_at_mm.empty();
     const TriangleMesh& lids = result.air->lids;
     DipResult dipped = lids.triangles.empty()
                            ? dip(film, mesh.positions, mesh.triangles, posed.surface(), trajectory,
-                                 options, context, watch)
-                           : dip_around_air(posed, lids, film, trajectory, options, context, watch);
+                                 asking, context, watch)
+                           : dip_around_air(posed, lids, film, trajectory, asking, context, watch);
     result.film = std::make_shared<const DippedFilm>(std::move(dipped.film));
     result.statistics = dipped.statistics;
     result.history = std::move(history);
@@ -66,7 +77,8 @@ DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
     context.progress("mapping", 0);
     result.map = std::make_shared<const FilmMap>(mesh, posed.surface(), *result.film);
     result.direction_at = dipping_direction(trajectory, mesh.positions, mesh.triangles);
-    result.coverage = measure_coverage(mesh, *result.film, result.direction_at);
+    result.coverage = measure_coverage(mesh, *result.film, result.direction_at,
+                                       doubtful_stretch(options.material));
     result.angles = dip_angles(mesh, result.direction_at);
     context.progress("mapping", 1);
   });

@@ -34,8 +34,11 @@ struct AirSearch {
   std::shared_ptr<const TrappedAir> found = {};
 };
 
-// Simulates the dip of an object on film that it fits; `observe` sees every step. No film gets
-// where air stays. Throws as dip().
+// Where film may tear and may hold, by its material.
+DoubtfulStretch doubtful_stretch(const FilmMaterial& material);
+
+// Simulates the dip of an object on film that it fits, and where it tears asks what moves then;
+// `observe` sees every step. No film gets where air stays. Throws as dip().
 DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
                         const Trajectory& trajectory, const DipOptions& options, Timings& timings,
                         const RunContext& context, const DipObserver& observe = {},

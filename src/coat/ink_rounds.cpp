@@ -31,12 +31,13 @@ constexpr double kFailedSteps = 0.02;
 // pixels to a millimetre.
 constexpr double kRoundsDpi = 150;
 
-// Of the film that lies on the object in both. What floats on or has torn off leaves no trace.
+// Of the whole film that lies on the object in both. What floats on or has torn leaves no trace.
 double mean_way(const DippedFilm& from, const DippedFilm& to) {
   std::vector<std::uint8_t> counts(from.position.size(), 0);
   for (std::size_t t = 0; t < from.mesh().triangles.size(); ++t)
     if (from.lies_on_object(t) && to.lies_on_object(t))
-      for (const std::int32_t v : from.mesh().triangles[t]) counts[std::size_t(v)] = 1;
+      for (const std::int32_t v : from.mesh().triangles[t])
+        counts[std::size_t(v)] = !(from.excess_of(v) > 0) && !(to.excess_of(v) > 0);
   double sum = 0, count = 0;
   for (std::size_t v = 0; v < counts.size(); ++v) {
     if (!counts[v]) continue;
@@ -151,6 +152,7 @@ Outcome InkRounds::outcome() const {
 void InkRounds::stiffen() {
   if (number() == kFreeRounds) {
     dip_options_.tears_at_mm = dipped_->film->torn_at_mm;
+    dip_options_.moved_mm = dipped_->film->moved_mm;
     outline_.keep(*dipped_->film);
   }
   std::vector<double> modulus = timings_.measure("stiffness", [&] { return modulus_of(*film_); });

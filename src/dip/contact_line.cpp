@@ -21,7 +21,7 @@ namespace {
 constexpr double kLineAdvance = 4;
 constexpr double kSmallestPart = 1.0 / 8;
 // So often in a step film that blocks the rest is released.
-constexpr int kMostReleases = 8;
+constexpr int kMostReleases = 30;
 
 class ContactLineScheme : public Scheme {
  public:
@@ -70,13 +70,13 @@ class ContactLineScheme : public Scheme {
 
   void relax(const Moment& to) {
     find_equilibrium(to);
-    tears_.tear_overstretched(to.travelled_mm, sheet_);
+    tears_.release_overstretched(to.travelled_mm, sheet_);
     sheet_.slide(feet_);
     feet_.correct(sheet_);
   }
 
   void find_equilibrium(const Moment& to) {
-    std::vector<std::uint8_t> is_free = tears_.held_vertices(sheet_);
+    std::vector<std::uint8_t> is_free = sheet_.free_vertices();
     sheet_.put_back(is_free);
     for (int round = 0;; ++round) {
       const RelaxationResult result = sheet_.relax(is_free);
@@ -91,7 +91,7 @@ class ContactLineScheme : public Scheme {
   }
 
   // The floating vertices whose way through this step, sideways and with the water, meets the
-  // object, in their order.
+  // object, in their order. Of what has let go nobody knows the way.
   std::vector<Touch> collide(const Moment& to) const {
     // Few, because those that may touch lie together.
     constexpr std::size_t kVerticesPerTask = 256;
@@ -100,7 +100,7 @@ class ContactLineScheme : public Scheme {
     parallel_for(film_.u.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         const auto vertex = static_cast<std::int32_t>(v);
-        if (!sheet_.floats(vertex)) continue;
+        if (!sheet_.free_vertices()[v]) continue;
         const Vec2 start = sheet_.plan(vertex), end_of_way = sheet_.slid(vertex);
         if (!waterline_.may_touch(start, end_of_way)) continue;
         const auto contact =

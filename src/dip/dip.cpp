@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "dip/measure.h"
 #include "dip/scheme.h"
+#include "dip/tear_doubt.h"
 
 namespace hydrodip {
 
@@ -40,6 +41,8 @@ void check(const DipOptions& options, const FilmMesh& film) {
   if (options.material.law) check_law(*options.material.law);
   if (!options.modulus.empty() && options.modulus.size() != film.triangles.size())
     refuse("the stiffness field does not fit the film's mesh");
+  if (!options.moved_mm.empty() && options.moved_mm.size() != film.u.size())
+    refuse("how far the film moves was found on another mesh");
   if (!options.tears_at_mm.empty() && options.tears_at_mm.size() != film.triangles.size())
     refuse("the given tears do not fit the film's mesh");
 }
@@ -122,6 +125,14 @@ void check_solved(const DipStatistics& statistics, int steps, const DipOptions& 
                              statistics.failed_steps, steps));
 }
 
+// Whether film tears, in a scheme in which that makes a difference.
+bool may_move(const DippedFilm& film, const DipOptions& options) {
+  return options.material.tear_stretch > 0 && options.method == DipMethod::kFull &&
+         options.scheme == DipScheme::kContactLine &&
+         (!film.excess.empty() ||
+          std::find(film.torn.begin(), film.torn.end(), 1) != film.torn.end());
+}
+
 int number_of_steps(double length_mm, const DipOptions& options) {
   if (options.method != DipMethod::kFull) return 1;
   return std::max(1, static_cast<int>(std::ceil(length_mm / options.step_mm - 1e-9)));
@@ -197,6 +208,11 @@ DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
                              state.statistics.largest_residual_mm));
   DippedFilm dipped = measured(mesh, state, options, surface);
   if (state.moment.moved) dipped.depth_mm = deepest(state.moment, positions);
+  if (!options.moved_mm.empty())
+    add_moved(options.moved_mm, options, dipped);
+  else if (options.asks_what_moves && may_move(dipped, options))
+    add_moved(moved_by_tears(film, positions, triangles, surface, trajectory, options, context),
+              options, dipped);
   return {std::move(dipped), state.statistics};
 }
 

@@ -33,6 +33,10 @@ struct FilmMaterial {
   double z_stretch = 0.65;    // vertical scale of the film's rest shape (contact angle)
   double poisson = 0;         // below 0.5
   double tear_stretch = 1.4;  // largest principal stretch the film bears; 0: never tears
+  // Nobody has measured that limit. Up to the first of these film is safe, and stays sharp (a film
+  // maker's patent, US8927061, states 1.30); from the second on no film holds.
+  double safe_stretch = 1.3;
+  double lost_stretch = 1.6;
   // Smallest principal stretch that the film bears without wrinkles. In truth so thin a sheet
   // buckles at once, but swelling film takes up a little, and wrinkles only show from a few percent
   // on: at 5 % they are a fifteenth as high as they are apart.
@@ -50,10 +54,14 @@ struct DipOptions {
   std::vector<double> modulus;  // per film triangle, relative; empty: uniform
   // Of the film's equilibrium; multigrid by default, others to compare with.
   std::function<std::unique_ptr<LinearSolver>(const FilmMesh&)> make_solver = make_multigrid_solver;
-  // Per film triangle: how far the object has travelled when it tears, whatever its stretch;
-  // infinity: only when it is stretched well beyond tear_stretch. Empty: tear_stretch alone
-  // decides. What another dip found, so that two dips can be compared smoothly.
+  // Per film triangle: how far the object has travelled when it lets go, whatever its stretch;
+  // infinity: only when it is stretched well beyond what film bears. Empty: stretch alone decides.
+  // What another dip found, so that two dips can be compared smoothly.
   std::vector<double> tears_at_mm;
+  // Where film tears: dip twice more, on coarser film, to see what depends on how torn film falls.
+  bool asks_what_moves = false;
+  // DippedFilm::moved_mm that another dip found; then that is not asked again.
+  std::vector<double> moved_mm = {};
   // Where more steps than this share fail, dip() gives up.
   double failed_share_max = 1;
 };

@@ -168,7 +168,8 @@ void Feet::create(const Touch& touch, const FloatingSheet& sheet, const Waterlin
   for (auto n = film_.incident_begin[std::size_t(v)]; n < film_.incident_begin[std::size_t(v) + 1];
        ++n)
     for (std::int32_t w : film_.triangles[std::size_t(film_.incident[std::size_t(n)])])
-      if (w != v && sheet.floats(w) && !touches_[std::size_t(w)]) around.push_back(w);
+      if (w != v && sheet.floats(w) && !touches_[std::size_t(w)] && sheet.is_usable_edge(v, w))
+        around.push_back(w);
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
   const LineSearch search{line, film_.cell_mm};
@@ -192,7 +193,9 @@ void Feet::create(const Touch& touch, const FloatingSheet& sheet, const Waterlin
 }
 
 void Feet::replace(const std::vector<Foot>& created, const FloatingSheet& sheet) {
-  std::erase_if(feet_, [&](const Foot& foot) { return !sheet.floats(foot.floating); });
+  std::erase_if(feet_, [&](const Foot& foot) {
+    return !sheet.floats(foot.floating) || !sheet.is_usable_edge(foot.attached, foot.floating);
+  });
   feet_.insert(feet_.end(), created.begin(), created.end());
   for_feet([](Foot& foot) { place_ghost(foot, foot.element.now); });
   index(sheet);

@@ -140,7 +140,7 @@ void FloatingSheet::slide(const Feet& feet) {
   const auto carry = kernels::best().carry;
   const std::int32_t* const corners[3] = {slid_in_corner_[0].data(), slid_in_corner_[1].data(),
                                           slid_in_corner_[2].data()};
-  // Scraps of torn film may have no place that means anything.
+  // Film that has let go may have far to go: in several steps.
   const double reach = kLongestSlide * film_.cell_mm + options_.step_mm;
   parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     const std::size_t first = energy_.grid().place(begin), last = energy_.grid().place(end - 1);
@@ -151,9 +151,9 @@ void FloatingSheet::slide(const Feet& feet) {
       if (state_.state[v] != VertexState::kUnattached) {
         slid_.set(at, plan_.at(at));
       } else if (!found_[at] || !is_plain_[std::size_t(slid_in_[v])]) {
-        const auto to = look_up(v, feet);
-        const bool near = to && (*to - plan_.at(at)).norm() < reach;
-        slid_.set(at, near ? *to : plan_.at(at));
+        const Vec2 from = plan_.at(at), to = look_up(v, feet).value_or(from);
+        const double way = (to - from).norm();
+        slid_.set(at, way < reach ? to : Vec2(from + reach / way * (to - from)));
       }
     }
   });

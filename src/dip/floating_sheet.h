@@ -53,7 +53,7 @@ class FloatingSheet {
   void keep_relaxed();
   const VertexVector& relaxed() const { return relaxed_; }
   // Triangles whose largest principal stretch passes the limit in the relaxed film.
-  std::vector<std::int32_t> overstretched(double limit) {
+  std::vector<std::int32_t> overstretched(double limit) const {
     return energy_.overstretched(relaxation_.field(), limit);
   }
   // Every floating vertex goes where its film coordinate is found in the relaxed film.
@@ -66,6 +66,12 @@ class FloatingSheet {
   // can say.
   Mat2 gradient_at_edge(std::int32_t a, std::int32_t b, const Mat2& otherwise,
                         const Feet& feet) const;
+  // Whether film on either side of an edge carries load.
+  bool is_usable_edge(std::int32_t a, std::int32_t b) const {
+    bool usable = false;
+    for_triangles_at_edge(a, b, [&](std::size_t t) { usable |= is_usable(t); });
+    return usable;
+  }
   // Whether no vertex around it is attached or clamped.
   bool stands_alone(std::int32_t v) const;
   template <typename Visit>

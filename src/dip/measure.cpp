@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "dip/principal_stretch.h"
 
@@ -78,13 +79,75 @@ void hold_rim(const Moment& moment, DippedFilm& film) {
           moment.to_object(Vec3(film.position[v].x(), film.position[v].y(), moment.level_mm));
 }
 
-// Film that was told when to tear bears so much more, so that nothing is decided by a hair.
+// Film that was told when to let go bears so much more, so that nothing is decided by a hair.
 constexpr double kToldMargin = 1.25;
+
+// Vertices' stretches of which the means over triangles on the object are, all but a little, those
+// triangles' own: means over the triangles around a vertex alone come out too large where stretch
+// grows faster and faster, and so do means of corners.
+std::vector<double> sharpened_stretch(const DippedFilm& film,
+                                      const std::vector<TriangleMeasure>& measures) {
+  std::vector<double> above(film.stretch.size(), 0), weight(film.stretch.size(), 0);
+  for (std::size_t t = 0; t < measures.size(); ++t) {
+    if (!film.lies_on_object(t)) continue;
+    const Triangle& v = film.mesh().triangles[t];
+    double mean = 0;
+    for (std::int32_t corner : v) mean += film.stretch[std::size_t(corner)] / 3;
+    for (std::int32_t corner : v) {
+      above[std::size_t(corner)] += measures[t].flat_area * (mean - measures[t].stretch);
+      weight[std::size_t(corner)] += measures[t].flat_area;
+    }
+  }
+  std::vector<double> stretch = film.stretch;
+  for (std::size_t v = 0; v < stretch.size(); ++v)
+    if (weight[v] > 0) stretch[v] -= above[v] / weight[v];
+  return stretch;
+}
+
+// Triangles of which nothing is whole are torn as such.
+void tear_wholly(DippedFilm& film) {
+  for (std::size_t t = 0; t < film.torn.size(); ++t)
+    if (film.lies_on_object(t)) {
+      const Triangle& v = film.mesh().triangles[t];
+      film.torn[t] =
+          film.excess_of(v[0]) > 0 && film.excess_of(v[1]) > 0 && film.excess_of(v[2]) > 0;
+    }
+}
+
+// Where film on the object is stretched too far, if any triangle of it is.
+void tear_overstretched(const DipOptions& options, const std::vector<TriangleMeasure>& measures,
+                        DippedFilm& film) {
+  const double limit = options.material.tear_stretch;
+  bool any = false;
+  for (std::size_t t = 0; t < measures.size() && limit > 0 && !any; ++t)
+    any = measures[t].stretch > limit && film.lies_on_object(t);
+  if (!any) return;
+  film.excess = sharpened_stretch(film, measures);
+  for (double& excess : film.excess) excess -= limit;
+  tear_wholly(film);
+  // Whatever is around it.
+  const double most = std::max(limit, options.material.lost_stretch);
+  for (std::size_t t = 0; t < measures.size(); ++t)
+    if (film.lies_on_object(t) && measures[t].stretch > most) film.torn[t] = 1;
+}
 
 }  // namespace
 
-double tear_limit(const DipOptions& options) {
-  return options.material.tear_stretch * (options.tears_at_mm.empty() ? 1 : kToldMargin);
+double let_go_limit(const DipOptions& options) {
+  const FilmMaterial& material = options.material;
+  if (!(material.tear_stretch > 0)) return 0;
+  return std::max(material.tear_stretch, material.lost_stretch) *
+         (options.tears_at_mm.empty() ? 1 : kToldMargin);
+}
+
+void add_moved(std::vector<double> moved_mm, const DipOptions& options, DippedFilm& film) {
+  film.moved_mm = std::move(moved_mm);
+  if (film.excess.empty())
+    for (const double stretch : film.stretch)
+      film.excess.push_back(std::min(0.0, stretch - options.material.tear_stretch));
+  for (std::size_t v = 0; v < film.excess.size(); ++v)
+    film.excess[v] = std::max(film.excess[v], film.moved_mm[v] - kMoved_mm);
+  tear_wholly(film);
 }
 
 DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const DipOptions& options,
@@ -109,7 +172,6 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
   measures.reserve(film.triangles.size());
   for (std::size_t t = 0; t < film.triangles.size(); ++t) {
     measures.push_back(measure_triangle(film, state, t));
-    const double limit = tear_limit(options);
     const Triangle& v = film.triangles[t];
     const bool on_object = std::all_of(v.begin(), v.end(), [&](std::int32_t i) {
       return state.state[std::size_t(i)] == VertexState::kAttached;
@@ -117,8 +179,7 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
     if (!on_object) continue;
     result.wrinkled[t] = measures.back().least_stretch < options.material.wrinkle_stretch;
     const bool told = !options.tears_at_mm.empty();
-    const bool tears = (limit > 0 && measures.back().stretch > limit) ||
-                       (told && state.moment.travelled_mm >= options.tears_at_mm[t]) ||
+    const bool tears = (told && state.moment.travelled_mm >= options.tears_at_mm[t]) ||
                        (!told && folded(film, state, surface, t));
     if (!tears || result.torn[t]) continue;
     result.torn[t] = 1;
@@ -148,6 +209,7 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
     result.area_ratio[v] = flat[v] > 0 ? now[v] / flat[v] : 1;
     result.stretch[v] = weight[v] > 0 ? stretch[v] / weight[v] : 1;
   }
+  tear_overstretched(options, measures, result);
   return result;
 }
 

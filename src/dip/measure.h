@@ -5,13 +5,18 @@
 
 namespace hydrodip {
 
-// The result of a dip from its last state. Triangles on the object that are stretched beyond
-// material.tear_stretch count as torn too, and so do those that lie upside down: film folded over
-// itself or spanned between parts of the object prints nothing where it should.
+// The result of a dip from its last state. Film on the object that is stretched beyond
+// material.tear_stretch is torn, inside triangles too (DippedFilm::excess). Triangles that lie
+// upside down are torn as well: film folded over itself or spanned between parts of the object
+// prints nothing where it should.
 DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const DipOptions& options,
                     const Surface& surface);
 
-// The principal stretch at which film tears without being told to; 0: never.
-double tear_limit(const DipOptions& options);
+// Adds how far film lies elsewhere if torn film falls another way, and tears off what depends on
+// that.
+void add_moved(std::vector<double> moved_mm, const DipOptions& options, DippedFilm& film);
+
+// The principal stretch beyond which film lets go without being told to; 0: never.
+double let_go_limit(const DipOptions& options);
 
 }  // namespace hydrodip

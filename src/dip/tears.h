@@ -1,4 +1,4 @@
-// Where film tears, and what of it still hangs on something afterwards.
+// Which film lets go, and what of it is left.
 #pragma once
 
 #include <cstdint>
@@ -8,30 +8,33 @@
 
 namespace hydrodip {
 
+// Film that lets go pulls no more, now and for good. So does what afterwards hangs by so little on
+// the film that the rim holds that its place means nothing: scraps, threads, and what is cut off.
+// What stays has clean edges, which are free.
 class Tears {
  public:
   Tears(const DipSetting& setting, DipState& state)
       : set_(setting), film_(setting.film), state_(state) {}
 
-  // The free vertices, without islands: film torn off all around or hanging by one point drifts,
-  // because nothing says where it should be.
-  std::vector<std::uint8_t> held_vertices(const FloatingSheet& sheet) const;
   // Of triangles that block the rest because they would have to turn over.
   void release(const std::vector<std::int32_t>& blocked, double travelled_mm, FloatingSheet& sheet,
                std::vector<std::uint8_t>& is_free);
-  // What is stretched too far in the relaxed film, or was told to tear by now.
-  void tear_overstretched(double travelled_mm, FloatingSheet& sheet);
-  // Updates the loads of what tore since it was called last.
+  // What is stretched too far in the relaxed film, or was told to let go by now.
+  void release_overstretched(double travelled_mm, const FloatingSheet& sheet);
+  // Updates the loads of what let go since it was called last.
   void update_loads(FloatingSheet& sheet);
 
  private:
-  void tear(std::int32_t t, double travelled_mm);
+  void let_go(std::int32_t t, double travelled_mm);
+  void drop_scraps(double travelled_mm, const FloatingSheet& sheet);
+  bool carries(std::size_t t, const FloatingSheet& sheet) const {
+    return sheet.is_usable(t) && !state_.torn[t];
+  }
 
   const DipSetting set_;
   const FilmMesh& film_;
   DipState& state_;
-  std::vector<std::size_t> torn_now_;  // triangles torn in this step
-  bool any_torn_ = false;
+  std::vector<std::size_t> torn_now_;  // since update_loads()
 };
 
 }  // namespace hydrodip

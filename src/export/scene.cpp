@@ -215,7 +215,11 @@ Json film_json(const SceneSource& source, Packer& packer) {
   std::vector<std::uint8_t> state;
   for (const VertexState s : film.state) state.push_back(std::uint8_t(s));
   json["state"] = place_json(packer.add(state));
-  json["torn"] = place_json(packer.add(film.torn));
+  // The page knows whole triangles: those of which most is whole.
+  std::vector<std::uint8_t> torn = film.torn;
+  for (std::size_t t = 0; t < torn.size(); ++t)
+    if (film.lies_on_object(t) && film.whole_part(t).share < 0.5) torn[t] = 1;
+  json["torn"] = place_json(packer.add(torn));
   const auto scalar = [](double value) { return std::array<double, 1>{value}; };
   json["stretch"] = add_quantized(packer, film.stretch, 1, scalar);
   json["area_ratio"] = add_quantized(packer, film.area_ratio, 1, scalar);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -190,6 +191,7 @@ FilmMesh make_film_mesh(const FilmOptions& options) {
     grid = make_grid(options, free, cells, mesh);
   }
   number_vertices(grid, mesh);
+  mesh.options = options;
   if (mesh.triangles.size() < 8)
     throw InputError("the film needs at least 8 triangles; set film.elements higher");
   list_incident_triangles(mesh);
@@ -202,6 +204,39 @@ bool DippedFilm::lies_on_object(std::size_t triangle) const {
   for (std::int32_t v : shared_mesh->triangles[triangle])
     if (state[std::size_t(v)] != VertexState::kAttached) return false;
   return true;
+}
+
+double DippedFilm::excess_at(std::size_t triangle, const Vec3& weight) const {
+  if (excess.empty()) return 0;
+  const Triangle& v = shared_mesh->triangles[triangle];
+  return weight[0] * excess[std::size_t(v[0])] + weight[1] * excess[std::size_t(v[1])] +
+         weight[2] * excess[std::size_t(v[2])];
+}
+
+DippedFilm::Part DippedFilm::whole_part(std::size_t triangle) const {
+  Part part;
+  if (!lies_on_object(triangle)) return part;
+  const std::array<Vec3, 3> corner = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  const auto add = [&](const Vec3& weight, std::size_t side) {
+    part.corner[part.corners] = weight;
+    part.side[part.corners++] = std::uint8_t(side);
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t l = (k + 1) % 3, side = (k + 2) % 3;
+    const double here = excess_at(triangle, corner[k]), there = excess_at(triangle, corner[l]);
+    if (!(here > 0)) add(corner[k], side);
+    if ((here > 0) == (there > 0)) continue;
+    // In the same place from both triangles of the side.
+    const Vec3 cut = (there * corner[k] - here * corner[l]) / (there - here);
+    add(cut, here > 0 ? side : 3);
+  }
+  // A fan from its first corner.
+  for (std::size_t k = 2; k < part.corners; ++k) {
+    Mat3 fan;
+    fan << part.corner[0], part.corner[k - 1], part.corner[k];
+    part.share += fan.determinant();
+  }
+  return part;
 }
 
 }  // namespace hydrodip

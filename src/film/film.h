@@ -1,6 +1,7 @@
 // The film: a triangle mesh over its flat, printed state, and where it is now.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -22,12 +23,13 @@ struct FilmOptions {
   double grading = 4;
 };
 
-// The mesh of the free film. Film coordinates u: mm, origin at the film's centre, seen from above.
-// A regular grid whose lines draw together towards the centre (cell size along an axis: quadratic
-// in the line's number), each cell cut along one diagonal in alternation, so that the pattern is
-// symmetric under mirroring and (on a square) quarter turns. On a disc, vertices next to the rim
-// are moved onto it.
+// The mesh of the free film, made as the options say. Film coordinates u: mm, origin at the film's
+// centre, seen from above. A regular grid whose lines draw together towards the centre (cell size
+// along an axis: quadratic in the line's number), each cell cut along one diagonal in alternation,
+// so that the pattern is symmetric under mirroring and (on a square) quarter turns. On a disc,
+// vertices next to the rim are moved onto it.
 struct FilmMesh {
+  FilmOptions options;
   std::vector<Vec2> u;               // per vertex
   std::vector<Triangle> triangles;   // counter-clockwise in u
   std::vector<std::uint8_t> on_rim;  // per vertex: clamped
@@ -58,6 +60,9 @@ using SharedFilmMesh = std::shared_ptr<const FilmMesh>;
 // Film state over a mesh after (or during) a dip.
 enum class VertexState : std::uint8_t { kUnattached = 0, kAttached = 1, kClamped = 2 };
 
+// Film that lies further elsewhere if torn film falls another way is not promised.
+inline constexpr double kMoved_mm = 0.3;
+
 // The result of a dip: where the film is. Posed-object frame (mm).
 struct DippedFilm {
   SharedFilmMesh shared_mesh = std::make_shared<const FilmMesh>();
@@ -65,10 +70,16 @@ struct DippedFilm {
   std::vector<VertexState> state;  // per vertex
   std::vector<double> area_ratio;  // per vertex: deformed area over flat area (Voronoi areas)
   std::vector<double> stretch;     // per vertex: largest principal stretch around it
-  std::vector<std::uint8_t> torn;  // per triangle: torn, or on the object upside down
-  // Per triangle: how far the object had travelled (straight down: its depth) when it tore;
+  std::vector<std::uint8_t> torn;  // per triangle: all of it, or on the object upside down
+  // Per triangle: how far the object had travelled (straight down: its depth) when it let go;
   // infinity: it did not.
   std::vector<double> torn_at_mm;
+  // Per vertex: how far film here lies elsewhere if torn film falls another way, mm. Empty: nothing
+  // tears, or nobody has asked.
+  std::vector<double> moved_mm;
+  // Per vertex, linear over triangles: how far beyond what is promised film is that lies here;
+  // above 0 it is torn, or its place is not known. Empty: nowhere.
+  std::vector<double> excess;
   // On the object, pressed together to less than material.wrinkle_stretch; per triangle.
   std::vector<std::uint8_t> wrinkled;
   // Attached, and lifted out of the water again while the object went on; per vertex.
@@ -76,8 +87,29 @@ struct DippedFilm {
   double depth_mm = 0;  // of the object's deepest point, in the end
 
   const FilmMesh& mesh() const { return *shared_mesh; }
-  // A triangle whose corners are all attached and that is not torn: film that lies on the object.
+  // A triangle whose corners are all attached and that is not torn, or not all of it: film that
+  // lies on the object.
   bool lies_on_object(std::size_t triangle) const;
+  // At a vertex; not above 0: whole.
+  double excess_of(std::int32_t vertex) const {
+    return excess.empty() ? 0 : excess[std::size_t(vertex)];
+  }
+  // Of such a triangle: how far a place of it is beyond what is promised; not above 0: it is whole.
+  double excess_at(std::size_t triangle, const Vec3& weight) const;
+  bool is_whole_at(std::size_t triangle, const Vec3& weight) const {
+    return !(excess_at(triangle, weight) > 0);
+  }
+  // The whole part of a triangle that lies on the object: a convex polygon, as weights of corners;
+  // no corners: nothing is.
+  struct Part {
+    std::array<Vec3, 4> corner;
+    std::size_t corners = 0;
+    // Of its side from this corner to the next: the triangle's side opposite this corner; 3: it is
+    // the line along which the triangle is torn.
+    std::array<std::uint8_t, 4> side{};
+    double share = 0;  // of the triangle's area
+  };
+  Part whole_part(std::size_t triangle) const;
 };
 
 }  // namespace hydrodip

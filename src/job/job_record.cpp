@@ -26,8 +26,9 @@ std::vector<ReportOutput> outputs(const std::string& command, const JobConfig& c
   if (command == "print" && config.pictures && config.film_image.empty())
     list.push_back({"gamut.png", "which colours cannot be reached, and by how much"});
   if (config.pictures)
-    list.insert(list.end(), {{"preview.png", "what was asked for beside what will come out"},
-                             {"maps.png", "dipping angle, stretch and tears on the object"}});
+    list.insert(list.end(),
+                {{"preview.png", "what was asked for beside what will come out"},
+                 {"maps.png", "dipping angle, stretch, doubt and tears on the object"}});
   list.insert(list.end(), {{"preview.glb", "the dipped object in 3D"},
                            {"film.ply", "the film after the dip"},
                            {"report.html", "everything about this job, for people"},
@@ -173,12 +174,18 @@ std::vector<WayPoint> way_in(const JobConfig& config, const TriangleMesh& mesh) 
   return rows;
 }
 
+ReportEquilibrium equilibrium_of(const DipStatistics& dip, const InkResult* ink) {
+  return {dip.steps, dip.unconverged_steps, dip.largest_residual_mm,
+          ink != nullptr && !ink->settled ? ink->last_change_mm() : 0};
+}
+
 Report make_report(const JobRecord& record) {
   Report report;
   report.tool_version = HYDRODIP_VERSION;
   report.command = record.command;
   report.command_line = record.config.command_line;
   report.title = record.config.print.job_name;
+  report.equilibrium = equilibrium_of(record.dipped().statistics, record.ink);
   report.better_way = record.better_way;
   report.inputs = record.inputs;
   for (const Parameter& parameter : parameters())
@@ -189,8 +196,11 @@ Report make_report(const JobRecord& record) {
   report.rounds = rounds(record);
   report.coverage = record.dipped().coverage;
   report.wanted = record.wanted;
-  report.verdict = report.wanted ? plain_verdict(*report.coverage, *report.wanted)
-                                 : plain_verdict(*report.coverage);
+  report.verdict =
+      report.equilibrium.unconverged_steps > 0 && report.coverage->film_on_object_mm2 > 0
+          ? unknown_verdict(report.equilibrium)
+      : report.wanted ? plain_verdict(*report.coverage, *report.wanted)
+                      : plain_verdict(*report.coverage);
   report.air = record.dipped().air;
   report.way_in = way_in(record.config, record.dipped().posed.mesh());
   report.angles = record.dipped().angles;

@@ -44,6 +44,9 @@ std::vector<ReportInput> describe_inputs(const JobConfig& config, const Prepared
 void announce_outputs(OutputFolder& folder, const std::string& command, const JobConfig& config,
                       const std::vector<ReportInput>& inputs);
 
+// How well the dip is known; null: no ink had to settle.
+ReportEquilibrium equilibrium_of(const DipStatistics& dip, const InkResult* ink);
+
 Report make_report(const JobRecord& record);
 
 // What the command prints: in words, and the report with its folder as JSON.

@@ -104,6 +104,24 @@ PreviewPair reach_pair(const JobRecord& record, const Appearance& shown,
   return pair;
 }
 
+// What is doubtful fades from where film surely holds to where nothing is printed.
+Appearance fading(const Appearance& shown, const JobRecord& record) {
+  const FilmMaterial& material = record.config.design.dip.material;
+  const DoubtfulStretch doubtful{doubtful_stretch(material).from, material.tear_stretch};
+  if (!(material.tear_stretch > doubtful.from)) return shown;
+  Appearance result = shown;
+  result.predicted = [shown, doubtful, map = record.dipped().map, base = record.paint().base()](
+                         const SurfacePoint& point, const Vec3& position, const Vec3& normal) {
+    const LinearColor color = shown.predicted(point, position, normal);
+    const auto hold = map->hold_at(position, normal);
+    if (!hold || !hold->whole) return color;
+    const auto left = float(1 - doubtful.of(hold->stretch, 2 * hold->moved_mm));
+    return LinearColor{base.r + left * (color.r - base.r), base.g + left * (color.g - base.g),
+                       base.b + left * (color.b - base.b), 1};
+  };
+  return result;
+}
+
 // preview.png, whose bytes are returned, and gamut.png (empty: none), which shows the same views.
 std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
                                       const std::filesystem::path& gamut_png,
@@ -115,7 +133,7 @@ std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
   options.base = record.paint().base();
   options.standing = standing_of(dipped.posed, way_up(record.config));
   std::vector<PreviewPair> pairs(1);
-  pairs[0].shown = shown;
+  pairs[0].shown = fading(shown, record);
   pairs[0].caption = caption;
   if (!gamut_png.empty()) pairs.push_back(reach_pair(record, shown, raster));
   const std::vector<Image> pictures = render_previews(dipped.posed.mesh(), dipped.posed.surface(),
@@ -144,6 +162,7 @@ Image draw_maps(const JobRecord& record) {
   MapOptions options;
   options.width_px = record.config.preview_width_px;
   options.tear_stretch = record.config.design.dip.material.tear_stretch;
+  options.doubtful = doubtful_stretch(record.config.design.dip.material);
   options.standing = standing_of(dipped.posed, way_up(record.config));
   options.caption = map_caption(dipped.angles, &dipped.coverage);
   options.direction_at = dipped.direction_at;

@@ -99,6 +99,11 @@ bool on_dark_stripe(double along, double period) {
   return along - period * std::floor(along / period) < 0.5 * period;
 }
 
+LinearColor mixed(const LinearColor& a, const LinearColor& b, float share) {
+  const auto mix = [share](float x, float y) { return (1 - share) * x + share * y; };
+  return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b), 1};
+}
+
 // A legend in the making: a bar, ticks below it, patches beside it. Starts at (x, y), in pixels;
 // lengths in those of the layout.
 class Legend {
@@ -122,11 +127,16 @@ class Legend {
     outline(from, to);
   }
 
-  void hatched(double from, double to) {
+  // A bar that is more and more hatched: share_at(t) in [0, 1], color_at(t) below.
+  template <typename ShareAt, typename ColorAt>
+  void hatched(double from, double to, ShareAt share_at, ColorAt color_at) {
+    const int x0 = column(from), x1 = column(to);
     for (int y = row(kBarTop); y < row(kBarTop + kBarHeight); ++y) {
-      for (int x = column(from); x < column(to); ++x) {
+      for (int x = x0; x < x1; ++x) {
         const bool dark = on_dark_stripe((x + y) * std::sqrt(0.5), kHatch * layout_.unit);
-        fill(page_, x, y, x + 1, y + 1, dark ? kTornDark : kTornLight);
+        const double t = (x + 0.5 - x0) / (x1 - x0);
+        fill(page_, x, y, x + 1, y + 1,
+             mixed(color_at(t), dark ? kTornDark : kTornLight, float(share_at(t))));
       }
     }
     outline(from, to);
@@ -207,14 +217,23 @@ double tick_spacing(double range) {
 }
 
 // 700 wide.
-void draw_stretch_legend(Legend legend, double largest, bool tears) {
+void draw_stretch_legend(Legend legend, double largest, const MapOptions& options) {
   constexpr double kFrom = 20;
-  const double to = tears ? 440 : 540;
+  const bool tears = options.tear_stretch > 0;
+  const double to = tears ? 380 : 540;
   const auto place = [&](double stretch) {
     return kFrom + (to - kFrom) * (stretch - 1) / (largest - 1);
   };
   legend.label("largest stretch of the film, times its flat length", 350);
-  legend.bar(kFrom, to, [&](double t) { return stretch_color(1 + t * (largest - 1), largest); });
+  const DoubtfulStretch& doubtful = options.doubtful;
+  // As far beyond the limit as is doubtful.
+  const double end = std::max(largest, doubtful.to), reach = std::min(540.0, place(end));
+  const auto stretch_at = [&](double t) {
+    return 1 + t * (reach - kFrom) / (to - kFrom) * (largest - 1);
+  };
+  legend.hatched(
+      kFrom, reach, [&](double t) { return doubtful.of(stretch_at(t), 0); },
+      [&](double t) { return stretch_color(stretch_at(t), largest); });
   const double spacing = tick_spacing(largest - 1);
   for (int i = 0; 1 + i * spacing <= largest + 1e-9; ++i) {
     legend.tick(place(1 + i * spacing),
@@ -222,10 +241,12 @@ void draw_stretch_legend(Legend legend, double largest, bool tears) {
   }
   legend.note("unstretched", place(1) + 45, 1);
   if (tears) {
-    legend.hatched(to, 540);
-    legend.limit(to, fmt::format("limit {:.2f}", largest));
-    legend.note("torn", 0.5 * (to + 540), 0);
-    legend.note("no print", 0.5 * (to + 540), 1);
+    if (reach < 540)
+      legend.hatched(
+          reach, 540, [](double) { return 1.0; }, [](double) { return kNeutral; });
+    legend.limit(to, fmt::format("printed up to {:.2f}", largest));
+    if (doubtful.to > 0) legend.note("may tear", place(std::min(doubtful.from + 0.06, largest)), 1);
+    legend.note("lost", 0.5 * (std::max(reach, 0.5 * (to + 540)) + 540), 0);
   }
   legend.bar(600, 670, neutral);
   legend.note("no film", 635, 0);
@@ -305,11 +326,13 @@ Appearance map_appearance(const MapScene& scene, const Camera& camera, double ha
   };
   appearance.predicted = [&scene, diagonal, hatch_mm](const SurfacePoint&, const Vec3& position,
                                                       const Vec3& normal) {
-    if (!scene.map) return kNeutral;
-    if (const auto u = scene.map->to_film(position, normal))
-      return stretch_color(scene.map->stretch(*u), scene.largest_stretch);
-    if (!scene.map->torn_at(position, normal)) return kNeutral;
-    return on_dark_stripe(position.dot(diagonal), hatch_mm) ? kTornDark : kTornLight;
+    const auto hold = scene.map ? scene.map->hold_at(position, normal) : std::nullopt;
+    if (!hold) return kNeutral;
+    const LinearColor& stripe =
+        on_dark_stripe(position.dot(diagonal), hatch_mm) ? kTornDark : kTornLight;
+    const bool known = scene.doubtful.to > 0 && !hold->let_go;
+    const double lost = known ? scene.doubtful.of(hold->stretch, hold->moved_mm) : !hold->whole;
+    return mixed(stretch_color(hold->stretch, scene.largest_stretch), stripe, float(lost));
   };
   return appearance;
 }
@@ -322,8 +345,9 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
   const std::vector<CornerNormals> normals = map_normals(object);
   const DippingDirection direction_at =
       options.direction_at ? options.direction_at : straight_down_to(film.depth_mm);
-  const MapScene scene{object,         normals, direction_at,
-                       options.in_air, &map,    stretch_scale_end(film, options.tear_stretch)};
+  const MapScene scene{object,          normals, direction_at,
+                       options.in_air,  &map,    stretch_scale_end(film, options.tear_stretch),
+                       options.doubtful};
   const std::array<Vec3, 2> directions =
       telling_directions(object, surface, film, options.standing);
   const MapLayout layout = make_layout(object, directions, options);
@@ -343,12 +367,12 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
   }
   const auto center = [&](int column) { return layout.cell_x(column) + 0.5 * layout.cell_width; };
   draw_title(page, layout, "dipping angle", center(0));
-  draw_title(page, layout, "film: stretch and tears", center(1));
+  draw_title(page, layout, "film: stretch, doubt and tears", center(1));
   const auto legend = [&](int column) {
     return Legend(page, layout, center(column) - 350 * layout.unit, y);
   };
   draw_angle_legend(legend(0), some_stays_dry(object, direction_at), bool(options.in_air));
-  draw_stretch_legend(legend(1), scene.largest_stretch, options.tear_stretch > 0);
+  draw_stretch_legend(legend(1), scene.largest_stretch, options);
   draw_caption(page, layout, options.caption);
   context.progress(activity, 1);
   return page;

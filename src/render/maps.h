@@ -24,6 +24,7 @@ using InAir = std::function<bool(int triangle, const Vec3& position)>;
 struct MapOptions {
   int width_px = 1600;
   double tear_stretch = 0;             // the film's limit, marked on the scale; 0: it never tears
+  DoubtfulStretch doubtful = {};       // where it may tear or hold
   std::string caption;                 // one line under the picture
   DippingDirection direction_at = {};  // empty: straight down as deep as the film says
   InAir in_air = {};                   // where air keeps the water away; empty: nowhere
@@ -62,7 +63,8 @@ LinearColor stretch_color(double stretch, double largest);
 double stretch_scale_end(const DippedFilm& film, double tear_stretch);
 
 // The maps as the two appearances of one view: `wanted` the angle, `predicted` the film; bare
-// surface is grey, torn film hatched along the camera's diagonal. Keeps references.
+// surface is grey, torn film hatched along the camera's diagonal, doubtful film the more the more
+// doubtful it is. Keeps references.
 struct MapScene {
   const TriangleMesh& object;
   const std::vector<CornerNormals>& normals;
@@ -70,6 +72,7 @@ struct MapScene {
   InAir in_air = {};
   const FilmMap* map = nullptr;  // null: no film
   double largest_stretch = 1;    // end of the scale
+  DoubtfulStretch doubtful = {};
 };
 Appearance map_appearance(const MapScene& scene, const Camera& camera, double hatch_mm);
 

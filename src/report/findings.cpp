@@ -22,6 +22,8 @@ constexpr double kMuchSteep = 0.1;        // of what faces down
 constexpr double kPlainDifference = 5;    // CIEDE2000: plain to see
 constexpr double kMuchOutOfGamut = 0.02;  // of the covered surface
 constexpr double kUsualMiss_mm = 1;       // how far off a dip usually lands
+constexpr double kFarOff_mm = 3;          // from there on a picture is not on the object
+constexpr double kLittleDoubt = 0.01;     // of the surface under whole film
 
 std::string percent(double share) {
   const double value = 100 * share;
@@ -194,6 +196,14 @@ Finding stretch(const Coverage& c, double tear_stretch) {
   else if (tear_stretch > 0)
     finding.text += fmt::format(" This film bears {:.2f}.", tear_stretch);
   const bool near_limit = tear_stretch > 0 && c.stretch_max > kNearLimit * tear_stretch;
+  if (c.stretch_max > kMostStretch) {
+    finding.concern = Concern::kStop;
+    finding.text += fmt::format(" No film bears more than {:g}.", kMostStretch);
+    finding.advice =
+        "Turn steep sides and deep recesses away (--rotate, --down), dip less deep (--depth), and "
+        "let the film tear (material.tear_stretch), so that the rest can be told.";
+    return finding;
+  }
   if (near_limit) {
     finding.concern = Concern::kCare;
     finding.advice =
@@ -225,17 +235,59 @@ Finding steepness(const DipAngles& angles) {
   return finding;
 }
 
-Finding registration(const Coverage& c, double bleed_mm) {
-  Finding finding{"registration",
+// Where torn film is lost, the rest may still be known; where it is not, nothing is promised.
+void add_doubtful(const Coverage& c, std::vector<Finding>& list) {
+  if (!(c.doubtful_mm2 > 0)) return;
+  Finding finding{"doubtful",
                   Concern::kNone,
-                  "Registration",
-                  fmt::format("{:.1f} mm", kUsualMiss_mm * std::max(1.0, c.stretch_max)),
-                  "",
+                  "Doubtful",
+                  percent(c.doubtful_share()),
+                  "of the object gets film that may tear after all, or whose place depends on how "
+                  "torn film falls.",
                   ""};
+  if (c.doubtful_mm2 > kLittleDoubt * c.covered_mm2) {
+    finding.concern = Concern::kCare;
+    finding.advice =
+        "Let nothing that matters lie there: the map shows where. How much your film bears a test "
+        "dip tells (material.safe_stretch, material.tear_stretch, material.lost_stretch).";
+  }
+  list.push_back(std::move(finding));
+}
+
+Finding equilibrium(const ReportEquilibrium& e) {
+  return {"equilibrium",
+          Concern::kStop,
+          "Not computed",
+          fmt::format("{} of {} steps", e.unconverged_steps, e.steps),
+          fmt::format("found no equilibrium of the film: its place is known to {:.2g} mm only.",
+                      e.residual_mm),
+          "Turn steep sides and deep recesses away, dip less deep, or let the film tear "
+          "(material.tear_stretch)."};
+}
+
+// How far colours land off at worst.
+double off_mm(const Coverage& c, const ReportEquilibrium& e) {
+  return kUsualMiss_mm * std::max(1.0, c.stretch_max) + e.unknown_mm();
+}
+
+Finding registration(const Report& report) {
+  const Coverage& c = *report.coverage;
+  const double bleed_mm = report.bleed_mm;
+  const double off = off_mm(c, report.equilibrium);
+  Finding finding{
+      "registration", Concern::kNone, "Registration", fmt::format("{:.1f} mm", off), "", ""};
   finding.text = fmt::format(
       "is how far colours land off, at worst, when the object meets the film {:.0f} mm off its "
       "place, which is usual by hand.",
       kUsualMiss_mm);
+  if (off > kFarOff_mm) {
+    finding.concern = Concern::kStop;
+    finding.advice = fmt::format(
+        "A picture that is more than {:.0f} mm off is not where it belongs: turn steep sides away "
+        "or dip less deep.",
+        kFarOff_mm);
+    return finding;
+  }
   finding.advice =
       "Hang the object over the centre ticks of the sheet, turned as the marks say, and come "
       "straight down.";
@@ -350,12 +402,14 @@ std::vector<Finding> findings(const Report& report) {
     if (report.seams) list.push_back(seams(*report.seams));
     if (c.film_on_object_mm2 > 0) {
       list.push_back(is_of_several(report) ? tears_of_several(c) : tears(c, report.wanted));
+      add_doubtful(c, list);
       list.push_back(stretch(c, report.tear_stretch));
       add_slack_film(c, list);
       if (report.air) add_air(*report.air, c, list);
       if (report.angles) list.push_back(steepness(*report.angles));
-      list.push_back(registration(c, report.bleed_mm));
+      list.push_back(registration(report));
     }
+    if (report.equilibrium.unconverged_steps > 0) list.push_back(equilibrium(report.equilibrium));
   }
   if (report.ink) list.push_back(ink(*report.ink));
   if (report.colors) list.push_back(colors(*report.colors));

@@ -42,6 +42,9 @@ std::string plain_verdict(const Coverage& coverage) {
       "{:.2f} times",
       percent(coverage.covered_downward_share()), percent(coverage.covered_share()),
       coverage.stretch_max);
+  if (coverage.stretch_max > kMostStretch)
+    return start +
+           fmt::format("; no film bears more than {:g}: do not dip it like this.", kMostStretch);
   if (coverage.covered_downward_share() < kNearlyAll)
     return start + "; it does not tear. What stays bare needs another dip, turned.";
   return start + "; it does not tear: dip it like this.";
@@ -85,9 +88,18 @@ std::string several_dips_verdict(const Coverage& coverage, std::size_t dips) {
                                            : "nothing tears.");
 }
 
+std::string unknown_verdict(const ReportEquilibrium& equilibrium) {
+  return fmt::format(
+      "In {} of {} steps no equilibrium of the film was found, so where it comes to lie is not "
+      "known: turn steep sides and deep recesses away, or dip less deep.",
+      equilibrium.unconverged_steps, equilibrium.steps);
+}
+
 std::string verdict_of(const Report& report) {
   if (!report.verdict.empty() || !report.coverage) return report.verdict;
   if (!report.dips.empty()) return several_dips_verdict(*report.coverage, report.dips.size());
+  if (report.equilibrium.unconverged_steps > 0 && report.coverage->film_on_object_mm2 > 0)
+    return unknown_verdict(report.equilibrium);
   return plain_verdict(*report.coverage);
 }
 

@@ -113,6 +113,14 @@ struct ReportSeams {
   double error_mean_off = 0;  // CIEDE2000 there, in the mean of four directions
 };
 
+// How well the film's equilibrium is known; defaults: as well as is ever needed.
+struct ReportEquilibrium {
+  long steps = 0, unconverged_steps = 0;  // of the dip that is printed for
+  double residual_mm = 0;                 // the furthest that film still moved in one of the latter
+  double unsettled_mm = 0;                // what ink that has not settled still moves it
+  double unknown_mm() const { return unsettled_mm + (unconverged_steps > 0 ? residual_mm : 0); }
+};
+
 struct Report {
   std::string tool_version;
   std::string command;                    // "print"
@@ -125,9 +133,10 @@ struct Report {
   std::vector<ReportStage> stages;  // in the order they ran
   double total_seconds = 0;         // 0: the sum of the stages
   std::vector<ReportRound> rounds;
-  std::vector<WayPoint> way_in;           // empty: straight down
-  std::optional<Coverage> coverage;       // nothing was dipped: absent
-  std::optional<ReportWanted> wanted;     // absent: unknown, or all of the surface
+  std::vector<WayPoint> way_in;        // empty: straight down
+  std::optional<Coverage> coverage;    // nothing was dipped: absent
+  std::optional<ReportWanted> wanted;  // absent: unknown, or all of the surface
+  ReportEquilibrium equilibrium;
   std::shared_ptr<const TrappedAir> air;  // likewise
   std::optional<DipAngles> angles;
   std::optional<MeshHealth> mesh;
@@ -145,9 +154,14 @@ struct Report {
   std::uint64_t peak_memory_bytes = 0;  // 0: unknown
 };
 
+// No film bears a larger principal stretch, whatever it is said to bear.
+inline constexpr double kMostStretch = 2;
+
 // The result in one plain sentence: how much is covered, how far the film stretches, whether it
 // tears.
 std::string plain_verdict(const Coverage& coverage);
+// The same where steps found no equilibrium.
+std::string unknown_verdict(const ReportEquilibrium& equilibrium);
 // The same where only a part of the object shall be printed.
 std::string plain_verdict(const Coverage& coverage, const ReportWanted& wanted);
 

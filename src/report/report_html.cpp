@@ -234,6 +234,7 @@ std::string coverage(const Report& report) {
           row("of it facing down, within the dip", area(c.downward_mm2)) +
           row("Covered by film", area(c.covered_mm2)) +
           row("of it facing down", area(c.covered_downward_mm2)) +
+          row("May tear, or lie elsewhere", area(c.doubtful_mm2)) +
           row("Flat film that lies on the object", area(c.film_on_object_mm2)) +
           row("Flat film that tears", area(c.torn_mm2)) +
           row("Stretch, mean", with_unit(fmt::format("{:.3f}", c.stretch_mean), "times")) +

@@ -73,6 +73,7 @@ Json coverage_json(const Coverage& c) {
   return {{"object_mm2", number(c.object_mm2)},
           {"covered_mm2", number(c.covered_mm2)},
           {"covered_share", number(c.covered_share())},
+          {"doubtful_mm2", number(c.doubtful_mm2)},
           {"downward_mm2", number(c.downward_mm2)},
           {"covered_downward_mm2", number(c.covered_downward_mm2)},
           {"covered_downward_share", number(c.covered_downward_share())},

@@ -64,6 +64,7 @@ void add(ContentKey& key, const DipOptions& dip) {
   key.add(dip.step_mm).add(dip.method).add(dip.scheme);
   key.add(dip.material.z_stretch).add(dip.material.poisson).add(dip.material.tear_stretch);
   key.add(dip.material.wrinkle_stretch);
+  key.add(dip.material.safe_stretch).add(dip.material.lost_stretch);
 }
 
 void add(ContentKey& key, const LinearColor& color) {

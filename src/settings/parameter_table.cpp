@@ -307,6 +307,14 @@ std::vector<Parameter> material_records() {
           [](C& c) -> double& { return c.design.dip.material.tear_stretch; },
           "largest principal stretch that the film bears", "the film never tears"),
       number(
+          "material.safe_stretch", "", 1, 100,
+          [](C& c) -> double& { return c.design.dip.material.safe_stretch; },
+          "largest principal stretch up to which film surely holds; beyond it is doubtful"),
+      number(
+          "material.lost_stretch", "", 1, 100,
+          [](C& c) -> double& { return c.design.dip.material.lost_stretch; },
+          "principal stretch from which on no film holds; it lets go there"),
+      number(
           "material.wrinkle_stretch", "", 0, 1,
           [](C& c) -> double& { return c.design.dip.material.wrinkle_stretch; },
           "smallest principal stretch that the film bears without wrinkles"),

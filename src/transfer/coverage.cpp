@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hydrodip {
@@ -37,16 +38,63 @@ void add_object(Coverage& sum, const TriangleMesh& object, const DippingDirectio
   }
 }
 
+// Of a triangle's area, where a function that is linear over it is not above 0.
+double share_below(const std::array<double, 3>& corner) {
+  const auto above = [](double value) { return value > 0; };
+  const auto count = std::count_if(corner.begin(), corner.end(), above);
+  if (count == 0 || count == 3) return count == 0 ? 1 : 0;
+  // The corner that is alone on its side.
+  std::size_t k = 0;
+  while (above(corner[k]) != (count == 1)) ++k;
+  const auto cut = [&](std::size_t other) { return corner[k] / (corner[k] - corner[other]); };
+  const double alone = cut((k + 1) % 3) * cut((k + 2) % 3);
+  return count == 1 ? 1 - alone : alone;
+}
+
+// Of a film triangle's area: stretched so far that film may tear there, or not know its place, but
+// not so far that no film holds.
+double doubtful_share(const DippedFilm& film, const Triangle& triangle,
+                      const DoubtfulStretch& doubtful) {
+  std::array<double, 3> safe{}, held{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto v = std::size_t(triangle[k]);
+    safe[k] = film.stretch[v] - doubtful.from;
+    if (!film.moved_mm.empty()) safe[k] = std::max(safe[k], film.moved_mm[v] - kMoved_mm);
+    held[k] = film.stretch[v] - doubtful.to;
+  }
+  return std::max(0.0, share_below(held) - share_below(safe));
+}
+
+// Whether a triangle is on the object and has not let go.
+bool is_laid(const DippedFilm& film, std::size_t t) {
+  if (film.torn[t] && (film.torn_at_mm.empty() || std::isfinite(film.torn_at_mm[t]))) return false;
+  const Triangle& corners = film.mesh().triangles[t];
+  return std::all_of(corners.begin(), corners.end(), [&](std::int32_t v) {
+    return film.state[std::size_t(v)] == VertexState::kAttached;
+  });
+}
+
+void add_doubtful(Coverage& sum, const DippedFilm& film, const DoubtfulStretch& doubtful) {
+  for (std::size_t t = 0; t < film.mesh().triangles.size() && doubtful.to > 0; ++t)
+    if (is_laid(film, t)) {
+      const Triangle& triangle = film.mesh().triangles[t];
+      sum.doubtful_mm2 +=
+          doubtful_share(film, triangle, doubtful) * area_vector(film.position, triangle).norm();
+    }
+}
+
 void add_film(Coverage& sum, const DippedFilm& film, const DippingDirection& direction_at) {
   double stretch = 0;
   Vec3 lifted = Vec3::Zero();
   double area_ratio = 0;
   for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
     const Triangle& triangle = film.mesh().triangles[t];
-    const double flat = flat_area(film.mesh(), triangle);
-    if (film.torn[t]) sum.torn_mm2 += flat;
+    const double whole_flat = flat_area(film.mesh(), triangle);
+    if (film.torn[t]) sum.torn_mm2 += whole_flat;
     if (!film.lies_on_object(t)) continue;
-    const Vec3 area = area_vector(film.position, triangle);
+    const double share = film.whole_part(t).share, flat = share * whole_flat;
+    sum.torn_mm2 += whole_flat - flat;
+    const Vec3 area = share * area_vector(film.position, triangle);
     sum.film_on_object_mm2 += flat;
     sum.covered_mm2 += area.norm();
     // It is its other side that faces down.
@@ -63,7 +111,8 @@ void add_film(Coverage& sum, const DippedFilm& film, const DippingDirection& dir
     for (const std::int32_t v : triangle) {
       stretch += flat / 3 * film.stretch[std::size_t(v)];
       area_ratio += flat / 3 * film.area_ratio[std::size_t(v)];
-      sum.stretch_max = std::max(sum.stretch_max, film.stretch[std::size_t(v)]);
+      if (!(film.excess_of(v) > 0))
+        sum.stretch_max = std::max(sum.stretch_max, film.stretch[std::size_t(v)]);
       sum.area_ratio_max = std::max(sum.area_ratio_max, film.area_ratio[std::size_t(v)]);
     }
   }
@@ -76,15 +125,23 @@ void add_film(Coverage& sum, const DippedFilm& film, const DippingDirection& dir
 
 }  // namespace
 
+double DoubtfulStretch::of(double stretch, double moved_mm) const {
+  if (!(to > 0)) return 0;
+  const double torn = to > from ? (stretch - from) / (to - from) : stretch > to;
+  // Half as doubtful as can be where it is no longer promised.
+  return std::clamp(std::max(torn, 0.5 * moved_mm / kMoved_mm), 0.0, 1.0);
+}
+
 Coverage measure_coverage(const TriangleMesh& object, const DippedFilm& film) {
   return measure_coverage(object, film, straight_down_to(film.depth_mm));
 }
 
 Coverage measure_coverage(const TriangleMesh& object, const DippedFilm& film,
-                          const DippingDirection& direction_at) {
+                          const DippingDirection& direction_at, const DoubtfulStretch& doubtful) {
   Coverage sum;
   add_object(sum, object, direction_at);
   add_film(sum, film, direction_at);
+  add_doubtful(sum, film, doubtful);
   // Film that spans an edge of the object counts whole on either side.
   sum.covered_mm2 = std::min(sum.covered_mm2, sum.object_mm2);
   sum.covered_downward_mm2 = std::min(sum.covered_downward_mm2, sum.downward_mm2);

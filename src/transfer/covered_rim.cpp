@@ -1,6 +1,7 @@
 #include "transfer/covered_rim.h"
 
 #include <algorithm>
+#include <array>
 
 namespace hydrodip {
 
@@ -9,18 +10,25 @@ CoveredRim::CoveredRim(const DippedFilm& film) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (!film.lies_on_object(t)) continue;
     const Triangle& v = mesh.triangles[t];
+    const DippedFilm::Part part = film.whole_part(t);
+    std::array<Vec2, 4> corner;
     Vec2 centroid = Vec2::Zero();
-    for (std::int32_t k : v) {
-      covered_.add(mesh.u[std::size_t(k)]);
-      centroid += mesh.u[std::size_t(k)] / 3;
+    for (std::size_t k = 0; k < part.corners; ++k) {
+      corner[k] = part.corner[k][0] * mesh.u[std::size_t(v[0])] +
+                  part.corner[k][1] * mesh.u[std::size_t(v[1])] +
+                  part.corner[k][2] * mesh.u[std::size_t(v[2])];
+      covered_.add(corner[k]);
+      centroid += corner[k] / double(part.corners);
     }
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t other = mesh.neighbor[t][k];
+    for (std::size_t n = 1; n <= part.corners; ++n) {
+      const std::size_t k = n % part.corners;
+      const std::int32_t other = part.side[k] < 3 ? mesh.neighbor[t][part.side[k]] : -1;
       if (other >= 0 && film.lies_on_object(std::size_t(other))) continue;
-      edges_.push_back(
-          {mesh.u[std::size_t(v[(k + 1) % 3])], mesh.u[std::size_t(v[(k + 2) % 3])], centroid});
-      bounds_.add(edges_.back().a);
-      bounds_.add(edges_.back().b);
+      const Vec2 &a = corner[k], &b = corner[(k + 1) % part.corners];
+      if (a == b) continue;
+      edges_.push_back({a, b, centroid});
+      bounds_.add(a);
+      bounds_.add(b);
     }
   }
   if (edges_.empty()) return;

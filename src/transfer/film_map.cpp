@@ -22,16 +22,23 @@ std::vector<Triangle> triangles_on_object(const DippedFilm& film) {
 }
 
 // What would lie on the object had it not torn.
-std::vector<Triangle> torn_triangles_on_object(const DippedFilm& film) {
-  std::vector<Triangle> torn;
+std::vector<std::int32_t> torn_on_object(const DippedFilm& film) {
+  std::vector<std::int32_t> torn;
   for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
     const Triangle& corners = film.mesh().triangles[t];
     const bool attached = std::all_of(corners.begin(), corners.end(), [&](std::int32_t v) {
       return film.state[std::size_t(v)] == VertexState::kAttached;
     });
-    if (film.torn[t] && attached) torn.push_back(corners);
+    if (film.torn[t] && attached) torn.push_back(std::int32_t(t));
   }
   return torn;
+}
+
+std::vector<Triangle> corners_of(const std::vector<std::int32_t>& triangles,
+                                 const DippedFilm& film) {
+  std::vector<Triangle> corners;
+  for (const std::int32_t t : triangles) corners.push_back(film.mesh().triangles[std::size_t(t)]);
+  return corners;
 }
 
 // Barycentric coordinates of target in a flat film triangle.
@@ -54,6 +61,7 @@ struct FilmMap::Impl {
   const DippedFilm& film;
   std::vector<std::uint8_t> lies;           // per film triangle
   std::vector<std::int32_t> film_triangle;  // of each triangle of film_surface
+  std::vector<std::int32_t> torn_triangle;  // of torn_surface
   Surface film_surface;
   Surface torn_surface;      // torn film, where it met the object
   std::vector<Vec3> normal;  // per film vertex: the object's, outward; zero where not attached
@@ -64,8 +72,9 @@ struct FilmMap::Impl {
       : object(o),
         surface(s),
         film(f),
+        torn_triangle(torn_on_object(f)),
         film_surface(f.position, triangles_on_object(f)),
-        torn_surface(f.position, torn_triangles_on_object(f)),
+        torn_surface(f.position, corners_of(torn_triangle, f)),
         normal(f.position.size(), Vec3::Zero()),
         rim(f),
         reach_mm(f.mesh().cell_mm) {
@@ -89,7 +98,8 @@ struct FilmMap::Impl {
       cursor.film_triangle = at.triangle;
       weight = at.weight;
     }
-    return lies[std::size_t(cursor.film_triangle)] != 0;
+    return lies[std::size_t(cursor.film_triangle)] != 0 &&
+           film.is_whole_at(std::size_t(cursor.film_triangle), weight);
   }
 
   // The line through the film point along the normal, against one triangle of the object.
@@ -132,14 +142,31 @@ struct FilmMap::Impl {
     return best;
   }
 
+  struct FilmPoint {
+    std::size_t triangle;
+    Vec3 weight;
+  };
+  // The film that lies at a point of the object, whole or not.
+  std::optional<FilmPoint> lying_film_at(const Vec3& position, const Vec3& normal) const {
+    const auto hit = lying_at(film_surface, position, normal);
+    if (!hit) return std::nullopt;
+    return FilmPoint{std::size_t(film_triangle[std::size_t(hit->triangle)]),
+                     Vec3(1 - hit->u - hit->v, hit->u, hit->v)};
+  }
+
+  double interpolated(const std::vector<double>& value, const FilmPoint& at) const {
+    const Triangle& t = film.mesh().triangles[at.triangle];
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += at.weight[Eigen::Index(k)] * value[std::size_t(t[k])];
+    return sum;
+  }
+
   // A value that vertices have, at a film coordinate; 1 off the object.
   double interpolated(const std::vector<double>& value, const Vec2& u, Cursor& cursor) const {
     Vec3 weight;
     if (!locate_on_object(u, cursor, weight)) return 1;
-    const Triangle& t = film.mesh().triangles[std::size_t(cursor.film_triangle)];
-    double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) sum += weight[Eigen::Index(k)] * value[std::size_t(t[k])];
-    return sum;
+    return interpolated(value, {std::size_t(cursor.film_triangle), weight});
   }
 };
 
@@ -182,17 +209,36 @@ std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u) const {
 }
 
 std::optional<Vec2> FilmMap::to_film(const Vec3& position, const Vec3& normal) const {
-  const auto hit = impl_->lying_at(impl_->film_surface, position, normal);
-  if (!hit) return std::nullopt;
-  const std::int32_t film_triangle = impl_->film_triangle[std::size_t(hit->triangle)];
-  const Triangle& t = impl_->film.mesh().triangles[std::size_t(film_triangle)];
+  const auto at = impl_->lying_film_at(position, normal);
+  if (!at || !impl_->film.is_whole_at(at->triangle, at->weight)) return std::nullopt;
+  const Triangle& t = impl_->film.mesh().triangles[at->triangle];
   const auto& u = impl_->film.mesh().u;
-  return Vec2((1 - hit->u - hit->v) * u[std::size_t(t[0])] + hit->u * u[std::size_t(t[1])] +
-              hit->v * u[std::size_t(t[2])]);
+  return Vec2(at->weight[0] * u[std::size_t(t[0])] + at->weight[1] * u[std::size_t(t[1])] +
+              at->weight[2] * u[std::size_t(t[2])]);
 }
 
 bool FilmMap::torn_at(const Vec3& position, const Vec3& normal) const {
-  return impl_->lying_at(impl_->torn_surface, position, normal).has_value();
+  const auto at = impl_->lying_film_at(position, normal);
+  if (at && !impl_->film.is_whole_at(at->triangle, at->weight)) return true;
+  return !at && impl_->lying_at(impl_->torn_surface, position, normal).has_value();
+}
+
+std::optional<FilmMap::Hold> FilmMap::hold_at(const Vec3& position, const Vec3& normal) const {
+  const DippedFilm& film = impl_->film;
+  std::optional<Impl::FilmPoint> at = impl_->lying_film_at(position, normal);
+  Hold hold;
+  hold.whole = at && film.is_whole_at(at->triangle, at->weight);
+  if (!at) {
+    const auto hit = impl_->lying_at(impl_->torn_surface, position, normal);
+    if (!hit) return std::nullopt;
+    at = Impl::FilmPoint{std::size_t(impl_->torn_triangle[std::size_t(hit->triangle)]),
+                         Vec3(1 - hit->u - hit->v, hit->u, hit->v)};
+  }
+  hold.stretch = impl_->interpolated(film.stretch, *at);
+  if (!film.moved_mm.empty()) hold.moved_mm = impl_->interpolated(film.moved_mm, *at);
+  hold.let_go = film.torn[at->triangle] &&
+                (film.torn_at_mm.empty() || std::isfinite(film.torn_at_mm[at->triangle]));
+  return hold;
 }
 
 double FilmMap::area_ratio(const Vec2& u) const {

@@ -35,6 +35,16 @@ class FilmMap {
   // Whether torn film lies at a point of the object, where to_film has nothing.
   bool torn_at(const Vec3& position, const Vec3& normal) const;
 
+  // What is to be expected of the film at a point of the object, printed or not.
+  struct Hold {
+    double stretch = 1;   // largest principal
+    double moved_mm = 0;  // how far it lies elsewhere if torn film falls another way
+    bool whole = true;    // to_film has it
+    bool let_go = false;  // none of it is left there
+  };
+  // Nothing where no film lies that is worth a word.
+  std::optional<Hold> hold_at(const Vec3& position, const Vec3& normal) const;
+
   // Interpolated between the film's vertices; 1 off the object.
   double area_ratio(const Vec2& u) const;  // deformed over flat area
   double area_ratio(const Vec2& u, Cursor& cursor) const;

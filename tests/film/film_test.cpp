@@ -128,5 +128,55 @@ TEST(Film, RefusesAMarginThatLeavesNothing) {
   EXPECT_THROW(make_film_mesh({.width_mm = 20, .height_mm = 50, .margin_mm = 10}), InputError);
 }
 
+// A line through the film, straight in film coordinates, along which it is torn.
+DippedFilm torn_beyond(double x_mm, double slope) {
+  DippedFilm film;
+  film.shared_mesh = std::make_shared<const FilmMesh>(
+      make_film_mesh({.width_mm = 80, .height_mm = 70, .elements = 500}));
+  for (const Vec2& u : film.mesh().u) {
+    film.position.emplace_back(u.x(), u.y(), 0);
+    film.excess.push_back(u.x() + slope * u.y() - x_mm);
+  }
+  film.state.assign(film.position.size(), VertexState::kAttached);
+  film.torn.assign(film.mesh().triangles.size(), 0);
+  return film;
+}
+
+TEST(DippedFilm, WholePartsEndAtTheTearLine) {
+  for (const double slope : {0.0, 0.3, -2.0}) {
+    const DippedFilm film = torn_beyond(4.3, slope);
+    double whole = 0;
+    for (std::size_t t = 0; t < film.torn.size(); ++t) {
+      const Triangle& v = film.mesh().triangles[t];
+      const DippedFilm::Part part = film.whole_part(t);
+      const auto place = [&](const Vec3& weight) {
+        Vec2 u = Vec2::Zero();
+        for (std::size_t k = 0; k < 3; ++k)
+          u += weight[Eigen::Index(k)] * film.mesh().u[std::size_t(v[k])];
+        return u;
+      };
+      for (std::size_t k = 0; k < part.corners; ++k) {
+        const Vec2 from = place(part.corner[k]), to = place(part.corner[(k + 1) % part.corners]);
+        EXPECT_LT(from.x() + slope * from.y(), 4.3 + 1e-9);
+        const auto off = [&](const Vec2& u) { return std::abs(u.x() + slope * u.y() - 4.3); };
+        if (part.side[k] == 3) {
+          EXPECT_LT(off(from) + off(to), 1e-9);
+        } else {  // along the side opposite that corner
+          EXPECT_NEAR(part.corner[k][part.side[k]], 0, 1e-12);
+          EXPECT_NEAR(part.corner[(k + 1) % part.corners][part.side[k]], 0, 1e-12);
+        }
+      }
+      const Vec2& a = film.mesh().u[std::size_t(v[0])];
+      whole += part.share * 0.5 *
+               cross2(film.mesh().u[std::size_t(v[1])] - a, film.mesh().u[std::size_t(v[2])] - a);
+    }
+    // Of the rectangle of 60 by 50 mm: a straight cut through its middle height at x = 4.3, as long
+    // as it leaves through the long sides.
+    if (std::abs(slope) < 0.9) {
+      EXPECT_NEAR(whole, 50 * (30 + 4.3), 1e-9) << slope;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hydrodip

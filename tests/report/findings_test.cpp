@@ -77,6 +77,46 @@ TEST(Findings, FewTearsAreAFlawAndManyAStop) {
   EXPECT_EQ(concern(report, "tears"), Concern::kStop);
 }
 
+TEST(Findings, WhatNoFilmBearsIsAStop) {
+  Report report = good_report();
+  report.tear_stretch = 0;
+  report.coverage->stretch_max = 1.99;
+  EXPECT_NE(concern_of(findings(report)), Concern::kStop);
+  report.coverage->stretch_max = 25.96;
+  EXPECT_EQ(concern(report, "stretch"), Concern::kStop);
+  EXPECT_EQ(plain_verdict(*report.coverage).find("dip it like this."),
+            plain_verdict(*report.coverage).find("do not ") + 7);
+}
+
+TEST(Findings, WhatWasNotComputedIsAStop) {
+  Report report = good_report();
+  report.equilibrium = {600, 1, 1600, 0};
+  EXPECT_EQ(concern(report, "equilibrium"), Concern::kStop);
+  EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
+  EXPECT_NE(verdict_of(report).find("not"), std::string::npos);
+  report.equilibrium = {600, 0, 1600, 0};  // found in the end
+  EXPECT_EQ(find(findings(report), "equilibrium"), nullptr);
+  EXPECT_EQ(concern_of(findings(report)), Concern::kNone);
+}
+
+TEST(Findings, WhatLandsMoreThanThreeMillimetresOffIsAStop) {
+  Report report = good_report();
+  report.equilibrium.unsettled_mm = 1.5;  // and 1.2 times the usual millimetre
+  EXPECT_EQ(concern(report, "registration"), Concern::kNone);
+  report.equilibrium.unsettled_mm = 1.9;
+  EXPECT_EQ(concern(report, "registration"), Concern::kStop);
+  EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
+}
+
+TEST(Findings, DoubtfulFilmIsNamed) {
+  Report report = good_report();
+  EXPECT_EQ(find(findings(report), "doubtful"), nullptr);
+  report.coverage->doubtful_mm2 = 5;
+  EXPECT_EQ(concern(report, "doubtful"), Concern::kNone);
+  report.coverage->doubtful_mm2 = 200;
+  EXPECT_EQ(concern(report, "doubtful"), Concern::kCare);
+}
+
 TEST(Findings, WithoutFilmOnTheObjectNothingElseMatters) {
   Report report = good_report();
   report.coverage->film_on_object_mm2 = 0;

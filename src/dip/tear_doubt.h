@@ -1,0 +1,18 @@
+// What depends on how torn film falls, which nobody knows.
+#pragma once
+
+#include <vector>
+
+#include "dip/dip.h"
+
+namespace hydrodip {
+
+// Per vertex of the film: how far it lies elsewhere, mm, if floating film lets go as soon as it may
+// tear (material.safe_stretch) than if it holds as long as any film could (lost_stretch). From two
+// dips on coarser film in longer steps. The other arguments are those of dip().
+std::vector<double> moved_by_tears(const FilmMesh& film, const std::vector<Vec3>& positions,
+                                   const std::vector<Triangle>& triangles, const Surface& surface,
+                                   const Trajectory& trajectory, const DipOptions& options,
+                                   const RunContext& context);
+
+}  // namespace hydrodip

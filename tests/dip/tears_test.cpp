@@ -1,0 +1,121 @@
+// What film does that is stretched beyond what it bears.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "dip/dip.h"
+#include "dip/zoo_shapes.h"
+
+namespace hydrodip {
+namespace {
+
+FilmOptions small_film() {
+  FilmOptions options;
+  options.width_mm = 160;
+  options.height_mm = 150;
+  options.elements = 3000;
+  return options;
+}
+
+DipResult dipped(const shapes::Shape& shape, const DipOptions& options, double depth_mm = 0) {
+  const Surface surface(shape.positions, shape.triangles);
+  RunContext context;
+  return dip(make_film_mesh(small_film()), shape.positions, shape.triangles, surface,
+             make_trajectory({depth_mm}, shape.positions), options, context);
+}
+
+DipOptions options_with(double step_mm) {
+  DipOptions options;
+  options.step_mm = step_mm;
+  options.asks_what_moves = true;
+  return options;
+}
+
+std::size_t let_go(const DippedFilm& film) {
+  return std::size_t(std::count_if(film.torn_at_mm.begin(), film.torn_at_mm.end(),
+                                   [](double at) { return std::isfinite(at); }));
+}
+
+// Over the sphere's equator film is torn off all around.
+TEST(Tears, WhatStaysAfloatHangsTogetherWithTheRim) {
+  const DippedFilm film = dipped(shapes::full_sphere(22), options_with(0.5)).film;
+  ASSERT_GT(let_go(film), 50U);
+  const FilmMesh& mesh = film.mesh();
+  const auto floats = [&](std::size_t t) {
+    const Triangle& v = mesh.triangles[t];
+    return !film.torn[t] && std::any_of(v.begin(), v.end(), [&](std::int32_t w) {
+      return film.state[std::size_t(w)] == VertexState::kUnattached;
+    });
+  };
+  std::vector<std::uint8_t> reached(film.torn.size(), 0);
+  std::vector<std::size_t> front;
+  for (std::size_t t = 0; t < reached.size(); ++t)
+    for (const std::int32_t v : mesh.triangles[t])
+      if (floats(t) && mesh.on_rim[std::size_t(v)] && !reached[t]) {
+        reached[t] = 1;
+        front.push_back(t);
+      }
+  while (!front.empty()) {
+    const std::size_t t = front.back();
+    front.pop_back();
+    for (const std::int32_t next : mesh.neighbor[t]) {
+      if (next < 0 || reached[std::size_t(next)] || !floats(std::size_t(next))) continue;
+      reached[std::size_t(next)] = 1;
+      front.push_back(std::size_t(next));
+    }
+  }
+  for (std::size_t t = 0; t < reached.size(); ++t) EXPECT_EQ(floats(t), reached[t] != 0) << t;
+}
+
+// Beyond a cut all around, nothing of what is whole below it can depend on how torn film falls.
+TEST(Tears, BelowTheFirstTearNothingDependsOnThem) {
+  const DippedFilm film = dipped(shapes::full_sphere(22), options_with(0.5)).film;
+  ASSERT_EQ(film.moved_mm.size(), film.position.size());
+  int below = 0;
+  for (std::size_t v = 0; v < film.position.size(); ++v) {
+    if (film.state[v] != VertexState::kAttached || film.position[v].z() > 8) continue;
+    EXPECT_EQ(film.moved_mm[v], 0);
+    ++below;
+  }
+  EXPECT_GT(below, 100);
+}
+
+TEST(Tears, WhereNothingTearsNobodyAsksWhatMoves) {
+  const DippedFilm film = dipped(shapes::full_sphere(22), options_with(0.5), 5).film;
+  EXPECT_TRUE(film.excess.empty());
+  EXPECT_TRUE(film.moved_mm.empty());
+  EXPECT_EQ(let_go(film), 0U);
+}
+
+// Film between the legs of a table hangs on their walls.
+TEST(Tears, FilmThatMovesIsNotPromised) {
+  shapes::Shape table = shapes::box({-25, -20, 22}, {25, 20, 26});
+  for (const double x : {-22.0, 17.0})
+    for (const double y : {-17.0, 12.0}) table.append(shapes::box({x, y, 0}, {x + 5, y + 5, 23}));
+  const DippedFilm film = dipped(table, options_with(0.5)).film;
+  ASSERT_FALSE(film.moved_mm.empty());
+  int moved = 0;
+  for (std::size_t v = 0; v < film.position.size(); ++v) {
+    if (!(film.moved_mm[v] > kMoved_mm)) continue;
+    EXPECT_GT(film.excess[v], 0);
+    moved += film.state[v] == VertexState::kAttached;
+  }
+  EXPECT_GT(moved, 0);
+}
+
+// What a first dip found decides when film lets go in the next.
+TEST(Tears, LetGoWhenToldTo) {
+  DipOptions options = options_with(0.5);
+  const DippedFilm first = dipped(shapes::full_sphere(22), options).film;
+  options.tears_at_mm = first.torn_at_mm;
+  options.moved_mm = first.moved_mm;
+  const DippedFilm second = dipped(shapes::full_sphere(22), options).film;
+  EXPECT_EQ(first.torn, second.torn);
+  EXPECT_EQ(first.moved_mm, second.moved_mm);
+  for (std::size_t v = 0; v < first.position.size(); ++v)
+    EXPECT_LT((first.position[v] - second.position[v]).norm(), 1e-9) << v;
+}
+
+}  // namespace
+}  // namespace hydrodip
