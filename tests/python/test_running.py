@@ -49,7 +49,7 @@ class Running(unittest.TestCase):
             begun.wait()
             time.sleep(0.1)
             sent.append(time.perf_counter())
-            signal.raise_signal(signal.SIGINT) if False else os.kill(os.getpid(), signal.SIGINT)
+            os.kill(os.getpid(), signal.SIGINT)
 
         sender = threading.Thread(target=send)
         sender.start()
@@ -105,7 +105,8 @@ class Running(unittest.TestCase):
 
     def test_a_thousand_dips_do_not_grow(self):
         mesh = textured_cone()
-        quick = dict(QUICK, film_elements=200, dip_step_mm=3.0)
+        # On one thread: every thread that takes part in TBB's loops leaves some 8 kB behind there.
+        quick = dict(QUICK, film_elements=200, dip_step_mm=3.0, threads=1)
 
         def many(count):
             for _ in range(count):
