@@ -3,13 +3,10 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
-#include <memory>
 #include <mutex>
 #include <string>
-#include <utility>
+#include <thread>
 #include <vector>
-
-#include "workers.h"
 
 namespace hydrodip::python {
 
@@ -60,30 +57,25 @@ class Mailbox {
 }  // namespace
 
 void run(const py::object& progress, const std::function<void(const RunContext&)>& work) {
-  struct Run {
-    Mailbox mailbox;
-    std::exception_ptr failure;
-  };
   const RunContext context;
-  const auto shared = std::make_shared<Run>();  // the worker may leave it last
+  Mailbox mailbox;
   if (!progress.is_none())
-    context.on_progress([shared](const std::string& activity, double fraction) {
-      shared->mailbox.add(activity, fraction);
-    });
-  start_on_worker([shared, context, &work] {
+    context.on_progress(
+        [&](const std::string& activity, double fraction) { mailbox.add(activity, fraction); });
+  std::exception_ptr failure, raised;
+  std::thread worker([&] {
     try {
       work(context);
     } catch (...) {
-      shared->failure = std::current_exception();
+      failure = std::current_exception();
     }
-    shared->mailbox.close();
+    mailbox.close();
   });
-  std::exception_ptr raised;
   for (bool ended = false; !ended;) {
     std::vector<News> news;
     {
       const py::gil_scoped_release release;
-      ended = shared->mailbox.wait(news);
+      ended = mailbox.wait(news);
     }
     if (raised) continue;
     try {
@@ -94,8 +86,9 @@ void run(const py::object& progress, const std::function<void(const RunContext&)
       context.cancel();
     }
   }
+  worker.join();
   if (raised) std::rethrow_exception(raised);
-  if (shared->failure) std::rethrow_exception(std::exchange(shared->failure, nullptr));
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace hydrodip::python
