@@ -155,7 +155,7 @@ export async function addFiles(files: readonly File[], at_mm: Vec3 | null = null
   const now = layersOf(open.document.value).length;
   if (now > before) {
     layer.value = now - 1;
-    if (before || open.document.value.object?.file) step.value = 'artwork';
+    if (open.document.value.object?.file) goToStep('artwork');
   }
 }
 
