@@ -143,6 +143,17 @@ TEST_F(OnFilm, ScalingMakesEverythingFitAndKeepsProportions) {
         EXPECT_NEAR(255 - seen.pixel(x, y)[i], (255 - wanted_.pixel(x, y)[i]) / 1.5, 1);
 }
 
+// Pure red, green and blue take two inks in full: half of each where only as much as one may lie.
+TEST_F(OnFilm, ScalingKeepsToTheInkLimit) {
+  reach({.policy = GamutPolicy::kScale, .limit = 1});
+  EXPECT_NEAR(lightened_, 0.5, 1e-6);
+}
+
+TEST_F(OnFilm, WhatLiesBesideTheObjectIsNotCompared) {
+  std::fill_n(stretch_.on_object.begin(), 36 * 3, 0);
+  EXPECT_NEAR(reach({}).compared_mm2, 36 * 3 * 0.01, 1e-6);
+}
+
 TEST_F(OnFilm, WithoutCompensationTheFilmIsPrintedAsWanted) {
   stretch(1.5F);
   const Reach found = reach({.compensate = false});
