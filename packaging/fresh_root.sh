@@ -21,6 +21,7 @@ fi
 root=$(mktemp -d "$roots/root.XXXXXX")
 # umount first: nothing outside the root may be removed with it.
 trap 'umount "$root/proc" 2>/dev/null; umount "$root/dev" 2>/dev/null; rm -rf --one-file-system "$root"' EXIT
+trap 'exit 1' HUP INT TERM
 tar -x -C "$root" -f "$roots/bookworm.tar"
 mount -t proc proc "$root/proc"
 mount -t tmpfs tmpfs "$root/dev"
