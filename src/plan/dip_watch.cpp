@@ -61,14 +61,13 @@ void DipWatch::take(const DippedFilm& film) {
     attached_at_[v] =
         film.state[v] == VertexState::kAttached ? std::min(attached_at_[v], film.depth_mm) : kNever;
   for (std::size_t t = 0; t < landed_at_.size(); ++t) {
-    torn_at_[t] = film.torn[t] ? film.torn_at_mm[t] : kNever;
-    if (film.torn[t] && !(torn_at_[t] < kNever)) torn_at_[t] = film.depth_mm;
-    if (!film.lies_on_object(t)) {
-      landed_at_[t] = kNever;
-      continue;
-    }
-    landed_at_[t] = std::min(landed_at_[t], film.depth_mm);
-    stretch_[t] = stretch_of(t, film.position);
+    double laid_at = 0;  // all of it; kNever: it is not
+    for (const std::int32_t v : film_->triangles[t])
+      laid_at = std::max(laid_at, attached_at_[std::size_t(v)]);
+    // What was laid stretched too far is found torn when the dip ends, and was so from then on.
+    torn_at_[t] = film.torn[t] ? std::min({film.torn_at_mm[t], film.depth_mm, laid_at}) : kNever;
+    landed_at_[t] = film.lies_on_object(t) ? laid_at : kNever;
+    if (landed_at_[t] < kNever) stretch_[t] = stretch_of(t, film.position);
   }
 }
 
