@@ -96,6 +96,12 @@ PictureSource::PictureSource(const ArtworkLayer& layer) : name_(name_of(layer)) 
     image_ = layer.picture;
     return;
   }
+  if (!layer.image.empty() && !layer.text.empty())
+    throw InputError(
+        fmt::format("{}: a layer of artwork shows an image or a text ('{}'), not both; give the "
+                    "text a layer of "
+                    "its own ([[artwork]] in a file)",
+                    name_, layer.text));
   if (layer.image.empty()) {
     if (layer.text.empty())
       throw InputError("a layer of artwork shows nothing: give it an image or a text");

@@ -176,6 +176,10 @@ TEST(Fonts, WhatCannotBeSetIsRefused) {
   ArtworkLayer layer;
   layer.text = "\xf4\x8f\xbf\xbd";
   EXPECT_THROW(PictureSource{layer}, InputError);
+  layer.text = "7";
+  EXPECT_NO_THROW(PictureSource{layer});
+  layer.image = "logo.png";
+  EXPECT_THROW(PictureSource{layer}, InputError);  // either of them
 }
 
 }  // namespace

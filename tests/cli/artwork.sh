@@ -137,8 +137,8 @@ fi
 # cannot set it. So is a drawing that has text.
 # shellcheck disable=SC2086
 "$hydrodip" simulate plate.stl --art-text 'No. 7' --art-font 'No Such Font' $quick_simulate \
-  --set preview.pictures=off -o text --json > text.json 2> text.err || fail "a text: $?"
-grep -q "'No Such Font' is not installed; .* is taken instead" text.err || fail "font: $(cat text.err)"
+  --set preview.pictures=off -o text --json > text.json || fail "a text: $?"
+grep -q "'No Such Font' is not installed; .* is taken instead" text.json || fail 'the other font is not said'
 python3 - <<'PY' || fail 'the report does not know the font'
 import hashlib, json
 report = json.load(open('text.json'))
@@ -149,8 +149,8 @@ PY
 echo '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 30"><text y="20">A</text></svg>' > text.svg
 # shellcheck disable=SC2086
 "$hydrodip" simulate plate.stl --art text.svg $quick_simulate --set preview.pictures=off -o text-svg \
-  > /dev/null 2> text.err || fail "an SVG with text: $?"
-grep -q 'convert it to paths' text.err || fail "an SVG with text: $(cat text.err)"
+  > text.txt || fail "an SVG with text: $?"
+grep -q 'convert it to paths' text.txt || fail "an SVG with text: $(cat text.txt)"
 printf '<?xml version="1.0"?>\n<fontconfig><cachedir>%s</cachedir></fontconfig>\n' "$PWD/cache" > none.conf
 for art in '--art-text=A' '--art=text.svg'; do
   FONTCONFIG_FILE=$PWD/none.conf "$hydrodip" simulate plate.stl "$art" -o nothing > /dev/null 2> none.err
