@@ -67,7 +67,7 @@ case " $(echo $names) " in
     say 'find_package(hydrodip), pkg-config'
     cp -r "$(dirname "$0")/../examples" "$root/root/examples"
     inside sh -c 'cd /root && cmake -S examples -B built >/dev/null && cmake --build built -j 2 >/dev/null &&
-      built/print_job models/mask.obj >print_job.txt 2>&1 || { code=$?; cat print_job.txt; exit $code; }
+      built/print_job models/mask.obj job >print_job.txt 2>&1 || { code=$?; cat print_job.txt; exit $code; }
       pkg-config --modversion hydrodip' || die 'the library does not work'
     ;;
 esac
