@@ -92,8 +92,9 @@ TEST_F(JobTest, ASampleIsShownAndItsResultIsWhole) {
       client->get(at(job, "/meshes/" + describe(job)["mesh"].get<std::string>())).body);
   const json low = mesh.head["low_mm"], high = mesh.head["high_mm"];
   for (std::size_t v = 0; v < state.size(); ++v) {
-    if (state[v] == 2)
+    if (state[v] == 2) {
       EXPECT_NEAR(std::max(std::abs(u[2 * v]), std::abs(u[2 * v + 1])), free_mm, 1e-3);
+    }
     if (state[v] != 1) continue;
     EXPECT_GE(position[3 * v + 2], -0.1);
     EXPECT_LE(position[3 * v + 2], high[2].get<double>() - low[2].get<double>() + 0.1);
@@ -220,7 +221,9 @@ TEST_F(JobTest, ADocumentSaysWhatItsJobFileSays) {
   // Read by the command line's way, written again: the same text.
   const std::filesystem::path file = folder.path() / "jobs" / job / "files" / "two dips.toml";
   JobConfig config;
-  apply_sources(config, {.configs = {file}});
+  SettingSources sources;
+  sources.configs = {file};
+  apply_sources(config, sources);
   const auto bytes = read_file(file);
   EXPECT_EQ(job_file(config, file.parent_path()), std::string(bytes.begin(), bytes.end()));
   EXPECT_EQ(config.object.pose.rotate_deg.x(), 12.3456789012345);
@@ -340,7 +343,9 @@ TEST_F(JobTest, ThePrintHasTheBytesOfTheCommandLine) {
 
   client->post(at(job, "/save"), R"({"name": "job"})");
   JobConfig config;
-  apply_sources(config, {.configs = {folder.path() / "jobs" / job / "files/job.toml"}});
+  SettingSources sources;
+  sources.configs = {folder.path() / "jobs" / job / "files/job.toml"};
+  apply_sources(config, sources);
   config.output = folder / "by-command";
   print_job(config, RunContext());
   for (const char* name : {"print.png", "print.tif", "print.pdf", "film.ply"}) {

@@ -54,7 +54,7 @@ TEST_F(SecurityTest, NoTokenNoAnswer) {
 
 // A name that somebody else points to this machine (DNS rebinding) still says itself in Host.
 TEST_F(SecurityTest, OnlyTheOwnHostIsAnswered) {
-  for (const std::string host :
+  for (const std::string& host :
        {std::string("evil.example"), "evil.example:" + std::to_string(studio.port()),
         std::string("127.0.0.1"), std::string("127.0.0.1:1"), std::string("")}) {
     EXPECT_EQ(client.send("GET", "/api/hello", "", with("Host", host)).code(), "wrong-host");
@@ -64,7 +64,7 @@ TEST_F(SecurityTest, OnlyTheOwnHostIsAnswered) {
 }
 
 TEST_F(SecurityTest, OnlyTheOwnOriginCommands) {
-  for (const std::string origin : {std::string("http://evil.example"), std::string("null"),
+  for (const std::string& origin : {std::string("http://evil.example"), std::string("null"),
                                    "https://" + own(), std::string("http://127.0.0.1:1")}) {
     EXPECT_EQ(client.send("POST", "/api/jobs", "{}", with("Origin", origin)).code(),
               "wrong-origin");
