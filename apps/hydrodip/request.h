@@ -52,7 +52,7 @@ struct Request {
 void declare_model(CLI::App& app, Request& request);
 void declare_output(CLI::App& app, Request& request, const std::string& default_folder);
 void declare_no_clobber(CLI::App& app, Request& request);  // is part of declare_output
-void declare_reporting(CLI::App& app, Request& request);  // --json, --quiet
+void declare_reporting(CLI::App& app, Request& request);   // --json, --quiet
 void declare_object(CLI::App& app, Request& request);
 void declare_artwork(CLI::App& app, Request& request);
 void declare_film(CLI::App& app, Request& request);          // --film, --quality

@@ -32,8 +32,8 @@ JobResult print_job(const JobConfig& config, const RunContext& context);
 // config.film_image (the whole sheet, as print.png) also what the object will look like.
 JobResult simulate_job(const JobConfig& config, const RunContext& context);
 
-// A finished film image (config.film_image, the whole sheet) as it is: the sheet with its marks, and
-// all that simulate_job says of it.
+// A finished film image (config.film_image, the whole sheet) as it is: the sheet with its marks,
+// and all that simulate_job says of it.
 JobResult print_film_image_job(const JobConfig& config, const RunContext& context);
 
 // No simulation: size, mesh health, what fits the film, dip angles. Writes angles.png and

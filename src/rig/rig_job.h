@@ -22,13 +22,13 @@ struct RigJob {
   Vec3 object_size_mm = Vec3::Zero();  // as posed
   std::string model_sha256;            // of config.model, when it was printed
   std::vector<std::string> warnings;
-  std::string alarm;     // "Do not dip it like this: ..."; empty: nothing forbids it
+  std::string alarm;  // "Do not dip it like this: ..."; empty: nothing forbids it
   std::string report_sha256;
   // Of report.json: what full coverage of each ink would take, as a part of it. 0: it is not known.
   double ink_coverage = 0;
   std::string batch, label;  // of the piece that is dipped; may be empty
-  int earlier_dips = 0;  // of several dips: those that are done before
-  int next_dip = 0;      // of several dips: the one that follows; 0: none
+  int earlier_dips = 0;      // of several dips: those that are done before
+  int next_dip = 0;          // of several dips: the one that follows; 0: none
 };
 
 // Reads FOLDER/report.json of a print or simulate job. Throws InputError if it is none.

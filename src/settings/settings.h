@@ -15,8 +15,8 @@ namespace hydrodip {
 // can have (dates, tables of tables).
 std::vector<Setting> read_settings(const std::filesystem::path& file);
 
-// A TOML file that is no configuration, as the text of a JSON object: for what has a shape of its own.
-// Throws InputError with file, line and column for broken TOML.
+// A TOML file that is no configuration, as the text of a JSON object: for what has a shape of its
+// own. Throws InputError with file, line and column for broken TOML.
 std::string toml_as_json(const std::filesystem::path& file);
 
 // "film.elements=4000" as given to --set.

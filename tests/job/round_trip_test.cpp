@@ -82,14 +82,11 @@ std::array<int, 3> srgb(const LinearColor& c) {
 struct Likeness {
   double psnr_db = 0;
   int compared = 0;
-  int left_blank = 0;  // film lies there, and the sheet carries nothing
 };
 
 // Wanted against predicted colours wherever film lies on the object.
-// Where the print promises film at all: it leaves out what tears in some of its rounds, or moves
-// with what tears.
 Likeness likeness(const DippedObject& dipped, const Paint& paint, const Image& film,
-                  const InkImage& inks, const SheetRaster& raster) {
+                  const SheetRaster& raster) {
   const LinearColor base{1, 1, 1, 1};
   const TriangleMesh& mesh = dipped.posed.mesh();
   double squares = 0;
@@ -97,15 +94,7 @@ Likeness likeness(const DippedObject& dipped, const Paint& paint, const Image& f
   for (const SurfacePoint& point : evenly_spread(mesh, 200000)) {
     const Vec3 position = position_at(mesh, point);
     const Vec3 normal = face_normal(mesh, point.triangle);
-    const auto u = dipped.map->to_film(position, normal);
-    if (!u) continue;
-    const Vec2 pixel = raster.to_pixel(*u);
-    const bool blank = is_blank(inks.pixel(std::clamp(int(pixel.x()), 0, inks.width_px - 1),
-                                           std::clamp(int(pixel.y()), 0, inks.height_px - 1)));
-    if (blank && srgb(paint.color_at(point)) != srgb(base)) {
-      ++result.left_blank;
-      continue;
-    }
+    if (!dipped.map->to_film(position, normal)) continue;
     const auto wanted = srgb(paint.color_at(point));
     const auto found = srgb(predicted_color(film, raster, *dipped.map, position, normal, base));
     for (std::size_t k = 0; k < 3; ++k) squares += std::pow(wanted[k] - found[k], 2) / 3;
@@ -198,9 +187,11 @@ Registration registration(const DippedObject& dipped, const Object& object, cons
   return result;
 }
 
+// Without tears: what depends on how torn film falls is not printed, and another dip tears anew.
 TEST(RoundTripSlow, WhatIsPrintedAndDippedIsWhatWasWanted) {
   const TemporaryFolder folder;
-  const JobConfig config = mask_job(folder.path());
+  JobConfig config = mask_job(folder.path());
+  config.design.dip.material.tear_stretch = 0;
   RunContext context;
   print_job(config, context);
   const InkImage inks = read_cmyk_tiff(config.output / "print.tif").inks;
@@ -215,10 +206,9 @@ TEST(RoundTripSlow, WhatIsPrintedAndDippedIsWhatWasWanted) {
       film_stretch(*dipped.map, raster, config.design.inverse.bleed_mm, context);
   const auto model = make_device_model();
   const Image seen = look_on_object(inks, stretch.area_ratio, *model, {1, 1, 1, 1});
-  const Likeness colors = likeness(dipped, *prepared.paint, seen, inks, raster);
+  const Likeness colors = likeness(dipped, *prepared.paint, seen, raster);
   EXPECT_GT(colors.compared, 50000);
   EXPECT_GE(colors.psnr_db, 35);
-  EXPECT_LT(colors.left_blank, 0.04 * colors.compared);
   RecordProperty("psnr_db", std::to_string(colors.psnr_db));
 
   const auto dots = dotted(dipped.posed.mesh());
@@ -272,10 +262,9 @@ TEST(RoundTripSlow, ALayersColoursComeBackAsTexturesDo) {
   const FilmStretch stretch =
       film_stretch(*dipped.map, raster, config.design.inverse.bleed_mm, context);
   const Image seen = look_on_object(inks, stretch.area_ratio, *make_device_model(), {1, 1, 1, 1});
-  const Likeness colors = likeness(dipped, *prepared.paint, seen, inks, raster);
+  const Likeness colors = likeness(dipped, *prepared.paint, seen, raster);
   EXPECT_GT(colors.compared, 50000);
   EXPECT_GE(colors.psnr_db, 35);
-  EXPECT_LT(colors.left_blank, 0.04 * colors.compared);
   RecordProperty("psnr_db", std::to_string(colors.psnr_db));
 }
 

@@ -16,7 +16,7 @@ write_tetrahedron tetra.obj
   "$hydrodip" plan colored.ply $quick_simulate --dips 2 -o plan --quiet || fail 'plan'
   "$hydrodip" print plan/plan.toml $quick -o dips --quiet || fail 'print of a plan'
   "$hydrodip" orient colored.ply $quick_simulate -o orient --quiet || fail 'orient'
-  "$hydrodip" nest tetra.obj colored.ply --film a4 --set film.elements=800 --set dip.step_mm=1 --dpi 72 \
+  "$hydrodip" nest colored.ply colored.ply --film a4 --set film.elements=800 --set dip.step_mm=1 --dpi 72 \
     --set preview.width_px=200 -o nest --quiet || fail 'nest'
 } > jobs.txt
 "$python" "$source/tests/schemas/validate.py" "$schemas" . "$source"/examples/jobs/*.toml

@@ -65,7 +65,7 @@ TEST_F(SecurityTest, OnlyTheOwnHostIsAnswered) {
 
 TEST_F(SecurityTest, OnlyTheOwnOriginCommands) {
   for (const std::string& origin : {std::string("http://evil.example"), std::string("null"),
-                                   "https://" + own(), std::string("http://127.0.0.1:1")}) {
+                                    "https://" + own(), std::string("http://127.0.0.1:1")}) {
     EXPECT_EQ(client.send("POST", "/api/jobs", "{}", with("Origin", origin)).code(),
               "wrong-origin");
     EXPECT_EQ(client.send("GET", "/api/hello", "", with("Origin", origin)).code(), "wrong-origin");

@@ -232,8 +232,8 @@ TEST_F(SweepTest, OrientsManyModels) {
   const SweepPlan made = plan(
       "[sweep]\ncommand = \"orient\"\nmodels = [\"tetrahedron.obj\"]\nquality = \"draft\"\n"
       "[set]\n\"film.elements\" = 2000\n\"dip.step_mm\" = 1\n\"dip.air_cells\" = 0\n"
-      "[vary]\n\"object.size_mm\" = [60, 80]\n");
-  EXPECT_EQ(run_sweep(sweep(), made, {}, context_).done, 2);
+      "[vary]\n\"object.size_mm\" = [80]\n");
+  EXPECT_EQ(run_sweep(sweep(), made, {}, context_).done, 1);
   const Json table = Json::parse(table_json(make_table(sweep(), made), made));
   for (const Json& run : table["runs"]) EXPECT_GT(run["figures"]["best.covered_share"], 0.0);
 }
