@@ -35,7 +35,7 @@ JobConfig small_job(const fs::path& model, const fs::path& output, int threads, 
   config.output = output;
   config.design.film.elements = 2000;
   config.design.dip.step_mm = step_mm;
-  config.design.dpi = 30;
+  config.design.dpi = 36;
   config.preview_width_px = 200;
   config.preview_texture_px = 64;
   config.threads = threads;

@@ -34,4 +34,5 @@ for wrong in '[film]\nwidth_mm = 9\n' '[film]\nwidht_mm = 100\n' '[[artwork]]\np
 done
 sed 's/"concern": "[a-z]*"/"concern": "perhaps"/' print/report.json > simulate/report.json
 ! "$python" "$source/tests/schemas/validate.py" "$schemas" simulate > refused.txt || fail 'a wrong report is taken'
+rm simulate/report.json
 finish
