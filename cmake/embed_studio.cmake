@@ -1,11 +1,5 @@
 # Writes OUTPUT, a C++ source that holds the text of PAGE, SCRIPT and STYLE.
-function(quoted_text file result)
-  file(READ ${file} text)
-  if(text MATCHES "[)]studio\"")
-    message(FATAL_ERROR "${file} holds the mark that ends its quotation.")
-  endif()
-  set(${result} "R\"studio(${text})studio\"" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/quoted_text.cmake)
 
 quoted_text(${PAGE} page)
 quoted_text(${SCRIPT} script)

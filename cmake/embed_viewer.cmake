@@ -1,11 +1,5 @@
 # Writes OUTPUT, a C++ source that holds the text of SCRIPT and STYLE.
-function(quoted_text file result)
-  file(READ ${file} text)
-  if(text MATCHES "[)]viewer\"")
-    message(FATAL_ERROR "${file} holds the mark that ends its quotation.")
-  endif()
-  set(${result} "R\"viewer(${text})viewer\"" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/quoted_text.cmake)
 
 quoted_text(${STYLE} style)
 quoted_text(${SCRIPT} script)

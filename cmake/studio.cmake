@@ -37,6 +37,6 @@ add_custom_command(
           -D STYLE=${studio_page_dir}/styles.css -D OUTPUT=${studio_cpp}
           -P ${CMAKE_SOURCE_DIR}/cmake/embed_studio.cmake
   DEPENDS ${studio_bundle} ${studio_page_dir}/index.html ${studio_page_dir}/styles.css
-          ${CMAKE_SOURCE_DIR}/cmake/embed_studio.cmake
+          ${CMAKE_SOURCE_DIR}/cmake/embed_studio.cmake ${CMAKE_SOURCE_DIR}/cmake/quoted_text.cmake
   VERBATIM)
 target_sources(hydrodip_studio PRIVATE ${studio_cpp})

@@ -43,5 +43,6 @@ add_custom_command(
   COMMAND ${CMAKE_COMMAND} -D SCRIPT=${viewer_bundle} -D STYLE=${viewer_dir}/page.css
           -D OUTPUT=${viewer_cpp} -P ${CMAKE_SOURCE_DIR}/cmake/embed_viewer.cmake
   DEPENDS ${viewer_bundle} ${viewer_dir}/page.css ${CMAKE_SOURCE_DIR}/cmake/embed_viewer.cmake
+          ${CMAKE_SOURCE_DIR}/cmake/quoted_text.cmake
   VERBATIM)
 target_sources(hydrodip_report PRIVATE ${viewer_cpp})

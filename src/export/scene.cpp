@@ -88,10 +88,8 @@ std::vector<std::uint32_t> flat_indices(const std::vector<Triangle>& triangles) 
 // --- Object ---
 
 std::string data_url(const Image& image) {
-  bool opaque = true;
-  for (std::size_t i = 3; opaque && i < image.rgba.size(); i += 4) opaque = image.rgba[i] == 255;
-  return opaque ? "data:image/jpeg;base64," + base64(encode_jpeg(image, kJpegQuality))
-                : "data:image/png;base64," + base64(encode_png(image));
+  const ShownPicture picture = shown_picture(image, kJpegQuality);
+  return "data:" + picture.type + ";base64," + base64(picture.bytes);
 }
 
 Json textures_json(const Object& object) {
@@ -108,20 +106,6 @@ Json textures_json(const Object& object) {
     list.push_back(data_url(shrink_to(*texture, std::max(16, int(kTextureSide_px * shrink)))));
   }
   return list;
-}
-
-const char* wrap_name(Wrap wrap) {
-  switch (wrap) {
-    case Wrap::kRepeat:
-      return "repeat";
-    case Wrap::kMirror:
-      return "mirror";
-    case Wrap::kClamp:
-      return "clamp";
-    case Wrap::kDecal:
-      break;
-  }
-  return "decal";
 }
 
 Json materials_json(const Object& object) {

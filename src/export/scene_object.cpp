@@ -1,5 +1,7 @@
 #include "export/scene_object.h"
 
+#include "image/files.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -98,6 +100,27 @@ ShownObject shown_object(const Object& object, std::size_t most_triangles) {
     }
   }
   return shown;
+}
+
+ShownPicture shown_picture(const Image& image, int jpeg_quality) {
+  bool opaque = true;
+  for (std::size_t i = 3; opaque && i < image.rgba.size(); i += 4) opaque = image.rgba[i] == 255;
+  if (opaque) return {"image/jpeg", encode_jpeg(image, jpeg_quality)};
+  return {"image/png", encode_png(image)};
+}
+
+const char* wrap_name(Wrap wrap) {
+  switch (wrap) {
+    case Wrap::kRepeat:
+      return "repeat";
+    case Wrap::kMirror:
+      return "mirror";
+    case Wrap::kClamp:
+      return "clamp";
+    case Wrap::kDecal:
+      break;
+  }
+  return "decal";
 }
 
 }  // namespace hydrodip

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "image/image.h"
 #include "object/object.h"
 
 namespace hydrodip {
@@ -34,5 +36,15 @@ struct ShownObject {
 // Corners that agree in everything share a vertex. Above `most_triangles`, vertices are drawn
 // together on a grid just fine enough.
 ShownObject shown_object(const Object& object, std::size_t most_triangles);
+
+// A picture as pages read it: JPEG of that quality, or PNG if some of it is not opaque.
+struct ShownPicture {
+  std::string type;  // "image/jpeg"
+  std::vector<std::uint8_t> bytes;
+};
+ShownPicture shown_picture(const Image& image, int jpeg_quality);
+
+// "repeat", "mirror", "clamp", "decal".
+const char* wrap_name(Wrap wrap);
 
 }  // namespace hydrodip

@@ -10,7 +10,13 @@ constexpr std::array<const char*, 4> kAlone = {"--json", "--quiet", "--strict", 
 constexpr std::array<const char*, 6> kWithValue = {"-o",      "--output", "--rotate",
                                                    "--depth", "--down",   "--dips"};
 
-std::string quoted(const std::string& word) {
+bool is_one_of(const std::string& word, const auto& list) {
+  return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+}  // namespace
+
+std::string shell_word(const std::string& word) {
   const bool is_plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) ||
            std::string("-_./=,:+@%").find(c) != std::string::npos;
@@ -21,16 +27,10 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-bool is_one_of(const std::string& word, const auto& list) {
-  return std::find(list.begin(), list.end(), word) != list.end();
-}
-
-}  // namespace
-
 std::string command_text(const JobConfig& config, const std::string& command) {
   std::string text = "hydrodip " + command;
   const std::vector<std::string>& typed = config.command_line;
-  if (typed.size() < 3) return text + " " + quoted(config.model.string());
+  if (typed.size() < 3) return text + " " + shell_word(config.model.string());
   for (std::size_t i = 2; i < typed.size(); ++i) {
     const std::string name = typed[i].substr(0, typed[i].find('='));
     if (is_one_of(name, kAlone)) continue;
@@ -38,7 +38,7 @@ std::string command_text(const JobConfig& config, const std::string& command) {
       if (name == typed[i]) ++i;
       continue;
     }
-    text += " " + quoted(typed[i]);
+    text += " " + shell_word(typed[i]);
   }
   return text;
 }

@@ -143,13 +143,15 @@ Image seen_on_object(const DippedObject& dipped, const PrintedFilm& printed,
 // The rim is taped, and the sheet's marks stand there.
 void clear_margin(PrintedFilm& printed, const FilmOptions& film, const RunContext& context) {
   bool cleared = false;
-  for (int y = 0; y < printed.inks.height_px; ++y)
+  for (int y = 0; y < printed.inks.height_px; ++y) {
+    context.check_cancelled();
     for (int x = 0; x < printed.inks.width_px; ++x) {
       std::uint8_t* laid = printed.inks.pixel(x, y);
       if (is_free(film, printed.raster.to_film(x + 0.5, y + 0.5)) || is_blank(laid)) continue;
       std::fill_n(laid, 4, std::uint8_t{0});
       cleared = true;
     }
+  }
   if (cleared)
     context.warn(fmt::format(
         "The film image reaches into the {:g} mm that are taped; what lies there is not printed.",

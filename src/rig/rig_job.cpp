@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -22,14 +23,20 @@ Json read_json(const std::filesystem::path& file) {
   return Json::parse(bytes.begin(), bytes.end(), nullptr, false);
 }
 
-Json read_report(const std::filesystem::path& folder) {
+struct ReadReport {
+  Json json;
+  std::string sha256;
+};
+
+ReadReport read_report(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "report.json";
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored))
     throw InputError(
         fmt::format("{}: there is no report.json; name the folder that 'hydrodip print' wrote",
                     folder.string()));
-  Json report = read_json(file);
+  const std::vector<std::uint8_t> bytes = read_file(file);
+  Json report = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
   const bool usable = report.is_object() && report.contains("parameters") &&
                       report["parameters"].is_object() && report.contains("figures") &&
                       report["figures"].is_object() && report["figures"].contains("depth_mm");
@@ -37,7 +44,7 @@ Json read_report(const std::filesystem::path& folder) {
     throw InputError(fmt::format(
         "{}: this is not the report of a dip; print the model again with 'hydrodip print'",
         file.string()));
-  return report;
+  return {std::move(report), sha256_hex(bytes)};
 }
 
 // Values of parameters that this version does not know any more are left out.
@@ -157,7 +164,8 @@ void require_lowering_only(const RigJob& job) {
 }
 
 RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& sources) {
-  const Json report = read_report(folder);
+  const ReadReport read = read_report(folder);
+  const Json& report = read.json;
   if (report.contains("dips"))
     throw InputError(fmt::format(
         "{}: this job has several dips, each with a run sheet of its own: name one of them, as in "
@@ -170,7 +178,7 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
   apply_sources(job.config, sources);
   job.way_in = way_in(report, folder / "report.json");
   find_model(report, job);
-  job.report_sha256 = sha256_hex(read_file(folder / "report.json"));
+  job.report_sha256 = read.sha256;
   job.ink_coverage = ink_coverage(report);
   const Json& figures = report["figures"];
   if (!figures["depth_mm"].is_number() || !(figures["depth_mm"].get<double>() > 0))

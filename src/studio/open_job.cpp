@@ -636,8 +636,7 @@ std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::mesh(const std::string
   return nullptr;
 }
 
-std::optional<ShownMesh::Picture> OpenJob::texture(const std::string& id,
-                                                   std::size_t number) const {
+std::optional<ShownPicture> OpenJob::texture(const std::string& id, std::size_t number) const {
   const std::lock_guard lock(mutex_);
   for (const auto& [known, shown] : meshes_)
     if (known == id && number < shown->textures.size()) return shown->textures[number];

@@ -82,7 +82,7 @@ class OpenJob {
   // ---- what was computed ----
 
   std::shared_ptr<const std::vector<std::uint8_t>> mesh(const std::string& id) const;
-  std::optional<ShownMesh::Picture> texture(const std::string& id, std::size_t number) const;
+  std::optional<ShownPicture> texture(const std::string& id, std::size_t number) const;
   std::shared_ptr<const std::vector<std::uint8_t>> result(const std::string& id) const;
   std::shared_ptr<const std::vector<std::uint8_t>> dip(const std::string& id) const;
   Json counts() const;

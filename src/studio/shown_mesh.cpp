@@ -5,7 +5,6 @@
 
 #include "base/run_scope.h"
 #include "export/scene_object.h"
-#include "image/files.h"
 #include "image/resize.h"
 #include "studio/bundle.h"
 
@@ -14,28 +13,6 @@ namespace {
 
 constexpr std::size_t kMostTriangles = 250000;
 constexpr int kTextureSide_px = 2048, kJpegQuality = 90;
-
-const char* wrap_text(Wrap wrap) {
-  switch (wrap) {
-    case Wrap::kRepeat:
-      return "repeat";
-    case Wrap::kMirror:
-      return "mirror";
-    case Wrap::kClamp:
-      return "clamp";
-    case Wrap::kDecal:
-      break;
-  }
-  return "decal";
-}
-
-ShownMesh::Picture picture_of(const Image& image) {
-  const Image shown = shrink_to(image, kTextureSide_px);
-  bool opaque = true;
-  for (std::size_t i = 3; opaque && i < shown.rgba.size(); i += 4) opaque = shown.rgba[i] == 255;
-  if (opaque) return {"image/jpeg", encode_jpeg(shown, kJpegQuality)};
-  return {"image/png", encode_png(shown)};
-}
 
 std::uint8_t byte_of(float value) {
   return std::uint8_t(std::lround(255 * std::clamp(value, 0.0F, 1.0F)));
@@ -52,7 +29,7 @@ Json head_of(const Model& model, const Object& object, const ShownObject& shown,
     const LinearColor& c = material.base_color;
     materials.push_back({{"color", {c.r, c.g, c.b, c.a}},
                          {"texture", object.uvs.empty() ? -1 : material.texture},
-                         {"wrap", {wrap_text(material.wrap_u), wrap_text(material.wrap_v)}}});
+                         {"wrap", {wrap_name(material.wrap_u), wrap_name(material.wrap_v)}}});
   }
   for (std::size_t k = 0; k < object.textures.size(); ++k)
     textures.push_back(address + "/textures/" + std::to_string(k));
@@ -96,7 +73,8 @@ ShownMesh shown_mesh(const Model& model, const Object& object, const std::string
   if (!object.colors.empty()) bundle.add("color", colors, 4);
   bundle.add("index", shown.indices, 1);
   ShownMesh mesh{bundle.finish(), {}};
-  for (const auto& texture : object.textures) mesh.textures.push_back(picture_of(*texture));
+  for (const auto& texture : object.textures)
+    mesh.textures.push_back(shown_picture(shrink_to(*texture, kTextureSide_px), kJpegQuality));
   return mesh;
 }
 

@@ -6,19 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "export/scene_object.h"
 #include "hydrodip/hydrodip.h"
 #include "studio/json.h"
 
 namespace hydrodip {
 
 struct ShownMesh {
-  struct Picture {
-    std::string type;  // "image/png"
-    std::vector<std::uint8_t> bytes;
-  };
-
   std::vector<std::uint8_t> bundle;
-  std::vector<Picture> textures;
+  std::vector<ShownPicture> textures;
 };
 
 // `object`: the model's own, or one painted anew with the same triangles. `address`: of this mesh

@@ -64,12 +64,6 @@ std::vector<Dot> means_of(const std::vector<Dot>& dots) {
   return means;
 }
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) result += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return result;
-}
-
 class ResponsePicture {
  public:
   static constexpr double kPlotWidth = 240, kPlotHeight = 150, kLeft = 64, kTop = 34, kGap = 56;
@@ -91,7 +85,7 @@ class ResponsePicture {
     body_ += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:g}\" height=\"{:g}\" fill=\"#f6f7f9\"/>\n"
         "<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"t\">{}</text>\n",
-        left, top, kPlotWidth, kPlotHeight, left, top - 8, escaped(title));
+        left, top, kPlotWidth, kPlotHeight, left, top - 8, title);
     for (const Dot& dot : dots)
       body_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"/>\n", x(dot.x), y(dot.y));
     body_ += "<polyline points=\"";
@@ -103,7 +97,7 @@ class ResponsePicture {
     label(left + 6, top + kPlotHeight + 15, least_x, "s");
     label(left + kPlotWidth - 6, top + kPlotHeight + 15, most_x, "e");
     body_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"m\">{}</text>\n",
-                         left + kPlotWidth / 2, top + kPlotHeight + 29, escaped(axis));
+                         left + kPlotWidth / 2, top + kPlotHeight + 29, axis);
   }
 
   std::string svg() const {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "job/command_text.h"
+
 namespace hydrodip {
 namespace {
 
@@ -12,12 +14,6 @@ constexpr double kWanted_s = 120;   // of a task
 constexpr double kShortest_s = 10;  // worth a task of its own
 constexpr int kFew = 8;             // tasks to share at least, if they are worth it
 constexpr int kMost = 1000;         // Slurm's MaxArraySize is 1001 unless it is configured
-
-std::string single_quoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
 
 }  // namespace
 
@@ -58,7 +54,7 @@ set -eu
 cd {1}
 exec "${{HYDRODIP:-hydrodip}}" sweep run . --threads "${{SLURM_CPUS_PER_TASK:-1}}" --quiet
 )sh",
-      tasks, single_quoted(folder.string()));
+      tasks, shell_word(folder.string()));
 }
 
 }  // namespace hydrodip

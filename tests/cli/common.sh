@@ -72,6 +72,23 @@ end_header
 PLY
 }
 
+# A sweep over the coloured model, up to what it varies: write_sweep ELEMENTS STEP_MM < THE_REST
+write_sweep() {
+  write_colored colored.ply
+  cat > sweep.toml <<TOML
+[sweep]
+models = ["colored.ply"]
+quality = "draft"
+[set]
+"film.width_mm" = 100
+"film.height_mm" = 80
+"film.elements" = $1
+"dip.step_mm" = $2
+[vary]
+TOML
+  cat >> sweep.toml
+}
+
 # Settings that make a job quick.
 quick='--film 100x80 --set film.elements=800 --set dip.step_mm=1 --dpi 72
        --set preview.width_px=200 --set print.samples=1'

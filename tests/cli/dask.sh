@@ -24,17 +24,7 @@ one=$!
 worker two
 two=$!
 
-write_colored colored.ply
-cat > sweep.toml <<'TOML'
-[sweep]
-models = ["colored.ply"]
-quality = "draft"
-[set]
-"film.width_mm" = 100
-"film.height_mm" = 80
-"film.elements" = 2000
-"dip.step_mm" = 0.2
-[vary]
+write_sweep 2000 0.2 <<'TOML'
 "material.z_stretch" = { from = 0.3, to = 0.9, count = 100 }
 TOML
 "$hydrodip" sweep plan sweep.toml -o s --no-trial --quiet > /dev/null || fail 'sweep plan'

@@ -80,17 +80,7 @@ for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15; do
   sleep 1
 done
 
-write_colored colored.ply
-cat > sweep.toml <<'TOML'
-[sweep]
-models = ["colored.ply"]
-quality = "draft"
-[set]
-"film.width_mm" = 100
-"film.height_mm" = 80
-"film.elements" = 4000
-"dip.step_mm" = 0.05
-[vary]
+write_sweep 4000 0.05 <<'TOML'
 "material.z_stretch" = { from = 0.3, to = 0.9, count = 24 }
 TOML
 HYDRODIP=$hydrodip

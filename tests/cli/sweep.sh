@@ -3,17 +3,7 @@
 # parallel where it is installed.
 . "$(dirname "$0")/common.sh"
 
-write_colored colored.ply
-cat > sweep.toml <<'TOML'
-[sweep]
-models = ["colored.ply"]
-quality = "draft"
-[set]
-"film.width_mm" = 100
-"film.height_mm" = 80
-"film.elements" = 800
-"dip.step_mm" = 0.5
-[vary]
+write_sweep 800 0.5 <<'TOML'
 "material.z_stretch" = { from = 0.3, to = 0.9, count = 12 }
 "object.rotate_deg" = [[0, 0, 0], [0, 0, 90]]
 TOML

@@ -10,18 +10,10 @@
 namespace hydrodip {
 namespace {
 
-FilmOptions small_film() {
-  FilmOptions options;
-  options.width_mm = 160;
-  options.height_mm = 150;
-  options.elements = 3000;
-  return options;
-}
-
 DipResult dipped(const shapes::Shape& shape, const DipOptions& options, double depth_mm = 0) {
   const Surface surface(shape.positions, shape.triangles);
   RunContext context;
-  return dip(make_film_mesh(small_film()), shape.positions, shape.triangles, surface,
+  return dip(make_film_mesh(shapes::zoo_film()), shape.positions, shape.triangles, surface,
              make_trajectory({depth_mm}, shape.positions), options, context);
 }
 

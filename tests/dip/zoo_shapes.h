@@ -7,8 +7,18 @@
 #include <string>
 
 #include "exact/shapes.h"
+#include "film/film.h"
 
 namespace hydrodip::shapes {
+
+// Coarse, and large enough for all of them.
+inline FilmOptions zoo_film() {
+  FilmOptions options;
+  options.width_mm = 160;
+  options.height_mm = 150;
+  options.elements = 3000;
+  return options;
+}
 
 inline Shape placed(Shape shape, const Vec3& turn_deg = Vec3::Zero(),
                     const Vec2& center = Vec2::Zero()) {

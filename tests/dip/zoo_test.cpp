@@ -13,14 +13,6 @@
 namespace hydrodip {
 namespace {
 
-FilmOptions coarse_film() {
-  FilmOptions options;
-  options.width_mm = 160;
-  options.height_mm = 150;
-  options.elements = 3000;
-  return options;
-}
-
 void expect_sound(const shapes::Shape& shape, const FilmOptions& film_options, DipOptions options,
                   const RunContext& context, const TrajectoryOptions& way = {}) {
   const FilmMesh mesh = make_film_mesh(film_options);
@@ -86,7 +78,7 @@ class Zoo : public ::testing::TestWithParam<int> {
   void expect_ends_soundly(const TrajectoryOptions& way = {}) {
     const auto animal = shapes::zoo()[std::size_t(GetParam())];
     SCOPED_TRACE(animal.name);
-    expect_sound(animal.shape, coarse_film(), options, RunContext(), way);
+    expect_sound(animal.shape, shapes::zoo_film(), options, RunContext(), way);
   }
   DipOptions options;
 };
@@ -119,11 +111,11 @@ TEST(ZooSlow, TwoMillionTriangles) {
   RunContext context;
   DipOptions options;
   options.step_mm = 0.5;
-  expect_sound(shape, coarse_film(), options, context, {.depth_mm = 20});
+  expect_sound(shape, shapes::zoo_film(), options, context, {.depth_mm = 20});
 }
 
 TEST(ZooSlow, WarnsWhenTheObjectTouchesTheRim) {
-  FilmOptions film = coarse_film();
+  FilmOptions film = shapes::zoo_film();
   film.width_mm = film.height_mm = 60;
   film.elements = 800;
   const shapes::Shape shape = shapes::box({-25, -5, 0}, {25, 5, 8});

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "contains.h"
 #include "history/history_job.h"
+#include "refusal.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {
@@ -39,15 +40,6 @@ const std::string kDone =
 void write_run(const TemporaryFolder& job, const std::string& name, const std::string& log) {
   fs::create_directories(job / name);
   write_file(job / name / "log.jsonl", log);
-}
-
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(History, TakesInWhatTheLogsSay) {

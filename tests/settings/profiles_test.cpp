@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "contains.h"
+#include "refusal.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {
@@ -22,15 +23,6 @@ JobConfig with_profile(const std::filesystem::path& file) {
   sources.profiles = {file};
   apply_sources(config, sources);
   return config;
-}
-
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Profiles, AreReadBackAsTheyWereSaved) {

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "contains.h"
 #include "job/jobs.h"
+#include "refusal.h"
 #include "sweep/scripts.h"
 #include "sweep/sweep_jobs.h"
 #include "sweep/sweep_table.h"
@@ -19,15 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 // A model that dips in a moment, and a place for sweeps over it.
 class SweepTest : public ::testing::Test {
