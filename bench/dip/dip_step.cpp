@@ -1,6 +1,7 @@
 // What a dip step costs: against Newton with supernodal CHOLMOD, as the mesh grows, on hard ink,
 // and how near the inner loops come to what this machine can do. Lengths of runs are chosen so that
 // all of it takes a few minutes; judge the ratios, which come from one run.
+// `bench_dip_step growth`: as the mesh grows only, for machines that are busy otherwise.
 
 #include <fmt/format.h>
 
@@ -122,7 +123,11 @@ void hard_ink() {
 }  // namespace
 }  // namespace hydrodip
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc > 1 && argv[1] == std::string("growth")) {
+    hydrodip::growth();
+    return 0;
+  }
   hydrodip::against_cholmod();
   hydrodip::growth();
   hydrodip::hard_ink();
