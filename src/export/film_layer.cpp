@@ -104,24 +104,31 @@ FilmLayer color_error_layer(const TriangleMesh& object, const FilmMap& map,
   return layer;
 }
 
-FilmLayer pixel_layer(const std::string& key, const std::vector<float>& values, int width_px,
-                      int height_px, const Vec2& sheet_mm, const Box2& extent) {
+FilmLayer pixel_layer(const std::string& key, const std::function<float(std::size_t pixel)>& value,
+                      int width_px, int height_px, const Vec2& sheet_mm, const Box2& extent) {
   FilmLayer layer = empty_layer(key, extent);
   std::vector<double> sum(layer.values.size(), 0);
   std::vector<int> count(layer.values.size(), 0);
   const Vec2 size = layer.extent.max - layer.extent.min;
+  // The cells of pixel columns; -1: none.
+  std::vector<int> column_of(std::size_t(width_px), -1);
+  for (int x = 0; x < width_px; ++x) {
+    const double u = (x + 0.5) / width_px * sheet_mm.x() - 0.5 * sheet_mm.x();
+    const double column = (u - layer.extent.min.x()) / size.x() * layer.width;
+    if (column >= 0 && column < layer.width) column_of[std::size_t(x)] = int(column);
+  }
   for (int y = 0; y < height_px && !layer.values.empty(); ++y) {
     check_cancelled();
+    const double u = 0.5 * sheet_mm.y() - (y + 0.5) / height_px * sheet_mm.y();
+    const double row = (layer.extent.max.y() - u) / size.y() * layer.height;
+    if (!(row >= 0 && row < layer.height)) continue;
     for (int x = 0; x < width_px; ++x) {
-      const float value = values[std::size_t(y) * std::size_t(width_px) + std::size_t(x)];
-      if (std::isnan(value)) continue;
-      const Vec2 u((x + 0.5) / width_px * sheet_mm.x() - 0.5 * sheet_mm.x(),
-                   0.5 * sheet_mm.y() - (y + 0.5) / height_px * sheet_mm.y());
-      const double column = (u.x() - layer.extent.min.x()) / size.x() * layer.width;
-      const double row = (layer.extent.max.y() - u.y()) / size.y() * layer.height;
-      if (!(column >= 0 && row >= 0 && column < layer.width && row < layer.height)) continue;
-      const auto cell = std::size_t(int(row)) * std::size_t(layer.width) + std::size_t(int(column));
-      sum[cell] += double(value);
+      if (column_of[std::size_t(x)] < 0) continue;
+      const float here = value(std::size_t(y) * std::size_t(width_px) + std::size_t(x));
+      if (std::isnan(here)) continue;
+      const auto cell =
+          std::size_t(int(row)) * std::size_t(layer.width) + std::size_t(column_of[std::size_t(x)]);
+      sum[cell] += double(here);
       ++count[cell];
     }
   }

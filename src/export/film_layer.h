@@ -1,6 +1,7 @@
 // A quantity over the film coordinates of the part that lies on the object, as a small raster.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,10 +23,10 @@ struct FilmLayer {
 FilmLayer color_error_layer(const TriangleMesh& object, const FilmMap& map,
                             const Appearance& appearance, const RunContext& context);
 
-// From a value per pixel of the film image (`width_px` x `height_px` over the whole sheet; NaN:
-// nothing there): means over cells, within the film coordinates `extent`.
-FilmLayer pixel_layer(const std::string& key, const std::vector<float>& values, int width_px,
-                      int height_px, const Vec2& sheet_mm, const Box2& extent);
+// From a value per pixel of the film image (`width_px` x `height_px` over the whole sheet, row by
+// row; NaN: nothing there): means over cells, within the film coordinates `extent`.
+FilmLayer pixel_layer(const std::string& key, const std::function<float(std::size_t pixel)>& value,
+                      int width_px, int height_px, const Vec2& sheet_mm, const Box2& extent);
 
 // By how many percent film that lies on the object is pressed together where it is most: 100 (1 -
 // smallest principal stretch), never below 0.

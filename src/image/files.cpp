@@ -23,6 +23,7 @@
 #include "base/math.h"
 #include "base/run_scope.h"
 #include "image/decoders.h"
+#include "image/deflate_rows.h"
 
 namespace hydrodip {
 
@@ -222,15 +223,27 @@ struct PngWriter {
   PngWriter& operator=(const PngWriter&) = delete;
 };
 
-bool png_encode(PngWriter& writer, const Image& image, bool drop_alpha, double dpi, Bytes& out) {
+// Each row begins with its filter's number and holds differences to the row above.
+std::vector<Bytes> png_rows(const Image& image, bool drop_alpha) {
+  constexpr std::uint8_t kUp = 2;
+  const std::size_t channels = drop_alpha ? 3 : 4, width = std::size_t(image.width_px);
+  return deflate_rows(std::size_t(image.height_px), 1 + channels * width,
+                      [&](std::size_t y, std::uint8_t* out) {
+                        *out++ = kUp;
+                        const std::uint8_t* here = image.pixel(0, int(y));
+                        const std::uint8_t* above = y > 0 ? here - 4 * width : nullptr;
+                        for (std::size_t x = 0; x < width; ++x)
+                          for (std::size_t k = 0; k < channels; ++k)
+                            *out++ = std::uint8_t(here[4 * x + k] - (above ? above[4 * x + k] : 0));
+                      });
+}
+
+bool png_encode(PngWriter& writer, const Image& image, bool drop_alpha, double dpi,
+                const std::vector<Bytes>& rows, Bytes& out) {
   png_structp png = writer.png;
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_write_fn(png, &out, png_append, png_no_flush);
   png_set_user_limits(png, 0x7fffffff, 0x7fffffff);
-  // Film images are large and mostly flat: a low level and one filter are nearly as small and
-  // several times faster.
-  png_set_compression_level(png, 3);
-  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
   png_set_IHDR(png, writer.info, png_uint_32(image.width_px), png_uint_32(image.height_px), 8,
                drop_alpha ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
@@ -240,12 +253,9 @@ bool png_encode(PngWriter& writer, const Image& image, bool drop_alpha, double d
     png_set_pHYs(png, writer.info, per_m, per_m, PNG_RESOLUTION_METER);
   }
   png_write_info(png, writer.info);
-  if (drop_alpha) png_set_filler(png, 0, PNG_FILLER_AFTER);
-  for (int y = 0; y < image.height_px; ++y) {
-    check_cancelled();
-    png_write_row(png, image.pixel(0, y));
-  }
-  png_write_end(png, nullptr);
+  for (const Bytes& piece : rows)
+    png_write_chunk(png, reinterpret_cast<png_const_bytep>("IDAT"), piece.data(), piece.size());
+  png_write_chunk(png, reinterpret_cast<png_const_bytep>("IEND"), nullptr, 0);
   return true;
 }
 
@@ -527,10 +537,12 @@ Bytes encode_png(const Image& image, double dpi) {
   if (image.width_px <= 0 || image.height_px <= 0) {
     throw InputError("An image without pixels cannot be written as PNG.");
   }
+  const bool drop_alpha = opaque(image);
+  const std::vector<Bytes> rows = png_rows(image, drop_alpha);
   Bytes out;
   char message[kMessageSize] = {};
   PngWriter writer(message);
-  if (!png_encode(writer, image, opaque(image), dpi, out)) {
+  if (!png_encode(writer, image, drop_alpha, dpi, rows, out)) {
     throw InputError(fmt::format("The image could not be written as PNG: {}.", message));
   }
   return out;

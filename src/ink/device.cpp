@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "image/to_byte.h"
 #include "ink/color_model.h"
 #include "ink/profiles.h"
 
@@ -26,10 +27,7 @@ class DeviceModel : public ColorModel {
 }  // namespace
 
 std::array<std::uint8_t, 4> to_bytes(const Inks& inks) {
-  const auto byte = [](float amount) {
-    return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(amount, 0.0f, 1.0f)));
-  };
-  return {byte(inks.c), byte(inks.m), byte(inks.y), byte(inks.k)};
+  return {to_byte(inks.c), to_byte(inks.m), to_byte(inks.y), to_byte(inks.k)};
 }
 
 Inks from_bytes(const std::uint8_t* cmyk) {

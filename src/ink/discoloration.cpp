@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 
-#include "base/filled.h"
 #include "base/parallel.h"
+#include "image/blank_image.h"
+#include "image/blank_pages.h"
+#include "image/to_byte.h"
 #include "ink/difference.h"
+#include "transfer/area_ratio.h"
 
 namespace hydrodip {
 
@@ -66,12 +69,9 @@ SrgbColor over_base(const SrgbColor& color, const LinearColor& base) {
 }
 
 void store(const SrgbColor& color, std::uint8_t* pixel) {
-  const auto byte = [](float value) {
-    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
-  };
-  pixel[0] = byte(color.r);
-  pixel[1] = byte(color.g);
-  pixel[2] = byte(color.b);
+  pixel[0] = to_byte(color.r);
+  pixel[1] = to_byte(color.g);
+  pixel[2] = to_byte(color.b);
   pixel[3] = 255;
 }
 
@@ -104,6 +104,49 @@ void separate_row(const Image& image, int y, const ColorModel& model, const Line
   }
 }
 
+// Some of a row's pixels and the inks on them, which are looked at all at once.
+class InkedPixels {
+ public:
+  void add(int x, const Inks& inks) {
+    columns_.push_back(x);
+    inks_.push_back(inks);
+  }
+  // see(x, color) for each, and none are left.
+  template <class See>
+  void look(const ColorModel& model, const See& see) {
+    colors_.resize(inks_.size());
+    model.look(inks_.data(), colors_.data(), inks_.size());
+    for (std::size_t i = 0; i < columns_.size(); ++i) see(columns_[i], colors_[i]);
+    columns_.clear();
+    inks_.clear();
+  }
+
+ private:
+  std::vector<int> columns_;
+  std::vector<Inks> inks_;
+  std::vector<SrgbColor> colors_;
+};
+
+// CIEDE2000 between pixels; many pairs come again nearby.
+class Differences {
+ public:
+  float between(const std::uint8_t* a, const std::uint8_t* b) {
+    std::uint64_t pair = 0;
+    for (const std::uint8_t* pixel : {a, b})
+      for (int k = 0; k < 3; ++k) pair = 256 * pair + pixel[k];
+    Known& known = known_[(pair * 0x9E3779B97F4A7C15U) >> 52U];
+    if (known.pair != pair) known = {pair, static_cast<float>(color_difference(srgb(a), srgb(b)))};
+    return known.difference;
+  }
+
+ private:
+  struct Known {
+    std::uint64_t pair = 0;  // black and black
+    float difference = 0;
+  };
+  std::vector<Known> known_ = std::vector<Known>(4096);
+};
+
 // How much too much the neediest point asks for: 1 if everything fits.
 float overshoot(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
                 const InkingOptions& options) {
@@ -114,7 +157,7 @@ float overshoot(const Image& wanted, const std::vector<float>& area_ratio, const
     float& most = of_row[std::size_t(y)];
     for (int x = 0; x < wanted.width_px; ++x) {
       const std::size_t i = std::size_t(y) * std::size_t(wanted.width_px) + std::size_t(x);
-      const Inks needed = inks[std::size_t(x)].times(area_ratio[i]);
+      const Inks needed = inks[std::size_t(x)].times(ratio_or_one(area_ratio[i]));
       most = std::max({most, needed.c, needed.m, needed.y, needed.k,
                        needed.density() / static_cast<float>(options.limit)});
     }
@@ -141,8 +184,10 @@ Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const
                 const InkingOptions& options, const RunContext& context) {
   const RunScope scope(context);
   Inking result;
-  result.inks = InkImage(wanted.width_px, wanted.height_px);
-  const std::vector<float> unstretched(options.compensate ? 0 : area_ratio.size(), 1.0F);
+  result.inks.width_px = wanted.width_px;
+  result.inks.height_px = wanted.height_px;
+  result.inks.cmyk = blank<std::uint8_t>(wanted.rgba.size());
+  const auto unstretched = blank<float>(options.compensate ? 0 : area_ratio.size());
   const std::vector<float>& ratio = options.compensate ? area_ratio : unstretched;
   if (options.policy == GamutPolicy::kScale)
     result.lightened = 1 / double(overshoot(wanted, ratio, model, options));
@@ -153,7 +198,7 @@ Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const
       if (wanted.pixel(x, y)[3] == 0) continue;
       const std::size_t i = std::size_t(y) * std::size_t(wanted.width_px) + std::size_t(x);
       const Inks laid = compensated(inks[std::size_t(x)].times(float(result.lightened)),
-                                    double(ratio[i]), options.policy, options.limit);
+                                    double(ratio_or_one(ratio[i])), options.policy, options.limit);
       const auto bytes = to_bytes(laid);
       std::copy(bytes.begin(), bytes.end(), result.inks.pixel(x, y));
     }
@@ -162,22 +207,19 @@ Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const
 }
 
 Image look_on_film(const InkImage& inks, const Image& wanted, const ColorModel& model) {
-  Image image(inks.width_px, inks.height_px);
+  Image image = blank_image(inks.width_px, inks.height_px);
   for_each_row(inks.height_px, [&](int y) {
-    for (int x = 0; x < inks.width_px; ++x) {
-      if (wanted.pixel(x, y)[3] == 0) continue;
-      const Inks laid = from_bytes(inks.pixel(x, y));
-      SrgbColor color;
-      model.look(&laid, &color, 1);
-      store(color, image.pixel(x, y));
-    }
+    InkedPixels row;
+    for (int x = 0; x < inks.width_px; ++x)
+      if (wanted.pixel(x, y)[3] != 0) row.add(x, from_bytes(inks.pixel(x, y)));
+    row.look(model, [&](int x, const SrgbColor& color) { store(color, image.pixel(x, y)); });
   });
   return image;
 }
 
 Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
                      const ColorModel& model, const LinearColor& base) {
-  Image image(inks.width_px, inks.height_px);
+  Image image = blank_image(inks.width_px, inks.height_px);
   const bool white = is_white(base);
   const Inks none;
   SrgbColor bare;
@@ -186,18 +228,19 @@ Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
   std::array<std::uint8_t, 4> blank{};
   store(bare, blank.data());
   for_each_row(inks.height_px, [&](int y) {
+    InkedPixels row;
     for (int x = 0; x < inks.width_px; ++x) {
       const std::uint8_t* laid = inks.pixel(x, y);
+      const std::size_t i = std::size_t(y) * std::size_t(inks.width_px) + std::size_t(x);
       if (is_blank(laid)) {
-        std::copy(blank.begin(), blank.end(), image.pixel(x, y));
+        if (area_ratio[i] != 0) std::copy(blank.begin(), blank.end(), image.pixel(x, y));
         continue;
       }
-      const std::size_t i = std::size_t(y) * std::size_t(inks.width_px) + std::size_t(x);
-      const Inks left = paled(from_bytes(laid), double(area_ratio[i]));
-      SrgbColor color;
-      model.look(&left, &color, 1);
-      store(white ? color : over_base(color, base), image.pixel(x, y));
+      row.add(x, paled(from_bytes(laid), double(ratio_or_one(area_ratio[i]))));
     }
+    row.look(model, [&](int x, const SrgbColor& color) {
+      store(white ? color : over_base(color, base), image.pixel(x, y));
+    });
   });
   return image;
 }
@@ -222,12 +265,13 @@ Reach measure_reach(const Image& wanted, const Image& on_object, const FilmStret
   const auto counts = [&](std::size_t i) {
     return stretch.on_object[i] != 0 && wanted.rgba[4 * i + 3] == 255;
   };
-  reach.difference = filled(pixels, 0.0F);
+  reach.difference = blank<float>(pixels);
   parallel_for(pixels, kPixelGrain, [&](std::size_t begin, std::size_t end) {
+    Differences differences;
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint8_t *asked = &wanted.rgba[4 * i], *got = &on_object.rgba[4 * i];
       if (!counts(i) || std::equal(asked, asked + 3, got)) continue;
-      reach.difference[i] = static_cast<float>(color_difference(srgb(asked), srgb(got)));
+      reach.difference[i] = differences.between(asked, got);
     }
   });
   double within = 0, beyond = 0;
@@ -236,7 +280,7 @@ Reach measure_reach(const Image& wanted, const Image& on_object, const FilmStret
   for (std::size_t i = 0; i < pixels; ++i) {
     check();
     if (!counts(i)) continue;
-    const double area = pixel_mm * pixel_mm * double(stretch.area_ratio[i]);
+    const double area = pixel_mm * pixel_mm * double(ratio_or_one(stretch.area_ratio[i]));
     const double difference = double(reach.difference[i]);
     reach.compared_mm2 += area;
     reach.largest = std::max(reach.largest, difference);

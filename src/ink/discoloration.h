@@ -40,7 +40,7 @@ struct Inking {
 };
 
 // The inks to print so that `wanted` (straight alpha: 0 where nothing is to be printed) appears on
-// the object. area_ratio: per pixel. Ink lies on the base colour as a filter: the light that comes
+// the object. area_ratio: FilmStretch's. Ink lies on the base as a filter: the light that comes
 // back is that from white film times the base.
 Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
                 const InkingOptions& options, const RunContext& context);
@@ -50,7 +50,7 @@ Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const
 Image look_on_film(const InkImage& inks, const Image& wanted, const ColorModel& model);
 
 // The same film pixel by pixel as it will look on the object, paled and over the base colour.
-// Opaque everywhere.
+// Transparent where there is no ink and no film on the object.
 Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
                      const ColorModel& model, const LinearColor& base);
 

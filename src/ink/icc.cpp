@@ -130,11 +130,13 @@ class ProfileModel : public ColorModel {
   }
 
   void look(const Inks* inks, SrgbColor* colors, std::size_t count) const override {
+    const auto percent = [](float amount) { return 100 * std::clamp(amount, 0.0f, 1.0f); };
+    std::vector<Inks> percents(count);
+    for (std::size_t i = 0; i < count; ++i)
+      percents[i] = {percent(inks[i].c), percent(inks[i].m), percent(inks[i].y),
+                     percent(inks[i].k)};
+    cmsDoTransform(look_.get(), percents.data(), colors, static_cast<cmsUInt32Number>(count));
     for (std::size_t i = 0; i < count; ++i) {
-      const auto percent = [](float amount) { return 100 * std::clamp(amount, 0.0f, 1.0f); };
-      const Inks one = {percent(inks[i].c), percent(inks[i].m), percent(inks[i].y),
-                        percent(inks[i].k)};
-      cmsDoTransform(look_.get(), &one, &colors[i], 1);
       SrgbColor& seen = colors[i];
       seen = {std::clamp(seen.r, 0.0f, 1.0f), std::clamp(seen.g, 0.0f, 1.0f),
               std::clamp(seen.b, 0.0f, 1.0f)};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/file.h"
@@ -18,6 +19,7 @@
 #include "object/bake.h"
 #include "render/maps.h"
 #include "render/preview.h"
+#include "render/telling_views.h"
 #include "report/findings.h"
 #include "report/report.h"
 #include "session/appearance_of.h"
@@ -125,19 +127,15 @@ Appearance fading(const Appearance& shown, const JobRecord& record) {
 // preview.png, whose bytes are returned, and gamut.png (empty: none), which shows the same views.
 std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
                                       const std::filesystem::path& gamut_png,
-                                      const JobRecord& record, const Appearance& shown,
-                                      const SheetRaster& raster, const std::string& caption) {
-  const DippedObject& dipped = record.dipped();
-  PreviewOptions options;
-  options.width_px = record.config.preview_width_px;
-  options.base = record.paint().base();
-  options.standing = standing_of(dipped.posed, way_up(record.config));
+                                      const TellingViews& views, const JobRecord& record,
+                                      const Appearance& shown, const SheetRaster& raster,
+                                      const std::string& caption) {
   std::vector<PreviewPair> pairs(1);
   pairs[0].shown = fading(shown, record);
   pairs[0].caption = caption;
   if (!gamut_png.empty()) pairs.push_back(reach_pair(record, shown, raster));
-  const std::vector<Image> pictures = render_previews(dipped.posed.mesh(), dipped.posed.surface(),
-                                                      *dipped.film, pairs, options, record.context);
+  const std::vector<Image> pictures =
+      render_previews(views, pairs, record.paint().base(), record.context);
   if (!gamut_png.empty()) write_picture(gamut_png, pictures[1]);
   return write_picture(preview_png, pictures[0]);
 }
@@ -145,33 +143,27 @@ std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
 // How far each colour is from what was wanted, where there is film with ink.
 FilmLayer reach_layer(const JobRecord& record, const SheetRaster& raster) {
   const InkResult& ink = *record.ink;
-  std::vector<float> difference;
-  difference.reserve(ink.reach.difference.size());
-  CheckEvery check(1 << 16);
-  for (std::size_t i = 0; i < ink.reach.difference.size(); ++i) {
-    check();
-    const bool blank = ink.ink.wanted.rgba[4 * i + 3] == 0;
-    difference.push_back(blank ? std::numeric_limits<float>::quiet_NaN() : ink.reach.difference[i]);
-  }
+  const auto difference = [&](std::size_t pixel) {
+    const bool blank = ink.ink.wanted.rgba[4 * pixel + 3] == 0;
+    return blank ? std::numeric_limits<float>::quiet_NaN() : ink.reach.difference[pixel];
+  };
   return pixel_layer("out_of_gamut", difference, raster.width_px(), raster.height_px(),
                      Vec2(raster.width_mm, raster.height_mm), record.dipped().map->covered());
 }
 
-Image draw_maps(const JobRecord& record) {
+Image draw_maps(const TellingViews& views, const JobRecord& record) {
   const DippedObject& dipped = record.dipped();
   MapOptions options;
-  options.width_px = record.config.preview_width_px;
   options.tear_stretch = record.config.design.dip.material.tear_stretch;
   options.doubtful = doubtful_stretch(record.config.design.dip.material);
-  options.standing = standing_of(dipped.posed, way_up(record.config));
   options.caption = map_caption(dipped.angles, &dipped.coverage);
   options.direction_at = dipped.direction_at;
   if (!dipped.air->pockets.empty())
     options.in_air = [&](int triangle, const Vec3& position) {
       return dipped.air->holds(triangle, position);
     };
-  return render_maps(dipped.posed.mesh(), dipped.posed.surface(), *dipped.film, *dipped.map,
-                     options, record.context);
+  return render_maps(views, dipped.posed.mesh(), *dipped.film, *dipped.map, options,
+                     record.context);
 }
 
 // Quantities over the film, and what is learnt from them. Every verdict needs that, so it comes
@@ -192,10 +184,9 @@ std::vector<FilmLayer> measure_layers(const JobRecord& record, const Appearance&
 
 // What the 3D view shows.
 std::string make_scene(const JobRecord& record, const Object& looks,
-                       const std::vector<FilmLayer>& layers, const Image& film_image,
+                       const std::vector<FilmLayer>& layers, const Image& sheet,
                        const SheetRaster& raster) {
   const DippedObject& dipped = record.dipped();
-  const Image sheet = shrink_to(film_image, kPageTextureSide_px);
   SceneSource scene{looks, *dipped.film, *dipped.history, sheet};
   scene.sheet_width_mm = raster.width_mm;
   scene.sheet_height_mm = raster.height_mm;
@@ -208,12 +199,10 @@ std::string make_scene(const JobRecord& record, const Object& looks,
 }
 
 void write_glb(const std::filesystem::path& path, const JobRecord& record, const Object& looks,
-               const Image& film_image, const SheetRaster& raster) {
+               const Image& sheet, const SheetRaster& raster) {
   const DippedObject& dipped = record.dipped();
-  const int texture_px = record.config.preview_texture_px;
-  write_preview_glb(path, looks, dipped.posed.surface(), *dipped.film,
-                    shrink_to(film_image, 2 * texture_px), raster.width_mm, raster.height_mm,
-                    record.paint().base(), texture_px);
+  write_preview_glb(path, looks, dipped.posed.surface(), *dipped.film, sheet, raster.width_mm,
+                    raster.height_mm, record.paint().base(), record.config.preview_texture_px);
 }
 
 }  // namespace
@@ -231,15 +220,25 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
   const Object looks = painted_object(dipped.posed.mesh(), record.paint());
   const Appearance shown = appearance_of(record.finish);
   std::vector<FilmLayer> layers;
+  // Once for all who want as many pixels.
+  const Image glb_sheet = shrink_to(film_image, 2 * record.config.preview_texture_px);
+  std::optional<TellingViews> views;
   if (record.ink != nullptr)
     previews.ink = ink_amounts(record.ink->ink.inking.inks, record.config.design.inking.limit);
   // The longest first.
   if (record.config.pictures) {
     layers = measure_layers(record, shown, raster, previews);
-    tasks.emplace_back(
-        [&] { previews.pictures.scene = make_scene(record, looks, layers, film_image, raster); });
+    views.emplace(dipped.posed.mesh(), dipped.posed.surface(), *dipped.film,
+                  record.config.preview_width_px, standing_of(dipped.posed, way_up(record.config)),
+                  false, record.context);
+    tasks.emplace_back([&] {
+      const bool is_enough = 2 * record.config.preview_texture_px >= kPageTextureSide_px;
+      previews.pictures.scene =
+          make_scene(record, looks, layers,
+                     shrink_to(is_enough ? glb_sheet : film_image, kPageTextureSide_px), raster);
+    });
     add("maps.png", [&](const auto& path) {
-      previews.pictures.maps_png = write_picture(path, draw_maps(record));
+      previews.pictures.maps_png = write_picture(path, draw_maps(*views, record));
     });
     const std::filesystem::path preview_png = folder.path("preview.png");
     const std::filesystem::path gamut_png =
@@ -247,10 +246,10 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
     const std::string caption = caption_start + picture_caption(full_report(record, previews));
     tasks.emplace(tasks.begin(), [&, preview_png, gamut_png, caption] {
       previews.pictures.preview_png =
-          write_pairs(preview_png, gamut_png, record, shown, raster, caption);
+          write_pairs(preview_png, gamut_png, *views, record, shown, raster, caption);
     });
   }
-  add("preview.glb", [&](const auto& path) { write_glb(path, record, looks, film_image, raster); });
+  add("preview.glb", [&](const auto& path) { write_glb(path, record, looks, glb_sheet, raster); });
   add("film.ply", [&](const auto& path) { write_film_ply(path, *dipped.film); });
   record.context.side_by_side("drawing the previews", tasks);
   return previews;

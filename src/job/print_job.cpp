@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "base/error.h"
 #include "base/output_folder.h"
@@ -44,9 +46,10 @@ DesignedJob designed(const ReadyJob& job, Timings& times, const RunContext& cont
       design({prepared.posed, *prepared.paint, Allotment(), *job.printer.model, job.config.design},
              times, context);
   require_ink(made, job.config);
-  Finish finish(
-      paint_as_dipped(prepared.paint, made.dipped),
-      {{made.dipped, made.raster, std::make_shared<const Image>(made.ink.ink.on_object)}});
+  // Held once, by the finish.
+  auto look = std::make_shared<const Image>(std::move(made.ink.ink.on_object));
+  Finish finish(paint_as_dipped(prepared.paint, made.dipped),
+                {{made.dipped, made.raster, std::move(look)}});
   return {std::move(made), std::move(finish)};
 }
 

@@ -136,7 +136,7 @@ Image seen_on_object(const DippedObject& dipped, const PrintedFilm& printed,
                      const ColorModel& model, const LinearColor& base, bool pales,
                      const RunContext& context) {
   FilmStretch stretch = film_stretch(*dipped.map, printed.raster, 0, context);
-  if (!pales) std::fill(stretch.area_ratio.begin(), stretch.area_ratio.end(), 1.0F);
+  if (!pales) stretch.area_ratio.assign(stretch.area_ratio.size(), 0);
   return look_on_object(printed.inks, stretch.area_ratio, model, base);
 }
 

@@ -44,34 +44,17 @@ const ColorRamp& stretch_ramp() {
 
 // --- Page ---
 
-// Lengths are given for a picture 1600 wide.
-struct MapLayout {
-  double unit = 1;
-  int width = 0, height = 0;
-  int margin = 0, gap = 0, header = 0, legend = 0, footer = 0;
-  int cell_width = 0;
-  std::array<int, 2> cell_height{};  // per direction
+struct MapLayout : ViewLayout {
+  int header = 0, legend = 0, footer = 0;
 
-  int px(double length) const { return int(std::lround(length * unit)); }
   int cell_x(int column) const { return margin + column * (cell_width + gap); }
 };
 
-MapLayout make_layout(const TriangleMesh& object, const std::array<Vec3, 2>& directions,
-                      const MapOptions& options) {
-  MapLayout layout;
-  layout.width = std::clamp(options.width_px, 64, kWidestPicture_px);
-  layout.unit = layout.width / 1600.0;
-  layout.margin = layout.px(28);
-  layout.gap = layout.px(12);
+MapLayout make_layout(const ViewLayout& views, const MapOptions& options) {
+  MapLayout layout{views};
   layout.header = layout.px(86);
   layout.legend = layout.px(205);
   layout.footer = options.caption.empty() ? layout.margin : layout.px(72);
-  layout.cell_width = (layout.width - 2 * layout.margin - layout.gap) / 2;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double share =
-        std::clamp(1 / projected_aspect(object, directions[i], options.standing), 0.55, 0.95);
-    layout.cell_height[i] = std::max(8, int(std::lround(share * layout.cell_width)));
-  }
   return layout;
 }
 
@@ -254,29 +237,14 @@ void draw_stretch_legend(Legend legend, double largest, const MapOptions& option
 
 // --- Views ---
 
-struct View {
-  Camera camera;
-  int height_px;
-};
-
-View view_from(const TriangleMesh& object, const Vec3& direction, const Standing& standing,
-               const MapLayout& layout, int height_px) {
-  return {frame_object(object, direction, double(layout.cell_width) / height_px, 0.80, standing),
-          height_px};
-}
-
 double mm_per_px(const TriangleMesh& object, const Camera& camera, int width_px) {
   const double distance = (camera.eye - object.bounds().center()).dot(camera.back);
   return 2 * camera.half_width * distance / width_px;
 }
 
-ViewPair render(const MapScene& scene, const Surface& surface, const View& view,
-                const MapLayout& layout, const RunContext& context) {
-  const double hatch_mm =
-      kHatch * layout.unit * mm_per_px(scene.object, view.camera, layout.cell_width);
-  const Appearance appearance = map_appearance(scene, view.camera, hatch_mm);
-  const Studio studio{scene.object, surface, scene.normals, true, kFlatness};
-  return LitView(studio, view.camera, layout.cell_width, view.height_px, context).show(appearance);
+Appearance appearance_in(const MapScene& scene, const Camera& camera, const ViewLayout& layout) {
+  return map_appearance(scene, camera,
+                        kHatch * layout.unit * mm_per_px(scene.object, camera, layout.cell_width));
 }
 
 bool some_stays_dry(const TriangleMesh& object, const DippingDirection& direction_at) {
@@ -340,6 +308,14 @@ Appearance map_appearance(const MapScene& scene, const Camera& camera, double ha
 Image render_maps(const TriangleMesh& object, const Surface& surface, const DippedFilm& film,
                   const FilmMap& map, const MapOptions& options, const RunContext& context) {
   const RunScope scope(context);
+  const TellingViews views(object, surface, film, options.width_px, options.standing, false,
+                           context);
+  return render_maps(views, object, film, map, options, context);
+}
+
+Image render_maps(const TellingViews& views, const TriangleMesh& object, const DippedFilm& film,
+                  const FilmMap& map, const MapOptions& options, const RunContext& context) {
+  const RunScope scope(context);
   const std::string activity = "drawing the maps";
   context.progress(activity, 0);
   const std::vector<CornerNormals> normals = map_normals(object);
@@ -348,9 +324,7 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
   const MapScene scene{object,          normals, direction_at,
                        options.in_air,  &map,    stretch_scale_end(film, options.tear_stretch),
                        options.doubtful};
-  const std::array<Vec3, 2> directions =
-      telling_directions(object, surface, film, options.standing);
-  const MapLayout layout = make_layout(object, directions, options);
+  const MapLayout layout = make_layout(views.layout(), options);
 
   const int views_height = layout.cell_height[0] + layout.gap + layout.cell_height[1];
   Image page =
@@ -358,9 +332,8 @@ Image render_maps(const TriangleMesh& object, const Surface& surface, const Dipp
   int y = layout.header;
   for (std::size_t i = 0; i < 2; ++i) {
     context.progress(activity, 0.1 + 0.45 * double(i));
-    const View view =
-        view_from(object, directions[i], options.standing, layout, layout.cell_height[i]);
-    const ViewPair pair = render(scene, surface, view, layout, context);
+    const ViewPair pair =
+        views.view(i).show(appearance_in(scene, views.camera(i), layout), {normals, kFlatness});
     paste(page, pair.wanted, layout.cell_x(0), y);
     paste(page, pair.predicted, layout.cell_x(1), y);
     y += layout.cell_height[i] + layout.gap;
@@ -388,15 +361,18 @@ Image render_angle_map(const TriangleMesh& object, const Surface& surface,
   const MapScene scene{object, normals, direction_at, options.in_air};
   const std::array<Vec3, 2> directions =
       telling_directions(object, surface, DippedFilm{}, options.standing);
-  const MapLayout layout = make_layout(object, directions, options);
+  const MapLayout layout =
+      make_layout(ViewLayout(object, directions, options.width_px, options.standing), options);
 
   const int height = std::max(layout.cell_height[0], layout.cell_height[1]);
   Image page = blank_page(layout.width, layout.header + height + layout.legend + layout.footer);
   for (int i = 0; i < 2; ++i) {
     context.progress(activity, 0.1 + 0.45 * i);
-    const View view =
-        view_from(object, directions[std::size_t(i)], options.standing, layout, height);
-    const ViewPair pair = render(scene, surface, view, layout, context);
+    const Camera camera = frame_object(object, directions[std::size_t(i)],
+                                       double(layout.cell_width) / height, 0.80, options.standing);
+    const LitView view({object, surface, normals, true, kFlatness}, camera, layout.cell_width,
+                       height, context);
+    const ViewPair pair = view.show(appearance_in(scene, camera, layout));
     paste(page, pair.wanted, layout.cell_x(i), layout.header);
   }
   draw_title(page, layout, "dipping angle, from two sides", 0.5 * layout.width);

@@ -12,6 +12,7 @@
 #include "object/dip_angles.h"
 #include "render/appearance.h"
 #include "render/normals.h"
+#include "render/telling_views.h"
 #include "render/view.h"
 #include "transfer/coverage.h"
 #include "transfer/film_map.h"
@@ -33,6 +34,10 @@ struct MapOptions {
 
 // Both maps side by side, a row for each direction. `map` is the film's over the same object.
 Image render_maps(const TriangleMesh& object, const Surface& surface, const DippedFilm& film,
+                  const FilmMap& map, const MapOptions& options, const RunContext& context);
+
+// The same of views that are lit already, as wide as those are.
+Image render_maps(const TellingViews& views, const TriangleMesh& object, const DippedFilm& film,
                   const FilmMap& map, const MapOptions& options, const RunContext& context);
 
 // The angle map alone; no film is needed.

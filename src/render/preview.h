@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "film/film.h"
 #include "render/appearance.h"
+#include "render/telling_views.h"
 #include "render/view.h"
 
 namespace hydrodip {
@@ -32,5 +33,8 @@ struct PreviewPair {
 std::vector<Image> render_previews(const TriangleMesh& object, const Surface& surface,
                                    const DippedFilm& film, const std::vector<PreviewPair>& pairs,
                                    const PreviewOptions& options, const RunContext& context);
+// The same of views that are lit already, as wide as those are.
+std::vector<Image> render_previews(const TellingViews& views, const std::vector<PreviewPair>& pairs,
+                                   const LinearColor& base, const RunContext& context);
 
 }  // namespace hydrodip

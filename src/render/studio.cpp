@@ -148,8 +148,8 @@ class Stage {
     return position_at(studio_.object, {s.triangle, s.u, s.v});
   }
 
-  Vec3 smooth_normal(const Sample& s) const {
-    const Vec3 n = normal_between(studio_.normals[std::size_t(s.triangle)], s.u, s.v);
+  static Vec3 smooth_normal(const std::vector<CornerNormals>& normals, const Sample& s) {
+    const Vec3 n = normal_between(normals[std::size_t(s.triangle)], s.u, s.v);
     if (n.isZero()) return s.flat;
     return n.dot(s.flat) < 0 ? Vec3(-n) : n;
   }
@@ -241,7 +241,8 @@ class Stage {
         light.sky += 1.0 / kSkyRays;
       }
     }
-    if (smooth_normal(s).dot(lamp_) < -kLampRadius) return light;  // turned away: no shadow to know
+    if (smooth_normal(studio_.normals, s).dot(lamp_) < -kLampRadius)
+      return light;  // turned away: no shadow to know
     for (int k = 0; k < kLampRays; ++k) {
       const Vec3& d = lamp_rays_[std::size_t(phase + kPhases * k)];
       if (!blocked(origin, d)) light.lamp += 1.0 / kLampRays;
@@ -368,8 +369,12 @@ class Stage {
 // One pair of appearances on a stage.
 class Painter {
  public:
-  Painter(const Stage& stage, const Appearance& appearance)
-      : studio_(stage.studio()), camera_(stage.camera()), stage_(stage), appearance_(appearance) {}
+  Painter(const Stage& stage, const Appearance& appearance, const Shading& shading)
+      : studio_(stage.studio()),
+        camera_(stage.camera()),
+        stage_(stage),
+        appearance_(appearance),
+        shading_(shading) {}
 
   ViewPair run() {
     shade_centres();
@@ -393,13 +398,13 @@ class Painter {
   }
 
   Shade shade(const Sample& s, const Light& light) const {
-    const Vec3 n = stage_.smooth_normal(s);
+    const Vec3 n = Stage::smooth_normal(shading_.normals, s);
     const double sky =
         kSkyBelow + (kSkyAbove - kSkyBelow) * (0.5 + 0.5 * n.dot(stage_.ground_normal()));
     const double lit_level = sky * (0.12 + 0.88 * light.sky) +
                              kLamp * std::max(0.0, n.dot(stage_.lamp())) * light.lamp +
                              kFill * std::max(0.0, n.dot(camera_.back));
-    const double level = lit_level + studio_.flatness * (1 - lit_level);
+    const double level = lit_level + shading_.flatness * (1 - lit_level);
     const Vec3 p = stage_.position(s);
     const Vec3 normal = face_normal(studio_.object, s.triangle);
     const SurfacePoint point{s.triangle, s.u, s.v};
@@ -490,6 +495,7 @@ class Painter {
   const Camera& camera_;
   const Stage& stage_;
   const Appearance& appearance_;
+  const Shading shading_;
   std::vector<Shade> shade_;
 };
 
@@ -505,7 +511,11 @@ LitView::LitView(const Studio& studio, const Camera& camera, int width_px, int h
 LitView::~LitView() = default;
 
 ViewPair LitView::show(const Appearance& appearance) const {
-  return Painter(impl_->stage, appearance).run();
+  const Studio& studio = impl_->stage.studio();
+  return show(appearance, {studio.normals, studio.flatness});
+}
+ViewPair LitView::show(const Appearance& appearance, const Shading& shading) const {
+  return Painter(impl_->stage, appearance, shading).run();
 }
 
 }  // namespace hydrodip

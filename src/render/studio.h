@@ -22,6 +22,12 @@ struct Studio {
   double flatness = 0;
 };
 
+// How surfaces look in that light, where other than the studio says.
+struct Shading {
+  const std::vector<CornerNormals>& normals;
+  double flatness = 0;
+};
+
 struct ViewPair {
   Image wanted;
   Image predicted;
@@ -36,6 +42,7 @@ class LitView {
   ~LitView();
 
   ViewPair show(const Appearance& appearance) const;
+  ViewPair show(const Appearance& appearance, const Shading& shading) const;
 
  private:
   struct Impl;

@@ -10,15 +10,17 @@
 #include <cmath>
 #include <cstring>
 #include <ctime>
-#include <exception>
 #include <fstream>
 #include <limits>
 #include <new>
 #include <stdexcept>
 #include <system_error>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
+#include "image/deflate_rows.h"
 #include "sheet/winansi.h"
 
 namespace hydrodip {
@@ -47,73 +49,53 @@ Handle made(HPDF_Doc document, Handle handle) {
   return handle;
 }
 
-// Hands the picture to libharu while it writes the file, row by row as 8-bit RGB over white, so
-// that no second copy of a large image is ever in memory. Each row begins with a PNG filter number
-// and holds differences to the left neighbour, which compress several times better.
+using Bytes = std::vector<std::uint8_t>;
+
+// The picture as 8-bit RGB over white, or inks, compressed. Each row begins with a PNG filter
+// number and holds differences to the left neighbour, which compress several times better.
+std::vector<Bytes> compressed(const Picture& picture, const PixelBox& box, bool mirror) {
+  constexpr std::uint8_t kSubFilter = 1;
+  const auto channels = std::size_t(picture.channels);
+  return deflate_rows(std::size_t(box.height()), 1 + channels * std::size_t(box.width()),
+                      [&](std::size_t row, std::uint8_t* out) {
+                        *out++ = kSubFilter;
+                        std::array<std::uint8_t, 4> left{};
+                        for (int i = 0; i < box.width(); ++i) {
+                          const auto color = picture.read(
+                              mirror ? box.x_end - 1 - i : box.x_begin + i, box.y_begin + int(row));
+                          for (std::size_t k = 0; k < channels; ++k)
+                            *out++ = static_cast<std::uint8_t>(color[k] - left[k]);
+                          left = color;
+                        }
+                      });
+}
+
+// Hands them to libharu while it writes the file.
 class PixelStream {
  public:
-  PixelStream(const Picture& picture, const PixelBox& box, bool mirror, const RunContext& context)
-      : picture_(picture),
-        box_(box),
-        mirror_(mirror),
-        context_(context),
-        row_(1 + std::size_t(picture.channels) * std::size_t(box.width())) {
-    rewind();
-  }
+  explicit PixelStream(std::vector<Bytes> pieces) : pieces_(std::move(pieces)) {}
 
-  void rewind() {
-    next_row_ = box_.y_begin;
-    at_ = row_.size();
-  }
+  void rewind() { piece_ = at_ = 0; }
 
   // Fills as much of the buffer as there are bytes left; returns how much.
   std::size_t read(std::uint8_t* buffer, std::size_t size) {
     std::size_t done = 0;
-    while (done < size && (at_ < row_.size() || load_next_row())) {
-      const std::size_t count = std::min(size - done, row_.size() - at_);
-      std::memcpy(buffer + done, row_.data() + at_, count);
+    while (done < size && piece_ < pieces_.size()) {
+      const Bytes& piece = pieces_[piece_];
+      const std::size_t count = std::min(size - done, piece.size() - at_);
+      if (count > 0) std::memcpy(buffer + done, piece.data() + at_, count);
       done += count;
       at_ += count;
+      if (at_ < piece.size()) continue;
+      ++piece_;
+      at_ = 0;
     }
     return done;
   }
 
-  // What was thrown while libharu was calling: exceptions must not pass through C code.
-  std::exception_ptr failure;
-
  private:
-  bool load_next_row() {
-    if (next_row_ == box_.y_end) return false;
-    context_.check_cancelled();
-    if (next_row_ % 64 == 0) {
-      context_.progress("writing the PDF", double(next_row_ - box_.y_begin) / box_.height());
-    }
-    fill_row(next_row_++);
-    at_ = 0;
-    return true;
-  }
-
-  void fill_row(int y) {
-    constexpr std::uint8_t kSubFilter = 1;
-    std::uint8_t* out = row_.data();
-    *out++ = kSubFilter;
-    std::array<std::uint8_t, 4> left{};
-    for (int i = 0; i < box_.width(); ++i) {
-      const auto color = picture_.read(mirror_ ? box_.x_end - 1 - i : box_.x_begin + i, y);
-      for (std::size_t k = 0; k < std::size_t(picture_.channels); ++k) {
-        *out++ = static_cast<std::uint8_t>(color[k] - left[k]);
-      }
-      left = color;
-    }
-  }
-
-  Picture picture_;
-  PixelBox box_;
-  bool mirror_;
-  const RunContext& context_;
-  std::vector<std::uint8_t> row_;
-  std::size_t at_ = 0;
-  int next_row_ = 0;
+  std::vector<Bytes> pieces_;
+  std::size_t piece_ = 0, at_ = 0;
 };
 
 PixelStream& pixels_of(HPDF_Stream stream) { return *static_cast<PixelStream*>(stream->attr); }
@@ -121,13 +103,7 @@ PixelStream& pixels_of(HPDF_Stream stream) { return *static_cast<PixelStream*>(s
 HPDF_STATUS read_pixels(HPDF_Stream stream, HPDF_BYTE* buffer, HPDF_UINT* size) {
   PixelStream& pixels = pixels_of(stream);
   const HPDF_UINT wanted = *size;
-  *size = 0;
-  try {
-    *size = static_cast<HPDF_UINT>(pixels.read(buffer, wanted));
-  } catch (...) {
-    pixels.failure = std::current_exception();
-    return HPDF_FILE_IO_ERROR;
-  }
+  *size = static_cast<HPDF_UINT>(pixels.read(buffer, wanted));
   return *size < wanted ? HPDF_STREAM_EOF : HPDF_OK;
 }
 
@@ -140,6 +116,11 @@ HPDF_INT32 tell_pixels(HPDF_Stream) { return 0; }
 
 // libharu only asks whether there is anything.
 HPDF_UINT32 size_of_pixels(HPDF_Stream) { return std::numeric_limits<HPDF_UINT32>::max(); }
+
+// What libharu would write, had it compressed the stream itself.
+HPDF_STATUS write_filter(HPDF_Dict, HPDF_Stream stream) {
+  return HPDF_Stream_WriteStr(stream, "/Filter [ /FlateDecode ]\012");
+}
 
 // One entry for the one filter, that is deflate. (image->filterParams would do the same, but is
 // leaked when the file cannot be opened.)
@@ -196,6 +177,8 @@ HPDF_Image add_image(HPDF_Doc document, const PixelBox& box, const Picture& pict
   HPDF_Dict_AddNumber(image, "Width", box.width());
   HPDF_Dict_AddNumber(image, "Height", box.height());
   announce_row_filters(document, image, picture.channels, box.width());
+  image->filter = HPDF_STREAM_FILTER_NONE;
+  image->write_fn = write_filter;
   HPDF_Stream_Free(image->stream);
   image->stream = nullptr;
   image->stream = made(document, HPDF_CallbackReader_New(image->mmgr, read_pixels, rewind_pixels,
@@ -292,7 +275,8 @@ void PdfDocument::draw_image(const Picture& picture, const std::vector<std::uint
                              const PixelBox& box, bool mirror, const Box2& place,
                              const RunContext& context) {
   const HPDF_Doc document = impl_->document.get();
-  impl_->pictures.push_back(std::make_unique<PixelStream>(picture, box, mirror, context));
+  context.progress("writing the PDF", 0);
+  impl_->pictures.push_back(std::make_unique<PixelStream>(compressed(picture, box, mirror)));
   const HPDF_Image image =
       made(document, add_image(document, box, picture, *impl_->pictures.back()));
   if (!profile.empty()) {
@@ -382,8 +366,6 @@ void PdfDocument::save(const std::filesystem::path& path) {
   errno = 0;
   const HPDF_STATUS status = HPDF_SaveToFile(document, path.c_str());
   const int reason = errno;
-  for (const auto& picture : impl_->pictures)
-    if (picture->failure) std::rethrow_exception(picture->failure);
   if (status == HPDF_OK && is_whole(path)) return;
   const bool known = status != HPDF_OK && reason != 0;
   throw InputError(fmt::format("{}: cannot be written ({}); choose another folder or free space.",

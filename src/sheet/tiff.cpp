@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/run_scope.h"
 #include "sheet/page.h"
 #include "sheet/sheet.h"
@@ -77,12 +79,84 @@ void fill_row(const InkImage& image, int y, bool mirror, std::vector<std::uint8_
                 row.begin() + 4 * std::ptrdiff_t(x));
 }
 
-bool write_rows(TIFF* tiff, const InkImage& image, bool mirror) {
-  std::vector<std::uint8_t> row(std::size_t(4) * std::size_t(image.width_px));
-  for (int y = 0; y < image.height_px; ++y) {
+// A file in memory, as far as libtiff needs one to write a strip.
+struct MemoryFile {
+  std::vector<std::uint8_t> bytes;
+  std::size_t at = 0;
+};
+
+extern "C" {
+
+static tmsize_t memory_read(thandle_t, void*, tmsize_t) { return 0; }
+
+static tmsize_t memory_write(thandle_t handle, void* data, tmsize_t count) {
+  auto& file = *static_cast<MemoryFile*>(handle);
+  try {
+    file.bytes.resize(std::max(file.bytes.size(), file.at + std::size_t(count)));
+  } catch (const std::bad_alloc&) {
+    return -1;
+  }
+  std::copy_n(static_cast<const std::uint8_t*>(data), count,
+              file.bytes.begin() + std::ptrdiff_t(file.at));
+  file.at += std::size_t(count);
+  return count;
+}
+
+static toff_t memory_seek(thandle_t handle, toff_t offset, int from) {
+  auto& file = *static_cast<MemoryFile*>(handle);
+  if (from == SEEK_CUR) offset += file.at;
+  if (from == SEEK_END) offset += file.bytes.size();
+  file.at = std::size_t(offset);
+  return offset;
+}
+
+static int memory_close(thandle_t) { return 0; }
+
+static toff_t memory_size(thandle_t handle) {
+  return static_cast<MemoryFile*>(handle)->bytes.size();
+}
+
+}  // extern "C"
+
+// What libtiff makes of one strip; empty if it cannot.
+std::vector<std::uint8_t> compressed_strip(const InkImage& image, int first_row, bool mirror) {
+  const int rows = std::min(kRowsPerStrip, image.height_px - first_row);
+  std::vector<std::uint8_t> pixels, row(std::size_t(4) * std::size_t(image.width_px));
+  for (int y = first_row; y < first_row + rows; ++y) {
     check_cancelled();
     fill_row(image, y, mirror, row);
-    if (TIFFWriteScanline(tiff, row.data(), static_cast<std::uint32_t>(y), 0) != 1) return false;
+    pixels.insert(pixels.end(), row.begin(), row.end());
+  }
+  MemoryFile file;
+  std::string message;
+  TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
+  TIFFOpenOptionsSetErrorHandlerExtR(options, keep_message, &message);
+  TIFFOpenOptionsSetWarningHandlerExtR(options, ignore_message, nullptr);
+  const Tiff tiff(TIFFClientOpenExt("strip", "w", &file, memory_read, memory_write, memory_seek,
+                                    memory_close, memory_size, nullptr, nullptr, options));
+  TIFFOpenOptionsFree(options);
+  if (!tiff) return {};
+  describe(tiff.get(), image, {}, 0);
+  TIFFSetField(tiff.get(), TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(rows));
+  if (TIFFWriteEncodedStrip(tiff.get(), 0, pixels.data(), tmsize_t(pixels.size())) < 0) return {};
+  const auto begin = file.bytes.begin() + std::ptrdiff_t(TIFFGetStrileOffset(tiff.get(), 0));
+  return {begin, begin + std::ptrdiff_t(TIFFGetStrileByteCount(tiff.get(), 0))};
+}
+
+// Some strips at a time, which several threads compress.
+bool write_strips(TIFF* tiff, const InkImage& image, bool mirror) {
+  constexpr std::size_t kAtOnce = 32;
+  const std::size_t count = (std::size_t(image.height_px) + kRowsPerStrip - 1) / kRowsPerStrip;
+  for (std::size_t first = 0; first < count; first += kAtOnce) {
+    std::vector<std::vector<std::uint8_t>> strips(std::min(kAtOnce, count - first));
+    parallel_for(strips.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n)
+        strips[n] = compressed_strip(image, kRowsPerStrip * int(first + n), mirror);
+    });
+    for (std::size_t n = 0; n < strips.size(); ++n)
+      if (strips[n].empty() || TIFFWriteRawStrip(tiff, std::uint32_t(first + n), strips[n].data(),
+                                                 tmsize_t(strips[n].size())) < 0)
+        return false;
   }
   return TIFFFlush(tiff) == 1;
 }
@@ -149,7 +223,7 @@ void write_print_tiff(const std::filesystem::path& path, const InkImage& inks,
   bool written = tiff != nullptr;
   if (written) {
     describe(tiff.get(), inks, profile, options.dpi);
-    written = write_rows(tiff.get(), inks, !options.ink_side_up);
+    written = write_strips(tiff.get(), inks, !options.ink_side_up);
     tiff.reset();  // may still write, and complain
   }
   if (!written || !message.empty()) {

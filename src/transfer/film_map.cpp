@@ -102,9 +102,28 @@ struct FilmMap::Impl {
            film.is_whole_at(std::size_t(cursor.film_triangle), weight);
   }
 
+  Laid laid_at(std::int32_t film_triangle, const Vec3& weight) const {
+    const Triangle& t = film.mesh().triangles[std::size_t(film_triangle)];
+    Laid laid{weight, Vec3::Zero(), Vec3::Zero()};
+    for (std::size_t k = 0; k < 3; ++k) {
+      laid.point += weight[Eigen::Index(k)] * film.position[std::size_t(t[k])];
+      laid.direction += weight[Eigen::Index(k)] * normal[std::size_t(t[k])];
+    }
+    return laid;
+  }
+
   // The line through the film point along the normal, against one triangle of the object.
   std::optional<SurfacePoint> project_onto(int triangle, const Vec3& point,
                                            const Vec3& direction) const {
+    const auto on = project_onto_plane(triangle, point, direction);
+    if (!on || on->point.u < 0 || on->point.v < 0 || on->point.u + on->point.v > 1)
+      return std::nullopt;
+    return on->point;
+  }
+
+  // And against its plane.
+  std::optional<Projection> project_onto_plane(int triangle, const Vec3& point,
+                                               const Vec3& direction) const {
     const Triangle& t = object.triangles[std::size_t(triangle)];
     const Vec3& a = object.positions[std::size_t(t[0])];
     const Vec3 e1 = object.positions[std::size_t(t[1])] - a;
@@ -115,8 +134,8 @@ struct FilmMap::Impl {
     const Vec3 s = point - a, q = s.cross(e1);
     const double u = s.dot(p) / determinant, v = direction.dot(q) / determinant;
     const double distance = std::abs(e2.dot(q) / determinant);
-    if (u < 0 || v < 0 || u + v > 1 || distance > reach_mm) return std::nullopt;
-    return SurfacePoint{triangle, u, v};
+    if (!(distance <= reach_mm)) return std::nullopt;
+    return Projection{{triangle, u, v}, distance};
   }
 
   std::optional<SurfaceHit> project(const Vec3& point, const Vec3& direction) const {
@@ -179,12 +198,7 @@ FilmMap& FilmMap::operator=(FilmMap&&) noexcept = default;
 std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u, Cursor& cursor) const {
   Vec3 weight;
   if (!impl_->locate_on_object(u, cursor, weight)) return std::nullopt;
-  const Triangle& t = impl_->film.mesh().triangles[std::size_t(cursor.film_triangle)];
-  Vec3 point = Vec3::Zero(), direction = Vec3::Zero();
-  for (std::size_t k = 0; k < 3; ++k) {
-    point += weight[Eigen::Index(k)] * impl_->film.position[std::size_t(t[k])];
-    direction += weight[Eigen::Index(k)] * impl_->normal[std::size_t(t[k])];
-  }
+  auto [weights, point, direction] = impl_->laid_at(cursor.film_triangle, weight);
   const double length = direction.norm();
   if (length > 1e-6) {
     direction /= length;
@@ -201,6 +215,18 @@ std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u, Cursor& cursor) co
   if (!nearest) return std::nullopt;
   cursor.object_triangle = nearest->triangle;
   return SurfacePoint{nearest->triangle, nearest->u, nearest->v};
+}
+
+FilmMap::Laid FilmMap::laid(const Vec2& u, std::int32_t film_triangle) const {
+  Vec3 weight;
+  weights_in(impl_->film.mesh(), film_triangle, u, weight);
+  Laid laid = impl_->laid_at(film_triangle, weight);
+  laid.direction.stableNormalize();
+  return laid;
+}
+
+std::optional<FilmMap::Projection> FilmMap::onto(int object_triangle, const Laid& laid) const {
+  return impl_->project_onto_plane(object_triangle, laid.point, laid.direction);
 }
 
 std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u) const {

@@ -29,6 +29,19 @@ class FilmMap {
   std::optional<SurfacePoint> to_object(const Vec2& u, Cursor& cursor) const;
   std::optional<SurfacePoint> to_object(const Vec2& u) const;
 
+  // What to_object is made of, for triangles of film and object whether or not they meet at u.
+  struct Laid {
+    Vec3 weight;            // of the film triangle's corners
+    Vec3 point, direction;  // where its plane lies there, and the object's normal
+  };
+  Laid laid(const Vec2& u, std::int32_t film_triangle) const;
+  // Where that lands in the plane of a triangle of the object; nothing if it is too far.
+  struct Projection {
+    SurfacePoint point;
+    double distance_mm = 0;  // along the normal
+  };
+  std::optional<Projection> onto(int object_triangle, const Laid& laid) const;
+
   // Film coordinate (mm) that lands at a point of the object; nothing if it stays bare.
   std::optional<Vec2> to_film(const Vec3& position, const Vec3& normal) const;
 

@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
-#include "base/filled.h"
 #include "base/parallel.h"
+#include "image/blank_image.h"
+#include "image/blank_pages.h"
+#include "image/to_byte.h"
+#include "transfer/texture_mean.h"
 
 namespace hydrodip {
 
@@ -54,7 +59,23 @@ bool may_hold_ink(const Tile& tile, const SheetRaster& raster, const FilmMap& ma
   return map.nearest_covered(centre, reach).has_value();
 }
 
-// A pixel's samples, on a regular grid inside it.
+// SheetRaster::to_film for many pixels.
+class FilmGrid {
+ public:
+  explicit FilmGrid(const SheetRaster& raster)
+      : pixel_mm_(kMmPerInch / raster.dpi),
+        centre_x_(0.5 * raster.width_px()),
+        centre_y_(0.5 * raster.height_px()) {}
+  double pixel_mm() const { return pixel_mm_; }
+  Vec2 at(double x_px, double y_px) const {
+    return {(x_px - centre_x_) * pixel_mm_, (centre_y_ - y_px) * pixel_mm_};
+  }
+
+ private:
+  double pixel_mm_, centre_x_, centre_y_;
+};
+
+// The samples of a pixel, on a regular grid inside it.
 struct Samples {
   Vec2 corner;  // of the pixel, in film coordinates
   double pixel_mm;
@@ -65,31 +86,142 @@ struct Samples {
   }
 };
 
-// Where the outermost samples land (upper left, upper right, lower left, lower right), if film and
-// object are one triangle each for all of them: the others land between them then.
-std::optional<std::array<SurfacePoint, 4>> outermost(const FilmMap& map, const Samples& samples,
-                                                     FilmMap::Cursor& cursor) {
-  const int last = samples.per_axis - 1;
-  std::array<SurfacePoint, 4> points;
-  std::int32_t film_triangle = -1;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const auto point = map.to_object(samples.at(k % 2 == 0 ? 0 : last, k < 2 ? 0 : last), cursor);
-    if (!point) return std::nullopt;
-    if (k == 0) film_triangle = cursor.film_triangle;
-    if (cursor.film_triangle != film_triangle) return std::nullopt;
-    points[k] = *point;
-    if (points[k].triangle != points[0].triangle) return std::nullopt;
-  }
-  return points;
+// A function over a pixel by its values in the upper left, upper right, lower left and lower right
+// corner; 0 <= x, y <= 1 from the upper left one.
+template <class Value, class Of>
+double between(const std::array<Value, 4>& p, double x, double y, const Of& of) {
+  return (1 - y) * ((1 - x) * of(p[0]) + x * of(p[1])) + y * ((1 - x) * of(p[2]) + x * of(p[3]));
 }
 
-SurfacePoint between(const std::array<SurfacePoint, 4>& p, double x, double y) {
-  const auto mix = [&](double SurfacePoint::*part) {
-    return (1 - y) * ((1 - x) * p[0].*part + x * p[1].*part) +
-           y * ((1 - x) * p[2].*part + x * p[3].*part);
+// Where the corners of a tile's pixels land, each looked up once when it is first asked for.
+class Corners {
+ public:
+  struct Corner {
+    std::int32_t film_triangle = kUnasked;  // kNone: no film lies there
+    SurfacePoint point;
   };
-  return {p[0].triangle, mix(&SurfacePoint::u), mix(&SurfacePoint::v)};
+  static constexpr std::int32_t kUnasked = -2, kNone = -1;
+
+  Corners(const FilmMap& map, const FilmGrid& grid, const Tile& tile)
+      : map_(map), grid_(grid), tile_(tile), corners_(kStride * kStride) {}
+
+  // Of a pixel: upper left, upper right, lower left, lower right; nothing if one of them lands
+  // nowhere.
+  std::optional<std::array<Corner, 4>> of_pixel(int x, int y) {
+    std::array<Corner, 4> corners;
+    for (int k = 0; k < 4; ++k) {
+      corners[std::size_t(k)] = at(x + k % 2, y + k / 2);
+      if (corners[std::size_t(k)].film_triangle == kNone) return std::nullopt;
+    }
+    return corners;
+  }
+  FilmMap::Cursor& cursor() { return cursor_; }
+
+ private:
+  static constexpr std::size_t kStride = kTile_px + 1;
+
+  const Corner& at(int x, int y) {
+    Corner& corner = corners_[std::size_t(y - tile_.y0) * kStride + std::size_t(x - tile_.x0)];
+    if (corner.film_triangle != kUnasked) return corner;
+    const auto point = map_.to_object(grid_.at(x, y), cursor_);
+    corner.film_triangle = point ? cursor_.film_triangle : kNone;
+    if (point) corner.point = *point;
+    return corner;
+  }
+
+  const FilmMap& map_;
+  const FilmGrid& grid_;
+  const Tile tile_;
+  FilmMap::Cursor cursor_;
+  std::vector<Corner> corners_;
+};
+
+bool one_triangle(const std::array<Corners::Corner, 4>& corners) {
+  return std::all_of(corners.begin() + 1, corners.end(), [&](const Corners::Corner& corner) {
+    return corner.film_triangle == corners[0].film_triangle &&
+           corner.point.triangle == corners[0].point.triangle;
+  });
 }
+
+// Where samples of a pixel land that several triangles share: each pair of a film's and an object's
+// triangle among those of its corners, over the whole pixel.
+class SharedPixel {
+ public:
+  SharedPixel(const FilmMap& map, const FilmGrid& grid, int x, int y,
+              const std::array<Corners::Corner, 4>& corners)
+      : map_(map),
+        place_{grid.at(x, y), grid.at(x + 1, y), grid.at(x, y + 1), grid.at(x + 1, y + 1)} {
+    for (const auto& film : corners)
+      for (const auto& object : corners) add(film.film_triangle, object.point.triangle);
+  }
+
+  // At (x, y) from the upper left corner, of the pixel's side; nothing if none of them has it. In a
+  // valley of the object two may have it: then the nearer one.
+  std::optional<SurfacePoint> at(double x, double y) const {
+    constexpr double kInside = -1e-9;
+    std::optional<SurfacePoint> nearest;
+    double nearest_mm = std::numeric_limits<double>::infinity();
+    for (std::size_t n = 0; n < count_; ++n) {
+      const Pair& pair = pairs_[n];
+      const auto mix = [&](const auto& of) { return between(pair.landing, x, y, of); };
+      const double u = mix([](const FilmMap::Projection& p) { return p.point.u; });
+      const double v = mix([](const FilmMap::Projection& p) { return p.point.v; });
+      if (u < 0 || v < 0 || u + v > 1) continue;
+      const auto weight = [&](Eigen::Index k) {
+        return between(films_[pair.film].laid, x, y,
+                       [k](const FilmMap::Laid& laid) { return laid.weight[k]; });
+      };
+      if (weight(0) < kInside || weight(1) < kInside || weight(2) < kInside) continue;
+      const double distance_mm = mix([](const FilmMap::Projection& p) { return p.distance_mm; });
+      if (distance_mm >= nearest_mm) continue;
+      nearest_mm = distance_mm;
+      nearest = SurfacePoint{pair.object_triangle, u, v};
+    }
+    return nearest;
+  }
+
+ private:
+  struct Film {
+    std::int32_t triangle;
+    std::array<FilmMap::Laid, 4> laid;  // at the pixel's corners
+  };
+  struct Pair {
+    std::size_t film;
+    int object_triangle;
+    std::array<FilmMap::Projection, 4> landing;
+  };
+
+  std::size_t film_of(std::int32_t triangle) {
+    for (std::size_t n = 0; n < films_count_; ++n)
+      if (films_[n].triangle == triangle) return n;
+    Film& film = films_[films_count_];
+    film.triangle = triangle;
+    for (std::size_t k = 0; k < 4; ++k) film.laid[k] = map_.laid(place_[k], triangle);
+    return films_count_++;
+  }
+
+  void add(std::int32_t film_triangle, int object_triangle) {
+    const std::size_t film = film_of(film_triangle);
+    for (std::size_t n = 0; n < count_; ++n)
+      if (pairs_[n].film == film && pairs_[n].object_triangle == object_triangle) return;
+    Pair& pair = pairs_[count_];
+    pair.film = film;
+    pair.object_triangle = object_triangle;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto landing = map_.onto(object_triangle, films_[film].laid[k]);
+      if (!landing) return;
+      pair.landing[k] = *landing;
+    }
+    ++count_;
+  }
+
+  const FilmMap& map_;
+  std::array<Vec2, 4> place_;  // of the pixel's corners
+  std::array<Film, 4> films_;
+  std::size_t films_count_ = 0;
+  std::array<Pair, 16> pairs_;
+  std::size_t count_ = 0;
+};
 
 // Darker than that no ink is, so that a part of it can be told.
 constexpr float kDarkest = 0.003F;
@@ -108,7 +240,10 @@ LinearColor part_of_ink(const LinearColor& wanted, const LinearColor& base, floa
 class Printed {
  public:
   Printed(const Paint& paint, const Allotment& allotment)
-      : paint_(paint), allotment_(allotment), depends_on_film_(paint.depends_on_film()) {}
+      : paint_(paint),
+        allotment_(allotment),
+        depends_on_film_(paint.depends_on_film()),
+        textured_(allotment.is_full() && !depends_on_film_ ? paint.as_object() : nullptr) {}
 
   // `film`: where on the film it is printed.
   LinearColor at(const SurfacePoint& point, const Vec2& film) const {
@@ -120,39 +255,69 @@ class Printed {
     return part_of_ink(color, paint_.base(), share);
   }
 
+  // The mean over a pixel whose samples land on a grid of points.
+  LinearColor mean(const SurfaceGrid& grid, const Samples& samples) const {
+    if (textured_ != nullptr)
+      if (const auto color = mean_texture_color(*textured_, grid, paint_.base())) return *color;
+    const float weight = 1.0F / static_cast<float>(grid.per_axis * grid.per_axis);
+    ColorSum sum;
+    for (int row = 0; row < grid.per_axis; ++row)
+      for (int column = 0; column < grid.per_axis; ++column)
+        sum.add(at(grid.at(column, row), samples.at(column, row)), weight);
+    return sum.color();
+  }
+
  private:
   const Paint& paint_;
   const Allotment& allotment_;
   bool depends_on_film_;
+  const Object* textured_;  // the paint, if it is nothing else; or null
 };
 
+// Where the samples of a pixel land if film and object are one triangle each at its corners.
+SurfaceGrid grid_in(const std::array<Corners::Corner, 4>& corners, int per_axis) {
+  const double step = 1.0 / per_axis, first = 0.5 * step;
+  const auto mix = [&](double SurfacePoint::*part, double x, double y) {
+    return between(corners, x, y, [part](const auto& corner) { return corner.point.*part; });
+  };
+  SurfaceGrid grid;
+  grid.per_axis = per_axis;
+  grid.first = {corners[0].point.triangle, mix(&SurfacePoint::u, first, first),
+                mix(&SurfacePoint::v, first, first)};
+  grid.u_across = mix(&SurfacePoint::u, first + step, first) - grid.first.u;
+  grid.v_across = mix(&SurfacePoint::v, first + step, first) - grid.first.v;
+  grid.u_down = mix(&SurfacePoint::u, first, first + step) - grid.first.u;
+  grid.v_down = mix(&SurfacePoint::v, first, first + step) - grid.first.v;
+  return grid;
+}
+
 // One pixel of the film image.
-LinearColor pixel_color(const Printed& printed, const FilmMap& map, const SheetRaster& raster,
-                        const InverseOptions& options, int x, int y, FilmMap::Cursor& cursor) {
+LinearColor pixel_color(const Printed& printed, const FilmMap& map, const FilmGrid& grid,
+                        const InverseOptions& options, int x, int y, Corners& tile) {
   const int n = options.samples_per_axis;
-  // One look for all samples: out of reach, or in the midst of the bleed, which shows little.
-  const double radius = 0.71 * kMmPerInch / raster.dpi;
-  const Vec2 centre = raster.to_film(x + 0.5, y + 0.5);
-  const auto nearest = map.nearest_covered(centre, options.bleed_mm + radius, cursor);
-  if (!nearest) return {0, 0, 0, 0};
-  const double distance = (*nearest - centre).norm();
-  if (distance > radius && distance + radius < options.bleed_mm)
-    if (const auto point = map.to_object(*nearest, cursor)) return printed.at(*point, centre);
-  const float weight = 1.0f / static_cast<float>(n * n);
-  const Samples samples{raster.to_film(x, y), kMmPerInch / raster.dpi, n};
-  ColorSum sum;
-  if (const auto corners = n > 2 ? outermost(map, samples, cursor) : std::nullopt) {
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        const SurfacePoint point = between(*corners, double(i) / (n - 1), double(j) / (n - 1));
-        sum.add(printed.at(point, samples.at(i, j)), weight);
-      }
-    return sum.color();
+  const Samples samples{grid.at(x, y), grid.pixel_mm(), n};
+  FilmMap::Cursor& cursor = tile.cursor();
+  std::optional<SharedPixel> shared;
+  if (const auto corners = tile.of_pixel(x, y)) {
+    if (one_triangle(*corners)) return printed.mean(grid_in(*corners, n), samples);
+    shared.emplace(map, grid, x, y, *corners);
+  } else {
+    // One look for all samples: out of reach, or in the midst of the bleed, which shows little.
+    const double radius = 0.71 * grid.pixel_mm();
+    const Vec2 centre = grid.at(x + 0.5, y + 0.5);
+    const auto nearest = map.nearest_covered(centre, options.bleed_mm + radius, cursor);
+    if (!nearest) return {0, 0, 0, 0};
+    const double distance = (*nearest - centre).norm();
+    if (distance > radius && distance + radius < options.bleed_mm)
+      if (const auto point = map.to_object(*nearest, cursor)) return printed.at(*point, centre);
   }
+  const float weight = 1.0f / static_cast<float>(n * n);
+  ColorSum sum;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const Vec2 u = samples.at(i, j);
-      auto point = map.to_object(u, cursor);
+      auto point = shared ? shared->at((i + 0.5) / n, (j + 0.5) / n) : std::nullopt;
+      if (!point) point = map.to_object(u, cursor);
       if (!point && options.bleed_mm > 0)
         if (const auto near = map.nearest_covered(u, options.bleed_mm, cursor))
           point = map.to_object(*near, cursor);
@@ -165,7 +330,7 @@ void store(const LinearColor& color, std::uint8_t* pixel) {
   pixel[0] = linear_to_srgb8(color.r);
   pixel[1] = linear_to_srgb8(color.g);
   pixel[2] = linear_to_srgb8(color.b);
-  pixel[3] = static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(color.a, 0.0f, 1.0f)));
+  pixel[3] = to_byte(color.a);
   if (pixel[3] == 0) pixel[0] = pixel[1] = pixel[2] = 0;
 }
 
@@ -188,27 +353,22 @@ Vec2 SheetRaster::to_pixel(const Vec2& u) const {
 
 namespace {
 
-// paint(x, y, cursor) for every pixel that may carry ink, on any thread; progress as `stage`.
+// paint(tile) for every tile that may carry ink, on any thread; progress as `stage`.
 template <class Paint>
-void for_each_inked(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
-                    const std::string& stage, const RunContext& context, const Paint& paint) {
+void for_inked_tiles(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
+                     const std::string& stage, const RunContext& context, const Paint& paint) {
   const RunScope scope(context);
   std::vector<Tile> tiles = tiles_of(raster.width_px(), raster.height_px());
   std::erase_if(tiles, [&](const Tile& t) {
     check_cancelled();
     return !may_hold_ink(t, raster, map, bleed_mm);
   });
-  const auto paint_tile = [&](const Tile& tile) {
-    FilmMap::Cursor cursor;
-    for (int y = tile.y0; y < tile.y1; ++y)
-      for (int x = tile.x0; x < tile.x1; ++x) paint(x, y, cursor);
-  };
   // In rounds, so that progress comes from this thread.
   for (std::size_t first = 0; first < tiles.size(); first += kTilesPerRound) {
     context.progress(stage, double(first) / double(tiles.size()));
     const std::size_t count = std::min(kTilesPerRound, tiles.size() - first);
     parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) paint_tile(tiles[first + i]);
+      for (std::size_t i = begin; i < end; ++i) paint(tiles[first + i]);
     });
   }
   context.progress(stage, 1);
@@ -223,32 +383,38 @@ SheetRaster raster_of(const FilmOptions& film, double dpi) {
 Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& raster,
                  const InverseOptions& options, const Allotment& allotment,
                  const RunContext& context) {
-  Image image(raster.width_px(), raster.height_px());
+  Image image = blank_image(raster.width_px(), raster.height_px());
   const Printed printed(paint, allotment);
-  for_each_inked(map, raster, options.bleed_mm, "rastering", context,
-                 [&](int x, int y, FilmMap::Cursor& cursor) {
-                   store(pixel_color(printed, map, raster, options, x, y, cursor),
-                         image.pixel(x, y));
-                 });
+  const FilmGrid grid(raster);
+  for_inked_tiles(map, raster, options.bleed_mm, "rastering", context, [&](const Tile& tile) {
+    Corners corners(map, grid, tile);
+    for (int y = tile.y0; y < tile.y1; ++y)
+      for (int x = tile.x0; x < tile.x1; ++x)
+        store(pixel_color(printed, map, grid, options, x, y, corners), image.pixel(x, y));
+  });
   return image;
 }
 
 FilmStretch film_stretch(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
                          const RunContext& context) {
   const auto width = std::size_t(raster.width_px());
+  const FilmGrid grid(raster);
   FilmStretch result;
-  result.area_ratio = filled(width * std::size_t(raster.height_px()), 1.0F);
-  result.on_object = filled<std::uint8_t>(result.area_ratio.size(), 0);
-  for_each_inked(map, raster, bleed_mm, "measuring the stretch", context,
-                 [&](int x, int y, FilmMap::Cursor& cursor) {
-                   const Vec2 u = raster.to_film(x + 0.5, y + 0.5);
-                   // Not less than the outline's hair.
-                   const auto near = map.nearest_covered(u, std::max(bleed_mm, 1e-3), cursor);
-                   if (!near) return;
-                   const std::size_t i = std::size_t(y) * width + std::size_t(x);
-                   result.area_ratio[i] = static_cast<float>(map.area_ratio(*near, cursor));
-                   result.on_object[i] = *near == u;
-                 });
+  result.area_ratio = blank<float>(width * std::size_t(raster.height_px()));
+  result.on_object = blank<std::uint8_t>(result.area_ratio.size());
+  for_inked_tiles(map, raster, bleed_mm, "measuring the stretch", context, [&](const Tile& tile) {
+    FilmMap::Cursor cursor;
+    for (int y = tile.y0; y < tile.y1; ++y)
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        const Vec2 u = grid.at(x + 0.5, y + 0.5);
+        // Not less than the outline's hair.
+        const auto near = map.nearest_covered(u, std::max(bleed_mm, 1e-3), cursor);
+        if (!near) continue;
+        const std::size_t i = std::size_t(y) * width + std::size_t(x);
+        result.area_ratio[i] = static_cast<float>(map.area_ratio(*near, cursor));
+        result.on_object[i] = *near == u;
+      }
+  });
   return result;
 }
 

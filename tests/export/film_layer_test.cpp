@@ -70,7 +70,8 @@ TEST(FilmLayer, PixelsKeepTheirPlace) {
   Box2 extent;
   extent.add({0, 0});
   extent.add({40, 20});
-  const FilmLayer layer = pixel_layer("out_of_gamut", values, 2000, 1000, {200, 100}, extent);
+  const FilmLayer layer = pixel_layer(
+      "out_of_gamut", [&](std::size_t i) { return values[i]; }, 2000, 1000, {200, 100}, extent);
   for (int y = 0; y < layer.height; ++y) {
     for (int x = 0; x < layer.width; ++x) {
       const float value = layer.values[std::size_t(y * layer.width + x)];
