@@ -44,6 +44,8 @@ class Search {
         context_(context),
         watch_(watch) {
     rough_.film.elements = std::min(coarse_.film.elements, options.first_elements);
+    // Where only what to look at again is chosen, nobody asks what is promised.
+    rough_.asks_what_moves = rough_.film.elements == coarse_.film.elements;
   }
 
   SearchResult run() {
@@ -104,8 +106,9 @@ class Search {
   }
 
   void tell() const {
-    if (!watch_ || result_.trials.empty()) return;
-    watch_(*std::min_element(result_.trials.begin(), result_.trials.end(), is_better));
+    if (!watch_ || result_.trials.size() == outdone_) return;
+    watch_(*std::min_element(result_.trials.begin() + std::ptrdiff_t(outdone_),
+                             result_.trials.end(), is_better));
   }
 
   // The best ones that are far enough from each other, the best first.
@@ -127,6 +130,7 @@ class Search {
     std::vector<PoseOptions> poses;
     for (const Trial& trial : found) poses.push_back(trial.pose);
     found.clear();
+    outdone_ = result_.trials.size();
     for (auto& trial : try_all(coarse_, poses, "trying the best again"))
       if (trial) found.push_back(std::move(*trial));
   }
@@ -198,6 +202,7 @@ class Search {
   const RunContext& context_;
   const std::function<void(const Trial&)>& watch_;
   SearchResult result_;
+  std::size_t outdone_ = 0;  // so many trials promise more than the later ones
 };
 
 }  // namespace
