@@ -29,6 +29,8 @@ constexpr int kTrialAirCells = 20000;
 constexpr double kDeeper_mm = 3;
 // Trial dips and the job's are that near to each other.
 constexpr double kClearlyBehind = 0.98;
+// What reaches less than that part of the best is none to choose from.
+constexpr double kWorthShowing = 0.25;
 
 bool is_better(const Trial& a, const Trial& b) { return a.figures.score > b.figures.score; }
 
@@ -63,6 +65,7 @@ class Search {
       found = best_of(found, std::max(options_.best, int(found.size()) - 1));
     }
     found = best_of(found, options_.best);
+    leave_out_poor(found);
     if (options_.confirm) confirm(found);
     result_.best = std::move(found);
     return std::move(result_);
@@ -123,6 +126,12 @@ class Search {
       if (is_apart) best.push_back(trial);
     }
     return best;
+  }
+
+  static void leave_out_poor(std::vector<Trial>& found) {
+    if (found.empty() || !(found.front().figures.score > 0)) return;
+    const double least = kWorthShowing * found.front().figures.score;
+    std::erase_if(found, [&](const Trial& trial) { return trial.figures.score < least; });
   }
 
   // Those that were looked at on rougher film, on that of the others.
