@@ -1,23 +1,32 @@
 // How well film tears: tear lines against exact circles, coarse film against fine, what tears cost,
 // and whether every step and round ends on a list of models. Prints the tables of docs/accuracy.md.
 //
-//   bench_tears [MODELS_FOLDER [PART...]]     parts: circles, meshes, times, list, rounds
+//   bench_tears [MODELS_FOLDER] [--log FILE] [PART | MODEL]...
+//
+// Parts: circles, meshes, doubt, times, list, rounds; all unless named. Models: of torn_models.h;
+// all unless named. With --log rows are kept in the file, and those that it has are not computed
+// again: what was stopped goes on there.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "coat/design.h"
 #include "coat/dipped_object.h"
+#include "dip/measure.h"
+#include "dip/tear_doubt.h"
 #include "dip/torn_models.h"
 #include "exact/dipping.h"
 #include "exact/tear_lines.h"
-#include "film/locate.h"
 #include "transfer/film_map.h"
 
 namespace hydrodip {
@@ -30,164 +39,245 @@ FilmOptions letter(int elements) {
   return {.width_mm = 215.9, .height_mm = 279.4, .elements = elements};
 }
 
-// As jobs dip.
-DipOptions defaults() {
-  DipOptions options;
-  options.asks_what_moves = true;
-  return options;
+// Rows that a log has are shown as they are there.
+class Tables {
+ public:
+  explicit Tables(const std::filesystem::path& log) : log_(log) {
+    std::ifstream file(log);
+    for (std::string line; std::getline(file, line);) {
+      const std::size_t tab = line.find('\t');
+      if (tab != std::string::npos) known_[line.substr(0, tab)] = line.substr(tab + 1);
+    }
+  }
+
+  void begin(const std::string& columns) {
+    fmt::print("\n{}\n|", columns);
+    for (auto n = std::count(columns.begin(), columns.end(), '|'); n > 1; --n) fmt::print("---|");
+    fmt::print("\n");
+    std::fflush(stdout);
+  }
+
+  template <class Compute>
+  void row(const std::string& key, const Compute& compute) {
+    if (!known_.count(key)) {
+      std::fprintf(stderr, "%s ...\n", key.c_str());
+      known_[key] = compute();
+      if (!log_.empty()) std::ofstream(log_, std::ios::app) << key << '\t' << known_[key] << '\n';
+    }
+    fmt::print("{}\n", known_[key]);
+    std::fflush(stdout);
+  }
+
+ private:
+  std::filesystem::path log_;
+  std::map<std::string, std::string> known_;
+};
+
+std::shared_ptr<const Object> object_of(const Shape& shape) {
+  const auto object = std::make_shared<Object>();
+  object->positions = shape.positions;
+  object->triangles = shape.triangles;
+  object->material_of.assign(object->triangles.size(), 0);
+  object->materials.emplace_back();
+  return object;
 }
 
 struct Dipped {
-  DipResult result;
-  double seconds = 0;
-  // Per vertex: travelled when it attached.
-  std::vector<double> attached_at;
+  DippedObject object;
+  double cpu_s = 0;
+  std::vector<double> attached_at;  // per vertex: travelled
 };
 
-Dipped dip_whole(const Shape& shape, const FilmOptions& film, const DipOptions& options,
-                 bool watch = false) {
-  const Surface surface(shape.positions, shape.triangles);
-  const auto mesh = std::make_shared<const FilmMesh>(make_film_mesh(film));
-  RunContext context;
-  Dipped dipped;
-  if (watch) dipped.attached_at.assign(mesh->u.size(), 1e300);
+// As jobs dip, all of it.
+Dipped dip_whole(const PosedObject& posed, const SharedFilmMesh& mesh, const DipOptions& options,
+                 const RunContext& context = {}) {
+  Dipped dipped{.object = {.posed = posed}, .attached_at = {}};
+  dipped.attached_at.assign(mesh->u.size(), 1e300);
   const DipObserver observer = [&](int, int, const Moment& moment, const std::vector<Vec3>&,
                                    const std::vector<VertexState>& state) {
     for (std::size_t v = 0; v < state.size(); ++v)
       if (state[v] == VertexState::kAttached)
         dipped.attached_at[v] = std::min(dipped.attached_at[v], moment.travelled_mm);
   };
-  const auto start = std::chrono::steady_clock::now();
-  dipped.result =
-      dip(mesh, shape.positions, shape.triangles, surface, make_trajectory({}, shape.positions),
-          options, context, watch ? observer : DipObserver());
-  dipped.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Timings unheard;
+  const std::clock_t start = std::clock();
+  dipped.object = dip_object(posed, mesh, make_trajectory({}, posed.mesh().positions), options,
+                             unheard, context, observer);
+  dipped.cpu_s = double(std::clock() - start) / CLOCKS_PER_SEC;
   return dipped;
 }
 
-void print_circles() {
-  fmt::print(
-      "\n| body | limit | triangles | exact (mm) | tear line: mean - exact (mm) | standard "
-      "deviation over 72 directions (mm) | lowest, highest - exact (mm) |\n"
-      "|---|---|---|---|---|---|---|\n");
+SharedFilmMesh film_of(int elements) {
+  return std::make_shared<const FilmMesh>(make_film_mesh(letter(elements)));
+}
+
+void show_circles(Tables& tables) {
+  tables.begin(
+      "| body | limit | triangles | exact (mm) | tear line: mean - exact (mm) | standard deviation "
+      "over 72 directions (mm) | lowest, highest - exact (mm) |");
   for (const exact::TearingBody& body : exact::tearing_bodies())
     for (const double limit : {1.3, 1.4})
-      for (const int elements : {10000, 40000, 160000}) {
-        const exact::TearLine line = exact::tear_line(body, limit, elements);
-        fmt::print("| {} | {:g} | {} | {:.3f} | {:.4f} | {:.4f} | {:.4f}, {:.4f} |\n", body.name,
-                   limit, elements, line.exact_mm, line.mean_mm - line.exact_mm, line.deviation_mm,
-                   line.lowest_mm - line.exact_mm, line.highest_mm - line.exact_mm);
-        std::fflush(stdout);
+      for (const int elements : {10000, 40000, 160000})
+        tables.row(fmt::format("circles {} {} {}", body.name, limit, elements), [&] {
+          const exact::TearLine line = exact::tear_line(body, limit, elements);
+          return fmt::format("| {} | {:g} | {} | {:.3f} | {:.4f} | {:.4f} | {:.4f}, {:.4f} |",
+                             body.name, limit, elements, line.exact_mm,
+                             line.mean_mm - line.exact_mm, line.deviation_mm,
+                             line.lowest_mm - line.exact_mm, line.highest_mm - line.exact_mm);
+        });
+}
+
+// Lengths, told by their largest, 99th of 100 and middle one, and how many are above what is to be.
+struct Lengths {
+  std::vector<double> list;
+
+  double at(double share) {
+    if (list.empty()) return 0;
+    const auto nth = list.begin() + std::ptrdiff_t(share * double(list.size() - 1));
+    std::nth_element(list.begin(), nth, list.end());
+    return *nth;
+  }
+  std::string text(double most) {
+    const auto above = std::count_if(list.begin(), list.end(), [&](double d) { return d > most; });
+    return fmt::format("{:.3f}, {:.3f}, {:.4f}; {} of {} above {:g}", at(1), at(0.99), at(0.5),
+                       above, list.size(), most);
+  }
+};
+
+// How far apart coarse and fine film lie, on the object.
+std::string compare_meshes(const Named& model) {
+  const PosedObject posed(object_of(model.shape), {});
+  const auto dip_on = [&](int elements) {
+    const SharedFilmMesh mesh = film_of(elements);
+    DipOptions options;
+    options.moved_mm.assign(mesh->u.size(), 0);  // asked below
+    return dip_whole(posed, mesh, options);
+  };
+  const Dipped coarse = dip_on(40000), fine = dip_on(160000);
+  const DippedFilm& film = *coarse.object.film;
+  const TriangleMesh& mesh = posed.mesh();
+  const std::vector<double> moved =
+      moved_by_tears(film, mesh.positions, mesh.triangles, posed.surface(),
+                     make_trajectory({}, mesh.positions), DipOptions(), RunContext());
+  double first_tear = 1e300;
+  for (const double at : film.torn_at_mm) first_tear = std::min(first_tear, at);
+  for (std::size_t v = 0; v < film.position.size(); ++v)
+    if (film.excess_of(std::int32_t(v)) > 0)
+      first_tear = std::min(first_tear, coarse.attached_at[v]);
+  std::vector<std::uint8_t> laid(film.position.size(), 0);
+  for (std::size_t t = 0; t < film.torn.size(); ++t)
+    if (film.lies_on_object(t))
+      for (const std::int32_t v : film.mesh().triangles[t])
+        laid[std::size_t(v)] = !(film.excess_of(v) > 0);
+  Lengths before, later, doubtful;
+  for (std::size_t v = 0; v < laid.size(); ++v) {
+    if (!laid[v]) continue;
+    const auto there = fine.object.map->to_object(film.mesh().u[v]);
+    if (!there) continue;
+    const double apart = (position_at(mesh, *there) - film.position[v]).norm();
+    Lengths& list = moved[v] > kMoved_mm                 ? doubtful
+                    : coarse.attached_at[v] < first_tear ? before
+                                                         : later;
+    list.list.push_back(apart);
+  }
+  const double all = double(before.list.size() + later.list.size() + doubtful.list.size()) / 100;
+  return fmt::format("| {} | {:.1f} | {} | {} | {} | {:.0f}, {:.0f}, {:.0f} | {:.0f}, {:.0f} |",
+                     model.name, first_tear, before.text(0.02), later.text(kMoved_mm),
+                     doubtful.text(kMoved_mm), double(before.list.size()) / all,
+                     double(later.list.size()) / all, double(doubtful.list.size()) / all,
+                     coarse.object.coverage.covered_mm2, fine.object.coverage.covered_mm2);
+}
+
+void show_meshes(Tables& tables, const std::vector<Named>& models) {
+  tables.begin(
+      "| 40,000 and 160,000 triangles, apart by: largest, 99 %, median (mm) | first tear (mm deep) "
+      "| laid before it | promised, later | not promised | shares of the three (%) | stretched "
+      "less than tears, 40,000, 160,000 (mm2) |");
+  for (const Named& model : models)
+    tables.row("meshes " + model.name, [&] { return compare_meshes(model); });
+}
+
+// What is promised, by when floating film lets go at the earliest and how far it may then move.
+void show_doubt(Tables& tables, const std::vector<Named>& models) {
+  constexpr double kEarliest[] = {1.3, 1.4, 1.5}, kMost_mm[] = {0.15, 0.3, 0.6, 1.2};
+  tables.begin(
+      "| covered (% of the surface) if moved by at most 0.15, 0.3, 0.6, 1.2 mm | nobody asks | "
+      "film lets go at 1.3 or 1.6 | 1.4 or 1.6 | 1.5 or 1.6 |");
+  for (const Named& model : models)
+    tables.row("doubt " + model.name, [&] {
+      const SharedFilmMesh mesh = film_of(40000);
+      const PosedObject posed(object_of(model.shape), {});
+      DipOptions options;
+      options.moved_mm.assign(mesh->u.size(), 0);
+      const Dipped dipped = dip_whole(posed, mesh, options);
+      std::string row =
+          fmt::format("| {} | {:.1f} |", model.name, 100 * dipped.object.coverage.covered_share());
+      for (const double earliest : kEarliest) {
+        DipOptions asking;
+        asking.material.tear_stretch = earliest;
+        const std::vector<double> moved = moved_by_tears(
+            *dipped.object.film, posed.mesh().positions, posed.mesh().triangles, posed.surface(),
+            make_trajectory({}, posed.mesh().positions), asking, RunContext());
+        for (const double most : kMost_mm) {
+          std::vector<double> scaled = moved;
+          for (double& way : scaled) way *= kMoved_mm / most;
+          DippedFilm film = *dipped.object.film;
+          add_moved(scaled, DipOptions(), film);
+          row += fmt::format(" {:.1f}", 100 * measure_coverage(posed.mesh(), film).covered_share());
+        }
+        row += " |";
       }
+      return row;
+    });
 }
 
-// Where both films are whole: how far apart they lie.
-void print_meshes(const std::vector<Named>& models) {
-  fmt::print(
-      "\n| model | first tear (mm deep) | whole before it: largest, rms (mm) | whole later: "
-      "largest, 99 %, rms (mm) | share later | covered, 40,000 (mm2) | 160,000 |\n"
-      "|---|---|---|---|---|---|---|\n");
-  for (const Named& model : models) {
-    const DipOptions options = defaults();
-    const Dipped coarse = dip_whole(model.shape, letter(40000), options, true);
-    const Dipped fine = dip_whole(model.shape, letter(160000), options);
-    const DippedFilm &c = coarse.result.film, &f = fine.result.film;
-    double first_tear = 1e300;
-    for (std::size_t t = 0; t < c.torn.size(); ++t)
-      first_tear = std::min(first_tear, c.torn_at_mm[t]);
-    for (std::size_t v = 0; v < c.position.size(); ++v)
-      if (c.excess_of(std::int32_t(v)) > 0)
-        first_tear = std::min(first_tear, coarse.attached_at[v]);
-    // The fine film at the coarse film's vertices, by film coordinate.
-    std::vector<double> before, later;
-    for (std::size_t v = 0; v < c.position.size(); ++v) {
-      const auto whole = [&](const DippedFilm& film, const FilmLocation& at) {
-        return at.inside && film.lies_on_object(std::size_t(at.triangle)) &&
-               film.is_whole_at(std::size_t(at.triangle), at.weight);
-      };
-      const FilmLocation at = locate_flat(f.mesh(), c.mesh().u[v]);
-      if (!whole(c, locate_flat(c.mesh(), c.mesh().u[v])) || !whole(f, at)) continue;
-      Vec3 place = Vec3::Zero();
-      for (std::size_t k = 0; k < 3; ++k)
-        place += at.weight[Eigen::Index(k)] *
-                 f.position[std::size_t(f.mesh().triangles[std::size_t(at.triangle)][k])];
-      const double apart = (place - c.position[v]).norm();
-      (coarse.attached_at[v] < first_tear ? before : later).push_back(apart);
-    }
-    const auto rms = [](const std::vector<double>& list) {
-      double sum = 0;
-      for (const double d : list) sum += d * d;
-      return list.empty() ? 0 : std::sqrt(sum / double(list.size()));
-    };
-    std::sort(before.begin(), before.end());
-    std::sort(later.begin(), later.end());
-    const auto at_share = [](const std::vector<double>& list, double share) {
-      return list.empty() ? 0 : list[std::size_t(share * double(list.size() - 1))];
-    };
-    const TriangleMesh mesh{model.shape.positions, model.shape.triangles};
-    fmt::print(
-        "| {} | {:.1f} | {:.4f}, {:.4f} | {:.3f}, {:.3f}, {:.3f} | {:.0f} % | {:.0f} | {:.0f} |\n",
-        model.name, first_tear, at_share(before, 1), rms(before), at_share(later, 1),
-        at_share(later, 0.99), rms(later),
-        100.0 * double(later.size()) /
-            double(std::max<std::size_t>(1, before.size() + later.size())),
-        measure_coverage(mesh, c).covered_mm2, measure_coverage(mesh, f).covered_mm2);
-    std::fflush(stdout);
-  }
+// A step of a torn dip against one of a dip in which nothing tears, one after the other.
+void show_times(Tables& tables) {
+  tables.begin(
+      "| triangles | a step, nothing tears (ms of one core) | sphere, whole | ratio | its steps, "
+      "unconverged | iterations a step, untorn and torn |");
+  const PosedObject sphere(object_of(shapes::full_sphere(30)), {});
+  const PosedObject cone(object_of(shapes::cone(30, 0.7)), {});
+  const RunContext alone = RunContext().with_threads(1);
+  for (const int elements : {10000, 40000, 160000, 1000000})
+    tables.row(fmt::format("times {}", elements), [&] {
+      const SharedFilmMesh film = film_of(elements);
+      const Dipped untorn = dip_whole(cone, film, {}, alone),
+                   torn = dip_whole(sphere, film, {}, alone);
+      const DipStatistics &a = untorn.object.statistics, &b = torn.object.statistics;
+      const double plain = 1e3 * untorn.cpu_s / a.steps, tearing = 1e3 * torn.cpu_s / b.steps;
+      return fmt::format("| {} | {:.2f} | {:.2f} | {:.2f} | {}, {} | {:.1f}, {:.1f} |", elements,
+                         plain, tearing, tearing / plain, b.steps, b.unconverged_steps,
+                         double(a.iterations) / a.steps, double(b.iterations) / b.steps);
+    });
 }
 
-// A step of a torn dip against one of a dip in which nothing tears, interleaved.
-void print_times() {
-  fmt::print(
-      "\n| triangles | a step, nothing tears (ms) | sphere, whole (ms) | ratio | steps, "
-      "unconverged | iterations a step, untorn and torn |\n|---|---|---|---|---|---|\n");
-  const Shape sphere = shapes::full_sphere(30), cone = shapes::cone(30, 0.7);
-  for (const int elements : {10000, 40000, 160000, 1000000}) {
-    const DipOptions options = defaults();
-    const Dipped untorn = dip_whole(cone, letter(elements), options);
-    const Dipped torn = dip_whole(sphere, letter(elements), options);
-    const DipStatistics &a = untorn.result.statistics, &b = torn.result.statistics;
-    const double plain = 1e3 * untorn.seconds / a.steps, tearing = 1e3 * torn.seconds / b.steps;
-    fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {}, {} | {:.1f}, {:.1f} |\n", elements, plain,
-               tearing, tearing / plain, b.steps, b.unconverged_steps,
-               double(a.iterations) / a.steps, double(b.iterations) / b.steps);
-    std::fflush(stdout);
-  }
-}
-
-void print_list(const std::vector<Named>& models) {
-  fmt::print(
-      "\n| model, six holds | steps | unconverged | iterations a step | most in a hold | covered, "
-      "doubtful (share of the surface) | s |\n|---|---|---|---|---|---|---|\n");
-  long all_steps = 0, all_unconverged = 0;
-  for (const Named& model : models) {
-    long steps = 0, unconverged = 0, iterations = 0;
-    double most = 0, covered = 0, doubtful = 0, seconds = 0;
-    for (const Vec3& hold : shapes::holds_deg()) {
-      const Shape shape = shapes::placed(model.shape, hold);
-      const DipOptions options = defaults();
-      const Dipped dipped = dip_whole(shape, letter(40000), options);
-      const DipStatistics& s = dipped.result.statistics;
-      steps += s.steps;
-      unconverged += s.unconverged_steps;
-      iterations += s.iterations;
-      most = std::max(most, double(s.iterations) / s.steps);
-      const TriangleMesh mesh{shape.positions, shape.triangles};
-      const Coverage c =
-          measure_coverage(mesh, dipped.result.film, straight_down_to(dipped.result.film.depth_mm),
-                           doubtful_stretch(options.material));
-      covered += c.covered_share() / 6;
-      doubtful += c.doubtful_share() / 6;
-      seconds += dipped.seconds;
-    }
-    fmt::print("| {} | {} | {} | {:.1f} | {:.1f} | {:.1f} %, {:.1f} % | {:.1f} |\n", model.name,
-               steps, unconverged, double(iterations) / double(steps), most, 100 * covered,
-               100 * doubtful, seconds);
-    std::fflush(stdout);
-    all_steps += steps;
-    all_unconverged += unconverged;
-  }
-  fmt::print("| all | {} | {} | | | | |\n", all_steps, all_unconverged);
+void show_list(Tables& tables, const std::vector<Named>& models) {
+  tables.begin(
+      "| model, in each of six holds | steps | unconverged | iterations a step | covered (% of the "
+      "surface) | covered, mean | doubtful, mean | s of cpu |");
+  for (const Named& model : models)
+    tables.row("list " + model.name, [&] {
+      const SharedFilmMesh film = film_of(40000);
+      std::string steps, unconverged, iterations, covered_each;
+      double covered = 0, doubtful = 0, seconds = 0;
+      for (const Vec3& hold : shapes::holds_deg()) {
+        const PosedObject posed(object_of(shapes::placed(model.shape, hold)), {});
+        const Dipped dipped = dip_whole(posed, film, {});
+        const DipStatistics& s = dipped.object.statistics;
+        const Coverage& c = dipped.object.coverage;
+        steps += fmt::format(" {}", s.steps);
+        unconverged += fmt::format(" {}", s.unconverged_steps);
+        iterations += fmt::format(" {:.1f}", double(s.iterations) / s.steps);
+        covered_each += fmt::format(" {:.0f}", 100 * c.covered_share());
+        covered += c.covered_share() / 6;
+        doubtful += c.doubtful_share() / 6;
+        seconds += dipped.cpu_s;
+      }
+      return fmt::format("| {} |{} |{} |{} |{} | {:.1f} | {:.1f} | {:.0f} |", model.name, steps,
+                         unconverged, iterations, covered_each, 100 * covered, 100 * doubtful,
+                         seconds);
+    });
 }
 
 // 5 mm squares in space, dark and light.
@@ -205,48 +295,66 @@ class Squares : public Paint {
   const TriangleMesh& mesh_;
 };
 
-void print_rounds(const std::vector<Named>& models) {
-  fmt::print(
-      "\n| model | rounds | settled | mean change of what is whole, round by round (mm) | s "
-      "|\n|---|---|---|---|---|\n");
-  for (const Named& model : models) {
-    const auto object = std::make_shared<Object>();
-    object->positions = model.shape.positions;
-    object->triangles = model.shape.triangles;
-    object->material_of.assign(object->triangles.size(), 0);
-    object->materials.emplace_back();
-    const PosedObject posed(object, {});
-    DesignOptions options;
-    options.film = letter(40000);
-    RunContext context;
-    Timings timings;
-    const auto start = std::chrono::steady_clock::now();
-    const Squares squares(*object);
-    const Designed designed =
-        design({posed, squares, Allotment(), *make_device_model(), options}, timings, context);
-    std::string changes;
-    for (const InkRound& round : designed.ink.rounds)
-      if (&round != &designed.ink.rounds.front())
-        changes += fmt::format(" {:.2g}", round.change_mm);
-    fmt::print("| {} | {} | {} |{} | {:.0f} |\n", model.name, designed.ink.rounds.size(),
-               designed.ink.settled ? "yes" : "no", changes,
-               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    std::fflush(stdout);
+void show_rounds(Tables& tables, const std::vector<Named>& models) {
+  tables.begin(
+      "| model, printed with squares | rounds | settled | mean change of what is promised, round "
+      "by round (mm) | s of cpu |");
+  for (const Named& model : models)
+    tables.row("rounds " + model.name, [&] {
+      const auto object = object_of(model.shape);
+      const PosedObject posed(object, {});
+      DesignOptions options;
+      options.film = letter(40000);
+      RunContext context;
+      Timings timings;
+      const std::clock_t start = std::clock();
+      const Squares squares(*object);
+      const Designed designed =
+          design({posed, squares, Allotment(), *make_device_model(), options}, timings, context);
+      std::string changes;
+      for (const InkRound& round : designed.ink.rounds)
+        if (&round != &designed.ink.rounds.front())
+          changes += fmt::format(" {:.2g}", round.change_mm);
+      return fmt::format("| {} | {} | {} |{} | {:.0f} |", model.name, designed.ink.rounds.size(),
+                         designed.ink.settled ? "yes" : "no", changes,
+                         double(std::clock() - start) / CLOCKS_PER_SEC);
+    });
+}
+
+int run(const std::vector<std::string>& words) {
+  const std::set<std::string> all_parts = {"circles", "meshes", "doubt", "times", "list", "rounds"};
+  std::string folder, log;
+  std::set<std::string> parts, names;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--log" && i + 1 < words.size())
+      log = words[++i];
+    else if (all_parts.count(words[i]))
+      parts.insert(words[i]);
+    else if (std::filesystem::is_directory(words[i]))
+      folder = words[i];
+    else
+      names.insert(words[i]);
   }
+  std::vector<Named> models = shapes::torn_models(folder);
+  if (!names.empty())
+    std::erase_if(models, [&](const Named& model) { return !names.erase(model.name); });
+  if (!names.empty()) {
+    fmt::print(stderr, "no part or model is called '{}'\n", *names.begin());
+    return 2;
+  }
+  fmt::print("{} models\n", models.size());
+  const auto wanted = [&](const char* part) { return parts.empty() || parts.count(part) > 0; };
+  Tables tables(log);
+  if (wanted("circles")) show_circles(tables);
+  if (wanted("meshes")) show_meshes(tables, models);
+  if (wanted("doubt")) show_doubt(tables, models);
+  if (wanted("times")) show_times(tables);
+  if (wanted("list")) show_list(tables, models);
+  if (wanted("rounds")) show_rounds(tables, models);
+  return 0;
 }
 
 }  // namespace
 }  // namespace hydrodip
 
-int main(int argc, char** argv) {
-  using namespace hydrodip;
-  const std::vector<shapes::Named> models = shapes::torn_models(argc > 1 ? argv[1] : "");
-  const std::set<std::string> parts(argv + std::min(argc, 2), argv + argc);
-  const auto wanted = [&](const char* part) { return parts.empty() || parts.count(part) > 0; };
-  fmt::print("{} models\n", models.size());
-  if (wanted("circles")) print_circles();
-  if (wanted("meshes")) print_meshes(models);
-  if (wanted("times")) print_times();
-  if (wanted("list")) print_list(models);
-  if (wanted("rounds")) print_rounds(models);
-}
+int main(int argc, char** argv) { return hydrodip::run({argv + 1, argv + argc}); }

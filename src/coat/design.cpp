@@ -11,14 +11,6 @@
 namespace hydrodip {
 namespace {
 
-// Flaps are foreseen on film of so many times fewer triangles, but at least so many, in steps that
-// are so many times longer, up to a length; the print need not be finer than such triangles.
-constexpr int kFewer = 4;
-constexpr int kFewestElements = 2000;
-constexpr double kLonger = 4;
-constexpr double kLongestStep_mm = 1;
-constexpr double kCoarseDpi = 75;
-
 bool ink_matters(const DesignOptions& options) {
   return options.stiffness.ratio > 1 && options.dip.method != DipMethod::kProjection;
 }
@@ -65,43 +57,9 @@ class Settling {
       rounds.next();
       return Outcome::kSettled;
     }
-    if (const auto modulus = modulus_of_flaps()) {
-      rounds.begin_with(*modulus);
-      if (rounds.next() == Outcome::kFailed) {
-        rounds.begin_with({});
-        rounds.next();
-      }
-      return Outcome::kHopeless;
-    }
     Outcome outcome = Outcome::kGoesOn;
     while (outcome == Outcome::kGoesOn) outcome = rounds.next();
     return outcome;
-  }
-
-  // Two rounds on coarser film cost a small part of one dip. If they tell that the film tears into
-  // flaps that never settle: what their ink makes of the film itself.
-  std::optional<std::vector<double>> modulus_of_flaps() {
-    if (!(options().dip.material.tear_stretch > 0) ||
-        options().film.elements / kFewer < kFewestElements)
-      return std::nullopt;
-    const DesignOptions coarse = coarser(options());
-    const auto film = std::make_shared<const FilmMesh>(make_film_mesh(coarse.film));
-    InkRounds rounds(task_, coarse, film, air_, timings_, context_);
-    Outcome outcome = rounds.next();
-    const std::vector<std::uint8_t>& torn = rounds.dipped().film->torn;
-    const bool tears = std::find(torn.begin(), torn.end(), 1) != torn.end();
-    if (tears) outcome = rounds.next();
-    result_.coarse_rounds = rounds.rounds();
-    if (outcome != Outcome::kHopeless) return std::nullopt;
-    return rounds.modulus_of(*film_);
-  }
-
-  static DesignOptions coarser(DesignOptions options) {
-    const double step_mm = options.dip.step_mm;
-    options.film.elements /= kFewer;
-    options.dip.step_mm = std::min(kLonger * step_mm, std::max(step_mm, kLongestStep_mm));
-    options.dpi = std::min(options.dpi, kCoarseDpi);
-    return options;
   }
 
   void warn(Outcome outcome) {
@@ -109,12 +67,6 @@ class Settling {
       context_.warn(
           "the dip could not be computed again with its ink: film torn or stretched this far finds "
           "no equilibrium; turn steep sides down or dip less, then print anew");
-    else if (outcome == Outcome::kHopeless)
-      context_.warn(fmt::format(
-          "this film tears into flaps that fall another way with every change of its ink (by "
-          "{:.1f} mm on average): colours will not land where they should; turn steep sides down "
-          "or dip less deep",
-          result_.last_change_mm()));
     else if (outcome != Outcome::kSettled && result_.rounds.size() > 1)
       context_.warn(fmt::format(
           "after {} rounds the ink still moves the film by {:.2g} mm on average (settled: {:g} "
@@ -145,10 +97,7 @@ DesignOptions draft_of(DesignOptions options) {
   return options;
 }
 
-double InkResult::last_change_mm() const {
-  const std::vector<InkRound>& last = rounds.size() > 1 ? rounds : coarse_rounds;
-  return last.empty() ? 0 : last.back().change_mm;
-}
+double InkResult::last_change_mm() const { return rounds.empty() ? 0 : rounds.back().change_mm; }
 
 Designed design_on(const DesignTask& task, const DippedObject& dipped, const RunContext& context) {
   const RunScope scope(context);

@@ -57,12 +57,10 @@ inline constexpr double kSettled_mm = 1e-4;
 struct InkResult {
   FilmInk ink;  // of the last round
   Reach reach;
-  std::vector<InkRound> coarse_rounds;  // on coarser film, before the others
   std::vector<InkRound> rounds;
   bool settled = false;
 
-  // The mean way that the last round moved the film; if the film itself was dipped only once, the
-  // coarse film.
+  // The mean way that the last round moved the film.
   double last_change_mm() const;
 };
 
@@ -85,9 +83,7 @@ struct DesignTask {
 // no dip of its own. As design() with rounds_max 1.
 Designed design_on(const DesignTask& task, const DippedObject& dipped, const RunContext& context);
 
-// Dips until ink and film agree, at most rounds_max times. Where film tears, the first two rounds
-// are made on coarser film before: if they tell that ink and film never agree, the film itself is
-// dipped once. Warns where they do not agree.
+// Dips until ink and film agree, at most rounds_max times. Warns where they do not.
 Designed design(const DesignTask& task, Timings& timings, const RunContext& context);
 
 }  // namespace hydrodip

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/run_scope.h"
+#include "dip/tear_doubt.h"
 #include "dip/wetting.h"
 #include "object/append.h"
 
@@ -15,13 +16,19 @@ namespace {
 constexpr double kOnSurface_mm = 0.05;
 
 // Air that stays is as good as solid: its lids belong to what the film meets.
+std::shared_ptr<const TriangleMesh> with_lids(const TriangleMesh& object,
+                                              const TriangleMesh& lids) {
+  auto all = std::make_shared<TriangleMesh>(object);
+  append(*all, lids);
+  return all;
+}
+
 DipResult dip_around_air(const PosedObject& posed, const TriangleMesh& lids,
                          const SharedFilmMesh& film, const Trajectory& trajectory,
                          const DipOptions& options, const RunContext& context,
                          const DipObserver& observe) {
-  const auto all = std::make_shared<TriangleMesh>(posed.mesh());
-  const std::size_t own = all->triangles.size();
-  append(*all, lids);
+  const std::shared_ptr<const TriangleMesh> all = with_lids(posed.mesh(), lids);
+  const std::size_t own = posed.mesh().triangles.size();
   const Surface surface(all);
   DipResult result =
       dip(film, all->positions, all->triangles, surface, trajectory, options, context, observe);
@@ -36,6 +43,18 @@ DipResult dip_around_air(const PosedObject& posed, const TriangleMesh& lids,
 }
 
 }  // namespace
+
+std::vector<double> moved_by_tears(const DippedFilm& dipped, const PosedObject& posed,
+                                   const TrappedAir& air, const Trajectory& trajectory,
+                                   const DipOptions& options, const RunContext& context) {
+  const TriangleMesh& mesh = posed.mesh();
+  if (air.lids.triangles.empty())
+    return moved_by_tears(dipped, mesh.positions, mesh.triangles, posed.surface(), trajectory,
+                          options, context);
+  const std::shared_ptr<const TriangleMesh> all = with_lids(mesh, air.lids);
+  return moved_by_tears(dipped, all->positions, all->triangles, Surface(all), trajectory, options,
+                        context);
+}
 
 // Film that never tears is never doubtful.
 DoubtfulStretch doubtful_stretch(const FilmMaterial& material) {

@@ -44,4 +44,11 @@ DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
                         const RunContext& context, const DipObserver& observe = {},
                         const AirSearch& air = {});
 
+// What a dip that did not ask would have found: how far its film lies elsewhere if torn film falls
+// another way, per vertex, for what lay on the object at the end of this way (which may be
+// shorter).
+std::vector<double> moved_by_tears(const DippedFilm& dipped, const PosedObject& posed,
+                                   const TrappedAir& air, const Trajectory& trajectory,
+                                   const DipOptions& options, const RunContext& context);
+
 }  // namespace hydrodip

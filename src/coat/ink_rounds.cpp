@@ -22,8 +22,6 @@ constexpr int kMixed = 2;
 constexpr double kMostInks = 4;
 // From there on two rounds have to bring the change below this share.
 constexpr double kLeastProgress = 0.5;
-// Film that its first ink moves so far on average hangs in flaps that fall another way every time.
-constexpr double kHopeless_mm = 2;
 // Film torn to flaps or stretched too far may have no equilibrium that can be found once ink
 // stiffens it. A dip that fails in more than this share of its steps is to be planned anew.
 constexpr double kFailedSteps = 0.02;
@@ -96,8 +94,9 @@ Outcome InkRounds::next() {
   return outcome();
 }
 
-std::vector<double> InkRounds::modulus_of(const FilmMesh& film) const {
-  return film_modulus(film, ink_.inking.inks, raster_of(options_.film, rounds_dpi_),
+// That the ink of the last round gives to the film.
+std::vector<double> InkRounds::modulus() const {
+  return film_modulus(*film_, ink_.inking.inks, raster_of(options_.film, rounds_dpi_),
                       options_.stiffness);
 }
 
@@ -141,7 +140,6 @@ double InkRounds::change(int rounds_ago) const {
 
 Outcome InkRounds::outcome() const {
   if (before_ && change(0) < kSettled_mm) return Outcome::kSettled;
-  if (number() == kFreeRounds && change(0) > kHopeless_mm) return Outcome::kHopeless;
   if (number() >= options_.rounds_max) return Outcome::kUnsettled;
   // What does not settle costs a dip each round.
   const bool stands = number() > kFreeRounds + 2 && change(0) > kLeastProgress * change(2);
@@ -155,7 +153,7 @@ void InkRounds::stiffen() {
     dip_options_.moved_mm = dipped_->film->moved_mm;
     outline_.keep(*dipped_->film);
   }
-  std::vector<double> modulus = timings_.measure("stiffness", [&] { return modulus_of(*film_); });
+  std::vector<double> modulus = timings_.measure("stiffness", [&] { return this->modulus(); });
   dip_options_.modulus = dip_options_.modulus.empty() ? modulus : mixed(modulus);
 }
 

@@ -12,7 +12,7 @@
 namespace hydrodip {
 
 // What a round has led to.
-enum class Outcome { kGoesOn, kSettled, kUnsettled, kHopeless, kFailed };
+enum class Outcome { kGoesOn, kSettled, kUnsettled, kFailed };
 
 // What to print on film that lies like that.
 FilmInk print_by(const DesignTask& task, const DesignOptions& options, const FilmMap& map,
@@ -28,17 +28,11 @@ class InkRounds {
   InkRounds(const DesignTask& task, const DesignOptions& options, const SharedFilmMesh& film,
             std::shared_ptr<const TrappedAir> air, Timings& timings, const RunContext& context);
 
-  // The modulus of the first film; blank unless told.
-  void begin_with(std::vector<double> modulus) { dip_options_.modulus = std::move(modulus); }
-
   Outcome next();
 
   const std::vector<InkRound>& rounds() const { return rounds_; }
   // As dipped last.
   const DippedObject& dipped() const { return *dipped_; }
-
-  // That the ink of the last round gives to a film.
-  std::vector<double> modulus_of(const FilmMesh& film) const;
 
   // What to print at `dpi` on the film as it was dipped last; `all`: wherever it lies on the
   // object.
@@ -47,6 +41,7 @@ class InkRounds {
  private:
   int number() const { return int(rounds_.size()); }
   double change(int rounds_ago) const;
+  std::vector<double> modulus() const;
   bool dip();
   void judge();
   Outcome outcome() const;

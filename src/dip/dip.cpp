@@ -211,7 +211,7 @@ DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
   if (!options.moved_mm.empty())
     add_moved(options.moved_mm, options, dipped);
   else if (options.asks_what_moves && may_move(dipped, options))
-    add_moved(moved_by_tears(film, positions, triangles, surface, trajectory, options, context),
+    add_moved(moved_by_tears(dipped, positions, triangles, surface, trajectory, options, context),
               options, dipped);
   return {std::move(dipped), state.statistics};
 }

@@ -79,14 +79,11 @@ std::vector<ReportFigure> ink_figures(const InkRound& round, bool first) {
 std::vector<ReportRound> rounds(const JobRecord& record) {
   if (record.ink == nullptr) return {{"dip", 1, dip_figures(record.dipped().statistics)}};
   std::vector<ReportRound> list;
-  const auto add = [&](const std::string& film, const std::vector<InkRound>& rounds) {
-    for (std::size_t n = 0; n < rounds.size(); ++n)
-      list.push_back({film + "dip", int(n) + 1, dip_figures(rounds[n].dip)});
-    for (std::size_t n = 0; n < rounds.size(); ++n)
-      list.push_back({film + "ink", int(n) + 1, ink_figures(rounds[n], n == 0)});
-  };
-  add("coarse ", record.ink->coarse_rounds);
-  add("", record.ink->rounds);
+  const std::vector<InkRound>& made = record.ink->rounds;
+  for (std::size_t n = 0; n < made.size(); ++n)
+    list.push_back({"dip", int(n) + 1, dip_figures(made[n].dip)});
+  for (std::size_t n = 0; n < made.size(); ++n)
+    list.push_back({"ink", int(n) + 1, ink_figures(made[n], n == 0)});
   return list;
 }
 
@@ -96,9 +93,7 @@ void add_ink(const JobRecord& record, std::vector<ReportFigure>& figures) {
   const Reach& reach = record.ink->reach;
   figures.insert(
       figures.end(),
-      {{"ink_rounds", "Rounds on the film itself", std::int64_t(record.ink->rounds.size()), ""},
-       {"ink_coarse_rounds", "Rounds on coarser film before",
-        std::int64_t(record.ink->coarse_rounds.size()), ""},
+      {{"ink_rounds", "Rounds", std::int64_t(record.ink->rounds.size()), ""},
        {"ink_settled", "Ink settled", record.ink->settled, ""},
        {"ink_last_change_mm", "Last mean change of the film", record.ink->last_change_mm(), "mm"},
        {"lightened", "Factor on all inks (gamut.policy=scale)", record.ink->ink.inking.lightened,

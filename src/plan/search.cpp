@@ -29,6 +29,8 @@ constexpr int kTrialAirCells = 20000;
 constexpr double kDeeper_mm = 3;
 // Trial dips and the job's are that near to each other.
 constexpr double kClearlyBehind = 0.98;
+// What reaches less than that part of the best is none to choose from.
+constexpr double kWorthShowing = 0.25;
 
 bool is_better(const Trial& a, const Trial& b) { return a.figures.score > b.figures.score; }
 
@@ -44,6 +46,8 @@ class Search {
         context_(context),
         watch_(watch) {
     rough_.film.elements = std::min(coarse_.film.elements, options.first_elements);
+    // Where only what to look at again is chosen, nobody asks what is promised.
+    rough_.asks_what_moves = rough_.film.elements == coarse_.film.elements;
   }
 
   SearchResult run() {
@@ -61,6 +65,7 @@ class Search {
       found = best_of(found, std::max(options_.best, int(found.size()) - 1));
     }
     found = best_of(found, options_.best);
+    leave_out_poor(found);
     if (options_.confirm) confirm(found);
     result_.best = std::move(found);
     return std::move(result_);
@@ -104,8 +109,9 @@ class Search {
   }
 
   void tell() const {
-    if (!watch_ || result_.trials.empty()) return;
-    watch_(*std::min_element(result_.trials.begin(), result_.trials.end(), is_better));
+    if (!watch_ || result_.trials.size() == outdone_) return;
+    watch_(*std::min_element(result_.trials.begin() + std::ptrdiff_t(outdone_),
+                             result_.trials.end(), is_better));
   }
 
   // The best ones that are far enough from each other, the best first.
@@ -122,11 +128,18 @@ class Search {
     return best;
   }
 
+  static void leave_out_poor(std::vector<Trial>& found) {
+    if (found.empty() || !(found.front().figures.score > 0)) return;
+    const double least = kWorthShowing * found.front().figures.score;
+    std::erase_if(found, [&](const Trial& trial) { return trial.figures.score < least; });
+  }
+
   // Those that were looked at on rougher film, on that of the others.
   void dip_again(std::vector<Trial>& found) {
     std::vector<PoseOptions> poses;
     for (const Trial& trial : found) poses.push_back(trial.pose);
     found.clear();
+    outdone_ = result_.trials.size();
     for (auto& trial : try_all(coarse_, poses, "trying the best again"))
       if (trial) found.push_back(std::move(*trial));
   }
@@ -198,6 +211,7 @@ class Search {
   const RunContext& context_;
   const std::function<void(const Trial&)>& watch_;
   SearchResult result_;
+  std::size_t outdone_ = 0;  // so many trials promise more than the later ones
 };
 
 }  // namespace

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "air/air.h"
 #include "base/run_scope.h"
+#include "dip/measure.h"
 #include "film/locate.h"
 #include "plan/dip_watch.h"
 #include "transfer/film_map.h"
@@ -112,7 +114,7 @@ std::vector<Event> events_of(const TrialTask& task, const MadeDip& dip, const La
 
 double best_depth(const std::vector<Event>& events, double reached_mm) {
   double score = 0, best = 0, best_at = 0;
-  for (std::size_t i = 0; i < events.size(); ++i) {
+  for (std::size_t i = 0; i < events.size() && events[i].at_mm <= reached_mm; ++i) {
     score += events[i].gain;
     const bool last_there = i + 1 == events.size() || events[i + 1].at_mm > events[i].at_mm;
     if (last_there && score > best + kWorthDeeper) {
@@ -124,16 +126,16 @@ double best_depth(const std::vector<Event>& events, double reached_mm) {
   return std::min(rounded, reached_mm);
 }
 
-// Without a depth at the best one.
+// At the best depth above that one, unless it is given.
 Trial judged(const TrialTask& task, const PoseOptions& pose, const MadeDip& dip,
-             std::optional<double> depth_mm) {
+             std::optional<double> depth_mm, double deepest_mm) {
   const Landing landing(task, dip);
   const Targets& targets = task.targets;
   const double scale = dip.posed.scale();
   const double object_mm2 = scale * scale * targets.area;
   const std::vector<Event> events = events_of(task, dip, landing, object_mm2);
   Trial trial{.pose = pose};
-  trial.depth_mm = depth_mm ? *depth_mm : best_depth(events, dip.film.depth_mm);
+  trial.depth_mm = depth_mm ? *depth_mm : best_depth(events, deepest_mm);
   TrialFigures& figures = trial.figures;
   for (const Event& event : events)
     if (event.at_mm <= trial.depth_mm) figures.score += event.gain;
@@ -230,6 +232,77 @@ std::optional<Trial> try_way(const TrialTask& task, const PosedObject& posed,
   return best;
 }
 
+// A dip straight down, and what it is worth. What moves with torn film is asked for the best depth
+// alone: what lies there already does not move as the dip goes on.
+class StraightTrial {
+ public:
+  StraightTrial(const TrialTask& task, const PoseOptions& pose, const PosedObject& posed,
+                std::optional<double> depth_mm)
+      : task_(task),
+        pose_(pose),
+        posed_(posed),
+        depth_mm_(depth_mm),
+        film_(std::make_shared<const FilmMesh>(make_film_mesh(task.film))),
+        watch_(film_, task.dip.material.tear_stretch, 1 / std::max(task.torn_price, 1e-6)) {}
+
+  Trial run(double deepest_mm, const RunContext& context) {
+    const Trajectory way = Trajectory::straight_down(deepest_mm);
+    air_ = std::make_shared<const TrappedAir>(
+        find_air(posed_.mesh(), posed_.surface(), way, task_.air, context));
+    DippedFilm film = dipped(way, context);
+    Trial trial = judge(film, film.depth_mm);
+    if (!task_.asks_what_moves || !tears(film, trial.depth_mm)) return trial;
+    std::vector<double> moved = moved_by_tears(
+        film, posed_, *air_, Trajectory::straight_down(trial.depth_mm), task_.dip, context);
+    add_moved(std::move(moved), task_.dip, film);
+    watch_.take(film);
+    return judge(film, trial.depth_mm);
+  }
+
+ private:
+  // As far as it makes sense.
+  DippedFilm dipped(const Trajectory& way, const RunContext& context) {
+    DipOptions options = task_.dip;
+    options.moved_mm.assign(film_->u.size(), 0);  // not asked yet
+    Timings unheard;
+    const DipObserver observe = [&](int, int, const Moment& moment,
+                                    const std::vector<Vec3>& position,
+                                    const std::vector<VertexState>& state) {
+      watch_.see(moment, position, state, !depth_mm_);
+    };
+    try {
+      const DippedObject made = dip_object(posed_, film_, way, options, unheard, context, observe,
+                                           {.options = {}, .found = air_});
+      watch_.take(*made.film);
+      return *made.film;
+    } catch (const TooMuchTorn&) {
+      return watch_.stopped_film();
+    }
+  }
+
+  Trial judge(const DippedFilm& film, double deepest_mm) const {
+    const FilmMap map(posed_.mesh(), posed_.surface(), film);
+    return judged(task_, pose_, {posed_, map, film, watch_, air_.get()}, depth_mm_, deepest_mm);
+  }
+
+  // By that depth.
+  bool tears(const DippedFilm& film, double depth_mm) const {
+    if (!(task_.dip.material.tear_stretch > 0)) return false;
+    const DippedFilm there = watch_.film_at(depth_mm, film);
+    for (std::size_t t = 0; t < there.torn.size(); ++t)
+      if (there.torn[t] || (there.lies_on_object(t) && there.whole_part(t).share < 1)) return true;
+    return false;
+  }
+
+  const TrialTask& task_;
+  const PoseOptions& pose_;
+  const PosedObject& posed_;
+  const std::optional<double> depth_mm_;  // given
+  const SharedFilmMesh film_;
+  DipWatch watch_;
+  std::shared_ptr<const TrappedAir> air_;
+};
+
 }  // namespace
 
 std::optional<Trial> try_pose(const TrialTask& task, const PoseOptions& pose, double depth_most_mm,
@@ -244,22 +317,7 @@ std::optional<Trial> try_pose(const TrialTask& task, const PoseOptions& pose, do
   const double fitting_mm = deepest_fit(task, mesh, depth_mm);
   if (fitting_mm < (task.depth_mm > 0 ? depth_mm : 2 * task.dip.step_mm)) return std::nullopt;
   const std::optional<double> given = task.depth_mm > 0 ? std::optional(fitting_mm) : std::nullopt;
-  const auto film = std::make_shared<const FilmMesh>(make_film_mesh(task.film));
-  DipWatch watch(film, task.dip.material.tear_stretch, 1 / std::max(task.torn_price, 1e-6));
-  try {
-    Timings unheard;
-    const DippedObject dipped = dip_object(
-        posed, film, Trajectory::straight_down(fitting_mm), task.dip, unheard, context,
-        [&](int, int, const Moment& moment, const std::vector<Vec3>& position,
-            const std::vector<VertexState>& state) { watch.see(moment, position, state, !given); },
-        {.options = task.air, .found = {}});
-    watch.take(*dipped.film);
-    return judged(task, pose, {posed, *dipped.map, *dipped.film, watch, dipped.air.get()}, given);
-  } catch (const TooMuchTorn&) {
-    const DippedFilm stopped = watch.stopped_film();
-    const FilmMap map(mesh, posed.surface(), stopped);
-    return judged(task, pose, {posed, map, stopped, watch}, given);
-  }
+  return StraightTrial(task, pose, posed, given).run(fitting_mm, context);
 }
 
 std::vector<float> worth_at(const TrialTask& task, const PosedObject& posed,
@@ -277,7 +335,7 @@ Trial judge_dip(const TrialTask& task, const PoseOptions& pose, const DippedObje
   DipWatch watch(dipped.film->shared_mesh, task.dip.material.tear_stretch, 1);
   watch.take(*dipped.film);
   return judged(task, pose, {dipped.posed, *dipped.map, *dipped.film, watch, dipped.air.get()},
-                dipped.film->depth_mm);
+                dipped.film->depth_mm, dipped.film->depth_mm);
 }
 
 }  // namespace hydrodip

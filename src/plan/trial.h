@@ -56,6 +56,8 @@ struct TrialTask {
   AirOptions air = {.cells = 0};
   // Torn film costs so many times its area: its flaps spoil what lies around, and are cleaned off.
   double torn_price = kTornPrice;
+  // Film whose place depends on how torn film falls is worth nothing.
+  bool asks_what_moves = true;
   bool keep_film = false;
 };
 

@@ -213,6 +213,67 @@ TEST(CupTrial, AirThatIsShutInCountsAgainstIt) {
   EXPECT_GT(opening_up->figures.score, opening_down->figures.score);
 }
 
+// A table, between whose legs film hangs when it has torn.
+class TableTrial : public testing::Test {
+ protected:
+  TableTrial() {
+    shapes::Shape shape = shapes::box({-25, -20, 22}, {25, 20, 26});
+    for (const double x : {-22.0, 17.0})
+      for (const double y : {-17.0, 12.0}) shape.append(shapes::box({x, y, 0}, {x + 5, y + 5, 23}));
+    auto object = std::make_shared<Object>();
+    object->positions = shape.positions;
+    object->triangles = shape.triangles;
+    object->materials.emplace_back();
+    object->material_of.assign(object->triangles.size(), 0);
+    table_ = object;
+    targets_ = spread_targets(*table_, 2000);
+    film_.elements = 3000;
+    dip_.step_mm = 0.5;
+  }
+
+  TrialTask task() const { return {table_, targets_, film_, dip_, BathOptions{}}; }
+
+  Trial job(double depth_mm) const {
+    Timings timings;
+    return judge_dip(
+        task(), {},
+        dip_object(PosedObject(table_, {}), std::make_shared<const FilmMesh>(make_film_mesh(film_)),
+                   Trajectory::straight_down(depth_mm), dip_, timings, context_));
+  }
+
+  std::shared_ptr<const Object> table_;
+  Targets targets_;
+  FilmOptions film_;
+  DipOptions dip_;
+  RunContext context_;
+};
+
+// Film whose place hangs on how torn film falls is worth nothing, in a trial as in the job.
+TEST_F(TableTrial, PromisesWhatTheJobDoes) {
+  TrialTask given = task();
+  given.depth_mm = 26;
+  const auto trial = try_pose(given, {}, 0, context_);
+  ASSERT_TRUE(trial);
+  EXPECT_EQ(trial->worth, job(26).worth);
+  given.asks_what_moves = false;
+  const auto careless = try_pose(given, {}, 0, context_);
+  ASSERT_TRUE(careless);
+  EXPECT_GT(careless->figures.covered_share, trial->figures.covered_share);
+}
+
+TEST_F(TableTrial, PromisesNoMoreAtTheDepthThatItFinds) {
+  TrialTask among_several = task();
+  among_several.torn_price = kTornPriceAmongSeveral;
+  const auto trial = try_pose(among_several, {}, 0, context_);
+  ASSERT_TRUE(trial && trial->depth_mm > 0);
+  const Trial made = job(trial->depth_mm);
+  EXPECT_LE(trial->figures.covered_share, made.figures.covered_share);
+  for (std::size_t i = 0; i < made.worth.size(); ++i)
+    if (trial->worth[i] > 0) {
+      EXPECT_GT(made.worth[i], 0) << i;
+    }
+}
+
 class BoxSearch : public testing::Test {
  protected:
   std::shared_ptr<const Object> box_ = std::make_shared<const Object>(make_sample("box"));
