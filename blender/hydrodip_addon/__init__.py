@@ -7,7 +7,7 @@ bl_info = {
     "version": (0, 1, 0),
     "blender": (3, 4, 0),
     "location": "3D View > Sidebar > hydrodip",
-    "description": "Print film for hydro-dipping that puts colours where the model has them",
+    "description": "Film for hydro-dipping, with colours where the model has them",
     "category": "3D View",
 }
 

@@ -39,15 +39,19 @@ def _picture_of(material):
     """The image and colour that a material's Principled shader takes its base colour from."""
     if material is None or not material.use_nodes:
         return None, _srgb(np.array(material.diffuse_color[:3])) if material else np.ones(3)
-    for node in material.node_tree.nodes:
-        if node.type != "BSDF_PRINCIPLED":
-            continue
-        base = node.inputs["Base Color"]
-        if base.is_linked:
-            source = base.links[0].from_node
-            return (source.image if source.type == "TEX_IMAGE" else None), np.ones(3)
-        return None, _srgb(np.array(base.default_value[:3]))
-    return None, np.ones(3)
+    shader = _shader_of(material)
+    if shader is None:
+        return None, np.ones(3)
+    base = shader.inputs["Base Color"]
+    if base.is_linked:
+        source = base.links[0].from_node
+        return (source.image if source.type == "TEX_IMAGE" else None), np.ones(3)
+    return None, _srgb(np.array(base.default_value[:3]))
+
+
+def _shader_of(material):
+    # By its type: Blender may name new nodes in the user's language.
+    return next((node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED"), None)
 
 
 def _save_picture(image, folder, number):
@@ -169,7 +173,7 @@ def clear(scene, roles):
 def _material(name, image=None, color=(1, 1, 1, 1), alpha=False):
     material = bpy.data.materials.new(name)
     material.use_nodes = True
-    shader = material.node_tree.nodes["Principled BSDF"]
+    shader = _shader_of(material)
     shader.inputs["Roughness"].default_value = 0.6
     shader.inputs["Base Color"].default_value = color
     if image is not None:
@@ -179,7 +183,10 @@ def _material(name, image=None, color=(1, 1, 1, 1), alpha=False):
         material.node_tree.links.new(shader.inputs["Base Color"], texture.outputs["Color"])
         if alpha:
             material.node_tree.links.new(shader.inputs["Alpha"], texture.outputs["Alpha"])
-            material.blend_method = "BLEND"
+            if hasattr(material, "surface_render_method"):  # Blender 4.2 and later
+                material.surface_render_method = "BLENDED"
+            else:
+                material.blend_method = "BLEND"
     return material
 
 
@@ -231,6 +238,16 @@ def bring_film(scene, frame, folder, sheet):
     return made
 
 
+def _lifted(vertices, triangles, by_mm):
+    """A surface a little outside of itself: on top of another one, the two would flicker."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    normals = np.zeros_like(vertices)
+    for k in range(3):
+        np.add.at(normals, triangles[:, k], across)
+    return vertices + by_mm * normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+
+
 def bring_prediction(scene, frame, folder, with_object=False):
     """The film that lies on the object, as it will look; of a job also the object in its colours."""
     parts = geometry.read_preview(os.path.join(folder, "preview.glb"))
@@ -243,7 +260,10 @@ def bring_prediction(scene, frame, folder, with_object=False):
         for n, m in enumerate(part.materials):
             image = _embedded(m["picture"], folder, f"{role}-{n}") if m["picture"] else None
             materials.append(_material(f"hydrodip {role}", image, m["color"]))
-        made.append(_object(scene, role, frame.to_scene(part.vertices), part.triangles, part.uv, materials, part.material_of))
+        places = np.asarray(part.vertices, float)
+        if role == "prediction":
+            places = _lifted(places, np.asarray(part.triangles), 0.1)
+        made.append(_object(scene, role, frame.to_scene(places), part.triangles, part.uv, materials, part.material_of))
     return made
 
 

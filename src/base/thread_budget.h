@@ -35,7 +35,7 @@ class ThreadBudget {
 
  private:
   int threads_;
-  void* arena_;  // a tbb::task_arena
+  void* arena_;  // an Arena of thread_budget.cpp's
 };
 
 // The same with all of the processor's threads.

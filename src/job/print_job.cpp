@@ -73,7 +73,7 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
                    context, &ink,        job.printer.model->name()};
   record.wanted = wanted_coverage(dipped, made.finish.paint());
   const Report first_look = make_report(record);
-  if (concern_of(findings(first_look)) == Concern::kStop)
+  if (config.plan.suggest && concern_of(findings(first_look)) == Concern::kStop)
     record.better_way =
         times.measure("find", [&] { return better_way(config, job.prepared, dipped, context); });
   const SheetOptions sheet = sheet_of(config, first_look);

@@ -209,7 +209,7 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
                    context, nullptr,     job.printer.model->name()};
   if (config.film_image.empty()) record.wanted = wanted_coverage(made.dipped, *job.prepared.paint);
   const Report first_look = make_report(record);
-  if (concern_of(findings(first_look)) == Concern::kStop)
+  if (config.plan.suggest && concern_of(findings(first_look)) == Concern::kStop)
     record.better_way = times.measure(
         "find", [&] { return better_way(config, job.prepared, made.dipped, context); });
   if (command == "print")

@@ -102,6 +102,7 @@ struct PlanOptions {
   int dips = 0;                      // how many to plan; 0: as many as the job names, or one
   double overlap_mm = 2;             // how wide neighbouring dips fade into each other
   std::filesystem::path importance;  // a picture of what matters; empty: the paint says it
+  bool suggest = true;               // look for a better way where one should not dip like this
 };
 
 struct JobConfig {

@@ -522,6 +522,10 @@ std::vector<Parameter> plan_records() {
       path(
           "plan.importance", [](C& c) -> std::filesystem::path& { return c.plan.importance; },
           "picture over the model's UVs of what matters: white in full, black not at all"),
+      choice<bool>(
+          "plan.suggest", {{"on", true}, {"off", false}},
+          [](C& c) -> bool& { return c.plan.suggest; },
+          "say how else to dip it where the verdict is not to, which takes seconds to find out"),
   };
 }
 

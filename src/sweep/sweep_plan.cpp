@@ -410,6 +410,8 @@ JobConfig sweep_config(const SweepPlan& plan, const SweepRun& run, const fs::pat
   SettingSources sources;
   if (!plan.quality.empty()) sources.quality = quality_settings(plan.quality);
   if (!plan.job.empty()) sources.configs.push_back(folder / plan.job);
+  // A sweep's poses are its own.
+  sources.options.push_back({"plan.suggest", std::string("off"), false, "'off'", "sweep"});
   if (!plan.keep_files)
     sources.options.push_back({"preview.pictures", std::string("off"), false, "'off'", "sweep"});
   for (const auto& [name, value] : run.values)

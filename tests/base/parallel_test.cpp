@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <fstream>
 #include <stdexcept>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include "base/context.h"
 #include "base/error.h"
+#include "base/run_scope.h"
 #include "base/whole_loop.h"
 
 namespace hydrodip {
@@ -16,6 +20,41 @@ namespace {
 
 TEST(ParallelFor, VisitsEveryIndexOnceInFixedChunks) {
   for (const std::size_t count : {0, 1, 9, 10, 11, 1000}) fixtures::expect_whole_loop(count);
+}
+
+// Kilobytes, as the system counts them.
+long resident_kb() {
+  std::ifstream file("/proc/self/status");
+  for (std::string word; file >> word;)
+    if (word == "VmRSS:") break;
+  long kb = 0;
+  file >> kb;
+  return kb;
+}
+
+// Who embeds the library may do every job on a thread of its own, day and night.
+TEST(ParallelFor, NewThreadsLeaveNoMemoryBehind) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers keep what is freed";
+#endif
+  const auto on_new_threads = [](int count) {
+    std::atomic<int> sum = 0;
+    const auto loop = [&] {
+      for (int again = 0; again < 10; ++again)
+        parallel_for(100, 1, [&](std::size_t begin, std::size_t) { sum += int(begin % 2); });
+    };
+    for (int n = 0; n < count; ++n) {
+      std::thread(loop).join();
+      std::thread([&] {
+        const RunScope scope(RunContext().with_threads(available_threads() > 2 ? 2 : 0));
+        loop();
+      }).join();
+    }
+    EXPECT_EQ(sum, 2 * count * 10 * 50);
+    return resident_kb();
+  };
+  const long before = on_new_threads(200), after = on_new_threads(800);
+  EXPECT_LT(after - before, 1500);
 }
 
 TEST(ParallelDo, RunsEverythingAndRethrowsTheFirstFailureOfTheList) {

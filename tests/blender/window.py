@@ -67,7 +67,6 @@ def look():
     scenes.brought("prediction")
     for each in bpy.data.objects:
         each.select_set(False)
-    scenes.brought("film").hide_set(False)
     scenes.brought("sheet").hide_set(True)
     return None
 

@@ -90,7 +90,7 @@ TOML
 }
 
 # Settings that make a job quick.
-quick='--film 100x80 --set film.elements=800 --set dip.step_mm=1 --dpi 72
+quick='--film 100x80 --set film.elements=800 --set dip.step_mm=1 --dpi 72 --set plan.suggest=off
        --set preview.width_px=200 --set print.samples=1'
-quick_simulate='--film 100x80 --set film.elements=800 --set dip.step_mm=1
+quick_simulate='--film 100x80 --set film.elements=800 --set dip.step_mm=1 --set plan.suggest=off
        --set preview.width_px=200'

@@ -24,7 +24,7 @@ one=$!
 worker two
 two=$!
 
-write_sweep 2000 0.2 <<'TOML'
+write_sweep 800 0.5 <<'TOML'
 "material.z_stretch" = { from = 0.3, to = 0.9, count = 100 }
 TOML
 "$hydrodip" sweep plan sweep.toml -o s --no-trial --quiet > /dev/null || fail 'sweep plan'

@@ -1,7 +1,7 @@
 """run_pages.py [--quick] HYDRODIP SOURCE [PAGE...]: runs what the documentation says.
 
-Of the guides (docs/guide/), every block of ```sh is run, page by page in a fresh folder, in the order
-of the page; examples/jobs is there. A comment before a block says more about it:
+Of the guides (docs/guide/) and the other pages of docs/, every block of ```sh is run, page by page in a
+fresh folder, in the order of the page; examples/jobs is there. A comment before a block says more about it:
     <!-- not run: why -->   is not run
     <!-- file: NAME -->     the block, of whatever kind, is written to NAME
 --quick: only the short guides are run, on a coarse film without pictures; ./dev docs commands runs all.
@@ -114,16 +114,16 @@ def main():
     quick = "--quick" in arguments
     hydrodip, source, *pages = [a for a in arguments if a != "--quick"]
     hydrodip, source = os.path.abspath(hydrodip), pathlib.Path(source)
-    guides = [pathlib.Path(p) for p in pages] or sorted((source / "docs/guide").glob("*.md"))
+    guides = [pathlib.Path(p) for p in pages] or sorted((source / "docs").glob("**/*.md"))
     known = described(hydrodip)
     wrong = []
-    for page in guides + ([] if pages else [source / "README.md", *sorted((source / "docs").glob("*.md"))]):
+    for page in guides + ([] if pages else [source / "README.md"]):
         wrong += check_names(page, known)
     for sentence in wrong:
         print("FAILED:", sentence)
     good = not wrong
     for page in guides:
-        if quick and page.stem not in QUICK_PAGES:
+        if quick and page.stem not in QUICK_PAGES or "```sh" not in page.read_text():
             continue
         ran, passed = run_page(page, hydrodip, source, quick)
         print(f"{page.name}: {ran} lines run" if passed else f"{page.name}: failed")

@@ -105,8 +105,7 @@ class Running(unittest.TestCase):
 
     def test_a_thousand_dips_do_not_grow(self):
         mesh = textured_cone()
-        # On one thread: every thread that takes part in TBB's loops leaves some 8 kB behind there.
-        quick = dict(QUICK, film_elements=200, dip_step_mm=3.0, threads=1)
+        quick = dict(QUICK, film_elements=200, dip_step_mm=3.0)
 
         def many(count):
             for _ in range(count):

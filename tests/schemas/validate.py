@@ -1,6 +1,9 @@
 """validate.py SCHEMAS PATH...: every report.json, plan.json, orient.json, nest.json, plan.toml and
 profile.toml in the folders given, and the job files given, against its schema. Says how many of each
-there were."""
+there were.
+
+validate.py --refuses SCHEMAS FILE...: each of these has to be refused; a schema that takes anything
+would pass as well."""
 
 import collections
 import json
@@ -37,13 +40,26 @@ def read(path):
     return json.loads(path.read_text())
 
 
+def kind_of(path, given):
+    return KINDS.get(path.name, "job" if path == given else None)
+
+
+def refuse(by_kind, files):
+    for path in files:
+        if not any(by_kind[kind_of(path, path)].iter_errors(read(path))):
+            sys.exit(f"FAILED: taken: {path.read_text()[:300]}")
+
+
 def main():
-    by_kind = validators(pathlib.Path(sys.argv[1]))
+    arguments = sys.argv[1:]
+    if arguments[0] == "--refuses":
+        return refuse(validators(pathlib.Path(arguments[1])), list(map(pathlib.Path, arguments[2:])))
+    by_kind = validators(pathlib.Path(arguments[0]))
     counts = collections.Counter()
     wrong = 0
-    for given in map(pathlib.Path, sys.argv[2:]):
+    for given in map(pathlib.Path, arguments[1:]):
         for path in sorted(given.rglob("*")) if given.is_dir() else [given]:
-            kind = KINDS.get(path.name, "job" if path == given else None)
+            kind = kind_of(path, given)
             if kind is None or not path.is_file():
                 continue
             try:
