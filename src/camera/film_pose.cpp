@@ -21,6 +21,8 @@ constexpr double kTogether_mm = 6, kLeastBase_mm = 60, kMostSwelling = 0.12;
 // Below what a corner is known to, scatter is chance.
 constexpr double kLeastScatter_mm = 0.005;
 constexpr double kTurned_deg = 45;
+// No film shrinks or swells more.
+constexpr double kLeastSwelling = 0.985, kLargestSwelling = 1.07;
 
 using PoseValues = Eigen::Matrix<double, 5, 1>;  // shift, turn (rad), swelling
 
@@ -187,6 +189,11 @@ FilmPose find_film(const GrayImage& photo, const std::string& name, const Tank& 
         "{}: the film lies turned by {:.0f} degrees: its margin says which edge is the top; lay it "
         "anew, or tell where it is to lie with --set-place",
         name, pose.turn_deg));
+  if (pose.swelling.minCoeff() < kLeastSwelling || pose.swelling.maxCoeff() > kLargestSwelling)
+    throw InputError(fmt::format(
+        "{}: the film would have swollen by {:.1f} x {:.1f} %: it is another job's sheet, was "
+        "printed scaled, or the water's level (--water-below) is wrong",
+        name, 100 * (pose.swelling.x() - 1), 100 * (pose.swelling.y() - 1)));
   if (pose.unexplained_rms_mm > search.tolerance_mm)
     throw InputError(fmt::format(
         "{}: the film's marks are {:.2f} mm off any evenly swollen sheet (--tolerance {:g}): it is "

@@ -1,7 +1,7 @@
 // The only place that knows Eigen's unsupported solvers.
 #include "camera/least_squares.h"
 
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 #include <unsupported/Eigen/NonLinearOptimization>
 #include <unsupported/Eigen/NumericalDiff>
 
@@ -29,6 +29,17 @@ struct Problem {
   }
 };
 
+// In units in which the diagonal is 1; what nothing tells gets a variance that says so.
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& normal) {
+  const Eigen::VectorXd unit = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.asDiagonal() * normal *
+                                                             unit.asDiagonal());
+  constexpr double kNothing = 1e-13;
+  const Eigen::VectorXd inverse = eigen.eigenvalues().cwiseMax(kNothing).cwiseInverse();
+  const Eigen::MatrixXd& v = eigen.eigenvectors();
+  return unit.asDiagonal() * (v * inverse.asDiagonal() * v.transpose()) * unit.asDiagonal();
+}
+
 using Differentiable = Eigen::NumericalDiff<Problem, Eigen::Central>;
 
 }  // namespace
@@ -45,7 +56,7 @@ Fit least_squares(const Residuals& residuals, const Eigen::VectorXd& start) {
   fit.residuals = residuals(fit.values);
   Eigen::MatrixXd jacobian(fit.residuals.size(), start.size());
   problem.df(fit.values, jacobian);
-  fit.covariance = (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+  fit.covariance = inverse_of(jacobian.transpose() * jacobian);
   return fit;
 }
 

@@ -1,12 +1,15 @@
 #include "sheet/film_marks.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hydrodip {
 namespace {
 
 constexpr double kLeastMarginMm = 6, kLeastSideMm = 120;
 constexpr double kMostOffEdgeMm = 3.5, kOffEdge = 1.0 / 3;
+// Tags of one sheet, and how many sets of them there are.
+constexpr int kMost = 10, kKinds = kFirstBoardTag / kMost;
 constexpr double kLargestCellMm = 1.2;
 // What the bottom's marks leave free in the middle: the ruler with its numbers.
 constexpr double kRulerRoomMm = 112;
@@ -22,10 +25,11 @@ std::vector<MarkPlace> film_marks(double width_mm, double height_mm, double marg
   // The marks' middle lines, and how far along them the outermost ones stand.
   const Vec2 line = half - Vec2::Constant(off_edge + 0.5 * kMarkCells * cell);
   const Vec2 end = half - Vec2::Constant(margin_mm + half_length);
+  const auto kind = int(std::lround(7 * width_mm + 13 * height_mm + 29 * margin_mm) % kKinds);
   std::vector<MarkPlace> marks;
   // `middle`: of tag and squares together.
   const auto add = [&](int id, const Vec2& middle, const Vec2& along) {
-    marks.push_back({id, middle + 0.5 * half_length * along, along, cell});
+    marks.push_back({kMost * kind + id, middle + 0.5 * half_length * along, along, cell});
   };
   // Around clockwise, seen from above; read from inside the sheet, the tag is on the left.
   add(0, {-end.x(), line.y()}, Vec2::UnitX());

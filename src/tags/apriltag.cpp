@@ -2,7 +2,6 @@
 #include "tags/apriltag.h"
 
 #include <apriltag/apriltag.h>
-#include <apriltag/common/image_u8.h>
 #include <apriltag/common/zarray.h>
 #include <apriltag/tag36h11.h>
 #include <fmt/format.h>
@@ -23,9 +22,6 @@ struct FreeFamily {
 };
 struct FreeDetector {
   void operator()(apriltag_detector_t* detector) const { apriltag_detector_destroy(detector); }
-};
-struct FreeImage {
-  void operator()(image_u8_t* image) const { image_u8_destroy(image); }
 };
 struct FreeSightings {
   void operator()(zarray_t* sightings) const { apriltag_detections_destroy(sightings); }
@@ -50,12 +46,13 @@ SeenTag seen(const apriltag_detection_t& sighting) {
 TagCells tag_cells(int id) {
   if (id < 0 || id >= kTagCount) throw std::out_of_range(fmt::format("there is no tag {}", id));
   const Family family(tag36h11_create());
-  const std::unique_ptr<image_u8_t, FreeImage> image(apriltag_to_image(family.get(), id));
+  // A white edge, a black ring, and inside it the code's bits, of which the first is the highest.
   TagCells cells{};
-  for (int row = 0; row < kMarkCells; ++row)
-    for (int column = 0; column < kMarkCells; ++column)
-      cells[std::size_t(row)][std::size_t(column)] =
-          image->buf[row * image->stride + column] == 0;
+  for (std::size_t row = 1; row + 1 < kMarkCells; ++row)
+    for (std::size_t column = 1; column + 1 < kMarkCells; ++column) cells[row][column] = true;
+  for (std::uint32_t bit = 0; bit < family->nbits; ++bit)
+    if ((family->codes[id] >> (family->nbits - bit - 1) & 1U) != 0)
+      cells[family->bit_y[bit] + 1][family->bit_x[bit] + 1] = false;
   return cells;
 }
 

@@ -1,5 +1,6 @@
 #include "tags/seen_marks.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>

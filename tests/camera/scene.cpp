@@ -26,6 +26,17 @@ double sampled(const SheetPicture& picture, const Vec2& mm) {
          b * ((1 - a) * picture.gray.at(i, j + 1) + a * picture.gray.at(i + 1, j + 1));
 }
 
+// Whether a place and what is within some millimetres of it is white.
+bool is_white(const SheetPicture& picture, const Vec2& mm) {
+  if (picture.inked.empty()) return false;
+  const int x = int(std::floor(mm.x() - picture.upper_left_mm.x())),
+            y = int(std::floor(picture.upper_left_mm.y() - mm.y()));
+  const int height = int(picture.inked.size()) / picture.inked_width;
+  // Its edge is not white either.
+  if (x < 4 || y < 4 || x >= picture.inked_width - 4 || y >= height - 4) return false;
+  return picture.inked[std::size_t(y) * std::size_t(picture.inked_width) + std::size_t(x)] == 0;
+}
+
 // From rays to a sheet's own millimetres.
 Mat3 ray_to_sheet(const PlacedSheet& sheet, const Pose& camera) {
   const Pose to_camera = camera * sheet.pose;
@@ -98,7 +109,27 @@ SheetPicture draw_boxes(const std::vector<Box2>& boxes, const Box2& sheet, doubl
         value = std::min(value, std::uint8_t(std::lround(left)));
       }
   }
+  find_ink(picture);
   return picture;
+}
+
+void find_ink(SheetPicture& picture) {
+  const GrayImage& gray = picture.gray;
+  picture.inked_width = int(std::ceil(gray.width_px / picture.px_per_mm));
+  const int height = int(std::ceil(gray.height_px / picture.px_per_mm));
+  picture.inked.assign(std::size_t(picture.inked_width) * std::size_t(height), 0);
+  std::vector<std::uint8_t> own = picture.inked;
+  for (int y = 0; y < gray.height_px; ++y)
+    for (int x = 0; x < gray.width_px; ++x)
+      if (gray.at(x, y) < 250)
+        own[std::size_t(y / picture.px_per_mm) * std::size_t(picture.inked_width) +
+            std::size_t(x / picture.px_per_mm)] = 1;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < picture.inked_width; ++x)
+      for (int j = std::max(0, y - 3); j <= std::min(height - 1, y + 3); ++j)
+        for (int i = std::max(0, x - 3); i <= std::min(picture.inked_width - 1, x + 3); ++i)
+          if (own[std::size_t(j) * std::size_t(picture.inked_width) + std::size_t(i)])
+            picture.inked[std::size_t(y) * std::size_t(picture.inked_width) + std::size_t(x)] = 1;
 }
 
 SheetPicture draw_marks(const std::vector<MarkPlace>& marks, const Box2& sheet, double px_per_mm) {
@@ -123,6 +154,26 @@ GrayImage photograph(const Scene& scene) {
         for (int k = 0; k < 4; ++k)
           ray[std::size_t(k)] =
               scene.lens.ray(Vec2(x0 + kBlock_px * (k % 2), y0 + kBlock_px * (k / 2)));
+        // Of one sheet, white.
+        const Vec3 mid = 0.25 * (ray[0] + ray[1] + ray[2] + ray[3]);
+        bool plain = false, any = false;
+        for (std::size_t k = 0; k < to_sheet.size(); ++k) {
+          const Vec2 at = (to_sheet[k] * mid).hnormalized();
+          const SheetPicture& picture = *scene.sheets[k].picture;
+          const Vec2 from = at - picture.upper_left_mm;
+          const double px = picture.px_per_mm;
+          const bool near = from.x() > -4 && from.y() < 4 && from.x() < picture.gray.width_px / px + 4 &&
+                            -from.y() < picture.gray.height_px / px + 4;
+          any = any || near;
+          if (near) plain = is_white(picture, at);
+        }
+        if (plain || !any) {
+          for (int y = y0; y < std::min(height, y0 + kBlock_px); ++y)
+            for (int x = x0; x < std::min(width, x0 + kBlock_px); ++x)
+              value[std::size_t(y) * std::size_t(width) + std::size_t(x)] =
+                  float(plain ? scene.light_white : scene.background);
+          continue;
+        }
         for (int y = y0; y < std::min(height, y0 + kBlock_px); ++y)
           for (int x = x0; x < std::min(width, x0 + kBlock_px); ++x) {
             double sum = 0;

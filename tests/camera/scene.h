@@ -17,7 +17,11 @@ struct SheetPicture {
   GrayImage gray;
   double px_per_mm = 20;
   Vec2 upper_left_mm = Vec2::Zero();  // of the picture, in the sheet's frame (y up)
+  // Per square millimetre from the upper left: not all white within 3 mm. Empty: not known.
+  std::vector<std::uint8_t> inked;
+  int inked_width = 0;
 };
+void find_ink(SheetPicture& picture);
 
 // Black boxes on white, each pixel as much as it is covered.
 SheetPicture draw_boxes(const std::vector<Box2>& boxes, const Box2& sheet, double px_per_mm = 20);
