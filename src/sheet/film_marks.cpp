@@ -11,6 +11,8 @@ constexpr double kMostOffEdgeMm = 3.5, kOffEdge = 1.0 / 3;
 // Tags of one sheet, and how many sets of them there are.
 constexpr int kMost = 10, kKinds = kFirstBoardTag / kMost;
 constexpr double kLargestCellMm = 1.2;
+// Three marks of 20 cells and their gaps along half an edge and a bit.
+constexpr double kLeastRoomMm = 30, kCellsShare = 0.017;
 // What the bottom's marks leave free in the middle: the ruler with its numbers.
 constexpr double kRulerRoomMm = 112;
 
@@ -19,7 +21,10 @@ constexpr double kRulerRoomMm = 112;
 std::vector<MarkPlace> film_marks(double width_mm, double height_mm, double margin_mm) {
   if (margin_mm < kLeastMarginMm || std::min(width_mm, height_mm) < kLeastSideMm) return {};
   const double off_edge = std::min(kMostOffEdgeMm, kOffEdge * margin_mm);
-  const double cell = std::min(kLargestCellMm, (margin_mm - off_edge) / (kMarkCells + 1));
+  const double room = 0.5 * std::min(width_mm, height_mm) - margin_mm;
+  if (room < kLeastRoomMm) return {};
+  const double cell = std::min(
+      {kLargestCellMm, (margin_mm - off_edge) / (kMarkCells + 1), room * kCellsShare});
   const double half_length = kMarkCells * cell;
   const Vec2 half(0.5 * width_mm, 0.5 * height_mm);
   // The marks' middle lines, and how far along them the outermost ones stand.
