@@ -1,6 +1,6 @@
 // What registration reaches on synthetic photos, printers and dips: the figures of
-// docs/registration.md. Usage: bench_registration [views [figures]], figures of: views, empty,
-// dips; default: 200 and all.
+// docs/registration.md. Usage: bench_registration [views [figures]], figures of: loop,
+// swelling, dips, views, empty; default: 200 and all.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -17,6 +17,7 @@
 #include "camera/film_pose.h"
 #include "camera/scene.h"
 #include "camera/tank.h"
+#include "loops.h"
 #include "sheet/film_marks.h"
 
 namespace hydrodip {
@@ -243,8 +244,14 @@ void dips(const Bench& bench, int count) {
 int main(int argc, char** argv) {
   using namespace hydrodip;
   const int count = argc > 1 ? std::atoi(argv[1]) : 200;
-  const std::string figures = argc > 2 ? argv[2] : "views,empty,dips";
+  const std::string figures = argc > 2 ? argv[2] : "loop,swelling,dips,views,empty";
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  if (figures.find("loop") != std::string::npos) closed_loop();
+  if (figures.find("swelling") != std::string::npos) swollen_film();
+  const bool photos = figures.find("dips") != std::string::npos ||
+                      figures.find("views") != std::string::npos ||
+                      figures.find("empty") != std::string::npos;
+  if (!photos) return 0;
   fmt::print("All photos are synthetic: rendered with lens distortion, perspective, blur, noise, "
              "glare and uneven light.\n");
   const Bench bench(1);
