@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "calibrate_commands.h"
 #include "console.h"
+#include "register_commands.h"
 #include "rig/rig.h"
 #include "rig_commands.h"
 #include "samples/samples.h"
@@ -289,7 +290,8 @@ std::vector<Command> own_commands() {
 const std::vector<Command>& commands() {
   static const std::vector<Command> table = [] {
     std::vector<Command> all = own_commands();
-    for (const auto& more : {calibrate_commands(), rig_commands(), shop_commands()})
+    for (const auto& more :
+         {calibrate_commands(), register_commands(), rig_commands(), shop_commands()})
       all.insert(all.end() - 1, more.begin(), more.end());  // params stays last
     return all;
   }();

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parse_double.h"
+#include "rig/registration_file.h"
 #include "settings/profiles.h"
 
 namespace hydrodip {
@@ -168,8 +169,38 @@ void declare_film(CLI::App& app, Request& request) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
 }
 
+namespace {
+
+// What the film on the water is like: a registration's swelling, or a profile.
+void take_film_state(Request& request, const std::string& file) {
+  if (std::filesystem::path(file).extension() == ".toml") {
+    request.sources.profiles.emplace_back(file);
+    return;
+  }
+  const auto registration = read_registration(file);
+  if (!registration)
+    throw InputError("--film-state: " + file +
+                     " is neither the registration.json of 'hydrodip register' nor a profile");
+  const auto add = [&](const char* name, double value) {
+    request.sources.options.push_back({name, value, true, std::to_string(value), "--film-state"});
+  };
+  add("film.swelling_x", registration->swelling.x());
+  add("film.swelling_y", registration->swelling.y());
+}
+
+}  // namespace
+
 void declare_film_and_dip(CLI::App& app, Request& request) {
   declare_film(app, request);
+  app.add_option_function<std::string>(
+         "--film-state",
+         [&request](const std::string& file) { take_film_state(request, file); },
+         "design for film that swells as this registration.json, or profile, says")
+      ->group(kFilmGroup)
+      ->type_name("FILE.json|FILE.toml")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  add_parameter_option(app, request, "--correction", "film.correction", "FILE.json", kFilmGroup,
+                       "take out what 'hydrodip correct' found of earlier dips");
   add_parameter_option(app, request, "--depth", "dip.depth_mm", "MM|auto", kFilmGroup,
                        "how deep to dip; auto: as deep as is good (default: the whole object)");
   add_parameter_option(app, request, "--path", "path", "FILE.csv", kFilmGroup,

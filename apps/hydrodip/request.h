@@ -7,6 +7,8 @@
 #include "calibrate/calibrate.h"
 #include "history/history_job.h"
 #include "job/jobs.h"
+#include "register/register.h"
+#include "rig/jig.h"
 #include "settings/settings.h"
 #include "studio/studio.h"
 #include "sweep/sweep_jobs.h"
@@ -30,6 +32,12 @@ struct Request {
   bool dry_run = false;
   bool yes = false;
   CalibrationRequest calibration;
+  PrinterRequest printer;
+  std::vector<std::string> photos;  // of `register`; the last one may be the job's folder
+  bool calibrate_camera = false;
+  RegisterRequest registration;
+  CorrectRequest correction;
+  JigOptions jig;
   StudioOptions studio;
   PatternRequest pattern;
   std::vector<std::string> jobs;  // of several parts

@@ -89,6 +89,33 @@ JobResult run_guide(const Request& request, const RunContext& context) {
   return rig_guide(job, real.bench, context);
 }
 
+void declare_jig(CLI::App& app, Request& request) {
+  declare_job(app, request);
+  declare_output(app, request, "JOB_DIR/jig");
+  app.add_option_function<std::string>(
+         "--bed",
+         [&request](const std::string& text) {
+           const std::vector<double> mm = numbers_of("--bed", text, 3, 3);
+           request.jig.bed_mm = {mm[0], mm[1], mm[2]};
+         },
+         "of the 3D printer (default: 220,220,250)")
+      ->group("Jig")
+      ->type_name("X,Y,Z");
+  app.add_option("--clearance", request.jig.clearance_mm,
+                 "between parts, and between object and socket (default: 0.3)")
+      ->group("Jig")
+      ->type_name("MM")
+      ->check(CLI::Range(0.0, 3.0));
+  declare_reporting(app, request);
+  declare_configuration(app, request);
+}
+
+JobResult run_jig(const Request& request, const RunContext& context) {
+  const RigJob job = load_job(request, "rig jig");
+  return jig_job(job, request.jig,
+                 request.output.empty() ? job.folder / "jig" : std::filesystem::path(request.output), context);
+}
+
 void declare_stage(CLI::App& app, Request& request) {
   app.add_option("ACTION", request.action, "find, status, home, jog, approach, dip or retract")
       ->type_name("");
@@ -129,6 +156,10 @@ std::vector<Command> rig_commands() {
        "Without --port the object is dipped by hand. Writes JOB_DIR/rig-N. Ctrl-C stops the stage\n"
        "softly, a second one at once.",
        declare_guide, run_guide},
+      {"rig jig", "frame and mount to 3D-print: they hold film and object where they belong",
+       "Writes mount.stl, bar.stl, frame.stl (or frame-1.stl to frame-4.stl, where the bed is small)\n"
+       "and jig.png. See docs/registration.md.",
+       declare_jig, run_jig},
       {"rig stage",
        "drive a Zaber stage or a Marlin printer's Z axis",
        "find      what answers on the serial ports\n"

@@ -1,4 +1,4 @@
-// `hydrodip rig sheet|guide|stage`.
+// `hydrodip rig sheet|guide|jig|stage`.
 #pragma once
 
 #include "commands.h"

@@ -8,7 +8,9 @@
 #include "calibrate/calibrate.h"
 #include "calibrate/checkerboard_dip.h"
 #include "calibrate/kit_shapes.h"
+#include "export/stl.h"
 #include "ink/color_model.h"
+#include "job/sheet_of.h"
 #include "sheet/page_writer.h"
 #include "sheet/sheet.h"
 
@@ -43,6 +45,7 @@ void write_film(const std::filesystem::path& path, const JobConfig& config, doub
   sheet.disc = config.design.film.shape == FilmShape::kDisc;
   sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
   sheet.dpi = board.raster.dpi;
+  sheet.printer = printer_of(config.print);
   sheet.job_name = fmt::format("calibration, {:g} mm squares", square_mm);
   const Image image = as_image(board.inks);
   write_print_pdf(path, image, srgb_profile(), sheet, context);
@@ -139,7 +142,7 @@ JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
   JobResult result;
   for (const KitShape& shape : kit_shapes()) {
     const std::string name = std::string(shape.name) + ".stl";
-    write_stl(folder.path(name), kit_shape(shape.name));
+    write_stl(folder.path(name), kit_shape(shape.name), "hydrodip calibration shape, mm");
     result.files.push_back(name);
   }
   write_film(folder.path("checkerboard.pdf"), config, request.square_mm, context);

@@ -3,13 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <numbers>
 #include <vector>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "samples/samples.h"
 
 namespace hydrodip {
@@ -111,29 +109,6 @@ Object kit_shape(const std::string& sample) {
                                       : round_shape(0.5 * box.size());
   stand_on_mount(object);
   return object;
-}
-
-void write_stl(const std::filesystem::path& file, const Object& object) {
-  std::vector<std::uint8_t> bytes(80, ' ');
-  constexpr char kTitle[] = "hydrodip calibration shape, mm";
-  std::memcpy(bytes.data(), kTitle, sizeof kTitle - 1);
-  const auto put = [&](const void* data, std::size_t size) {
-    const auto* begin = static_cast<const std::uint8_t*>(data);
-    bytes.insert(bytes.end(), begin, begin + size);
-  };
-  const auto count = std::uint32_t(object.triangles.size());
-  put(&count, sizeof count);
-  for (std::size_t t = 0; t < object.triangles.size(); ++t) {
-    const auto put_vector = [&](const Vec3& v) {
-      const Eigen::Vector3f single = v.cast<float>();
-      put(single.data(), 3 * sizeof(float));
-    };
-    put_vector(face_normal(object, int(t)));
-    for (const std::int32_t v : object.triangles[t]) put_vector(object.positions[std::size_t(v)]);
-    const std::uint16_t attribute = 0;
-    put(&attribute, sizeof attribute);
-  }
-  write_file(file, bytes.data(), bytes.size());
 }
 
 }  // namespace hydrodip

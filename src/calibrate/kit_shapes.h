@@ -1,7 +1,6 @@
 // The calibration shapes to print: watertight, standing on their mount, with a hole for it.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "object/object.h"
@@ -14,8 +13,5 @@ Object kit_shape(const std::string& sample);
 
 constexpr double kMountHole_mm = 5.6;  // a 1/4-20 tripod screw cuts its thread into it
 constexpr double kMountHoleDepth_mm = 12;
-
-// Binary STL, mm.
-void write_stl(const std::filesystem::path& file, const Object& object);
 
 }  // namespace hydrodip

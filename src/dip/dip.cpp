@@ -138,6 +138,29 @@ int number_of_steps(double length_mm, const DipOptions& options) {
   return std::max(1, static_cast<int>(std::ceil(length_mm / options.step_mm - 1e-9)));
 }
 
+// Of film that floated as `wet`: what a millimetre of the printed sheet became.
+void measure_from_print(const SharedFilmMesh& mesh, DippedFilm& film) {
+  const auto area = [&](const std::vector<Vec2>& u, std::int32_t triangle) {
+    const Triangle& t = mesh->triangles[std::size_t(triangle)];
+    const Vec2& a = u[std::size_t(t[0])];
+    return cross2(u[std::size_t(t[1])] - a, u[std::size_t(t[2])] - a);
+  };
+  for (std::size_t v = 0; v < mesh->u.size(); ++v) {
+    double printed = 0, wet = 0;
+    for (auto n = mesh->incident_begin[v]; n < mesh->incident_begin[v + 1]; ++n) {
+      printed += area(mesh->u, mesh->incident[std::size_t(n)]);
+      wet += area(mesh->wet, mesh->incident[std::size_t(n)]);
+    }
+    film.area_ratio[v] *= wet / printed;
+  }
+  film.shared_mesh = mesh;
+}
+
+DipResult dip_floating(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
+                       const std::vector<Triangle>& triangles, const Surface& surface,
+                       const Trajectory& trajectory, const DipOptions& options,
+                       const RunContext& context, const DipObserver& observe);
+
 }  // namespace
 
 void relax_film(Relaxation& relaxation, const std::vector<std::uint8_t>& is_free, VertexVector& u,
@@ -172,6 +195,20 @@ DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
               const Trajectory& trajectory, const DipOptions& options, const RunContext& context,
               const DipObserver& observe) {
   const RunScope scope(context);
+  if (mesh->wet.empty())
+    return dip_floating(mesh, positions, triangles, surface, trajectory, options, context, observe);
+  DipResult result = dip_floating(std::make_shared<const FilmMesh>(floating_mesh(*mesh)), positions,
+                                  triangles, surface, trajectory, options, context, observe);
+  measure_from_print(mesh, result.film);
+  return result;
+}
+
+namespace {
+
+DipResult dip_floating(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
+                       const std::vector<Triangle>& triangles, const Surface& surface,
+                       const Trajectory& trajectory, const DipOptions& options,
+                       const RunContext& context, const DipObserver& observe) {
   const FilmMesh& film = *mesh;
   check(options, film);
   check(trajectory, options);
@@ -216,4 +253,5 @@ DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,
   return {std::move(dipped), state.statistics};
 }
 
+}  // namespace
 }  // namespace hydrodip

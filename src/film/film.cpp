@@ -171,6 +171,23 @@ void find_neighbors(FilmMesh& mesh) {
     }
 }
 
+// The grid as it lies so far is the film model's.
+void tell_printed_from_wet(const FilmOptions& options, FilmMesh& mesh) {
+  const bool swells = options.swelling_x != 1 || options.swelling_y != 1;
+  if (!swells && !options.correction) return;
+  const Vec2 swelling(options.swelling_x, options.swelling_y);
+  for (const Vec2& u : mesh.u) mesh.wet.push_back(u.cwiseProduct(swelling));
+  if (!options.correction) return;
+  for (Vec2& u : mesh.u) u += options.correction->at(u);
+  for (const Triangle& t : mesh.triangles) {
+    const Vec2& a = mesh.u[std::size_t(t[0])];
+    if (!(cross2(mesh.u[std::size_t(t[1])] - a, mesh.u[std::size_t(t[2])] - a) > 0))
+      throw InputError(
+          "film.correction moves neighbouring places past each other; measure the dip anew, or "
+          "correct it by fewer scans");
+  }
+}
+
 }  // namespace
 
 bool is_free(const FilmOptions& options, const Vec2& u) {
@@ -194,9 +211,26 @@ FilmMesh make_film_mesh(const FilmOptions& options) {
   mesh.options = options;
   if (mesh.triangles.size() < 8)
     throw InputError("the film needs at least 8 triangles; set film.elements higher");
+  tell_printed_from_wet(options, mesh);
   list_incident_triangles(mesh);
   find_neighbors(mesh);
   return mesh;
+}
+
+FilmMesh floating_mesh(const FilmMesh& mesh) {
+  FilmMesh floating = mesh;
+  floating.u = mesh.wet;
+  floating.wet.clear();
+  FilmOptions& options = floating.options;
+  const double x = options.swelling_x, y = options.swelling_y;
+  for (double& line : floating.line_x) line *= x;
+  for (double& line : floating.line_y) line *= y;
+  floating.cell_mm *= std::max(x, y);
+  options.width_mm *= x;
+  options.height_mm *= y;
+  options.swelling_x = options.swelling_y = 1;
+  options.correction = nullptr;
+  return floating;
 }
 
 bool DippedFilm::lies_on_object(std::size_t triangle) const {

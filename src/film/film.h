@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "film/correction.h"
 
 namespace hydrodip {
 
@@ -21,6 +22,10 @@ struct FilmOptions {
   int elements = 40000;   // triangles, met as nearly as the grid allows
   // Cell size at the rim over that at the centre, where the object comes down; 1: all alike.
   double grading = 4;
+  // Lengths of the floating film over the printed sheet's, along x and y: film swells on the water.
+  double swelling_x = 1, swelling_y = 1;
+  // Null: none.
+  std::shared_ptr<const FilmCorrection> correction = {};
 };
 
 // The mesh of the free film, made as the options say. Film coordinates u: mm, origin at the film's
@@ -30,7 +35,8 @@ struct FilmOptions {
 // vertices next to the rim are moved onto it.
 struct FilmMesh {
   FilmOptions options;
-  std::vector<Vec2> u;               // per vertex
+  std::vector<Vec2> u;               // per vertex: on the printed sheet
+  std::vector<Vec2> wet;             // per vertex: flat on the water; empty: as printed
   std::vector<Triangle> triangles;   // counter-clockwise in u
   std::vector<std::uint8_t> on_rim;  // per vertex: clamped
   double cell_mm = 0;                // mean distance of grid lines (larger of the two axes)
@@ -51,8 +57,14 @@ struct FilmMesh {
 // Whether the point of the sheet is inside the taped margin's inner edge.
 bool is_free(const FilmOptions& options, const Vec2& u);
 
-// Throws InputError if the margin leaves no film or there are fewer than 8 triangles.
+// The grid is regular where the film model puts it: a correction moves u, and swelling makes `wet`.
+// Throws InputError if the margin leaves no film, there are fewer than 8 triangles, or a correction
+// folds the film.
 FilmMesh make_film_mesh(const FilmOptions& options);
+
+// The same film as a mesh whose u is the mesh's `wet`: what floats, without a thought of what was
+// printed. For a mesh that has `wet`.
+FilmMesh floating_mesh(const FilmMesh& mesh);
 
 // A mesh that its dips share; never null.
 using SharedFilmMesh = std::shared_ptr<const FilmMesh>;
@@ -68,8 +80,9 @@ struct DippedFilm {
   SharedFilmMesh shared_mesh = std::make_shared<const FilmMesh>();
   std::vector<Vec3> position;      // per vertex
   std::vector<VertexState> state;  // per vertex
-  std::vector<double> area_ratio;  // per vertex: deformed area over flat area (Voronoi areas)
-  std::vector<double> stretch;     // per vertex: largest principal stretch around it
+  std::vector<double> area_ratio;  // per vertex: deformed over printed area (Voronoi areas)
+  std::vector<double> stretch;     // per vertex: largest principal stretch around it, from the
+                                   // floating film's flat state on
   std::vector<std::uint8_t> torn;  // per triangle: all of it, or on the object upside down
   // Per triangle: how far the object had travelled (straight down: its depth) when it let go;
   // infinity: it did not.

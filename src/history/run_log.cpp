@@ -33,6 +33,10 @@ void take_in(const Json& entry, DipRun& run) {
     run.soak_s = number(entry, "seconds");
   } else if (event == "activator") {
     run.activator_g = number(entry, "used_g");
+  } else if (event == "registered") {
+    run.registration_x_mm = number(entry, "x_mm");
+    run.registration_y_mm = number(entry, "y_mm");
+    run.registration_deg = number(entry, "turn_deg");
   } else if (event == "notes") {
     run.notes = text(entry, "text");
   } else if (event == "end") {

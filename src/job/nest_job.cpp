@@ -16,6 +16,7 @@
 #include "image/files.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
+#include "job/sheet_of.h"
 #include "plan/fit.h"
 #include "plan/sheet_packing.h"
 #include "session/sheet_files.h"
@@ -278,6 +279,7 @@ SheetOptions sheet_options(const JobConfig& config, std::size_t pieces) {
   sheet.margin_mm = config.design.film.margin_mm;
   sheet.dpi = config.design.dpi;
   sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
+  sheet.printer = printer_of(config.print);
   sheet.job_name =
       config.print.job_name.empty() ? fmt::format("{} parts", pieces) : config.print.job_name;
   return sheet;

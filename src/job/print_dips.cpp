@@ -193,6 +193,9 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
 
+  if (config.design.film.correction)
+    throw InputError(
+        "film.correction: a correction is of one dip, and this job has several; leave it out");
   const DipPlan plan = times.measure("plan", [&] {
     const Targets targets = job_targets(config, prepared, context);
     return plan_dips(config, prepared, targets, false, context);

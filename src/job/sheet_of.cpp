@@ -1,8 +1,16 @@
 #include "job/sheet_of.h"
 
+#include <cmath>
+#include <numbers>
+
 #include "report/findings.h"
 
 namespace hydrodip {
+
+PrinterScale printer_of(const PrintOptions& print) {
+  const double lean = std::tan(print.skew_deg * std::numbers::pi / 180);
+  return {print.scale_x, print.scale_y, print.scale_y * lean};
+}
 
 SheetOptions sheet_of(const JobConfig& config) {
   SheetOptions sheet;
@@ -12,6 +20,8 @@ SheetOptions sheet_of(const JobConfig& config) {
   sheet.dpi = config.design.dpi;
   sheet.disc = config.design.film.shape == FilmShape::kDisc;
   sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
+  sheet.camera_marks = config.print.camera_marks;
+  sheet.printer = printer_of(config.print);
   sheet.job_name =
       config.print.job_name.empty() ? config.model.filename().string() : config.print.job_name;
   return sheet;

@@ -7,6 +7,8 @@
 
 namespace hydrodip {
 
+PrinterScale printer_of(const PrintOptions& print);
+
 SheetOptions sheet_of(const JobConfig& config);
 // With an alarm in the margin if it is not to be dipped like this.
 SheetOptions sheet_of(const JobConfig& config, const Report& report);

@@ -24,7 +24,7 @@ namespace hydrodip {
 inline constexpr int kReportSchemaVersion = 1;
 
 struct ReportInput {
-  std::string role;  // "model", "texture", "settings", "film image"
+  std::string role;  // "model", "texture", "settings", "film image", "correction"
   std::string path;  // as given
   std::string sha256;
   std::uint64_t bytes = 0;

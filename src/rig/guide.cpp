@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/parse_double.h"
 #include "rig/finish_run.h"
+#include "rig/registration_file.h"
 #include "rig/rig.h"
 #include "rig/stage_session.h"
 
@@ -34,6 +35,7 @@ class Guide {
     if (!job_.config.stage.port.empty()) step("stage ready", [&] { ready_stage(); });
     step("water warm", [&] { check_water("before"); });
     step("film laid", [&] { lay_film(); });
+    if (!find_camera(job_.folder).empty()) step("registered", [&] { locate_film(); });
     step("activated", [&] { spray(); });
     step("dipped", [&] { dip(); });
     step("lifted", [&] { lift(); });
@@ -135,6 +137,38 @@ class Guide {
     const bool right = soaked_s >= process_.soak_min_s && soaked_s <= process_.soak_max_s;
     record_.note("soaked", {{"seconds", soaked_s}, {"within", right}});
     if (!right) person_.say(fmt::format("{:.0f} s: not as planned; it is in the log.", soaked_s));
+  }
+
+  // As often as the frame is moved.
+  void locate_film() {
+    person_.say(fmt::format(
+        "\nWHERE IT LIES. Photograph the film with the whole rim in the picture; in another window: "
+        "hydrodip register PHOTO {}",
+        job_.folder.string()));
+    std::string seen = photo_seen();
+    for (;;) {
+      const std::string answer =
+          person_.ask("Enter when that has said where it lies, or skip: ");
+      if (answer == "skip") return;
+      const auto found = read_registration(job_.folder / kRegistrationFile);
+      if (!found || found->photo_sha256 == seen) {
+        person_.say(fmt::format("{} is as it was.", kRegistrationFile));
+        continue;
+      }
+      seen = found->photo_sha256;
+      record_.note("registered", {{"x_mm", found->shift_mm.x()},
+                                  {"y_mm", found->shift_mm.y()},
+                                  {"turn_deg", found->turn_deg},
+                                  {"swelling_x", found->swelling.x()},
+                                  {"swelling_y", found->swelling.y()}});
+      person_.say(advice(*found));
+      if (person_.ask("Enter to go on, or again after another photo: ") != "again") return;
+    }
+  }
+
+  std::string photo_seen() const {
+    const auto before = read_registration(job_.folder / kRegistrationFile);
+    return before ? before->photo_sha256 : "";
   }
 
   void spray() {

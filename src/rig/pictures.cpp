@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "job/prepare.h"
 #include "model_io/load.h"
+#include "object/append.h"
 #include "object/bake.h"
 #include "object/surface.h"
 #include "render/studio.h"
@@ -86,6 +87,20 @@ std::vector<PosePicture> pose_pictures(const RigJob& job, int width_px, int heig
     pictures.push_back({view.caption, render(object, view, width_px, height_px, context)});
   }
   return pictures;
+}
+
+Image draw_parts(const std::vector<ShownPart>& parts, int width_px, int height_px,
+                 const RunContext& context) {
+  Object all;
+  all.materials.resize(1);
+  for (const ShownPart& part : parts) {
+    append(all, part.mesh);
+    all.colors.resize(all.triangles.size(), {part.color, part.color, part.color});
+  }
+  all.material_of.assign(all.triangles.size(), 0);
+  for (Vec3& p : all.positions) p = turned(p, Turn::kUpright);
+  return render(all, {"", Turn::kUpright, Vec3(0.45, 0.5, 1).normalized()}, width_px, height_px,
+                context);
 }
 
 }  // namespace hydrodip

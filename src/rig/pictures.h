@@ -6,6 +6,7 @@
 
 #include "base/context.h"
 #include "image/image.h"
+#include "object/object.h"
 #include "rig/rig_job.h"
 
 namespace hydrodip {
@@ -20,5 +21,14 @@ struct PosePicture {
 // is no model.
 std::vector<PosePicture> pose_pictures(const RigJob& job, int width_px, int height_px,
                                        const RunContext& context);
+
+// A mesh in one colour.
+struct ShownPart {
+  TriangleMesh mesh;  // posed-object frame
+  LinearColor color;
+};
+// All of them from the front, somewhat from above and from the right.
+Image draw_parts(const std::vector<ShownPart>& parts, int width_px, int height_px,
+                 const RunContext& context);
 
 }  // namespace hydrodip

@@ -41,7 +41,12 @@ void add(ContentKey& key, const PoseOptions& pose) {
 
 void add(ContentKey& key, const FilmOptions& film) {
   key.add(film.width_mm).add(film.height_mm).add(film.shape).add(film.margin_mm);
-  key.add(film.elements).add(film.grading);
+  key.add(film.elements).add(film.grading).add(film.swelling_x).add(film.swelling_y);
+  if (!film.correction) return;
+  const FilmCorrection& correction = *film.correction;
+  key.add(correction.first.x()).add(correction.first.y()).add(correction.pitch_mm);
+  key.add(correction.nx).add(correction.ny);
+  for (const Vec2& move : correction.move) key.add(move.x()).add(move.y());
 }
 
 void add(ContentKey& key, const TrajectoryOptions& way) {

@@ -34,6 +34,10 @@ enum class InkSide { kUp, kDown };
 struct PrintOptions {
   InkSide ink_side = InkSide::kUp;
   std::string job_name;  // in the sheet's margin; empty: the model's file name
+  bool camera_marks = true;  // in the margin, where there is room
+  // What the printer makes of a millimetre, and of a right angle between x and y.
+  double scale_x = 1, scale_y = 1;
+  double skew_deg = 0;
 };
 
 // What the operator keeps to at the bath; the paper's section 2 and appendix A.
@@ -119,6 +123,7 @@ struct JobConfig {
   DesignOptions design;  // film, dip, ink
   PrinterOptions printer;
   PrintOptions print;
+  std::filesystem::path correction;  // that design.film.correction was read from; may be empty
   ProcessOptions process;
   CostOptions cost;
   StageOptions stage;

@@ -230,6 +230,16 @@ std::vector<Parameter> film_records() {
       number(
           "film.grading", "", 1, 20, [](C& c) -> double& { return c.design.film.grading; },
           "cell size at the rim over that at the centre; with dip.scheme=paper: 1"),
+      number(
+          "film.swelling_x", "", 0.8, 1.5,
+          [](C& c) -> double& { return c.design.film.swelling_x; },
+          "width of the film on the water over that of the sheet, as 'hydrodip register' finds it"),
+      number(
+          "film.swelling_y", "", 0.8, 1.5,
+          [](C& c) -> double& { return c.design.film.swelling_y; }, "the same of its height"),
+      path(
+          "film.correction", [](C& c) -> std::filesystem::path& { return c.correction; },
+          "what 'hydrodip correct' found out by earlier dips of the same job; empty: nothing"),
   };
 }
 
@@ -394,6 +404,19 @@ std::vector<Parameter> print_records() {
           "print.job_name", ParameterType::kText,
           [](C& c) -> std::string& { return c.print.job_name; },
           "name in the sheet's margin; empty: the model's file name"),
+      choice<bool>(
+          "print.marks", {{"on", true}, {"off", false}},
+          [](C& c) -> bool& { return c.print.camera_marks; },
+          "marks for 'hydrodip register' in the margin of print.pdf, where there is room for them"),
+      number(
+          "print.scale_x", "", 0.9, 1.1, [](C& c) -> double& { return c.print.scale_x; },
+          "what the printer makes of 1 mm across; print.pdf is drawn so that it comes out true"),
+      number(
+          "print.scale_y", "", 0.9, 1.1, [](C& c) -> double& { return c.print.scale_y; },
+          "the same along the sheet"),
+      number(
+          "print.skew_deg", "deg", -5, 5, [](C& c) -> double& { return c.print.skew_deg; },
+          "how far the printer leans upright lines over to the right"),
   };
 }
 

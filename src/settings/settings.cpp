@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "settings/correction_file.h"
 
 namespace hydrodip {
 namespace {
@@ -125,6 +126,9 @@ JobConfig configured(const std::string& model, SettingSources sources) {
   if (is_job) sources.configs.insert(sources.configs.begin(), model);
   apply_sources(config, sources);
   if (!is_job) config.model = model;
+  if (!config.correction.empty())
+    config.design.film.correction =
+        std::make_shared<const FilmCorrection>(read_correction(config.correction).field);
   if (is_job && config.model.empty())
     throw InputError(fmt::format(
         "{}: the job names no model: begin it with file = \"MODEL\" under [object]", model));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "sheet/film_marks.h"
 #include "sheet/winansi.h"
 
 namespace hydrodip {
@@ -58,6 +59,7 @@ class MarkMaker {
       return marks_;
     }
     make_slots();
+    camera_marks();
     orientation();
     alarm();
     reminders();
@@ -166,6 +168,44 @@ class MarkMaker {
               Slot{Edge::kLeft, y + gap, height_ - margin_, false},
               Slot{Edge::kLeft, margin_, y - gap, true}, Slot{Edge::kRight, margin_, y - gap, true},
               Slot{Edge::kRight, y + gap, height_ - margin_, false}};
+  }
+
+  // Texts give way to them.
+  void camera_marks() {
+    if (!options_.camera_marks) return;
+    const Vec2 middle = 0.5 * Vec2(width_, height_);
+    for (const MarkPlace& mark : film_marks(width_, height_, margin_)) {
+      for (const Box2& box : mark_boxes(mark)) marks_.boxes.push_back(on_page(box));
+      const Box2 outline = on_page(mark_outline(mark));
+      if (outline.max.x() < margin_)
+        keep_off(outline.min.y(), outline.max.y(), Edge::kLeft);
+      else if (outline.min.x() > width_ - margin_)
+        keep_off(height_ - outline.max.y(), height_ - outline.min.y(), Edge::kRight);
+      else
+        keep_off(outline.min.x(), outline.max.x(),
+                 outline.min.y() > middle.y() ? Edge::kTop : Edge::kBottom);
+    }
+  }
+
+  // From film coordinates; a sheet that is laid ink side down is printed mirrored.
+  Box2 on_page(const Box2& box) const {
+    const Vec2 middle = 0.5 * Vec2(width_, height_);
+    Box2 page;
+    for (const Vec2& corner : {box.min, box.max})
+      page.add(middle + Vec2(options_.ink_side_up ? corner.x() : -corner.x(), corner.y()));
+    return page;
+  }
+
+  // Where a stretch of an edge is taken, its texts keep to the longer part of what is left.
+  void keep_off(double begin_mm, double end_mm, Edge edge) {
+    const double gap = 1.5 * scale_;
+    for (Slot& slot : slots_) {
+      if (slot.edge != edge || end_mm < slot.begin_mm || begin_mm > slot.end_mm) continue;
+      if (begin_mm - slot.begin_mm > slot.end_mm - end_mm)
+        slot.end_mm = std::min(slot.end_mm, begin_mm - gap);
+      else
+        slot.begin_mm = std::max(slot.begin_mm, end_mm + gap);
+    }
   }
 
   // The texts that an operator needs. A sheet laid ink side down is turned over about its vertical

@@ -38,6 +38,7 @@ struct MarkBand {
 struct Marks {
   double line_mm = 0.2;
   std::vector<MarkLine> lines;
+  std::vector<Box2> boxes;                  // filled
   std::vector<std::array<Vec2, 3>> filled;  // triangles
   std::vector<MarkText> texts;
   std::vector<MarkCircle> dashed;
@@ -49,7 +50,7 @@ struct Marks {
 using TextWidth = std::function<double(const std::string& text)>;
 
 // Centre ticks, ruler, orientation, the alarm along the left edge, the reminder to print unscaled,
-// the sheet's size, the job's name; on a disc its rim as well. Everything stays inside the margin.
+// the sheet's size, the job's name; on a disc its rim as well; what a camera looks for. Everything stays inside the margin.
 // In margins under 7 mm all shrinks; texts that would be illegible or do not fit are left out, with
 // a warning if they matter.
 Marks make_marks(const SheetOptions& options, const TextWidth& text_width);

@@ -1,3 +1,5 @@
+#include <Eigen/LU>
+
 #include "sheet/marks.h"
 #include "sheet/page.h"
 #include "sheet/pdf_document.h"
@@ -17,6 +19,7 @@ void draw_marks(PdfDocument& document, const SheetOptions& options, const RunCon
   document.set_stroke(marks.line_mm);
   for (const MarkCircle& circle : marks.dashed)
     document.draw_dashed_circle(circle.center, circle.radius_mm);
+  for (const Box2& box : marks.boxes) document.fill_rectangle(box, 0);
   for (const auto& corners : marks.filled) document.fill_triangle(corners, 0);
   for (const MarkText& text : marks.texts)
     document.draw_text(
@@ -27,6 +30,15 @@ void draw_marks(PdfDocument& document, const SheetOptions& options, const RunCon
                         band.text.quarter_turns, 1});
   }
   for (const std::string& warning : marks.warnings) context.warn(warning);
+}
+
+// What the printer will stretch and lean over is drawn the other way before.
+void draw_true(PdfDocument& document, const SheetOptions& options) {
+  const PrinterScale& printer = options.printer;
+  if (printer.is_true()) return;
+  Mat2 prints;
+  prints << printer.x, printer.skew, 0, printer.y;
+  document.transform_about(0.5 * Vec2(options.width_mm, options.height_mm), prints.inverse());
 }
 
 }  // namespace
@@ -40,6 +52,8 @@ void write_print_pdf(const std::filesystem::path& path, const Picture& picture,
   document.set_title(options.job_name);
   if (!options.date.empty()) document.set_date(options.date);
   document.add_page(options.width_mm, options.height_mm);
+
+  draw_true(document, options);
 
   const bool mirror = !options.ink_side_up;
   const PixelBox box = printed_box(picture);

@@ -271,6 +271,12 @@ void PdfDocument::add_page(double width_mm, double height_mm) {
   HPDF_Page_SetHeight(impl_->page, pt(height_mm));
 }
 
+void PdfDocument::transform_about(const Vec2& center, const Mat2& matrix) {
+  const Vec2 shift = center - matrix * center;
+  HPDF_Page_Concat(impl_->page, HPDF_REAL(matrix(0, 0)), HPDF_REAL(matrix(1, 0)),
+                   HPDF_REAL(matrix(0, 1)), HPDF_REAL(matrix(1, 1)), pt(shift.x()), pt(shift.y()));
+}
+
 void PdfDocument::draw_image(const Picture& picture, const std::vector<std::uint8_t>& profile,
                              const PixelBox& box, bool mirror, const Box2& place,
                              const RunContext& context) {

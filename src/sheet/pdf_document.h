@@ -44,6 +44,9 @@ class PdfDocument {
   // Throws InputError if the PDF format has no such page.
   void add_page(double width_mm, double height_mm);
 
+  // Everything drawn on this page from here on is multiplied by `matrix` about `center`.
+  void transform_about(const Vec2& center, const Mat2& matrix);
+
   // The block of the picture, over white, filling `place`. Its pixels must live until save(). An
   // sRGB picture carries the profile itself; for inks it becomes the output intent. Empty: none.
   void draw_image(const Picture& picture, const std::vector<std::uint8_t>& profile,

@@ -12,6 +12,14 @@
 
 namespace hydrodip {
 
+// How far from true a printer draws about the page's middle: (x, y) mm of the page become
+// (x scale_x + y skew, y scale_y) mm on paper.
+struct PrinterScale {
+  double x = 1, y = 1;
+  double skew = 0;
+  bool is_true() const { return x == 1 && y == 1 && skew == 0; }
+};
+
 struct SheetOptions {
   double width_mm = 210;
   double height_mm = 297;
@@ -22,6 +30,8 @@ struct SheetOptions {
   std::string job_name;     // printed in the margin; any UTF-8, shortened to fit
   std::string alarm;        // "DO NOT DIP: ..." in a red band of the margin; empty: none
   std::string date;         // ISO date recorded in the PDF, empty: none (reproducible)
+  bool camera_marks = false;  // those of sheet/film_marks.h, where there is room
+  PrinterScale printer;       // PDF only: the page is drawn so that it comes out true
 };
 
 // What the sheet will look like, sRGB with dpi recorded, marks not included: the film as seen from

@@ -1,0 +1,23 @@
+// A picture of a sheet with arrows on it, much longer than what they stand for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+
+#include "base/math.h"
+
+namespace hydrodip {
+
+struct Arrow {
+  Vec2 from_mm = Vec2::Zero();  // film coordinates
+  Vec2 by_mm = Vec2::Zero();
+};
+
+// The longest arrow is as long as a tenth of the sheet; a scale below says what that means.
+Image draw_arrow_map(double width_mm, double height_mm, double margin_mm,
+                     const std::vector<Arrow>& arrows, const std::string& title,
+                     const std::vector<std::string>& lines);
+
+}  // namespace hydrodip

@@ -1,0 +1,62 @@
+#include "register/place_table.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "base/error.h"
+#include "base/parse_double.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr const char* kHeader = "film_x_mm,film_y_mm,x,y,z";
+constexpr double kFarthest_mm = 1e5;
+
+std::string line_of(std::ifstream& file, bool& any) {
+  std::string line;
+  any = bool(std::getline(file, line));
+  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+  return line;
+}
+
+}  // namespace
+
+bool is_place_table(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  bool any = false;
+  return line_of(in, any) == kHeader;
+}
+
+std::vector<PlaceRow> read_place_table(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  bool any = false;
+  line_of(in, any);
+  std::vector<PlaceRow> rows;
+  for (int number = 2;; ++number) {
+    const std::string line = line_of(in, any);
+    if (!any) break;
+    if (line.empty()) continue;
+    std::array<double, 5> value{};
+    std::size_t begin = 0, count = 0;
+    while (begin <= line.size() && count < value.size()) {
+      const std::size_t end = std::min(line.find(',', begin), line.size());
+      const auto [rest, error] =
+          parse_double(line.data() + begin, line.data() + end, value[count]);
+      if (error != std::errc() || rest != line.data() + end ||
+          !(std::abs(value[count]) <= kFarthest_mm))
+        break;
+      ++count;
+      begin = end + 1;
+    }
+    if (count != value.size() || begin <= line.size())
+      throw InputError(fmt::format("{}:{}: needs five numbers: {}", file.string(), number, kHeader));
+    rows.push_back({{value[0], value[1]}, {value[2], value[3], value[4]}});
+  }
+  return rows;
+}
+
+}  // namespace hydrodip

@@ -1,0 +1,166 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.h"
+#include "camera/board.h"
+#include "camera/film_pose.h"
+#include "camera/tank.h"
+#include "scene.h"
+#include "sheet/film_marks.h"
+
+namespace hydrodip {
+namespace {
+
+using fixtures::phone_lens;
+using fixtures::random_view;
+using fixtures::synthetic_tank;
+
+constexpr double kWater_mm = 22;  // below the rim
+
+std::vector<SeenPhoto> calibration_photos(double noise_px, std::uint32_t seed, double tilt_deg = 28) {
+  std::mt19937 random(seed);
+  const auto tank = synthetic_tank(false);
+  std::vector<SeenPhoto> photos;
+  for (int n = 0; n < 12; ++n)
+    photos.push_back({"photo", tank.seen(phone_lens(), random_view(random, tilt_deg), noise_px, random)});
+  return photos;
+}
+
+Tank known_tank() {
+  Tank tank = calibrate_tank(calibration_photos(0.03, 1), 4000, 3000, RunContext());
+  tank.water_below_mm = kWater_mm;
+  return tank;
+}
+
+// Truth in the tank frame that a calibration has chosen for itself.
+Pose to_found_frame(const Tank& found) {
+  const auto truth = synthetic_tank(false);
+  std::vector<Vec3> a, b;
+  for (const auto& [id, corner] : found.corner_mm) {
+    const StripPlace at = strip_place(id);
+    a.push_back(truth.strip[std::size_t(at.strip)] * Vec3(at.corner.x(), at.corner.y(), 0));
+    b.push_back(corner);
+  }
+  Eigen::Matrix3Xd from(3, Eigen::Index(a.size())), to(3, Eigen::Index(a.size()));
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    from.col(Eigen::Index(i)) = a[i];
+    to.col(Eigen::Index(i)) = b[i];
+  }
+  const Eigen::Matrix4d move = Eigen::umeyama(from, to, false);
+  return Pose::of(Mat3(move.topLeftCorner<3, 3>()), Vec3(move.topRightCorner<3, 1>()));
+}
+
+TEST(Lens, SeesAlongTheRayThroughWhichItProjects) {
+  const Lens lens = phone_lens();
+  for (const Vec2& px : {Vec2(2000, 1500), Vec2(10, 20), Vec2(3990, 30), Vec2(700, 2950)})
+    EXPECT_LT((lens.project(430 * lens.ray(px)) - px).norm(), 1e-8);
+}
+
+TEST(Calibration, FindsLensAndRimFromPhotosOfTheBoard) {
+  const Tank tank = calibrate_tank(calibration_photos(0.05, 3), 4000, 3000, RunContext());
+  const Lens truth = phone_lens();
+  const auto sigma = [&](int k) { return std::sqrt(tank.lens_covariance(k, k)); };
+  EXPECT_LT(std::abs(tank.lens.focal_px - truth.focal_px), 4 * sigma(0));
+  EXPECT_LT(std::abs(tank.lens.k1 - truth.k1), 4 * sigma(3));
+  EXPECT_LT(sigma(0) / truth.focal_px, 1e-3);
+  EXPECT_NEAR(tank.rms_px, 0.05, 0.01);
+  // Every corner, up to the frame.
+  const Pose move = to_found_frame(tank);
+  const auto rim = synthetic_tank(false);
+  for (const auto& [id, corner] : tank.corner_mm) {
+    const StripPlace at = strip_place(id);
+    const Vec3 is = move * (rim.strip[std::size_t(at.strip)] * Vec3(at.corner.x(), at.corner.y(), 0));
+    EXPECT_LT((is - corner).norm(), 0.06) << id;
+  }
+  // A frame as the header says.
+  EXPECT_NEAR(tank.corner_mm.at(kFirstBoardTag).y(), 170, 15);
+}
+
+TEST(Calibration, RefusesPhotosThatTellNothing) {
+  EXPECT_THROW(calibrate_tank({}, 4000, 3000, RunContext()), InputError);
+  std::vector<SeenPhoto> one = calibration_photos(0.05, 3);
+  one.resize(2);
+  EXPECT_THROW(calibrate_tank(one, 4000, 3000, RunContext()), InputError);
+  // Straight down, all alike.
+  std::mt19937 random(3);
+  std::vector<SeenPhoto> alike;
+  for (int n = 0; n < 6; ++n)
+    alike.push_back({"photo", synthetic_tank(false).seen(phone_lens(),
+                                                         fixtures::look_at({0, 1, 500}, {0, 1, 0}, 0),
+                                                         0.1, random)});
+  EXPECT_THROW(calibrate_tank(alike, 4000, 3000, RunContext()), InputError);
+}
+
+// An A4 sheet on the water, as it lies in the truth's frame.
+struct Laid {
+  Vec2 shift = Vec2::Zero();
+  double turn_deg = 0;
+  Vec2 swelling = Vec2::Ones();
+};
+
+struct Photographed {
+  GrayImage photo;
+  Laid truth;  // in the frame that the calibration has found
+};
+
+Photographed photographed(const Tank& found, const Laid& laid, std::uint32_t seed, bool mirrored) {
+  std::mt19937 random(seed);
+  auto tank = synthetic_tank(true);
+  Box2 sheet;
+  sheet.add(Vec2(105, 148.5));
+  sheet.add(Vec2(-105, -148.5));
+  const auto film = fixtures::draw_marks(film_marks(210, 297, 10), sheet);
+  fixtures::Scene scene;
+  scene.lens = phone_lens();
+  scene.camera = random_view(random);
+  scene.sheets = tank.sheets();
+  // Upright in a bath that lies: a quarter turn is the place's matter.
+  const double turn = laid.turn_deg * std::numbers::pi / 180;
+  const Pose lies{Vec3(0, 0, turn), Vec3(laid.shift.x(), laid.shift.y(), -kWater_mm)};
+  const Pose move = to_found_frame(found);
+  // The water is level with the found frame's plane, which is the calibration's.
+  const Pose level = move.inverse() * lies;
+  scene.sheets.push_back({&film, level, laid.swelling, mirrored});
+  scene.shade = {0.35, -0.2};
+  scene.glare = {{{2300, 900}, 120, 160}, {{900, 2200}, 60, 220}};
+  scene.seed = seed;
+  return {photograph(scene), laid};
+}
+
+TEST(FilmPose, IsFoundInAPhoto) {
+  const Tank tank = known_tank();
+  const Laid laid{{1.4, -2.2}, 0.7, {1.025, 1.015}};
+  const Photographed seen = photographed(tank, laid, 5, false);
+  FilmSearch search{film_marks(210, 297, 10)};
+  search.water_sigma_mm = 0.1;
+  const FilmPose pose = find_film(seen.photo, "photo.jpg", tank, search, RunContext());
+  EXPECT_GE(pose.marks.size(), 8U);
+  EXPECT_LT((pose.shift_mm - laid.shift).norm(), 0.1);
+  EXPECT_NEAR(pose.turn_deg, laid.turn_deg, 0.05);
+  EXPECT_LT((pose.swelling - laid.swelling).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT(pose.unexplained_rms_mm, 0.05);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_LT(std::abs(pose.shift_mm[k] - laid.shift[k]), 4 * pose.shift_sigma_mm[k]);
+    EXPECT_LT(std::abs(pose.swelling[k] - laid.swelling[k]), 4 * pose.swelling_sigma[k]);
+  }
+  // Another job's sheet.
+  search.marks = film_marks(215.9, 279.4, 10);
+  EXPECT_THROW(find_film(seen.photo, "photo.jpg", tank, search, RunContext()), InputError);
+}
+
+TEST(FilmPose, ToldWhenItLiesUpsideDown) {
+  const Tank tank = known_tank();
+  const Photographed seen = photographed(tank, {}, 6, true);
+  try {
+    find_film(seen.photo, "photo.jpg", tank, {film_marks(210, 297, 10)}, RunContext());
+    FAIL() << "found";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("upside down"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace hydrodip

@@ -1,0 +1,111 @@
+#!/bin/sh
+# calibrate printer, register, correct and rig jig from outside. Usage: sh register.sh HYDRODIP
+. "$(dirname "$0")/common.sh"
+
+# expect CODE PATTERN ARGUMENT...: its exit code, and what it says.
+expect() {
+  wanted=$1
+  pattern=$2
+  shift 2
+  "$hydrodip" "$@" > said.txt 2>&1 < /dev/null
+  code=$?
+  [ "$code" -eq "$wanted" ] || fail "$*: exit code $code instead of $wanted: $(cat said.txt)"
+  grep -q -- "$pattern" said.txt || fail "$*: does not say '$pattern': $(cat said.txt)"
+}
+# number NAME FILE: of a JSON key.
+number() { sed -n "s/.*\"$1\": *\\([-0-9.e]*\\).*/\\1/p" "$2" | head -n 1; }
+# near A B LIMIT: whether they differ by less.
+near() { awk "BEGIN { d = $1 - $2; exit !((d < 0 ? -d : d) < $3) }"; }
+
+export XDG_CONFIG_HOME="$work/config"
+
+# ---- a printer ----
+expect 0 'printer-test.pdf' calibrate printer -o printer
+if command -v pdftoppm > /dev/null; then
+  pdftoppm -singlefile -png -r 200 printer/printer-test.pdf scan
+  # As a printer that makes 101 mm of 100 along the sheet would.
+  "$hydrodip" calibrate printer --scan scan.png --scan-dpi 198 --save mine --json > found.json ||
+    fail "calibrate printer --scan"
+  near "$(number scale_x found.json)" 1.0101 0.0005 || fail "scale_x: $(cat found.json)"
+  near "$(number skew_deg found.json)" 0 0.02 || fail "skew: $(cat found.json)"
+  expect 0 'print.scale_x' params
+  expect 0 'scale_y = 1.0' profile show mine
+fi
+expect 0 'printer.toml' calibrate printer --readings 180.9,250.2,308.8,308.7 -o printer
+expect 0 'scale_x' profile import printer/printer.toml other
+expect 2 'miss each other' calibrate printer --readings 180,250,320,320
+expect 2 'at 100 %' calibrate printer --readings 90,125,154.03,154.03
+expect 2 '--readings' calibrate printer --readings 180,250
+
+# ---- a job with marks ----
+write_colored colored.ply
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $quick --film 140x130 --depth 6 -o job --quiet > /dev/null || fail "print"
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $quick --film 140x130 --depth 6 -o bare --set print.marks=off --quiet \
+  > /dev/null || fail "print without marks"
+cmp -s job/print.png bare/print.png || fail "marks change the film image"
+cmp -s job/print.pdf bare/print.pdf && fail "there are no marks"
+
+expect 0 'board.pdf' register board -o board
+expect 2 'name one photo' register
+expect 2 'camera.json' register scan.png job
+printf '{}' > camera.json
+expect 2 'not a camera' register scan.png job
+expect 2 'name the photos' register --calibrate-camera
+if [ -f scan.png ]; then
+  expect 2 'no strip of the board' register --calibrate-camera scan.png scan.png scan.png scan.png
+fi
+expect 2 'no marks for the camera' register scan.png bare
+rm camera.json
+
+# ---- film that swells ----
+cat > registration.json <<'JSON'
+{"shift_mm": {"x": 1, "y": 2}, "turn_deg": {"value": 0.1}, "swelling": {"x": 1.025, "y": 1.015}}
+JSON
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $quick --film 140x130 --depth 6 -o swollen --quiet \
+  --film-state registration.json > /dev/null || fail "print --film-state"
+near "$(grep -A3 '"film.swelling_x"' swollen/report.json | number value /dev/stdin)" 1.025 1e-9 ||
+  fail "the report does not say how film swells"
+cmp -s job/print.png swollen/print.png && fail "swollen film gets the same print"
+expect 2 'registration.json' print colored.ply --film-state job/report.json
+
+# ---- a correction ----
+# Everything landed 1 mm farther to +x of the sheet than was meant: places of film.ply say so.
+python3 - job/film.ply > places.csv <<'PY' || fail "film.ply"
+import struct, sys
+data = open(sys.argv[1], "rb").read()
+begin = data.index(b"end_header\n") + 11
+count = int(data[:begin].split(b"element vertex ")[1].split()[0])
+print("film_x_mm,film_y_mm,x,y,z")
+for i in range(count):
+    x, y, z, u, v, state, _, _ = struct.unpack_from("<5fB2f", data, begin + 29 * i)
+    if state == 1:
+        print(f"{u + 1:.6f},{v:.6f},{x:.6f},{y:.6f},{z:.6f}")
+PY
+expect 0 'off by 1.0' correct job places.csv
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $quick --film 140x130 --depth 6 -o second --quiet \
+  --correction job/correction.json > /dev/null || fail "print --correction"
+python3 - job/film.ply second/film.ply <<'PY' || fail "the second print is not moved by 1 mm"
+import struct, sys
+def film(path):
+    data = open(path, "rb").read()
+    begin = data.index(b"end_header\n") + 11
+    count = int(data[:begin].split(b"element vertex ")[1].split()[0])
+    return [struct.unpack_from("<5fB2f", data, begin + 29 * i) for i in range(count)]
+a, b = film(sys.argv[1]), film(sys.argv[2])
+assert len(a) == len(b)
+laid = [(p, q) for p, q in zip(a, b) if p[5] == 1 and q[5] == 1]
+assert laid
+assert all(abs(q[3] - p[3] - 1) < 0.02 and abs(q[4] - p[4]) < 0.02 for p, q in laid)
+PY
+expect 0 'off by' correct second places.csv
+expect 2 'name the job' correct job
+expect 2 'not a correction' print colored.ply --correction registration.json
+
+# ---- a jig ----
+expect 2 'gives no hold' rig jig job
+expect 2 'three numbers\|3 numbers' rig jig job --bed 220
+finish
