@@ -22,9 +22,20 @@ LinearColor laid_over(const Coat& coat, const Vec2& u, const LinearColor& under)
 }  // namespace
 
 LinearColor Finish::color_at(const SurfacePoint& point, const Vec2& later_off_mm) const {
+  return color_by(point, coats_.empty() ? std::nullopt : film_point(coats_[0], point),
+                  later_off_mm);
+}
+
+LinearColor Finish::color_with_film(const SurfacePoint& point,
+                                    const std::optional<Vec2>& first_film) const {
+  return color_by(point, first_film, Vec2::Zero());
+}
+
+LinearColor Finish::color_by(const SurfacePoint& point, const std::optional<Vec2>& first_film,
+                             const Vec2& later_off_mm) const {
   LinearColor color = paint_->base();
   for (std::size_t n = 0; n < coats_.size(); ++n) {
-    const auto u = film_point(coats_[n], point);
+    const auto u = n == 0 ? first_film : film_point(coats_[n], point);
     if (!u) continue;
     if (n == 0) {
       color = laid_over(coats_[n], *u, color);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "coat/dipped_object.h"
@@ -35,10 +36,16 @@ class Finish {
   LinearColor color_at(const SurfacePoint& point) const { return color_at(point, Vec2::Zero()); }
   // The same if every coat but the first has landed off by that much, in its film coordinates.
   LinearColor color_at(const SurfacePoint& point, const Vec2& later_off_mm) const;
+  // The same where the film of the first coat has that coordinate, or does not lie.
+  LinearColor color_with_film(const SurfacePoint& point,
+                              const std::optional<Vec2>& first_film) const;
   // Whether film of any coat lies there.
   bool has_film_at(const SurfacePoint& point) const;
 
  private:
+  LinearColor color_by(const SurfacePoint& point, const std::optional<Vec2>& first_film,
+                       const Vec2& later_off_mm) const;
+
   std::shared_ptr<const Paint> paint_;
   std::vector<Coat> coats_;
 };

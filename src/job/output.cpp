@@ -106,18 +106,20 @@ PreviewPair reach_pair(const JobRecord& record, const Appearance& shown,
   return pair;
 }
 
-// What is doubtful fades from where film surely holds to where nothing is printed.
+// What is predicted, where what is doubtful fades from where film surely holds to where nothing is
+// printed.
 Appearance fading(const Appearance& shown, const JobRecord& record) {
   const FilmMaterial& material = record.config.design.dip.material;
   const DoubtfulStretch doubtful{doubtful_stretch(material).from, material.tear_stretch};
   if (!(material.tear_stretch > doubtful.from)) return shown;
   Appearance result = shown;
-  result.predicted = [shown, doubtful, map = record.dipped().map, base = record.paint().base()](
-                         const SurfacePoint& point, const Vec3& position, const Vec3& normal) {
-    const LinearColor color = shown.predicted(point, position, normal);
-    const auto hold = map->hold_at(position, normal);
-    if (!hold || !hold->whole) return color;
-    const auto left = float(1 - doubtful.of(hold->stretch, 2 * hold->moved_mm));
+  result.predicted = [&finish = record.finish, doubtful, map = record.dipped().map,
+                      base = record.paint().base()](const SurfacePoint& point, const Vec3& position,
+                                                    const Vec3& normal) {
+    const FilmMap::Lying lying = map->lying_at(position, normal);
+    const LinearColor color = finish.color_with_film(point, lying.film);
+    if (!lying.hold || !lying.hold->whole) return color;
+    const auto left = float(1 - doubtful.of(lying.hold->stretch, 2 * lying.hold->moved_mm));
     return LinearColor{base.r + left * (color.r - base.r), base.g + left * (color.g - base.g),
                        base.b + left * (color.b - base.b), 1};
   };

@@ -102,8 +102,8 @@ struct FilmMap::Impl {
            film.is_whole_at(std::size_t(cursor.film_triangle), weight);
   }
 
-  Laid laid_at(std::int32_t film_triangle, const Vec3& weight) const {
-    const Triangle& t = film.mesh().triangles[std::size_t(film_triangle)];
+  Laid laid_at(std::int32_t triangle, const Vec3& weight) const {
+    const Triangle& t = film.mesh().triangles[std::size_t(triangle)];
     Laid laid{weight, Vec3::Zero(), Vec3::Zero()};
     for (std::size_t k = 0; k < 3; ++k) {
       laid.point += weight[Eigen::Index(k)] * film.position[std::size_t(t[k])];
@@ -173,6 +173,15 @@ struct FilmMap::Impl {
                      Vec3(1 - hit->u - hit->v, hit->u, hit->v)};
   }
 
+  // Its film coordinate if it is whole there.
+  std::optional<Vec2> whole_film(const std::optional<FilmPoint>& at) const {
+    if (!at || !film.is_whole_at(at->triangle, at->weight)) return std::nullopt;
+    const Triangle& t = film.mesh().triangles[at->triangle];
+    const auto& u = film.mesh().u;
+    return Vec2(at->weight[0] * u[std::size_t(t[0])] + at->weight[1] * u[std::size_t(t[1])] +
+                at->weight[2] * u[std::size_t(t[2])]);
+  }
+
   double interpolated(const std::vector<double>& value, const FilmPoint& at) const {
     const Triangle& t = film.mesh().triangles[at.triangle];
     double sum = 0;
@@ -235,12 +244,7 @@ std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u) const {
 }
 
 std::optional<Vec2> FilmMap::to_film(const Vec3& position, const Vec3& normal) const {
-  const auto at = impl_->lying_film_at(position, normal);
-  if (!at || !impl_->film.is_whole_at(at->triangle, at->weight)) return std::nullopt;
-  const Triangle& t = impl_->film.mesh().triangles[at->triangle];
-  const auto& u = impl_->film.mesh().u;
-  return Vec2(at->weight[0] * u[std::size_t(t[0])] + at->weight[1] * u[std::size_t(t[1])] +
-              at->weight[2] * u[std::size_t(t[2])]);
+  return impl_->whole_film(impl_->lying_film_at(position, normal));
 }
 
 bool FilmMap::torn_at(const Vec3& position, const Vec3& normal) const {
@@ -250,13 +254,18 @@ bool FilmMap::torn_at(const Vec3& position, const Vec3& normal) const {
 }
 
 std::optional<FilmMap::Hold> FilmMap::hold_at(const Vec3& position, const Vec3& normal) const {
+  return lying_at(position, normal).hold;
+}
+
+FilmMap::Lying FilmMap::lying_at(const Vec3& position, const Vec3& normal) const {
   const DippedFilm& film = impl_->film;
   std::optional<Impl::FilmPoint> at = impl_->lying_film_at(position, normal);
+  Lying lying{impl_->whole_film(at), std::nullopt};
   Hold hold;
-  hold.whole = at && film.is_whole_at(at->triangle, at->weight);
+  hold.whole = lying.film.has_value();
   if (!at) {
     const auto hit = impl_->lying_at(impl_->torn_surface, position, normal);
-    if (!hit) return std::nullopt;
+    if (!hit) return lying;
     at = Impl::FilmPoint{std::size_t(impl_->torn_triangle[std::size_t(hit->triangle)]),
                          Vec3(1 - hit->u - hit->v, hit->u, hit->v)};
   }
@@ -264,7 +273,8 @@ std::optional<FilmMap::Hold> FilmMap::hold_at(const Vec3& position, const Vec3& 
   if (!film.moved_mm.empty()) hold.moved_mm = impl_->interpolated(film.moved_mm, *at);
   hold.let_go = film.torn[at->triangle] &&
                 (film.torn_at_mm.empty() || std::isfinite(film.torn_at_mm[at->triangle]));
-  return hold;
+  lying.hold = hold;
+  return lying;
 }
 
 double FilmMap::area_ratio(const Vec2& u) const {

@@ -57,6 +57,12 @@ class FilmMap {
   };
   // Nothing where no film lies that is worth a word.
   std::optional<Hold> hold_at(const Vec3& position, const Vec3& normal) const;
+  // What to_film and hold_at say, in one look.
+  struct Lying {
+    std::optional<Vec2> film;
+    std::optional<Hold> hold;
+  };
+  Lying lying_at(const Vec3& position, const Vec3& normal) const;
 
   // Interpolated between the film's vertices; 1 off the object.
   double area_ratio(const Vec2& u) const;  // deformed over flat area

@@ -136,11 +136,15 @@ class Corners {
   std::vector<Corner> corners_;
 };
 
-bool one_triangle(const std::array<Corners::Corner, 4>& corners) {
-  return std::all_of(corners.begin() + 1, corners.end(), [&](const Corners::Corner& corner) {
-    return corner.film_triangle == corners[0].film_triangle &&
-           corner.point.triangle == corners[0].point.triangle;
-  });
+// How many pairs of a film's and an object's triangle there are at the corners.
+std::size_t pairs_at(const std::array<Corners::Corner, 4>& corners) {
+  std::size_t pairs = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    pairs += std::none_of(corners.begin(), corners.begin() + k, [&](const auto& before) {
+      return before.film_triangle == corners[k].film_triangle &&
+             before.point.triangle == corners[k].point.triangle;
+    });
+  return pairs;
 }
 
 // Where samples of a pixel land that several triangles share: each pair of a film's and an object's
@@ -299,8 +303,10 @@ LinearColor pixel_color(const Printed& printed, const FilmMap& map, const FilmGr
   FilmMap::Cursor& cursor = tile.cursor();
   std::optional<SharedPixel> shared;
   if (const auto corners = tile.of_pixel(x, y)) {
-    if (one_triangle(*corners)) return printed.mean(grid_in(*corners, n), samples);
-    shared.emplace(map, grid, x, y, *corners);
+    const std::size_t pairs = pairs_at(*corners);
+    if (pairs == 1) return printed.mean(grid_in(*corners, n), samples);
+    // Where each corner has another, there are likely more of them between.
+    if (pairs < 4) shared.emplace(map, grid, x, y, *corners);
   } else {
     // One look for all samples: out of reach, or in the midst of the bleed, which shows little.
     const double radius = 0.71 * grid.pixel_mm();

@@ -22,7 +22,9 @@ TEST(BlankPages, AreZeroAndTakeWhatIsWrittenTo) {
   for (std::size_t i = 1000000; i < 2000000; ++i) values[i] = float(i);
   for (std::size_t i = 0; i < values.size(); i += 997)
     ASSERT_EQ(values[i], i >= 1000000 && i < 2000000 ? float(i) : 0.0F) << i;
-  if (before_mb > 0) EXPECT_LT(resident_mb() - before_mb, 40);
+  if (before_mb > 0) {
+    EXPECT_LT(resident_mb() - before_mb, 40);
+  }
 }
 
 TEST(BlankPages, OfAnySizeAreZero) {
