@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "image/blank_image.h"
 
 namespace hydrodip {
 namespace {
@@ -72,7 +73,7 @@ void average_into(const Image& image, const Span& columns, const Span& rows, std
 Image resize(const Image& image, int width_px, int height_px) {
   const std::vector<Span> columns = spans(image.width_px, width_px);
   const std::vector<Span> rows = spans(image.height_px, height_px);
-  Image result(width_px, height_px);
+  Image result = blank_image(width_px, height_px);
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
       const Range seen = shown(image, rows[y]);

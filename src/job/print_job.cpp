@@ -46,6 +46,8 @@ DesignedJob designed(const ReadyJob& job, Timings& times, const RunContext& cont
       design({prepared.posed, *prepared.paint, Allotment(), *job.printer.model, job.config.design},
              times, context);
   require_ink(made, job.config);
+  // Only further coats would ask for that.
+  made.ink.ink.stretch = {};
   // Held once, by the finish.
   auto look = std::make_shared<const Image>(std::move(made.ink.ink.on_object));
   Finish finish(paint_as_dipped(prepared.paint, made.dipped),
