@@ -214,7 +214,8 @@ void show_doubt(Tables& tables, const std::vector<Named>& models) {
           fmt::format("| {} | {:.1f} |", model.name, 100 * dipped.object.coverage.covered_share());
       for (const double earliest : kEarliest) {
         DipOptions asking;
-        asking.material.tear_stretch = earliest;
+        asking.material.safe_stretch = earliest;
+        asking.material.tear_stretch = 1.5;
         const std::vector<double> moved = moved_by_tears(
             *dipped.object.film, posed.mesh().positions, posed.mesh().triangles, posed.surface(),
             make_trajectory({}, posed.mesh().positions), asking, RunContext());

@@ -122,7 +122,7 @@ std::vector<double> moved_by_tears(const DippedFilm& dipped, const std::vector<V
   };
   const DippedFilm late =
       is_coarse ? dipped : dip_that_lets_go(std::max(material.lost_stretch, material.tear_stretch));
-  const DippedFilm early = dip_that_lets_go(material.tear_stretch);
+  const DippedFilm early = dip_that_lets_go(std::min(material.safe_stretch, material.tear_stretch));
   const std::vector<std::uint8_t> left = left_over(early);
   std::vector<double> moved(mesh->u.size(), 0);
   if (!is_coarse) moved = apart(late, dipped);

@@ -104,7 +104,7 @@ class Planning {
     SearchOptions options;
     options.confirm = false;
     options.first_elements = kDraftElements;
-    options.refined = std::max(options.refined, wanted);
+    options.better = false;  // those that are chosen together are bettered together
     const SearchResult found = search_holds(task_, config_.object.pose, options, context_);
     plan_.trial_dips += found.trials.size();
     const TrialTask coarse = trial_task(task_);
