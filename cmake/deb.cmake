@@ -143,6 +143,8 @@ if(TARGET hydrodip_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
       "python3 (>= 3.${HYDRODIP_PYTHON_MINOR}), python3 (<< 3.${python_next}), python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-meshio")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/deb/python/postinst
+                                                ${CMAKE_SOURCE_DIR}/packaging/deb/python/prerm)
 endif()
 
 include(CPack)

@@ -9,12 +9,13 @@ foreach(deb IN LISTS CPACK_PACKAGE_FILES)
   endif()
   if(EXISTS ${work}/DEBIAN/postinst)
     file(READ ${work}/DEBIAN/postinst script)
-    if(NOT script MATCHES "ldconfig")
+    if(script MATCHES "ldconfig")
+      file(REMOVE ${work}/DEBIAN/postinst ${work}/DEBIAN/postrm)
+      execute_process(COMMAND dpkg-deb --root-owner-group -b ${work} ${deb} OUTPUT_QUIET
+                      COMMAND_ERROR_IS_FATAL ANY)
+    elseif(NOT script MATCHES "py3compile") # packaging/deb/python's
       message(FATAL_ERROR "${deb}: a script that is not known here:\n${script}")
     endif()
-    file(REMOVE ${work}/DEBIAN/postinst ${work}/DEBIAN/postrm)
-    execute_process(COMMAND dpkg-deb --root-owner-group -b ${work} ${deb} OUTPUT_QUIET
-                    COMMAND_ERROR_IS_FATAL ANY)
   endif()
   file(REMOVE_RECURSE ${work})
 endforeach()
