@@ -93,13 +93,13 @@ Image draw_map(const FilmPose& pose, const FilmOptions& film) {
   std::vector<Arrow> arrows;
   for (const FilmPose::Mark& mark : pose.marks)
     arrows.push_back({mark.on_sheet_mm, mark.unexplained_mm});
-  return draw_arrow_map(
-      film.width_mm, film.height_mm, film.margin_mm, arrows, "What shift, turn and swelling leave",
-      {fmt::format("off its place by x {:+.2f} mm, y {:+.2f} mm, {:+.2f} degrees",
-                   pose.shift_mm.x(), pose.shift_mm.y(), pose.turn_deg),
-       fmt::format("swollen by x {:+.2f} %, y {:+.2f} %; left {:.3f} mm rms",
-                   100 * (pose.swelling.x() - 1), 100 * (pose.swelling.y() - 1),
-                   pose.unexplained_rms_mm)});
+  return draw_arrow_map(film.width_mm, film.height_mm, film.margin_mm, arrows,
+                        "What shift, turn and swelling leave",
+                        {fmt::format("off its place by x {:+.2f} mm, y {:+.2f} mm, {:+.2f} degrees",
+                                     pose.shift_mm.x(), pose.shift_mm.y(), pose.turn_deg),
+                         fmt::format("swollen by x {:+.2f} %, y {:+.2f} %; left {:.3f} mm rms",
+                                     100 * (pose.swelling.x() - 1), 100 * (pose.swelling.y() - 1),
+                                     pose.unexplained_rms_mm)});
 }
 
 // Where this film lies is where film is to lie.
@@ -142,9 +142,10 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
   output.commit();
   result.folder = job.folder;
   result.files = {kRegistrationFile, kMapFile};
-  if (const auto written = read_registration(job.folder / kRegistrationFile)) result.text += advice(*written) + "\n";
-  result.text += fmt::format("wrote {0}/{1} and {0}/{2}\n", job.folder.string(), kRegistrationFile,
-                             kMapFile);
+  if (const auto written = read_registration(job.folder / kRegistrationFile))
+    result.text += advice(*written) + "\n";
+  result.text +=
+      fmt::format("wrote {0}/{1} and {0}/{2}\n", job.folder.string(), kRegistrationFile, kMapFile);
   return result;
 }
 
