@@ -164,12 +164,11 @@ Image draw_field(const DisplacementFit& fit, const FilmOptions& film, double bef
       if (is_free(film, u) && fit.sigma_mm[at] < std::max(0.1, 3 * least))
         arrows.push_back({u, fit.field.move[at]});
     }
-  return draw_arrow_map(film.width_mm, film.height_mm, film.margin_mm, arrows,
-                        "How much farther to print",
-                        {fmt::format("off by {:.2f} mm rms on this print", before_mm),
-                         fmt::format("places left out are foretold to {:.2f} mm; arrows where the "
-                                     "field is known",
-                                     fit.left_out_rms_mm)});
+  return draw_arrow_map(
+      film.width_mm, film.height_mm, film.margin_mm, arrows, "How much farther to print",
+      {fmt::format("off by {:.2f} mm rms on this print", before_mm),
+       fmt::format("places left out are foretold to {:.2f} mm", fit.left_out_rms_mm),
+       "arrows where the field is known"});
 }
 
 }  // namespace
