@@ -103,10 +103,15 @@ Image draw_map(const FilmPose& pose, const FilmOptions& film) {
 }
 
 // Where this film lies is where film is to lie.
-void set_place(Tank& tank, const FilmPose& pose) {
+void set_place(Tank tank, const FilmPose& pose, const std::filesystem::path& camera) {
   const double turn = tank.place.turn_deg * std::numbers::pi / 180;
   tank.place.middle_mm += Eigen::Rotation2Dd(turn) * pose.shift_mm;
   tank.place.turn_deg += pose.turn_deg;
+  const std::filesystem::path file = std::filesystem::absolute(camera);
+  OutputFolder output(file.parent_path());
+  output.announce({file.filename().string()}, {});
+  write_file(output.path(file.filename().string()), tank_as_json(tank));
+  output.commit();
 }
 
 }  // namespace
@@ -131,8 +136,7 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
   result.json = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   result.text = sentence(pose);
   if (request.set_place) {
-    set_place(tank, pose);
-    write_file(camera, tank_as_json(tank));
+    set_place(tank, pose, camera);
     result.text += fmt::format("{}: this is where film is to lie from now on\n", camera.string());
     return result;
   }
