@@ -133,7 +133,7 @@ Photographed photographed(const Tank& found, const Laid& laid, std::uint32_t see
   return {photograph(scene), laid};
 }
 
-TEST(FilmPose, IsFoundInAPhoto) {
+TEST(SlowFilmPose, IsFoundInAPhoto) {
   const Tank tank = known_tank();
   const Laid laid{{1.4, -2.2}, 0.7, {1.025, 1.015}};
   const Photographed seen = photographed(tank, laid, 5, false);
@@ -154,7 +154,7 @@ TEST(FilmPose, IsFoundInAPhoto) {
   EXPECT_THROW(find_film(seen.photo, "photo.jpg", tank, search, RunContext()), InputError);
 }
 
-TEST(FilmPose, ToldWhenItLiesUpsideDown) {
+TEST(SlowFilmPose, ToldWhenItLiesUpsideDown) {
   const Tank tank = known_tank();
   const Photographed seen = photographed(tank, {}, 6, true);
   try {
