@@ -106,8 +106,7 @@ JobResult run_register(const Request& request, const RunContext& context) {
   const std::vector<std::string>& given = request.photos;
   if (request.calibrate_camera) {
     if (given.empty())
-      throw InputError(
-          "name the photos, as in 'hydrodip register --calibrate-camera board-*.jpg'");
+      throw InputError("name the photos, as in 'hydrodip register --calibrate-camera board-*.jpg'");
     CameraRequest camera;
     camera.photos.assign(given.begin(), given.end());
     camera.file = request.output.empty() ? "camera.json" : request.output;
@@ -159,7 +158,8 @@ JobResult run_correct(const Request& request, const RunContext& context) {
 std::vector<Command> register_commands() {
   return {
       {"calibrate printer", "how true a printer prints: a test sheet, and what it says",
-       "Without readings it writes printer-test.pdf. With them, or a scan of that sheet, it writes\n"
+       "Without readings it writes printer-test.pdf. With them, or a scan of that sheet, it "
+       "writes\n"
        "print.scale_x, print.scale_y and print.skew_deg; every sheet printed with that profile is\n"
        "drawn the other way, so that it comes out true. See docs/registration.md.",
        declare_printer, run_printer},

@@ -193,8 +193,7 @@ void take_film_state(Request& request, const std::string& file) {
 void declare_film_and_dip(CLI::App& app, Request& request) {
   declare_film(app, request);
   app.add_option_function<std::string>(
-         "--film-state",
-         [&request](const std::string& file) { take_film_state(request, file); },
+         "--film-state", [&request](const std::string& file) { take_film_state(request, file); },
          "design for film that swells as this registration.json, or profile, says")
       ->group(kFilmGroup)
       ->type_name("FILE.json|FILE.toml")

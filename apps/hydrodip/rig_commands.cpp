@@ -112,8 +112,9 @@ void declare_jig(CLI::App& app, Request& request) {
 
 JobResult run_jig(const Request& request, const RunContext& context) {
   const RigJob job = load_job(request, "rig jig");
-  return jig_job(job, request.jig,
-                 request.output.empty() ? job.folder / "jig" : std::filesystem::path(request.output), context);
+  return jig_job(
+      job, request.jig,
+      request.output.empty() ? job.folder / "jig" : std::filesystem::path(request.output), context);
 }
 
 void declare_stage(CLI::App& app, Request& request) {
@@ -157,7 +158,8 @@ std::vector<Command> rig_commands() {
        "softly, a second one at once.",
        declare_guide, run_guide},
       {"rig jig", "frame and mount to 3D-print: they hold film and object where they belong",
-       "Writes mount.stl, bar.stl, frame.stl (or frame-1.stl to frame-4.stl, where the bed is small)\n"
+       "Writes mount.stl, bar.stl, frame.stl (or frame-1.stl to frame-4.stl, where the bed is "
+       "small)\n"
        "and jig.png. See docs/registration.md.",
        declare_jig, run_jig},
       {"rig stage",

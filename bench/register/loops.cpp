@@ -34,10 +34,11 @@ void closed_loop() {
   options.elements = 20000;
   options.step_mm = 0.4;
   const std::vector<double> error = fixtures::ClosedLoop(options).run();
-  fmt::print("closed loop: truth z_stretch 0.8 (believed 0.65), ink ratio 200 (600), drift of 1 mm; "
-             "0.05 mm of noise\n  RMS off {:.3f} mm; after one correction {:.3f} (a {:.0f}th; goal: a "
-             "fifth), after two {:.3f} (a {:.0f}th; goal: a tenth)\n",
-             error[0], error[1], error[0] / error[1], error[2], error[0] / error[2]);
+  fmt::print(
+      "closed loop: truth z_stretch 0.8 (believed 0.65), ink ratio 200 (600), drift of 1 mm; "
+      "0.05 mm of noise\n  RMS off {:.3f} mm; after one correction {:.3f} (a {:.0f}th; goal: a "
+      "fifth), after two {:.3f} (a {:.0f}th; goal: a tenth)\n",
+      error[0], error[1], error[0] / error[1], error[2], error[0] / error[2]);
 }
 
 void swollen_film() {
@@ -79,9 +80,10 @@ void swollen_film() {
       square += *off * *off;
       ++count;
     }
-  fmt::print("designed for film swollen by 2.5 x 1.5 %, dipped so: {:.0f} places land off by {:.4f} "
-             "mm rms, worst {:.4f} (goal: 0.05); designed for dry film: worst {:.2f} mm\n",
-             count, std::sqrt(square / count), worst, worst_naive);
+  fmt::print(
+      "designed for film swollen by 2.5 x 1.5 %, dipped so: {:.0f} places land off by {:.4f} "
+      "mm rms, worst {:.4f} (goal: 0.05); designed for dry film: worst {:.2f} mm\n",
+      count, std::sqrt(square / count), worst, worst_naive);
 }
 
 }  // namespace hydrodip

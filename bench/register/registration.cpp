@@ -41,7 +41,9 @@ struct Laid {
 
 double percentile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
-  return values.empty() ? 0 : values[std::min(values.size() - 1, std::size_t(share * double(values.size())))];
+  return values.empty()
+             ? 0
+             : values[std::min(values.size() - 1, std::size_t(share * double(values.size())))];
 }
 
 // A tank calibrated from twelve rendered photos, and the truth in its frame.
@@ -92,7 +94,8 @@ struct Bench {
     scene.shade = {0.4 * any(random), 0.4 * any(random)};
     for (int k = 0; k < 3; ++k)
       scene.glare.push_back({{2000 + 1500 * any(random), 1500 + 1100 * any(random)},
-                             70 + 50 * any(random), 150 + 80 * any(random)});
+                             70 + 50 * any(random),
+                             150 + 80 * any(random)});
     scene.blur_px = 0.8 + 0.3 * any(random);
     scene.noise = 3;
     scene.seed = seed;
@@ -100,20 +103,24 @@ struct Bench {
   }
 
   PlacedSheet laid(const Laid& film_lies, bool mirrored = false) const {
-    const Pose lies{Vec3(0, 0, film_lies.turn_deg * std::numbers::pi / 180),
-                    Vec3(film_lies.shift.x(), film_lies.shift.y(), -kWater_mm + film_lies.water_off_mm)};
+    const Pose lies{
+        Vec3(0, 0, film_lies.turn_deg * std::numbers::pi / 180),
+        Vec3(film_lies.shift.x(), film_lies.shift.y(), -kWater_mm + film_lies.water_off_mm)};
     return {&film, to_found.inverse() * lies, film_lies.swelling, mirrored};
   }
 
   FilmPose find(const Scene& scene) const {
-    return find_film(photograph(scene), "photo", tank, {marks, kWaterOff_mm, 1, false}, RunContext());
+    return find_film(photograph(scene), "photo", tank, {marks, kWaterOff_mm, 1, false},
+                     RunContext());
   }
 };
 
 Laid random_laid(std::mt19937& random) {
   std::normal_distribution<double> chance(0, 1);
   std::uniform_real_distribution<double> any(0, 1);
-  return {{chance(random), chance(random)}, chance(random), {1 + 0.03 * any(random), 1 + 0.03 * any(random)},
+  return {{chance(random), chance(random)},
+          chance(random),
+          {1 + 0.03 * any(random), 1 + 0.03 * any(random)},
           kWaterOff_mm * chance(random)};
 }
 
@@ -153,22 +160,23 @@ void views(const Bench& bench, int count) {
       (mirrored ? untold_mirror : untold_turn) += !told;
     }
   }
-  fmt::print("{} views, {} of them refused\n"
-             "  shift    median {:.3f}, p95 {:.3f}, worst {:.3f} mm (goal: 0.1 at p95)\n"
-             "  turn     median {:.4f}, p95 {:.4f}, worst {:.4f} deg (goal: 0.05 at p95)\n"
-             "  swelling median {:.4f}, p95 {:.4f}, worst {:.4f} % (goal: 0.1)\n"
-             "  error over its stated standard deviation, rms: {:.2f}\n"
-             "  upside down or turned film in {} views each: {} and {} not told (goal: 0)\n",
-             count, failed, percentile(shift, 0.5), percentile(shift, 0.95), percentile(shift, 1),
-             percentile(turn, 0.5), percentile(turn, 0.95), percentile(turn, 1),
-             100 * percentile(swelling, 0.5), 100 * percentile(swelling, 0.95),
-             100 * percentile(swelling, 1),
-             [&] {
-               double sum = 0;
-               for (const double s : sigma) sum += s * s / double(sigma.size());
-               return std::sqrt(sum);
-             }(),
-             (count + 9) / 10, untold_mirror, untold_turn);
+  fmt::print(
+      "{} views, {} of them refused\n"
+      "  shift    median {:.3f}, p95 {:.3f}, worst {:.3f} mm (goal: 0.1 at p95)\n"
+      "  turn     median {:.4f}, p95 {:.4f}, worst {:.4f} deg (goal: 0.05 at p95)\n"
+      "  swelling median {:.4f}, p95 {:.4f}, worst {:.4f} % (goal: 0.1)\n"
+      "  error over its stated standard deviation, rms: {:.2f}\n"
+      "  upside down or turned film in {} views each: {} and {} not told (goal: 0)\n",
+      count, failed, percentile(shift, 0.5), percentile(shift, 0.95), percentile(shift, 1),
+      percentile(turn, 0.5), percentile(turn, 0.95), percentile(turn, 1),
+      100 * percentile(swelling, 0.5), 100 * percentile(swelling, 0.95),
+      100 * percentile(swelling, 1),
+      [&] {
+        double sum = 0;
+        for (const double s : sigma) sum += s * s / double(sigma.size());
+        return std::sqrt(sum);
+      }(),
+      (count + 9) / 10, untold_mirror, untold_turn);
 }
 
 // No film, but tags of all kinds lying about, those of sheets among them.
@@ -188,9 +196,9 @@ void empty_views(const Bench& bench, int count) {
       sheet.min -= Vec2(3, 3);
       sheet.max += Vec2(3, 3);
       tags[k] = draw_marks({mark}, sheet);
-      scene.sheets.push_back({&tags[k],
-                              Pose{Vec3(0, 0, 3.1 * any(random)),
-                                   Vec3(100 * any(random), 140 * any(random), -kWater_mm)}});
+      scene.sheets.push_back(
+          {&tags[k], Pose{Vec3(0, 0, 3.1 * any(random)),
+                          Vec3(100 * any(random), 140 * any(random), -kWater_mm)}});
     }
     try {
       bench.find(scene);
@@ -198,7 +206,8 @@ void empty_views(const Bench& bench, int count) {
     } catch (const InputError&) {
     }
   }
-  fmt::print("{} views without film, with foreign tags: film found in {} (goal: 0)\n", count, wrong);
+  fmt::print("{} views without film, with foreign tags: film found in {} (goal: 0)\n", count,
+             wrong);
 }
 
 // Every dip's film lies off by chance; the frame, or the object, is moved by what one photo says.
@@ -207,7 +216,9 @@ void dips(const Bench& bench, int count) {
   std::normal_distribution<double> chance(0, 1);
   std::vector<double> before, after;
   for (int n = 0; n < count; ++n) {
-    Laid laid{{chance(random), chance(random)}, chance(random), {1.025, 1.015},
+    Laid laid{{chance(random), chance(random)},
+              chance(random),
+              {1.025, 1.015},
               kWaterOff_mm * chance(random)};
     Scene scene = bench.scene_of(random_view(random), unsigned(n) + 9000);
     scene.sheets = bench.truth.sheets();
@@ -225,17 +236,21 @@ void dips(const Bench& bench, int count) {
     double worst_before = 0, worst_after = 0;
     const Eigen::Rotation2Dd back(-pose.turn_deg * std::numbers::pi / 180);
     for (int k = 0; k < 12; ++k) {
-      const Vec2 u = 60 * Vec2(std::cos(k * std::numbers::pi / 6), std::sin(k * std::numbers::pi / 6));
+      const Vec2 u =
+          60 * Vec2(std::cos(k * std::numbers::pi / 6), std::sin(k * std::numbers::pi / 6));
       worst_before = std::max(worst_before, (laid.at(u) - plain.at(u)).norm());
-      worst_after = std::max(worst_after, (back * (laid.at(u) - pose.shift_mm) - meant.at(u)).norm());
+      worst_after =
+          std::max(worst_after, (back * (laid.at(u) - pose.shift_mm) - meant.at(u)).norm());
     }
     before.push_back(worst_before);
     after.push_back(worst_after);
   }
-  fmt::print("{} dips, film off by 1 mm and 1 degree (standard deviations); worst landed error "
-             "within 60 mm of the middle\n  without camera p95 {:.2f} mm; with it median {:.3f}, p95 {:.3f} mm "
-             "(goal: 0.15)\n",
-             count, percentile(before, 0.95), percentile(after, 0.5), percentile(after, 0.95));
+  fmt::print(
+      "{} dips, film off by 1 mm and 1 degree (standard deviations); worst landed error "
+      "within 60 mm of the middle\n  without camera p95 {:.2f} mm; with it median {:.3f}, p95 "
+      "{:.3f} mm "
+      "(goal: 0.15)\n",
+      count, percentile(before, 0.95), percentile(after, 0.5), percentile(after, 0.95));
 }
 
 }  // namespace
@@ -252,8 +267,9 @@ int main(int argc, char** argv) {
                       figures.find("views") != std::string::npos ||
                       figures.find("empty") != std::string::npos;
   if (!photos) return 0;
-  fmt::print("All photos are synthetic: rendered with lens distortion, perspective, blur, noise, "
-             "glare and uneven light.\n");
+  fmt::print(
+      "All photos are synthetic: rendered with lens distortion, perspective, blur, noise, "
+      "glare and uneven light.\n");
   const Bench bench(1);
   if (figures.find("dips") != std::string::npos) dips(bench, std::min(count, 50));
   if (figures.find("views") != std::string::npos) views(bench, count);

@@ -19,8 +19,8 @@ std::vector<MarkPlace> strip_marks(int strip) {
     const int block = 2 * (n % (kStripMarks / 2)) + (lower ? 0 : 1);
     const Vec2 corner((block + 0.5) * kBlock_mm - 0.5 * kStripLength_mm,
                       (lower ? -0.5 : 0.5) * kBlock_mm);
-    marks.push_back({kFirstBoardTag + kStripMarks * strip + n, corner,
-                     Vec2(lower ? -1 : 1, 0), kCell_mm});
+    marks.push_back(
+        {kFirstBoardTag + kStripMarks * strip + n, corner, Vec2(lower ? -1 : 1, 0), kCell_mm});
   }
   return marks;
 }

@@ -92,7 +92,8 @@ Fit fit_sheet(const std::vector<Pair>& pairs, const std::vector<Vec2>& points) {
     if ((pairs[i].mark.corner - pairs[0].mark.corner).norm() >
         (pairs[far].mark.corner - pairs[0].mark.corner).norm())
       far = i;
-  const Vec2 printed = pairs[far].mark.corner - pairs[0].mark.corner, lies = points[far] - points[0];
+  const Vec2 printed = pairs[far].mark.corner - pairs[0].mark.corner,
+             lies = points[far] - points[0];
   PoseValues start;
   start << 0, 0, std::atan2(cross2(printed, lies), printed.dot(lies)), 1, 1;
   start.head<2>() = points[0] - lies_at(start, pairs[0].mark.corner);
@@ -139,8 +140,8 @@ FilmPose pose_of(const std::vector<Pair>& pairs, const View& view, const FilmPla
   pose.swelling_sigma = {sigma(3), sigma(4)};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Vec2 off = -fit.residuals.segment<2>(2 * Eigen::Index(i));
-    pose.marks.push_back({pairs[i].mark.id, pairs[i].mark.corner,
-                          Eigen::Rotation2Dd(-fit.values[2]) * off});
+    pose.marks.push_back(
+        {pairs[i].mark.id, pairs[i].mark.corner, Eigen::Rotation2Dd(-fit.values[2]) * off});
   }
   pose.unexplained_rms_mm = std::sqrt(fit.residuals.squaredNorm() / double(pairs.size()));
   pose.board_rms_px = view.rms_px;

@@ -124,11 +124,13 @@ struct Unknowns {
 };
 
 Eigen::VectorXd packed(const Unknowns& u) {
-  Eigen::VectorXd v(Lens::kValues + Pose::kValues * Eigen::Index(u.cameras.size() + u.strips.size() - 1));
+  Eigen::VectorXd v(Lens::kValues +
+                    Pose::kValues * Eigen::Index(u.cameras.size() + u.strips.size() - 1));
   v.head<Lens::kValues>() = u.lens.values();
   Eigen::Index at = Lens::kValues;
   for (const Pose& camera : u.cameras) v.segment<6>(at) = camera.values(), at += 6;
-  for (std::size_t s = 1; s < u.strips.size(); ++s) v.segment<6>(at) = u.strips[s].values(), at += 6;
+  for (std::size_t s = 1; s < u.strips.size(); ++s)
+    v.segment<6>(at) = u.strips[s].values(), at += 6;
   return v;
 }
 
@@ -230,9 +232,10 @@ Tank calibrate_tank(const std::vector<SeenPhoto>& photos, int width_px, int heig
     throw InputError(
         "no strip of the board is to be seen in these photos; print it with 'hydrodip register "
         "board', glue it to the tank's rim and photograph it sharp, from above");
-  const int first = std::max_element(sightings.begin(), sightings.end(),
-                                     [](const auto& a, const auto& b) { return a.second < b.second; })
-                        ->first;
+  const int first =
+      std::max_element(sightings.begin(), sightings.end(), [](const auto& a, const auto& b) {
+        return a.second < b.second;
+      })->first;
 
   Bundle bundle;
   bundle.middle_px = 0.5 * Vec2(width_px, height_px);
@@ -245,8 +248,8 @@ Tank calibrate_tank(const std::vector<SeenPhoto>& photos, int width_px, int heig
     const auto strips = by_strip(photo);
     const auto reference = strips.find(first);
     if (reference == strips.end() || reference->second.size() < kMarksToBegin) {
-      context.warn(fmt::format("{}: does not show strip {} of the board; left out.", photo.name,
-                               first + 1));
+      context.warn(
+          fmt::format("{}: does not show strip {} of the board; left out.", photo.name, first + 1));
       continue;
     }
     const Mat3 to_px = strip_to_px(reference->second);
@@ -259,8 +262,8 @@ Tank calibrate_tank(const std::vector<SeenPhoto>& photos, int width_px, int heig
       const int at = number.emplace(strip, int(number.size())).first->second;
       std::vector<Vec2> from, to;
       for (const SeenMark& mark : marks) {
-        bundle.seen.push_back({bundle.photos, at, mark.id, strip_place(mark.id).corner,
-                               mark.corner_px});
+        bundle.seen.push_back(
+            {bundle.photos, at, mark.id, strip_place(mark.id).corner, mark.corner_px});
         from.push_back(strip_place(mark.id).corner);
         to.push_back((to_plane * mark.corner_px.homogeneous()).hnormalized());
       }
@@ -291,8 +294,7 @@ Tank calibrate_tank(const std::vector<SeenPhoto>& photos, int width_px, int heig
   tank.rms_px = rms_px(fit, bundle.seen.size());
   const double freedom = double(fit.residuals.size() - fit.values.size());
   const double scale = freedom > 0 ? fit.residuals.squaredNorm() / freedom : 1;
-  tank.lens_covariance =
-      scale * fit.covariance.topLeftCorner<Lens::kValues, Lens::kValues>();
+  tank.lens_covariance = scale * fit.covariance.topLeftCorner<Lens::kValues, Lens::kValues>();
   if (!(tank.rms_px < kWorstFit_px))
     throw InputError(fmt::format(
         "the photos do not fit one camera and one board: corners are off by {:.1f} px; use one "
@@ -313,8 +315,8 @@ Tank calibrate_tank(const std::vector<SeenPhoto>& photos, int width_px, int heig
   for (const int tag : tags) {
     const StripPlace at = strip_place(tag);
     lowest = std::min(lowest, at.strip);
-    corner[tag] = solved.strips[std::size_t(number[at.strip])] *
-                  Vec3(at.corner.x(), at.corner.y(), 0);
+    corner[tag] =
+        solved.strips[std::size_t(number[at.strip])] * Vec3(at.corner.x(), at.corner.y(), 0);
     all.push_back(corner[tag]);
   }
   const Pose to_tank =
@@ -373,8 +375,7 @@ View view_of(const SeenPhoto& photo, const Tank& tank, double water_sigma_mm) {
       point.z() = std::max(point.z(), 1.0);
       off.segment<2>(2 * Eigen::Index(i)) = (lens.project(point) - px[used[i]]) / kCorner_px;
     }
-    off.segment(corners, Lens::kValues) =
-        root.matrixL().solve(v.segment(6, Lens::kValues) - usual);
+    off.segment(corners, Lens::kValues) = root.matrixL().solve(v.segment(6, Lens::kValues) - usual);
     off[corners + Lens::kValues] = (v[View::kValues - 1] - tank.water_below_mm) / water_sigma_mm;
     return off;
   };
@@ -409,8 +410,7 @@ View view_of(const SeenPhoto& photo, const Tank& tank, double water_sigma_mm) {
         "--calibrate-camera'",
         photo.name, view.rms_px));
   const double freedom = double(fit.residuals.size() - fit.values.size());
-  const double scale =
-      std::max(1.0, freedom > 0 ? fit.residuals.squaredNorm() / freedom : 1.0);
+  const double scale = std::max(1.0, freedom > 0 ? fit.residuals.squaredNorm() / freedom : 1.0);
   view.covariance = scale * fit.covariance;
   return view;
 }

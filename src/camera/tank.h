@@ -24,7 +24,7 @@ struct Tank {
   Lens lens;
   Eigen::Matrix<double, Lens::kValues, Lens::kValues> lens_covariance =
       Eigen::Matrix<double, Lens::kValues, Lens::kValues>::Zero();
-  double rms_px = 0;             // of the calibration
+  double rms_px = 0;              // of the calibration
   std::map<int, Vec3> corner_mm;  // of the board's marks, by tag
   FilmPlace place;
   double water_below_mm = 0;  // the water under z = 0

@@ -10,9 +10,11 @@
 namespace hydrodip {
 namespace {
 
-constexpr int kLongSide_px = 760, kMargin_px = 40, kHeader_px = 64;
+constexpr int kLongSide_px = 760, kMargin_px = 70, kHeader_px = 110;
 constexpr double kLine_px = 22;
-constexpr LinearColor kSheet{1, 1, 1, 1}, kEdge{0.35F, 0.36F, 0.4F, 1}, kTape{0.82F, 0.83F, 0.85F, 1};
+constexpr double kLongest = 0.06;  // arrow, over the sheet
+constexpr LinearColor kSheet{1, 1, 1, 1}, kEdge{0.35F, 0.36F, 0.4F, 1},
+    kTape{0.82F, 0.83F, 0.85F, 1};
 constexpr LinearColor kInk{0.55F, 0.02F, 0.02F, 1};
 
 TextStyle style(double size_px, const LinearColor& color) {
@@ -34,14 +36,13 @@ void draw_stroke(Image& page, const Vec2& from, const Vec2& to, double width_px)
     for (int x = std::max(0, x0); x < std::min(page.width_px, x1); ++x) {
       const Vec2 at = Vec2(x + 0.5, y + 0.5) - from;
       const double along = length > 0 ? std::clamp(at.dot(way) / (length * length), 0.0, 1.0) : 0;
-      const double cover =
-          std::clamp(0.5 * width_px + 0.5 - (at - along * way).norm(), 0.0, 1.0);
+      const double cover = std::clamp(0.5 * width_px + 0.5 - (at - along * way).norm(), 0.0, 1.0);
       if (!(cover > 0)) continue;
       std::uint8_t* pixel = page.pixel(x, y);
       const float ink[3] = {kInk.r, kInk.g, kInk.b};
       for (int k = 0; k < 3; ++k)
-        pixel[k] = linear_to_srgb8(srgb8_to_linear(pixel[k]) * float(1 - cover) +
-                                   ink[k] * float(cover));
+        pixel[k] =
+            linear_to_srgb8(srgb8_to_linear(pixel[k]) * float(1 - cover) + ink[k] * float(cover));
     }
 }
 
@@ -77,23 +78,22 @@ Image draw_arrow_map(double width_mm, double height_mm, double margin_mm,
   const double scale = kLongSide_px / std::max(width_mm, height_mm);
   const int width = int(width_mm * scale), height = int(height_mm * scale);
   const int page_width = std::max(width + 2 * kMargin_px, 560);
-  Image page = blank_page(page_width,
-                          kHeader_px + height + int(kLine_px * (double(lines.size()) + 3.5)));
+  Image page =
+      blank_page(page_width, kHeader_px + height + int(kLine_px * (double(lines.size()) + 5.5)));
   draw_centered(page, title, 0.5 * page_width, 40, style(22, kTitleInk));
   const int left = (page_width - width) / 2;
   fill(page, left - 1, kHeader_px - 1, left + width + 1, kHeader_px + height + 1, kEdge);
   fill(page, left, kHeader_px, left + width, kHeader_px + height, kTape);
   const int tape = int(std::lround(margin_mm * scale));
-  fill(page, left + tape, kHeader_px + tape, left + width - tape, kHeader_px + height - tape, kSheet);
+  fill(page, left + tape, kHeader_px + tape, left + width - tape, kHeader_px + height - tape,
+       kSheet);
   const Vec2 middle(left + 0.5 * width, kHeader_px + 0.5 * height);
-  const auto to_px = [&](const Vec2& mm) -> Vec2 {
-    return middle + scale * Vec2(mm.x(), -mm.y());
-  };
+  const auto to_px = [&](const Vec2& mm) -> Vec2 { return middle + scale * Vec2(mm.x(), -mm.y()); };
   const double most = largest(arrows);
-  const double longer = most > 0 ? 0.1 * std::max(width_mm, height_mm) / most : 1;
+  const double longer = most > 0 ? kLongest * std::max(width_mm, height_mm) / most : 1;
   for (const Arrow& arrow : arrows)
     draw_arrow(page, to_px(arrow.from_mm), to_px(arrow.from_mm + longer * arrow.by_mm));
-  double y = kHeader_px + height + 1.4 * kLine_px;
+  double y = kHeader_px + height + 3.2 * kLine_px;
   if (most > 0) {
     const double shown = round_down(most);
     const double length = shown * longer * scale;

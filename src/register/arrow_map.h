@@ -15,7 +15,7 @@ struct Arrow {
   Vec2 by_mm = Vec2::Zero();
 };
 
-// The longest arrow is as long as a tenth of the sheet; a scale below says what that means.
+// The longest arrow is as long as a sixteenth of the sheet; a scale below says what that means.
 Image draw_arrow_map(double width_mm, double height_mm, double margin_mm,
                      const std::vector<Arrow>& arrows, const std::string& title,
                      const std::vector<std::string>& lines);

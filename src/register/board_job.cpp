@@ -73,11 +73,11 @@ JobResult board_job(const std::filesystem::path& folder, const std::string& pape
   result.folder = folder;
   result.files = {"board.pdf"};
   result.text = fmt::format("wrote {}\n", (folder / "board.pdf").string());
-  result.json = nlohmann::ordered_json{{"command", "register board"},
-                                       {"folder", folder.string()},
-                                       {"files", result.files}}
-                    .dump(2) +
-                "\n";
+  result.json =
+      nlohmann::ordered_json{
+          {"command", "register board"}, {"folder", folder.string()}, {"files", result.files}}
+          .dump(2) +
+      "\n";
   return result;
 }
 

@@ -48,12 +48,11 @@ std::vector<Landed> read_grid(const std::filesystem::path& file, const PrintedFi
   const GridLanding landing = landing_of(film, request.square_mm);
   const GridPlace reach = {int(0.5 * sheet.width_mm / request.square_mm),
                            int(0.5 * sheet.height_mm / request.square_mm)};
-  const GridMatch match =
-      match_grid(scan.grid, landing, reach, request.square_mm, file.string());
+  const GridMatch match = match_grid(scan.grid, landing, reach, request.square_mm, file.string());
   if (match.mirrored)
-    throw InputError(fmt::format(
-        "{}: only the scan's mirror image fits the object; save it without mirroring",
-        file.string()));
+    throw InputError(
+        fmt::format("{}: only the scan's mirror image fits the object; save it without mirroring",
+                    file.string()));
   const CornerGrid grid =
       request.aligned
           ? scan.grid
@@ -61,8 +60,8 @@ std::vector<Landed> read_grid(const std::filesystem::path& file, const PrintedFi
   std::vector<Landed> landed;
   for (std::size_t i = 0; i < grid.position.size(); ++i)
     if (match.place[i])
-      landed.push_back({request.square_mm * Vec2((*match.place[i])[0], (*match.place[i])[1]),
-                        grid.position[i]});
+      landed.push_back(
+          {request.square_mm * Vec2((*match.place[i])[0], (*match.place[i])[1]), grid.position[i]});
   return landed;
 }
 
@@ -78,7 +77,8 @@ DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
                 const FilmOptions& sheet, const CorrectRequest& request) {
   std::vector<Landed> landed;
   if (is_place_table(file))
-    for (const PlaceRow& row : read_place_table(file)) landed.push_back({row.on_sheet, row.position});
+    for (const PlaceRow& row : read_place_table(file))
+      landed.push_back({row.on_sheet, row.position});
   else
     landed = read_grid(file, film, sheet, request);
   DipSeen dip{file, {}, {}, 0, 0};
@@ -100,9 +100,10 @@ DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
     }
   }
   if (dip.samples.empty())
-    throw InputError(fmt::format(
-        "{}: none of its places lies on the film of this job; check that it is a dip of this job's object in its pose",
-        file.string()));
+    throw InputError(
+        fmt::format("{}: none of its places lies on the film of this job; check that it is a dip "
+                    "of this job's object in its pose",
+                    file.string()));
   dip.mean_off /= double(dip.samples.size());
   dip.rms_off_mm = std::sqrt(square / double(dip.samples.size()));
   if (on_object_count > 0) dip.rms_on_object_mm = std::sqrt(on_object / on_object_count);
@@ -163,12 +164,11 @@ Image draw_field(const DisplacementFit& fit, const FilmOptions& film, double bef
       if (is_free(film, u) && fit.sigma_mm[at] < std::max(0.1, 3 * least))
         arrows.push_back({u, fit.field.move[at]});
     }
-  return draw_arrow_map(film.width_mm, film.height_mm, film.margin_mm, arrows,
-                        "How much farther to print",
-                        {fmt::format("off by {:.2f} mm rms on this print", before_mm),
-                         fmt::format("places left out are foretold to {:.2f} mm; arrows where the "
-                                     "field is known",
-                                     fit.left_out_rms_mm)});
+  return draw_arrow_map(
+      film.width_mm, film.height_mm, film.margin_mm, arrows, "How much farther to print",
+      {fmt::format("off by {:.2f} mm rms on this print", before_mm),
+       fmt::format("places left out are foretold to {:.2f} mm", fit.left_out_rms_mm),
+       "arrows where the field is known"});
 }
 
 }  // namespace
@@ -221,9 +221,8 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
     result.text += fmt::format(
         "from dip to dip the film lay {:.3f} mm elsewhere: no correction takes that out\n",
         between_dips_mm(dips));
-  result.text += fmt::format(
-      "wrote {0}/{1} and {0}/{2}\nprint again with --correction {0}/{1}\n",
-      job.folder.string(), kFile, kPicture);
+  result.text += fmt::format("wrote {0}/{1} and {0}/{2}\nprint again with --correction {0}/{1}\n",
+                             job.folder.string(), kFile, kPicture);
   return result;
 }
 

@@ -29,7 +29,8 @@ struct Place {
 std::vector<Place> averaged(const std::vector<CorrectionSample>& samples, double pitch_mm) {
   std::map<std::pair<long, long>, Place> cells;
   for (const CorrectionSample& s : samples) {
-    Place& cell = cells[{std::lround(s.model_mm.x() / pitch_mm), std::lround(s.model_mm.y() / pitch_mm)}];
+    Place& cell =
+        cells[{std::lround(s.model_mm.x() / pitch_mm), std::lround(s.model_mm.y() / pitch_mm)}];
     cell.at += s.model_mm;
     cell.move += s.move_mm;
     ++cell.count;
@@ -142,8 +143,8 @@ DisplacementFit fit_displacements(const std::vector<CorrectionSample>& samples,
         to[k] = covariance(at - places[std::size_t(k)].at, kriging.length_mm);
       to.tail<kDrift>() = drift(at);
       field.move.emplace_back(kriging.weights.transpose() * to);
-      fit.sigma_mm.push_back(std::sqrt(
-          std::max(0.0, kriging.variance * (1 - to.dot(kriging.inverse * to)))));
+      fit.sigma_mm.push_back(
+          std::sqrt(std::max(0.0, kriging.variance * (1 - to.dot(kriging.inverse * to)))));
     }
   fit.smooth_mm = kriging.length_mm;
   fit.noise_mm = std::sqrt(std::max(0.0, kriging.variance * kriging.noise_share));

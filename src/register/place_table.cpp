@@ -44,8 +44,7 @@ std::vector<PlaceRow> read_place_table(const std::filesystem::path& file) {
     std::size_t begin = 0, count = 0;
     while (begin <= line.size() && count < value.size()) {
       const std::size_t end = std::min(line.find(',', begin), line.size());
-      const auto [rest, error] =
-          parse_double(line.data() + begin, line.data() + end, value[count]);
+      const auto [rest, error] = parse_double(line.data() + begin, line.data() + end, value[count]);
       if (error != std::errc() || rest != line.data() + end ||
           !(std::abs(value[count]) <= kFarthest_mm))
         break;
@@ -53,7 +52,8 @@ std::vector<PlaceRow> read_place_table(const std::filesystem::path& file) {
       begin = end + 1;
     }
     if (count != value.size() || begin <= line.size())
-      throw InputError(fmt::format("{}:{}: needs five numbers: {}", file.string(), number, kHeader));
+      throw InputError(
+          fmt::format("{}:{}: needs five numbers: {}", file.string(), number, kHeader));
     rows.push_back({{value[0], value[1]}, {value[2], value[3], value[4]}});
   }
   return rows;

@@ -49,12 +49,13 @@ class Cursor {
 
 std::size_t behind_header(const std::vector<std::uint8_t>& bytes, const FilmMesh& mesh,
                           const std::filesystem::path& file) {
-  const std::string start(bytes.begin(), bytes.begin() + std::ptrdiff_t(std::min<std::size_t>(
-                                                             bytes.size(), 1000)));
+  const std::string start(
+      bytes.begin(), bytes.begin() + std::ptrdiff_t(std::min<std::size_t>(bytes.size(), 1000)));
   const std::string end = "end_header\n";
   const std::size_t at = start.find(end);
-  const bool ours = at != std::string::npos && start.find("comment hydrodip") != std::string::npos &&
-                    start.find(fmt::format("element vertex {}\n", mesh.u.size())) != std::string::npos;
+  const bool ours =
+      at != std::string::npos && start.find("comment hydrodip") != std::string::npos &&
+      start.find(fmt::format("element vertex {}\n", mesh.u.size())) != std::string::npos;
   if (!ours) refuse(file);
   return at + end.size();
 }
@@ -114,8 +115,8 @@ PrintedFilm read_printed_film(const RigJob& job, const RunContext& context) {
   object.artwork.clear();
   object.load.texture.clear();
   const PreparedObject prepared = prepare_object(job.config.model, object, context.quiet());
-  auto dipped = std::make_shared<const DippedFilm>(read_film(
-      job.folder / "film.ply", film, job.config.design.dip.material.tear_stretch));
+  auto dipped = std::make_shared<const DippedFilm>(
+      read_film(job.folder / "film.ply", film, job.config.design.dip.material.tear_stretch));
   auto map =
       std::make_shared<const FilmMap>(prepared.posed.mesh(), prepared.posed.surface(), *dipped);
   return {prepared.posed, std::move(dipped), std::move(map), film.correction};

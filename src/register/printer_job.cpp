@@ -36,7 +36,7 @@ class Rule {
     line(0, length_mm_, 0, 0);
     for (int mm = 0; mm <= int(length_mm_); ++mm) {
       line(mm, mm, 0, mm % 10 == 0 ? 4 : mm % 5 == 0 ? 3 : 2);
-      if (mm % 10 == 0) label(mm, 4.6, std::to_string(mm), 5);
+      if (mm > 0 && mm % 10 == 0) label(mm, 4.6, std::to_string(mm), 5);
     }
     vernier();
   }
@@ -61,9 +61,9 @@ class Rule {
   void label(double along_mm, double inward_mm, const std::string& words, double size_pt) {
     const double width = pdf_.text_width(words) * size_pt * kMmPerPt;
     const double height = 0.72 * size_pt * kMmPerPt;
-    const Vec2 middle = at(along_mm, inward_mm) + (inward_mm > 0 ? 0.5 : -0.5) *
-                                                      (inward_.cwiseAbs().dot(Vec2(width, height))) *
-                                                      inward_;
+    const Vec2 middle =
+        at(along_mm, inward_mm) +
+        (inward_mm > 0 ? 0.5 : -0.5) * (inward_.cwiseAbs().dot(Vec2(width, height))) * inward_;
     pdf_.draw_text({words, middle - 0.5 * Vec2(width, height), size_pt, PdfFont::kRegular, 0, 0});
   }
 
@@ -97,7 +97,8 @@ void draw_test_sheet(const std::filesystem::path& path, double width_mm, double 
     for (const Box2& box : mark_boxes(mark)) pdf.fill_rectangle(box, 0);
   }
   const double width = std::min(110.0, sheet.across_mm - 40);
-  page.y = middle.y() + 22;
+  // Between two rows of marks.
+  page.y = middle.y() + half.y() - 50;
   const double left = middle.x() - 0.5 * width + 6;
   const auto say = [&](const std::string& words) {
     page.paragraph(left, width, words, PageWriter::kSmall_pt);

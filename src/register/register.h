@@ -18,8 +18,8 @@ namespace hydrodip {
 
 // Lengths on the printed test sheet, as a steel rule measures them.
 struct PrinterReadings {
-  double across_mm = 0, along_mm = 0;        // A to B, A to C
-  double rising_mm = 0, falling_mm = 0;      // A to D, C to B
+  double across_mm = 0, along_mm = 0;    // A to B, A to C
+  double rising_mm = 0, falling_mm = 0;  // A to D, C to B
 };
 
 struct PrinterRequest {
@@ -44,8 +44,8 @@ JobResult board_job(const std::filesystem::path& folder, const std::string& pape
 
 struct CameraRequest {
   std::vector<std::filesystem::path> photos;
-  std::filesystem::path file;   // to write
-  double water_below_mm = 0;    // how far the water stands below the strips
+  std::filesystem::path file;  // to write
+  double water_below_mm = 0;   // how far the water stands below the strips
 };
 // camera.json from photos of the board on the tank's rim.
 JobResult calibrate_camera_job(const CameraRequest& request, const RunContext& context);

@@ -93,20 +93,25 @@ Image draw_map(const FilmPose& pose, const FilmOptions& film) {
   std::vector<Arrow> arrows;
   for (const FilmPose::Mark& mark : pose.marks)
     arrows.push_back({mark.on_sheet_mm, mark.unexplained_mm});
-  return draw_arrow_map(
-      film.width_mm, film.height_mm, film.margin_mm, arrows, "What shift, turn and swelling leave",
-      {fmt::format("off its place by x {:+.2f} mm, y {:+.2f} mm, {:+.2f} degrees",
-                   pose.shift_mm.x(), pose.shift_mm.y(), pose.turn_deg),
-       fmt::format("swollen by x {:+.2f} %, y {:+.2f} %; left {:.3f} mm rms",
-                   100 * (pose.swelling.x() - 1), 100 * (pose.swelling.y() - 1),
-                   pose.unexplained_rms_mm)});
+  return draw_arrow_map(film.width_mm, film.height_mm, film.margin_mm, arrows,
+                        "What shift, turn and swelling leave",
+                        {fmt::format("off its place by x {:+.2f} mm, y {:+.2f} mm, {:+.2f} degrees",
+                                     pose.shift_mm.x(), pose.shift_mm.y(), pose.turn_deg),
+                         fmt::format("swollen by x {:+.2f} %, y {:+.2f} %; left {:.3f} mm rms",
+                                     100 * (pose.swelling.x() - 1), 100 * (pose.swelling.y() - 1),
+                                     pose.unexplained_rms_mm)});
 }
 
 // Where this film lies is where film is to lie.
-void set_place(Tank& tank, const FilmPose& pose) {
+void set_place(Tank tank, const FilmPose& pose, const std::filesystem::path& camera) {
   const double turn = tank.place.turn_deg * std::numbers::pi / 180;
   tank.place.middle_mm += Eigen::Rotation2Dd(turn) * pose.shift_mm;
   tank.place.turn_deg += pose.turn_deg;
+  const std::filesystem::path file = std::filesystem::absolute(camera);
+  OutputFolder output(file.parent_path());
+  output.announce({file.filename().string()}, {});
+  write_file(output.path(file.filename().string()), tank_as_json(tank));
+  output.commit();
 }
 
 }  // namespace
@@ -131,8 +136,7 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
   result.json = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   result.text = sentence(pose);
   if (request.set_place) {
-    set_place(tank, pose);
-    write_file(camera, tank_as_json(tank));
+    set_place(tank, pose, camera);
     result.text += fmt::format("{}: this is where film is to lie from now on\n", camera.string());
     return result;
   }
@@ -142,9 +146,10 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
   output.commit();
   result.folder = job.folder;
   result.files = {kRegistrationFile, kMapFile};
-  if (const auto written = read_registration(job.folder / kRegistrationFile)) result.text += advice(*written) + "\n";
-  result.text += fmt::format("wrote {0}/{1} and {0}/{2}\n", job.folder.string(), kRegistrationFile,
-                             kMapFile);
+  if (const auto written = read_registration(job.folder / kRegistrationFile))
+    result.text += advice(*written) + "\n";
+  result.text +=
+      fmt::format("wrote {0}/{1} and {0}/{2}\n", job.folder.string(), kRegistrationFile, kMapFile);
   return result;
 }
 

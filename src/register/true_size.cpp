@@ -36,9 +36,10 @@ PrinterScale checked(const PrinterScale& scale, const std::string& what) {
 
 TestSheet test_sheet(double width_mm, double height_mm) {
   if (std::min(width_mm, height_mm) < kLeastSide_mm)
-    throw InputError(fmt::format("the test sheet needs a page of {:g} mm at least; choose another "
-                                 "--film",
-                                 kLeastSide_mm));
+    throw InputError(
+        fmt::format("the test sheet needs a page of {:g} mm at least; choose another "
+                    "--film",
+                    kLeastSide_mm));
   TestSheet sheet;
   sheet.across_mm = 10 * std::floor((width_mm - 30) / 10);
   sheet.along_mm = 10 * std::floor((height_mm - 40) / 10);

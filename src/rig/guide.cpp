@@ -141,14 +141,14 @@ class Guide {
 
   // As often as the frame is moved.
   void locate_film() {
-    person_.say(fmt::format(
-        "\nWHERE IT LIES. Photograph the film with the whole rim in the picture; in another window: "
-        "hydrodip register PHOTO {}",
-        job_.folder.string()));
+    person_.say(
+        fmt::format("\nWHERE IT LIES. Photograph the film with the whole rim in the picture; in "
+                    "another window: "
+                    "hydrodip register PHOTO {}",
+                    job_.folder.string()));
     std::string seen = photo_seen();
     for (;;) {
-      const std::string answer =
-          person_.ask("Enter when that has said where it lies, or skip: ");
+      const std::string answer = person_.ask("Enter when that has said where it lies, or skip: ");
       if (answer == "skip") return;
       const auto found = read_registration(job_.folder / kRegistrationFile);
       if (!found || found->photo_sha256 == seen) {

@@ -24,10 +24,10 @@ namespace {
 
 // ---- the mount ----
 
-constexpr double kAboveWater_mm = 4;       // nothing of the mount comes nearer to the water
+constexpr double kAboveWater_mm = 4;  // nothing of the mount comes nearer to the water
 constexpr double kDeepestSocket_mm = 25;
-constexpr double kLeastSocket_mm = 6;      // less gives no hold
-constexpr double kLeastWidth_mm = 8;       // of what is held
+constexpr double kLeastSocket_mm = 6;  // less gives no hold
+constexpr double kLeastWidth_mm = 8;   // of what is held
 constexpr double kWall_mm = 3.2, kRoof_mm = 4;
 constexpr double kEar_mm = 16, kEarHeight_mm = 8;
 constexpr double kFinest_mm = 0.2, kCoarsest_mm = 0.6;
@@ -38,10 +38,10 @@ constexpr double kPegLeft_mm = 6, kPegRight_mm = 8, kPegLength_mm = 7;
 // ---- bar and frame ----
 
 constexpr double kBarWidth_mm = 20, kBarHeight_mm = 12;
-constexpr double kOverFilm_mm = 3;   // of the sheet's edge is taped below the frame
+constexpr double kOverFilm_mm = 3;  // of the sheet's edge is taped below the frame
 constexpr double kRing_mm = 16, kRingHeight_mm = 5;
 constexpr double kPostLeft_mm = 8, kPostRight_mm = 10;
-constexpr double kLifted_mm = 12;    // above the water while the film is laid
+constexpr double kLifted_mm = 12;  // above the water while the film is laid
 constexpr double kArm_mm = 12, kToWall_mm = 0.5;
 constexpr double kNeck_mm = 4, kHead_mm = 9, kTongue_mm = 4;
 constexpr double kJointBelow_mm = 30;  // the posts stand on the upper pieces
@@ -58,8 +58,8 @@ class UpperSide {
 
   // Of the object, or far below where there is none.
   double height(const Vec2& at) const {
-    const auto hit = surface_.first_hit(Vec3(at.x(), at.y(), from_mm_), -Vec3::UnitZ(), 0,
-                                        from_mm_ + 1e4);
+    const auto hit =
+        surface_.first_hit(Vec3(at.x(), at.y(), from_mm_), -Vec3::UnitZ(), 0, from_mm_ + 1e4);
     return hit ? from_mm_ - hit->t : -1e9;
   }
   // With room for the clearance on all sides, and for what lies between the grid's lines.
@@ -69,8 +69,7 @@ class UpperSide {
     for (int k = 0; k < kAround; ++k) {
       const double angle = 2 * std::numbers::pi * k / kAround;
       for (const double part : {0.5, 1.0})
-        most = std::max(most,
-                        height(at + part * reach * Vec2(std::cos(angle), std::sin(angle))));
+        most = std::max(most, height(at + part * reach * Vec2(std::cos(angle), std::sin(angle))));
     }
     return most + clearance_mm_;
   }
@@ -121,9 +120,8 @@ std::vector<double> lines(double from, double to, double pitch, std::vector<doub
   std::vector<double> result = also;
   for (int i = 1; i < count; ++i) {
     const double at = from + (to - from) * i / count;
-    const bool near = std::any_of(also.begin(), also.end(), [&](double a) {
-      return std::abs(a - at) < 0.3 * pitch;
-    });
+    const bool near = std::any_of(also.begin(), also.end(),
+                                  [&](double a) { return std::abs(a - at) < 0.3 * pitch; });
     if (!near) result.push_back(at);
   }
   std::sort(result.begin(), result.end());
@@ -134,7 +132,7 @@ std::vector<double> lines(double from, double to, double pitch, std::vector<doub
 struct Mount {
   TriangleMesh mesh;  // as it hangs
   double top_mm = 0;
-  Hole left, right;   // for the bar's pegs, on y = 0
+  Hole left, right;  // for the bar's pegs, on y = 0
 };
 
 Mount make_mount(const Socket& socket, const UpperSide& upper, const JigOptions& options) {
@@ -395,11 +393,16 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
   for (const JigPart& part : jig.parts) result.files.push_back(part.name + ".stl");
   result.files.emplace_back("jig.png");
   output.announce(result.files, prepared.files);
+  const double span_mm = object.bounds().size().head<2>().maxCoeff();
   std::vector<ShownPart> shown = {{object, LinearColor{0.75F, 0.3F, 0.12F, 1}}};
   for (const JigPart& part : jig.parts) {
     write_stl(output.path(part.name + ".stl"), part.mesh, "hydrodip " + part.name + ", mm");
     TriangleMesh in_use = part.mesh;
-    for (Vec3& p : in_use.positions) p = part.in_use * p;
+    // Taken apart, so that one sees what goes into what.
+    const double lifted_mm = part.name == "mount" ? 0.45 * span_mm
+                             : part.name == "bar" ? 0.75 * span_mm
+                                                  : 0;
+    for (Vec3& p : in_use.positions) p = part.in_use * p + Vec3(0, 0, lifted_mm);
     shown.push_back({std::move(in_use), part.name == "mount" ? LinearColor{0.3F, 0.42F, 0.5F, 1}
                                                              : LinearColor{0.6F, 0.6F, 0.58F, 1}});
   }
@@ -420,9 +423,9 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
   nlohmann::ordered_json parts = nlohmann::ordered_json::array();
   for (const JigPart& part : jig.parts) {
     const Vec3 size = part.mesh.bounds().size();
-    result.text += fmt::format("wrote {} ({:.1f} x {:.1f} x {:.1f} mm)\n",
-                               (folder / (part.name + ".stl")).string(), size.x(), size.y(),
-                               size.z());
+    result.text +=
+        fmt::format("wrote {} ({:.1f} x {:.1f} x {:.1f} mm)\n",
+                    (folder / (part.name + ".stl")).string(), size.x(), size.y(), size.z());
     parts.push_back({{"file", part.name + ".stl"}, {"size_mm", {size.x(), size.y(), size.z()}}});
   }
   result.text += fmt::format("wrote {}\n", (folder / "jig.png").string());

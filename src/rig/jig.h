@@ -42,7 +42,7 @@ struct Jig {
 Jig make_jig(const RigJob& job, const TriangleMesh& object, const Surface& surface,
              const JigOptions& options);
 
-// The parts as STL files and jig.png, in the folder.
+// The parts as STL files, and jig.png, which shows them taken apart, in the folder.
 JobResult jig_job(const RigJob& job, const JigOptions& options, const std::filesystem::path& folder,
                   const RunContext& context);
 

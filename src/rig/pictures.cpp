@@ -99,7 +99,7 @@ Image draw_parts(const std::vector<ShownPart>& parts, int width_px, int height_p
   }
   all.material_of.assign(all.triangles.size(), 0);
   for (Vec3& p : all.positions) p = turned(p, Turn::kUpright);
-  return render(all, {"", Turn::kUpright, Vec3(0.45, 0.5, 1).normalized()}, width_px, height_px,
+  return render(all, {"", Turn::kUpright, Vec3(0.5, 0.42, 1).normalized()}, width_px, height_px,
                 context);
 }
 

@@ -47,9 +47,10 @@ std::string advice(const Registration& registration) {
     add(fmt::format("{:.2f} mm to the {}", std::abs(off.y()), off.y() > 0 ? "bottom" : "top"));
   std::string sentence = words.empty() ? "" : "Move the frame by " + words;
   if (std::abs(registration.turn_deg) >= kStill_deg)
-    sentence += fmt::format("{} by {:.2f} degrees {}", words.empty() ? "Turn the frame" : ", and turn it",
-                            std::abs(registration.turn_deg),
-                            registration.turn_deg > 0 ? "clockwise" : "counter-clockwise");
+    sentence +=
+        fmt::format("{} by {:.2f} degrees {}", words.empty() ? "Turn the frame" : ", and turn it",
+                    std::abs(registration.turn_deg),
+                    registration.turn_deg > 0 ? "clockwise" : "counter-clockwise");
   return sentence.empty() ? "The film lies in its place." : sentence + ".";
 }
 

@@ -175,7 +175,10 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
   job.folder = folder;
   job.title = title_of(report);
   apply_settings(job.config, settings_of(report["parameters"], (folder / "report.json").string()));
+  // The bench can do without what the print was corrected by.
+  const std::filesystem::path correction = std::exchange(job.config.correction, {});
   apply_sources(job.config, sources);
+  if (job.config.correction.empty()) job.config.correction = correction;
   job.way_in = way_in(report, folder / "report.json");
   find_model(report, job);
   job.report_sha256 = read.sha256;

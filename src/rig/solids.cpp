@@ -34,8 +34,8 @@ class Builder {
 bool BoxSolid::holds(const Vec3& point) const {
   bool in = false;
   for (const Step& step : steps_) {
-    const bool inside = (point.array() > step.min.array()).all() &&
-                        (point.array() < step.max.array()).all();
+    const bool inside =
+        (point.array() > step.min.array()).all() && (point.array() < step.max.array()).all();
     if (step.kind == Kind::kAdd) in = in || inside;
     if (step.kind == Kind::kCut) in = in && !inside;
     if (step.kind == Kind::kKeep) in = in && inside;

@@ -33,7 +33,7 @@ enum class InkSide { kUp, kDown };
 // The sheet's page.
 struct PrintOptions {
   InkSide ink_side = InkSide::kUp;
-  std::string job_name;  // in the sheet's margin; empty: the model's file name
+  std::string job_name;      // in the sheet's margin; empty: the model's file name
   bool camera_marks = true;  // in the margin, where there is room
   // What the printer makes of a millimetre, and of a right angle between x and y.
   double scale_x = 1, scale_y = 1;

@@ -231,12 +231,11 @@ std::vector<Parameter> film_records() {
           "film.grading", "", 1, 20, [](C& c) -> double& { return c.design.film.grading; },
           "cell size at the rim over that at the centre; with dip.scheme=paper: 1"),
       number(
-          "film.swelling_x", "", 0.8, 1.5,
-          [](C& c) -> double& { return c.design.film.swelling_x; },
+          "film.swelling_x", "", 0.8, 1.5, [](C& c) -> double& { return c.design.film.swelling_x; },
           "width of the film on the water over that of the sheet, as 'hydrodip register' finds it"),
       number(
-          "film.swelling_y", "", 0.8, 1.5,
-          [](C& c) -> double& { return c.design.film.swelling_y; }, "the same of its height"),
+          "film.swelling_y", "", 0.8, 1.5, [](C& c) -> double& { return c.design.film.swelling_y; },
+          "the same of its height"),
       path(
           "film.correction", [](C& c) -> std::filesystem::path& { return c.correction; },
           "what 'hydrodip correct' found out by earlier dips of the same job; empty: nothing"),

@@ -118,6 +118,9 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
   add(sources.options);
   add(sources.sets);
   apply_dependent_defaults(config, all);
+  if (!config.correction.empty())
+    config.design.film.correction =
+        std::make_shared<const FilmCorrection>(read_correction(config.correction).field);
 }
 
 JobConfig configured(const std::string& model, SettingSources sources) {
@@ -126,9 +129,6 @@ JobConfig configured(const std::string& model, SettingSources sources) {
   if (is_job) sources.configs.insert(sources.configs.begin(), model);
   apply_sources(config, sources);
   if (!is_job) config.model = model;
-  if (!config.correction.empty())
-    config.design.film.correction =
-        std::make_shared<const FilmCorrection>(read_correction(config.correction).field);
   if (is_job && config.model.empty())
     throw InputError(fmt::format(
         "{}: the job names no model: begin it with file = \"MODEL\" under [object]", model));

@@ -48,7 +48,7 @@ struct SettingSources {
 };
 
 // Defaults < quality < profiles < configs < options < sets. With dip.scheme=paper, film.grading
-// defaults to 1.
+// defaults to 1. Reads film.correction.
 void apply_sources(JobConfig& config, const SettingSources& sources);
 
 // A job's configuration: `model` is a model's file, or a job's (.toml) that names one. Throws

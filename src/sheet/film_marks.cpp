@@ -23,8 +23,8 @@ std::vector<MarkPlace> film_marks(double width_mm, double height_mm, double marg
   const double off_edge = std::min(kMostOffEdgeMm, kOffEdge * margin_mm);
   const double room = 0.5 * std::min(width_mm, height_mm) - margin_mm;
   if (room < kLeastRoomMm) return {};
-  const double cell = std::min(
-      {kLargestCellMm, (margin_mm - off_edge) / (kMarkCells + 1), room * kCellsShare});
+  const double cell =
+      std::min({kLargestCellMm, (margin_mm - off_edge) / (kMarkCells + 1), room * kCellsShare});
   const double half_length = kMarkCells * cell;
   const Vec2 half(0.5 * width_mm, 0.5 * height_mm);
   // The marks' middle lines, and how far along them the outermost ones stand.

@@ -50,9 +50,9 @@ struct Marks {
 using TextWidth = std::function<double(const std::string& text)>;
 
 // Centre ticks, ruler, orientation, the alarm along the left edge, the reminder to print unscaled,
-// the sheet's size, the job's name; on a disc its rim as well; what a camera looks for. Everything stays inside the margin.
-// In margins under 7 mm all shrinks; texts that would be illegible or do not fit are left out, with
-// a warning if they matter.
+// the sheet's size, the job's name; on a disc its rim as well; what a camera looks for. Everything
+// stays inside the margin. In margins under 7 mm all shrinks; texts that would be illegible or do
+// not fit are left out, with a warning if they matter.
 Marks make_marks(const SheetOptions& options, const TextWidth& text_width);
 
 }  // namespace hydrodip

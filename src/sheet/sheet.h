@@ -25,11 +25,11 @@ struct SheetOptions {
   double height_mm = 297;
   double margin_mm = 10;  // marks stay inside it
   double dpi = 300;
-  bool disc = false;        // draw the disc's rim as well
-  bool ink_side_up = true;  // false: mirrored, for film laid ink side down
-  std::string job_name;     // printed in the margin; any UTF-8, shortened to fit
-  std::string alarm;        // "DO NOT DIP: ..." in a red band of the margin; empty: none
-  std::string date;         // ISO date recorded in the PDF, empty: none (reproducible)
+  bool disc = false;          // draw the disc's rim as well
+  bool ink_side_up = true;    // false: mirrored, for film laid ink side down
+  std::string job_name;       // printed in the margin; any UTF-8, shortened to fit
+  std::string alarm;          // "DO NOT DIP: ..." in a red band of the margin; empty: none
+  std::string date;           // ISO date recorded in the PDF, empty: none (reproducible)
   bool camera_marks = false;  // those of sheet/film_marks.h, where there is room
   PrinterScale printer;       // PDF only: the page is drawn so that it comes out true
 };

@@ -13,9 +13,9 @@ namespace hydrodip {
 inline constexpr int kMarkCells = 10;
 
 struct MarkPlace {
-  int id = 0;                   // below kTagCount
-  Vec2 corner = Vec2::Zero();   // where the four squares meet, mm
-  Vec2 along = Vec2::UnitX();   // from the tag to the corner: +x, -x, +y or -y
+  int id = 0;                  // below kTagCount
+  Vec2 corner = Vec2::Zero();  // where the four squares meet, mm
+  Vec2 along = Vec2::UnitX();  // from the tag to the corner: +x, -x, +y or -y
   double cell_mm = 0.64;
 };
 

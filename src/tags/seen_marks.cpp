@@ -93,8 +93,8 @@ std::optional<SeenMark> mark_beside(const GrayImage& image, const SeenTag& tag) 
   const double cell_px = (apply(tag.to_px, Vec2(4, 0)) - apply(tag.to_px, Vec2(-4, 0))).norm() / 8;
   const double cell_down_px =
       (apply(tag.to_px, Vec2(0, 4)) - apply(tag.to_px, Vec2(0, -4))).norm() / 8;
-  const double window_px = std::clamp(kWindow_cells * std::min(cell_px, cell_down_px),
-                                      kLeastWindow_px, kMostWindow_px);
+  const double window_px =
+      std::clamp(kWindow_cells * std::min(cell_px, cell_down_px), kLeastWindow_px, kMostWindow_px);
   const std::optional<Vec2> corner = refine(image, guess, window_px);
   if (!corner || (*corner - guess).norm() > kAstray_cells * std::max(cell_px, cell_down_px) ||
       !is_checker(image, tag.to_px, cells, *corner))

@@ -19,7 +19,7 @@ struct GrayImage {
     return value[std::size_t(y) * std::size_t(width_px) + std::size_t(x)];
   }
 };
-GrayImage gray_of(const Image& image);  // what is transparent is white
+GrayImage gray_of(const Image& image);       // what is transparent is white
 GrayImage mirrored(const GrayImage& image);  // left and right exchanged
 
 struct SeenMark {

@@ -20,12 +20,14 @@ using fixtures::synthetic_tank;
 
 constexpr double kWater_mm = 22;  // below the rim
 
-std::vector<SeenPhoto> calibration_photos(double noise_px, std::uint32_t seed, double tilt_deg = 28) {
+std::vector<SeenPhoto> calibration_photos(double noise_px, std::uint32_t seed,
+                                          double tilt_deg = 28) {
   std::mt19937 random(seed);
   const auto tank = synthetic_tank(false);
   std::vector<SeenPhoto> photos;
   for (int n = 0; n < 12; ++n)
-    photos.push_back({"photo", tank.seen(phone_lens(), random_view(random, tilt_deg), noise_px, random)});
+    photos.push_back(
+        {"photo", tank.seen(phone_lens(), random_view(random, tilt_deg), noise_px, random)});
   return photos;
 }
 
@@ -72,7 +74,8 @@ TEST(Calibration, FindsLensAndRimFromPhotosOfTheBoard) {
   const auto rim = synthetic_tank(false);
   for (const auto& [id, corner] : tank.corner_mm) {
     const StripPlace at = strip_place(id);
-    const Vec3 is = move * (rim.strip[std::size_t(at.strip)] * Vec3(at.corner.x(), at.corner.y(), 0));
+    const Vec3 is =
+        move * (rim.strip[std::size_t(at.strip)] * Vec3(at.corner.x(), at.corner.y(), 0));
     EXPECT_LT((is - corner).norm(), 0.06) << id;
   }
   // A frame as the header says.
@@ -88,9 +91,9 @@ TEST(Calibration, RefusesPhotosThatTellNothing) {
   std::mt19937 random(3);
   std::vector<SeenPhoto> alike;
   for (int n = 0; n < 6; ++n)
-    alike.push_back({"photo", synthetic_tank(false).seen(phone_lens(),
-                                                         fixtures::look_at({0, 1, 500}, {0, 1, 0}, 0),
-                                                         0.1, random)});
+    alike.push_back(
+        {"photo", synthetic_tank(false).seen(
+                      phone_lens(), fixtures::look_at({0, 1, 500}, {0, 1, 0}, 0), 0.1, random)});
   EXPECT_THROW(calibrate_tank(alike, 4000, 3000, RunContext()), InputError);
 }
 
@@ -130,7 +133,7 @@ Photographed photographed(const Tank& found, const Laid& laid, std::uint32_t see
   return {photograph(scene), laid};
 }
 
-TEST(FilmPose, IsFoundInAPhoto) {
+TEST(SlowFilmPose, IsFoundInAPhoto) {
   const Tank tank = known_tank();
   const Laid laid{{1.4, -2.2}, 0.7, {1.025, 1.015}};
   const Photographed seen = photographed(tank, laid, 5, false);
@@ -151,7 +154,7 @@ TEST(FilmPose, IsFoundInAPhoto) {
   EXPECT_THROW(find_film(seen.photo, "photo.jpg", tank, search, RunContext()), InputError);
 }
 
-TEST(FilmPose, ToldWhenItLiesUpsideDown) {
+TEST(SlowFilmPose, ToldWhenItLiesUpsideDown) {
   const Tank tank = known_tank();
   const Photographed seen = photographed(tank, {}, 6, true);
   try {

@@ -75,9 +75,8 @@ void blur(std::vector<float>& value, int width, int height, double sigma) {
       std::fill(row, row + width, 0.0F);
       for (int k = -reach; k <= reach; ++k) {
         const float w = weight[std::size_t(k + reach)];
-        const float* from =
-            between.data() +
-            std::size_t(std::clamp(int(y) + k, 0, height - 1)) * std::size_t(width);
+        const float* from = between.data() +
+                            std::size_t(std::clamp(int(y) + k, 0, height - 1)) * std::size_t(width);
         for (int x = 0; x < width; ++x) row[x] += w * from[x];
       }
     }
@@ -104,7 +103,8 @@ SheetPicture draw_boxes(const std::vector<Box2>& boxes, const Box2& sheet, doubl
     };
     for (int y = std::max(0, int(y0)); y < std::min<double>(gray.height_px, y1); ++y)
       for (int x = std::max(0, int(x0)); x < std::min<double>(gray.width_px, x1); ++x) {
-        std::uint8_t& value = gray.value[std::size_t(y) * std::size_t(gray.width_px) + std::size_t(x)];
+        std::uint8_t& value =
+            gray.value[std::size_t(y) * std::size_t(gray.width_px) + std::size_t(x)];
         const double left = 255 * (1 - cover(x0, x1, x) * cover(y0, y1, y));
         value = std::min(value, std::uint8_t(std::lround(left)));
       }
@@ -162,7 +162,8 @@ GrayImage photograph(const Scene& scene) {
           const SheetPicture& picture = *scene.sheets[k].picture;
           const Vec2 from = at - picture.upper_left_mm;
           const double px = picture.px_per_mm;
-          const bool near = from.x() > -4 && from.y() < 4 && from.x() < picture.gray.width_px / px + 4 &&
+          const bool near = from.x() > -4 && from.y() < 4 &&
+                            from.x() < picture.gray.width_px / px + 4 &&
                             -from.y() < picture.gray.height_px / px + 4;
           any = any || near;
           if (near) plain = is_white(picture, at);
@@ -180,15 +181,14 @@ GrayImage photograph(const Scene& scene) {
             for (int s = 0; s < kSamples * kSamples; ++s) {
               const double a = (x - x0 + (s % kSamples + 0.5) / kSamples) / kBlock_px;
               const double b = (y - y0 + (s / kSamples + 0.5) / kSamples) / kBlock_px;
-              const Vec3 at = (1 - b) * ((1 - a) * ray[0] + a * ray[1]) +
-                              b * ((1 - a) * ray[2] + a * ray[3]);
+              const Vec3 at =
+                  (1 - b) * ((1 - a) * ray[0] + a * ray[1]) + b * ((1 - a) * ray[2] + a * ray[3]);
               double shown = scene.background;
               for (std::size_t k = 0; k < to_sheet.size(); ++k) {
                 const double white =
                     sampled(*scene.sheets[k].picture, (to_sheet[k] * at).hnormalized());
                 if (white >= 0)
-                  shown = scene.light_black +
-                          (scene.light_white - scene.light_black) * white / 255;
+                  shown = scene.light_black + (scene.light_white - scene.light_black) * white / 255;
               }
               sum += shown;
             }
@@ -208,9 +208,9 @@ GrayImage photograph(const Scene& scene) {
                        (1 + scene.shade.x() * (double(x) / width - 0.5) +
                         scene.shade.y() * (double(y) / height - 0.5));
         for (const Glare& glare : scene.glare)
-          light += glare.strength *
-                   std::exp(-0.5 * (Vec2(x, double(y)) - glare.at_px).squaredNorm() /
-                            (glare.radius_px * glare.radius_px));
+          light +=
+              glare.strength * std::exp(-0.5 * (Vec2(x, double(y)) - glare.at_px).squaredNorm() /
+                                        (glare.radius_px * glare.radius_px));
         image.value[y * std::size_t(width) + std::size_t(x)] =
             std::uint8_t(std::clamp(light + double(noise(random)), 0.0, 255.0));
       }
@@ -237,10 +237,9 @@ Pose look_at(const Vec3& eye, const Vec3& target, double roll_deg) {
 SyntheticTank synthetic_tank(bool draw) {
   SyntheticTank tank;
   const auto place = [&](double x, double y, double turn_deg, const Vec3& lean) {
-    const Mat3 turn =
-        (Eigen::AngleAxisd(turn_deg * std::numbers::pi / 180, Vec3::UnitZ()) *
-         Eigen::AngleAxisd(lean.norm(), lean.normalized()))
-            .toRotationMatrix();
+    const Mat3 turn = (Eigen::AngleAxisd(turn_deg * std::numbers::pi / 180, Vec3::UnitZ()) *
+                       Eigen::AngleAxisd(lean.norm(), lean.normalized()))
+                          .toRotationMatrix();
     tank.strip.push_back(Pose::of(turn, Vec3(x, y, 0)));
   };
   place(-40, 170, 0.3, Vec3(0.01, 0.004, 0));
@@ -269,8 +268,7 @@ std::vector<SeenMark> SyntheticTank::seen(const Lens& lens, const Pose& camera, 
   std::vector<SeenMark> marks;
   for (int k = 0; k < int(strip.size()); ++k)
     for (const MarkPlace& mark : strip_marks(k)) {
-      const Vec3 at =
-          camera * (strip[std::size_t(k)] * Vec3(mark.corner.x(), mark.corner.y(), 0));
+      const Vec3 at = camera * (strip[std::size_t(k)] * Vec3(mark.corner.x(), mark.corner.y(), 0));
       const Vec2 px = lens.project(at) + Vec2(noise(random), noise(random));
       marks.push_back({mark.id, px, px, 8});
     }

@@ -31,9 +31,9 @@ SheetPicture draw_marks(const std::vector<MarkPlace>& marks, const Box2& sheet,
 
 struct PlacedSheet {
   const SheetPicture* picture = nullptr;
-  Pose pose;                     // sheet to tank
-  Vec2 stretch = Vec2::Ones();   // of the sheet before that
-  bool mirrored = false;         // seen from its back
+  Pose pose;                    // sheet to tank
+  Vec2 stretch = Vec2::Ones();  // of the sheet before that
+  bool mirrored = false;        // seen from its back
 };
 
 struct Glare {

@@ -52,12 +52,12 @@ expect 2 'name one photo' register
 expect 2 'camera.json' register scan.png job
 printf '{}' > camera.json
 expect 2 'not a camera' register scan.png job
+rm camera.json
 expect 2 'name the photos' register --calibrate-camera
 if [ -f scan.png ]; then
   expect 2 'no strip of the board' register --calibrate-camera scan.png scan.png scan.png scan.png
 fi
 expect 2 'no marks for the camera' register scan.png bare
-rm camera.json
 
 # ---- film that swells ----
 cat > registration.json <<'JSON'
@@ -84,7 +84,7 @@ for i in range(count):
     if state == 1:
         print(f"{u + 1:.6f},{v:.6f},{x:.6f},{y:.6f},{z:.6f}")
 PY
-expect 0 'off by 1.0' correct job places.csv
+expect 0 'off by \(1.00\|0.99\)' correct job places.csv
 # shellcheck disable=SC2086
 "$hydrodip" print colored.ply $quick --film 140x130 --depth 6 -o second --quiet \
   --correction job/correction.json > /dev/null || fail "print --correction"
@@ -107,5 +107,5 @@ expect 2 'not a correction' print colored.ply --correction registration.json
 
 # ---- a jig ----
 expect 2 'gives no hold' rig jig job
-expect 2 'three numbers\|3 numbers' rig jig job --bed 220
+expect 2 '3 numbers' rig jig job --bed 220
 finish

@@ -45,15 +45,13 @@ TEST(Swelling, LandsAsTheExactSolutionOfTheLargerDisc) {
 TEST(Swelling, IsAsFilmOfThatSize) {
   constexpr double x = 1.025, y = 1.015;
   const FilmMesh swollen = make_film_mesh({.width_mm = 140,
-                                           .height_mm = 140,
+                                           .height_mm = 160,
                                            .margin_mm = 10,
                                            .elements = 3000,
                                            .swelling_x = x,
                                            .swelling_y = y});
-  const FilmMesh large = make_film_mesh({.width_mm = 120 * x + 20,
-                                         .height_mm = 120 * y + 20,
-                                         .margin_mm = 10,
-                                         .elements = 3000});
+  const FilmMesh large = make_film_mesh(
+      {.width_mm = 120 * x + 20, .height_mm = 140 * y + 20, .margin_mm = 10, .elements = 3000});
   ASSERT_EQ(swollen.u.size(), large.u.size());
   for (std::size_t v = 0; v < large.u.size(); ++v)
     ASSERT_LT((swollen.wet[v] - large.u[v]).norm(), 1e-9);

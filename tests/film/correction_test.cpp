@@ -12,8 +12,7 @@ namespace {
 FilmCorrection field(const std::function<Vec2(const Vec2&)>& move) {
   FilmCorrection result{{-60, -80}, 5, 25, 33, {}};
   for (int j = 0; j < result.ny; ++j)
-    for (int i = 0; i < result.nx; ++i)
-      result.move.push_back(move(result.first + 5 * Vec2(i, j)));
+    for (int i = 0; i < result.nx; ++i) result.move.push_back(move(result.first + 5 * Vec2(i, j)));
   return result;
 }
 
@@ -38,8 +37,9 @@ TEST(Correction, MovesWhatIsPrintedAndNotWhatFloats) {
   FilmOptions options{.width_mm = 100, .height_mm = 120, .margin_mm = 5, .elements = 2000};
   const FilmMesh plain = make_film_mesh(options);
   EXPECT_TRUE(plain.wet.empty());
-  options.correction = std::make_shared<const FilmCorrection>(
-      field([](const Vec2& u) -> Vec2 { return {1 + 0.02 * u.y(), -0.5}; }));
+  options.correction = std::make_shared<const FilmCorrection>(field([](const Vec2& u) -> Vec2 {
+    return {1 + 0.02 * u.y(), -0.5};
+  }));
   const FilmMesh moved = make_film_mesh(options);
   ASSERT_EQ(moved.u.size(), plain.u.size());
   for (std::size_t v = 0; v < plain.u.size(); ++v) {
@@ -60,8 +60,9 @@ TEST(Correction, MovesWhatIsPrintedAndNotWhatFloats) {
 
 TEST(Correction, ThatFoldsIsRefused) {
   FilmOptions options{.width_mm = 100, .height_mm = 120, .margin_mm = 5, .elements = 2000};
-  options.correction = std::make_shared<const FilmCorrection>(
-      field([](const Vec2& u) -> Vec2 { return {-2 * u.x(), 0}; }));
+  options.correction = std::make_shared<const FilmCorrection>(field([](const Vec2& u) -> Vec2 {
+    return {-2 * u.x(), 0};
+  }));
   EXPECT_THROW(make_film_mesh(options), InputError);
 }
 

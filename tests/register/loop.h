@@ -71,15 +71,15 @@ class ClosedLoop {
   }
 
   Dipped dipped(const FilmCorrection& correction, double z_stretch, double ratio) const {
-    const FilmMesh film =
-        make_film_mesh({.width_mm = 160, .height_mm = 160, .margin_mm = 10, .elements = options_.elements});
+    const FilmMesh film = make_film_mesh(
+        {.width_mm = 160, .height_mm = 160, .margin_mm = 10, .elements = options_.elements});
     DipOptions options;
     options.step_mm = options_.step_mm;
     options.material.tear_stretch = 0;
     options.material.z_stretch = z_stretch;
     for (const Triangle& t : film.triangles) {
-      const Vec2 u = (film.u[std::size_t(t[0])] + film.u[std::size_t(t[1])] +
-                      film.u[std::size_t(t[2])]) / 3;
+      const Vec2 u =
+          (film.u[std::size_t(t[0])] + film.u[std::size_t(t[1])] + film.u[std::size_t(t[2])]) / 3;
       options.modulus.push_back(1 + (ratio - 1) * density(model_of(u, correction)));
     }
     const RunContext context;
@@ -99,7 +99,8 @@ class ClosedLoop {
   }
 
   // Which place of the sheet lands there in truth.
-  std::optional<Vec2> printed_at(const Dipped& truth, const Vec3& position, const Vec3& normal) const {
+  std::optional<Vec2> printed_at(const Dipped& truth, const Vec3& position,
+                                 const Vec3& normal) const {
     const auto film = truth.map->to_film(position, normal);
     if (!film) return std::nullopt;
     Vec2 printed = *film;

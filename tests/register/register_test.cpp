@@ -171,8 +171,8 @@ TEST_F(RegisterFiles, PlacesAreReadFromATable) {
   EXPECT_EQ(rows[0].on_sheet, Vec2(1, 2));
   EXPECT_EQ(rows[0].position, Vec3(3.5, -4, 5));
   for (const char* bad : {"1,2,3,4\n", "1,2,3,4,5,6\n", "1,2,x,4,5\n", "1,2,nan,4,5\n"})
-    EXPECT_THROW(
-        read_place_table(written(std::string("film_x_mm,film_y_mm,x,y,z\n") + bad)), InputError)
+    EXPECT_THROW(read_place_table(written(std::string("film_x_mm,film_y_mm,x,y,z\n") + bad)),
+                 InputError)
         << bad;
   EXPECT_FALSE(is_place_table(written("column,row,x,y,z\n")));
 }

@@ -45,6 +45,36 @@ class GuideTest : public ::testing::Test {
   fs::path folder_;
 };
 
+// Asked only where there is a camera; what the last photo said is in the log, and what to move is
+// said.
+TEST_F(GuideTest, AsksWhereTheFilmLiesAndKeepsIt) {
+  GuidedBench guided;
+  write_file(folder_ / "camera.json", std::string("{}"));
+  const auto photo = [&](double x_mm, const char* hash) {
+    write_file(folder_ / "registration.json",
+               Json{{"shift_mm", {{"x", x_mm}, {"y", -0.5}}},
+                    {"turn_deg", {{"value", 0.25}}},
+                    {"swelling", {{"x", 1.02}, {"y", 1.01}}},
+                    {"photo", {{"sha256", hash}}}}
+                   .dump());
+  };
+  photo(9, "old");  // of an earlier dip
+  int questions = 0;
+  guided.person.on_ask = [&](const std::string& question) {
+    if (question.find("where it lies") != std::string::npos && ++questions == 2) photo(1.5, "new");
+  };
+  rig_guide(job(""), guided.bench, guided.context);
+  EXPECT_EQ(questions, 2);
+  EXPECT_NE(guided.person.said.find("as it was"), std::string::npos);
+  EXPECT_NE(guided.person.said.find("Move the frame by 1.50 mm to the left and 0.50 mm to the top, "
+                                    "and turn it by 0.25 degrees clockwise."),
+            std::string::npos)
+      << guided.person.said;
+  const auto lines = log();
+  ASSERT_NE(find(lines, "registered"), nullptr);
+  EXPECT_EQ((*find(lines, "registered"))["x_mm"], 1.5);
+}
+
 TEST_F(GuideTest, LeadsFromHomeToRetractAndLogsWhatWas) {
   GuidedBench guided;
   const RigJob job = this->job(guided.emulator->port());

@@ -32,6 +32,8 @@ class ScriptedOperator : public Operator {
     clock_.sleep(1);
     if (context_.cancelled()) throw Cancelled();  // as at a terminal
     asked_s_ = clock_.now_s();
+    if (on_ask) on_ask(question);
+    if (question.find("where it lies") != std::string::npos) return next(locating, "");
     if (question.find("broken off") != std::string::npos) return take_up;
     if (question.find("Type yes") != std::string::npos) return yes;
     if (question.find("or here") != std::string::npos) return next(jogs, "here");
@@ -59,7 +61,8 @@ class ScriptedOperator : public Operator {
 
   std::string said, yes = "yes", take_up = "no", keep_water, keep_spray, notes;
   std::deque<std::string> jogs = {"60", "-2.5"}, temperatures, guns_after;
-  std::function<void(const std::string&)> on_show;
+  std::deque<std::string> locating;
+  std::function<void(const std::string&)> on_show, on_ask;
   double soak_s = 70;
   std::vector<std::pair<double, std::string>> asked, shown;
 

@@ -26,8 +26,8 @@ bool overlap(const Box2& a, const Box2& b) {
 }
 
 TEST(FilmMarks, AreSixAndMoreInEveryMarginThatCanHoldThem) {
-  for (const Vec2& size : {Vec2(210, 297), Vec2(297, 210), Vec2(215.9, 279.4), Vec2(297, 420),
-                           Vec2(130, 140)})
+  for (const Vec2& size :
+       {Vec2(210, 297), Vec2(297, 210), Vec2(215.9, 279.4), Vec2(297, 420), Vec2(130, 140)})
     for (const double margin : {6.0, 10.0, 15.0, 25.0}) {
       const auto marks = film_marks(size.x(), size.y(), margin);
       SCOPED_TRACE(::testing::Message() << size.transpose() << ", " << margin);
@@ -54,9 +54,9 @@ TEST(FilmMarks, AreSixAndMoreInEveryMarginThatCanHoldThem) {
 TEST(FilmMarks, CannotBeTakenForThemselvesInAnyOtherWay) {
   // Neither turned nor mirrored do as many as four of them lie where they lay.
   const auto marks = film_marks(210, 297, 10);
-  const std::array<Mat2, 5> motions = {
-      Mat2{{-1, 0}, {0, -1}}, Mat2{{0, -1}, {1, 0}}, Mat2{{0, 1}, {-1, 0}}, Mat2{{-1, 0}, {0, 1}},
-      Mat2{{1, 0}, {0, -1}}};
+  const std::array<Mat2, 5> motions = {Mat2{{-1, 0}, {0, -1}}, Mat2{{0, -1}, {1, 0}},
+                                       Mat2{{0, 1}, {-1, 0}}, Mat2{{-1, 0}, {0, 1}},
+                                       Mat2{{1, 0}, {0, -1}}};
   for (const Mat2& motion : motions)
     for (const MarkPlace& mark : marks)
       EXPECT_GT((motion * mark.corner - mark.corner).norm(), 20) << mark.id;
@@ -148,8 +148,7 @@ TEST_F(PrintedMarks, ComeOutTrueFromAPrinterThatIsNot) {
   const auto marks = film_marks(210, 297, 10);
   ASSERT_EQ(found.size(), marks.size());
   std::vector<Vec2> paper;
-  for (const SeenMark& mark : found)
-    paper.push_back(prints * on_film(mark.corner_px, options));
+  for (const SeenMark& mark : found) paper.push_back(prints * on_film(mark.corner_px, options));
   // Any length, the longest some 250 mm.
   double longest = 0;
   for (std::size_t i = 0; i < marks.size(); ++i)

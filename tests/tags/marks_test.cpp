@@ -10,7 +10,8 @@ namespace {
 
 // The mark on white paper, seen from above with so many pixels a cell and turned by an angle:
 // 4 x 4 samples a pixel.
-GrayImage picture_of(const MarkPlace& mark, double cell_px, double turn_rad, const Vec2& corner_px) {
+GrayImage picture_of(const MarkPlace& mark, double cell_px, double turn_rad,
+                     const Vec2& corner_px) {
   GrayImage image{400, 400, std::vector<std::uint8_t>(160000, 0)};
   const std::vector<Box2> boxes = mark_boxes(mark);
   const double scale = mark.cell_mm / cell_px;
@@ -24,8 +25,8 @@ GrayImage picture_of(const MarkPlace& mark, double cell_px, double turn_rad, con
         const Vec2 mm = mark.corner + scale * Vec2(turned.x(), -turned.y());
         bool black = false;
         for (const Box2& box : boxes)
-          black = black || (mm.x() > box.min.x() && mm.x() < box.max.x() &&
-                            mm.y() > box.min.y() && mm.y() < box.max.y());
+          black = black || (mm.x() > box.min.x() && mm.x() < box.max.x() && mm.y() > box.min.y() &&
+                            mm.y() < box.max.y());
         white += !black;
       }
       image.value[std::size_t(y) * 400 + std::size_t(x)] = std::uint8_t(30 + 12 * white);
@@ -36,7 +37,8 @@ GrayImage picture_of(const MarkPlace& mark, double cell_px, double turn_rad, con
 TEST(Marks, AreFoundWhereTheyAreHoweverTheyAreTurned) {
   for (int k = 0; k < 6; ++k) {
     const Vec2 corner(200 + 0.37 * k, 200 - 0.23 * k);
-    const MarkPlace mark{7 + 90 * k, {31, -12}, k % 2 ? Vec2(Vec2::UnitX()) : Vec2(-Vec2::UnitY()), 0.6};
+    const MarkPlace mark{
+        7 + 90 * k, {31, -12}, k % 2 ? Vec2(Vec2::UnitX()) : Vec2(-Vec2::UnitY()), 0.6};
     const auto found = find_marks(picture_of(mark, 4.5 + 0.6 * k, 0.9 * k, corner), RunContext());
     ASSERT_EQ(found.size(), 1U) << k;
     EXPECT_EQ(found[0].id, mark.id);
