@@ -14,7 +14,7 @@ export interface Parameter {
   max?: number;
   default: Json;
   zero?: string;
-  choices: string[];
+  choices?: string[]; // of those that have some
   help: string;
 }
 

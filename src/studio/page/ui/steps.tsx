@@ -675,7 +675,7 @@ function Everything() {
 }
 
 function AnyField({ parameter }: { parameter: Parameter }) {
-  const { name, help, choices } = parameter;
+  const { name, help, choices = [] } = parameter;
   const held = value<Json>(name);
   const set = (next: Json, live = false): void => setValue(name, next, name, live);
   const input = () => {
