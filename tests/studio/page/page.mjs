@@ -456,7 +456,6 @@ test('an STL and a PNG dropped together: the picture is on the object at once', 
   await widePicture(dome, 'artwork');
   await coarse(dome);
   await dome.keyboard.press('2');
-  await dome.locator('[data-layer="0"]').click();
 });
 
 test('the picture is dragged, scaled and turned by its handles; each is one step to undo', async () => {

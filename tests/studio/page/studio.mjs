@@ -10,6 +10,9 @@ const FLAGS = ['--no-sandbox', '--disable-dev-shm-usage', '--use-angle=swiftshad
 const HARMLESS = /GPU stall|ReadPixels|software WebGL/;
 const WHILE_DOWN = /ERR_CONNECTION|ERR_EMPTY_RESPONSE|ERR_INCOMPLETE_CHUNKED|net::ERR/;
 
+// Never the measure of anything: machines are busy.
+const PATIENCE_MS = 240000;
+
 export function hasChromium(chromium) {
   return spawnSync(chromium, ['--version']).status === 0;
 }
@@ -77,7 +80,7 @@ export class Session {
       viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', reducedMotion: 'reduce', acceptDownloads: true,
     }));
     const page = await own.newPage();
-    page.setDefaultTimeout(60000);
+    page.setDefaultTimeout(PATIENCE_MS);
     const complain = (text) => {
       if (HARMLESS.test(text) || (this.mayFail && WHILE_DOWN.test(text))) return;
       this.complaints.push(text);
@@ -105,7 +108,7 @@ export const jobOf = (page) => new URLSearchParams(new URL(page.url()).hash.slic
 export const stateOf = (page) => page.evaluate(async (job) => (await fetch(`/api/jobs/${job}`)).json(), jobOf(page));
 export const documentOf = async (page) => (await stateOf(page)).document;
 
-export async function until(what, check, seconds = 60) {
+export async function until(what, check, seconds = PATIENCE_MS / 1000) {
   const end = Date.now() + 1000 * seconds;
   for (;;) {
     const found = await check();
