@@ -43,6 +43,7 @@ void declare_print(CLI::App& app, Request& request) {
   declare_model(app, request);
   declare_output(app, request, "MODEL-print");
   declare_reporting(app, request);
+  declare_report_page(app, request);
   declare_strict(app, request);
   declare_object(app, request);
   declare_artwork(app, request);
@@ -68,6 +69,7 @@ void declare_pattern_command(CLI::App& app, Request& request) {
   declare_model(app, request);
   declare_output(app, request, "MODEL-pattern");
   declare_reporting(app, request);
+  declare_report_page(app, request);
   declare_pattern(app, request);
   declare_object(app, request);
   declare_film_and_dip(app, request);
@@ -131,6 +133,7 @@ void declare_simulate(CLI::App& app, Request& request) {
   declare_model(app, request);
   declare_output(app, request, "MODEL-simulate");
   declare_reporting(app, request);
+  declare_report_page(app, request);
   declare_strict(app, request);
   declare_object(app, request);
   declare_artwork(app, request);
@@ -235,6 +238,7 @@ JobResult run_params(const Request&, const RunContext&) {
 JobResult run_studio(const Request& request, const RunContext& context) {
   StudioOptions options = request.studio;
   options.file = request.model;
+  options.profiles = profile_folder();
   options.announce = [](const std::string& address) {
     print_result("the studio is at " + address + "\nCtrl-C ends it\n");
     finish_results();

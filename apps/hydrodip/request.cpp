@@ -94,6 +94,14 @@ void declare_reporting(CLI::App& app, Request& request) {
   app.add_flag("--quiet", request.quiet, "no progress")->group(kOutputGroup);
 }
 
+void declare_report_page(CLI::App& app, Request& request) {
+  add_parameter_option(app, request, "--for", "report.for", "workshop|customer", kOutputGroup,
+                       "who reads report.html; customer: what comes out, in plain words (default: "
+                       "workshop)");
+  add_parameter_option(app, request, "--logo", "report.logo", "IMG", kOutputGroup,
+                       "picture above report.html (PNG, JPEG, SVG)");
+}
+
 void declare_object(CLI::App& app, Request& request) {
   const auto add = [&](const char* option, const char* parameter, const char* value_name,
                        const char* help) {

@@ -59,8 +59,9 @@ struct Request {
 // Groups of options, declared where a command has them.
 void declare_model(CLI::App& app, Request& request);
 void declare_output(CLI::App& app, Request& request, const std::string& default_folder);
-void declare_no_clobber(CLI::App& app, Request& request);  // is part of declare_output
-void declare_reporting(CLI::App& app, Request& request);   // --json, --quiet
+void declare_no_clobber(CLI::App& app, Request& request);   // is part of declare_output
+void declare_reporting(CLI::App& app, Request& request);    // --json, --quiet
+void declare_report_page(CLI::App& app, Request& request);  // --for, --logo
 void declare_object(CLI::App& app, Request& request);
 void declare_artwork(CLI::App& app, Request& request);
 void declare_film(CLI::App& app, Request& request);          // --film, --quality

@@ -18,24 +18,6 @@
 namespace hydrodip {
 namespace {
 
-// A colour for each dip, told apart by everybody (Okabe and Ito's, and paler ones after them).
-LinearColor dip_color(std::size_t dip) {
-  constexpr std::array<std::array<int, 3>, 7> kColors = {{{0, 114, 178},
-                                                          {230, 159, 0},
-                                                          {0, 158, 115},
-                                                          {204, 121, 167},
-                                                          {86, 180, 233},
-                                                          {213, 94, 0},
-                                                          {240, 228, 66}}};
-  const auto& c = kColors[dip % kColors.size()];
-  const float pale = dip < kColors.size() ? 0.0F : 0.5F;
-  const auto channel = [&](int v) {
-    const float linear = srgb8_to_linear(std::uint8_t(v));
-    return linear + pale * (1 - linear);
-  };
-  return {channel(c[0]), channel(c[1]), channel(c[2]), 1};
-}
-
 LinearColor error_color(double difference) {
   const auto t = float(std::clamp(difference / 10, 0.0, 1.0));
   return {0.6F + 0.1F * t, 0.6F * (1 - t), 0.6F * (1 - t) * (1 - t), 1};
@@ -53,6 +35,21 @@ class LookPaint : public Paint {
  private:
   Look look_;
 };
+
+LinearColor part_at(const SurfacePoint& point, const MadeDips& all, const SharedSurface& shared,
+                    const Finish& finish) {
+  if (!finish.has_film_at(point)) return {0.35F, 0.35F, 0.35F, 1};
+  const TriangleMesh& model = all.prepared.posed.object();
+  const std::vector<float> shares =
+      shared.shares_at(position_at(model, point), face_normal(model, point.triangle));
+  LinearColor color{0, 0, 0, 1};
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const LinearColor own = dip_color(k);
+    color = {color.r + shares[k] * own.r, color.g + shares[k] * own.g, color.b + shares[k] * own.b,
+             1};
+  }
+  return color;
+}
 
 // Draws what the report shows of a finish.
 class FinishPictures {
@@ -76,7 +73,7 @@ class FinishPictures {
     pairs[0].shown = appearance_of(finish_);
     pairs[0].caption = caption;
     pairs[1].shown.wanted = [&](const SurfacePoint& p, const Vec3&, const Vec3&) {
-      return part_at(p);
+      return part_at(p, all_, shared_, finish_);
     };
     pairs[1].shown.predicted = [&](const SurfacePoint& p, const Vec3&, const Vec3&) {
       return error_at(p);
@@ -93,20 +90,6 @@ class FinishPictures {
   }
 
  private:
-  LinearColor part_at(const SurfacePoint& point) const {
-    if (!finish_.has_film_at(point)) return {0.35F, 0.35F, 0.35F, 1};
-    const TriangleMesh& model = all_.prepared.posed.object();
-    const std::vector<float> shares =
-        shared_.shares_at(position_at(model, point), face_normal(model, point.triangle));
-    LinearColor color{0, 0, 0, 1};
-    for (std::size_t k = 0; k < shares.size(); ++k) {
-      const LinearColor own = dip_color(k);
-      color = {color.r + shares[k] * own.r, color.g + shares[k] * own.g,
-               color.b + shares[k] * own.b, 1};
-    }
-    return color;
-  }
-
   LinearColor error_at(const SurfacePoint& point) const {
     const TriangleMesh& model = all_.prepared.posed.object();
     return error_color(
@@ -133,7 +116,8 @@ class FinishPictures {
     source.dips = int(all_.dips.size());
     source.looks = {
         {"none", baked([&](const auto& p) { return finish_.color_at(p); }, kColors_px)},
-        {"parts", baked([&](const auto& p) { return part_at(p); }, kOthers_px)},
+        {"parts",
+         baked([&](const auto& p) { return part_at(p, all_, shared_, finish_); }, kOthers_px)},
         {"finish_error", baked([&](const auto& p) { return error_at(p); }, kOthers_px)}};
     return scene_json(source, context);
   }
@@ -147,6 +131,36 @@ class FinishPictures {
 };
 
 }  // namespace
+
+// Okabe and Ito's colours, and paler ones after them.
+LinearColor dip_color(std::size_t dip) {
+  constexpr std::array<std::array<int, 3>, 7> kColors = {{{0, 114, 178},
+                                                          {230, 159, 0},
+                                                          {0, 158, 115},
+                                                          {204, 121, 167},
+                                                          {86, 180, 233},
+                                                          {213, 94, 0},
+                                                          {240, 228, 66}}};
+  const auto& c = kColors[dip % kColors.size()];
+  const float pale = dip < kColors.size() ? 0.0F : 0.5F;
+  const auto channel = [&](int v) {
+    const float linear = srgb8_to_linear(std::uint8_t(v));
+    return linear + pale * (1 - linear);
+  };
+  return {channel(c[0]), channel(c[1]), channel(c[2]), 1};
+}
+
+PaintedFinish paint_finish(const MadeDips& all, const SharedSurface& shared, const Finish& finish,
+                           int texture_px) {
+  const TriangleMesh& model = all.prepared.posed.object();
+  const LinearColor base = finish.paint().base();
+  return {
+      painted_object(model, LookPaint(base, [&](const auto& p) { return finish.color_at(p); }),
+                     texture_px),
+      painted_object(
+          model, LookPaint(base, [&](const auto& p) { return part_at(p, all, shared, finish); }),
+          texture_px)};
+}
 
 DipsPictures draw_dips(const MadeDips& all, const SharedSurface& shared, const Finish& finish,
                        const FinishCheck& check, const std::string& caption,

@@ -9,6 +9,7 @@
 #include "coat/finish.h"
 #include "job/finish_check.h"
 #include "job/made_dips.h"
+#include "object/object.h"
 #include "plan/seams.h"
 
 namespace hydrodip {
@@ -17,6 +18,16 @@ struct DipsPictures {
   std::vector<std::uint8_t> preview_png, dips_png;
   std::string scene;  // of the report's 3D view
 };
+
+// The colour of a dip's part, told apart by everybody.
+LinearColor dip_color(std::size_t dip);
+
+// The model's own mesh as it looks in the end, and by which dip.
+struct PaintedFinish {
+  Object colors, parts;
+};
+PaintedFinish paint_finish(const MadeDips& all, const SharedSurface& shared, const Finish& finish,
+                           int texture_px);
 
 // The object as it stands; `caption` is the preview's.
 DipsPictures draw_dips(const MadeDips& all, const SharedSurface& shared, const Finish& finish,

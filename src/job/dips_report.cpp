@@ -63,6 +63,22 @@ std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& sha
   return list;
 }
 
+Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishCheck& check,
+                 const JobRecord& record) {
+  Report report = make_report(record);
+  report.coverage = coverage_together(all);
+  report.angles.reset();
+  report.figures.clear();
+  report.rounds.clear();
+  report.dips = report_dips(all, shared);
+  report.verdict = several_dips_verdict(*report.coverage, all.dips.size());
+  report.colors = check.colors();
+  report.seams = ReportSeams{shared.seam_mm(), all.config.plan.overlap_mm, check.seam_error(),
+                             FinishCheck::kOff_mm, check.seam_error_off()};
+  report.outputs = outputs_of(all);
+  return report;
+}
+
 std::vector<ReportOutput> outputs_of(const MadeDips& all) {
   std::vector<ReportOutput> list;
   const char* side = all.config.print.ink_side == InkSide::kUp ? "up" : "down";

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "job/finish_check.h"
+#include "job/job_record.h"
 #include "job/made_dips.h"
 #include "plan/seams.h"
 #include "report/report.h"
@@ -15,6 +17,10 @@ Coverage coverage_together(const MadeDips& all);
 
 // Which part each does, and what is covered after it.
 std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& shared);
+
+// On all dips together; `record` is of the first.
+Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishCheck& check,
+                 const JobRecord& record);
 
 std::vector<ReportOutput> outputs_of(const MadeDips& all);
 // Every file, dip by dip: "dip-1/print.pdf".

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "dip/travel.h"
+#include "job/logo.h"
 #include "report/findings.h"
 #include "settings/artwork_tables.h"
 #include "settings/params.h"
@@ -143,6 +144,10 @@ std::vector<ReportInput> describe_inputs(const JobConfig& config, const Prepared
     inputs.push_back({"printer profile", printer.profile_file.string(),
                       sha256_hex(printer.profile_bytes), printer.profile_bytes.size()});
   for (const auto& file : config.settings_files) inputs.push_back(describe_input("settings", file));
+  if (!config.report.logo.empty()) {
+    inputs.push_back(describe_input("logo", config.report.logo));
+    logo_png(config.report.logo);  // what is wrong with it is said before all the work
+  }
   return inputs;
 }
 
@@ -181,6 +186,7 @@ Report make_report(const JobRecord& record) {
   report.command = record.command;
   report.command_line = record.config.command_line;
   report.title = record.config.print.job_name;
+  report.for_customer = record.config.report.for_customer;
   report.equilibrium = equilibrium_of(record.dipped().statistics, record.ink);
   report.better_way = record.better_way;
   report.inputs = record.inputs;

@@ -5,8 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "base/context.h"
+#include "base/timings.h"
 #include "coat/design.h"
+#include "coat/finish.h"
+#include "ink/printer.h"
+#include "job/dip_plan.h"
 #include "job/prepare.h"
+#include "plan/seams.h"
 #include "plan/surface_nodes.h"
 #include "plan/trial.h"
 #include "settings/config.h"
@@ -30,5 +36,16 @@ struct MadeDips {
   std::shared_ptr<const SurfaceNodes> nodes;
   std::vector<std::vector<float>> worth;  // of the films as they were dipped with their ink
 };
+
+// The planned dips, hung up. Throws InputError where one does not fit.
+MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,
+                 const RunContext& context);
+
+// The surface divided by the films as they lie without ink.
+SharedSurface divide(const MadeDips& all, const RunContext& context);
+
+// Each dip with its part of the ink, and what comes of all of them.
+Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& printer, Timings& times,
+                 const RunContext& context);
 
 }  // namespace hydrodip

@@ -15,6 +15,7 @@
 #include "export/scene.h"
 #include "image/files.h"
 #include "image/resize.h"
+#include "job/logo.h"
 #include "job/ways.h"
 #include "object/bake.h"
 #include "render/maps.h"
@@ -260,7 +261,9 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
 JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previews& previews) {
   const Report report = full_report(record, previews);
   write_report_json(folder.path("report.json"), report);
-  write_report_html(folder.path("report.html"), report, previews.pictures);
+  ReportPictures pictures = previews.pictures;
+  pictures.logo_png = logo_png(record.config.report.logo);
+  write_report_html(folder.path("report.html"), report, pictures);
   record.context.check_cancelled();
   folder.commit();
   JobResult result = describe_result(report, folder.folder());

@@ -18,6 +18,7 @@
 #include "job/dips_pictures.h"
 #include "job/dips_report.h"
 #include "job/job_record.h"
+#include "job/logo.h"
 #include "job/sheet_of.h"
 #include "object/bake.h"
 #include "report/findings.h"
@@ -25,66 +26,6 @@
 
 namespace hydrodip {
 namespace {
-
-// Nodes of the divided surface lie so close, in parts of the overlap, as far as so many allow.
-constexpr double kNodesInOverlap = 3.5;
-constexpr double kLeastSpacing_mm = 0.3;
-constexpr int kFewestNodes = 8000, kMostNodes = 60000;
-
-JobConfig config_of(const JobConfig& config, const Trial& trial, std::size_t number,
-                    std::size_t of) {
-  JobConfig own = config;
-  own.object.pose = trial.pose;
-  own.design.trajectory.depth_mm = trial.path.empty() ? trial.depth_mm : 0;
-  own.design.trajectory.path = trial.path;
-  own.dips.clear();
-  own.plan.dips = 0;
-  const std::string name =
-      config.print.job_name.empty() ? config.model.filename().string() : config.print.job_name;
-  own.print.job_name = fmt::format("{}, dip {} of {}", name, number, of);
-  return own;
-}
-
-std::shared_ptr<const SurfaceNodes> make_nodes(const PreparedObject& prepared, double overlap_mm) {
-  const double spacing_mm = std::max(kLeastSpacing_mm, overlap_mm / kNodesInOverlap);
-  const double wanted = prepared.health.area_mm2 / (spacing_mm * spacing_mm);
-  const int count = int(std::clamp(wanted, double(kFewestNodes), double(kMostNodes)));
-  return std::make_shared<const SurfaceNodes>(spread_targets(prepared.posed.object(), count));
-}
-
-std::vector<float> worth_at_nodes(const MadeDips& all, const MadeDip& dip, const DippedFilm& film) {
-  return worth_at(job_trials(dip.config, all.prepared, all.nodes->targets()), dip.posed, film);
-}
-
-// The planned dips, hung up.
-MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,
-                 const RunContext& context) {
-  MadeDips all{config, prepared, {}, make_nodes(prepared, config.plan.overlap_mm), {}};
-  for (std::size_t k = 0; k < plan.dips.size(); ++k) {
-    const PosedObject posed(prepared.posed.shared_object(), plan.dips[k].pose);
-    MadeDip dip{config_of(config, plan.dips[k], k + 1, plan.dips.size()),
-                plan.dips[k],
-                posed,
-                {DippedObject{.posed = posed}, {}, {}},
-                fmt::format("dip-{}", k + 1),
-                int(k) + 1};
-    const Trajectory way = make_trajectory(dip.config.design.trajectory, posed.mesh().positions);
-    require_fit(posed.mesh(), room_of(posed.mesh(), way), config.design.film, config.bath, context);
-    all.dips.push_back(std::move(dip));
-  }
-  return all;
-}
-
-// The surface divided by the films as they lie without ink.
-SharedSurface divide(const MadeDips& all, const RunContext& context) {
-  std::vector<std::vector<float>> worth;
-  for (const MadeDip& dip : all.dips) worth.push_back(worth_at_nodes(all, dip, *dip.trial.film));
-  const Object& object = all.prepared.posed.object();
-  const Surface surface(object.positions, object.triangles);
-  return {{all.nodes, std::move(worth), *all.prepared.paint, surface, all.prepared.posed.scale(),
-           all.config.plan.overlap_mm},
-          context};
-}
 
 void require_some_ink(const MadeDips& all) {
   const bool any = std::any_of(all.dips.begin(), all.dips.end(), [](const MadeDip& dip) {
@@ -96,24 +37,6 @@ void require_some_ink(const MadeDips& all) {
         "{}: all sheets would be blank: what the films reach of the model is white, transparent or "
         "of the object's own colour; check its texture and colours",
         all.config.model.string()));
-}
-
-// Each dip with its part of the ink, and what comes of all of them.
-Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& printer, Timings& times,
-                 const RunContext& context) {
-  const auto mesh = std::make_shared<const TriangleMesh>(all.prepared.posed.object());
-  std::vector<Designed> designs;
-  for (std::size_t k = 0; k < all.dips.size(); ++k) {
-    MadeDip& dip = all.dips[k];
-    context.log(fmt::format("dip {} of {}", k + 1, all.dips.size()));
-    dip.made = design({dip.posed, *all.prepared.paint, shared.allotment(k, mesh), *printer.model,
-                       dip.config.design},
-                      times, context);
-    designs.push_back(dip.made);
-    all.worth.push_back(worth_at_nodes(all, dip, *dip.made.dipped.film));
-  }
-  require_some_ink(all);
-  return finish(all.prepared.paint, designs, printer);
 }
 
 // What the wet bench needs of one dip.
@@ -144,22 +67,6 @@ void write_dip(OutputFolder& folder, const MadeDip& dip, const MadeDips& all,
 
 void write_bytes(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes) {
   write_file(path, bytes.data(), bytes.size());
-}
-
-Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishCheck& check,
-                 const JobRecord& record) {
-  Report report = make_report(record);
-  report.coverage = coverage_together(all);
-  report.angles.reset();
-  report.figures.clear();
-  report.rounds.clear();
-  report.dips = report_dips(all, shared);
-  report.verdict = several_dips_verdict(*report.coverage, all.dips.size());
-  report.colors = check.colors();
-  report.seams = ReportSeams{shared.seam_mm(), all.config.plan.overlap_mm, check.seam_error(),
-                             FinishCheck::kOff_mm, check.seam_error_off()};
-  report.outputs = outputs_of(all);
-  return report;
 }
 
 // What took how long, until now.
@@ -207,6 +114,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
 
   const SharedSurface shared = times.measure("seams", [&] { return divide(all, context); });
   const Finish finish = make_dips(all, shared, printer, times, context);
+  require_some_ink(all);
   times.measure("sheet", [&] {
     for (const MadeDip& dip : all.dips)
       write_dip(folder, dip, all, inputs, printer, times, context);
@@ -230,6 +138,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   }
   add_times(report, times);
   write_report_json(folder.path("report.json"), report);
+  pictures.logo_png = logo_png(config.report.logo);
   write_report_html(folder.path("report.html"), report, pictures);
   context.check_cancelled();
   folder.commit();

@@ -29,6 +29,14 @@ Concern concern_of(const std::vector<Finding>& findings);
 // "Good to dip", "Can be dipped; mind a few things", "Do not dip it like this".
 std::string headline(Concern concern);
 
+// What somebody who ordered the piece has to know of it: how much of the picture comes out, what
+// stays bare, becomes paler or another colour, and how far it may be off. Nothing of the workshop.
+std::vector<Finding> customer_points(const Report& report);
+// And in a sentence; of a report that has its coverage.
+std::string customer_verdict(const Report& report);
+// "This is how it will look", ...
+std::string customer_headline(Concern concern);
+
 // "none", "care", "stop"
 std::string concern_name(Concern concern);
 

@@ -126,6 +126,7 @@ struct Report {
   std::string command;                    // "print"
   std::vector<std::string> command_line;  // may be empty
   std::string title;                      // the job's name; empty: the first input's file name
+  bool for_customer = false;              // whose page it is; see report_html()
   std::string verdict;                    // one sentence; empty: plain_verdict() is used
 
   std::vector<ReportInput> inputs;
@@ -187,11 +188,13 @@ struct ReportPictures {
   std::vector<std::uint8_t> maps_png;
   std::string scene = {};                   // scene_json() for the 3D view; empty: none
   std::vector<std::uint8_t> dips_png = {};  // of several dips
+  std::vector<std::uint8_t> logo_png = {};  // above all
 };
 
 // One self-contained page that needs no network; every text is escaped. Words and pictures come
 // without scripts, so that they can be read anywhere and printed; where scripts and WebGL work, the
-// 3D view takes the place of the preview picture.
+// 3D view takes the place of the preview picture. A customer's page says what comes out, in plain
+// words: no commands, paths, parameters or times.
 std::string report_html(const Report& report, const ReportPictures& pictures);
 
 void write_report_json(const std::filesystem::path& path, const Report& report);

@@ -3,43 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "export/packer.h"
 #include "report/findings.h"
+#include "report/html.h"
 #include "report/report.h"
-#include "report/viewer_assets.h"
 
 namespace hydrodip {
 namespace {
-
-// Text for element content and quoted attributes alike. Bytes below the space (but line ends and
-// tabs) may not stand in HTML.
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        const auto byte = static_cast<unsigned char>(c);
-        const bool control = (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
-        out += control ? ' ' : c;
-    }
-  }
-  return out;
-}
 
 // "12 345.7" with narrow spaces that do not break; four significant digits or all of an integer.
 std::string shown(double value) {
@@ -100,53 +69,17 @@ std::string title_of(const Report& report) {
   return report.inputs.empty() ? "hydrodip" : file_name(report.inputs.front().path);
 }
 
-std::string heading(const Report& report) {
-  return fmt::format("<header>\n<p>hydrodip {}</p>\n<h1>{}</h1>\n</header>\n",
-                     escaped(report.command), escaped(title_of(report)));
-}
-
-std::string finding_row(const Finding& finding) {
-  std::string html = fmt::format("<li class=\"{}\"><strong>{}</strong>",
-                                 concern_name(finding.concern), escaped(finding.title));
-  if (!finding.figure.empty()) html += fmt::format(" <b>{}</b>", escaped(finding.figure));
-  html += fmt::format(" <span>{}</span>", escaped(finding.text));
-  if (!finding.advice.empty()) html += fmt::format(" <em>{}</em>", escaped(finding.advice));
-  return html + "</li>\n";
+std::string heading(const Report& report, const ReportPictures& pictures) {
+  return fmt::format("<header>\n<p>hydrodip {}</p>\n<h1>{}</h1>\n{}</header>\n",
+                     html_escaped(report.command), html_escaped(title_of(report)),
+                     html_logo(pictures));
 }
 
 std::string verdict(const Report& report, const std::vector<Finding>& list) {
   const std::string sentence = verdict_of(report);
   if (sentence.empty() && list.empty()) return "";
   const Concern concern = concern_of(list);
-  return fmt::format(
-      "<section class=\"verdict {}\" id=\"verdict\">\n<h2>{}</h2>\n<p>{}</p>\n</section>\n",
-      concern_name(concern), headline(concern), escaped(sentence));
-}
-
-std::string finding_cards(const std::vector<Finding>& list) {
-  if (list.empty()) return "";
-  std::string html = "<ul class=\"findings\">\n";
-  for (const Finding& finding : list) html += finding_row(finding);
-  return html + "</ul>\n";
-}
-
-std::string picture(const std::vector<std::uint8_t>& png, const std::string& alt) {
-  if (png.empty()) return "";
-  return "<img alt=\"" + alt + "\" src=\"data:image/png;base64," + base64(png) + "\">\n";
-}
-
-// The viewer (viewer/main.js) builds itself in here and takes the still picture's place.
-std::string preview(const ReportPictures& pictures) {
-  return "<section id=\"viewer\" hidden></section>\n<div id=\"still\">\n" +
-         picture(pictures.preview_png,
-                 "The object as wanted beside the object as predicted, from two sides") +
-         "</div>\n";
-}
-
-std::string scripts(const ReportPictures& pictures) {
-  if (pictures.scene.empty() || viewer_script().empty()) return "";
-  return "<script type=\"application/json\" id=\"scene\">" + pictures.scene +
-         "</script>\n<script>" + viewer_script() + "</script>\n";
+  return html_verdict(concern, headline(concern), sentence);
 }
 
 std::string maps(const ReportPictures& pictures) {
@@ -158,15 +91,16 @@ std::string maps(const ReportPictures& pictures) {
          "<p>Right: how far the film is stretched, from violet (hardly) to yellow (nearly torn). "
          "Red and white stripes: there the film tears, and nothing is printed; grey stays "
          "bare.</p>\n" +
-         picture(pictures.maps_png,
-                 "Dipping angle and film stretch on the object, from two sides") +
+         html_picture(pictures.maps_png,
+                      "Dipping angle and film stretch on the object, from two sides") +
          "</section>\n";
 }
 
 std::string key_figure(const std::string& label, const std::string& value,
                        const std::string& unit) {
-  return fmt::format("<div><dt>{}</dt><dd>{}{}</dd></div>\n", escaped(label), escaped(value),
-                     unit.empty() ? "" : " <small>" + escaped(unit_text(unit)) + "</small>");
+  return fmt::format("<div><dt>{}</dt><dd>{}{}</dd></div>\n", html_escaped(label),
+                     html_escaped(value),
+                     unit.empty() ? "" : " <small>" + html_escaped(unit_text(unit)) + "</small>");
 }
 
 std::string key_figures(const Report& report) {
@@ -197,29 +131,29 @@ std::string dips(const Report& report, const ReportPictures& pictures) {
         "class=\"soft\">--down "
         "{} --rotate {:g},{:g},{:g}</code></td><td class=\"number\">{:.4g}\u00a0mm</td><td "
         "class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
-        k + 1, escaped(dip.folder), escaped(dip.hold), escaped(dip.down), dip.rotate_deg[0],
-        dip.rotate_deg[1], dip.rotate_deg[2], dip.depth_mm, percent(dip.part_share),
-        percent(dip.covered_share));
+        k + 1, html_escaped(dip.folder), html_escaped(dip.hold), html_escaped(dip.down),
+        dip.rotate_deg[0], dip.rotate_deg[1], dip.rotate_deg[2], dip.depth_mm,
+        percent(dip.part_share), percent(dip.covered_share));
   }
   return section("The dips, in order; let each dry before the next", rows) +
          (pictures.dips_png.empty()
               ? ""
               : "<section>\n<h2>Which dip does what</h2>\n" +
-                    picture(pictures.dips_png,
-                            "The part of each dip, and the colour error, from two sides") +
+                    html_picture(pictures.dips_png,
+                                 "The part of each dip, and the colour error, from two sides") +
                     "</section>\n");
 }
 
 std::string row(const std::string& label, const std::string& value) {
   return fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td></tr>\n",
-                     escaped(label), escaped(value));
+                     html_escaped(label), html_escaped(value));
 }
 
 std::string outputs(const Report& report) {
   std::string rows;
   for (const ReportOutput& output : report.outputs) {
     rows += fmt::format("<tr><th scope=\"row\"><code>{}</code></th><td>{}</td></tr>\n",
-                        escaped(output.name), escaped(output.description));
+                        html_escaped(output.name), html_escaped(output.description));
   }
   return section("Files beside this page", rows);
 }
@@ -276,7 +210,7 @@ std::string mesh(const Report& report) {
       count("Edges along holes", m.boundary_edges) +
       count("Edges with more than two triangles", m.nonmanifold_edges);
   for (const std::string& finding : m.findings()) {
-    rows += fmt::format("<tr><td colspan=\"2\">{}</td></tr>\n", escaped(finding));
+    rows += fmt::format("<tr><td colspan=\"2\">{}</td></tr>\n", html_escaped(finding));
   }
   return section("The model's mesh", rows);
 }
@@ -291,7 +225,7 @@ std::string rounds(const Report& report) {
     }
     rows +=
         fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td><td>{}</td></tr>\n",
-                    escaped(round.process), round.round, escaped(figures));
+                    html_escaped(round.process), round.round, html_escaped(figures));
   }
   return section("Convergence, round by round", rows);
 }
@@ -303,8 +237,8 @@ std::string parameter_rows(const Report& report, bool changed) {
     rows += fmt::format(
         "<tr{}><th scope=\"row\"><code>{}</code></th><td class=\"number\">{}</td>"
         "<td class=\"unit\">{}</td></tr>\n",
-        changed ? " class=\"changed\"" : "", escaped(parameter.name),
-        escaped(value_text(parameter.value, exact)), escaped(unit_text(parameter.unit)));
+        changed ? " class=\"changed\"" : "", html_escaped(parameter.name),
+        html_escaped(value_text(parameter.value, exact)), html_escaped(unit_text(parameter.unit)));
   }
   return rows;
 }
@@ -326,7 +260,8 @@ std::string times(const Report& report) {
     rows += fmt::format(
         "<tr><th scope=\"row\">{}</th><td style=\"width:55%\"><span class=\"bar\" "
         "style=\"width:{:.1f}%\"></span></td><td class=\"number\">{:.2f}\u00a0s</td></tr>\n",
-        escaped(stage.name), std::clamp(100 * stage.seconds / longest, 0.0, 100.0), stage.seconds);
+        html_escaped(stage.name), std::clamp(100 * stage.seconds / longest, 0.0, 100.0),
+        stage.seconds);
   }
   if (report.stages.empty() && !(report.total_seconds > 0)) return "";
   rows += fmt::format(
@@ -350,7 +285,7 @@ std::string inputs(const Report& report) {
     rows += fmt::format(
         "<tr><th scope=\"row\">{}</th><td>{}<br><code class=\"soft\">sha256 {}</code></td>"
         "<td class=\"number\">{}\u00a0bytes</td></tr>\n",
-        escaped(input.role), escaped(input.path), escaped(input.sha256),
+        html_escaped(input.role), html_escaped(input.path), html_escaped(input.sha256),
         shown(double(input.bytes)));
   }
   return section("Files read", rows);
@@ -366,24 +301,22 @@ std::string folded(const std::string& title, const std::string& sections) {
 std::string foot(const Report& report) {
   std::string line;
   for (const std::string& word : report.command_line) line += (line.empty() ? "" : " ") + word;
-  std::string html = fmt::format("<footer>\n<p>hydrodip {}</p>\n", escaped(report.tool_version));
-  if (!line.empty()) html += "<p><code>" + escaped(line) + "</code></p>\n";
+  std::string html =
+      fmt::format("<footer>\n<p>hydrodip {}</p>\n", html_escaped(report.tool_version));
+  if (!line.empty()) html += "<p><code>" + html_escaped(line) + "</code></p>\n";
   return html + "</footer>\n";
 }
 
 }  // namespace
 
 std::string report_html(const Report& report, const ReportPictures& pictures) {
-  std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-      escaped(title_of(report)) + " - hydrodip</title>\n<style>" + page_style() +
-      "</style>\n</head>\n<body>\n<main>\n";
+  if (report.for_customer) return customer_html(report, pictures);
   const std::vector<Finding> list = findings(report);
-  html += heading(report);
+  std::string html = html_begin(title_of(report) + " - hydrodip", "workshop");
+  html += heading(report, pictures);
   html += verdict(report, list);
-  html += preview(pictures);
-  html += finding_cards(list);
+  html += html_preview(pictures);
+  html += html_cards(list);
   html += dips(report, pictures);
   html += maps(pictures);
   html += outputs(report);
@@ -391,8 +324,7 @@ std::string report_html(const Report& report, const ReportPictures& pictures) {
                  key_figures(report) + coverage(report) + angles(report) + mesh(report) +
                      rounds(report) + parameters(report) + times(report) + inputs(report));
   html += foot(report);
-  html += "</main>\n" + scripts(pictures);
-  return html + "</body>\n</html>\n";
+  return html + html_end(pictures);
 }
 
 }  // namespace hydrodip

@@ -109,6 +109,12 @@ struct PlanOptions {
   bool suggest = true;               // look for a better way where one should not dip like this
 };
 
+// Whose page report.html is.
+struct ReportOptions {
+  bool for_customer = false;   // who ordered the piece: what comes out, in plain words
+  std::filesystem::path logo;  // a picture above it; empty: none
+};
+
 struct JobConfig {
   std::filesystem::path model;
   std::filesystem::path film_image;  // simulate: the image that was printed; may be empty
@@ -129,6 +135,7 @@ struct JobConfig {
   StageOptions stage;
   std::vector<PartEntry> parts;
   PlanOptions plan;
+  ReportOptions report;
   std::vector<DipEntry> dips;  // none: one dip, by object, film and design
   std::string up;              // of the model as it stands, "+z"; empty: as its format has it
   int preview_width_px = 1600;

@@ -551,6 +551,19 @@ std::vector<Parameter> plan_records() {
   };
 }
 
+std::vector<Parameter> report_records() {
+  return {
+      choice<bool>(
+          "report.for", {{"workshop", false}, {"customer", true}},
+          [](C& c) -> bool& { return c.report.for_customer; },
+          "who reads report.html; customer: what comes out, in plain words, and nothing of the "
+          "workshop"),
+      path(
+          "report.logo", [](C& c) -> std::filesystem::path& { return c.report.logo; },
+          "picture above report.html: PNG, JPEG, SVG"),
+  };
+}
+
 std::vector<Parameter> run_records() {
   return {
       integer(
@@ -578,9 +591,9 @@ std::vector<Parameter> run_records() {
 const std::vector<Parameter>& parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list;
-    for (auto table :
-         {object_records, film_records, bath_records, dip_records, material_records, ink_records,
-          print_records, process_records, cost_records, stage_records, plan_records, run_records})
+    for (auto table : {object_records, film_records, bath_records, dip_records, material_records,
+                       ink_records, print_records, process_records, cost_records, stage_records,
+                       plan_records, report_records, run_records})
       for (Parameter& p : table()) list.push_back(std::move(p));
     return list;
   }();

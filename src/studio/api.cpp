@@ -11,12 +11,13 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "report/plain_words.h"
 #include "samples/samples.h"
 #include "settings/artwork_tables.h"
 #include "settings/params.h"
+#include "settings/profiles.h"
 #include "settings/settings.h"
 #include "studio/page_assets.h"
-#include "studio/plain_words.h"
 #include "studio/zip.h"
 
 namespace hydrodip {
@@ -190,6 +191,14 @@ std::filesystem::path file_in(const std::filesystem::path& folder, const std::st
   return file;
 }
 
+std::filesystem::path known_profile(const std::filesystem::path& folder, const std::string& name) {
+  const std::filesystem::path file = profile_path(folder, name);
+  std::error_code ignored;
+  if (folder.empty() || !std::filesystem::is_regular_file(file, ignored))
+    throw ApiError(404, "not-found", "There is no such preset any more.");
+  return file;
+}
+
 // ---- hello ----
 
 Json parameters_list() {
@@ -245,11 +254,13 @@ std::string form_value(const std::string& form, const std::string& key) {
 
 }  // namespace
 
-Api::Api(JobStore store, Guard guard, std::string run, std::function<void()> quit)
+Api::Api(JobStore store, Guard guard, std::string run, std::function<void()> quit,
+         std::filesystem::path profiles)
     : store_(std::move(store)),
       guard_(std::move(guard)),
       run_(std::move(run)),
-      quit_(std::move(quit)) {}
+      quit_(std::move(quit)),
+      profiles_(std::move(profiles)) {}
 
 std::optional<HttpAnswer> Api::admit(const HttpRequest& request) const {
   if (const auto refusal = guard_.refuses_origin(request)) return error_answer(*refusal);
@@ -324,6 +335,11 @@ HttpAnswer Api::route(HttpRequest& request) {
     store_.forget(parts[2]);
     return json_answer(Json::object());
   }
+  if (parts[1] == "profiles" && reads && parts.size() == 2) {
+    Json answer;
+    answer["profiles"] = profile_names(profiles_);
+    return json_answer(answer);
+  }
   if (parts[1] == "quit" && request.method == "POST") {
     quit_();
     return json_answer(Json::object());
@@ -364,6 +380,7 @@ HttpAnswer Api::hello() const {
                       {"films", films},
                       {"parameters", parameters_list()},
                       {"layer_keys", layers},
+                      {"profiles", profile_names(profiles_)},
                       {"recent", store_.recent(kMostRecent)},
                       {"limits",
                        {{"file_bytes", kMostFileBytes},
@@ -443,6 +460,8 @@ HttpAnswer Api::read_job(const HttpRequest&, const Parts& parts, OpenJob& job) {
   if (what == "files" && parts.size() > 4) return file_answer(job.file(joined(parts, 4)));
   if (what == "thumbnail") return file_answer(job.thumbnail());
   if (what == "counts") return json_answer(job.counts());
+  if (what == "profiles" && parts.size() == 5)
+    return json_answer(job.patch_of_profile(known_profile(profiles_, parts[4])));
   if (what == "job.toml") {
     HttpAnswer answer;
     answer.type = "text/plain; charset=utf-8";
@@ -459,6 +478,7 @@ HttpAnswer Api::read_job(const HttpRequest&, const Parts& parts, OpenJob& job) {
     return bytes_answer(std::make_shared<const std::vector<std::uint8_t>>(picture->bytes),
                         picture->type);
   }
+  if (what == "finish" && parts.size() == 5) return bytes_answer(job.finish(parts[4]));
   if (what == "results" && parts.size() == 5) return bytes_answer(job.result(parts[4]));
   if (what == "results" && parts.size() == 6 && parts[5] == "dip")
     return bytes_answer(job.dip(parts[4]));
@@ -495,6 +515,13 @@ HttpAnswer Api::command(HttpRequest& request, const Parts& parts, OpenJob& job) 
   if (what == "tasks" && request.method == "DELETE" && parts.size() == 5) {
     job.cancel_task(parts[4]);
     return json_answer(Json::object());
+  }
+  if (what == "profiles" && puts && parts.size() == 5) {
+    if (profiles_.empty()) throw not_found();
+    job.save_profile(profiles_, parts[4]);
+    Json answer;
+    answer["profiles"] = profile_names(profiles_);
+    return json_answer(answer);
   }
   const Json body = read_json(request);
   if (what == "document" && puts) {

@@ -1,6 +1,7 @@
 // The studio's interface over HTTP: docs/studio-api.md.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -17,8 +18,9 @@ namespace hydrodip {
 
 class Api {
  public:
-  // `quit`: what ends the program.
-  Api(JobStore store, Guard guard, std::string run, std::function<void()> quit);
+  // `quit`: what ends the program. `profiles`: the person's own, a folder that need not be there.
+  Api(JobStore store, Guard guard, std::string run, std::function<void()> quit,
+      std::filesystem::path profiles = {});
 
   // For HttpServer.
   std::optional<HttpAnswer> admit(const HttpRequest& request) const;
@@ -51,6 +53,7 @@ class Api {
   const Guard guard_;
   const std::string run_;
   const std::function<void()> quit_;
+  const std::filesystem::path profiles_;
   std::string opened_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<OpenJob>> jobs_;

@@ -215,6 +215,17 @@ Json document_of(const JobConfig& config, JobFiles& files) {
   return document;
 }
 
+Json values_of(const JobConfig& config, const std::vector<std::string>& names, JobFiles& files) {
+  Json patch = Json::object();
+  for (const std::string& name : names) {
+    const Parameter& p = find_parameter(name, kOrigin);
+    const std::size_t dot = p.name.find('.');
+    if (dot == std::string::npos || is_foreign(p.name)) continue;
+    patch[p.name.substr(0, dot)][p.name.substr(dot + 1)] = json_of(p, p.get(config), files);
+  }
+  return patch;
+}
+
 std::string name_of_job(const Json& document) {
   const auto text = [](const Json& value) {
     return value.is_string() ? value.get<std::string>() : std::string();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "settings/config.h"
 #include "studio/job_files.h"
@@ -18,6 +19,9 @@ JobConfig config_of(const Json& document, const JobFiles& files);
 // What of a configuration differs from the defaults. Files that it names become the job's. Throws
 // InputError for what the studio has no room for (several parts).
 Json document_of(const JobConfig& config, JobFiles& files);
+
+// Values of these parameters in groups, as a patch. Files that they name become the job's.
+Json values_of(const JobConfig& config, const std::vector<std::string>& names, JobFiles& files);
 
 // The document's name, or else that of its model.
 std::string name_of_job(const Json& document);

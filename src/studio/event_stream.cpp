@@ -8,13 +8,16 @@ constexpr std::size_t kMostWaiting = 200;
 
 }  // namespace
 
-void EventStream::push(const std::string& event, const Json& data, bool newest_only) {
+void EventStream::push(const std::string& event, const Json& data, bool newest_only,
+                       const std::string& about) {
   const std::lock_guard lock(mutex_);
   if (closed_) return;
   if (newest_only)
-    std::erase_if(waiting_, [&](const Event& waiting) { return waiting.name == event; });
+    std::erase_if(waiting_, [&](const Event& waiting) {
+      return waiting.name == event && waiting.about == about;
+    });
   while (waiting_.size() >= kMostWaiting) waiting_.pop_front();
-  waiting_.push_back({event, "event: " + event + "\ndata: " + text_of(data) + "\n\n"});
+  waiting_.push_back({event, about, "event: " + event + "\ndata: " + text_of(data) + "\n\n"});
   changed_.notify_all();
 }
 

@@ -14,8 +14,10 @@ namespace hydrodip {
 // For any number of threads.
 class EventStream {
  public:
-  // Of events that have not been sent yet, those of this name are replaced if `newest_only`.
-  void push(const std::string& event, const Json& data, bool newest_only = false);
+  // Of events that have not been sent yet, those of this name that are about the same are replaced
+  // if `newest_only`.
+  void push(const std::string& event, const Json& data, bool newest_only = false,
+            const std::string& about = "");
   // No more events; those that wait are still sent.
   void close();
 
@@ -25,7 +27,7 @@ class EventStream {
 
  private:
   struct Event {
-    std::string name, text;
+    std::string name, about, text;
   };
 
   std::mutex mutex_;

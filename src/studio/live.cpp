@@ -17,7 +17,7 @@ constexpr std::size_t kWorkspaceBytes = std::size_t(768) << 20U;
 // The hand rests when nothing was asked for so long.
 constexpr auto kRest = std::chrono::milliseconds(400);
 constexpr auto kBetweenProgress = std::chrono::milliseconds(100);
-constexpr int kBaked_px = 1536, kBakedInDrag_px = 512;
+constexpr int kBaked_px = 1536, kBakedInDrag_px = 512, kFinish_px = 1024;
 
 double seconds_since(Steady::time_point start) {
   return std::chrono::duration<double>(Steady::now() - start).count();
@@ -40,7 +40,9 @@ Live::~Live() {
 
 void Live::ask(LiveRequest request) {
   const std::lock_guard lock(mutex_);
-  if (current_ && !(request.dragging && drafting_a_drag_)) current_->cancel();
+  const bool goes_on =
+      asked_ && asked_->dragging && (request.dragging || request.comes_to_the_same(*asked_));
+  if (current_ && !goes_on) current_->cancel();
   waiting_ = std::move(request);
   changed_.notify_all();
 }
@@ -60,13 +62,13 @@ void Live::run() {
       turn.emplace(Turn{std::move(*waiting_), workspace_.newest()});
       waiting_.reset();
       current_ = turn->context;
-      drafting_a_drag_ = turn->request.dragging;
+      asked_ = turn->request;
     }
     compute(*turn);
     {
       const std::lock_guard lock(mutex_);
       current_.reset();
-      drafting_a_drag_ = false;
+      asked_.reset();
       if (waiting_ || ending_) continue;
     }
     sinks_.working(turn->request.revision, "", "", 1);
@@ -85,11 +87,21 @@ void Live::compute(const Turn& turn) {
   };
   try {
     if (!turn.request.config.model.empty()) show_model(turn);
-    show_look(turn, Quality::kDraft);
-    count(&Counts::drafts);
-    if (turn.request.dragging || !rests()) return;
+    // Only the name has changed, say.
+    const bool known = normal_of_ && turn.request.comes_to_the_same(*normal_of_);
+    normal_of_.reset();
+    if (turn.request.dragging || !known) {
+      show_look(turn, Quality::kDraft);
+      count(&Counts::drafts);
+      if (turn.request.dragging || !rests()) return;
+    }
     show_look(turn, Quality::kNormal);
     count(&Counts::normals);
+    normal_of_ = turn.request;
+    if (turn.request.config.dips.size() > 1) {
+      show_others(turn);
+      show_finish(turn);
+    }
   } catch (const Cancelled&) {
     count(&Counts::cancelled);
   } catch (const ProblemFound& found) {
@@ -135,7 +147,41 @@ void Live::show_look(const Turn& turn, Quality quality) {
   const Look look = look_at_dip(workspace_, turn.request.config, turn.request.dip, quality,
                                 model_warnings_, turn.context);
   sinks_.look(turn.request.revision, look, seconds_since(begun));
+  told_[look.dip] = look.made;
   if (quality == Quality::kDraft) show_painted(turn, look);
+}
+
+void Live::show_others(const Turn& turn) {
+  const JobConfig& config = turn.request.config;
+  for (std::size_t dip = 0; dip < config.dips.size(); ++dip) {
+    if (dip == turn.request.dip) continue;
+    try {
+      const Look look =
+          look_at_dip(workspace_, config, dip, Quality::kDraft, model_warnings_, turn.context);
+      if (told_[dip].lock() == look.made) continue;
+      sinks_.look(turn.request.revision, look, 0);
+      told_[dip] = look.made;
+    } catch (const ProblemFound&) {
+      continue;  // said when it is shown
+    }
+  }
+}
+
+void Live::show_finish(const Turn& turn) {
+  const LiveRequest& request = turn.request;
+  const Project project = project_of(config_of_dip(request.config, request.dip), Quality::kDraft);
+  const auto model = workspace_.model(project, turn.context);
+  if (finish_of_ == request.content) return sinks_.finish(request.revision, *model, nullptr);
+  finish_of_.clear();
+  try {
+    if (!all_dips_are_given(request.config)) return;
+    sinks_.working(request.revision, "finish", "putting the dips together", 0);
+    const DipsTogether look = look_at_dips(workspace_, request.config, kFinish_px, turn.context);
+    sinks_.finish(request.revision, *model, &look);
+    finish_of_ = request.content;
+  } catch (const ProblemFound& found) {
+    sinks_.no_finish(request.revision, found.problem.text);
+  }
 }
 
 void Live::show_painted(const Turn& turn, const Look& look) {

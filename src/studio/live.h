@@ -4,6 +4,7 @@
 
 #include <condition_variable>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "job/dips_together.h"
 #include "studio/look.h"
 
 namespace hydrodip {
@@ -19,9 +21,14 @@ struct LiveRequest {
   JobConfig config;
   long revision = 0;
   std::size_t dip = 0;
+  std::string content;  // the same for documents of which the same comes
   // In the middle of a drag. The draft that is being computed for an earlier such request is
-  // finished, so that something moves; any other computation is cancelled by a newer request.
+  // finished, so that something moves, and so is one that the end of the drag asks for again; any
+  // other computation is cancelled by a newer request.
   bool dragging = false;
+  bool comes_to_the_same(const LiveRequest& other) const {
+    return content == other.content && dip == other.dip;
+  }
 };
 
 // Called on Live's own thread.
@@ -31,6 +38,10 @@ struct LiveSinks {
   // What artwork makes of the model's colours.
   std::function<void(long revision, const Model&, const Object& painted)> painted;
   std::function<void(long revision, const Look&, double took_s)> look;
+  // All dips together; null: what was told last holds for this revision too.
+  std::function<void(long revision, const Model&, const DipsTogether*)> finish;
+  // Why there is none.
+  std::function<void(long revision, const std::string& text)> no_finish;
   std::function<void(long revision, const Problem&)> problem;
   // `quality` empty: it rests.
   std::function<void(long revision, const std::string& quality, const std::string& activity,
@@ -66,6 +77,9 @@ class Live {
   void show_model(const Turn& turn);
   void show_painted(const Turn& turn, const Look& look);
   void show_look(const Turn& turn, Quality quality);
+  // Of several dips: those that are not shown, as drafts, and then all together.
+  void show_others(const Turn& turn);
+  void show_finish(const Turn& turn);
   // Whether nothing new was asked for so long.
   bool rests();
 
@@ -75,12 +89,15 @@ class Live {
   std::vector<std::string> model_warnings_;
   std::shared_ptr<const Paint> shown_paint_;  // in full, and not only for a drag
   bool shows_artwork_ = false;
+  std::map<std::size_t, std::weak_ptr<const Designed>> told_;  // last, of each dip
+  std::optional<LiveRequest> normal_of_;  // of what a normal result was told last
+  std::string finish_of_;  // the content of which the finish was told; empty: none was
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<LiveRequest> waiting_;
   std::optional<RunContext> current_;
-  bool drafting_a_drag_ = false;
+  std::optional<LiveRequest> asked_;  // for what that is computed
   bool ending_ = false;
   Counts counts_;
   std::thread thread_;

@@ -12,12 +12,13 @@
 #include "base/run_scope.h"
 #include "coat/film_paint.h"
 #include "job/job_record.h"
+#include "job/wanted.h"
 #include "job/ways.h"
 #include "plan/hold.h"
 #include "report/findings.h"
+#include "report/plain_words.h"
 #include "studio/bundle.h"
 #include "studio/mends.h"
-#include "studio/plain_words.h"
 
 namespace hydrodip {
 namespace {
@@ -186,6 +187,11 @@ Json mends_for(const Finding& finding, const Look& look) {
   return list;
 }
 
+std::string hex_of(const LinearColor& c) {
+  return fmt::format("#{:02x}{:02x}{:02x}", linear_to_srgb8(c.r), linear_to_srgb8(c.g),
+                     linear_to_srgb8(c.b));
+}
+
 Report report_of(const Look& look, const RunContext& context) {
   const RunContext words = context.quiet();
   for (const std::string& warning : look.warnings) words.warn(warning);
@@ -199,8 +205,9 @@ Report report_of(const Look& look, const RunContext& context) {
   const std::vector<ReportInput> inputs;
   const Finish finish(look.paint, {{look.made->dipped, look.made->raster, nullptr}});
   const Timings times;
-  const JobRecord record{"print", look.config, prepared,        inputs, finish,
-                         times,   words,       &look.made->ink, "",     ""};
+  JobRecord record{"print", look.config, prepared,        inputs, finish,
+                   times,   words,       &look.made->ink, "",     ""};
+  record.wanted = wanted_coverage(look.made->dipped, *look.paint);
   return make_report(record);
 }
 
@@ -213,21 +220,26 @@ Json verdict_of(const Report& report, const std::vector<Finding>& list) {
   const Concern concern = concern_of(list);
   return {{"concern", concern_name(concern)},
           {"headline", headline(concern)},
+          {"short", report.coverage ? in_plain_words(short_verdict(report)) : ""},
           {"text", in_plain_words(verdict_of(report))}};
+}
+
+Json finding_json(const Finding& f, const std::string& overlay, Json mends) {
+  return {{"key", f.key},
+          {"concern", concern_name(f.concern)},
+          {"title", f.title},
+          {"figure", f.figure},
+          {"text", in_plain_words(f.text)},
+          {"advice", in_plain_words(f.advice)},
+          {"overlay", overlay},
+          {"at_mm", nullptr},
+          {"mends", std::move(mends)}};
 }
 
 Json findings_json(const Look& look, const std::vector<Finding>& list) {
   Json all = Json::array();
   for (const Finding& f : list) {
-    Json one = {{"key", f.key},
-                {"concern", concern_name(f.concern)},
-                {"title", f.title},
-                {"figure", f.figure},
-                {"text", in_plain_words(f.text)},
-                {"advice", in_plain_words(f.advice)},
-                {"overlay", overlay_of(f.key)},
-                {"at_mm", nullptr},
-                {"mends", mends_for(f, look)}};
+    Json one = finding_json(f, overlay_of(f.key), mends_for(f, look));
     if (f.concern != Concern::kNone)
       if (const auto at = place_of(f.key, look.made->dipped))
         one["at_mm"] = {at->x(), at->y(), at->z()};
@@ -334,6 +346,67 @@ Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Qu
   } catch (const std::bad_alloc&) {
     refuse("memory", "There is not enough memory for this.", Json::array());
   }
+}
+
+DipsTogether look_at_dips(Workspace& workspace, const JobConfig& job, int texture_px,
+                          const RunContext& context) {
+  const RunScope scope(context);
+  try {
+    JobConfig config = job;
+    config.plan.find_pose = config.plan.find_depth = false;
+    const Project project = project_of(config, Quality::kDraft);
+    const auto model = workspace.model(project, context);
+    const auto posed = workspace.posed(project, context);
+    MeshHealth health = model->health;
+    health.area_mm2 *= posed->scale() * posed->scale();
+    config.design = draft_of(project.design);
+    const PreparedObject prepared{.posed = *posed,
+                                  .paint = workspace.paint(project, Quality::kDraft, context),
+                                  .health = std::move(health),
+                                  .units = model->units,
+                                  .files = {},
+                                  .artwork = {},
+                                  .picture_problems = {}};
+    return put_together(config, prepared, texture_px, context.quiet());
+  } catch (const InputError& error) {
+    refuse("input", in_plain_words(error.what()), Json::array());
+  } catch (const DipError& error) {
+    refuse("dip", in_plain_words(error.what()), Json::array());
+  } catch (const std::bad_alloc&) {
+    refuse("memory", "There is not enough memory for this.", Json::array());
+  }
+}
+
+std::vector<std::uint8_t> finish_bundle(const DipsTogether& look, Json head) {
+  const Report& report = look.report;
+  const ReportSeams& seams = *report.seams;
+  const std::vector<Finding> list = findings(report);
+  head["covered_share"] = report.coverage->covered_share();
+  head["verdict"] = verdict_of(report, list);
+  head["findings"] = Json::array();
+  for (const Finding& f : list)
+    head["findings"].push_back(
+        finding_json(f, f.key == "seams" || f.key == "coverage" ? "parts" : "", Json::array()));
+  head["dips"] = Json::array();
+  for (std::size_t k = 0; k < report.dips.size(); ++k) {
+    const ReportDip& dip = report.dips[k];
+    head["dips"].push_back({{"part_share", dip.part_share},
+                            {"gained_share", dip.gained_share},
+                            {"covered_share", dip.covered_share},
+                            {"torn_share", dip.torn_share},
+                            {"color", hex_of(look.color_of[k])},
+                            {"width_px", look.sheets[k].width_px},
+                            {"height_px", look.sheets[k].height_px}});
+  }
+  head["seams"] = {{"length_mm", seams.length_mm},
+                   {"overlap_mm", seams.overlap_mm},
+                   {"error_mean", seams.error_mean},
+                   {"off_mm", seams.off_mm},
+                   {"error_mean_off", seams.error_mean_off}};
+  Bundle bundle(std::move(head));
+  for (std::size_t k = 0; k < look.sheets.size(); ++k)
+    bundle.add(fmt::format("sheet.{}", k), look.sheets[k].rgba, 4);
+  return bundle.finish();
 }
 
 std::vector<std::uint8_t> result_bundle(const Look& look, Json head, const RunContext& context) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hydrodip/workspace.h"
+#include "job/dips_together.h"
 #include "settings/config.h"
 #include "studio/json.h"
 
@@ -45,6 +46,12 @@ struct Look {
 // Throws ProblemFound, Cancelled. `known`: warnings of reading the model, which is done once.
 Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Quality quality,
                  const std::vector<std::string>& known, const RunContext& context);
+
+// All dips of the job together, as drafts. Throws ProblemFound, Cancelled.
+DipsTogether look_at_dips(Workspace& workspace, const JobConfig& job, int texture_px,
+                          const RunContext& context);
+// The bundle of that; `head`: what only the job knows.
+std::vector<std::uint8_t> finish_bundle(const DipsTogether& look, Json head);
 
 // The bundle, without the numbers that only its job knows: `head` has them.
 std::vector<std::uint8_t> result_bundle(const Look& look, Json head, const RunContext& context);

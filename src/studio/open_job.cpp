@@ -9,11 +9,12 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "job/profile_jobs.h"
+#include "report/plain_words.h"
 #include "settings/job_file.h"
 #include "settings/settings.h"
 #include "studio/api_error.h"
 #include "studio/document.h"
-#include "studio/plain_words.h"
 #include "studio/zip.h"
 
 namespace hydrodip {
@@ -21,7 +22,9 @@ namespace {
 
 constexpr std::array<const char*, 5> kTextureWords = {"texture", "albedo", "diffuse", "basecolor",
                                                       "color"};
-constexpr std::size_t kMeshesKept = 6, kResultsKept = 6, kMostTabs = 12;
+constexpr std::array<const char*, 7> kOfProfiles = {"film.", "material.", "ink.",   "print.",
+                                                    "bath.", "process.",  "report."};
+constexpr std::size_t kMeshesKept = 8, kResultsKept = 6, kMostDips = 24, kMostTabs = 12;
 
 ApiError input_error(const std::string& sentence) {
   return {422, "bad-file", in_plain_words(sentence)};
@@ -148,7 +151,14 @@ void OpenJob::accept(const Json& document, const JobConfig& config, const std::s
 }
 
 // With the lock.
-void OpenJob::ask(bool live) { live_->ask({config_, revision_, dip_, live}); }
+void OpenJob::ask(bool live) {
+  Json content = document_;
+  if (content.is_object()) {
+    content.erase("name");
+    content.erase("page");
+  }
+  live_->ask({config_, revision_, dip_, fmt::format("{} {}", reloads_, text_of(content)), live});
+}
 
 // With the lock.
 void OpenJob::autosave() const {
@@ -313,6 +323,7 @@ void OpenJob::bring_along(JobConfig& config) const {
   for (ArtworkLayer& layer : config.object.artwork) bring(layer.image);
   bring(config.object.load.texture);
   bring(config.plan.importance);
+  bring(config.report.logo);
   bring(config.printer.profile);
 }
 
@@ -346,6 +357,37 @@ Json OpenJob::save(const std::string& name) {
   const Json saved = {{"saved_revision", saved_revision_}, {"where", shown_path(where_)}};
   tell("saved", saved);
   return saved;
+}
+
+Json OpenJob::patch_of_profile(const std::filesystem::path& profile) {
+  JobConfig config;
+  SettingSources sources;
+  sources.profiles = {profile};
+  apply_sources(config, sources);
+  const std::lock_guard lock(mutex_);
+  Json answer;
+  answer["patch"] = values_of(config, names_in_profile(profile), files_);
+  return answer;
+}
+
+void OpenJob::save_profile(const std::filesystem::path& folder, const std::string& name) const {
+  const std::filesystem::path draft = home_ / "profile.toml";
+  {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::string> names;
+    for (const Parameter& p : parameters()) {
+      const bool reusable =
+          std::any_of(kOfProfiles.begin(), kOfProfiles.end(),
+                      [&](const char* group) { return p.name.starts_with(group); });
+      const bool sheet = p.name == "film.width_mm" || p.name == "film.height_mm";
+      if (sheet || (reusable && p.name != "print.job_name" && p.get(config_) != p.default_value()))
+        names.push_back(p.name);
+    }
+    write_whole(draft, settings_file(config_, names));
+  }
+  ProfileEdit edit;
+  edit.add.configs = {draft};
+  hydrodip::save_profile(folder, name, edit);
 }
 
 std::filesystem::path OpenJob::pack() const {
@@ -385,6 +427,7 @@ std::filesystem::path OpenJob::pack() const {
   put(config.object.load.texture);
   put(config.printer.profile);
   put(config.plan.importance);
+  put(config.report.logo);
   for (ArtworkLayer& layer : config.object.artwork) put(layer.image);
   const std::filesystem::path toml = folder / (name + ".toml");
   write_whole(toml, job_file(config, folder));
@@ -397,6 +440,7 @@ std::filesystem::path OpenJob::pack() const {
 void OpenJob::reload() {
   const std::lock_guard lock(mutex_);
   config_ = checked(document_);
+  ++reloads_;
   ask(false);
 }
 
@@ -475,7 +519,14 @@ std::shared_ptr<EventStream> OpenJob::connect(const std::string& client) {
                          {"revision", revision_},
                          {"saved_revision", saved_revision_}});
   if (!mesh_event_.is_null()) stream->push("mesh", mesh_event_);
-  if (!results_.empty()) stream->push("result", results_.front().event);
+  // The newest of each dip, the last one last.
+  std::set<std::size_t> told;
+  std::vector<Json> newest;
+  for (const Shown& shown : results_)
+    if (told.insert(shown.event["dip"].get<std::size_t>()).second) newest.push_back(shown.event);
+  for (auto event = newest.rbegin(); event != newest.rend(); ++event)
+    stream->push("result", *event);
+  if (!finish_event_.is_null()) stream->push("finish", finish_event_);
   if (!problem_event_.is_null()) stream->push("problem", problem_event_);
   for (const Json& task : tasks) stream->push("task", task);
   return stream;
@@ -538,8 +589,9 @@ void OpenJob::say_goodbye(const std::string& text) {
 }
 
 // With the lock.
-void OpenJob::tell(const std::string& event, const Json& data, bool newest_only) {
-  for (const Tab& tab : tabs_) tab.stream->push(event, data, newest_only);
+void OpenJob::tell(const std::string& event, const Json& data, bool newest_only,
+                   const std::string& about) {
+  for (const Tab& tab : tabs_) tab.stream->push(event, data, newest_only, about);
 }
 
 // ---- what was computed ----
@@ -559,9 +611,10 @@ std::string OpenJob::show_mesh(const Model& model, const Object& object) {
       shown_mesh(model, object, id, address() + "/meshes/" + id, RunContext()));
   const std::lock_guard lock(mutex_);
   meshes_.emplace_front(id, std::move(made));
-  // The model's own mesh stays.
+  // The model's own mesh and the finish stay.
   for (auto old = std::prev(meshes_.end()); meshes_.size() > kMeshesKept; --old)
-    if (old->first != mesh_) old = meshes_.erase(old);
+    if (old->first != mesh_ && old->first != finish_meshes_[0] && old->first != finish_meshes_[1])
+      old = meshes_.erase(old);
   return id;
 }
 
@@ -604,9 +657,33 @@ LiveSinks OpenJob::sinks() {
                    {"took_s", took_s}};
     const std::lock_guard lock(mutex_);
     problem_event_ = nullptr;
-    tell("result", shown.event, true);
+    tell("result", shown.event, true, std::to_string(look.dip));
     results_.push_front(std::move(shown));
-    if (results_.size() > kResultsKept) results_.pop_back();
+    keep_newest_results();
+  };
+  sinks.finish = [this](long revision, const Model& model, const DipsTogether* look) {
+    if (look) {
+      const std::array<std::string, 2> meshes = {show_mesh(model, look->colors),
+                                                 show_mesh(model, look->parts)};
+      std::string id;
+      {
+        const std::lock_guard lock(mutex_);
+        finish_meshes_ = meshes;
+        id = new_id('f');
+      }
+      auto bundle = std::make_shared<const std::vector<std::uint8_t>>(
+          finish_bundle(*look, {{"finish", id}, {"mesh", meshes[0]}, {"parts", meshes[1]}}));
+      const std::lock_guard lock(mutex_);
+      finish_ = {id, std::move(bundle)};
+    }
+    const std::lock_guard lock(mutex_);
+    finish_event_ = {{"revision", revision}, {"finish", finish_.first}};
+    tell("finish", finish_event_, true);
+  };
+  sinks.no_finish = [this](long revision, const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    finish_event_ = {{"revision", revision}, {"problem", text}};
+    tell("finish", finish_event_, true);
   };
   sinks.problem = [this](long revision, const Problem& problem) {
     const std::lock_guard lock(mutex_);
@@ -629,6 +706,22 @@ LiveSinks OpenJob::sinks() {
   return sinks;
 }
 
+// With the lock. The newest of each dip, and besides them the last few.
+void OpenJob::keep_newest_results() {
+  std::set<std::size_t> seen;
+  std::size_t kept = 0;
+  for (auto shown = results_.begin(); shown != results_.end();) {
+    const bool newest =
+        seen.insert(shown->event["dip"].get<std::size_t>()).second && seen.size() <= kMostDips;
+    if (newest || kept < kResultsKept) {
+      ++kept;
+      ++shown;
+    } else {
+      shown = results_.erase(shown);
+    }
+  }
+}
+
 std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::mesh(const std::string& id) const {
   const std::lock_guard lock(mutex_);
   for (const auto& [known, shown] : meshes_)
@@ -648,6 +741,11 @@ std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::result(const std::stri
   for (const Shown& shown : results_)
     if (shown.id == id) return shown.bundle;
   return nullptr;
+}
+
+std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::finish(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  return id == finish_.first ? finish_.second : nullptr;
 }
 
 std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::dip(const std::string& id) const {

@@ -1,6 +1,7 @@
 // A job that is being worked on: its document, who looks at it, what was computed of it.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <list>
@@ -50,6 +51,11 @@ class OpenJob {
   void open_file(const std::filesystem::path& file);
   Json adopt(const std::vector<std::string>& files, const std::string& client);
   Json save(const std::string& name);
+  // What a profile sets, as a patch of the document. Throws InputError for one that is broken.
+  Json patch_of_profile(const std::filesystem::path& profile);
+  // Keeps what the job has for film, printer and bath under that name; what the profile has beside
+  // that stays. Throws InputError.
+  void save_profile(const std::filesystem::path& folder, const std::string& name) const;
   // The job file's text, as it would be written into that folder.
   std::string job_toml(const std::filesystem::path& folder) const;
   // Everything that the job needs, in an archive that is made anew.
@@ -84,6 +90,7 @@ class OpenJob {
   std::shared_ptr<const std::vector<std::uint8_t>> mesh(const std::string& id) const;
   std::optional<ShownPicture> texture(const std::string& id, std::size_t number) const;
   std::shared_ptr<const std::vector<std::uint8_t>> result(const std::string& id) const;
+  std::shared_ptr<const std::vector<std::uint8_t>> finish(const std::string& id) const;
   std::shared_ptr<const std::vector<std::uint8_t>> dip(const std::string& id) const;
   Json counts() const;
 
@@ -114,7 +121,8 @@ class OpenJob {
   void ask(bool live);
   void autosave() const;
   void bring_along(JobConfig& config) const;
-  void tell(const std::string& event, const Json& data, bool newest_only = false);
+  void tell(const std::string& event, const Json& data, bool newest_only = false,
+            const std::string& about = "");
   void hand_pen_on();
   void require_pen(const std::string& client) const;
   Json files_json() const;
@@ -122,6 +130,7 @@ class OpenJob {
   std::string show_mesh(const Model& model, const Object& object);
   void tell_mesh(long revision, const std::string& wanted);
   void tell_pen();
+  void keep_newest_results();
   LiveSinks sinks();
 
   const JobStore store_;
@@ -139,11 +148,13 @@ class OpenJob {
   std::vector<Tab> tabs_;
   std::string pen_;  // client
   std::optional<std::chrono::steady_clock::time_point> unwatched_since_;
-  long number_ = 0;
+  long number_ = 0, reloads_ = 0;
   std::list<std::pair<std::string, std::shared_ptr<const ShownMesh>>> meshes_;
   std::shared_ptr<const Model> model_;
   std::string mesh_;  // of the model in its own colours
-  Json mesh_event_, problem_event_;
+  Json mesh_event_, problem_event_, finish_event_;
+  std::array<std::string, 2> finish_meshes_;
+  std::pair<std::string, std::shared_ptr<const std::vector<std::uint8_t>>> finish_;
   std::list<Shown> results_;
 
   std::unique_ptr<Tasks> tasks_;

@@ -90,8 +90,9 @@ JobResult studio_job(const StudioOptions& options, const RunContext& context) {
                     [&](const HttpRequest& request) { return api->admit(request); });
   bind(server, options, run_file.port());
   RunContext ending = context;
-  api.emplace(JobStore(folder), guard_of(options, token, password, server.port()), random_hex(8),
-              [ending] { ending.cancel(); });
+  api.emplace(
+      JobStore(folder), guard_of(options, token, password, server.port()), random_hex(8),
+      [ending] { ending.cancel(); }, options.profiles);
   if (!options.file.empty()) api->open_file(options.file);
   run_file.keep(server.port(), token);
 

@@ -15,6 +15,7 @@ struct StudioOptions {
   std::string address = "127.0.0.1";    // others need a password
   int port = 0;                         // 0: the usual one, or the next that is free
   std::filesystem::path password_file;  // its first line
+  std::filesystem::path profiles;       // the person's own; empty: none
   bool browser = true;                  // opens one
   std::function<void(const std::string& address)> announce;  // when it serves
 };

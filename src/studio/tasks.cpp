@@ -13,11 +13,11 @@
 #include "base/file.h"
 #include "image/files.h"
 #include "job/jobs.h"
+#include "report/plain_words.h"
 #include "rig/rig.h"
 #include "settings/settings.h"
 #include "studio/api_error.h"
 #include "studio/job_store.h"
-#include "studio/plain_words.h"
 
 namespace hydrodip {
 namespace {

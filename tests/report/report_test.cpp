@@ -96,8 +96,56 @@ TEST(Report, TheViewComesWithItsScene) {
   EXPECT_LT(html.find("id=\"verdict\""), html.find("id=\"viewer\""));
 }
 
+// Whatever is wrong with it: everything that has advice for the workshop.
+Report bad_report() {
+  Report report = full_report();
+  Coverage& c = *report.coverage;
+  c.object_mm2 = 2000;
+  c.downward_mm2 = 1000;
+  c.covered_mm2 = c.covered_downward_mm2 = 500;
+  c.film_on_object_mm2 = 400;
+  c.torn_mm2 = 300;
+  c.doubtful_mm2 = 100;
+  c.stretch_max = 1.6;
+  c.area_ratio_max = 1.8;
+  report.tear_stretch = 1.4;
+  report.colors = ReportColors{6, 9};
+  report.ink = ReportInk{2, 1, {}};
+  report.better_way = "standing on its nose (--rotate 90,0,0)";
+  report.title = "Lion & lamb";
+  report.figures.push_back({"out_of_gamut_share", "", 0.25, ""});
+  report.figures.push_back({"object_size_mm", "", std::array<double, 3>{100.2, 130, 30.4}, "mm"});
+  return report;
+}
+
+TEST(Report, ACustomerReadsNothingOfTheWorkshop) {
+  Report report = bad_report();
+  const std::string workshop = report_html(report, {});
+  report.for_customer = true;
+  ReportPictures pictures;
+  pictures.logo_png = {1, 2, 3, 4};
+  const std::string html = report_html(report, pictures);
+  const std::string words = html.substr(html.find("<main>"));
+  for (const char* of_the_workshop :
+       {"--", "_mm", "sha256", "00ff", ".obj", "a/", "1.2.3", "hydrodip", "paper", "CIEDE", "load",
+        "print.pdf", "Activator", "activator", "odd"}) {
+    EXPECT_EQ(words.find(of_the_workshop), std::string::npos) << of_the_workshop;
+  }
+  EXPECT_NE(workshop.find("--rotate"), std::string::npos);
+  EXPECT_NE(words.find("<h1>Lion &amp; lamb</h1>"), std::string::npos);
+  EXPECT_LT(words.find("data:image/png;base64,AQIDBA=="), words.find("<h1>"));
+  EXPECT_NE(words.find("25 % of the picture has colours that these inks cannot give"),
+            std::string::npos);
+  EXPECT_NE(words.find("100 x 130 x 30 mm"), std::string::npos);
+  // A dip that the workshop would not do is not promised.
+  EXPECT_NE(words.find("It cannot be made well like this"), std::string::npos);
+}
+
 TEST(Report, HtmlTagsAreBalanced) {
-  const std::string html = report_html(full_report(), {{1, 2, 3}, {4, 5, 6}});
+  Report customers = bad_report();
+  customers.for_customer = true;
+  const std::string html =
+      report_html(full_report(), {{1, 2, 3}, {4, 5, 6}}) + report_html(customers, {{1, 2, 3}, {}});
   const auto count = [&](const std::string& what) {
     long n = 0;
     for (std::size_t at = html.find(what); at != std::string::npos; at = html.find(what, at + 1))

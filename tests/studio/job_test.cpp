@@ -437,5 +437,74 @@ TEST_F(JobTest, QuittingIsForThePageAsWell) {
   EXPECT_TRUE(studio->quits());
 }
 
+TEST_F(JobTest, DipsArePutTogetherWhenTheHandRests) {
+  const std::string job = sample("pyramid");
+  Events events(*client, at(job, "/events?client=c1"));
+  json document = quick(describe(job)["document"]);
+  const json dip = {{"down", "-z"}, {"rotate_deg", {0, 0, 0}}, {"depth_mm", 0}};
+  document["dips"] = {dip, dip};
+  const auto finish_of = [&](const json& changed) {
+    const long revision = put(job, changed).json()["revision"];
+    const auto told = events.next(
+        "finish", [&](const json& e) { return e["revision"] >= revision; }, 120);
+    return told ? told->data.value("finish", "") : "";
+  };
+  const std::string id = finish_of(document);
+  ASSERT_FALSE(id.empty());
+  const ReadBundle finish(client->get(at(job, "/finish/" + id)).body);
+  const json& dips = finish.head["dips"];
+  ASSERT_EQ(dips.size(), 2u);
+  // The second reaches what the first does, and each point's ink is somebody's.
+  const double covered = finish.head["covered_share"];
+  EXPECT_GT(covered, 0.1);
+  EXPECT_LT(dips[1]["gained_share"].get<double>(), 0.02);
+  EXPECT_NEAR(dips[0]["part_share"].get<double>() + dips[1]["part_share"].get<double>(), covered,
+              0.02);
+  for (const char* mesh : {"mesh", "parts"})
+    EXPECT_EQ(client->get(at(job, "/meshes/" + finish.head[mesh].get<std::string>())).status, 200);
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_EQ(finish.array<std::uint8_t>("sheet." + std::to_string(k)).size(),
+              4 * dips[k]["width_px"].get<std::size_t>() * dips[k]["height_px"].get<std::size_t>());
+  // Another name is no other finish.
+  document["name"] = "twice";
+  EXPECT_EQ(finish_of(document), id);
+  // Who comes later sees both dips.
+  Events later(*client, at(job, "/events?client=c2"));
+  std::set<int> seen;
+  while (seen.size() < 2) {
+    const auto result = later.next("result", {}, 5);
+    ASSERT_TRUE(result);
+    seen.insert(result->data["dip"].get<int>());
+  }
+}
+
+TEST_F(JobTest, APresetIsAProfileOfThePersonsOwn) {
+  const std::string job = sample("pyramid");
+  json document = quick(describe(job)["document"]);
+  document["film"]["margin_mm"] = 13;
+  document["material"]["tear_stretch"] = 1.7;
+  ASSERT_EQ(put(job, document).status, 200);
+  EXPECT_EQ(client->get("/api/profiles").json()["profiles"], json::array());
+  for (const char* name : {"..", "a%2Fb", "-%20x"})
+    EXPECT_NE(client->put(at(job, "/profiles/") + name, "{}").status, 200) << name;
+  ASSERT_EQ(client->put(at(job, "/profiles/our-film"), "{}").status, 200);
+  EXPECT_EQ(client->get("/api/hello").json()["profiles"], json::array({"our-film"}));
+  // The command line reads it, and another job takes it; what is the job's own is not in it.
+  JobConfig config;
+  SettingSources sources;
+  sources.profiles = {folder / "profiles/our-film.toml"};
+  apply_sources(config, sources);
+  EXPECT_EQ(config.design.film.margin_mm, 13);
+  EXPECT_TRUE(config.model.empty());
+  const std::string other = sample("sphere");
+  const json patch = client->get(at(other, "/profiles/our-film")).json()["patch"];
+  EXPECT_EQ(patch["material"]["tear_stretch"], 1.7);
+  EXPECT_EQ(patch["film"]["width_mm"], 150);
+  json taken = describe(other)["document"];
+  taken.merge_patch(patch);
+  EXPECT_EQ(put(other, taken).status, 200);
+  EXPECT_EQ(client->get(at(other, "/profiles/nobodys")).status, 404);
+}
+
 }  // namespace
 }  // namespace hydrodip

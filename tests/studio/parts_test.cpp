@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "report/plain_words.h"
 #include "studio/bundle.h"
 #include "studio/client.h"
 #include "studio/event_stream.h"
-#include "studio/plain_words.h"
 #include "studio/run_file.h"
 #include "studio/tasks.h"
 #include "temporary_folder.h"

@@ -26,7 +26,8 @@ class Served {
     guard.token = kToken;
     guard.cookie = "hydrodip-" + std::to_string(server_->port());
     guard.hosts = {"127.0.0.1:" + std::to_string(server_->port())};
-    api_.emplace(JobStore(folder), guard, run, [this] { quits_ = true; });
+    api_.emplace(
+        JobStore(folder), guard, run, [this] { quits_ = true; }, folder / "profiles");
     thread_ = std::thread([this] { server_->run(); });
   }
   ~Served() {

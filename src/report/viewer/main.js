@@ -19,6 +19,8 @@ const SIDES = {
   dip: [['side', 'Side'], ['above', 'Above'], ['below', 'Below']],
 };
 const PLAY_SECONDS = 8;
+// Who ordered the piece has no use for the sheet and the workshop's overlays.
+const FOR_CUSTOMER = document.documentElement.dataset.for === 'customer';
 
 class Viewer {
   constructor(root, scene, canvas, context) {
@@ -66,18 +68,18 @@ class Viewer {
         'div',
         { class: 'tools' },
         make('div', { class: 'group', role: 'group', 'aria-label': 'View' }, ...this.viewButtons),
-        make('label', {}, 'Show ', this.overlaySelect),
-        make('label', { hidden: !hasFilm }, this.gridBox, ' 5 mm film grid'),
+        make('label', { hidden: FOR_CUSTOMER }, 'Show ', this.overlaySelect),
+        make('label', { hidden: FOR_CUSTOMER || !hasFilm }, this.gridBox, ' 5 mm film grid'),
         this.sideButtons,
       ),
       make(
         'div',
         { class: 'panes' },
         make('div', { class: 'main-pane' }, this.stageBox, this.dipRow, this.legend),
-        make('figure', { class: 'sheet-pane', hidden: !hasFilm }, this.sheet.box,
+        make('figure', { class: 'sheet-pane', hidden: FOR_CUSTOMER || !hasFilm }, this.sheet.box,
           make('figcaption', {}, 'The film image, from above. Blue line: lands on the object.', this.scene.film.torn.length ? ' Red line: tears.' : '')),
       ),
-      this.readout,
+      ...(FOR_CUSTOMER ? [] : [this.readout]),
     );
     if (this.scene.object.simplified) {
       this.root.append(make('p', { class: 'hint' }, 'The object has very many triangles; here it is shown with fewer.'));

@@ -3,7 +3,7 @@ import type { JobDocument, Json, Patch } from './document.ts';
 import { t } from './strings.ts';
 
 export type Concern = 'none' | 'care' | 'stop';
-export type Overlay = 'none' | 'stretch' | 'tears' | 'wrinkles' | 'coverage' | 'angle' | 'air';
+export type Overlay = 'none' | 'stretch' | 'tears' | 'wrinkles' | 'coverage' | 'angle' | 'air' | 'parts';
 export type Numbers = readonly number[];
 
 export interface Parameter {
@@ -14,7 +14,7 @@ export interface Parameter {
   max?: number;
   default: Json;
   zero?: string;
-  choices: string[];
+  choices?: string[]; // of those that have some
   help: string;
 }
 
@@ -35,6 +35,7 @@ export interface Hello {
   samples: { name: string; text: string }[];
   films: { name: string; width_mm: number; height_mm: number }[];
   parameters: Parameter[];
+  profiles: string[];
   recent: Recent[];
   limits: { file_bytes: number; job_bytes: number; document_bytes: number };
   model_types: string[];
@@ -56,6 +57,7 @@ export interface Mend {
 export interface Verdict {
   concern: Concern;
   headline: string;
+  short?: string; // some words of it
   text: string;
 }
 
@@ -212,6 +214,25 @@ export interface Result {
   lids: { position: Float32Array; index: Uint32Array } | null;
 }
 
+// All dips together.
+export interface Finish {
+  finish: string;
+  mesh: string; // the model as it looks in the end
+  parts: string; // and in a colour for each dip
+  covered_share: number;
+  verdict: Verdict;
+  findings: Finding[];
+  dips: { part_share: number; gained_share: number; covered_share: number; torn_share: number; color: string; width_px: number; height_px: number }[];
+  seams: { length_mm: number; overlap_mm: number; error_mean: number; off_mm: number; error_mean_off: number };
+  sheets: SheetPicture[];
+}
+
+export interface SheetPicture {
+  width_px: number;
+  height_px: number;
+  rgba: Uint8Array;
+}
+
 export interface DipFrames {
   levels: number[];
   poses: number[][] | null;
@@ -308,6 +329,15 @@ export function readResult(buffer: ArrayBuffer): Result {
   };
 }
 
+export function readFinish(buffer: ArrayBuffer): Finish {
+  const { json, array } = readBundle(buffer);
+  const finish = json as unknown as Finish;
+  return {
+    ...finish,
+    sheets: finish.dips.map(({ width_px, height_px }, k) => ({ width_px, height_px, rgba: demand(array<Uint8Array>(`sheet.${k}`), `sheet ${k}`) })),
+  };
+}
+
 export function readDip(buffer: ArrayBuffer): DipFrames {
   const { json, array } = readBundle(buffer);
   return {
@@ -369,6 +399,8 @@ export const api = {
   hello: () => json<Hello>('/api/hello', 'GET'),
   recent: () => json<Recent[] | { recent: Recent[] }>('/api/recent', 'GET').then((r) => (Array.isArray(r) ? r : r.recent)),
   forget: (job: string) => json<unknown>(`/api/recent/${part(job)}`, 'DELETE'),
+  profile: (job: string, name: string) => json<{ patch: Patch }>(`/api/jobs/${part(job)}/profiles/${part(name)}`, 'GET').then((r) => r.patch),
+  saveProfile: (job: string, name: string) => json<{ profiles: string[] }>(`/api/jobs/${part(job)}/profiles/${part(name)}`, 'PUT', {}).then((r) => r.profiles),
   create: (from: { sample?: string; job?: string }) => json<{ job: string }>('/api/jobs', 'POST', from),
   job: (job: string) => json<JobState>(`/api/jobs/${part(job)}`, 'GET'),
   reload: (job: string) => json<unknown>(`/api/jobs/${part(job)}/reload`, 'POST', {}),
@@ -388,6 +420,7 @@ export const api = {
   cancel: (job: string, task: string) => json<unknown>(`/api/jobs/${part(job)}/tasks/${part(task)}`, 'DELETE'),
   mesh: async (job: string, mesh: string) => readMesh(await bytes(`/api/jobs/${part(job)}/meshes/${part(mesh)}`)),
   result: async (job: string, result: string) => readResult(await bytes(`/api/jobs/${part(job)}/results/${part(result)}`)),
+  finish: async (job: string, finish: string) => readFinish(await bytes(`/api/jobs/${part(job)}/finish/${part(finish)}`)),
   dip: async (job: string, result: string) => readDip(await bytes(`/api/jobs/${part(job)}/results/${part(result)}/dip`)),
   fileUrl: (job: string, file: string) => `/api/jobs/${part(job)}/files/${file.split('/').map(part).join('/')}`,
   tomlUrl: (job: string) => `/api/jobs/${part(job)}/job.toml`,

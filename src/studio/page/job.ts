@@ -2,8 +2,8 @@
 // signals here; the document is only ever replaced, never changed.
 import { batch, computed, signal } from '@preact/signals';
 import { api, ApiError, Unreachable } from './api.ts';
-import type { DipFrames, DocumentAnswer, JobFile, JobState, MeshData, Problem, Result, Task, TaskKind } from './api.ts';
-import { dipCount, equal, layersOf, withLayer, type JobDocument, type Vec3 } from './document.ts';
+import type { DipFrames, DocumentAnswer, Finish, JobFile, JobState, MeshData, Problem, Result, Task, TaskKind } from './api.ts';
+import { dipCount, equal, layersOf, withLayer, type JobDocument, type Patch, type Vec3 } from './document.ts';
 import { t } from './strings.ts';
 
 const MOST_STEPS = 50_000; // documents share what did not change
@@ -16,7 +16,7 @@ interface Step {
 
 export interface Working {
   revision: number;
-  quality: 'draft' | 'normal' | null;
+  quality: 'draft' | 'normal' | 'finish' | null;
   activity?: string;
   fraction?: number;
 }
@@ -25,6 +25,13 @@ export interface Notice {
   text: string;
   kind: 'info' | 'error';
   action?: { text: string; run: () => void };
+}
+
+// All dips together: of which revision, and what came of it.
+export interface WholeFinish extends Finish {
+  revision: number;
+  colors: MeshData;
+  byDip: MeshData;
 }
 
 export type Link = 'connecting' | 'open' | 'lost' | 'ended';
@@ -40,6 +47,8 @@ export class Job {
   readonly frames = signal<{ result: Result; frames: DipFrames } | null>(null);
   readonly mesh = signal<MeshData | null>(null);
   readonly wanted = signal<MeshData | null>(null);
+  readonly finish = signal<WholeFinish | null>(null);
+  readonly finishProblem = signal('');
   readonly problem = signal<Problem | null>(null);
   readonly working = signal<Working | null>(null);
   readonly tasks = signal<ReadonlyMap<TaskKind, Task>>(new Map());
@@ -63,6 +72,12 @@ export class Job {
     const shown = this.result.value;
     return !shown || this.unsent.value || shown.revision < this.revision.value || shown.quality === 'draft';
   });
+  // Whether the dips were put together as the document has them now.
+  readonly wholeFinish = computed(() => {
+    const finish = this.finish.value;
+    const several = (this.document.value.dips?.length ?? 0) > 1;
+    return several && finish && finish.revision >= this.revision.value && !this.unsent.value ? finish : null;
+  });
   readonly mayChange = computed(() => this.pen.value && this.loaded.value);
 
   private events: EventSource | null = null;
@@ -76,6 +91,7 @@ export class Job {
   private newest = { revision: -1, normal: false };
   private meshes = new Map<string, MeshData>();
   private meshTurn = 0;
+  private finishTurn = 0;
 
   constructor(
     readonly id: string,
@@ -265,6 +281,40 @@ export class Job {
     }
   }
 
+  // What a preset sets.
+  async profile(name: string): Promise<Patch | null> {
+    try {
+      return await api.profile(this.id, name);
+    } catch (error) {
+      this.complain(error);
+      return null;
+    }
+  }
+
+  // Keeps what the job has for film, printer and bath under that name; all presets' names.
+  async saveProfile(name: string): Promise<string[] | null> {
+    try {
+      await this.arrived();
+      const names = await api.saveProfile(this.id, name);
+      this.notice.value = { kind: 'info', text: t.notice.preset(name) };
+      return names;
+    } catch (error) {
+      this.complain(error);
+      return null;
+    }
+  }
+
+  // Keeps a file that the document names elsewhere than among its artwork; its name there.
+  async keep(file: File): Promise<string | null> {
+    if (!this.mayChange.value) return null;
+    try {
+      return (await api.upload(this.id, file, file.name)).file;
+    } catch (error) {
+      this.complain(error);
+      return null;
+    }
+  }
+
   private adopted(before: JobDocument, answer: DocumentAnswer, at_mm: Vec3 | null): void {
     this.revision.value = Math.max(this.revision.value, answer.revision);
     if (answer.document && !equal(before, answer.document)) {
@@ -380,6 +430,7 @@ export class Job {
     on<{ mesh?: string | null; wanted?: string | null }>('mesh', (event) => void this.takeMesh(event));
     on<Working>('working', (event) => (this.working.value = event.quality ? event : null));
     on<{ revision: number; quality: 'draft' | 'normal'; dip: number; result: string }>('result', (event) => void this.takeResult(event));
+    on<{ revision: number; finish?: string; problem?: string }>('finish', (event) => void this.takeFinish(event));
     on<Problem>('problem', (problem) => this.takeProblem(problem));
     on<Task>('task', (task) => this.takeTask(task));
     on<{ files: JobFile[] }>('files', ({ files }) => (this.files.value = files));
@@ -399,6 +450,8 @@ export class Job {
     if (another) {
       this.newest = { revision: -1, normal: false };
       if (this.result.value) this.result.value = { ...this.result.value, revision: -1 };
+      this.results.value = new Map([...this.results.value].map(([dip, result]) => [dip, { ...result, revision: -1 }]));
+      if (this.finish.value) this.finish.value = { ...this.finish.value, finish: '', revision: -1 };
       void this.agreeAgain();
     } else if (this.unsent.value) {
       this.next ??= { live: false };
@@ -464,7 +517,7 @@ export class Job {
     if (known) return known;
     const mesh = await api.mesh(this.id, id);
     this.meshes.set(id, mesh);
-    if (this.meshes.size > 6) this.meshes.delete(this.meshes.keys().next().value!);
+    if (this.meshes.size > 8) this.meshes.delete(this.meshes.keys().next().value!);
     return mesh;
   }
 
@@ -486,6 +539,24 @@ export class Job {
       this.newest = { revision: event.revision, normal };
       this.result.value = result;
       this.problem.value = null;
+    } catch (error) {
+      if (error instanceof Unreachable) this.lose();
+      else if (!(error instanceof ApiError)) throw error;
+    }
+  }
+
+  private async takeFinish({ revision, finish: id, problem }: { revision: number; finish?: string; problem?: string }): Promise<void> {
+    this.finishProblem.value = problem ?? '';
+    if (!id) {
+      this.finish.value = null;
+      return;
+    }
+    const turn = ++this.finishTurn;
+    try {
+      const held = this.finish.value;
+      const finish = held?.finish === id ? held : await api.finish(this.id, id);
+      const [colors, byDip] = [await this.meshOf(finish.mesh), await this.meshOf(finish.parts)];
+      if (turn === this.finishTurn) this.finish.value = { ...finish, revision, colors, byDip };
     } catch (error) {
       if (error instanceof Unreachable) this.lose();
       else if (!(error instanceof ApiError)) throw error;

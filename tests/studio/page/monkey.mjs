@@ -1,17 +1,19 @@
 // Random actions with a fixed seed, as a person in a hurry might do them. Afterwards: no complaint, undo to
-// the start gives the first state, and the program's memory is bounded.
-// Usage: node monkey.mjs HYDRODIP NODE_MODULES [CHROMIUM]; HYDRODIP_MONKEY_MINUTES (0.5), HYDRODIP_MONKEY_SEED (1).
+// the start gives the first state, and the program's memory is bounded. In a longer run the job, as the monkey leaves it, is printed
+// now and then, and the command line makes the same bytes of it.
+// Usage: node monkey.mjs HYDRODIP NODE_MODULES [CHROMIUM]; HYDRODIP_MONKEY_MINUTES (0.1), HYDRODIP_MONKEY_SEED (1).
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import { resolve } from 'node:path';
-import { documentOf, hasChromium, kept, newResult, openSample, Program, Session, until } from './studio.mjs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { differencesByHand, documentOf, hasChromium, kept, newResult, openSample, Program, Session, until } from './studio.mjs';
 
 const chromium = process.argv[4] || '/usr/bin/chromium';
 if (!hasChromium(chromium)) {
   console.log(`skipped: there is no ${chromium}`);
   process.exit(77);
 }
-const minutes = Number(process.env.HYDRODIP_MONKEY_MINUTES ?? 0.5);
+const minutes = Number(process.env.HYDRODIP_MONKEY_MINUTES ?? 0.1);
 let seed = Number(process.env.HYDRODIP_MONKEY_SEED ?? 1);
 const random = () => {
   seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
@@ -24,7 +26,7 @@ const program = new Program(resolve(process.argv[2]));
 await program.start();
 const session = await Session.start(resolve(process.argv[3]), chromium, program);
 const page = await session.page({ width: 1024, height: 720 });
-await openSample(page, 'pyramid');
+await openSample(page, process.env.HYDRODIP_MONKEY_SAMPLE ?? 'pyramid');
 const first = await documentOf(page);
 
 const memory_mb = () => Number(readFileSync(`/proc/${program.process.pid}/status`, 'utf8').match(/VmRSS:\s+(\d+)/)[1]) / 1024;
@@ -73,16 +75,46 @@ const ACTIONS = {
   canvas: async () => (await page.locator('.canvas-box').isVisible()) && drag('.canvas-box canvas'),
   depthHandle: async () => (await exists('[data-name="depth-handle"]')) && drag('[data-name="depth-handle"]'),
   view: async () => page.click(`[data-value="${pick(['bath', 'object', 'sheet'])}"]`),
+  together: async () => (await exists('[name="all-dips"]')) && page.click('[name="all-dips"]'),
+  parts: async () => (await exists('[data-name="show-parts"]')) && page.click('[data-name="show-parts"]'),
+  reader: async () => (await exists('[data-value="customer"]')) && page.click(`[data-value="${pick(['customer', 'workshop'])}"]`),
   play: () => press('Space'),
   undo: () => press('Control+z'),
   redo: () => press('Control+Shift+Z'),
   panel: () => press(pick(['?', 'Escape'])),
 };
 
+// Prints the job as it is; whether it could be.
+const PRINT_EVERY_MS = 10 * 60000;
+const hydrodip = resolve(process.argv[2]);
+const work = mkdtempSync(join(tmpdir(), 'hydrodip-monkey-'));
+process.on('exit', () => rmSync(work, { recursive: true, force: true }));
+async function printAndCompare() {
+  await press('Escape');
+  await press('Escape');
+  await kept(page);
+  await press('Control+p');
+  if (await exists('[data-name="print-again"]')) await page.click('[data-name="print-again"]');
+  await page.waitForFunction(() => !document.querySelector('.panel.print .progress'), undefined, { timeout: 600000 });
+  const printed = await exists('.panel.print [data-file]');
+  if (printed) assert.deepEqual((await differencesByHand(page, hydrodip, work)).different, []);
+  await press('Escape');
+  return printed;
+}
+
+page.setDefaultTimeout(3000); // what is in the way of a click is so for good
 const counts = {};
+const memory = []; // a figure for every minute
 let most = memory_mb();
+let prints = 0;
 const began = Date.now();
+let printed = began;
 while (Date.now() - began < minutes * 60000) {
+  if (Date.now() - printed > PRINT_EVERY_MS) {
+    prints += await printAndCompare();
+    printed = Date.now();
+  }
+  if (Date.now() - began > memory.length * 60000) memory.push(Math.round(memory_mb()));
   const name = pick(Object.keys(ACTIONS));
   counts[name] = (counts[name] ?? 0) + 1;
   try {
@@ -94,6 +126,7 @@ while (Date.now() - began < minutes * 60000) {
   most = Math.max(most, memory_mb());
   if (session.complaints.length) break;
 }
+page.setDefaultTimeout(120000);
 assert.deepEqual(session.complaints, [], `after ${JSON.stringify(counts)}`);
 
 await press('Escape');
@@ -104,7 +137,7 @@ await newResult(page, '', true);
 assert.deepEqual(session.complaints, []);
 assert.equal(program.errors, '');
 assert.ok(most < 3000, `${most} MB`);
-console.log(`ok: ${Object.values(counts).reduce((a, b) => a + b, 0)} actions, at most ${most.toFixed(0)} MB`);
+console.log(`ok: ${Object.values(counts).reduce((a, b) => a + b, 0)} actions in ${minutes} min, ${prints} prints compared, at most ${most.toFixed(0)} MB; by the minute ${memory.join(' ')}`);
 await session.close();
 await program.end();
 process.exit(0);

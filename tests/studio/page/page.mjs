@@ -1,19 +1,18 @@
 // The studio's page as a person uses it: every action with real clicks and keys, against the real program.
-// Usage: node page.mjs HYDRODIP NODE_MODULES PART [CHROMIUM]; PART: object or artwork, which know nothing of each
-// other. Exit code 77 (skipped) where there is no Chromium. HYDRODIP_PICTURES=DIR keeps pictures;
+// Usage: node page.mjs HYDRODIP NODE_MODULES [PART [PICTURES]]; PART: object or artwork, which know nothing of each other, or
+// all. Exit code 77 (skipped) where there is no Chromium. Pictures are kept in the folder PICTURES, or HYDRODIP_PICTURES;
 // HYDRODIP_ONLY=WORDS runs the tests whose names match (and those that open what they need).
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { deflateSync, crc32 } from 'node:zlib';
-import { drag, documentOf, hasChromium, jobOf, kept, middleOf, newResult, openSample, Program, resultOf, Session, stateOf, type, until } from './studio.mjs';
+import { differencesByHand, drag, documentOf, hasChromium, jobOf, kept, middleOf, newResult, openSample, Program, resultOf, Session, stateOf, type, until } from './studio.mjs';
 
 const hydrodip = resolve(process.argv[2]);
 const modules = resolve(process.argv[3]);
-const wanted = process.argv[4];
-const chromium = process.argv[5] || '/usr/bin/chromium';
+const wanted = process.argv[4] === 'all' ? undefined : process.argv[4];
+const chromium = '/usr/bin/chromium';
 if (!hasChromium(chromium)) {
   console.log(`skipped: there is no ${chromium}`);
   process.exit(77);
@@ -21,12 +20,22 @@ if (!hasChromium(chromium)) {
 
 const work = mkdtempSync(join(tmpdir(), 'hydrodip-page-'));
 process.on('exit', () => rmSync(work, { recursive: true, force: true }));
-const pictures = process.env.HYDRODIP_PICTURES;
+const pictures = process.env.HYDRODIP_PICTURES ?? process.argv[5];
 if (pictures) mkdirSync(pictures, { recursive: true });
 const picture = async (page, name) => {
   if (!pictures) return;
   await page.waitForTimeout(400);
   await page.screenshot({ path: join(pictures, `${name}.png`) });
+};
+// What is large, in the window that most people have.
+const WIDE = { width: 1400, height: 900 };
+const USUAL = { width: 1000, height: 680 };
+const widePicture = async (page, name) => {
+  if (!pictures) return;
+  await page.setViewportSize(WIDE);
+  await page.waitForTimeout(400);
+  await picture(page, name);
+  await page.setViewportSize(USUAL);
 };
 
 const tests = [];
@@ -97,6 +106,22 @@ const session = await Session.start(modules, chromium, program);
 
 const undo = (page) => page.keyboard.press('Control+z');
 const redo = (page) => page.keyboard.press('Control+Shift+Z');
+// Coarse film and paper: what is tested here is the page.
+const coarse = async (page) => {
+  await blur(page);
+  await page.keyboard.press('4');
+  await type(page, 'print-dpi', 72);
+  await page.click('.everything summary');
+  await page.fill('#search-setting', 'film.elements');
+  const field = page.getByLabel('film.elements', { exact: true });
+  await field.fill('5000');
+  await field.press('Enter');
+  await page.fill('#search-setting', '');
+  await page.click('.everything summary');
+  await until('coarse film', async () => (await documentOf(page)).film?.elements === 5000);
+  await blur(page);
+  await page.keyboard.press('1');
+};
 const blur = (page) => page.evaluate(() => document.activeElement?.blur());
 const sameAs = async (page, document) => until('the document', async () => JSON.stringify(await documentOf(page)) === JSON.stringify(document));
 
@@ -107,7 +132,7 @@ test('the empty page: what this is, samples, a place to drop things', async () =
   await page.waitForSelector('.dropzone');
   assert.equal(await page.locator('.sample').count(), 3);
   assert.match(page.url(), /^http:\/\/127\.0\.0\.1:\d+\/$/); // the token has left the address
-  await picture(page, 'start');
+  await widePicture(page, 'start');
   await page.context().close();
 });
 
@@ -119,7 +144,8 @@ test('a sample opens with one click: object over its film, the sheet, a verdict'
   assert.ok(verdict.length > 10);
   assert.doesNotMatch(verdict, /--|_mm|\bdip\./); // in the user's words
   assert.ok(await mask.locator('.canvas-box canvas').getAttribute('data-drawn') > 0);
-  await picture(mask, 'bath');
+  await widePicture(mask, 'bath');
+  await coarse(mask);
 });
 
 test('a draft says so, and becomes final by itself when the hand rests', async () => {
@@ -268,6 +294,21 @@ test('the sheet is chosen from presets, and can be turned', async () => {
   await sameAs(mask, first);
 });
 
+test('what is set for film and printer is kept as a preset, and taken again', async () => {
+  const first = await documentOf(mask);
+  await type(mask, 'film-margin_mm', 14);
+  await mask.click('[data-name="keep-preset"]');
+  await mask.fill('[name="preset-name"]', 'our film');
+  await mask.locator('[name="preset-name"]').press('Enter');
+  await mask.waitForSelector('[name="preset"] option[value="our-film"]', { state: 'attached' });
+  await type(mask, 'film-margin_mm', 9);
+  await kept(mask);
+  await mask.selectOption('[name="preset"]', 'our-film');
+  await until('the preset', async () => (await documentOf(mask)).film?.margin_mm === 14);
+  for (let k = 0; k < 3; ++k) await undo(mask);
+  await sameAs(mask, first);
+});
+
 test('every setting can be found by a word', async () => {
   await mask.click('.everything summary');
   await mask.fill('#search-setting', 'wrinkles');
@@ -297,7 +338,7 @@ test('wanted and predicted lie side by side, with a line to drag', async () => {
   assert.ok(Number(await mask.getAttribute('.divider', 'aria-valuenow')) > 55);
   await mask.focus('.divider');
   await mask.keyboard.press('ArrowLeft');
-  await picture(mask, 'compare');
+  await widePicture(mask, 'compare');
 });
 
 test('pointing at the object shows the place on the sheet, and the other way round', async () => {
@@ -357,7 +398,7 @@ test('Tab shows the sheet large while the view has the focus', async () => {
 
 // ---- Several dips ----
 
-test('a dip is added, kept, shown and removed', async () => {
+test('a second dip: two sheets, each dip\'s part, the seam, and the finish as a whole', async () => {
   const first = await documentOf(mask);
   const before = await resultOf(mask);
   await blur(mask);
@@ -365,11 +406,21 @@ test('a dip is added, kept, shown and removed', async () => {
   await mask.click('[data-name="add-dip"]');
   await until('two dips', async () => (await documentOf(mask)).dips?.length === 2);
   await newResult(mask, before);
+  await mask.waitForSelector('[data-name="finish"]', { timeout: 180000 });
+  assert.ok(Number(await mask.getAttribute('[data-name="finish"]', 'data-seams')) > 0);
+  assert.equal(await mask.locator('.dip canvas.thumb').count(), 2);
+  assert.match(await mask.textContent('.dips'), /prints \d.*prints \d/);
+  assert.match(await mask.textContent('.verdict .sentence'), /of the object covered/);
+  await mask.click('[data-name="show-parts"]');
+  await until('the legend', async () => /Dip 1.*Dip 2/.test(await mask.textContent('.legend')));
+  await mask.waitForTimeout(300);
+  await widePicture(mask, 'parts');
+  await mask.click('[name="all-dips"]');
+  await mask.waitForTimeout(300);
+  await widePicture(mask, 'dips');
   await mask.click('.dip:first-child .button[aria-pressed]');
   await until('it is kept', async () => (await documentOf(mask)).dips[0].locked === true);
-  await picture(mask, 'dips');
   await mask.click('[data-dip="0"]');
-  await mask.click('[name="all-dips"]');
   await mask.click('.dip:last-child .button:last-child');
   await until('one dip again', async () => !(await documentOf(mask)).dips);
   for (let k = 0; k < 3; ++k) await undo(mask);
@@ -402,7 +453,9 @@ test('an STL and a PNG dropped together: the picture is on the object at once', 
   assert.equal(object.file, 'dome.stl');
   assert.equal(artwork[0].image, 'logo.png');
   await dome.waitForSelector('[data-grip="move"]');
-  await picture(dome, 'artwork');
+  await widePicture(dome, 'artwork');
+  await coarse(dome);
+  await dome.keyboard.press('2');
 });
 
 test('the picture is dragged, scaled and turned by its handles; each is one step to undo', async () => {
@@ -464,8 +517,18 @@ test('a broken picture is a sentence, and nothing is lost', async () => {
 
 // ---- Print and save ----
 
+test('the report can be a customer\'s, with a logo', async () => {
+  await blur(dome);
+  await dome.keyboard.press('4');
+  await dome.click('[data-value="customer"]');
+  await dome.setInputFiles('[name="add-logo"]', join(work, 'logo.png'));
+  await dome.waitForSelector('img.logo');
+  await until('a logo', async () => (await documentOf(dome)).report?.logo);
+  assert.equal((await documentOf(dome)).report.for, 'customer');
+  await kept(dome);
+});
+
 test('print: progress, cancel, then the sheet and the run sheet', async () => {
-  await type(dome, 'layer-width', 18).catch(() => {});
   await blur(dome);
   await dome.keyboard.press('Control+p');
   await dome.waitForSelector('[data-name="cancel-print"]');
@@ -477,24 +540,21 @@ test('print: progress, cancel, then the sheet and the run sheet', async () => {
   const url = await dome.getAttribute('[data-file="print.pdf"]', 'href');
   const head = await dome.evaluate(async (path) => new TextDecoder().decode((await (await fetch(path)).arrayBuffer()).slice(0, 5)), url);
   assert.equal(head, '%PDF-');
+  const report = await dome.context().newPage();
+  await report.setViewportSize(WIDE);
+  await report.goto(new URL(await dome.getAttribute('[data-file="report.html"]', 'href'), dome.url()).href);
+  await report.waitForSelector('html.live');
+  const words = await report.textContent('main');
+  assert.doesNotMatch(words, /--|_mm|sha256|\.stl|hydrodip/);
+  assert.equal(await report.locator('.logo img').count(), 1);
+  await picture(report, 'report-customer');
+  await report.close();
 });
 
 test('the saved job gives the same bytes by the command line', async () => {
-  const bytes = async (url) => Buffer.from(await dome.evaluate(async (path) => {
-    const data = new Uint8Array(await (await fetch(path)).arrayBuffer());
-    let text = '';
-    for (let i = 0; i < data.length; i += 32768) text += String.fromCharCode(...data.subarray(i, i + 32768));
-    return btoa(text);
-  }, url), 'base64');
-  const files = await dome.$$eval('[data-file]', (links) => links.map((link) => [link.dataset.file, link.getAttribute('href')]));
-  const printed = new Map();
-  for (const [file, url] of files) if (/print\.(png|tif|pdf)$|film\.ply$/.test(file)) printed.set(file, await bytes(url));
-  assert.ok(printed.size >= 2);
-  writeFileSync(join(work, 'job.zip'), await bytes(`/api/jobs/${jobOf(dome)}/job.zip`));
-  execFileSync('python3', ['-m', 'zipfile', '-e', 'job.zip', 'job'], { cwd: work });
-  const toml = execFileSync('sh', ['-c', 'ls job/*.toml'], { cwd: work }).toString().trim();
-  execFileSync(hydrodip, ['print', toml, '-o', 'by-hand', '--quiet'], { cwd: work });
-  for (const [file, data] of printed) assert.ok(data.equals(readFileSync(join(work, 'by-hand', file))), `${file} differs`);
+  const { different, compared } = await differencesByHand(dome, hydrodip, work);
+  assert.deepEqual(different, []);
+  assert.equal(compared, 4);
 });
 
 test('Ctrl+S saves, and the name is the file\'s', async () => {
@@ -612,7 +672,7 @@ test('nothing is cut off at 1024 x 768, and dark is dark', async () => {
   await small.context().close();
 });
 
-part = wanted;
+part = wanted ?? 'object';
 test('no complaint on the console, and no request to anybody else', async () => {
   assert.deepEqual(session.complaints, []);
 });
@@ -622,7 +682,7 @@ test('no complaint on the console, and no request to anybody else', async () => 
 const only = process.env.HYDRODIP_ONLY && new RegExp(`${process.env.HYDRODIP_ONLY}|opens with one click|dropped together`);
 let failures = 0;
 for (const { name, body, part: of } of tests) {
-  if (of !== wanted || (only && !only.test(name))) continue;
+  if ((wanted && of !== wanted) || (only && !only.test(name))) continue;
   const began = Date.now();
   try {
     await body();

@@ -1,6 +1,6 @@
 // Starts `hydrodip studio` with a home of its own, and pages in Debian's Chromium that note every complaint.
-import { spawn, spawnSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { execFileSync, spawn, spawnSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -9,6 +9,9 @@ const FLAGS = ['--no-sandbox', '--disable-dev-shm-usage', '--use-angle=swiftshad
 // Said by the software renderer about itself, and by Chromium about requests to a program that was killed.
 const HARMLESS = /GPU stall|ReadPixels|software WebGL/;
 const WHILE_DOWN = /ERR_CONNECTION|ERR_EMPTY_RESPONSE|ERR_INCOMPLETE_CHUNKED|net::ERR/;
+
+// Never the measure of anything: machines are busy.
+const PATIENCE_MS = 240000;
 
 export function hasChromium(chromium) {
   return spawnSync(chromium, ['--version']).status === 0;
@@ -77,7 +80,7 @@ export class Session {
       viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', reducedMotion: 'reduce', acceptDownloads: true,
     }));
     const page = await own.newPage();
-    page.setDefaultTimeout(60000);
+    page.setDefaultTimeout(PATIENCE_MS);
     const complain = (text) => {
       if (HARMLESS.test(text) || (this.mayFail && WHILE_DOWN.test(text))) return;
       this.complaints.push(text);
@@ -105,7 +108,7 @@ export const jobOf = (page) => new URLSearchParams(new URL(page.url()).hash.slic
 export const stateOf = (page) => page.evaluate(async (job) => (await fetch(`/api/jobs/${job}`)).json(), jobOf(page));
 export const documentOf = async (page) => (await stateOf(page)).document;
 
-export async function until(what, check, seconds = 60) {
+export async function until(what, check, seconds = PATIENCE_MS / 1000) {
   const end = Date.now() + 1000 * seconds;
   for (;;) {
     const found = await check();
@@ -153,4 +156,27 @@ export async function drag(page, from, by, { steps = 6, hold = 0 } = {}) {
 export async function middleOf(page, selector) {
   const box = await page.locator(selector).boundingBox();
   return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+}
+
+// A file that the program serves, as bytes.
+export const bytesOf = async (page, url) => Buffer.from(await page.evaluate(async (path) => {
+  const data = new Uint8Array(await (await fetch(path)).arrayBuffer());
+  let text = '';
+  for (let i = 0; i < data.length; i += 32768) text += String.fromCharCode(...data.subarray(i, i + 32768));
+  return btoa(text);
+}, url), 'base64');
+
+// Of what was printed and is listed, the files that the command line makes otherwise of the job that can be downloaded;
+// and how many were compared.
+export async function differencesByHand(page, hydrodip, work) {
+  const files = await page.$$eval('[data-file]', (links) => links.map((link) => [link.dataset.file, link.getAttribute('href')]));
+  const printed = new Map();
+  for (const [file, url] of files) if (/print\.(png|tif|pdf)$|film\.ply$/.test(file)) printed.set(file, await bytesOf(page, url));
+  const folder = mkdtempSync(join(work, 'by-hand-'));
+  writeFileSync(join(folder, 'job.zip'), await bytesOf(page, `/api/jobs/${jobOf(page)}/job.zip`));
+  execFileSync('python3', ['-m', 'zipfile', '-e', 'job.zip', 'job'], { cwd: folder });
+  const toml = execFileSync('sh', ['-c', 'ls job/*.toml'], { cwd: folder }).toString().trim();
+  execFileSync(hydrodip, ['print', toml, '-o', 'out', '--quiet'], { cwd: folder });
+  const different = [...printed].filter(([file, data]) => !data.equals(readFileSync(join(folder, 'out', file)))).map(([file]) => file);
+  return { different, compared: printed.size };
 }

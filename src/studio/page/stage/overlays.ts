@@ -68,12 +68,21 @@ const wrinkles: OverlayEntry = {
   }),
 };
 
+const parts: OverlayEntry = {
+  key: 'parts', // the finish's own mesh has the colours
+  film: null,
+  torn: null,
+  object: () => ({ mode: MODE.picture }),
+  legend: () => null,
+};
+
 const SHARED: Overlay[] = ['none', 'coverage', 'stretch', 'tears', 'angle'];
 const shared = (OVERLAYS as unknown as OverlayEntry[]).filter(({ key }) => SHARED.includes(key));
 export const STUDIO_OVERLAYS: readonly OverlayEntry[] = [
   ...SHARED.map((key) => shared.find((entry) => entry.key === key)!),
   wrinkles,
   air,
+  parts,
 ];
 
 export const overlayOf = (key: Overlay): OverlayEntry =>

@@ -74,6 +74,7 @@ const WHITE = [1, 1, 1];
 const FILM_BASE = [0.80, 0.80, 0.78]; // wet film, linear
 
 interface Painted {
+  mesh: THREE.Mesh; // shown beside others where the model itself is not
   geometry: THREE.BufferGeometry;
   materials: THREE.ShaderMaterial[];
   data: MeshData;
@@ -88,7 +89,6 @@ export class Stage {
   private readonly lowered = new THREE.Group();
   private readonly finished = new THREE.Group();
   private readonly filmGroup = new THREE.Group(); // glued to the object
-  private readonly otherFilms = new THREE.Group();
   private readonly basin = new THREE.Group();
   private readonly waterLine: THREE.LineLoop;
   private readonly marker = new THREE.Group();
@@ -102,7 +102,7 @@ export class Stage {
   private scene: Scene = sceneOf(null, WHITE);
   private painted: Painted | null = null;
   private film: FilmPicture | null = null;
-  private films = new Map<number, FilmPicture>(); // of the other dips
+  private whole: { colors: Painted; parts: Painted } | null = null; // all dips together
   private airMeshes: THREE.Mesh[] = [];
   private model: MeshData | null = null;
   private matrix = new THREE.Matrix4();
@@ -155,7 +155,7 @@ export class Stage {
     this.waterLine = new THREE.LineLoop(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1f6f78 }));
     this.lowered.add(this.meshes.bath, this.waterLine);
     this.bath.add(this.lowered, this.basin);
-    this.finished.add(this.meshes.object, this.filmGroup, this.otherFilms);
+    this.finished.add(this.meshes.object, this.filmGroup);
     this.facet = this.makeFacet();
     this.makeMarker();
     this.gizmo = this.makeGizmo();
@@ -177,50 +177,70 @@ export class Stage {
   // The model in the colours that are wanted of it, with its textures loaded.
   paint(data: MeshData | null, textures: readonly THREE.Texture[]): void {
     const old = this.painted;
-    if (!data) {
-      this.painted = null;
-      for (const mesh of Object.values(this.meshes)) mesh.visible = false;
-    } else {
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(data.position.length), 3));
-      geometry.setAttribute('normal', new THREE.BufferAttribute(new Float32Array(data.position.length), 3));
-      if (data.uv) geometry.setAttribute('uv', new THREE.BufferAttribute(data.uv, 2));
-      if (data.color) geometry.setAttribute('tint', new THREE.BufferAttribute(data.color, 4));
-      geometry.setIndex(new THREE.BufferAttribute(data.index, 1));
-      for (const group of data.groups) geometry.addGroup(group.start, group.count, group.material);
-      const maps = new Map<string, THREE.Texture>();
-      const materials = data.materials.map((m) => {
-        const key = `${m.texture} ${m.wrap}`;
-        const picture = textures[m.texture];
-        if (picture && !maps.has(key)) {
-          const texture = picture.clone();
-          texture.wrapS = WRAPS[m.wrap[0]] ?? THREE.RepeatWrapping;
-          texture.wrapT = WRAPS[m.wrap[1]] ?? THREE.RepeatWrapping;
-          texture.needsUpdate = true;
-          maps.set(key, texture);
-        }
-        return surfaceMaterial(this.scene, this.shared, { ...m, map: maps.get(key), tinted: Boolean(data.color) });
-      });
-      if (!data.groups.length) geometry.addGroup(0, data.index.length, 0);
-      if (!materials.length) materials.push(surfaceMaterial(this.scene, this.shared, { tinted: Boolean(data.color) }));
-      this.painted = { geometry, materials, data };
-      for (const mesh of Object.values(this.meshes)) {
-        mesh.geometry = geometry;
-        mesh.material = materials;
-        mesh.visible = true;
-      }
-      this.place();
+    this.painted = data && this.makePainted(data, textures);
+    for (const mesh of Object.values(this.meshes)) {
+      mesh.visible = Boolean(this.painted);
+      if (!this.painted) continue;
+      mesh.geometry = this.painted.geometry;
+      mesh.material = this.painted.materials;
     }
-    if (old) {
-      old.geometry.dispose();
-      for (const material of old.materials) {
-        const map = material.uniforms['map']?.value as THREE.Texture | null;
-        if (material.uniforms['textured']?.value) map?.dispose();
-        material.dispose();
-      }
-    }
+    if (data) this.place();
+    if (old) this.discard(old);
     this.updateUniforms();
     this.invalidate();
+  }
+
+  // All dips together: the model as it looks in the end, and in a colour for each dip.
+  setFinish(finish: { colors: MeshData; parts: MeshData } | null, textures: { colors: readonly THREE.Texture[]; parts: readonly THREE.Texture[] }): void {
+    for (const part of this.whole ? [this.whole.colors, this.whole.parts] : []) {
+      this.finished.remove(part.mesh);
+      this.discard(part);
+    }
+    this.whole = finish && { colors: this.makePainted(finish.colors, textures.colors), parts: this.makePainted(finish.parts, textures.parts) };
+    for (const part of this.whole ? [this.whole.colors, this.whole.parts] : []) {
+      part.mesh.visible = false;
+      this.finished.add(part.mesh);
+    }
+    if (this.whole) this.place();
+    this.updateUniforms();
+    this.invalidate();
+  }
+
+  private makePainted(data: MeshData, textures: readonly THREE.Texture[]): Painted {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(data.position.length), 3));
+    geometry.setAttribute('normal', new THREE.BufferAttribute(new Float32Array(data.position.length), 3));
+    if (data.uv) geometry.setAttribute('uv', new THREE.BufferAttribute(data.uv, 2));
+    if (data.color) geometry.setAttribute('tint', new THREE.BufferAttribute(data.color, 4));
+    geometry.setIndex(new THREE.BufferAttribute(data.index, 1));
+    for (const group of data.groups) geometry.addGroup(group.start, group.count, group.material);
+    const maps = new Map<string, THREE.Texture>();
+    const materials = data.materials.map((m) => {
+      const key = `${m.texture} ${m.wrap}`;
+      const picture = textures[m.texture];
+      if (picture && !maps.has(key)) {
+        const texture = picture.clone();
+        texture.wrapS = WRAPS[m.wrap[0]] ?? THREE.RepeatWrapping;
+        texture.wrapT = WRAPS[m.wrap[1]] ?? THREE.RepeatWrapping;
+        texture.needsUpdate = true;
+        maps.set(key, texture);
+      }
+      return surfaceMaterial(this.scene, this.shared, { ...m, map: maps.get(key), tinted: Boolean(data.color) });
+    });
+    if (!data.groups.length) geometry.addGroup(0, data.index.length, 0);
+    if (!materials.length) materials.push(surfaceMaterial(this.scene, this.shared, { tinted: Boolean(data.color) }));
+    const mesh = new THREE.Mesh(geometry, materials);
+    mesh.frustumCulled = false;
+    return { mesh, geometry, materials, data };
+  }
+
+  private discard({ geometry, materials }: Painted): void {
+    geometry.dispose();
+    for (const material of materials) {
+      const map = material.uniforms['map']?.value as THREE.Texture | null;
+      if (material.uniforms['textured']?.value) map?.dispose();
+      material.dispose();
+    }
   }
 
   setPose(pose: Pose, scale: number): void {
@@ -271,22 +291,6 @@ export class Stage {
     if (this.film?.result !== result) return;
     this.film.setFrames(frames);
     this.setLevel(this.level);
-  }
-
-  // Results of the other dips, to show the finish as a whole.
-  setOtherResults(results: readonly Result[]): void {
-    for (const film of this.films.values()) film.dispose();
-    this.films.clear();
-    this.otherFilms.clear();
-    for (const result of results) {
-      const film = new FilmPicture(result, (options) =>
-        surfaceMaterial(this.scene, this.shared, { ...options, film: true }) as THREE.ShaderMaterial);
-      this.films.set(result.dip, film);
-      film.lying.matrixAutoUpdate = false;
-      this.otherFilms.add(film.lying);
-    }
-    this.glue();
-    this.invalidate();
   }
 
   private addAir({ air, lids }: Result): void {
@@ -367,27 +371,13 @@ export class Stage {
     const { model, painted } = this;
     if (!model || !this.pose) return;
     this.matrix = placeOf(model.position, this.turn, this.scale);
-    const shown = painted?.data ?? model;
-    const position = new Float32Array(shown.position.length);
-    const normal = new Float32Array(shown.position.length);
-    const e = this.matrix.elements;
-    const s = this.scale || 1;
     this.bounds.makeEmpty();
-    const p = new THREE.Vector3();
-    for (let i = 0; i < position.length; i += 3) {
-      const x = shown.position[i]!, y = shown.position[i + 1]!, z = shown.position[i + 2]!;
-      const nx = shown.normal[i]!, ny = shown.normal[i + 1]!, nz = shown.normal[i + 2]!;
-      for (let k = 0; k < 3; ++k) {
-        position[i + k] = e[k]! * x + e[4 + k]! * y + e[8 + k]! * z + e[12 + k]!;
-        normal[i + k] = (e[k]! * nx + e[4 + k]! * ny + e[8 + k]! * nz) / s;
-      }
-      this.bounds.expandByPoint(p.fromArray(position, i));
-    }
-    this.posed = { position, normal };
-    if (painted) {
-      const { geometry } = painted;
-      (geometry.getAttribute('position') as THREE.BufferAttribute).copyArray(position).needsUpdate = true;
-      (geometry.getAttribute('normal') as THREE.BufferAttribute).copyArray(normal).needsUpdate = true;
+    this.posed = this.posedOf(painted?.data ?? model, this.bounds);
+    for (const part of [painted, this.whole?.colors, this.whole?.parts]) {
+      if (!part) continue;
+      const at = part === painted ? this.posed : this.posedOf(part.data, null);
+      (part.geometry.getAttribute('position') as THREE.BufferAttribute).copyArray(at.position).needsUpdate = true;
+      (part.geometry.getAttribute('normal') as THREE.BufferAttribute).copyArray(at.normal).needsUpdate = true;
     }
     this.finished.position.copy(this.center()).negate();
     this.marker.children.forEach((child) => child.scale.setScalar(this.radius() / 55));
@@ -398,6 +388,25 @@ export class Stage {
     this.setLevel(this.level);
   }
 
+  // A mesh's vertices as the object hangs, and the box that holds them.
+  private posedOf(data: MeshData, bounds: THREE.Box3 | null): { position: Float32Array<ArrayBuffer>; normal: Float32Array<ArrayBuffer> } {
+    const position = new Float32Array(data.position.length);
+    const normal = new Float32Array(data.position.length);
+    const e = this.matrix.elements;
+    const s = this.scale || 1;
+    const p = new THREE.Vector3();
+    for (let i = 0; i < position.length; i += 3) {
+      const x = data.position[i]!, y = data.position[i + 1]!, z = data.position[i + 2]!;
+      const nx = data.normal[i]!, ny = data.normal[i + 1]!, nz = data.normal[i + 2]!;
+      for (let k = 0; k < 3; ++k) {
+        position[i + k] = e[k]! * x + e[4 + k]! * y + e[8 + k]! * z + e[12 + k]!;
+        normal[i + k] = (e[k]! * nx + e[4 + k]! * ny + e[8 + k]! * nz) / s;
+      }
+      bounds?.expandByPoint(p.fromArray(position, i));
+    }
+    return { position, normal };
+  }
+
   // Film stays on the object where the last result left it until a newer one is whole.
   private glue(): void {
     const move = (matrix: readonly number[]): THREE.Matrix4 =>
@@ -406,10 +415,6 @@ export class Stage {
       this.filmGroup.matrixAutoUpdate = false;
       this.filmGroup.matrix.copy(this.model ? move(this.film.result.matrix) : new THREE.Matrix4());
       this.filmGroup.matrixWorldNeedsUpdate = true;
-    }
-    for (const { result, lying } of this.films.values()) {
-      lying.matrix.copy(move(result.matrix));
-      lying.matrixWorldNeedsUpdate = true;
     }
   }
 
@@ -871,7 +876,8 @@ export class Stage {
       (u['sheet']!.value as THREE.Vector2).set(this.scene.sheet.width_mm, this.scene.sheet.height_mm);
       u['depth']!.value = this.scene.depth_mm || Infinity;
     };
-    for (const material of this.painted?.materials ?? []) set(material, this.base);
+    for (const part of [this.painted, this.whole?.colors, this.whole?.parts])
+      for (const material of part?.materials ?? []) set(material, this.base);
     if (!this.film) return;
     set(this.film.lying.material, this.base);
     set(this.film.torn.material, this.base);
@@ -899,6 +905,7 @@ export class Stage {
       return;
     }
     const predicted = what === 'predicted' && film !== null;
+    if (this.showWhole(predicted)) return;
     const overlay = overlayOf(predicted ? this.overlay : 'none');
     if (!predicted) object(picture);
     else object(overlay.object(scene));
@@ -908,7 +915,20 @@ export class Stage {
       part(film.wrinkled, predicted && overlay.wrinkled ? overlay.wrinkled(scene) : null);
       for (const mesh of this.airMeshes) mesh.visible = predicted && overlay.key === 'air';
     }
-    for (const other of this.films.values()) part(other.lying, predicted && this.allDips && overlay.key === 'none' ? picture : null);
+  }
+
+  // All dips together take the place of the object with this dip's film. Whether they do.
+  private showWhole(predicted: boolean): boolean {
+    const { whole, film } = this;
+    let shown: Painted | null = null;
+    if (predicted && whole && this.overlay === 'parts') shown = whole.parts;
+    else if (predicted && whole && this.allDips && this.overlay === 'none') shown = whole.colors;
+    for (const part of whole ? [whole.colors, whole.parts] : []) part.mesh.visible = part === shown;
+    this.meshes.object.visible = Boolean(this.painted) && !shown;
+    if (!shown) return false;
+    for (const material of shown.materials) dress(material, { mode: MODE.picture }, this.scene, this.shared);
+    for (const mesh of [film?.lying, film?.torn, film?.wrinkled, ...this.airMeshes]) if (mesh) mesh.visible = false;
+    return true;
   }
 
   private pane(view: View, what: 'bath' | 'wanted' | 'predicted', at: { x: number; y: number; width: number; height: number }, from = 0, to = 1): void {

@@ -162,10 +162,10 @@ export function ColorField({ label, value, name, onChange }: { label: string; va
   );
 }
 
-export function CheckField({ label, checked, name, onChange }: { label: string; checked: boolean; name?: string; onChange: (checked: boolean) => void }) {
+export function CheckField({ label, checked, name, always, onChange }: { label: string; checked: boolean; name?: string; always?: boolean; onChange: (checked: boolean) => void }) {
   return (
     <label class="check">
-      <input type="checkbox" name={name} disabled={readOnly.value} checked={checked} onChange={(event) => onChange(event.currentTarget.checked)} />
+      <input type="checkbox" name={name} disabled={!always && readOnly.value} checked={checked} onChange={(event) => onChange(event.currentTarget.checked)} />
       <span>{label}</span>
     </label>
   );

@@ -108,6 +108,7 @@ export function frameOf(entry: Layer): Frame | null {
   if (!shown || entry.projection === 'film' || entry.projection === 'uv') return null;
   const flat = entry.projection === undefined || entry.projection === 'planar' || entry.projection === 'wrap';
   const far = 2 * Math.hypot(...shown.extent());
+  if (far === 0) return null; // no model yet
   let toward: Vec3 | null = entry.toward && flat ? shown.directionToPosed(entry.toward) : null;
   const given = entry.at_mm ? shown.toPosed(entry.at_mm) : null;
   if (given && !toward) {

@@ -1,7 +1,7 @@
 // The film image, live, with the outline of what lands on the object. Pointing links sheet and object.
 import { useEffect, useRef } from 'preact/hooks';
 import { useSignal } from '@preact/signals';
-import type { Result } from '../api.ts';
+import type { Result, SheetPicture } from '../api.ts';
 import { layersOf, withLayer, type Vec3 } from '../document.ts';
 import { between, fateOf, locate } from '../../../report/viewer/pick.js';
 import { outlineEdges } from '../../../report/viewer/film_shape.js';
@@ -10,6 +10,7 @@ import { t } from '../strings.ts';
 
 interface Picture {
   result: Result;
+  printed: SheetPicture;
   canvas: HTMLCanvasElement;
   lands: Path2D;
   torn: Path2D;
@@ -17,12 +18,19 @@ interface Picture {
 
 let last: Picture | null = null;
 
+// Of several dips each prints its own part.
+function printedOf(result: Result): SheetPicture {
+  const part = job.value?.wholeFinish.value?.sheets[result.dip];
+  return part ?? { ...result.sheet, rgba: result.printed };
+}
+
 function pictureOf(result: Result): Picture {
-  if (last?.result === result) return last;
-  const { width_px: w, height_px: h } = result.sheet;
+  const printed = printedOf(result);
+  if (last?.result === result && last.printed.rgba === printed.rgba) return last;
+  const { width_px: w, height_px: h } = printed;
   const canvas = document.createElement('canvas');
   [canvas.width, canvas.height] = [w, h];
-  canvas.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(result.printed), w, h), 0, 0);
+  canvas.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(printed.rgba), w, h), 0, 0);
   const { index, u, lying, tornList } = result.filmMesh;
   const outline = (triangles: number[]): Path2D => {
     const path = new Path2D();
@@ -32,7 +40,7 @@ function pictureOf(result: Result): Picture {
     }
     return path;
   };
-  last = { result, canvas, lands: outline(lying), torn: outline(tornList) };
+  last = { result, printed, canvas, lands: outline(lying), torn: outline(tornList) };
   return last;
 }
 
@@ -72,6 +80,7 @@ export function Sheet({ big = false }: { big?: boolean }) {
   const at = useSignal<{ u: [number, number]; x: number; y: number } | null>(null);
   const drag = useRef<{ u: [number, number]; from: Vec3 } | null>(null);
   const result = job.value?.result.value ?? null;
+  const finish = job.value?.wholeFinish.value ?? null;
 
   useEffect(() => {
     const observer = new ResizeObserver(([entry]) => {
@@ -88,14 +97,14 @@ export function Sheet({ big = false }: { big?: boolean }) {
 
   useEffect(() => {
     if (canvas.current && result && scale > 0) draw(canvas.current, result, scale);
-  }, [result, scale]);
+  }, [result, finish, scale]);
 
   useEffect(() => {
     const glass = lens.current;
     const spot = at.value;
     if (!glass || !spot || !result) return;
     const source = pictureOf(result).canvas;
-    const pixel_mm = result.film.width_mm / result.sheet.width_px;
+    const pixel_mm = result.film.width_mm / source.width;
     const context = glass.getContext('2d')!;
     const half_mm = LENS / TRUE_SIZE / 2;
     const half = half_mm / pixel_mm;

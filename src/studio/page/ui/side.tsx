@@ -13,7 +13,7 @@ export function Side() {
   return (
     <aside class="side" aria-label={t.findings.title}>
       <section class="sheet-section">
-        <h2>{t.sheet.title}</h2>
+        <h2>{severalDips() ? t.sheet.of(job.value!.dip.value + 1) : t.sheet.title}</h2>
         <Sheet />
         <p class="soft legend-line"><i class="lands" />{t.sheet.legend.lands} <i class="torn" />{t.sheet.legend.torn}</p>
       </section>
@@ -21,6 +21,8 @@ export function Side() {
     </aside>
   );
 }
+
+const severalDips = (): boolean => (job.value?.document.value.dips?.length ?? 0) > 1;
 
 export function applyMend(mend: Mend): void {
   if (mend.task) {
@@ -76,9 +78,7 @@ function Findings() {
   const open = job.value!;
   const problem = open.problem.value;
   const result = open.result.value;
-  const list = sorted(result?.findings ?? []);
-  const mind = list.filter(({ concern }) => concern !== 'none');
-  const fine = list.filter(({ concern }) => concern === 'none');
+  const finish = open.wholeFinish.value;
   return (
     <section class="findings-section">
       <h2>{t.findings.title}</h2>
@@ -91,14 +91,32 @@ function Findings() {
           </li>
         </ul>
       )}
-      {!problem && result && mind.length === 0 && <p class="soft">{t.findings.none}</p>}
-      {!problem && <ul class="findings">{mind.map((finding) => <FindingCard key={finding.key} finding={finding} />)}</ul>}
-      {!problem && fine.length > 0 && (
+      {!problem && finish && (
+        <>
+          <h3>{t.dips.together}</h3>
+          <FindingList findings={finish.findings} />
+          <h3>{t.findings.ofDip(open.dip.value + 1)}</h3>
+        </>
+      )}
+      {!problem && result && <FindingList findings={result.findings} />}
+    </section>
+  );
+}
+
+function FindingList({ findings }: { findings: readonly Finding[] }) {
+  const list = sorted(findings);
+  const mind = list.filter(({ concern }) => concern !== 'none');
+  const fine = list.filter(({ concern }) => concern === 'none');
+  return (
+    <>
+      {mind.length === 0 && <p class="soft">{t.findings.none}</p>}
+      <ul class="findings">{mind.map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} />)}</ul>
+      {fine.length > 0 && (
         <details class="fine">
           <summary><Icon name="check" /> {t.verdict.fine(fine.length)}</summary>
-          <ul class="findings">{fine.map((finding) => <FindingCard key={finding.key} finding={finding} />)}</ul>
+          <ul class="findings">{fine.map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} />)}</ul>
         </details>
       )}
-    </section>
+    </>
   );
 }

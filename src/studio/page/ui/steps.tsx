@@ -8,7 +8,7 @@ import {
   withoutDip, withoutLayer, withPose, withValue, type Json, type Layer, type Side, type Vec3,
 } from '../document.ts';
 import {
-  addFiles, allDips, change, changePose, chooseTool, defaults, drawn, goToStep, hello, job, layer, overlay, pose, readOnly, showView, stage, step,
+  addFiles, allDips, change, changePose, chooseOverlay, chooseTool, defaults, drawn, goToStep, hello, job, layer, overlay, pose, readOnly, showView, stage, step,
   STEPS, tool, value, type StepName,
 } from '../studio.ts';
 import { t } from '../strings.ts';
@@ -67,7 +67,7 @@ function summaryOf(name: StepName): string {
     case 'artwork':
       return t.steps.layers(layersOf(document).length);
     case 'dips':
-      return document.dips?.length ? t.steps.manyDips(document.dips.length, null) : t.steps.oneDip(depthText(pose.value.depth_mm));
+      return document.dips?.length ? t.steps.manyDips(document.dips.length, open.wholeFinish.value?.covered_share ?? null) : t.steps.oneDip(depthText(pose.value.depth_mm));
     case 'film':
       return t.steps.sheet(sheetName(), value<number>('print.dpi'));
   }
@@ -437,17 +437,39 @@ function DipsStep() {
             }} />
           </div>
         )}
-        {dips.length > 1 && (
-          <CheckField name="all-dips" label={t.dips.whole} checked={allDips.value} onChange={(on) => {
-            allDips.value = on;
-            overlay.value = 'none';
-            showView('object');
-          }} />
-        )}
       </Group>
+      {dips.length > 1 && <Together />}
       <PoseFields />
       <Tilt />
     </>
+  );
+}
+
+// What all dips make of the object.
+function Together() {
+  const open = job.value!;
+  const finish = open.wholeFinish.value;
+  const problem = open.finishProblem.value;
+  return (
+    <Group title={t.dips.together}>
+      <CheckField name="all-dips" label={t.dips.whole} checked={allDips.value} always onChange={(on) => {
+        allDips.value = on;
+        overlay.value = 'none';
+        showView('object');
+      }} />
+      {finish ? (
+        <>
+          <ul class="facts" data-name="finish" data-seams={finish.seams.length_mm.toFixed(0)}>
+            <li>{t.dips.coveredBy(finish.covered_share)}</li>
+            {finish.seams.length_mm > 0 && <li>{t.dips.seams(finish.seams.length_mm, finish.seams.overlap_mm)}</li>}
+            {finish.seams.length_mm > 0 && <li class="soft">{t.dips.seamError(finish.seams.error_mean, finish.seams.off_mm, finish.seams.error_mean_off)}</li>}
+          </ul>
+          <Button name="show-parts" label={t.dips.showParts} icon="eye" pressed={overlay.value === 'parts'} onClick={() => chooseOverlay(overlay.value === 'parts' ? 'none' : 'parts')} />
+        </>
+      ) : (
+        <p class={problem ? 'bad' : 'soft'} role="status">{problem || t.dips.joining}</p>
+      )}
+    </Group>
   );
 }
 
@@ -456,6 +478,7 @@ function DipRow({ at }: { at: number }) {
   const dip = open.document.value.dips![at]!;
   const shown = open.dip.value === at;
   const result = open.results.value.get(at);
+  const part = open.wholeFinish.value?.dips[at];
   return (
     <li class={shown ? 'dip chosen' : 'dip'}>
       <button type="button" class="pick" aria-pressed={shown} data-dip={at} onClick={() => open.show(at)}>
@@ -463,7 +486,11 @@ function DipRow({ at }: { at: number }) {
         <span>
           <b>{t.dips.dip(at + 1)}</b>
           <small>{t.model.shortSides[dip.down ?? '-z']}, {depthText(dip.depth_mm ?? 0)}</small>
-          {result && <small class={`mark ${result.verdict.concern}`}>{t.model.covered(result.figures['covered_share'] ?? 0)}</small>}
+          {part ? (
+            <small><i class="chip" style={{ background: part.color }} />{t.dips.prints(part.part_share)}</small>
+          ) : (
+            result && <small class={`mark ${result.verdict.concern}`}>{t.model.covered(result.figures['covered_share'] ?? 0)}</small>
+          )}
         </span>
       </button>
       <Button label={`${t.dips.lock}: ${t.dips.dip(at + 1)}`} icon={dip.locked ? 'lock' : 'unlock'} iconOnly kind="quiet" pressed={dip.locked ?? false} changes
@@ -475,19 +502,20 @@ function DipRow({ at }: { at: number }) {
 
 function DipThumbnail({ at }: { at: number }) {
   const result = job.value!.results.value.get(at);
-  if (!result) return <span class="letter" aria-hidden="true">{at + 1}</span>;
+  const sheet = job.value!.wholeFinish.value?.sheets[at] ?? (result && { ...result.sheet, rgba: result.printed });
+  if (!sheet) return <span class="letter" aria-hidden="true">{at + 1}</span>;
   const draw = (canvas: HTMLCanvasElement | null): void => {
     if (!canvas) return;
-    const { width_px: w, height_px: h } = result.sheet;
+    const { width_px: w, height_px: h, rgba } = sheet;
     const scale = Math.min(44 / w, 44 / h);
     canvas.width = Math.round(w * scale);
     canvas.height = Math.round(h * scale);
     const whole = document.createElement('canvas');
     [whole.width, whole.height] = [w, h];
-    whole.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(result.printed), w, h), 0, 0);
+    whole.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(rgba), w, h), 0, 0);
     canvas.getContext('2d')!.drawImage(whole, 0, 0, canvas.width, canvas.height);
   };
-  return <canvas class="thumb" key={result.result} ref={draw} aria-hidden="true" />;
+  return <canvas class="thumb" key={`${result?.result} ${sheet.rgba.byteOffset}`} ref={draw} aria-hidden="true" />;
 }
 
 function Tilt() {
@@ -525,6 +553,7 @@ function FilmStep() {
   );
   return (
     <>
+      <Presets />
       <Group>
         <div class="row">
           <SelectField
@@ -551,8 +580,71 @@ function FilmStep() {
         {choice('print.ink_side', t.film.ink, t.film.inkSides)}
         {choice('print.color', t.film.color, { rgb: 'RGB', cmyk: 'CMYK' })}
       </Group>
+      <ReportPage />
       <Everything />
     </>
+  );
+}
+
+const takeFocus = (element: HTMLElement | null): void => element?.focus();
+
+// The person's own profiles of film, printer and bath.
+function Presets() {
+  const open = job.value!;
+  const name = useSignal<string | null>(null);
+  const { profiles } = hello.value!;
+  const choose = async (chosen: string): Promise<void> => {
+    const patch = chosen && (await open.profile(chosen));
+    if (patch) change((document) => patched(document, patch), t.film.preset);
+  };
+  const keep = async (): Promise<void> => {
+    const given = name.value?.trim().replace(/\s+/g, '-') ?? '';
+    name.value = null;
+    const names = given && (await open.saveProfile(given));
+    if (names) hello.value = { ...hello.value!, profiles: names };
+  };
+  return (
+    <Group>
+      <div class="row">
+        <SelectField name="preset" label={t.film.preset} value="" options={[['', t.film.choosePreset], ...profiles.map((p) => [p, p] as const)]} onChange={(chosen) => void choose(chosen)} />
+        <Button name="keep-preset" label={t.film.keepPreset} icon="plus" iconOnly changes expanded={name.value !== null} onClick={() => (name.value = name.value === null ? '' : null)} />
+      </div>
+      {name.value !== null && (
+        <form class="row" onSubmit={(event) => {
+          event.preventDefault();
+          void keep();
+        }}>
+          <input class="wide" name="preset-name" aria-label={t.film.presetName} placeholder={t.film.presetName} value={name.value} ref={takeFocus} onInput={(event) => (name.value = event.currentTarget.value)} />
+          <button type="submit" class="button main" disabled={!name.value.trim()}>{t.film.keep}</button>
+        </form>
+      )}
+    </Group>
+  );
+}
+
+// For whom the report is that comes with the sheet, and the logo above it.
+function ReportPage() {
+  const open = job.value!;
+  const logo = value<string>('report.logo');
+  const setLogo = (file: string): void => setValue('report.logo', file, t.film.logo);
+  const choose = async ([file]: File[]): Promise<void> => {
+    const name = file && (await open.keep(file));
+    if (name) setLogo(name);
+  };
+  return (
+    <Group title={t.film.report}>
+      <SegmentsField label={t.film.reportFor} value={value<string>('report.for')} options={Object.entries(t.film.readers)} onChange={(next) => setValue('report.for', next, t.film.report)} />
+      <div class="row">
+        {logo ? (
+          <>
+            <img class="logo" src={api.fileUrl(open.id, logo)} alt={t.film.logo} />
+            <Button name="no-logo" label={t.film.noLogo} icon="trash" iconOnly kind="quiet" changes onClick={() => setLogo('')} />
+          </>
+        ) : (
+          <Files name="add-logo" label={t.film.logo} icon="picture" accept={extensions(hello.value!.picture_types)} onFiles={(files) => void choose(files)} />
+        )}
+      </div>
+    </Group>
   );
 }
 
@@ -583,7 +675,7 @@ function Everything() {
 }
 
 function AnyField({ parameter }: { parameter: Parameter }) {
-  const { name, help, choices } = parameter;
+  const { name, help, choices = [] } = parameter;
   const held = value<Json>(name);
   const set = (next: Json, live = false): void => setValue(name, next, name, live);
   const input = () => {

@@ -107,6 +107,7 @@ function Name() {
 
 interface Said {
   concern: Concern | 'wait';
+  head?: string;
   text: string;
 }
 
@@ -115,13 +116,17 @@ function said(): Said {
   const problem = open.problem.value;
   if (!open.document.value.object?.file) return { concern: 'wait', text: t.verdict.empty };
   if (problem) return { concern: problem.code === 'no-model' ? 'wait' : 'stop', text: problem.text };
-  const verdict = open.result.value?.verdict;
-  return verdict ? { concern: verdict.concern, text: verdict.text || verdict.headline } : { concern: 'wait', text: t.verdict.waiting };
+  const verdict = open.wholeFinish.value?.verdict ?? open.result.value?.verdict;
+  if (!verdict) return { concern: 'wait', text: t.verdict.waiting };
+  return verdict.short
+    ? { concern: verdict.concern, head: verdict.headline, text: verdict.short }
+    : { concern: verdict.concern, text: verdict.text || verdict.headline };
 }
 
 function VerdictLine() {
   const open = job.value!;
-  const { concern, text } = said();
+  const { concern, head, text } = said();
+  const all = head ? `${head}: ${text}` : text;
   const draft = concern !== 'wait' && open.draft.value && !open.problem.value;
   const working = open.working.value;
   return (
@@ -130,12 +135,12 @@ function VerdictLine() {
       class={`verdict ${concern}`}
       data-draft={draft}
       aria-expanded={panel.value === 'verdict'}
-      aria-label={concern === 'wait' ? text : t.verdict.label(t.verdict.level[concern], text)}
-      title={text}
+      aria-label={concern === 'wait' ? text : t.verdict.label(t.verdict.level[concern], all)}
+      title={all}
       onClick={() => toggle('verdict')}
     >
       {concern === 'wait' ? <span class="spinner" data-still={!working} /> : <Icon name={CONCERN_ICON[concern]} />}
-      <span class="sentence" aria-live="polite">{text}</span>
+      <span class="sentence" aria-live="polite">{head && <b>{head}</b>} {text}</span>
       {draft && <span class="badge" title={t.verdict.draftHelp}>{t.verdict.draft}</span>}
       {working?.fraction !== undefined && <i class="thin" style={{ width: `${100 * working.fraction}%` }} />}
     </button>
@@ -144,11 +149,15 @@ function VerdictLine() {
 
 function VerdictPanel() {
   const result = job.value!.result.value;
+  const finish = job.value!.wholeFinish.value;
+  const verdict = finish?.verdict ?? result?.verdict;
   return (
     <section class="panel verdict-panel" aria-label={t.verdict.restsOn}>
-      <PanelHead title={result?.verdict.headline ?? t.verdict.waiting} />
-      {result && <p>{result.verdict.text}</p>}
-      <ul class="findings">{sorted(result?.findings ?? []).map((finding) => <FindingCard key={finding.key} finding={finding} />)}</ul>
+      <PanelHead title={verdict?.headline ?? t.verdict.waiting} />
+      {verdict && <p>{verdict.text}</p>}
+      {finish && <ul class="findings">{sorted(finish.findings).map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} />)}</ul>}
+      {finish && <h3>{t.findings.ofDip(job.value!.dip.value + 1)}</h3>}
+      <ul class="findings">{sorted(result?.findings ?? []).map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} />)}</ul>
       {result && result.warnings.length > 0 && <ul class="notes">{result.warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>}
     </section>
   );

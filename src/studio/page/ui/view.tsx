@@ -37,7 +37,7 @@ function texturesOf(mesh: MeshData): Promise<THREE.Texture[]> {
   if (known) return known;
   const loading = loadTextures(mesh);
   textures.set(mesh.mesh, loading);
-  if (textures.size > 4) textures.delete(textures.keys().next().value!);
+  if (textures.size > 6) textures.delete(textures.keys().next().value!);
   return loading;
 }
 
@@ -75,11 +75,18 @@ function follow(shown: Stage): () => void {
       if (held) shown.setFrames(held.result, held.frames);
     }),
     effect(() => {
-      const open = job.value;
-      const dip = open?.dip.value;
-      const others = allDips.value && open ? [...open.results.value.values()].filter((r) => r.dip !== dip) : [];
+      const finish = job.value?.finish.value ?? null;
+      const several = (job.value?.document.value.dips?.length ?? 0) > 1;
+      if (!several && overlay.peek() === 'parts') overlay.value = 'none';
+      if (!finish || !several) return shown.setFinish(null, { colors: [], parts: [] });
+      const { colors, byDip: parts } = finish;
+      void Promise.all([texturesOf(colors), texturesOf(parts)]).then(([ofColors, ofParts]) => {
+        if (job.value?.finish.value === finish) shown.setFinish({ colors, parts }, { colors: ofColors, parts: ofParts });
+      }, () => undefined);
+    }),
+    effect(() => {
       shown.allDips = allDips.value;
-      shown.setOtherResults(others);
+      shown.invalidate();
     }),
     effect(() => {
       shown.overlay = overlay.value;
@@ -199,7 +206,7 @@ function ViewBar() {
             always
             hideLabel
             value={overlay.value}
-            options={STUDIO_OVERLAYS.map(({ key }) => [key, t.stage.overlays[key] ?? key] as const)}
+            options={STUDIO_OVERLAYS.filter(({ key }) => key !== 'parts' || overlay.value === 'parts' || job.value?.wholeFinish.value).map(({ key }) => [key, t.stage.overlays[key] ?? key] as const)}
             onChange={(key) => chooseOverlay(key as Overlay)}
           />
           <SelectField
@@ -349,9 +356,24 @@ function DipBar() {
   );
 }
 
+function PartsLegend() {
+  const finish = job.value?.finish.value;
+  if (!finish) return null;
+  return (
+    <div class="legend">
+      <p>{t.stage.partsTitle}</p>
+      <div class="patches">
+        {finish.dips.map(({ color, part_share }, k) => <span key={color}><i style={{ background: color }} />{t.dips.dip(k + 1)}, {t.dips.prints(part_share)}</span>)}
+        <span><i style={{ background: '#a0a0a0' }} />{t.dips.none}</span>
+      </div>
+    </div>
+  );
+}
+
 function Legend() {
   const result = job.value?.result.value ?? null;
   if (view.value !== 'object' || overlay.value === 'none' || !result) return null;
+  if (overlay.value === 'parts') return <PartsLegend />;
   const text = overlayOf(overlay.value).legend(sceneOf(result, [1, 1, 1]));
   if (!text) return null;
   return (

@@ -1,4 +1,4 @@
-#include "studio/plain_words.h"
+#include "report/plain_words.h"
 
 #include <regex>
 #include <utility>
