@@ -39,10 +39,14 @@ struct Light {
   double lamp = 1;  // share of the lamp
 };
 
+// Of every pixel: in single precision, which takes half the memory.
 struct Sample {
   int triangle = -1;  // -1: the backdrop
-  double u = 0, v = 0, depth = 0;
-  Vec3 flat = Vec3::Zero();  // unit normal of the triangle, turned to the eye
+  float u = 0, v = 0, depth = 0;
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  // unit, of the triangle, turned to the eye
+
+  SurfacePoint point() const { return {triangle, double(u), double(v)}; }
+  Vec3 flat() const { return normal.cast<double>(); }
 };
 
 struct Shade {
@@ -141,17 +145,16 @@ class Stage {
     if (!hit) return {};
     // Turned to the eye: inside and outside of an open surface look alike.
     const Vec3 n = face_normal(studio_.object, hit->triangle);
-    return {hit->triangle, hit->u, hit->v, hit->t, n.dot(along) > 0 ? Vec3(-n) : n};
+    return {hit->triangle, float(hit->u), float(hit->v), float(hit->t),
+            (n.dot(along) > 0 ? Vec3(-n) : n).cast<float>()};
   }
 
-  Vec3 position(const Sample& s) const {
-    return position_at(studio_.object, {s.triangle, s.u, s.v});
-  }
+  Vec3 position(const Sample& s) const { return position_at(studio_.object, s.point()); }
 
   static Vec3 smooth_normal(const std::vector<CornerNormals>& normals, const Sample& s) {
-    const Vec3 n = normal_between(normals[std::size_t(s.triangle)], s.u, s.v);
-    if (n.isZero()) return s.flat;
-    return n.dot(s.flat) < 0 ? Vec3(-n) : n;
+    const Vec3 n = normal_between(normals[std::size_t(s.triangle)], double(s.u), double(s.v));
+    if (n.isZero()) return s.flat();
+    return n.dot(s.flat()) < 0 ? Vec3(-n) : n;
   }
 
   // The light of the nearest pixel centre that shows the surface of this sample.
@@ -163,7 +166,8 @@ class Stage {
         if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
         const Sample& other = centre_[at(x + dx, y + dy)];
         if (other.triangle < 0) continue;
-        const double apart = std::abs(other.depth - s.depth) + 1e-5 * extent_ * (dx * dx + dy * dy);
+        const double apart =
+            std::abs(double(other.depth - s.depth)) + 1e-5 * extent_ * (dx * dx + dy * dy);
         if (apart < nearest) {
           nearest = apart;
           best = light_[at(x + dx, y + dy)];
@@ -210,10 +214,11 @@ class Stage {
     const Vec3 p = position(s);
     const CornerNormals& normal = studio_.normals[std::size_t(s.triangle)];
     const Triangle& triangle = studio_.object.triangles[std::size_t(s.triangle)];
-    const std::array<double, 3> weight = {1 - s.u - s.v, s.u, s.v};
+    const SurfacePoint at = s.point();
+    const std::array<double, 3> weight = {1 - at.u - at.v, at.u, at.v};
     Vec3 lifted = p;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 n = normal[k].dot(s.flat) < 0 ? Vec3(-normal[k]) : normal[k];
+      const Vec3 n = normal[k].dot(s.flat()) < 0 ? Vec3(-normal[k]) : normal[k];
       const Vec3& corner = studio_.object.positions[std::size_t(triangle[k])];
       lifted += weight[k] * std::max(0.0, (corner - p).dot(n)) * n;
     }
@@ -232,12 +237,13 @@ class Stage {
   }
 
   Light cast_from(const Sample& s, int phase) const {
-    const Vec3 origin = rounded_position(s) + 2e-4 * extent_ * s.flat;
-    const auto frame = frame_around(s.flat);
+    const Vec3 flat = s.flat().normalized();
+    const Vec3 origin = rounded_position(s) + 2e-4 * extent_ * flat;
+    const auto frame = frame_around(flat);
     Light light{0, 0};
     for (int k = 0; k < kSkyRays; ++k) {
       const Vec3& d = sky_rays_[std::size_t(phase + kPhases * k)];
-      if (!blocked(origin, d.x() * frame[0] + d.y() * frame[1] + d.z() * s.flat)) {
+      if (!blocked(origin, d.x() * frame[0] + d.y() * frame[1] + d.z() * flat)) {
         light.sky += 1.0 / kSkyRays;
       }
     }
@@ -274,16 +280,16 @@ class Stage {
 
   Light gathered(const std::vector<Light>& raw, int x, int y) const {
     const Sample& self = centre_[at(x, y)];
-    const double pixel = 2 * camera_.half_width * self.depth / width_;
+    const double pixel = 2 * camera_.half_width * double(self.depth) / width_;
     Light sum{0, 0};
     double total = 0;
     for (int dy = -2; dy <= 2; ++dy) {
       for (int dx = -2; dx <= 2; ++dx) {
         if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
         const Sample& other = centre_[at(x + dx, y + dy)];
-        if (other.triangle < 0 || std::abs(other.depth - self.depth) > 12 * pixel) continue;
+        if (other.triangle < 0 || std::abs(double(other.depth - self.depth)) > 12 * pixel) continue;
         const double weight = (std::abs(dx) == 2 ? 0.5 : 1) * (std::abs(dy) == 2 ? 0.5 : 1);
-        if (self.flat.dot(other.flat) < 0.5) continue;  // round a corner
+        if (self.normal.dot(other.normal) < 0.5F) continue;  // round a corner
         const Light& light = raw[at(x + dx, y + dy)];
         sum.sky += weight * light.sky;
         sum.lamp += weight * light.lamp;
@@ -407,7 +413,7 @@ class Painter {
     const double level = lit_level + shading_.flatness * (1 - lit_level);
     const Vec3 p = stage_.position(s);
     const Vec3 normal = face_normal(studio_.object, s.triangle);
-    const SurfacePoint point{s.triangle, s.u, s.v};
+    const SurfacePoint point = s.point();
     const auto lit = [&](const LinearColor& c) {
       const float f = float(level);
       return std::array<float, 3>{f * c.r, f * c.g, f * c.b};
