@@ -40,6 +40,16 @@ struct Light {
 };
 
 // Of every pixel: in single precision, which takes half the memory.
+struct PixelLight {
+  float sky = 1, lamp = 1;
+  PixelLight() = default;
+  PixelLight(const Light& light)  // NOLINT(google-explicit-constructor)
+      : sky(float(light.sky)), lamp(float(light.lamp)) {}
+  operator Light() const {  // NOLINT(google-explicit-constructor)
+    return {double(sky), double(lamp)};
+  }
+};
+
 struct Sample {
   int triangle = -1;  // -1: the backdrop
   float u = 0, v = 0, depth = 0;
@@ -121,7 +131,7 @@ class Stage {
   const Studio& studio() const { return studio_; }
   const Camera& camera() const { return camera_; }
   const Sample& centre(int x, int y) const { return centre_[at(x, y)]; }
-  const Light& light(int x, int y) const { return light_[at(x, y)]; }
+  Light light(int x, int y) const { return light_[at(x, y)]; }
   const Vec3& ground_normal() const { return ground_normal_; }
   const Vec3& lamp() const { return lamp_; }
   int width() const { return width_; }
@@ -270,7 +280,7 @@ class Stage {
   // Gathers the 4 x 4 phases (a 5 x 5 window with half weight on its rim) among pixels that show
   // the same piece of surface.
   void smooth_light() {
-    const std::vector<Light> raw = light_;
+    const std::vector<PixelLight> raw = light_;
     for_rows([&](int y) {
       for (int x = 0; x < width_; ++x) {
         if (centre_[at(x, y)].triangle >= 0) light_[at(x, y)] = gathered(raw, x, y);
@@ -278,7 +288,7 @@ class Stage {
     });
   }
 
-  Light gathered(const std::vector<Light>& raw, int x, int y) const {
+  Light gathered(const std::vector<PixelLight>& raw, int x, int y) const {
     const Sample& self = centre_[at(x, y)];
     const double pixel = 2 * camera_.half_width * double(self.depth) / width_;
     Light sum{0, 0};
@@ -290,7 +300,7 @@ class Stage {
         if (other.triangle < 0 || std::abs(double(other.depth - self.depth)) > 12 * pixel) continue;
         const double weight = (std::abs(dx) == 2 ? 0.5 : 1) * (std::abs(dy) == 2 ? 0.5 : 1);
         if (self.normal.dot(other.normal) < 0.5F) continue;  // round a corner
-        const Light& light = raw[at(x + dx, y + dy)];
+        const Light light = raw[at(x + dx, y + dy)];
         sum.sky += weight * light.sky;
         sum.lamp += weight * light.lamp;
         total += weight;
@@ -366,7 +376,7 @@ class Stage {
   std::vector<Vec3> lamp_rays_, ground_sky_rays_, ground_lamp_rays_;
   double ground_height_ = 0;
   std::vector<Sample> centre_;
-  std::vector<Light> light_;
+  std::vector<PixelLight> light_;
   std::vector<Light> ground_;
   int coarse_width_ = 0;
   int coarse_height_ = 0;
