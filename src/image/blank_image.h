@@ -1,7 +1,7 @@
 // Pictures of which most stays blank.
 #pragma once
 
-#include "image/blank_pages.h"
+#include "base/blank_pages.h"
 #include "image/image.h"
 
 namespace hydrodip {

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "base/blank_pages.h"
 #include "base/parallel.h"
 #include "image/blank_image.h"
-#include "image/blank_pages.h"
 #include "image/to_byte.h"
 #include "ink/difference.h"
 #include "transfer/area_ratio.h"

@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "base/blank_pages.h"
 #include "base/parallel.h"
 #include "image/blank_image.h"
-#include "image/blank_pages.h"
 #include "image/to_byte.h"
 #include "transfer/texture_mean.h"
 

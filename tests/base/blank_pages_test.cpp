@@ -1,4 +1,4 @@
-#include "image/blank_pages.h"
+#include "base/blank_pages.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
