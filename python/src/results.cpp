@@ -432,7 +432,9 @@ void bind_design(py::module_& m) {
             const Image& i = d.designed->ink.ink.on_object;
             return image_view(i.rgba, i.width_px, i.height_px, d.designed);
           },
-          "(rows, columns, 4) uint8: what each pixel will look like on the object. A view.")
+          "(rows, columns, 4) uint8: what each pixel will look like on the object; transparent "
+          "where "
+          "no film lies on it. A view.")
       .def_property_readonly(
           "dpi", [](const Design& d) { return d.designed->raster.dpi; },
           "Pixels per inch of these.")

@@ -121,12 +121,6 @@ static toff_t memory_size(thandle_t handle) {
 // What libtiff makes of one strip; empty if it cannot.
 std::vector<std::uint8_t> compressed_strip(const InkImage& image, int first_row, bool mirror) {
   const int rows = std::min(kRowsPerStrip, image.height_px - first_row);
-  std::vector<std::uint8_t> pixels, row(std::size_t(4) * std::size_t(image.width_px));
-  for (int y = first_row; y < first_row + rows; ++y) {
-    check_cancelled();
-    fill_row(image, y, mirror, row);
-    pixels.insert(pixels.end(), row.begin(), row.end());
-  }
   MemoryFile file;
   std::string message;
   TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
@@ -138,7 +132,13 @@ std::vector<std::uint8_t> compressed_strip(const InkImage& image, int first_row,
   if (!tiff) return {};
   describe(tiff.get(), image, {}, 0);
   TIFFSetField(tiff.get(), TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(rows));
-  if (TIFFWriteEncodedStrip(tiff.get(), 0, pixels.data(), tmsize_t(pixels.size())) < 0) return {};
+  std::vector<std::uint8_t> row(std::size_t(4) * std::size_t(image.width_px));
+  for (int y = 0; y < rows; ++y) {
+    check_cancelled();
+    fill_row(image, first_row + y, mirror, row);
+    if (TIFFWriteScanline(tiff.get(), row.data(), static_cast<std::uint32_t>(y), 0) != 1) return {};
+  }
+  if (TIFFFlushData(tiff.get()) != 1) return {};
   const auto begin = file.bytes.begin() + std::ptrdiff_t(TIFFGetStrileOffset(tiff.get(), 0));
   return {begin, begin + std::ptrdiff_t(TIFFGetStrileByteCount(tiff.get(), 0))};
 }
