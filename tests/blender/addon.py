@@ -50,10 +50,12 @@ def check_print(folder):
     """What is predicted at a point of the object is what its texture has there."""
     scene, settings = scenes.start(0.001)
     settings.output = folder
+    settings.options += " --set print.dpi=100 --set preview.pictures=on --set preview.width_px=200"
     target = scenes.keel(1.0)
     run("print")
     image = bpy.data.images["print.png"]
-    assert tuple(image.size) == (round(110 / 25.4 * 300), round(90 / 25.4 * 300)), tuple(image.size)
+    assert tuple(image.size) == (round(110 / 25.4 * 100), round(90 / 25.4 * 100)), tuple(image.size)
+    assert "preview.png" in bpy.data.images and "maps.png" in bpy.data.images
     prediction, sheet = scenes.brought("prediction"), scenes.brought("sheet")
     own = scenes.places(target)
     flat = scenes.places(sheet)
@@ -110,6 +112,7 @@ def check_plan(folder):
     settings.output = folder
     scenes.keel(1.0)
     settings.dips = 2
+    settings.options += " --set film.elements=600"
     run("plan")
     assert len(settings.poses) == 2
     assert os.path.exists(os.path.join(folder, "keel-plan", "plan.toml"))
@@ -127,7 +130,7 @@ def check_job(folder):
                   "[film]\nwidth_mm = 110\nheight_mm = 90\nelements = 1500\n"
                   "[dip]\ndepth_mm = 8\nstep_mm = 1\nair_cells = 0\n")
     settings.output = folder
-    settings.options = "--set preview.width_px=200"
+    settings.options = "--set preview.pictures=off --set plan.suggest=off"
     assert bpy.ops.hydrodip.open_job(filepath=job) == {"FINISHED"}, settings.message
     made, film = scenes.brought("object"), scenes.brought("film")
     places = 1000 * scenes.places(made)

@@ -11,7 +11,8 @@ sys.dont_write_bytecode = True
 
 import hydrodip_addon  # noqa: E402
 
-QUICK = "--set film.elements=1500 --set dip.step_mm=1 --set dip.air_cells=0 --set preview.width_px=200 --set plan.suggest=off"
+QUICK = ("--set film.elements=1500 --set dip.step_mm=1 --set dip.air_cells=0 --set preview.pictures=off "
+         "--set plan.suggest=off")
 
 
 def start(scale_length):

@@ -5,6 +5,7 @@ python=$2
 schemas=$3
 source=$4
 
+coarse='--set film.elements=300 --set preview.pictures=off' # for what looks for a way to hold it
 write_colored colored.ply
 write_tetrahedron tetra.obj
 "$hydrodip" sample sphere -o . --quiet > sample.txt || fail 'sample'
@@ -13,8 +14,8 @@ write_tetrahedron tetra.obj
   "$hydrodip" print colored.ply $quick -o print --quiet || fail 'print'
   "$hydrodip" simulate colored.ply $quick_simulate --set dip.tilt_deg=20 -o simulate --quiet || fail 'simulate'
   "$hydrodip" inspect tetra.obj -o inspect --quiet || fail 'inspect'
-  "$hydrodip" plan colored.ply $quick_simulate --dips 2 -o plan --quiet || fail 'plan'
-  "$hydrodip" print plan/plan.toml $quick -o dips --quiet || fail 'print of a plan'
+  "$hydrodip" plan colored.ply $quick_simulate $coarse --dips 2 -o plan --quiet || fail 'plan'
+  "$hydrodip" print plan/plan.toml $quick $coarse -o dips --quiet || fail 'print of a plan'
   "$hydrodip" orient colored.ply $quick_simulate -o orient --quiet || fail 'orient'
   "$hydrodip" nest colored.ply colored.ply --film a4 --set film.elements=800 --set dip.step_mm=1 --dpi 72 \
     --set preview.width_px=200 -o nest --quiet || fail 'nest'
