@@ -2,6 +2,9 @@
 # small program that is built from the same files.
 file(GLOB manual_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/apps/manual/*.cpp)
 add_executable(hydrodip_manual ${manual_sources})
+if(HYDRODIP_UNITY)
+  hydrodip_unity(hydrodip_manual ${manual_sources})
+endif()
 target_link_libraries(hydrodip_manual PRIVATE hydrodip_command_line CLI11::CLI11
                                               nlohmann_json::nlohmann_json)
 
