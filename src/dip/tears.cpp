@@ -31,11 +31,9 @@ void Tears::release_overstretched(double travelled_mm, const FloatingSheet& shee
   if (!(limit > 0) && told.empty()) return;
   if (limit > 0)
     for (std::int32_t t : sheet.overstretched(limit)) let_go(t, travelled_mm);
-  // The scraps of what was told were told, too.
-  const bool has_news = !torn_now_.empty();
   for (std::size_t t = 0; t < told.size(); ++t)
     if (sheet.is_usable(t) && travelled_mm >= told[t]) let_go(std::int32_t(t), travelled_mm);
-  if (has_news) drop_scraps(travelled_mm, sheet);
+  if (!torn_now_.empty()) drop_scraps(travelled_mm, sheet);
 }
 
 void Tears::let_go(std::int32_t t, double travelled_mm) {

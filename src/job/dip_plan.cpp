@@ -104,7 +104,7 @@ class Planning {
     SearchOptions options;
     options.confirm = false;
     options.first_elements = kDraftElements;
-    options.better = false;  // those that are chosen together are bettered together
+    options.refined = std::max(options.refined, wanted);
     const SearchResult found = search_holds(task_, config_.object.pose, options, context_);
     plan_.trial_dips += found.trials.size();
     const TrialTask coarse = trial_task(task_);

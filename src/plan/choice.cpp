@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLeastGain = 1e-4;  // of the weight
 constexpr int kMostExchanges = 40;
-constexpr double kRings_deg[] = {20, 12, 6};
+constexpr double kRings_deg[] = {12, 6};
 constexpr int kAround = 6;
 
 // The best worth at each target so far, and the weights.

@@ -60,7 +60,6 @@ class Search {
           "bath.width_mm=..., bath.height_mm, bath.depth_mm");
     if (rough_.film.elements < coarse_.film.elements) dip_again(found);
     for (const double ring_deg : kRings_deg) {
-      if (!options_.better) break;
       better(found, ring_deg);
       // Those that fall behind are not followed any further.
       found = best_of(found, std::max(options_.best, int(found.size()) - 1));

@@ -16,7 +16,6 @@ struct SearchOptions {
   int refined = 4;      // so many of them, that far apart at least
   double apart_deg = 30;
   int first_elements = 5000;  // of the film in which the directions are tried
-  bool better = true;         // try poses like the best ones
   bool confirm = true;        // dip the best as finely as the job
 };
 
