@@ -80,7 +80,6 @@ TEST(InkRoundsSlow, SettleWhereATearLineCrossesThePicture) {
   EXPECT_EQ(all.result.rounds.front().mean_modulus, 1);
   EXPECT_TRUE(all.result.settled);
   EXPECT_LT(all.result.last_change_mm(), kSettled_mm);
-  EXPECT_TRUE(all.warnings.empty());
 }
 
 TEST(InkRounds, AreMadeAtMostAsOftenAsAsked) {
