@@ -51,7 +51,6 @@ Object beast_on_four_legs() {
 struct Settled {
   DippedObject dipped;
   InkResult result;
-  std::vector<std::string> warnings;
 };
 
 Settled settled(Object object, const DesignOptions& options) {
@@ -61,7 +60,7 @@ Settled settled(Object object, const DesignOptions& options) {
   const PosedObject posed(shared, {});
   Designed made = design({posed, *model_paint(shared), Allotment(), *make_device_model(), options},
                          timings, context);
-  return {std::move(made.dipped), std::move(made.ink), context.warnings()};
+  return {std::move(made.dipped), std::move(made.ink)};
 }
 
 // Film that has torn takes no part in the measure, so that the rest all but settles.
