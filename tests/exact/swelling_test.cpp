@@ -38,7 +38,9 @@ TEST(Swelling, LandsAsTheExactSolutionOfTheLargerDisc) {
   EXPECT_LT(worst, 0.05);
   // Where the object first touches, a printed square millimetre has become this many.
   for (std::size_t v = 0; v < film.u.size(); ++v)
-    if (film.u[v].norm() < 1e-9) EXPECT_NEAR(dipped.area_ratio[v], kSwelling * kSwelling, 0.003);
+    if (film.u[v].norm() < 1e-9) {
+      EXPECT_NEAR(dipped.area_ratio[v], kSwelling * kSwelling, 0.003);
+    }
 }
 
 // Unevenly swollen: the same as film that was as large from the start.

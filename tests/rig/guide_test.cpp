@@ -51,12 +51,11 @@ TEST_F(GuideTest, AsksWhereTheFilmLiesAndKeepsIt) {
   GuidedBench guided;
   write_file(folder_ / "camera.json", std::string("{}"));
   const auto photo = [&](double x_mm, const char* hash) {
-    write_file(folder_ / "registration.json",
-               Json{{"shift_mm", {{"x", x_mm}, {"y", -0.5}}},
-                    {"turn_deg", {{"value", 0.25}}},
-                    {"swelling", {{"x", 1.02}, {"y", 1.01}}},
-                    {"photo", {{"sha256", hash}}}}
-                   .dump());
+    write_file(folder_ / "registration.json", Json{{"shift_mm", {{"x", x_mm}, {"y", -0.5}}},
+                                                   {"turn_deg", {{"value", 0.25}}},
+                                                   {"swelling", {{"x", 1.02}, {"y", 1.01}}},
+                                                   {"photo", {{"sha256", hash}}}}
+                                                  .dump());
   };
   photo(9, "old");  // of an earlier dip
   int questions = 0;

@@ -43,7 +43,9 @@ TEST(FilmMarks, AreSixAndMoreInEveryMarginThatCanHoldThem) {
         const Vec2 free = 0.5 * size - Vec2(margin, margin);
         EXPECT_FALSE(overlap(outline, {-free, free}));
         for (const MarkPlace& other : marks)
-          if (other.id != mark.id) EXPECT_FALSE(overlap(outline, mark_outline(other)));
+          if (other.id != mark.id) {
+            EXPECT_FALSE(overlap(outline, mark_outline(other)));
+          }
       }
       EXPECT_EQ(ids.size(), marks.size());
     }
