@@ -11,19 +11,17 @@ namespace hydrodip {
 
 namespace {
 
-// The two dips are made on film of so many times fewer triangles, if those are at least so many, in
-// steps that are so many times longer, up to a length.
+// The two dips are made on film of so many times fewer triangles, but at least so many, in steps
+// that are so many times longer, up to a length.
 constexpr int kFewer = 4;
 constexpr int kFewestElements = 4000;
 constexpr double kLonger = 2;
 constexpr double kLongestStep_mm = 1;
 // Film that one of the two has lost lies nowhere.
 constexpr double kNowhere_mm = 10;
-// Where film that floats will lie is known to so many cells.
-constexpr double kUnsureAfloat = 2;
 
 FilmOptions coarser(FilmOptions film) {
-  film.elements /= kFewer;
+  film.elements = std::min(film.elements, std::max(film.elements / kFewer, kFewestElements));
   return film;
 }
 
@@ -51,43 +49,6 @@ std::vector<double> modulus_on(const FilmMesh& coarse, const FilmMesh& fine,
   return result;
 }
 
-std::vector<double> interpolated(const std::vector<double>& moved, const FilmMesh& coarse,
-                                 const FilmMesh& film) {
-  std::vector<double> result(film.u.size(), 0);
-  parallel_for(result.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const FilmLocation at = locate_flat(coarse, film.u[v]);
-      if (at.triangle < 0) continue;
-      const Triangle& corner = coarse.triangles[std::size_t(at.triangle)];
-      for (std::size_t k = 0; k < 3; ++k)
-        result[v] += at.weight[Eigen::Index(k)] * moved[std::size_t(corner[k])];
-      result[v] = std::max(0.0, result[v]);
-    }
-  });
-  return result;
-}
-
-// Per vertex of the coarse film: how far the finer one that asks lies from it. Coarse film that
-// still floats tells little of where it will lie.
-std::vector<double> apart(const DippedFilm& late, const DippedFilm& dipped) {
-  const FilmMesh& coarse = late.mesh();
-  std::vector<double> result(coarse.u.size(), 0);
-  parallel_for(result.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const FilmLocation at = locate_flat(dipped.mesh(), coarse.u[v]);
-      if (at.triangle < 0 || !dipped.lies_on_object(std::size_t(at.triangle))) continue;
-      const Triangle& corner = dipped.mesh().triangles[std::size_t(at.triangle)];
-      Vec3 place = Vec3::Zero();
-      for (std::size_t k = 0; k < 3; ++k)
-        place += at.weight[Eigen::Index(k)] * dipped.position[std::size_t(corner[k])];
-      const double unsure =
-          late.state[v] == VertexState::kAttached ? 0 : kUnsureAfloat * coarse.cell_mm;
-      result[v] = std::max(0.0, (place - late.position[v]).norm() - unsure);
-    }
-  });
-  return result;
-}
-
 // Per vertex: whether any film there is left.
 std::vector<std::uint8_t> left_over(const DippedFilm& film) {
   std::vector<std::uint8_t> left(film.position.size(), 0);
@@ -104,33 +65,36 @@ std::vector<double> moved_by_tears(const DippedFilm& dipped, const std::vector<V
                                    const Trajectory& trajectory, const DipOptions& options,
                                    const RunContext& context) {
   const FilmMesh& film = dipped.mesh();
-  const FilmMaterial& material = options.material;
-  const bool is_coarse = film.options.elements < kFewer * kFewestElements;
+  const auto coarse = std::make_shared<const FilmMesh>(make_film_mesh(coarser(film.options)));
   DipOptions either = options;
+  either.step_mm = std::min(kLonger * options.step_mm, std::max(options.step_mm, kLongestStep_mm));
+  if (!options.modulus.empty()) either.modulus = modulus_on(*coarse, film, options.modulus);
   either.asks_what_moves = false;
   either.moved_mm.clear();
-  SharedFilmMesh mesh = dipped.shared_mesh;
-  if (!is_coarse) {
-    mesh = std::make_shared<const FilmMesh>(make_film_mesh(coarser(film.options)));
-    either.step_mm =
-        std::min(kLonger * options.step_mm, std::max(options.step_mm, kLongestStep_mm));
-    if (!options.modulus.empty()) either.modulus = modulus_on(*mesh, film, options.modulus);
-  }
   const auto dip_that_lets_go = [&](double at) {
     either.material.tear_stretch = either.material.lost_stretch = at;
-    return dip(mesh, positions, triangles, surface, trajectory, either, context.quiet()).film;
+    return dip(coarse, positions, triangles, surface, trajectory, either, context.quiet()).film;
   };
-  const DippedFilm late =
-      is_coarse ? dipped : dip_that_lets_go(std::max(material.lost_stretch, material.tear_stretch));
+  const FilmMaterial& material = options.material;
+  const DippedFilm late = dip_that_lets_go(std::max(material.lost_stretch, material.tear_stretch));
   const DippedFilm early = dip_that_lets_go(std::min(material.safe_stretch, material.tear_stretch));
   const std::vector<std::uint8_t> left = left_over(early);
-  std::vector<double> moved(mesh->u.size(), 0);
-  if (!is_coarse) moved = apart(late, dipped);
-  for (std::size_t v = 0; v < moved.size(); ++v) {
-    const double way = (late.position[v] - early.position[v]).norm();
-    moved[v] = left[v] ? std::min(kNowhere_mm, std::max(moved[v], way)) : kNowhere_mm;
-  }
-  return is_coarse ? moved : interpolated(moved, *mesh, film);
+  std::vector<double> moved(coarse->u.size());
+  for (std::size_t v = 0; v < moved.size(); ++v)
+    moved[v] = left[v] ? std::min(kNowhere_mm, (late.position[v] - early.position[v]).norm())
+                       : kNowhere_mm;
+  std::vector<double> result(film.u.size(), 0);
+  parallel_for(result.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const FilmLocation at = locate_flat(*coarse, film.u[v]);
+      if (at.triangle < 0) continue;
+      const Triangle& corner = coarse->triangles[std::size_t(at.triangle)];
+      for (std::size_t k = 0; k < 3; ++k)
+        result[v] += at.weight[Eigen::Index(k)] * moved[std::size_t(corner[k])];
+      result[v] = std::max(0.0, result[v]);
+    }
+  });
+  return result;
 }
 
 }  // namespace hydrodip

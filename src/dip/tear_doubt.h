@@ -8,11 +8,9 @@
 namespace hydrodip {
 
 // Per vertex of the film: how far it lies elsewhere, mm, if floating film lets go as soon as it may
-// tear (material.safe_stretch) than if it holds as long as any film could (lost_stretch), as it did
-// in the dip that asks; or if the film's mesh is another, where that is more. From two dips on
-// coarser film in longer steps; where `dipped` is coarse itself, from that one and another like it.
-// The other arguments are those of dip(); the way may end earlier than that of `dipped`, for what
-// lay on the object by then.
+// tear (material.safe_stretch) than if it holds as long as any film could (lost_stretch). From two
+// dips on coarser film in longer steps. The other arguments are those of the dip that asks; the way
+// may end earlier than its own, for what lay on the object by then.
 std::vector<double> moved_by_tears(const DippedFilm& dipped, const std::vector<Vec3>& positions,
                                    const std::vector<Triangle>& triangles, const Surface& surface,
                                    const Trajectory& trajectory, const DipOptions& options,
