@@ -32,7 +32,8 @@ if command -v pdftoppm > /dev/null; then
   expect 0 'scale_y = 1.0' profile show mine
 fi
 expect 0 'printer.toml' calibrate printer --readings 180.9,250.2,308.8,308.7 -o printer
-expect 0 'scale_x' profile import printer/printer.toml other
+expect 0 'imported' profile import printer/printer.toml other
+expect 0 'scale_x = 1.005' profile show other
 expect 2 'miss each other' calibrate printer --readings 180,250,320,320
 expect 2 'at 100 %' calibrate printer --readings 90,125,154.03,154.03
 expect 2 '--readings' calibrate printer --readings 180,250
