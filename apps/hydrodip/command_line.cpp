@@ -20,7 +20,7 @@ std::string general_help() {
       "hydrodip: from a textured model to a film image to print on PVA film and dip.\n\n"
       "Usage: hydrodip COMMAND [OPTIONS]\n\nCommands:\n";
   for (const Command& command : commands())
-    help += fmt::format("  {:<10} {}\n", command.name, command.summary);
+    help += fmt::format("  {:<17}  {}\n", command.name, command.summary);
   help += "\nTry it:\n";
   for (const std::string& command : first_commands()) help += "  " + command + "\n";
   help +=
@@ -71,7 +71,7 @@ std::string group_help(const std::string& group) {
   std::string help;
   for (const Command& command : commands())
     if (command.name.starts_with(group + " "))
-      help += fmt::format("  {:<10} {}\n", command.name, command.summary);
+      help += fmt::format("  {:<17}  {}\n", command.name, command.summary);
   return help;
 }
 

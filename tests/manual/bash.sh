@@ -31,7 +31,7 @@ offers() {
 }
 offers 'inspect' hydrodip insp
 offers 'print' hydrodip pri
-offers 'guide sheet stage' hydrodip rig ''
+offers 'guide jig sheet stage' hydrodip rig ''
 offers 'kit' hydrodip calibrate k
 offers 'find' hydrodip rig stage f
 offers 'mask' hydrodip sample ma

@@ -16,10 +16,10 @@ offers() {
   failures=$((failures + 1))
 }
 offers 'inspect' 'hydrodip insp'
-offers 'guide sheet stage' 'hydrodip rig '
+offers 'guide jig sheet stage' 'hydrodip rig '
 offers 'find' 'hydrodip rig stage f'
 offers 'letter' 'hydrodip print part.stl --film l'
-offers '--film-image' 'hydrodip simulate part.stl --film-'
+offers '--film-image --film-state' 'hydrodip simulate part.stl --film-'
 offers 'material.tear_stretch=' 'hydrodip print part.stl --set material.te'
 offers 'part.stl' 'hydrodip print par'
 offers 'mask' 'hydrodip sample ma'

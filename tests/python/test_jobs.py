@@ -173,7 +173,7 @@ class Arguments(InFolder):
         short = {"object_units", "object_size_mm", "object_down", "object_rotate_deg", "object_texture",
                  "dip_depth_mm", "dip_method", "plan_dips", "print_dpi", "ink_profile", "run_threads"}
         for p in hydrodip.parameters():
-            if p.name.split(".")[0] not in ("process", "stage", "cost", "output") and p.name != "object.file":
+            if p.name.split(".")[0] not in ("process", "stage", "cost", "output", "report") and p.name != "object.file":
                 self.assertIn(p.keyword, names | short)
                 self.assertTrue(p.help)
         self.assertIn("default: 40000", hydrodip.simulate.__doc__)
