@@ -9,7 +9,8 @@ for python in python3 /usr/bin/python3 ''; do
 done
 [ -n "$python" ] || { echo 'no Dask: skipped'; exit 77; }
 
-trap 'kill $scheduler $one $two 2> /dev/null; wait 2> /dev/null; rm -rf "$work"' EXIT
+# A worker that is asked to end waits for a scheduler that is gone.
+trap 'kill -9 $scheduler $one $two 2> /dev/null; wait 2> /dev/null; rm -rf "$work"' EXIT
 HYDRODIP=$hydrodip
 export HYDRODIP
 port=$((20000 + $$ % 20000))
