@@ -146,8 +146,7 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
   output.commit();
   result.folder = job.folder;
   result.files = {kRegistrationFile, kMapFile};
-  if (const auto written = read_registration(job.folder / kRegistrationFile))
-    result.text += advice(*written) + "\n";
+  result.text += advice({pose.shift_mm, pose.turn_deg, pose.swelling, ""}) + "\n";
   result.text +=
       fmt::format("wrote {0}/{1} and {0}/{2}\n", job.folder.string(), kRegistrationFile, kMapFile);
   return result;

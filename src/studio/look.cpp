@@ -42,6 +42,20 @@ double shown_dpi(const JobConfig& config, Quality quality) {
   throw ProblemFound({code, text, std::move(mends)});
 }
 
+// What `compute` gives; what it throws is a problem that the page can show.
+template <typename Compute>
+auto or_refused(const Compute& compute) {
+  try {
+    return compute();
+  } catch (const InputError& error) {
+    refuse("input", in_plain_words(error.what()), Json::array());
+  } catch (const DipError& error) {
+    refuse("dip", in_plain_words(error.what()), Json::array());
+  } catch (const std::bad_alloc&) {
+    refuse("memory", "There is not enough memory for this.", Json::array());
+  }
+}
+
 void require_sensible_size(const JobConfig& config, const TriangleMesh& posed) {
   if (config.object.pose.size_mm > 0 || !config.object.load.units.empty()) return;
   const double largest = posed.bounds().size().maxCoeff();
@@ -319,7 +333,7 @@ Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Qu
   const RunScope scope(context);
   if (job.model.empty())
     refuse("no-model", "There is no model yet: drop one here, or open a sample.", Json::array());
-  try {
+  return or_refused([&] {
     Look look;
     look.config = config_of_dip(job, dip);
     look.dip = dip;
@@ -339,19 +353,13 @@ Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Qu
         if (std::find(look.warnings.begin(), look.warnings.end(), warning) == look.warnings.end())
           look.warnings.push_back(warning);
     return look;
-  } catch (const InputError& error) {
-    refuse("input", in_plain_words(error.what()), Json::array());
-  } catch (const DipError& error) {
-    refuse("dip", in_plain_words(error.what()), Json::array());
-  } catch (const std::bad_alloc&) {
-    refuse("memory", "There is not enough memory for this.", Json::array());
-  }
+  });
 }
 
 DipsTogether look_at_dips(Workspace& workspace, const JobConfig& job, int texture_px,
                           const RunContext& context) {
   const RunScope scope(context);
-  try {
+  return or_refused([&] {
     JobConfig config = job;
     config.plan.find_pose = config.plan.find_depth = false;
     const Project project = project_of(config, Quality::kDraft);
@@ -368,13 +376,7 @@ DipsTogether look_at_dips(Workspace& workspace, const JobConfig& job, int textur
                                   .artwork = {},
                                   .picture_problems = {}};
     return put_together(config, prepared, texture_px, context.quiet());
-  } catch (const InputError& error) {
-    refuse("input", in_plain_words(error.what()), Json::array());
-  } catch (const DipError& error) {
-    refuse("dip", in_plain_words(error.what()), Json::array());
-  } catch (const std::bad_alloc&) {
-    refuse("memory", "There is not enough memory for this.", Json::array());
-  }
+  });
 }
 
 std::vector<std::uint8_t> finish_bundle(const DipsTogether& look, Json head) {

@@ -26,6 +26,17 @@ fail() {
   failures=$((failures + 1))
 }
 
+# expect CODE PATTERN ARGUMENT...: its exit code, and what it says.
+expect() {
+  wanted=$1
+  pattern=$2
+  shift 2
+  "$hydrodip" "$@" > said.txt 2>&1 < /dev/null
+  code=$?
+  [ "$code" -eq "$wanted" ] || fail "$*: exit code $code instead of $wanted: $(cat said.txt)"
+  grep -q -- "$pattern" said.txt || fail "$*: does not say '$pattern': $(cat said.txt)"
+}
+
 finish() {
   [ "$failures" -eq 0 ] || { echo "$failures checks failed"; exit 1; }
   echo "all passed"

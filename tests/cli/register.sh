@@ -2,16 +2,6 @@
 # calibrate printer, register, correct and rig jig from outside. Usage: sh register.sh HYDRODIP
 . "$(dirname "$0")/common.sh"
 
-# expect CODE PATTERN ARGUMENT...: its exit code, and what it says.
-expect() {
-  wanted=$1
-  pattern=$2
-  shift 2
-  "$hydrodip" "$@" > said.txt 2>&1 < /dev/null
-  code=$?
-  [ "$code" -eq "$wanted" ] || fail "$*: exit code $code instead of $wanted: $(cat said.txt)"
-  grep -q -- "$pattern" said.txt || fail "$*: does not say '$pattern': $(cat said.txt)"
-}
 # number NAME FILE: of a JSON key.
 number() { sed -n "s/.*\"$1\": *\\([-0-9.e]*\\).*/\\1/p" "$2" | head -n 1; }
 # near A B LIMIT: whether they differ by less.
@@ -105,6 +95,7 @@ PY
 expect 0 'off by' correct second places.csv
 expect 2 'name the job' correct job
 expect 2 'not a correction' print colored.ply --correction registration.json
+expect 2 'of one dip' print colored.ply --dips 2 --correction job/correction.json -o twice
 
 # ---- a jig ----
 expect 2 'gives no hold' rig jig job

@@ -4,17 +4,6 @@
 . "$(dirname "$0")/common.sh"
 emulator=$2
 
-# expect CODE PATTERN ARGUMENT...: its exit code, and what it says.
-expect() {
-  wanted=$1
-  pattern=$2
-  shift 2
-  "$hydrodip" "$@" > said.txt 2>&1 < /dev/null
-  code=$?
-  [ "$code" -eq "$wanted" ] || fail "$*: exit code $code instead of $wanted: $(cat said.txt)"
-  grep -q -- "$pattern" said.txt || fail "$*: does not say '$pattern': $(cat said.txt)"
-}
-
 start_stage() {
   "$emulator" zaber 5 > port.txt & # near its home, so that it is there soon
   stage=$!
