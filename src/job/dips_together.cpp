@@ -20,6 +20,7 @@ bool all_dips_are_given(const JobConfig& config) {
 DipsTogether put_together(const JobConfig& config, const PreparedObject& prepared, int texture_px,
                           const RunContext& context) {
   const RunScope scope(context);
+  require_no_correction(config);
   if (prepared.paint->depends_on_film())
     throw InputError(
         "Pattern film belongs to one dip: lay the pattern on the object, or take the other dips "

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error.h"
 #include "base/timings.h"
 #include "hydrodip/hydrodip.h"
 #include "job/ways.h"
@@ -44,6 +45,12 @@ std::vector<float> worth_at_nodes(const MadeDips& all, const MadeDip& dip, const
 }
 
 }  // namespace
+
+void require_no_correction(const JobConfig& config) {
+  if (config.design.film.correction)
+    throw InputError(
+        "film.correction: a correction is of one dip, and this job has several; leave it out");
+}
 
 MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,
                  const RunContext& context) {

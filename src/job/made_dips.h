@@ -37,6 +37,9 @@ struct MadeDips {
   std::vector<std::vector<float>> worth;  // of the films as they were dipped with their ink
 };
 
+// A correction is of one dip. Throws InputError where several would share one.
+void require_no_correction(const JobConfig& config);
+
 // The planned dips, hung up. Throws InputError where one does not fit.
 MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,
                  const RunContext& context);

@@ -85,6 +85,7 @@ bool asks_for_several_dips(const JobConfig& config) {
 JobResult print_dips(const JobConfig& config, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   require_memory(config.design);
+  require_no_correction(config);
   OutputFolder folder(config.output, config.earlier_result);
   Timings times;
   const PreparedObject prepared = times.measure("load", [&] {
@@ -100,9 +101,6 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
 
-  if (config.design.film.correction)
-    throw InputError(
-        "film.correction: a correction is of one dip, and this job has several; leave it out");
   const DipPlan plan = times.measure("plan", [&] {
     const Targets targets = job_targets(config, prepared, context);
     return plan_dips(config, prepared, targets, false, context);
