@@ -37,7 +37,7 @@ std::vector<MarkPlace> marks_of(const RigJob& job) {
 }
 
 std::filesystem::path camera_file(const RigJob& job, const RegisterRequest& request) {
-  const std::filesystem::path file =
+  std::filesystem::path file =
       request.camera.empty() ? find_camera(job.folder) : request.camera;
   if (file.empty())
     throw InputError(
