@@ -37,8 +37,7 @@ std::vector<MarkPlace> marks_of(const RigJob& job) {
 }
 
 std::filesystem::path camera_file(const RigJob& job, const RegisterRequest& request) {
-  std::filesystem::path file =
-      request.camera.empty() ? find_camera(job.folder) : request.camera;
+  std::filesystem::path file = request.camera.empty() ? find_camera(job.folder) : request.camera;
   if (file.empty())
     throw InputError(
         "there is no camera.json, neither here nor in the job's folder: photograph the board on "
