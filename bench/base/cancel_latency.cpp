@@ -1,6 +1,6 @@
 // How long jobs go on after they were cancelled, at random moments of print at 600 dpi, calibrate,
 // inspect and sample: the largest of 200, those above the goal, and where they were.
-// `bench_cancel_latency [MOMENTS]`.
+// `bench_cancel_latency [MOMENTS [JOB...]]`: only jobs whose name has one of these words in it.
 
 #include <fmt/format.h>
 
@@ -131,11 +131,18 @@ std::vector<Work> all_work(const TemporaryFolder& folder) {
   return all;
 }
 
-void run(int moments) {
+bool wanted(const Work& work, const std::vector<std::string>& only) {
+  return only.empty() || std::any_of(only.begin(), only.end(), [&](const std::string& word) {
+           return work.name.find(word) != std::string::npos;
+         });
+}
+
+void run(int moments, const std::vector<std::string>& only) {
   const TemporaryFolder folder;
   std::vector<Stop> stops;
   std::mt19937 random(18);
   for (const Work& work : all_work(folder)) {
+    if (!wanted(work, only)) continue;
     RunContext whole;
     const Clock::time_point start = Clock::now();
     work.run(whole);
@@ -168,7 +175,9 @@ void run(int moments) {
 
 int main(int argc, char** argv) {
   try {
-    hydrodip::run(argc > 1 ? std::atoi(argv[1]) : hydrodip::kMoments);
+    const std::vector<std::string> words(argv + 1, argv + std::max(argc, 1));
+    hydrodip::run(words.empty() ? hydrodip::kMoments : std::atoi(words[0].c_str()),
+                  words.empty() ? words : std::vector(words.begin() + 1, words.end()));
   } catch (const std::exception& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return 2;

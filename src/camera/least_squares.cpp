@@ -1,33 +1,86 @@
-// The only place that knows Eigen's unsupported solvers.
+// The only place that knows MINPACK.
 #include "camera/least_squares.h"
 
+#include <cminpack.h>
+
 #include <Eigen/Eigenvalues>
-#include <unsupported/Eigen/NonLinearOptimization>
-#include <unsupported/Eigen/NumericalDiff>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <vector>
 
 #include "base/run_scope.h"
 
 namespace hydrodip {
 namespace {
 
+// MINPACK is C and sees no exceptions: the first one stops it and is thrown afterwards.
 struct Problem {
-  using Scalar = double;
-  using InputType = Eigen::VectorXd;
-  using ValueType = Eigen::VectorXd;
-  using JacobianType = Eigen::MatrixXd;
-  enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
-
   const Residuals& residuals;
-  Eigen::Index number_of_inputs, number_of_values;
+  std::exception_ptr failure;
 
-  int inputs() const { return int(number_of_inputs); }
-  int values() const { return int(number_of_values); }
-  int operator()(const Eigen::VectorXd& x, Eigen::VectorXd& out) const {
-    check_cancelled();
-    out = residuals(x);
-    return 0;
-  }
+  static int call(void* self, int values, int inputs, const double* x, double* out,
+                  double* jacobian, int stride, int wanted);
 };
+
+constexpr int kWantsResiduals = 1;
+constexpr int kStop = -1;
+
+// By central differences; for unknowns of any size.
+Eigen::MatrixXd slope(const Residuals& residuals, Eigen::VectorXd x, Eigen::Index values) {
+  static const double kStep = std::cbrt(std::numeric_limits<double>::epsilon());
+  Eigen::MatrixXd j(values, x.size());
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    check_cancelled();
+    const double at = x[k];
+    const double step = at == 0 ? kStep : kStep * std::abs(at);
+    x[k] = at + step;
+    j.col(k) = residuals(x);
+    x[k] = at - step;
+    j.col(k) = (j.col(k) - residuals(x)) / (2 * step);
+    x[k] = at;
+  }
+  return j;
+}
+
+int Problem::call(void* self, int values, int inputs, const double* x, double* out,
+                  double* jacobian, int stride, int wanted) {
+  Problem& problem = *static_cast<Problem*>(self);
+  const Eigen::Map<const Eigen::VectorXd> guess(x, inputs);
+  try {
+    check_cancelled();
+    if (wanted == kWantsResiduals)
+      Eigen::Map<Eigen::VectorXd>(out, values) = problem.residuals(guess);
+    else
+      Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(jacobian, values, inputs,
+                                                           Eigen::OuterStride<>(stride)) =
+          slope(problem.residuals, guess, values);
+  } catch (...) {
+    problem.failure = std::current_exception();
+    return kStop;
+  }
+  return 0;
+}
+
+Eigen::VectorXd minimized(const Residuals& residuals, Eigen::VectorXd x) {
+  constexpr double kTolerance = 1e-12;
+  constexpr int kMostCalls = 4000;
+  constexpr int kOwnScale = 1;
+  constexpr double kFirstStep = 100;  // MINPACK's advice
+  const auto n = int(x.size());
+  const auto m = int(residuals(x).size());
+  Problem problem{residuals, nullptr};
+  Eigen::VectorXd out(m), scale(n), qtf(n), work_1(n), work_2(n), work_3(n), work_4(m);
+  Eigen::MatrixXd jacobian(m, n);
+  std::vector<int> pivots(std::size_t(n), 0);
+  int calls = 0;
+  int slopes = 0;
+  lmder(Problem::call, &problem, m, n, x.data(), out.data(), jacobian.data(), m, kTolerance,
+        kTolerance, 0, kMostCalls, scale.data(), kOwnScale, kFirstStep, 0, &calls, &slopes,
+        pivots.data(), qtf.data(), work_1.data(), work_2.data(), work_3.data(), work_4.data());
+  if (problem.failure) std::rethrow_exception(problem.failure);
+  return x;
+}
 
 // In units in which the diagonal is 1; what nothing tells gets a variance that says so.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& normal) {
@@ -40,23 +93,14 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& normal) {
   return unit.asDiagonal() * (v * inverse.asDiagonal() * v.transpose()) * unit.asDiagonal();
 }
 
-using Differentiable = Eigen::NumericalDiff<Problem, Eigen::Central>;
-
 }  // namespace
 
 Fit least_squares(const Residuals& residuals, const Eigen::VectorXd& start) {
   Fit fit;
-  fit.values = start;
-  const Differentiable problem(Problem{residuals, start.size(), residuals(start).size()});
-  Differentiable solved = problem;
-  Eigen::LevenbergMarquardt<Differentiable> solver(solved);
-  solver.parameters.ftol = solver.parameters.xtol = 1e-12;
-  solver.parameters.maxfev = 4000;
-  solver.minimize(fit.values);
+  fit.values = minimized(residuals, start);
   fit.residuals = residuals(fit.values);
-  Eigen::MatrixXd jacobian(fit.residuals.size(), start.size());
-  problem.df(fit.values, jacobian);
-  fit.covariance = inverse_of(jacobian.transpose() * jacobian);
+  const Eigen::MatrixXd j = slope(residuals, fit.values, fit.residuals.size());
+  fit.covariance = inverse_of(j.transpose() * j);
   return fit;
 }
 

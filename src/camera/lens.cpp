@@ -1,8 +1,8 @@
 #include "camera/lens.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <cmath>
 
 namespace hydrodip {
@@ -96,8 +96,9 @@ Mat3 homography(const std::vector<Vec2>& from, const std::vector<Vec2>& to) {
     rows.row(row + 1).segment<3>(3) = p;
     rows.row(row + 1).segment<3>(6) = -q.y() * p;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
-  const Eigen::VectorXd h = svd.matrixV().col(8);
+  using Mat9 = Eigen::Matrix<double, 9, 9>;
+  const Eigen::SelfAdjointEigenSolver<Mat9> solver{Mat9(rows.transpose() * rows)};
+  const Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
   Mat3 result;
   result << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
   return b.inverse() * result * a;
@@ -108,8 +109,8 @@ Pose pose_of_plane(const Mat3& h) {
   if (scaled(2, 2) < 0) scaled = -scaled;  // before the camera
   Mat3 rotation;
   rotation << scaled.col(0), scaled.col(1), scaled.col(0).cross(scaled.col(1));
-  const Eigen::JacobiSVD<Mat3> svd(rotation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  rotation = svd.matrixU() * svd.matrixV().transpose();
+  const Eigen::SelfAdjointEigenSolver<Mat3> squared{Mat3(rotation.transpose() * rotation)};
+  rotation = rotation * squared.operatorInverseSqrt();
   return Pose::of(rotation, scaled.col(2));
 }
 

@@ -44,7 +44,8 @@ void write_dip(OutputFolder& folder, const MadeDip& dip, const MadeDips& all,
                const std::vector<ReportInput>& inputs, const Printer& printer, const Timings& times,
                const RunContext& context) {
   const std::string inside = dip.folder + "/";
-  write_sheet_files(folder, dip.made.ink.ink, printer, sheet_of(dip.config), context, inside);
+  write_sheet_files(folder, dip.made.ink.ink, printer, sheet_of(dip.config, dip.made.dipped.posed),
+                    context, inside);
   write_film_ply(folder.path(inside + "film.ply"), *dip.made.dipped.film);
   const PosedObject& posed = dip.made.dipped.posed;
   const int texture_px = dip.config.preview_texture_px;

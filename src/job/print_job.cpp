@@ -78,7 +78,7 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   if (config.plan.suggest && concern_of(findings(first_look)) == Concern::kStop)
     record.better_way =
         times.measure("find", [&] { return better_way(config, job.prepared, dipped, context); });
-  const SheetOptions sheet = sheet_of(config, first_look);
+  const SheetOptions sheet = sheet_of(config, job.prepared.posed, first_look);
   times.measure("sheet", [&] { write_sheet_files(folder, ink.ink, job.printer, sheet, context); });
 
   const Previews previews =

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dip/outlines.h"
 #include "report/findings.h"
 
 namespace hydrodip {
@@ -27,8 +28,22 @@ SheetOptions sheet_of(const JobConfig& config) {
   return sheet;
 }
 
-SheetOptions sheet_of(const JobConfig& config, const Report& report) {
+SheetOptions sheet_of(const JobConfig& config, const PosedObject& posed) {
   SheetOptions sheet = sheet_of(config);
+  if (!config.print.outlines) return sheet;
+  const TriangleMesh& mesh = posed.mesh();
+  const DipOutlines dip = dip_outlines(make_trajectory(config.design.trajectory, mesh.positions),
+                                       mesh.positions, mesh.triangles);
+  // On the flat film, which may have swollen since it was printed.
+  const Vec2 swelling(config.design.film.swelling_x, config.design.film.swelling_y);
+  for (const auto& outline : {dip.first_touch, dip.full_depth})
+    for (const auto& [a, b] : outline)
+      sheet.outlines.push_back({a.cwiseQuotient(swelling), b.cwiseQuotient(swelling)});
+  return sheet;
+}
+
+SheetOptions sheet_of(const JobConfig& config, const PosedObject& posed, const Report& report) {
+  SheetOptions sheet = sheet_of(config, posed);
   if (concern_of(findings(report)) == Concern::kStop)
     sheet.alarm = "DO NOT DIP: " + short_verdict(report);
   return sheet;

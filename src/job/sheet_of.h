@@ -1,6 +1,7 @@
 // The sheet's page as a job has it.
 #pragma once
 
+#include "object/posed_object.h"
 #include "report/report.h"
 #include "settings/config.h"
 #include "sheet/sheet.h"
@@ -10,7 +11,9 @@ namespace hydrodip {
 PrinterScale printer_of(const PrintOptions& print);
 
 SheetOptions sheet_of(const JobConfig& config);
-// With an alarm in the margin if it is not to be dipped like this.
-SheetOptions sheet_of(const JobConfig& config, const Report& report);
+// With the outlines of a dip, if they are asked for.
+SheetOptions sheet_of(const JobConfig& config, const PosedObject& posed);
+// With an alarm in the margin too, if it is not to be dipped like this.
+SheetOptions sheet_of(const JobConfig& config, const PosedObject& posed, const Report& report);
 
 }  // namespace hydrodip

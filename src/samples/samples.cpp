@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/nearest_name.h"
+#include "base/run_scope.h"
 #include "image/files.h"
 #include "samples/parts.h"
 
@@ -52,14 +53,18 @@ std::string obj_text(const Object& object, const std::string& name) {
       "mtllib {}.mtl\no {}\n",
       name, name, name);
   auto out = std::back_inserter(text);
-  for (const Vec3& p : object.positions)
+  CheckEvery check(256);
+  for (const Vec3& p : object.positions) {
+    check();
     fmt::format_to(out, "v {:.6f} {:.6f} {:.6f}\n", p.x(), p.y(), p.z());
+  }
   // Corners that share a vertex and a texture coordinate share a vt line.
   std::vector<std::vector<std::pair<Eigen::Vector2f, long>>> known(object.positions.size());
   long count = 0;
   std::string faces = fmt::format("usemtl {}\n", name);
   auto face_out = std::back_inserter(faces);
   for (std::size_t t = 0; t < object.triangles.size(); ++t) {
+    check();
     faces += 'f';
     for (std::size_t k = 0; k < 3; ++k) {
       const auto vertex = std::size_t(object.triangles[t][k]);

@@ -35,6 +35,7 @@ struct PrintOptions {
   InkSide ink_side = InkSide::kUp;
   std::string job_name;      // in the sheet's margin; empty: the model's file name
   bool camera_marks = true;  // in the margin, where there is room
+  bool outlines = false;     // where the water cuts the object, as thin lines
   // What the printer makes of a millimetre, and of a right angle between x and y.
   double scale_x = 1, scale_y = 1;
   double skew_deg = 0;

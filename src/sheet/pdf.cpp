@@ -1,4 +1,6 @@
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 #include "sheet/marks.h"
 #include "sheet/page.h"
@@ -32,6 +34,47 @@ void draw_marks(PdfDocument& document, const SheetOptions& options, const RunCon
   for (const std::string& warning : marks.warnings) context.warn(warning);
 }
 
+// Whether nothing is printed there, nor a line's width beside it. From the image's middle.
+bool is_blank(const Picture& picture, const SheetOptions& options, const Vec2& at_mm) {
+  constexpr double kGap_mm = 0.3;
+  const double px_per_mm = options.dpi / 25.4;
+  const double x = 0.5 * picture.width_px + px_per_mm * at_mm.x();
+  const double y = 0.5 * picture.height_px - px_per_mm * at_mm.y();
+  const double gap = px_per_mm * kGap_mm;
+  const auto pixel = [](double at, int count) { return std::clamp(int(std::floor(at)), 0, count); };
+  for (int row = pixel(y - gap, picture.height_px); row < pixel(y + gap + 1, picture.height_px);
+       ++row)
+    for (int column = pixel(x - gap, picture.width_px);
+         column < pixel(x + gap + 1, picture.width_px); ++column)
+      if (picture.is_printed(column, row)) return false;
+  return true;
+}
+
+// In pieces that are drawn or not. Seen from above, as the image; on the page perhaps mirrored.
+void draw_outlines(PdfDocument& document, const Picture& picture, const SheetOptions& options) {
+  constexpr double kPiece_mm = 0.5, kLine_mm = 0.1, kGray = 0.4;
+  const Vec2 middle = 0.5 * Vec2(options.width_mm, options.height_mm);
+  const Vec2 free = middle - Vec2::Constant(options.margin_mm);
+  const auto on_page = [&](const Vec2& at) {
+    return Vec2(middle + (options.ink_side_up ? at : Vec2(-at.x(), at.y())));
+  };
+  const auto is_free = [&](const Vec2& at) {
+    return (at.cwiseAbs().array() < free.array()).all() && is_blank(picture, options, at);
+  };
+  std::vector<PdfLine> lines;
+  for (const auto& [from, to] : options.outlines) {
+    const int pieces = std::max(1, int(std::ceil((to - from).norm() / kPiece_mm)));
+    for (int i = 0; i < pieces; ++i) {
+      const Vec2 a = from + (to - from) * i / pieces;
+      const Vec2 b = from + (to - from) * (i + 1) / pieces;
+      if (is_free(a) && is_free(b)) lines.push_back({on_page(a), on_page(b)});
+    }
+  }
+  if (lines.empty()) return;
+  document.set_stroke(kLine_mm, kGray);
+  document.draw_lines(lines);
+}
+
 // What the printer will stretch and lean over is drawn the other way before.
 void draw_true(PdfDocument& document, const SheetOptions& options) {
   const PrinterScale& printer = options.printer;
@@ -62,6 +105,7 @@ void write_print_pdf(const std::filesystem::path& path, const Picture& picture,
     document.draw_image(picture, profile, box, mirror, place_on_page(printed, picture, options),
                         context);
   }
+  draw_outlines(document, picture, options);
   draw_marks(document, options, context);
   document.save(path);
   context.progress("writing the PDF", 1);

@@ -1,11 +1,13 @@
 // The page that goes to the printer: image at true size, marks in the taped margin, files.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/context.h"
+#include "base/math.h"
 #include "image/image.h"
 #include "ink/inks.h"
 #include "sheet/picture.h"
@@ -31,7 +33,10 @@ struct SheetOptions {
   std::string alarm;          // "DO NOT DIP: ..." in a red band of the margin; empty: none
   std::string date;           // ISO date recorded in the PDF, empty: none (reproducible)
   bool camera_marks = false;  // those of sheet/film_marks.h, where there is room
-  PrinterScale printer;       // PDF only: the page is drawn so that it comes out true
+  // Thin lines of the PDF where nothing else is printed; mm from the middle of the image, right and
+  // up, as the film is seen from above.
+  std::vector<std::array<Vec2, 2>> outlines;
+  PrinterScale printer;  // PDF only: the page is drawn so that it comes out true
 };
 
 // What the sheet will look like, sRGB with dpi recorded, marks not included: the film as seen from

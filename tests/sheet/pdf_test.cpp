@@ -265,6 +265,39 @@ TEST_F(PrintPdf, MarksLeaveTheFreeFilmWhiteAndReachAllFourEdges) {
   }
 }
 
+// A cross through a square of colour: drawn outside of it, mirrored as the image is, not inside.
+TEST_F(PrintPdf, OutlinesGiveWayToColour) {
+  if (!has_tool("pdftoppm")) GTEST_SKIP() << "needs pdftoppm";
+  constexpr int kDpi = 200;
+  for (const bool up : {true, false}) {
+    SheetOptions options = sheet(101.6, 101.6, 10, 50);
+    options.ink_side_up = up;
+    options.outlines = {{Vec2(-60, 5), Vec2(60, 5)}, {Vec2(25, -20), Vec2(25, 20)}};
+    Image image = blank_image(options);
+    for (int y = 80; y < 120; ++y)
+      for (int x = 80; x < 120; ++x) image.pixel(x, y)[3] = 255;  // black, 10 mm to all sides
+    const Image page = rasterised(write(image, options), kDpi, 0, 0, 800, 800);
+    const auto dark_at = [&](double x_mm, double y_mm) {
+      const double side = up ? 1 : -1;
+      int dark = 0;
+      for (int j = -2; j <= 2; ++j)
+        for (int i = -2; i <= 2; ++i)
+          dark = std::max(dark, darkness(page, int((50.8 + side * x_mm) * kDpi / kMmPerInch) + i,
+                                         int((50.8 - y_mm) * kDpi / kMmPerInch) + j));
+      return dark;
+    };
+    EXPECT_GT(dark_at(25, -12), 60);
+    EXPECT_EQ(dark_at(-25, -12), 0) << "mirrored with the image";
+    EXPECT_GT(dark_at(20, 5), 60);
+    EXPECT_GT(dark_at(-20, 5), 60);
+    EXPECT_EQ(dark_at(10.4 + 0.2, 5 + 3), 0);
+    EXPECT_EQ(dark_at(45, 5), 0) << "not in the margin";
+    const auto [red, green] = std::pair(page.pixel(400, 400)[0], page.pixel(400, 361)[1]);
+    EXPECT_EQ(red, 0);
+    EXPECT_EQ(green, 0) << "the colour is whole where the line would cross it";
+  }
+}
+
 TEST_F(PrintPdf, ADiscsRimIsOnThePage) {
   if (!has_tool("pdftoppm")) GTEST_SKIP() << "needs pdftoppm";
   constexpr int kDpi = 150;
