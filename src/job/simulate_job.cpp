@@ -160,13 +160,12 @@ void clear_margin(PrintedFilm& printed, const FilmOptions& film, const RunContex
 
 // The sheet as it was given, with marks.
 void write_given_sheet(OutputFolder& folder, const PrintedFilm& printed, const Printer& printer,
-                       const JobConfig& config, const Report& report, const RunContext& context) {
+                       SheetOptions sheet, const RunContext& context) {
   FilmInk film;
   film.inking.inks = printed.inks;
   film.wanted = Image(printed.inks.width_px, printed.inks.height_px);
   for (std::size_t i = 0; i < printed.inks.cmyk.size(); i += 4)
     film.wanted.rgba[i + 3] = is_blank(printed.inks.cmyk.data() + i) ? 0 : 255;
-  SheetOptions sheet = sheet_of(config, report);
   sheet.dpi = printed.raster.dpi;
   write_sheet_files(folder, film, printer, sheet, context);
 }
@@ -214,7 +213,8 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
         "find", [&] { return better_way(config, job.prepared, made.dipped, context); });
   if (command == "print")
     times.measure("sheet", [&] {
-      write_given_sheet(folder, printed, job.printer, config, first_look, context);
+      write_given_sheet(folder, printed, job.printer,
+                        sheet_of(config, job.prepared.posed, first_look), context);
     });
   const Previews previews = times.measure("preview", [&] {
     return write_previews(folder, record,
