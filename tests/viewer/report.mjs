@@ -3,7 +3,7 @@
 // node report.mjs HYDRODIP [CHROMIUM]; exit code 77 (skipped) where there is no Chromium.
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -29,16 +29,38 @@ function job(name, model, ...options) {
   return { url: pathToFileURL(page).href, page, json: JSON.parse(readFileSync(join(work, name, 'report.json'))) };
 }
 
+// The sample's sphere and colours with few triangles: what draws here is a processor.
+function coarseSphere(file) {
+  const [radius, rings, around] = [30, 40, 64];
+  const lines = ['mtllib sphere.mtl', 'usemtl sphere'];
+  for (let i = 0; i <= rings; ++i) {
+    const [out, up] = [Math.sin((Math.PI * i) / rings), -Math.cos((Math.PI * i) / rings)];
+    for (let k = 0; k < around; ++k) {
+      const [x, y] = [out * Math.cos((2 * Math.PI * k) / around), out * Math.sin((2 * Math.PI * k) / around)];
+      lines.push(`v ${radius * x} ${radius * y} ${radius * (1 + up)}`, `vt ${0.5 - x / 2} ${0.5 + y / 2}`);
+    }
+  }
+  const at = (i, k) => `${i * around + (k % around) + 1}/${i * around + (k % around) + 1}`;
+  for (let i = 0; i < rings; ++i) {
+    for (let k = 0; k < around; ++k) {
+      if (i > 0) lines.push(`f ${at(i, k)} ${at(i, k + 1)} ${at(i + 1, k)}`);
+      if (i < rings - 1) lines.push(`f ${at(i, k + 1)} ${at(i + 1, k + 1)} ${at(i + 1, k)}`);
+    }
+  }
+  writeFileSync(join(work, file), `${lines.join('\n')}\n`);
+}
+
 for (const name of ['mask', 'sphere']) execFileSync(hydrodip, ['sample', name], { cwd: work });
+coarseSphere('coarse.obj');
 const mask = job('mask', 'mask.obj');
-const partial = job('partial', 'sphere.obj', '--depth', '12');
-const failed = job('failed', 'sphere.obj'); // past its equator: torn all around
+const partial = job('partial', 'coarse.obj', '--depth', '12');
+const failed = job('failed', 'coarse.obj'); // past its equator: torn all around
 
 const browser = await Browser.start(chromium);
 
 // --- Helpers in the page ---
 
-// A small window: what draws here is a processor.
+// A small window.
 const openView = async ({ url }, options = {}) => {
   await browser.open(url, { width: 760, height: 560, ...options });
   await browser.until('document.documentElement.classList.contains("live")', 'the 3D view');
