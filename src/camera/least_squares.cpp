@@ -3,12 +3,12 @@
 
 #include <cminpack.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <vector>
 
+#include "base/eigenpairs.h"
 #include "base/run_scope.h"
 
 namespace hydrodip {
@@ -85,11 +85,10 @@ Eigen::VectorXd minimized(const Residuals& residuals, Eigen::VectorXd x) {
 // In units in which the diagonal is 1; what nothing tells gets a variance that says so.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& normal) {
   const Eigen::VectorXd unit = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.asDiagonal() * normal *
-                                                             unit.asDiagonal());
+  const Eigenpairs eigen = eigenpairs(unit.asDiagonal() * normal * unit.asDiagonal());
   constexpr double kNothing = 1e-13;
-  const Eigen::VectorXd inverse = eigen.eigenvalues().cwiseMax(kNothing).cwiseInverse();
-  const Eigen::MatrixXd& v = eigen.eigenvectors();
+  const Eigen::VectorXd inverse = eigen.values.cwiseMax(kNothing).cwiseInverse();
+  const Eigen::MatrixXd& v = eigen.vectors;
   return unit.asDiagonal() * (v * inverse.asDiagonal() * v.transpose()) * unit.asDiagonal();
 }
 

@@ -1,9 +1,10 @@
 #include "camera/lens.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+
+#include "base/eigenpairs.h"
 
 namespace hydrodip {
 namespace {
@@ -96,9 +97,7 @@ Mat3 homography(const std::vector<Vec2>& from, const std::vector<Vec2>& to) {
     rows.row(row + 1).segment<3>(3) = p;
     rows.row(row + 1).segment<3>(6) = -q.y() * p;
   }
-  using Mat9 = Eigen::Matrix<double, 9, 9>;
-  const Eigen::SelfAdjointEigenSolver<Mat9> solver{Mat9(rows.transpose() * rows)};
-  const Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
+  const Eigen::VectorXd h = eigenpairs(rows.transpose() * rows).vectors.col(0);
   Mat3 result;
   result << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
   return b.inverse() * result * a;
@@ -109,8 +108,10 @@ Pose pose_of_plane(const Mat3& h) {
   if (scaled(2, 2) < 0) scaled = -scaled;  // before the camera
   Mat3 rotation;
   rotation << scaled.col(0), scaled.col(1), scaled.col(0).cross(scaled.col(1));
-  const Eigen::SelfAdjointEigenSolver<Mat3> squared{Mat3(rotation.transpose() * rotation)};
-  rotation = rotation * squared.operatorInverseSqrt();
+  // The nearest rotation: without R^T R's square root.
+  const Eigenpairs squared = eigenpairs(rotation.transpose() * rotation);
+  const Vec3 shrink = squared.values.cwiseSqrt().cwiseInverse();
+  rotation = rotation * (squared.vectors * shrink.asDiagonal() * squared.vectors.transpose());
   return Pose::of(rotation, scaled.col(2));
 }
 

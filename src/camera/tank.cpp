@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
 
+#include "base/eigenpairs.h"
 #include "base/error.h"
 #include "camera/board.h"
 #include "camera/least_squares.h"
@@ -207,7 +206,7 @@ Pose tank_frame(const std::vector<Vec3>& corners, const Vec3& along) {
   for (const Vec3& c : corners) mean += c / double(corners.size());
   Mat3 spread = Mat3::Zero();
   for (const Vec3& c : corners) spread += (c - mean) * (c - mean).transpose();
-  Vec3 up = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(0);
+  Vec3 up = eigenpairs(spread).vectors.col(0);
   if (up.z() < 0) up = -up;
   Mat3 rotation;
   rotation.row(0) = (along - along.dot(up) * up).normalized();
@@ -350,8 +349,7 @@ View view_of(const SeenPhoto& photo, const Tank& tank, double water_sigma_mm) {
   Vec2 mean = Vec2::Zero();
   for (const Vec2& p : flat) mean += p / double(flat.size());
   for (const Vec2& p : flat) spread += (p - mean) * (p - mean).transpose() / double(flat.size());
-  const bool wide = flat.size() >= kLeastBoardMarks &&
-                    Eigen::SelfAdjointEigenSolver<Mat2>(spread).eigenvalues()[0] > 400;
+  const bool wide = flat.size() >= kLeastBoardMarks && eigenpairs(spread).values[0] > 400;
   if (!wide)
     throw InputError(fmt::format(
         "{}: too few marks of the tank's rim are to be seen ({}); take the photo so that strips on "
@@ -362,7 +360,11 @@ View view_of(const SeenPhoto& photo, const Tank& tank, double water_sigma_mm) {
   known(0, 0) += std::pow(kRefocus * tank.lens.focal_px, 2);
   known(1, 1) += kFloat_px * kFloat_px;
   known(2, 2) += kFloat_px * kFloat_px;
-  const Eigen::LLT<Eigen::MatrixXd> root{Eigen::MatrixXd(known)};
+  // In units of its deviation, along axes in which it is independent.
+  const Eigenpairs axes = eigenpairs(known);
+  const Eigen::MatrixXd to_units =
+      axes.values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal() *
+      axes.vectors.transpose();
   const Eigen::VectorXd usual = tank.lens.values();
   const auto residuals = [&](const Eigen::VectorXd& v, const std::vector<std::size_t>& used) {
     const Pose pose = Pose::of(v.head<6>());
@@ -375,7 +377,7 @@ View view_of(const SeenPhoto& photo, const Tank& tank, double water_sigma_mm) {
       point.z() = std::max(point.z(), 1.0);
       off.segment<2>(2 * Eigen::Index(i)) = (lens.project(point) - px[used[i]]) / kCorner_px;
     }
-    off.segment(corners, Lens::kValues) = root.matrixL().solve(v.segment(6, Lens::kValues) - usual);
+    off.segment(corners, Lens::kValues) = to_units * (v.segment(6, Lens::kValues) - usual);
     off[corners + Lens::kValues] = (v[View::kValues - 1] - tank.water_below_mm) / water_sigma_mm;
     return off;
   };

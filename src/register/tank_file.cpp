@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/eigenpairs.h"
 #include "base/error.h"
 #include "base/file.h"
 
@@ -75,11 +75,10 @@ Tank read_tank(const std::filesystem::path& file) {
   tank.lens_covariance =
       Eigen::Map<const Eigen::Matrix<double, Lens::kValues, Lens::kValues>>(covariance.data());
   tank.place = {{place[0], place[1]}, place[2]};
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spread{
-      Eigen::MatrixXd(tank.lens_covariance)};
+  const Eigen::VectorXd spread = eigenpairs(tank.lens_covariance).values;
   const bool usable = tank.width_px > 0 && tank.height_px > 0 && tank.lens.focal_px > 1 &&
                       tank.lens_covariance.isApprox(tank.lens_covariance.transpose(), 1e-6) &&
-                      spread.eigenvalues()[0] > -1e-12 * spread.eigenvalues()[Lens::kValues - 1];
+                      spread[0] > -1e-12 * spread[Lens::kValues - 1];
   if (!usable || !json.contains("water_below_mm") || !json["water_below_mm"].is_number() ||
       !json.contains("board_tag_x_y_z_mm") || !json["board_tag_x_y_z_mm"].is_array())
     refuse(file);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -84,20 +84,26 @@ PrinterScale scale_by(const std::vector<SeenMark>& seen, double dpi, const TestS
         "{}: {} of the test sheet's {} marks are to be seen, and {} are needed; scan the sheet "
         "that 'hydrodip calibrate printer' draws for this page whole, sharp and not mirrored",
         name, found.size(), sheet.marks.size(), kLeastMarks));
-  Eigen::MatrixX3d rows(Eigen::Index(found.size()), 3);
-  Eigen::MatrixX2d right(Eigen::Index(found.size()), 2);
+  const double share = 1 / double(found.size());
+  Vec2 from = Vec2::Zero(), to = Vec2::Zero();
   for (std::size_t i = 0; i < found.size(); ++i) {
-    rows.row(Eigen::Index(i)) << printed[i].x(), printed[i].y(), 1;
-    right.row(Eigen::Index(i)) = found[i];
+    from += share * printed[i];
+    to += share * found[i];
   }
-  const Eigen::Matrix<double, 3, 2> affine = rows.colPivHouseholderQr().solve(right);
-  const double off_mm = (rows * affine - right).rowwise().norm().maxCoeff();
-  const Mat2 prints = affine.topRows<2>().transpose();
+  Mat2 spread = Mat2::Zero(), moved = Mat2::Zero();
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    spread += (printed[i] - from) * (printed[i] - from).transpose();
+    moved += (found[i] - to) * (printed[i] - from).transpose();
+  }
+  const Mat2 prints = moved * spread.inverse();
+  double off_mm = 0;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    off_mm = std::max(off_mm, (found[i] - to - prints * (printed[i] - from)).norm());
   // How the sheet lay on the scanner is left out.
   const double x = prints.col(0).norm();
   const Vec2 ahead = prints.col(0) / x;
   const PrinterScale scale{x, cross2(ahead, prints.col(1)), ahead.dot(prints.col(1))};
-  if (!(off_mm < kWorstFit_mm))
+  if (!(off_mm < kWorstFit_mm) || !prints.allFinite())
     throw InputError(fmt::format(
         "{}: the marks are {:.2f} mm off any even stretch; lay the sheet flat and scan it again",
         name, off_mm));
