@@ -69,7 +69,7 @@ void add(ContentKey& key, const DipOptions& dip) {
   key.add(dip.step_mm).add(dip.method).add(dip.scheme);
   key.add(dip.material.z_stretch).add(dip.material.poisson).add(dip.material.tear_stretch);
   key.add(dip.material.wrinkle_stretch);
-  key.add(dip.material.safe_stretch).add(dip.material.lost_stretch);
+  key.add(dip.material.safe_stretch).add(dip.material.lost_stretch).add(dip.quick_look);
 }
 
 void add(ContentKey& key, const LinearColor& color) {

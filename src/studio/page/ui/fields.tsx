@@ -110,7 +110,11 @@ export function SelectField({ label, value, options, name, hideLabel, always, on
   return (
     <div class={hideLabel ? 'field bare' : 'field'}>
       <label for={id} class={hideLabel ? 'hidden' : ''}>{label}</label>
-      <select id={id} name={name} disabled={!always && readOnly.value} value={value} onChange={(event) => onChange(event.currentTarget.value)}>
+      <select id={id} name={name} disabled={!always && readOnly.value} value={value} onChange={(event) => {
+        const chosen = event.currentTarget.value;
+        event.currentTarget.value = value; // until what is shown says otherwise: a command can be chosen twice
+        onChange(chosen);
+      }}>
         {options.map(([key, text]) => <option key={key} value={key}>{text}</option>)}
       </select>
     </div>
