@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_scope.h"
+#include "object/simplify.h"
 #include "session/node_store.h"
 
 namespace hydrodip {
@@ -239,8 +240,23 @@ struct Workspace::Impl {
                        [&] { return fresh ? *fresh : load(project.model, project.load, context); });
   }
 
+  // As the project looks at it.
+  Keyed<Model> looked_at(const Project& project, const RunContext& context) {
+    auto loaded = model(project, context);
+    const std::size_t most = project.most_triangles;
+    if (most == 0 || loaded.value->object->triangles.size() <= most) return loaded;
+    ContentKey key("simplified");
+    key.add(loaded.key.text()).add(double(most));
+    return node<Model>(std::move(key), context, [&] {
+      const RunScope scope(context);
+      Model coarse = *loaded.value;
+      coarse.object = std::make_shared<const Object>(simplified(*loaded.value->object, most));
+      return coarse;
+    });
+  }
+
   Keyed<PosedObject> posed(const Project& project, const RunContext& context) {
-    const auto loaded = model(project, context);
+    const auto loaded = looked_at(project, context);
     ContentKey key("posed");
     key.add(loaded.key.text());
     add(key, project.pose);
@@ -266,7 +282,7 @@ struct Workspace::Impl {
   }
 
   Keyed<SharedPaint> paint(const Project& project, Quality quality, const RunContext& context) {
-    const auto loaded = model(project, context);
+    const auto loaded = looked_at(project, context);
     const auto hanging = posed(project, context);
     const DesignOptions options = at(quality, project.design);
     ContentKey key("paint");
@@ -336,7 +352,7 @@ RunContext Workspace::newest() {
 }
 
 std::shared_ptr<const Model> Workspace::model(const Project& project, const RunContext& context) {
-  return impl_->model(project, context).value;
+  return impl_->looked_at(project, context).value;
 }
 
 std::shared_ptr<const PosedObject> Workspace::posed(const Project& project,

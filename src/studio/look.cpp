@@ -27,6 +27,7 @@ namespace {
 constexpr double kSketchPixels = 3.5e5, kDraftPixels = 7e5, kNormalPixels = 4e6;
 constexpr double kSketchDpi = 60, kDraftDpi = 100, kNormalDpi = 150;
 constexpr int kSketchElements = 5000, kSketchAirCells = 10000;
+constexpr std::size_t kSketchTriangles = 60000;
 constexpr double kSketchStep_mm = 2;
 constexpr double kTiny_mm = 5, kHuge_mm = 1000;  // as require_size() has them
 
@@ -50,7 +51,9 @@ double shown_dpi(const JobConfig& config, LookQuality quality) {
   return std::min({config.design.dpi, most.dpi, std::floor(std::sqrt(most.pixels / area_in2))});
 }
 
-void simplify(DesignOptions& design) {
+void make_sketch(Project& project) {
+  project.most_triangles = kSketchTriangles;
+  DesignOptions& design = project.design;
   design.film.elements = std::min(design.film.elements, kSketchElements);
   design.dip.step_mm = std::max(design.dip.step_mm, kSketchStep_mm);
   design.dip.quick_look = true;
@@ -349,7 +352,7 @@ Project project_of(const JobConfig& config, LookQuality quality) {
   project.design = config.design;
   project.design.dpi = shown_dpi(config, quality);
   if (quality != LookQuality::kNormal) project.design.inverse.samples_per_axis = 1;
-  if (quality == LookQuality::kSketch) simplify(project.design);
+  if (quality == LookQuality::kSketch) make_sketch(project);
   project.printer = config.printer;
   return project;
 }

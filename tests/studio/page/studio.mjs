@@ -11,7 +11,7 @@ const HARMLESS = /GPU stall|ReadPixels|software WebGL/;
 const WHILE_DOWN = /ERR_CONNECTION|ERR_EMPTY_RESPONSE|ERR_INCOMPLETE_CHUNKED|net::ERR/;
 
 // Never the measure of anything: machines are busy.
-const PATIENCE_MS = 240000;
+const PATIENCE_MS = 1000 * Number(process.env.HYDRODIP_PATIENCE_S ?? 240);
 
 export function hasChromium(chromium) {
   return spawnSync(chromium, ['--version']).status === 0;
