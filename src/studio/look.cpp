@@ -27,7 +27,8 @@ namespace {
 constexpr double kSketchPixels = 3.5e5, kDraftPixels = 7e5, kNormalPixels = 4e6;
 constexpr double kSketchDpi = 60, kDraftDpi = 100, kNormalDpi = 150;
 constexpr int kSketchElements = 5000, kSketchAirCells = 10000;
-constexpr std::size_t kSketchTriangles = 60000;
+constexpr std::size_t kSketchTriangles = 20000;
+constexpr int kSketchPoints = 4000, kPoints = 20000;  // at which the report asks what is covered
 constexpr double kSketchStep_mm = 2;
 constexpr double kTiny_mm = 5, kHuge_mm = 1000;  // as require_size() has them
 
@@ -56,7 +57,7 @@ void make_sketch(Project& project) {
   DesignOptions& design = project.design;
   design.film.elements = std::min(design.film.elements, kSketchElements);
   design.dip.step_mm = std::max(design.dip.step_mm, kSketchStep_mm);
-  design.dip.quick_look = true;
+  design.dip.quick_look = design.inverse.quick_look = true;
   design.air.cells = std::min(design.air.cells, kSketchAirCells);
 }
 
@@ -245,7 +246,8 @@ Report report_of(const Look& look, const RunContext& context) {
   const Timings times;
   JobRecord record{"print", look.config, prepared,        inputs, finish,
                    times,   words,       &look.made->ink, "",     ""};
-  record.wanted = wanted_coverage(look.made->dipped, *look.paint);
+  record.wanted = wanted_coverage(look.made->dipped, *look.paint,
+                                  look.quality == LookQuality::kSketch ? kSketchPoints : kPoints);
   return make_report(record);
 }
 

@@ -112,15 +112,17 @@ const redo = (page) => page.keyboard.press('Control+Shift+Z');
 const coarse = async (page) => {
   await blur(page);
   await page.keyboard.press('4');
-  await type(page, 'print-dpi', 72);
+  for (const [name, value] of [['film-width', 150], ['film-height', 150], ['print-dpi', 72]]) await type(page, name, value);
   await page.click('.everything summary');
-  await page.fill('#search-setting', 'film.elements');
-  const field = page.getByLabel('film.elements', { exact: true });
-  await field.fill('5000');
-  await field.press('Enter');
+  for (const [name, value] of [['film.elements', 2000], ['dip.step_mm', 1], ['ink.rounds_max', 1]]) {
+    await page.fill('#search-setting', name);
+    const field = page.getByLabel(name, { exact: true });
+    await field.fill(String(value));
+    await field.press('Enter');
+  }
   await page.fill('#search-setting', '');
   await page.click('.everything summary');
-  await until('coarse film', async () => (await documentOf(page)).film?.elements === 5000);
+  await until('coarse film', async () => (await documentOf(page)).ink?.rounds_max === 1);
   await blur(page);
   await page.keyboard.press('1');
 };
@@ -308,7 +310,7 @@ test('what is set for film and printer is kept as a preset, and taken again', as
   await toy.click('[data-name="keep-preset"]');
   await toy.fill('[name="preset-name"]', 'our film');
   await toy.locator('[name="preset-name"]').press('Enter');
-  await toy.waitForSelector('[name="preset"] option[value="our-film"]', { state: 'attached' });
+  await toy.locator('[name="preset"] option', { hasText: /^our-film$/ }).waitFor({ state: 'attached' });
   await type(toy, 'film-margin_mm', 9);
   await kept(toy);
   await toy.selectOption('[name="preset"]', 'our-film');
@@ -406,6 +408,7 @@ test('Tab shows the sheet large while the view has the focus', async () => {
 // ---- Several dips ----
 
 test('a second dip: two sheets, each dip\'s part, the seam, and the finish as a whole', async () => {
+  await openQuick(toy, 'ellipsoid');
   const first = await documentOf(toy);
   const before = await resultOf(toy);
   await blur(toy);

@@ -148,7 +148,7 @@ export async function openQuick(page, sample, more = {}) {
     location.hash = `job=${id}`;
     return id;
   }, [sample, { ...QUICK, ...more }]);
-  await page.waitForSelector('.work');
+  await page.waitForSelector(`.work[data-job="${job}"]`);
   await newResult(page, '');
   return job;
 }
