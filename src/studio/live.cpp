@@ -97,8 +97,13 @@ void Live::compute(const Turn& turn) {
     const bool known = normal_of_ && turn.request.comes_to_the_same(*normal_of_);
     normal_of_.reset();
     if (turn.request.dragging || !known) {
-      show_look(turn, LookQuality::kSketch);
-      count(&Counts::drafts);
+      // The end of a drag is where its last move was.
+      if (!sketch_of_ || !turn.request.comes_to_the_same(*sketch_of_)) {
+        sketch_of_.reset();
+        show_look(turn, LookQuality::kSketch);
+        count(&Counts::drafts);
+        sketch_of_ = turn.request;
+      }
       if (turn.request.dragging) return;
       show_look(turn, LookQuality::kDraft);
       count(&Counts::drafts);

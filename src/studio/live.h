@@ -92,7 +92,7 @@ class Live {
   std::shared_ptr<const Paint> shown_paint_;  // in full, and not only sketched
   bool shows_artwork_ = false;
   std::map<std::size_t, std::weak_ptr<const Designed>> told_;  // last, of each dip
-  std::optional<LiveRequest> normal_of_;  // of what a normal result was told last
+  std::optional<LiveRequest> sketch_of_, normal_of_;  // of what such a result was told last
   std::string finish_of_;  // the content of which the finish was told; empty: none was
 
   mutable std::mutex mutex_;
