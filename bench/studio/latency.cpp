@@ -226,13 +226,14 @@ int run(const std::vector<std::string>& models) {
     show(name + ", turned", measure(client, begin, size, turn));
     show(name + ", depth", measure(client, begin, size, deeper));
     show(name + ", text turned", measure(client, begin, size, picture));
-    show_cancelling(name, client, begin, size, turn);
   };
   // As the start page does while somebody reads it.
   studio.api().warm_up(RunContext());
-  show_all("mask", [&]() -> std::string {
+  const Begin open_mask = [&]() -> std::string {
     return client.post("/api/jobs", R"({"sample": "mask"})").json()["job"];
-  });
+  };
+  show_all("mask", open_mask);
+  show_cancelling("mask", client, open_mask, size, turn);
   // As dropped on the page: with everything that lies beside it.
   for (const std::string& model : models)
     show_all(std::filesystem::path(model).filename().string(), [&]() -> std::string {
