@@ -24,8 +24,8 @@ namespace hydrodip {
 namespace {
 
 // A picture has so many pixels at most; the screen shows no more.
-constexpr double kSketchPixels = 5e5, kDraftPixels = 7e5, kNormalPixels = 4e6;
-constexpr double kSketchDpi = 72, kDraftDpi = 100, kNormalDpi = 150;
+constexpr double kSketchPixels = 3.5e5, kDraftPixels = 7e5, kNormalPixels = 4e6;
+constexpr double kSketchDpi = 60, kDraftDpi = 100, kNormalDpi = 150;
 constexpr int kSketchElements = 5000, kSketchAirCells = 10000;
 constexpr std::size_t kSketchTriangles = 20000;
 constexpr int kSketchPoints = 4000, kPoints = 20000;  // at which the report asks what is covered

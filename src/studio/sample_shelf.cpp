@@ -31,7 +31,7 @@ SampleShelf::SampleShelf(const std::filesystem::path& folder) : folder_(folder /
 
 std::filesystem::path SampleShelf::ready(const std::string& name) {
   const std::lock_guard lock(mutex_);
-  const std::filesystem::path whole = folder_ / name;
+  std::filesystem::path whole = folder_ / name;
   if (std::filesystem::exists(whole)) return whole;
   const Object sample = make_sample(name);
   if (!std::filesystem::exists(folder_)) std::filesystem::remove_all(folder_.parent_path());
