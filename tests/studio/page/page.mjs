@@ -131,29 +131,31 @@ const sameAs = async (page, document) => until('the document', async () => JSON.
 
 // ---- Begin ----
 
-test('the empty page: what this is, samples, a place to drop things', async () => {
-  const page = await session.page();
+// One page for nearly everything: a new one costs seconds.
+let toy;
+const toStart = async (page) => {
+  await page.evaluate(() => { location.hash = ''; });
   await page.waitForSelector('.dropzone');
-  assert.equal(await page.locator('.sample').count(), 3);
-  assert.match(page.url(), /^http:\/\/127\.0\.0\.1:\d+\/$/); // the token has left the address
-  await widePicture(page, 'start');
-  await page.context().close();
+};
+
+test('the empty page: what this is, samples, a place to drop things', async () => {
+  toy = await session.page();
+  await toy.waitForSelector('.dropzone');
+  assert.equal(await toy.locator('.sample').count(), 3);
+  assert.match(toy.url(), /^http:\/\/127\.0\.0\.1:\d+\/$/); // the token has left the address
+  await widePicture(toy, 'start');
 });
 
 test('a sample opens with one click: object over its film, the sheet, a verdict', async () => {
-  const mask = await session.page();
-  await openSample(mask, 'mask');
-  const verdict = await mask.textContent('.verdict .sentence');
+  await openSample(toy, 'mask');
+  const verdict = await toy.textContent('.verdict .sentence');
   assert.ok(verdict.length > 10);
   assert.doesNotMatch(verdict, /--|_mm|\bdip\./); // in the user's words
-  assert.ok(await mask.locator('.canvas-box canvas').getAttribute('data-drawn') > 0);
-  await widePicture(mask, 'bath');
-  await mask.context().close();
+  await toy.waitForFunction(() => document.querySelector('.canvas-box canvas').dataset.drawn > 0);
+  await widePicture(toy, 'bath');
 });
 
-let toy;
 test('an address with a job in it opens that', async () => {
-  toy = await session.page();
   await openQuick(toy, 'pyramid');
   assert.equal(await toy.inputValue('[name="job-name"]'), 'pyramid');
 });
@@ -441,8 +443,8 @@ part = 'artwork';
 
 let dome;
 test('an STL and a PNG dropped together: the picture is on the object at once', async () => {
-  dome = await session.page();
-  await dome.waitForSelector('.dropzone');
+  dome = toy ?? (await session.page());
+  await toStart(dome);
   const [model, image] = ['dome.stl', 'logo.png'].map((name) => readFileSync(join(work, name)).toString('base64'));
   await dome.evaluate(async ([a, b]) => {
     const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -652,8 +654,9 @@ test('? lists the keys', async () => {
 });
 
 test('a phone may look: verdict, object, sheet and findings, and nothing to change', async () => {
-  const phone = await session.page({ width: 390, height: 844, context: null });
-  await phone.waitForSelector('.recent button');
+  const phone = dome;
+  await phone.setViewportSize({ width: 390, height: 844 });
+  await toStart(phone);
   await phone.locator('.recent li > button').first().click();
   await newResult(phone, '');
   assert.equal(await phone.locator('.steps, [data-name="print"]').count(), 0);
@@ -661,12 +664,14 @@ test('a phone may look: verdict, object, sheet and findings, and nothing to chan
   assert.ok(wide <= 390, `${wide} px wide`);
   await phone.click('[data-value="object"]');
   await picture(phone, 'phone');
-  await phone.context().close();
+  await phone.setViewportSize(USUAL);
 });
 
 test('nothing is cut off at 1024 x 768, and dark is dark', async () => {
-  const small = await session.page({ width: 1024, height: 768, dark: true });
-  await small.waitForSelector('.recent button');
+  const small = dome;
+  await small.setViewportSize({ width: 1024, height: 768 });
+  await small.emulateMedia({ colorScheme: 'dark' });
+  await toStart(small);
   await small.locator('.recent li > button').first().click();
   await newResult(small, '');
   const over = await small.evaluate(() => {
@@ -677,7 +682,6 @@ test('nothing is cut off at 1024 x 768, and dark is dark', async () => {
   const [back] = (await small.evaluate(() => getComputedStyle(document.body).backgroundColor)).match(/\d+/g).map(Number);
   assert.ok(back < 60);
   await picture(small, 'small-dark');
-  await small.context().close();
 });
 
 part = wanted ?? 'object';
@@ -687,7 +691,7 @@ test('no complaint on the console, and no request to anybody else', async () => 
 
 // ---- Running them ----
 
-const only = process.env.HYDRODIP_ONLY && new RegExp(`${process.env.HYDRODIP_ONLY}|an address with a job|dropped together`);
+const only = process.env.HYDRODIP_ONLY && new RegExp(`${process.env.HYDRODIP_ONLY}|the empty page|an address with a job|dropped together`);
 let failures = 0;
 for (const { name, body, part: of } of tests) {
   if ((wanted && of !== wanted) || (only && !only.test(name))) continue;
