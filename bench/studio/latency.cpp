@@ -75,9 +75,11 @@ class Page {
     return event->data["revision"];
   }
 
-  // Until a normal result is being computed.
-  void wait_for_normal() {
-    events_.next("working", [](const json& e) { return e["quality"] == "normal"; });
+  // Until a normal result of that revision is being computed.
+  void wait_for_normal(long revision) {
+    events_.next("working", [&](const json& e) {
+      return e["revision"] == revision && e["quality"] == "normal";
+    });
   }
   long cancelled() const { return client_.get(at_ + "/counts").json()["cancelled"]; }
 
@@ -147,8 +149,7 @@ void show_cancelling(const std::string& what, const Client& client, const Begin&
   std::vector<double> took;
   for (int n = 0; n < kTimes; ++n) {
     move(page.document, 2 * n);
-    page.put(false);
-    page.wait_for_normal();
+    page.wait_for_normal(page.put(false));
     std::this_thread::sleep_for(n * kLater);
     const long before = page.cancelled();
     move(page.document, 2 * n + 1);
