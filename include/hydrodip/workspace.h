@@ -22,6 +22,8 @@ struct Project {
   std::vector<ArtworkLayer> artwork;  // over the model's colours, the bottom layer first
   DesignOptions design;               // film, way into the water, ink
   PrinterOptions printer;             // which inks it makes of a colour
+  // A model of more triangles is looked at with about so many; 0: with all that it has.
+  std::size_t most_triangles = 0;
 };
 
 // For any number of threads.

@@ -82,7 +82,7 @@ DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
     };
     // What tears in a dip that was told when is known from another one.
     DipOptions asking = options;
-    asking.asks_what_moves = options.tears_at_mm.empty();
+    asking.asks_what_moves = options.tears_at_mm.empty() && !options.quick_look;
     const TriangleMesh& lids = result.air->lids;
     DipResult dipped = lids.triangles.empty()
                            ? dip(film, mesh.positions, mesh.triangles, posed.surface(), trajectory,

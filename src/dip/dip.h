@@ -60,6 +60,8 @@ struct DipOptions {
   std::vector<double> tears_at_mm;
   // Where film tears: dip twice more, on coarser film, to see what depends on how torn film falls.
   bool asks_what_moves = false;
+  // A coat's dip asks that by itself (dip_object()), unless it is only a quick look.
+  bool quick_look = false;
   // DippedFilm::moved_mm that another dip found; then that is not asked again.
   std::vector<double> moved_mm = {};
   // Where more steps than this share fail, dip() gives up.

@@ -7,17 +7,17 @@
 namespace hydrodip {
 namespace {
 
-constexpr int kPoints = 20000;
 // From so far from the bare object's colour on (CIELAB) there is something to print.
 constexpr double kPrinted = 2;
 constexpr double kNearlyEverywhere = 0.95;
 
 }  // namespace
 
-std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Paint& paint) {
+std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Paint& paint,
+                                            int points) {
   if (!paint.says_anything()) return std::nullopt;
   const TriangleMesh& mesh = dipped.posed.mesh();
-  const Targets targets = spread_targets(mesh, kPoints);
+  const Targets targets = spread_targets(mesh, points);
   const Vec3 bare = to_cielab(paint.base());
   struct Seen {
     bool wanted = false, reached = false, covered = false;

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_scope.h"
+#include "object/simplify.h"
 #include "session/node_store.h"
 
 namespace hydrodip {
@@ -69,7 +70,7 @@ void add(ContentKey& key, const DipOptions& dip) {
   key.add(dip.step_mm).add(dip.method).add(dip.scheme);
   key.add(dip.material.z_stretch).add(dip.material.poisson).add(dip.material.tear_stretch);
   key.add(dip.material.wrinkle_stretch);
-  key.add(dip.material.safe_stretch).add(dip.material.lost_stretch);
+  key.add(dip.material.safe_stretch).add(dip.material.lost_stretch).add(dip.quick_look);
 }
 
 void add(ContentKey& key, const LinearColor& color) {
@@ -91,6 +92,7 @@ void add(ContentKey& key, const DesignOptions& design) {
   key.add(design.stiffness.ratio).add(design.stiffness.filter_mm);
   key.add(design.rounds_max).add(design.dpi);
   key.add(design.inverse.bleed_mm).add(design.inverse.samples_per_axis);
+  key.add(design.inverse.quick_look);
   key.add(design.inking.compensate).add(design.inking.policy).add(design.inking.limit);
 }
 
@@ -239,8 +241,23 @@ struct Workspace::Impl {
                        [&] { return fresh ? *fresh : load(project.model, project.load, context); });
   }
 
+  // As the project looks at it.
+  Keyed<Model> looked_at(const Project& project, const RunContext& context) {
+    auto loaded = model(project, context);
+    const std::size_t most = project.most_triangles;
+    if (most == 0 || loaded.value->object->triangles.size() <= most) return loaded;
+    ContentKey key("simplified");
+    key.add(loaded.key.text()).add(double(most));
+    return node<Model>(std::move(key), context, [&] {
+      const RunScope scope(context);
+      Model coarse = *loaded.value;
+      coarse.object = std::make_shared<const Object>(simplified(*loaded.value->object, most));
+      return coarse;
+    });
+  }
+
   Keyed<PosedObject> posed(const Project& project, const RunContext& context) {
-    const auto loaded = model(project, context);
+    const auto loaded = looked_at(project, context);
     ContentKey key("posed");
     key.add(loaded.key.text());
     add(key, project.pose);
@@ -266,7 +283,7 @@ struct Workspace::Impl {
   }
 
   Keyed<SharedPaint> paint(const Project& project, Quality quality, const RunContext& context) {
-    const auto loaded = model(project, context);
+    const auto loaded = looked_at(project, context);
     const auto hanging = posed(project, context);
     const DesignOptions options = at(quality, project.design);
     ContentKey key("paint");
@@ -336,7 +353,7 @@ RunContext Workspace::newest() {
 }
 
 std::shared_ptr<const Model> Workspace::model(const Project& project, const RunContext& context) {
-  return impl_->model(project, context).value;
+  return impl_->looked_at(project, context).value;
 }
 
 std::shared_ptr<const PosedObject> Workspace::posed(const Project& project,

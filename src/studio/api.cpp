@@ -214,13 +214,6 @@ Json parameters_list() {
   return own;
 }
 
-// "mask" -> its files in the folder.
-std::string place_sample(const std::string& name, const std::filesystem::path& folder) {
-  const Object sample = make_sample(name);
-  write_sample(name, sample, folder);
-  return name + ".obj";
-}
-
 // For a password: nothing of the page is shown before.
 constexpr const char* kLogin = R"(<!doctype html><html lang="en"><meta charset="utf-8">
 <title>hydrodip studio</title><meta name="viewport" content="width=device-width, initial-scale=1">
@@ -257,6 +250,7 @@ std::string form_value(const std::string& form, const std::string& key) {
 Api::Api(JobStore store, Guard guard, std::string run, std::function<void()> quit,
          std::filesystem::path profiles)
     : store_(std::move(store)),
+      shelf_(store_.samples()),
       guard_(std::move(guard)),
       run_(std::move(run)),
       quit_(std::move(quit)),
@@ -432,7 +426,7 @@ HttpAnswer Api::new_job(HttpRequest& request) {
     name = store_.create();
     if (!sample.empty()) {
       try {
-        const std::string file = place_sample(sample, store_.home(name) / "files");
+        const std::string file = shelf_.place(sample, store_.home(name) / "files");
         job(name)->adopt({file}, "");
       } catch (const InputError&) {
         store_.forget(name);
@@ -473,10 +467,10 @@ HttpAnswer Api::read_job(const HttpRequest&, const Parts& parts, OpenJob& job) {
   if (what == "job.zip") return file_answer(job.pack(), job.name() + ".zip");
   if (what == "meshes" && parts.size() == 5) return bytes_answer(job.mesh(parts[4]));
   if (what == "meshes" && parts.size() == 7 && parts[5] == "textures") {
-    const auto picture = job.texture(parts[4], std::size_t(std::atoi(parts[6].c_str())));
-    if (!picture) throw not_found();
-    return bytes_answer(std::make_shared<const std::vector<std::uint8_t>>(picture->bytes),
-                        picture->type);
+    const auto texture = job.texture(parts[4], std::size_t(std::atoi(parts[6].c_str())));
+    if (!texture) throw not_found();
+    const ShownPicture& picture = texture->picture();
+    return bytes_answer({texture, &picture.bytes}, picture.type);
   }
   if (what == "finish" && parts.size() == 5) return bytes_answer(job.finish(parts[4]));
   if (what == "results" && parts.size() == 5) return bytes_answer(job.result(parts[4]));

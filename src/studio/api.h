@@ -13,6 +13,7 @@
 #include "studio/http.h"
 #include "studio/job_store.h"
 #include "studio/open_job.h"
+#include "studio/sample_shelf.h"
 
 namespace hydrodip {
 
@@ -29,6 +30,9 @@ class Api {
   // A file that the command line named, as a job of its own, or as that which was opened from it
   // before and not saved. Throws InputError.
   void open_file(const std::filesystem::path& file);
+
+  // Makes the samples ready that have never been opened, until cancelled.
+  void warm_up(const RunContext& context) { shelf_.fill(context); }
 
   // Lets go of jobs that nobody looks at.
   void tidy();
@@ -50,6 +54,7 @@ class Api {
   std::shared_ptr<OpenJob> job(const std::string& name);
 
   const JobStore store_;
+  SampleShelf shelf_;
   const Guard guard_;
   const std::string run_;
   const std::function<void()> quit_;

@@ -21,6 +21,9 @@ constexpr std::size_t kKeepAliveRequests = 1000;
 constexpr std::size_t kLongestPath = 1024;
 constexpr int kTriesToStop = 200;
 constexpr std::size_t kPiece = std::size_t(1) << 16;
+// A body up to that size is read even if nobody wants it: where a connection is closed over what
+// has not been read, the answer may be lost.
+constexpr std::uint64_t kReadAnyhow = std::uint64_t(64) << 10U;
 
 HttpRequest request_of(const httplib::Request& from) {
   HttpRequest request;
@@ -129,12 +132,15 @@ struct HttpServer::Impl {
   void with_body(const httplib::Request& from, httplib::Response& to,
                  const httplib::ContentReader& reader) {
     HttpRequest request = request_of(from);
-    bool whole = false;
+    bool wanted = false, whole = false;
     request.read_body = [&](const std::function<bool(const char*, std::size_t)>& take) {
+      wanted = true;
       whole = reader([&](const char* data, std::size_t size) { return take(data, size); });
       return whole;
     };
     const HttpAnswer answer = handler(request);
+    if (!wanted && request.body_bytes.value_or(kReadAnyhow + 1) <= kReadAnyhow)
+      whole = reader([](const char*, std::size_t) { return true; });
     send(to, answer, !whole);
   }
 };

@@ -29,6 +29,9 @@ class JobStore {
   // Its folder: files/ (uploads), print/, thumbnail.png.
   std::filesystem::path home(const std::string& job) const;
 
+  // For the samples' files, beside the jobs.
+  std::filesystem::path samples() const { return folder_ / "samples"; }
+
   // Null if it cannot be read.
   Json read(const std::string& job) const;
   void write(const std::string& job, const Json& state) const;

@@ -17,7 +17,7 @@ constexpr std::size_t kWorkspaceBytes = std::size_t(768) << 20U;
 // The hand rests when nothing was asked for so long.
 constexpr auto kRest = std::chrono::milliseconds(400);
 constexpr auto kBetweenProgress = std::chrono::milliseconds(100);
-constexpr int kBaked_px = 1536, kBakedInDrag_px = 512, kFinish_px = 1024;
+constexpr int kBaked_px = 1536, kBakedSketch_px = 512, kFinish_px = 1024;
 
 double seconds_since(Steady::time_point start) {
   return std::chrono::duration<double>(Steady::now() - start).count();
@@ -45,6 +45,12 @@ void Live::ask(LiveRequest request) {
   if (current_ && !goes_on) current_->cancel();
   waiting_ = std::move(request);
   changed_.notify_all();
+}
+
+void Live::rest() {
+  const std::lock_guard lock(mutex_);
+  waiting_.reset();
+  if (current_) current_->cancel();
 }
 
 Live::Counts Live::counts() const {
@@ -91,11 +97,19 @@ void Live::compute(const Turn& turn) {
     const bool known = normal_of_ && turn.request.comes_to_the_same(*normal_of_);
     normal_of_.reset();
     if (turn.request.dragging || !known) {
-      show_look(turn, Quality::kDraft);
+      // The end of a drag is where its last move was.
+      if (!sketch_of_ || !turn.request.comes_to_the_same(*sketch_of_)) {
+        sketch_of_.reset();
+        show_look(turn, LookQuality::kSketch);
+        count(&Counts::drafts);
+        sketch_of_ = turn.request;
+      }
+      if (turn.request.dragging) return;
+      show_look(turn, LookQuality::kDraft);
       count(&Counts::drafts);
-      if (turn.request.dragging || !rests()) return;
+      if (!rests()) return;
     }
-    show_look(turn, Quality::kNormal);
+    show_look(turn, LookQuality::kNormal);
     count(&Counts::normals);
     normal_of_ = turn.request;
     if (turn.request.config.dips.size() > 1) {
@@ -119,7 +133,8 @@ void Live::show_model(const Turn& turn) {
   std::shared_ptr<const Model> model;
   try {
     model = workspace_.model(
-        project_of(config_of_dip(turn.request.config, turn.request.dip), Quality::kDraft), reading);
+        project_of(config_of_dip(turn.request.config, turn.request.dip), LookQuality::kDraft),
+        reading);
   } catch (const InputError&) {
     return;  // said by show_look()
   }
@@ -131,8 +146,8 @@ void Live::show_model(const Turn& turn) {
   sinks_.model(turn.request.revision, model, model_warnings_);
 }
 
-void Live::show_look(const Turn& turn, Quality quality) {
-  const std::string name = quality == Quality::kDraft ? "draft" : "normal";
+void Live::show_look(const Turn& turn, LookQuality quality) {
+  const std::string name = quality == LookQuality::kNormal ? "normal" : "draft";
   const auto begun = Steady::now();
   auto told = begun;
   turn.context.on_progress([&](const std::string& activity, double fraction) {
@@ -148,7 +163,7 @@ void Live::show_look(const Turn& turn, Quality quality) {
                                 model_warnings_, turn.context);
   sinks_.look(turn.request.revision, look, seconds_since(begun));
   told_[look.dip] = look.made;
-  if (quality == Quality::kDraft) show_painted(turn, look);
+  if (quality != LookQuality::kNormal) show_painted(turn, look);
 }
 
 void Live::show_others(const Turn& turn) {
@@ -157,7 +172,7 @@ void Live::show_others(const Turn& turn) {
     if (dip == turn.request.dip) continue;
     try {
       const Look look =
-          look_at_dip(workspace_, config, dip, Quality::kDraft, model_warnings_, turn.context);
+          look_at_dip(workspace_, config, dip, LookQuality::kDraft, model_warnings_, turn.context);
       if (told_[dip].lock() == look.made) continue;
       sinks_.look(turn.request.revision, look, 0);
       told_[dip] = look.made;
@@ -169,7 +184,8 @@ void Live::show_others(const Turn& turn) {
 
 void Live::show_finish(const Turn& turn) {
   const LiveRequest& request = turn.request;
-  const Project project = project_of(config_of_dip(request.config, request.dip), Quality::kDraft);
+  const Project project =
+      project_of(config_of_dip(request.config, request.dip), LookQuality::kDraft);
   const auto model = workspace_.model(project, turn.context);
   if (finish_of_ == request.content) return sinks_.finish(request.revision, *model, nullptr);
   finish_of_.clear();
@@ -195,10 +211,11 @@ void Live::show_painted(const Turn& turn, const Look& look) {
   if (look.paint == shown_paint_) return;
   shows_artwork_ = true;
   const RunScope scope(turn.context);
-  const int px = turn.request.dragging ? kBakedInDrag_px : kBaked_px;
+  const bool sketch = look.quality == LookQuality::kSketch;
+  const int px = sketch ? kBakedSketch_px : kBaked_px;
   const Object painted = painted_object(*look.model->object, *look.paint, px);
-  // What was baked in a drag is baked again when it ends.
-  shown_paint_ = turn.request.dragging ? nullptr : look.paint;
+  // A sketch is baked again.
+  shown_paint_ = sketch ? nullptr : look.paint;
   sinks_.painted(turn.request.revision, *look.model, painted);
 }
 

@@ -1,5 +1,5 @@
-// What is computed while somebody works: a draft after every change, the normal result when the
-// hand rests. One thread, one workspace.
+// What is computed while somebody works: a sketch after every change, then a draft, and the normal
+// result when the hand rests. One thread, one workspace.
 #pragma once
 
 #include <condition_variable>
@@ -22,9 +22,9 @@ struct LiveRequest {
   long revision = 0;
   std::size_t dip = 0;
   std::string content;  // the same for documents of which the same comes
-  // In the middle of a drag. The draft that is being computed for an earlier such request is
-  // finished, so that something moves, and so is one that the end of the drag asks for again; any
-  // other computation is cancelled by a newer request.
+  // In the middle of a drag: sketches are enough. The one that is being computed for an earlier
+  // such request is finished, so that something moves, and so is one that the end of the drag asks
+  // for again; any other computation is cancelled by a newer request.
   bool dragging = false;
   bool comes_to_the_same(const LiveRequest& other) const {
     return content == other.content && dip == other.dip;
@@ -58,9 +58,11 @@ class Live {
   Live& operator=(const Live&) = delete;
 
   void ask(LiveRequest request);
+  // Cancels what is being computed, until something is asked for again.
+  void rest();
 
   std::size_t memory_bytes() const { return workspace_.memory_bytes(); }
-  // How many drafts and normal results were finished, and how many were cancelled.
+  // How many drafts (with sketches) and normal results were finished, and how many were cancelled.
   struct Counts {
     long drafts = 0, normals = 0, cancelled = 0;
   };
@@ -76,7 +78,7 @@ class Live {
   void compute(const Turn& turn);
   void show_model(const Turn& turn);
   void show_painted(const Turn& turn, const Look& look);
-  void show_look(const Turn& turn, Quality quality);
+  void show_look(const Turn& turn, LookQuality quality);
   // Of several dips: those that are not shown, as drafts, and then all together.
   void show_others(const Turn& turn);
   void show_finish(const Turn& turn);
@@ -87,10 +89,10 @@ class Live {
   Workspace workspace_;
   std::shared_ptr<const Model> shown_model_;
   std::vector<std::string> model_warnings_;
-  std::shared_ptr<const Paint> shown_paint_;  // in full, and not only for a drag
+  std::shared_ptr<const Paint> shown_paint_;  // in full, and not only sketched
   bool shows_artwork_ = false;
   std::map<std::size_t, std::weak_ptr<const Designed>> told_;  // last, of each dip
-  std::optional<LiveRequest> normal_of_;  // of what a normal result was told last
+  std::optional<LiveRequest> sketch_of_, normal_of_;  // of what such a result was told last
   std::string finish_of_;  // the content of which the finish was told; empty: none was
 
   mutable std::mutex mutex_;

@@ -23,17 +23,42 @@
 namespace hydrodip {
 namespace {
 
-// A draft's picture has so many pixels at most, a normal one's so many; the screen shows no more.
-constexpr double kDraftPixels = 7e5, kNormalPixels = 4e6;
-constexpr double kDraftDpi = 100, kNormalDpi = 150;
+// A picture has so many pixels at most; the screen shows no more.
+constexpr double kSketchPixels = 3.5e5, kDraftPixels = 7e5, kNormalPixels = 4e6;
+constexpr double kSketchDpi = 60, kDraftDpi = 100, kNormalDpi = 150;
+constexpr int kSketchElements = 5000, kSketchAirCells = 10000;
+constexpr std::size_t kSketchTriangles = 20000;
+constexpr int kSketchPoints = 4000, kPoints = 20000;  // at which the report asks what is covered
+constexpr double kSketchStep_mm = 2;
 constexpr double kTiny_mm = 5, kHuge_mm = 1000;  // as require_size() has them
 
-double shown_dpi(const JobConfig& config, Quality quality) {
-  const bool draft = quality == Quality::kDraft;
+double shown_dpi(const JobConfig& config, LookQuality quality) {
+  struct Picture {
+    double pixels, dpi;
+  };
+  const auto most = [&]() -> Picture {
+    switch (quality) {
+      case LookQuality::kSketch:
+        return {kSketchPixels, kSketchDpi};
+      case LookQuality::kDraft:
+        return {kDraftPixels, kDraftDpi};
+      case LookQuality::kNormal:
+        break;
+    }
+    return {kNormalPixels, kNormalDpi};
+  }();
   const double area_in2 =
       config.design.film.width_mm * config.design.film.height_mm / (kMmPerInch * kMmPerInch);
-  const double most = std::sqrt((draft ? kDraftPixels : kNormalPixels) / area_in2);
-  return std::min({config.design.dpi, draft ? kDraftDpi : kNormalDpi, std::floor(most)});
+  return std::min({config.design.dpi, most.dpi, std::floor(std::sqrt(most.pixels / area_in2))});
+}
+
+void make_sketch(Project& project) {
+  project.most_triangles = kSketchTriangles;
+  DesignOptions& design = project.design;
+  design.film.elements = std::min(design.film.elements, kSketchElements);
+  design.dip.step_mm = std::max(design.dip.step_mm, kSketchStep_mm);
+  design.dip.quick_look = design.inverse.quick_look = true;
+  design.air.cells = std::min(design.air.cells, kSketchAirCells);
 }
 
 // ---- computing ----
@@ -221,7 +246,8 @@ Report report_of(const Look& look, const RunContext& context) {
   const Timings times;
   JobRecord record{"print", look.config, prepared,        inputs, finish,
                    times,   words,       &look.made->ink, "",     ""};
-  record.wanted = wanted_coverage(look.made->dipped, *look.paint);
+  record.wanted = wanted_coverage(look.made->dipped, *look.paint,
+                                  look.quality == LookQuality::kSketch ? kSketchPoints : kPoints);
   return make_report(record);
 }
 
@@ -314,7 +340,11 @@ JobConfig config_of_dip(const JobConfig& config, std::size_t dip) {
   return own;
 }
 
-Project project_of(const JobConfig& config, Quality quality) {
+Quality quality_of(LookQuality quality) {
+  return quality == LookQuality::kNormal ? Quality::kNormal : Quality::kDraft;
+}
+
+Project project_of(const JobConfig& config, LookQuality quality) {
   Project project;
   project.model = config.model;
   project.load = config.object.load;
@@ -323,12 +353,13 @@ Project project_of(const JobConfig& config, Quality quality) {
   project.artwork = config.object.artwork;
   project.design = config.design;
   project.design.dpi = shown_dpi(config, quality);
-  if (quality == Quality::kDraft) project.design.inverse.samples_per_axis = 1;
+  if (quality != LookQuality::kNormal) project.design.inverse.samples_per_axis = 1;
+  if (quality == LookQuality::kSketch) make_sketch(project);
   project.printer = config.printer;
   return project;
 }
 
-Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Quality quality,
+Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, LookQuality quality,
                  const std::vector<std::string>& known, const RunContext& context) {
   const RunScope scope(context);
   if (job.model.empty())
@@ -344,8 +375,8 @@ Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Qu
     const auto posed = workspace.posed(project, context);
     require_sensible_size(look.config, posed->mesh());
     require_room(look.config, *posed, context);
-    look.paint = workspace.paint(project, quality, context);
-    look.made = workspace.designed(project, quality, context);
+    look.paint = workspace.paint(project, quality_of(quality), context);
+    look.made = workspace.designed(project, quality_of(quality), context);
     look.paint = paint_as_dipped(look.paint, look.made->dipped);
     look.warnings = known;
     for (const auto& list : {look.model->health.findings(), context.warnings()})
@@ -362,7 +393,7 @@ DipsTogether look_at_dips(Workspace& workspace, const JobConfig& job, int textur
   return or_refused([&] {
     JobConfig config = job;
     config.plan.find_pose = config.plan.find_depth = false;
-    const Project project = project_of(config, Quality::kDraft);
+    const Project project = project_of(config, LookQuality::kDraft);
     const auto model = workspace.model(project, context);
     const auto posed = workspace.posed(project, context);
     MeshHealth health = model->health;
@@ -421,7 +452,7 @@ std::vector<std::uint8_t> result_bundle(const Look& look, Json head, const RunCo
   const Printer printer = make_printer(look.config.printer);
   const Report report = report_of(look, context);
   const std::vector<Finding> list = findings_of(look, report);
-  head["quality"] = look.quality == Quality::kDraft ? "draft" : "normal";
+  head["quality"] = look.quality == LookQuality::kNormal ? "normal" : "draft";
   head["dip"] = look.dip;
   head["dips"] = look.dips;
   const Eigen::Matrix4d& matrix = dipped.posed.matrix();

@@ -30,13 +30,19 @@ struct ProblemFound : std::runtime_error {
 // The job as its dip of that number (from 0) is made.
 JobConfig config_of_dip(const JobConfig& config, std::size_t dip);
 
-// As the workspace takes it; a draft's picture is coarser too.
-Project project_of(const JobConfig& config, Quality quality);
+// How finely a dip is looked at. A sketch is for what follows a hand: on coarser film than a draft,
+// in longer steps, and without the question what depends on how torn film falls.
+enum class LookQuality { kSketch, kDraft, kNormal };
+
+// As the workspace takes it; the picture of what is not normal is coarser too.
+Project project_of(const JobConfig& config, LookQuality quality);
+// Of what the workspace makes of that.
+Quality quality_of(LookQuality quality);
 
 struct Look {
   JobConfig config;  // of this dip
   std::size_t dip = 0, dips = 1;
-  Quality quality = Quality::kDraft;
+  LookQuality quality = LookQuality::kDraft;
   std::shared_ptr<const Model> model;
   std::shared_ptr<const Paint> paint;
   std::shared_ptr<const Designed> made;
@@ -44,7 +50,7 @@ struct Look {
 };
 
 // Throws ProblemFound, Cancelled. `known`: warnings of reading the model, which is done once.
-Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Quality quality,
+Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, LookQuality quality,
                  const std::vector<std::string>& known, const RunContext& context);
 
 // All dips of the job together, as drafts. Throws ProblemFound, Cancelled.

@@ -152,6 +152,7 @@ void OpenJob::accept(const Json& document, const JobConfig& config, const std::s
 
 // With the lock.
 void OpenJob::ask(bool live) {
+  at_rest_ = false;
   Json content = document_;
   if (content.is_object()) {
     content.erase("name");
@@ -529,6 +530,7 @@ std::shared_ptr<EventStream> OpenJob::connect(const std::string& client) {
   if (!finish_event_.is_null()) stream->push("finish", finish_event_);
   if (!problem_event_.is_null()) stream->push("problem", problem_event_);
   for (const Json& task : tasks) stream->push("task", task);
+  if (at_rest_) ask(false);
   return stream;
 }
 
@@ -536,7 +538,11 @@ void OpenJob::disconnect(const std::string& client, const std::shared_ptr<EventS
   const std::lock_guard lock(mutex_);
   const auto gone = std::erase_if(tabs_, [&](const Tab& tab) { return tab.stream == stream; });
   if (gone == 0) return;
-  if (tabs_.empty()) unwatched_since_ = std::chrono::steady_clock::now();
+  if (tabs_.empty()) {
+    unwatched_since_ = std::chrono::steady_clock::now();
+    at_rest_ = true;
+    live_->rest();
+  }
   if (pen_ == client) hand_pen_on();
 }
 
@@ -651,7 +657,7 @@ LiveSinks OpenJob::sinks() {
     shown.bundle = std::make_shared<const std::vector<std::uint8_t>>(
         result_bundle(look, {{"result", shown.id}, {"revision", revision}}, RunContext()));
     shown.event = {{"revision", revision},
-                   {"quality", look.quality == Quality::kDraft ? "draft" : "normal"},
+                   {"quality", look.quality == LookQuality::kNormal ? "normal" : "draft"},
                    {"dip", look.dip},
                    {"result", shown.id},
                    {"took_s", took_s}};
@@ -729,11 +735,12 @@ std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::mesh(const std::string
   return nullptr;
 }
 
-std::optional<ShownPicture> OpenJob::texture(const std::string& id, std::size_t number) const {
+std::shared_ptr<const ShownTexture> OpenJob::texture(const std::string& id,
+                                                     std::size_t number) const {
   const std::lock_guard lock(mutex_);
   for (const auto& [known, shown] : meshes_)
     if (known == id && number < shown->textures.size()) return shown->textures[number];
-  return std::nullopt;
+  return nullptr;
 }
 
 std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::result(const std::string& id) const {

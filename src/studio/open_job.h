@@ -88,7 +88,7 @@ class OpenJob {
   // ---- what was computed ----
 
   std::shared_ptr<const std::vector<std::uint8_t>> mesh(const std::string& id) const;
-  std::optional<ShownPicture> texture(const std::string& id, std::size_t number) const;
+  std::shared_ptr<const ShownTexture> texture(const std::string& id, std::size_t number) const;
   std::shared_ptr<const std::vector<std::uint8_t>> result(const std::string& id) const;
   std::shared_ptr<const std::vector<std::uint8_t>> finish(const std::string& id) const;
   std::shared_ptr<const std::vector<std::uint8_t>> dip(const std::string& id) const;
@@ -148,6 +148,7 @@ class OpenJob {
   std::vector<Tab> tabs_;
   std::string pen_;  // client
   std::optional<std::chrono::steady_clock::time_point> unwatched_since_;
+  bool at_rest_ = false;  // nobody looks: what is shown may be older than the document
   long number_ = 0, reloads_ = 0;
   std::list<std::pair<std::string, std::shared_ptr<const ShownMesh>>> meshes_;
   std::shared_ptr<const Model> model_;

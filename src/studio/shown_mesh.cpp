@@ -52,6 +52,15 @@ Json head_of(const Model& model, const Object& object, const ShownObject& shown,
 
 }  // namespace
 
+const ShownPicture& ShownTexture::picture() const {
+  std::call_once(once_, [&] {
+    const RunScope scope{RunContext()};
+    picture_ = shown_picture(shrink_to(*image_, kTextureSide_px), kJpegQuality);
+    image_.reset();
+  });
+  return picture_;
+}
+
 ShownMesh shown_mesh(const Model& model, const Object& object, const std::string& id,
                      const std::string& address, const RunContext& context) {
   const RunScope scope(context);
@@ -74,7 +83,7 @@ ShownMesh shown_mesh(const Model& model, const Object& object, const std::string
   bundle.add("index", shown.indices, 1);
   ShownMesh mesh{bundle.finish(), {}};
   for (const auto& texture : object.textures)
-    mesh.textures.push_back(shown_picture(shrink_to(*texture, kTextureSide_px), kJpegQuality));
+    mesh.textures.push_back(std::make_shared<const ShownTexture>(texture));
   return mesh;
 }
 

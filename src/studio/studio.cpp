@@ -97,6 +97,11 @@ JobResult studio_job(const StudioOptions& options, const RunContext& context) {
   run_file.keep(server.port(), token);
 
   std::thread serving([&] { server.run(); });
+  // Who begins with a sample need not wait until it is painted.
+  const RunContext warming = context.quiet();
+  std::thread warm([&] {
+    if (options.file.empty()) api->warm_up(warming);
+  });
   const std::string shown = is_here(options.address) ? "127.0.0.1" : options.address;
   const std::string address =
       password.empty() ? fmt::format("http://{}:{}/?token={}", shown, server.port(), token)
@@ -113,6 +118,8 @@ JobResult studio_job(const StudioOptions& options, const RunContext& context) {
   }
   api->end("The studio was ended. Start it again with 'hydrodip studio' to go on.");
   server.stop();
+  warming.cancel();
+  warm.join();
   serving.join();
   JobResult result;
   result.text = "the studio has ended; what was not saved is kept, and found under recent jobs\n";

@@ -301,6 +301,14 @@ LinearColor pixel_color(const Printed& printed, const FilmMap& map, const FilmGr
   const int n = options.samples_per_axis;
   const Samples samples{grid.at(x, y), grid.pixel_mm(), n};
   FilmMap::Cursor& cursor = tile.cursor();
+  if (options.quick_look) {
+    const Vec2 centre = grid.at(x + 0.5, y + 0.5);
+    auto point = map.to_object(centre, cursor);
+    if (!point && options.bleed_mm > 0)
+      if (const auto near = map.nearest_covered(centre, options.bleed_mm, cursor))
+        point = map.to_object(*near, cursor);
+    return point ? printed.at(*point, centre) : LinearColor{0, 0, 0, 0};
+  }
   std::optional<SharedPixel> shared;
   if (const auto corners = tile.of_pixel(x, y)) {
     const std::size_t pairs = pairs_at(*corners);

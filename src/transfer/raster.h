@@ -35,6 +35,7 @@ SheetRaster raster_of(const FilmOptions& film, double dpi);
 struct InverseOptions {
   double bleed_mm = 1;       // extended colour around the touched region
   int samples_per_axis = 3;  // supersampling: squared per pixel
+  bool quick_look = false;   // a pixel has the colour of its middle
 };
 
 // The image to print: opaque where ink goes, transparent elsewhere (partial alpha along edges).

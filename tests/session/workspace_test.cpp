@@ -70,6 +70,22 @@ TEST_F(WorkspaceTest, OnlyWhatAChangeTouchesIsComputedAgain) {
       << "this film is as coarse as a draft's already";
 }
 
+TEST_F(WorkspaceTest, LooksAtALargeModelWithFewerTriangles) {
+  write_sample("sphere", make_sample("sphere"), folder_.path());
+  project_.model = folder_.path() / "sphere.obj";
+  project_.design.trajectory.depth_mm = 12;
+  const auto whole = workspace_.model(project_, context_);
+  const auto dipped = workspace_.dipped(project_, Quality::kNormal, context_);
+  project_.most_triangles = whole->object->triangles.size();
+  EXPECT_EQ(workspace_.model(project_, context_), whole);
+  project_.most_triangles /= 4;
+  const auto coarse = workspace_.model(project_, context_);
+  EXPECT_LE(coarse->object->triangles.size(), project_.most_triangles);
+  EXPECT_EQ(coarse->object->bounds().max, whole->object->bounds().max);
+  const auto sketched = workspace_.dipped(project_, Quality::kNormal, context_);
+  EXPECT_NEAR(sketched->coverage.covered_share(), dipped->coverage.covered_share(), 0.02);
+}
+
 TEST_F(WorkspaceTest, ValuesAreThoseOfTheStepsThemselves) {
   const auto made = workspace_.designed(project_, Quality::kNormal, context_);
   const Model model = load(project_.model);

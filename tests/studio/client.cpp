@@ -10,6 +10,8 @@
 #include <chrono>
 #include <cstring>
 #include <sstream>
+#include <thread>
+#include <utility>
 
 namespace hydrodip {
 namespace {
@@ -77,7 +79,7 @@ std::map<std::string, std::string> Client::own_headers() const {
 }
 
 Reply Client::send(const std::string& method, const std::string& path, const std::string& body,
-                   std::map<std::string, std::string> headers) const {
+                   std::map<std::string, std::string> headers, int pause_ms) const {
   Reply reply;
   const int handle = connected(port_);
   if (handle < 0) return reply;
@@ -86,7 +88,12 @@ Reply Client::send(const std::string& method, const std::string& path, const std
   if (!body.empty()) headers.try_emplace("Content-Length", std::to_string(body.size()));
   std::string text = method + " " + path + " HTTP/1.1\r\n";
   for (const auto& [name, value] : headers) text += name + ": " + value + "\r\n";
-  write_all(handle, text + "\r\n" + body);
+  text += "\r\n";
+  if (pause_ms > 0) {
+    write_all(handle, std::exchange(text, ""));
+    std::this_thread::sleep_for(std::chrono::milliseconds(pause_ms));
+  }
+  write_all(handle, text + body);
   std::string answer;
   while (true) {
     const std::size_t end = answer.find("\r\n\r\n");

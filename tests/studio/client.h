@@ -34,9 +34,9 @@ class Client {
   Reply remove(const std::string& path) const { return send("DELETE", path, "", own_headers()); }
 
   // Any request. "Host" is that of the server unless given; a "Content-Length" that is given stands
-  // instead of the body's.
+  // instead of the body's. `pause_ms`: between head and body, as browsers may send them.
   Reply send(const std::string& method, const std::string& path, const std::string& body,
-             std::map<std::string, std::string> headers) const;
+             std::map<std::string, std::string> headers, int pause_ms = 0) const;
 
   // As the page sends them.
   std::map<std::string, std::string> own_headers() const;

@@ -1,9 +1,12 @@
 // A job over HTTP: its document, what is computed of it, what is printed, and what outlives a run.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <set>
+#include <thread>
 
 #include "base/file.h"
 #include "job/jobs.h"
@@ -140,6 +143,54 @@ TEST_F(JobTest, TheMeshIsTheModelInItsOwnFrame) {
   const Reply texture = client->get(mesh.head["textures"][0].get<std::string>());
   EXPECT_EQ(texture.status, 200);
   EXPECT_TRUE(texture.headers.at("content-type").starts_with("image/"));
+}
+
+// What follows a hand is coarser than what is shown when it stops.
+TEST_F(JobTest, ASketchComesFirstAndAloneInADrag) {
+  const std::string job = sample("pyramid");
+  json document = quick(describe(job)["document"]);
+  document["film"]["elements"] = 12000;
+  Events events(*client, at(job, "/events?client=c1"));
+  const auto vertices_of_next = [&](long revision) -> std::size_t {
+    const auto told = events.next(
+        "result", [&](const json& e) { return e["revision"] == revision; }, 20);
+    if (!told || told->data["quality"] != "draft") return 0;
+    const std::string id = told->data["result"];
+    return ReadBundle(client->get(at(job, "/results/" + id)).body)
+        .array<std::uint8_t>("film.state")
+        .size();
+  };
+  document["object"]["rotate_deg"] = {0, 0, 10};
+  const long dragged = put(job, document, true).json()["revision"];
+  const std::size_t sketch = vertices_of_next(dragged);
+  EXPECT_GT(sketch, 0u);
+  EXPECT_FALSE(events.next(
+      "result", [&](const json& e) { return e["revision"] == dragged; }, 0.7));
+  const long ended = put(job, document, false).json()["revision"];
+  EXPECT_GT(vertices_of_next(ended), sketch);
+  EXPECT_TRUE(events.next("result", [&](const json& e) { return e["quality"] == "normal"; }));
+}
+
+// A closed lid burns nothing; and who opens the page again gets what was left out.
+TEST_F(JobTest, NothingIsComputedWhileNobodyLooks) {
+  const std::string job = sample("pyramid");
+  json document = describe(job)["document"];
+  document["film"]["elements"] = 640000;
+  document["dip"]["step_mm"] = 0.02;
+  auto tab = std::make_unique<Events>(*client, at(job, "/events?client=c1"));
+  const long revision = put(job, document).json()["revision"];
+  const auto is_normal = [&](const json& e) {
+    return e["revision"] == revision && e["quality"] == "normal";
+  };
+  ASSERT_TRUE(tab->next("working", is_normal));
+  const auto cancelled = [&] { return client->get(at(job, "/counts")).json()["cancelled"]; };
+  const json before = cancelled();
+  tab.reset();
+  for (int tries = 0; tries < 500 && cancelled() == before; ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(cancelled(), before.get<int>() + 1);
+  Events again(*client, at(job, "/events?client=c2"));
+  EXPECT_TRUE(again.next("working", is_normal));
 }
 
 // Requests in a drag come faster than drafts: what is shown in the end is the newest, and the first
@@ -487,7 +538,10 @@ TEST_F(JobTest, APresetIsAProfileOfThePersonsOwn) {
   EXPECT_EQ(client->get("/api/profiles").json()["profiles"], json::array());
   for (const char* name : {"..", "a%2Fb", "-%20x"})
     EXPECT_NE(client->put(at(job, "/profiles/") + name, "{}").status, 200) << name;
-  ASSERT_EQ(client->put(at(job, "/profiles/our-film"), "{}").status, 200);
+  // A browser sends a body after its head.
+  ASSERT_EQ(
+      client->send("PUT", at(job, "/profiles/our-film"), "{}", client->own_headers(), 30).status,
+      200);
   EXPECT_EQ(client->get("/api/hello").json()["profiles"], json::array({"our-film"}));
   // The command line reads it, and another job takes it; what is the job's own is not in it.
   JobConfig config;

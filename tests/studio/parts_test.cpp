@@ -1,10 +1,15 @@
 #include <gtest/gtest.h>
 
+#include "base/context.h"
+#include "base/error.h"
+#include "base/file.h"
 #include "report/plain_words.h"
+#include "samples/samples.h"
 #include "studio/bundle.h"
 #include "studio/client.h"
 #include "studio/event_stream.h"
 #include "studio/run_file.h"
+#include "studio/sample_shelf.h"
 #include "studio/tasks.h"
 #include "temporary_folder.h"
 
@@ -71,6 +76,24 @@ TEST(TaskProgress, OnlyRisesAndKnowsNoEndBeforeTheEnd) {
       }
     EXPECT_GT(last, 0.5);
   }
+}
+
+TEST(SampleShelf, PlacesWhatTheSampleIsAndKeepsNothingOfOtherBuilds) {
+  const TemporaryFolder folder;
+  for (const char* name : {"shelf/other-build/box", "made", "first", "second"})
+    std::filesystem::create_directories(folder / name);
+  write_sample("box", make_sample("box"), folder / "made");
+  SampleShelf shelf(folder / "shelf");
+  for (const char* to : {"first", "second"}) {
+    EXPECT_EQ(shelf.place("box", folder / to), "box.obj");
+    for (const char* file : {"box.obj", "box.mtl", "box.png"})
+      EXPECT_EQ(read_file(folder / to / file), read_file(folder / "made" / file)) << file;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "shelf/other-build"));
+  EXPECT_THROW(shelf.place("boks", folder / "first"), InputError);
+  RunContext cancelled;
+  cancelled.cancel();
+  EXPECT_NO_THROW(shelf.fill(cancelled));
 }
 
 TEST(RunFile, ALaterRunFindsOnlyWhatAKilledOneLeft) {

@@ -92,6 +92,8 @@ export class Job {
   private meshes = new Map<string, MeshData>();
   private meshTurn = 0;
   private finishTurn = 0;
+  private resultTurn = 0;
+  private shownTurns = new Map<number, number>(); // by dip: of the result that is shown
 
   constructor(
     readonly id: string,
@@ -530,10 +532,13 @@ export class Job {
     const normal = event.quality === 'normal';
     const shown = event.dip === this.dip.value;
     if (shown && !this.isNewer(event.revision, normal)) return;
+    const turn = ++this.resultTurn;
     try {
       const result = await api.result(this.id, event.result);
+      if ((this.shownTurns.get(event.dip) ?? 0) > turn) return; // a later one has come sooner
       const old = this.results.value.get(event.dip);
       if (old && (old.revision > result.revision || (old.revision === result.revision && old.quality === 'normal'))) return;
+      this.shownTurns.set(event.dip, turn);
       this.results.value = new Map(this.results.value).set(event.dip, result);
       if (event.dip !== this.dip.value) return;
       this.newest = { revision: event.revision, normal };

@@ -297,6 +297,7 @@ export const t = {
     saved: (where: string) => `Saved to ${where}.`,
     preset: (name: string) => `Kept as the preset “${name}”.`,
     unused: (file: string) => `${file} was not used.`,
+    tooLarge: (file: string, most: number) => `${file} is too large: a file may have ${kilobytes(most)}. Reduce its triangles, or pack it smaller, and drop it again.`,
   },
 
   undo: {

@@ -115,6 +115,11 @@ export async function openJob(id: string): Promise<Job | null> {
   return next;
 }
 
+function complain(text: string): void {
+  if (job.value) job.value.notice.value = { kind: 'error', text };
+  else failure.value = text;
+}
+
 function resetView(): void {
   step.value = 'model';
   view.value = 'bath';
@@ -146,7 +151,11 @@ export async function goToStart(): Promise<void> {
   recent.value = await api.recent().catch(() => recent.value);
 }
 
-export async function addFiles(files: readonly File[], at_mm: Vec3 | null = null): Promise<void> {
+export async function addFiles(given: readonly File[], at_mm: Vec3 | null = null): Promise<void> {
+  const most = hello.value?.limits.file_bytes ?? Infinity;
+  const files = given.filter((file) => file.size <= most);
+  const large = given.find((file) => file.size > most);
+  if (large) complain(t.notice.tooLarge(large.name, most));
   if (!files.length) return;
   const open = job.value ?? (await createJob());
   if (!open) return;

@@ -6,7 +6,7 @@ import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
-import { differencesByHand, documentOf, hasChromium, kept, newResult, openSample, Program, Session, until } from './studio.mjs';
+import { differencesByHand, documentOf, hasChromium, kept, newResult, openQuick, Program, Session, until } from './studio.mjs';
 
 const chromium = process.argv[4] || '/usr/bin/chromium';
 if (!hasChromium(chromium)) {
@@ -26,7 +26,7 @@ const program = new Program(resolve(process.argv[2]));
 await program.start();
 const session = await Session.start(resolve(process.argv[3]), chromium, program);
 const page = await session.page({ width: 1024, height: 720 });
-await openSample(page, process.env.HYDRODIP_MONKEY_SAMPLE ?? 'pyramid');
+await openQuick(page, process.env.HYDRODIP_MONKEY_SAMPLE ?? 'pyramid');
 const first = await documentOf(page);
 
 const memory_mb = () => Number(readFileSync(`/proc/${program.process.pid}/status`, 'utf8').match(/VmRSS:\s+(\d+)/)[1]) / 1024;

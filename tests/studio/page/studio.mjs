@@ -11,7 +11,7 @@ const HARMLESS = /GPU stall|ReadPixels|software WebGL/;
 const WHILE_DOWN = /ERR_CONNECTION|ERR_EMPTY_RESPONSE|ERR_INCOMPLETE_CHUNKED|net::ERR/;
 
 // Never the measure of anything: machines are busy.
-const PATIENCE_MS = 240000;
+const PATIENCE_MS = 1000 * Number(process.env.HYDRODIP_PATIENCE_S ?? 240);
 
 export function hasChromium(chromium) {
   return spawnSync(chromium, ['--version']).status === 0;
@@ -135,6 +135,22 @@ export async function openSample(page, name) {
   await page.click(`[data-sample="${name}"]`);
   await page.waitForSelector('.work');
   await newResult(page, '');
+}
+
+// A job that is computed quickly: what is tested here is the page.
+const QUICK = { film: { width_mm: 150, height_mm: 150, elements: 2000 }, dip: { step_mm: 1, air_cells: 20000 }, print: { dpi: 72 }, ink: { rounds_max: 1 } };
+export async function openQuick(page, sample, more = {}) {
+  const job = await page.evaluate(async ([name, quick]) => {
+    const ask = async (method, path, body) => (await fetch(path, { method, headers: { 'X-Hydrodip': '1', 'Content-Type': 'application/json' }, body: body && JSON.stringify(body) })).json();
+    const { job: id } = await ask('POST', '/api/jobs', { sample: name });
+    const { document } = await ask('GET', `/api/jobs/${id}`);
+    await ask('PUT', `/api/jobs/${id}/document`, { client: 'test', document: { ...document, ...quick }, live: false });
+    location.hash = `job=${id}`;
+    return id;
+  }, [sample, { ...QUICK, ...more }]);
+  await page.waitForSelector(`.work[data-job="${job}"]`);
+  await newResult(page, '');
+  return job;
 }
 
 export async function type(page, name, value) {

@@ -1,6 +1,6 @@
 // The window: what there is when nothing is open, and when a job is.
 import { useEffect } from 'preact/hooks';
-import { addFiles, dropping, failure, hello, job, layer, narrow, panel, step } from '../studio.ts';
+import { addFiles, bigSheet, dropping, failure, hello, job, layer, narrow, panel, step } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button } from './fields.tsx';
 import { listenToKeys } from './keys.ts';
@@ -27,7 +27,7 @@ export function App() {
 
 function Work() {
   return (
-    <div class="work" data-step={step.value} data-panel={panel.value} data-layer={layer.value}>
+    <div class={bigSheet.value ? 'work big-sheet' : 'work'} data-job={job.value!.id} data-step={step.value} data-panel={panel.value} data-layer={layer.value}>
       <TopBar />
       <Banner />
       {!narrow.value && <Steps />}

@@ -57,10 +57,13 @@ export function NumberField({ label, value, unit, min, max, step = 1, empty, hin
     stepping.value = true;
     onChange(next, true);
   };
+  // "whole mm" says nothing.
+  const wordy = (typed.value ?? held) === '' && empty !== undefined && !Number.isFinite(Number(empty));
+  const shownUnit = wordy ? undefined : unit;
   return (
     <div class={inline ? 'field inline' : 'field'}>
       <label for={id} title={hint}>{label}</label>
-      <span class="entry">
+      <span class={shownUnit ? 'entry' : 'entry unitless'}>
         <input
           id={id}
           name={name}
@@ -89,7 +92,7 @@ export function NumberField({ label, value, unit, min, max, step = 1, empty, hin
             if (stepping.value && (event.key === 'ArrowUp' || event.key === 'ArrowDown')) settle();
           }}
         />
-        {unit && <span class="unit" aria-hidden="true">{unit}</span>}
+        {shownUnit && <span class="unit" aria-hidden="true">{shownUnit}</span>}
       </span>
     </div>
   );
@@ -110,7 +113,11 @@ export function SelectField({ label, value, options, name, hideLabel, always, on
   return (
     <div class={hideLabel ? 'field bare' : 'field'}>
       <label for={id} class={hideLabel ? 'hidden' : ''}>{label}</label>
-      <select id={id} name={name} disabled={!always && readOnly.value} value={value} onChange={(event) => onChange(event.currentTarget.value)}>
+      <select id={id} name={name} disabled={!always && readOnly.value} value={value} onChange={(event) => {
+        const chosen = event.currentTarget.value;
+        event.currentTarget.value = value; // until what is shown says otherwise: a command can be chosen twice
+        onChange(chosen);
+      }}>
         {options.map(([key, text]) => <option key={key} value={key}>{text}</option>)}
       </select>
     </div>
