@@ -29,6 +29,11 @@ void declare_square(CLI::App& app, Request& request) {
                  "side of the checkerboard's squares (default: 5)")
       ->group(kScanGroup)
       ->type_name("MM");
+  app.add_option("--board", request.calibration.board,
+                 "which board was printed (default: tints, which the kit prints; black: black and "
+                 "blank squares in turn)")
+      ->group(kScanGroup)
+      ->type_name("tints|black");
 }
 
 void declare_scan_reading(CLI::App& app, Request& request) {
@@ -53,16 +58,22 @@ void declare_calibrate(CLI::App& app, Request& request) {
   const auto add_range = [&](const char* option, std::string& range, const char* help) {
     app.add_option(option, range, help)->group(kSearchGroup)->type_name("RANGE");
   };
-  add_range("--z-stretch", wanted.z_stretch, "values to try (default: 0.4:0.9:0.1)");
+  add_range("--z-stretch", wanted.z_stretch, "values to try (default: 0.4,0.55,0.7,0.85)");
   add_range("--ratio", wanted.stiffness_ratio,
-            "of material.ink_stiffness_ratio (default: 10:2560:x4)");
-  add_range("--poisson", wanted.poisson, "values to try (default: 0:0.4:0.1)");
+            "of material.ink_stiffness_ratio (default: 3:3072:x8)");
+  add_range("--poisson", wanted.poisson, "values to try (default: 0:0.4:0.2)");
   app.add_option("--shard", wanted.shard, "only this part of the grid, as in 2/4, and no result")
       ->group(kSearchGroup)
       ->type_name("I/N");
   app.add_option("--merge", wanted.merged, "folder of a shard whose simulations to use; repeatable")
       ->group(kSearchGroup)
       ->type_name("DIR")
+      ->allow_extra_args(false);
+  app.add_option("--torn-ring", wanted.torn_rings,
+                 "innermost ring of the kit's dome on which film is torn, of one dip; repeatable: "
+                 "fits material.tear_stretch as well")
+      ->group(kScanGroup)
+      ->type_name("N")
       ->allow_extra_args(false);
   declare_film(app, request);
   declare_configuration(app, request);
@@ -140,6 +151,12 @@ void declare_kit(CLI::App& app, Request& request) {
   declare_output(app, request, "calibration-kit");
   declare_reporting(app, request);
   declare_square(app, request);
+  app.add_option(
+         "--expect", request.calibration.expected_noise_mm,
+         "also say how well scans with this noise will determine the parameters, for ratios "
+         "from 3 to 3000")
+      ->group(kScanGroup)
+      ->type_name("MM");
   declare_film(app, request);
   declare_configuration(app, request);
 }
@@ -154,17 +171,20 @@ JobResult run_kit(const Request& request, const RunContext& context) {
 std::vector<Command> calibrate_commands() {
   return {
       {"calibrate", "fit z_stretch, ink stiffness and Poisson's ratio to scanned dips",
-       "Writes profile.toml (for --profile), calibration.json, error-surface.csv and\n"
-       "error-surface.png. Started again, an interrupted calibration goes on where it was.\n"
+       "Writes profile.toml (for --profile), calibration.json, error-surface.csv, "
+       "error-surface.png\n"
+       "and joint-regions.png. Started again, an interrupted calibration goes on where it was.\n"
        "A RANGE is FROM:TO:STEP, FROM:TO:xFACTOR, values with commas, or one value that is known.\n"
-       "The grid is searched on a film of a quarter of the triangles and twice the step, and the\n"
-       "result corrected by dips on the film that is asked for and on a finer one. See also "
-       "'calibrate kit' and\n"
-       "'calibrate synth', and docs/calibration.md.",
+       "The grid is searched on a film of a quarter of the triangles and twice the step, the "
+       "answer\n"
+       "found on the film that is asked for and corrected by a finer one. See also 'calibrate "
+       "kit'\n"
+       "and 'calibrate synth', and docs/calibration.md.",
        declare_calibrate, run_calibrate},
       {"calibrate kit", "what a calibration needs: shapes to print, film, instructions",
-       "Writes sphere.stl, pyramid.stl, ellipsoid.stl, checkerboard.pdf (print it at 100 %) and\n"
-       "instructions.pdf.",
+       "Writes sphere.stl, pyramid.stl, ellipsoid.stl, dome.stl, checkerboard.pdf and "
+       "tear-film.pdf\n"
+       "(print them at 100 %) and instructions.pdf.",
        declare_kit, run_kit},
       {"calibrate synth", "scans computed from known parameters, to try calibrations on",
        "Writes OBJECT-scan.obj, OBJECT-scan.csv and truth.toml. They are computed on sixteen "

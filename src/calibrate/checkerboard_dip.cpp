@@ -14,9 +14,6 @@
 namespace hydrodip {
 namespace {
 
-// Finer than the stiffness filter by far; squares are whole pixels.
-constexpr double kPixel_mm = 0.1;
-
 bool is_kit_shape(const std::string& name) {
   return std::any_of(kit_shapes().begin(), kit_shapes().end(),
                      [&](const KitShape& shape) { return name == shape.name; });
@@ -48,23 +45,6 @@ FilmParameters film_parameters(const DesignOptions& design) {
   return {design.dip.material.z_stretch, design.stiffness.ratio, design.dip.material.poisson};
 }
 
-Checkerboard checkerboard_to_print(const FilmOptions& film, double square_mm) {
-  const double pixels = std::max(4.0, std::round(square_mm / kPixel_mm));
-  Checkerboard board;
-  board.raster = {film.width_mm, film.height_mm, pixels * kMmPerInch / square_mm};
-  board.inks = InkImage(board.raster.width_px(), board.raster.height_px());
-  const Vec2 edge(0.5 * film.width_mm - film.margin_mm, 0.5 * film.height_mm - film.margin_mm);
-  for (int y = 0; y < board.inks.height_px; ++y)
-    for (int x = 0; x < board.inks.width_px; ++x) {
-      const Vec2 u = board.raster.to_film(x + 0.5, y + 0.5);
-      if (std::abs(u.x()) > edge.x() || std::abs(u.y()) > edge.y()) continue;
-      const long column = long(std::floor(u.x() / square_mm));
-      const long row = long(std::floor(u.y() / square_mm));
-      if ((column + row) % 2 == 0) board.inks.pixel(x, y)[3] = 255;
-    }
-  return board;
-}
-
 const std::vector<KitShape>& kit_shapes() {
   static const std::vector<KitShape> shapes = {{"sphere", 12}, {"pyramid", 22}, {"ellipsoid", 11}};
   return shapes;
@@ -90,21 +70,21 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
   return result;
 }
 
-CheckeredFilm checkered_film(const DesignOptions& design, double square_mm) {
+CheckeredFilm checkered_film(const DesignOptions& design, const Board& board) {
   CheckeredFilm film;
-  film.square_mm = square_mm;
+  film.board = board;
   film.mesh = std::make_shared<const FilmMesh>(make_film_mesh(design.film));
-  const Checkerboard board = checkerboard_to_print(design.film, square_mm);
+  const PrintedBoard printed = print_board(design.film, board);
   // A ratio of 2 makes the modulus 1 more than the density.
   film.ink_density =
-      film_modulus(*film.mesh, board.inks, board.raster, {2, design.stiffness.filter_mm});
+      film_modulus(*film.mesh, printed.inks, printed.raster, {2, design.stiffness.filter_mm});
   for (double& density : film.ink_density) density -= 1;
   return film;
 }
 
 GridLanding CheckerboardDip::landing(const CalibrationObject& object) const {
   return [this, &object](const GridPlace& place) -> std::optional<Vec3> {
-    const auto point = map->to_object(square_mm * Vec2(place[0], place[1]));
+    const auto point = map->to_object(board.on_film(place));
     if (!point) return std::nullopt;
     return position_at(object.object, *point);
   };
@@ -122,7 +102,7 @@ CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObj
     for (double& value : dip_options.modulus) value = 1 + value * (parameters.stiffness_ratio - 1);
   }
   CheckerboardDip result;
-  result.square_mm = film.square_mm;
+  result.board = film.board;
   result.film = std::make_unique<DippedFilm>(
       dip(film.mesh, object.object.positions, object.object.triangles, surface,
           make_trajectory({object.depth_mm}, object.object.positions), dip_options, context)

@@ -6,12 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "ink/inks.h"
+#include "calibrate/board.h"
 #include "object/surface.h"
 #include "scan/registration.h"
 #include "settings/config.h"
 #include "transfer/film_map.h"
-#include "transfer/raster.h"
 
 namespace hydrodip {
 
@@ -22,14 +21,6 @@ struct FilmParameters {
   double poisson = FilmMaterial().poisson;
 };
 FilmParameters film_parameters(const DesignOptions& design);
-
-// Printed black over the whole sheet inside the taped margin, in squares of square_mm; one corner
-// is at the film's centre, and the square between +x and +y is black.
-struct Checkerboard {
-  InkImage inks;
-  SheetRaster raster;
-};
-Checkerboard checkerboard_to_print(const FilmOptions& film, double square_mm);
 
 // What is dipped, in the posed-object frame, and how deep.
 struct CalibrationObject {
@@ -53,16 +44,16 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
 struct CheckeredFilm {
   SharedFilmMesh mesh;
   std::vector<double> ink_density;  // per triangle, after the stiffness filter
-  double square_mm = 5;
+  Board board;
 };
-CheckeredFilm checkered_film(const DesignOptions& design, double square_mm);
+CheckeredFilm checkered_film(const DesignOptions& design, const Board& board);
 
 // One simulated dip with what is asked of it. Refers to the object and its surface.
 struct CheckerboardDip {
   std::unique_ptr<DippedFilm> film;
   std::unique_ptr<FilmMap> map;  // refers to it
-  double square_mm = 5;
-  // Where a corner of the checkerboard ends up.
+  Board board;
+  // Where a corner of the board ends up.
   GridLanding landing(const CalibrationObject& object) const;
 };
 

@@ -11,6 +11,9 @@ namespace hydrodip {
 // middle of which is a blind hole for a screw. As printed: z up, standing on the flat end at z = 0.
 Object kit_shape(const std::string& sample);
 
+// The dome of tear_limit.h with its grooves, every fifth of them wide, as printed.
+Object dome_to_print();
+
 constexpr double kMountHole_mm = 5.6;  // a 1/4-20 tripod screw cuts its thread into it
 constexpr double kMountHoleDepth_mm = 12;
 

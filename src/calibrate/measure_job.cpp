@@ -106,10 +106,11 @@ void warn_of_bare_corners(const Subject& subject, const Measurement& full,
 JobResult measure_job(const JobConfig& config, const CalibrationRequest& request,
                       const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
-  const ScanSettings settings = {{request.scan_units, request.square_mm, request.mirrored},
-                                 request.aligned};
+  const Board board = board_named(request.board, request.square_mm);
+  const ScanSettings settings = {
+      {request.scan_units, request.square_mm, request.mirrored}, board, request.aligned};
   const std::vector<Subject> subjects = load_subjects(request.scans, settings, config, context);
-  const CheckeredFilm film = checkered_film(config.design, request.square_mm);
+  const CheckeredFilm film = checkered_film(config.design, board);
 
   JobResult result;
   Json scans = Json::array();
@@ -140,7 +141,8 @@ JobResult measure_job(const JobConfig& config, const CalibrationRequest& request
                       {{"z_stretch", parameters.z_stretch},
                        {"ink_stiffness_ratio", parameters.stiffness_ratio},
                        {"poisson", parameters.poisson}}},
-                     {"square_mm", request.square_mm},
+                     {"board", board.name},
+                     {"square_mm", board.square_mm},
                      {"scans", scans},
                      {"warnings", context.warnings()}}
                     .dump(2, ' ', false, Json::error_handler_t::replace) +

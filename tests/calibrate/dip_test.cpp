@@ -11,11 +11,11 @@
 namespace hydrodip {
 namespace {
 
-TEST(CheckerboardTest, SquaresAlternateAroundTheCentreAndStayInsideTheTape) {
+TEST(BlackBoardTest, SquaresAlternateAroundTheCentreAndStayInsideTheTape) {
   FilmOptions film;
   film.width_mm = 100;
   film.height_mm = 80;
-  const Checkerboard board = checkerboard_to_print(film, 5);
+  const PrintedBoard board = print_board(film, black_board(5));
   const auto inked = [&](double x, double y) {
     const Vec2 p = board.raster.to_pixel({x, y});
     return board.inks.pixel(int(p.x()), int(p.y()))[3] == 255;
@@ -32,6 +32,47 @@ TEST(CheckerboardTest, SquaresAlternateAroundTheCentreAndStayInsideTheTape) {
   EXPECT_NEAR(sum * pixel_mm * pixel_mm, 0.5 * 80 * 60, 20);
 }
 
+// So that no scan of a shape that looks alike from several sides can be read the wrong way round.
+TEST(TintBoardTest, LooksTheSameAfterAQuarterTurnAndInAMirror) {
+  const Board board = tint_board(4);
+  for (int column = -9; column <= 9; ++column)
+    for (int row = -9; row <= 9; ++row) {
+      EXPECT_EQ(board.ink_of({column, row}), board.ink_of({-row, column}));
+      EXPECT_EQ(board.ink_of({column, row}), board.ink_of({-column, row}));
+    }
+  // The middle of a square is the film's centre: turned about it, corners are corners.
+  EXPECT_EQ(board.on_film({0, 0}), Vec2(-2, -2));
+  EXPECT_EQ(board.on_film({1, 1}), Vec2(2, 2));
+  EXPECT_EQ(board.square_at({0, 0}), (GridPlace{0, 0}));
+  EXPECT_EQ(board.square_at({-2.1, 1.9}), (GridPlace{-1, 0}));
+}
+
+TEST(TintBoardTest, EveryCornerIsADarkSquares) {
+  const Board board = tint_board(5);
+  for (int column = -9; column <= 9; ++column)
+    for (int row = -9; row <= 9; ++row) {
+      int dark = 0;
+      for (const int dx : {-1, 0})
+        for (const int dy : {-1, 0}) dark += board.ink_of({column + dx, row + dy}) > 200;
+      EXPECT_EQ(dark, 1);
+    }
+}
+
+TEST(TintBoardTest, IsPrintedAsItIsSimulated) {
+  FilmOptions film;
+  film.width_mm = 101;
+  film.height_mm = 80;
+  const Board board = tint_board(5);
+  const PrintedBoard printed = print_board(film, board);
+  for (double x = -37.3; x < 38; x += 1.9)
+    for (double y = -27.2; y < 28; y += 1.7) {
+      const Vec2 p = printed.raster.to_pixel({x, y});
+      EXPECT_EQ(printed.inks.pixel(int(p.x()), int(p.y()))[3],
+                board.ink_of(board.square_at({x, y})))
+          << x << " " << y;
+    }
+}
+
 TEST(CalibrationObjectTest, DepthsAndNames) {
   RunContext context;
   const JobConfig config = scans::quick_config();
@@ -45,7 +86,7 @@ TEST(SyntheticTest, SameSeedSameScanAndNoiseAsAsked) {
   RunContext context;
   const scans::Truth truth("sphere", {0.65, 30, 0.1}, context);
   const auto scan = [&](const SyntheticOptions& options) {
-    return synthetic_scan(truth.dip, truth.object, {12, 12}, options);
+    return synthetic_scan(truth.dip.landing(truth.object), {12, 12}, options);
   };
   const CornerGrid clean = scan({.aligned = true});
   const CornerGrid noisy = scan({.noise_mm = 0.05, .seed = 3, .aligned = true});
@@ -59,11 +100,12 @@ TEST(SyntheticTest, SameSeedSameScanAndNoiseAsAsked) {
   EXPECT_NEAR(std::sqrt(sum / (3.0 * double(clean.position.size()))), 0.05, 0.01);
   const CornerGrid gaps = scan({.missing_share = 0.33, .seed = 5});
   EXPECT_NEAR(double(gaps.position.size()) / double(clean.position.size()), 0.67, 0.15);
-  // A corner of the film in the middle lands on the lowest point.
-  for (std::size_t c = 0; c < clean.place.size(); ++c) {
-    if (clean.place[c] != GridPlace{0, 0}) continue;
-    EXPECT_LT(clean.position[c].norm(), 0.05);
-  }
+  // The film's middle is the middle of a square, and lands on the lowest point.
+  Vec3 middle = Vec3::Zero();
+  for (std::size_t c = 0; c < clean.place.size(); ++c)
+    for (const GridPlace& around : {GridPlace{0, 0}, {1, 0}, {0, 1}, {1, 1}})
+      if (clean.place[c] == around) middle += clean.position[c] / 4;
+  EXPECT_LT(middle.head<2>().norm(), 0.05);
 }
 
 class KitShapeTest : public testing::TestWithParam<const char*> {};

@@ -18,9 +18,9 @@ refuse() {
 }
 
 "$hydrodip" calibrate kit -o kit --film letter --quiet > /dev/null || fail "kit"
-[ "$(find kit -type f | wc -l)" -eq 5 ] || fail "the kit has not five files: $(ls kit)"
+[ "$(find kit -type f | wc -l)" -eq 7 ] || fail "the kit has not seven files: $(ls kit)"
 pdfinfo kit/checkerboard.pdf | grep -q '612 x 792 pts (letter)' || fail "the film is not letter"
-for shape in sphere pyramid ellipsoid; do
+for shape in sphere pyramid ellipsoid dome; do
   "$hydrodip" inspect kit/$shape.stl > said.txt || fail "inspect $shape.stl"
   grep -q '1 shell, closed' said.txt || fail "$shape.stl is not closed: $(cat said.txt)"
 done
