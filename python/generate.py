@@ -47,7 +47,7 @@ OWN = {
     "settings": ("Optional[Mapping[str, object]]", "parameters by the names of `hydrodip params`, as {'film.elements': 4000}; they win over all else"),
     "progress": ("Progress", "is called with what is being done and how much of that is done, 0 to 1; what it raises cancels the work"),
     "board": ("Literal['tints', 'black']", "which board was printed: the kit's tints, or black and blank squares in turn"),
-    "square_mm": ("float", "side of the board's squares"),
+    "square_mm": ("float", "side of the board's squares; 0: as the board is"),
     "scan_units": ("Literal['mm', 'cm', 'm', 'in']", "unit of the scans"),
     "aligned": ("bool", "the scans are in the posed object's frame: do not register them"),
     "mirrored": ("bool", "the scans are mirror images: turn them back"),
@@ -62,7 +62,7 @@ OWN = {
     "seed": ("int", "of noise, gaps and pose"),
 }
 DEFAULTS = {
-    "board": "'tints'", "square_mm": "5.0", "scan_units": "'mm'", "aligned": "False", "mirrored": "False",
+    "board": "'tints'", "square_mm": "0.0", "scan_units": "'mm'", "aligned": "False", "mirrored": "False",
     "z_stretch": "'0.4,0.55,0.7,0.85'", "ratio": "'3:3072:x8'", "poisson": "'0:0.4:0.2'",
     "torn_rings": "()", "shard": "''", "merge": "()", "noise_mm": "0.0", "missing_share": "0.0", "seed": "1",
 }

@@ -11,9 +11,11 @@ constexpr const char* kScanGroup = "Scans";
 constexpr const char* kSearchGroup = "Search";
 
 void declare_scans(CLI::App& app, Request& request) {
-  app.add_option("OBJECT=SCAN", request.calibration.scans,
-                 "sphere, pyramid, ellipsoid or a model file, with @DEPTH in mm if it was dipped "
-                 "deeper or less than the kit says; quad mesh (OBJ, PLY) or table (CSV)")
+  app.add_option(
+         "OBJECT=SCAN", request.calibration.scans,
+         "sphere, pyramid, ellipsoid or a model file, with @DEPTH in mm if it was dipped "
+         "deeper or less than the kit says; quad mesh (OBJ, PLY) or table (CSV). Or a dip that "
+         "'calibrate pack' made (ZIP)")
       ->type_name("");
 }
 
@@ -26,7 +28,7 @@ void declare_objects(CLI::App& app, Request& request) {
 
 void declare_square(CLI::App& app, Request& request) {
   app.add_option("--square", request.calibration.square_mm,
-                 "side of the checkerboard's squares (default: 5)")
+                 "side of the board's squares (default: as the board's)")
       ->group(kScanGroup)
       ->type_name("MM");
   app.add_option("--board", request.calibration.board,
@@ -80,7 +82,8 @@ void declare_calibrate(CLI::App& app, Request& request) {
 }
 
 void check_square(const Request& request) {
-  if (!(request.calibration.square_mm >= 0.5 && request.calibration.square_mm <= 100))
+  const double square_mm = request.calibration.square_mm;
+  if (square_mm != 0 && !(square_mm >= 0.5 && square_mm <= 100))
     throw InputError("--square: give the side of a square in mm, from 0.5 to 100");
 }
 
@@ -142,6 +145,38 @@ void declare_synth(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
+void declare_pack(CLI::App& app, Request& request) {
+  constexpr const char* kFactsGroup = "How it was made";
+  declare_scans(app, request);
+  declare_output(app, request, "measured-dip");
+  declare_reporting(app, request);
+  declare_scan_reading(app, request);
+  DipFacts& facts = request.calibration.facts;
+  const auto add = [&](const char* option, auto& value, const char* type, const char* help) {
+    app.add_option(option, value, help)->group(kFactsGroup)->type_name(type);
+  };
+  add("--film-product", facts.film, "TEXT", "which film: maker and product");
+  add("--printer", facts.printer, "TEXT", "which printer");
+  add("--ink", facts.ink, "TEXT", "which ink");
+  add("--activator", facts.activator, "TEXT", "which activator");
+  add("--activator-g", facts.activator_g, "G", "how much of it was sprayed");
+  add("--water-c", facts.water_c, "C", "the water's temperature");
+  add("--soak-s", facts.soak_s, "S", "from laying the film to spraying");
+  add("--wait-s", facts.wait_s, "S", "from spraying to dipping");
+  add("--speed", facts.speed_mm_per_min, "MM_PER_MIN", "of the dip");
+  add("--dipped-on", facts.dipped_on, "DATE", "when, as 2026-11-27");
+  add("--notes", facts.notes, "TEXT", "what else is to be known");
+  add("--owner", facts.owner, "TEXT", "whose measurement it is, to be named by who uses it");
+  add("--licence", facts.licence, "SPDX", "under which it may be used, as CC-BY-4.0 or CC0-1.0");
+  declare_film(app, request);
+  declare_configuration(app, request);
+}
+
+JobResult run_pack(const Request& request, const RunContext& context) {
+  require_scans(request, "calibrate pack");
+  return pack_job(configure_writing_to(request, "measured-dip"), request.calibration, context);
+}
+
 JobResult run_synth(const Request& request, const RunContext& context) {
   const CalibrationRequest wanted = with_objects(request);
   return synth_job(configure_writing_to(request, "synthetic-scans"), wanted, context);
@@ -186,6 +221,12 @@ std::vector<Command> calibrate_commands() {
        "tear-film.pdf\n"
        "(print them at 100 %) and instructions.pdf.",
        declare_kit, run_kit},
+      {"calibrate pack", "one measured dip as a file that others can compute against",
+       "Writes SHAPE-dip.zip: the scan with its board, sheet, depth and all that is told of how "
+       "the\n"
+       "dip was made. 'measure' and 'calibrate' take such files in place of OBJECT=SCAN.\n"
+       "docs/measured-dips.md says why, and what is in it.",
+       declare_pack, run_pack},
       {"calibrate synth", "scans computed from known parameters, to try calibrations on",
        "Writes OBJECT-scan.obj, OBJECT-scan.csv and truth.toml. They are computed on sixteen "
        "times the\n"

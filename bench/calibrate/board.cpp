@@ -1,12 +1,16 @@
-// Which board tells most about a film: expected standard deviations of z_stretch, ln ratio and nu
-// with 0.05 mm of noise on each coordinate of each corner, by the model's own sensitivities, for
-// boards of repeating squares. `bench_board [RANDOM_CANDIDATES]`.
+// How much a board tells about a film: expected standard deviations of z_stretch, ln ratio and nu
+// with 0.05 mm of noise on each coordinate of each corner, by the model's own sensitivities.
+// `bench_board [ELEMENTS]` asks it of the boards below; `bench_board ELEMENTS -` of those on the
+// standard input, a line each: side of a square, inks of a quarter of its period (0 to 255, row by
+// row: the board is symmetric), shapes with their depths, as in "5 255,3,0,3,0,0,0,0,3 pyramid@22".
 #include <fmt/format.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <random>
+#include <iostream>
+#include <iterator>
+#include <sstream>
 
 #include "base/run_scope.h"
 #include "calibrate/expectation.h"
@@ -15,88 +19,79 @@ namespace hydrodip {
 namespace {
 
 constexpr double kNoise_mm = 0.05;
-const FilmParameters kTruths[] = {{0.65, 3, 0.1}, {0.65, 30, 0.1}, {0.65, 600, 0}, {0.65, 3000, 0}};
+const FilmParameters kTruths[] = {
+    {0.65, 30, 0.1}, {0.8, 150, 0.2}, {0.65, 600, 0}, {0.65, 3, 0.1}, {0.65, 3000, 0}};
+const std::vector<std::string> kKit = {"sphere", "pyramid", "ellipsoid"};
+
+// A board that looks the same in mirrors and after a quarter turn, about the middle of a dark
+// square, from the inks of its first half period's squares and one more along both axes.
+Board symmetric(double square_mm, const std::vector<int>& quarter) {
+  const int half = int(std::lround(std::sqrt(double(quarter.size())))) - 1;
+  const int period = std::max(1, 2 * half);
+  Board board = {"symmetric", square_mm, true, period, {}};
+  for (int row = 0; row < period; ++row)
+    for (int column = 0; column < period; ++column) {
+      const int a = std::min(row, period - row), b = std::min(column, period - column);
+      board.ink.push_back(std::uint8_t(quarter[std::size_t(a * (half + 1) + b)]));
+    }
+  return board;
+}
 
 class Study {
  public:
-  Study() {
-    config_.design.film.elements = 5000;
-    config_.design.dip.step_mm = 0.6;
-    for (const KitShape& kit : kit_shapes())
-      objects_.push_back(calibration_object(kit.name, config_, context_));
+  explicit Study(int elements) {
+    const double coarser = std::sqrt(config_.design.film.elements / double(elements));
+    config_.design.film.elements = elements;
+    config_.design.dip.step_mm *= 2 * coarser;
   }
 
-  void show(const Board& board) {
-    const CheckeredFilm film = checkered_film(config_.design, board);
-    std::string ink;
-    if (board.period <= 8)
-      for (const auto value : board.ink) ink += fmt::format("{} ", value);
-    std::string text = fmt::format("| {} {} |", board.name, ink);
-    double score = 0;
-    std::size_t corners = 0;
+  // With only the first of the films.
+  void show(const std::string& name, const Board& board, const std::vector<std::string>& shapes,
+            std::size_t films = std::size(kTruths)) {
     const RunScope scope(context_);
-    for (const FilmParameters& truth : kTruths) {
-      const Expectation found = expect(objects_, film, config_.design, truth, kNoise_mm, context_);
-      const Expectation aligned =
-          expect(objects_, film, config_.design, truth, kNoise_mm, context_, true);
-      text += fmt::format(" {:.4f} {:.3f} {:.4f} ({:.4f} {:.3f} {:.4f}) |", found.z_stretch,
-                          found.ln_ratio, found.poisson, aligned.z_stretch, aligned.ln_ratio,
-                          aligned.poisson);
-      score += std::log(found.ln_ratio) + 0.5 * std::log(found.poisson);
+    std::vector<CalibrationObject> objects;
+    for (const std::string& shape : shapes)
+      objects.push_back(calibration_object(shape, config_, context_));
+    const CheckeredFilm film = checkered_film(config_.design, board);
+    std::string text = fmt::format("| {:g} mm, {} |", board.square_mm, name);
+    std::size_t corners = 0;
+    for (std::size_t f = 0; f < films; ++f) {
+      const Expectation found =
+          expect(objects, film, config_.design, kTruths[f], kNoise_mm, context_);
+      text +=
+          fmt::format(" {:.4f} {:.3f} {:.4f} |", found.z_stretch, found.ln_ratio, found.poisson);
       corners = found.corners;
     }
-    fmt::print("{} {} | {:.3f}\n", text, corners, score / 4);
+    fmt::print("{} {} |\n", text, corners);
     std::fflush(stdout);
   }
 
  private:
   RunContext context_;
   JobConfig config_;
-  std::vector<CalibrationObject> objects_;
 };
 
-// A board that looks the same in mirrors and after a quarter turn, from the inks of the squares
-// {a, b} with b <= a <= period / 2.
-Board symmetric(const std::string& name, bool about_square, int period,
-                const std::function<int(int, int)>& ink) {
-  Board board = {name, 5, about_square, period, {}};
-  for (int row = 0; row < period; ++row)
-    for (int column = 0; column < period; ++column) {
-      const int a = std::min(row, period - row), b = std::min(column, period - column);
-      board.ink.push_back(std::uint8_t(ink(std::max(a, b), std::min(a, b))));
-    }
-  return board;
+void show_boards(Study& study) {
+  study.show("black", black_board(5), kKit);
+  study.show("tints", tint_board(5), kKit);
+  for (const double square_mm : {5.0, 4.0, 3.0}) {
+    study.show("255,3,0", symmetric(square_mm, {255, 3, 3, 0}), kKit);
+    study.show("255,0,3 sparse", symmetric(square_mm, {255, 0, 255, 0, 0, 3, 255, 3, 255}), kKit);
+  }
 }
 
-void run(int random) {
-  Study study;
-  const auto isolated = [&](int a, int b, int c) {
-    study.show(symmetric("isolated", true, 4, [&](int i, int j) {
-      return i % 2 == 0 && j % 2 == 0 ? 255 : i == 1 && j == 1 ? c : i == 2 ? b : a;
-    }));
-  };
-  // Dark and faint squares in turn, two kinds of faint ones.
-  const auto checkered = [&](int a, int b) {
-    study.show(symmetric("checkered", true, 4, [&](int i, int j) {
-      return (i + j) % 2 == 0 ? 255 : i == 2 ? b : a;
-    }));
-  };
-  isolated(3, 3, 0);
-  checkered(0, 3);
-  checkered(0, 10);
-  checkered(3, 10);
-  checkered(1, 5);
-  isolated(0, 3, 0);
-  study.show(black_board(5));
-  std::mt19937 chance(7);
-  const int inks[] = {0, 0, 1, 3, 5, 10, 20, 40};
-  for (int i = 0; i < random; ++i) {
-    const int period = i % 2 ? 6 : 4;
-    std::vector<int> level(64);
-    for (int& l : level) l = inks[chance() % 8];
-    study.show(symmetric("random", true, period, [&](int a, int b) {
-      return a % 2 == 0 && b % 2 == 0 ? 255 : level[std::size_t(8 * a + b)];
-    }));
+void show_lines(Study& study, std::istream& lines) {
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    double square_mm = 0;
+    std::string inks;
+    if (!(words >> square_mm >> inks)) continue;
+    std::vector<int> quarter;
+    std::istringstream values(inks);
+    for (std::string value; std::getline(values, value, ',');)
+      quarter.push_back(std::clamp(atoi(value.c_str()), 0, 255));
+    const std::vector<std::string> shapes{std::istream_iterator<std::string>(words), {}};
+    study.show(inks, symmetric(square_mm, quarter), shapes.empty() ? kKit : shapes, 3);
   }
 }
 
@@ -104,6 +99,13 @@ void run(int random) {
 }  // namespace hydrodip
 
 int main(int argc, char** argv) {
-  hydrodip::run(argc > 1 ? atoi(argv[1]) : 20);
+  hydrodip::Study study(argc > 1 ? std::max(1000, atoi(argv[1])) : 10000);
+  fmt::print(
+      "| board | 0.65, 3, 0.1 | 0.65, 30, 0.1 | 0.8, 150, 0.2 | 0.65, 600, 0 | "
+      "0.65, 3000, 0 | corners |\n|---|---|---|---|---|---|---|\n");
+  if (argc > 2)
+    hydrodip::show_lines(study, std::cin);
+  else
+    hydrodip::show_boards(study);
   return 0;
 }

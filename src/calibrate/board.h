@@ -32,6 +32,9 @@ struct Board {
   GridPlace square_at(const Vec2& u) const;
 };
 
+// Of the boards' squares, if nothing else is said.
+constexpr double kTintSquare_mm = 5, kBlackSquare_mm = 5;
+
 // Black and blank squares in turn, one corner at the film's centre: what the paper dips. It tells
 // hard ink from very hard ink badly (docs/calibration.md).
 Board black_board(double square_mm);
@@ -41,7 +44,7 @@ Board black_board(double square_mm);
 // Looks the same after a quarter turn and in a mirror: a scan cannot be read the wrong way round.
 Board tint_board(double square_mm);
 
-// "tints" or "black". Throws InputError.
+// "tints" or "black"; squares of 0 mm: its own. Throws InputError.
 Board board_named(const std::string& name, double square_mm);
 
 // Printed inside the taped margin.

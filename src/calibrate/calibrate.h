@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "calibrate/measured_dip.h"
 #include "job/jobs.h"
 #include "settings/config.h"
 
@@ -16,7 +17,7 @@ namespace hydrodip {
 struct CalibrationRequest {
   std::vector<std::string> scans;  // "sphere=scan.obj", or of synth and kit: "sphere"
   std::string board = "tints";     // which board was printed; board.h
-  double square_mm = 5;
+  double square_mm = 0;            // 0: as the board is
   std::string scan_units = "mm";
   bool aligned = false;
   bool mirrored = false;
@@ -33,6 +34,9 @@ struct CalibrationRequest {
 
   // kit: a scan's noise, for which to say how well the parameters will be known; 0: do not
   double expected_noise_mm = 0;
+
+  // pack
+  DipFacts facts;
 
   // synth
   double noise_mm = 0;
@@ -58,6 +62,11 @@ JobResult measure_job(const JobConfig& config, const CalibrationRequest& request
 // Scans from known parameters: NAME-scan.obj and .csv for each object, truth.toml.
 JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
                     const RunContext& context);
+
+// One dip with its scan and what its owner tells of it, for others to compute against:
+// SHAPE-dip.zip. Throws InputError for what nobody could use.
+JobResult pack_job(const JobConfig& config, const CalibrationRequest& request,
+                   const RunContext& context);
 
 // What a calibration needs: the shapes as STL, the film's PDF, instructions.
 JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,

@@ -23,7 +23,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kStoreName = "simulations.jsonl";
-constexpr int kSchemaVersion = 2;  // 2: board, curvature, by_ink, film_off_mm
+constexpr int kSchemaVersion = 2;  // 2: board, curvature, by_ink,
+                                   // stiffness_table, film_off_mm
 constexpr std::size_t kMostGridPoints = 100000;
 
 SearchOptions search_options(const CalibrationRequest& request) {
@@ -210,6 +211,14 @@ Json calibration_json(const Calibration& calibration, const std::vector<Subject>
                       {"squares", misfit.squares},
                       {"more_stretch", misfit.more_stretch},
                       {"deviation", misfit.deviation}});
+  const auto bounded = [](double value) { return value < 1e6 ? Json(value) : Json(nullptr); };
+  Json stiffness = Json::array();
+  for (const InkStiffness& ink : calibration.stiffness.inks)
+    stiffness.push_back({{"density", ink.density},
+                         {"law", ink.law},
+                         {"stiffness", bounded(ink.stiffness)},
+                         {"low_95", ink.low_95},
+                         {"high_95", bounded(ink.high_95)}});
   Json scans = Json::array();
   for (std::size_t s = 0; s < subjects.size(); ++s)
     scans.push_back(
@@ -234,6 +243,8 @@ Json calibration_json(const Calibration& calibration, const std::vector<Subject>
           {"result", json_of(calibration.all)},
           {"tear_limit", tear_json},
           {"by_ink", by_ink},
+          {"stiffness_table", stiffness},
+          {"stiffness_law_holds", calibration.stiffness.law_holds},
           {"average_of_each", json_of(calibration.average)},
           {"scans", scans},
           {"grid_points", calibration.grid.size()},
@@ -250,6 +261,11 @@ void warn_of_misfits(const Calibration& calibration, const std::vector<Subject>&
           "{}: the film seems to have lain {:.1f} mm off the {}'s middle; what that does to the "
           "ink's place under the object is left out. Aim at the board's middle.",
           subjects[s].file.string(), off_mm, subjects[s].object.name));
+  if (!calibration.stiffness.law_holds)
+    context.warn(
+        "This ink does not stiffen film as 1 + ink (ratio - 1); calibration.json has a table of "
+        "what the scans say of each ink (stiffness_table). Take the ratio that fits the inks of "
+        "your prints.");
   for (const InkMisfit& misfit : calibration.all.by_ink)
     if (std::abs(misfit.more_stretch) > std::max(kLeastStretch, kMostDeviations * misfit.deviation))
       context.warn(fmt::format(
@@ -347,18 +363,19 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
 
 }  // namespace
 
-JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& request,
+JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& request,
                         const RunContext& context) {
-  const RunScope scope(context.with_threads(config.threads));
+  const RunScope scope(context.with_threads(given.threads));
   const SearchOptions options = search_options(request);
   const Shard shard = parse_shard(request.shard);
+  const ScanSetup setup = scan_setup(given, request);
+  const JobConfig& config = setup.config;
+  const Board& board = setup.settings.board;
   if (config.design.dip.method != DipMethod::kFull)
     throw InputError("calibrate: only --method full has parameters to calibrate");
-  const Board board = board_named(request.board, request.square_mm);
   check_tear_readings(config, request, context);
-  const ScanSettings settings = {
-      {request.scan_units, request.square_mm, request.mirrored}, board, request.aligned};
-  const std::vector<Subject> subjects = load_subjects(request.scans, settings, config, context);
+  const std::vector<Subject> subjects =
+      load_subjects(request.scans, setup.settings, config, context);
 
   make_folder(config.output);
   SimulationStore store(config.output / kStoreName, store_files(request.merged));

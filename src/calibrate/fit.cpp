@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unsupported/Eigen/LevenbergMarquardt>
 
 #include "base/error.h"
 #include "calibrate/misfit.h"
@@ -44,61 +43,45 @@ QuadraticModel compressed(const QuadraticModel& model) {
   return {r.col(0), r.middleCols<3>(1), r.rightCols(6)};
 }
 
-// The model over the free parameters, for Eigen's optimiser, which knows no bounds: each parameter
-// is the sine of one that has none, from its lowest value at -1 to its highest at 1.
-struct BoundedModel : Eigen::DenseFunctor<double> {
-  BoundedModel(const QuadraticModel& m, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
-               const std::vector<int>& f)
-      : DenseFunctor(int(f.size()), int(m.value.size())),
-        model(m),
-        middle(0.5 * (low + high)),
-        half(0.5 * (high - low)),
-        free(f) {}
-
-  Eigen::Vector3d whole(const Eigen::VectorXd& x) const {
-    Eigen::Vector3d d = middle;
-    for (std::size_t i = 0; i < free.size(); ++i)
-      d[free[i]] += half[free[i]] * std::sin(x[Eigen::Index(i)]);
-    return d;
-  }
-  int operator()(const Eigen::VectorXd& x, Eigen::VectorXd& r) const {
-    r = model.at(whole(x));
-    return 0;
-  }
-  int df(const Eigen::VectorXd& x, Eigen::MatrixXd& j) const {
-    const Eigen::MatrixX3d all = model.slope_at(whole(x));
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      const auto k = Eigen::Index(i);
-      j.col(k) = half[free[i]] * std::cos(x[k]) * all.col(free[i]);
-    }
-    return 0;
-  }
-
-  const QuadraticModel& model;
-  Eigen::Vector3d middle, half;
-  const std::vector<int>& free;
-};
-
-// The model's least squares within a box, from `start`. Equal bounds hold a parameter.
+// The model's least squares within a box, from `start`: Gauss and Newton's steps, damped as
+// Levenberg and Marquardt do, over the parameters that no bound holds. Equal bounds hold a
+// parameter.
 Eigen::Vector3d minimize(const QuadraticModel& model, const Eigen::Vector3d& low,
                          const Eigen::Vector3d& high,
                          const Eigen::Vector3d& start = Eigen::Vector3d::Zero()) {
-  // At a bound itself nothing would move.
-  constexpr double kFurthestStart = 0.9;
-  std::vector<int> free;
-  for (int k = 0; k < 3; ++k)
-    if (low[k] < high[k]) free.push_back(k);
-  BoundedModel bounded(model, low, high, free);
-  if (free.empty() || model.value.size() < Eigen::Index(free.size())) return bounded.middle;
-  Eigen::VectorXd x(Eigen::Index(free.size()));
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const int k = free[i];
-    x[Eigen::Index(i)] = std::asin(std::clamp((start[k] - bounded.middle[k]) / bounded.half[k],
-                                              -kFurthestStart, kFurthestStart));
+  constexpr int kMostSteps = 200;
+  constexpr double kLeastDamping = 1e-9, kMostDamping = 1e9, kStill = 1e-9;
+  Eigen::Vector3d d = start.cwiseMax(low).cwiseMin(high);
+  Eigen::VectorXd residual = model.at(d);
+  double damping = 1e-3;
+  for (int step = 0; step < kMostSteps && damping < kMostDamping; ++step) {
+    const Eigen::MatrixX3d slope = model.slope_at(d);
+    const Eigen::Vector3d uphill = slope.transpose() * residual;
+    Eigen::Matrix3d curvature = slope.transpose() * slope;
+    Eigen::Vector3d downhill = -uphill;
+    for (int k = 0; k < 3; ++k) {
+      const bool held = low[k] == high[k] || (d[k] <= low[k] && uphill[k] > 0) ||
+                        (d[k] >= high[k] && uphill[k] < 0);
+      curvature(k, k) *= 1 + damping;
+      if (!held && curvature(k, k) > 0) continue;
+      curvature.row(k).setZero();
+      curvature.col(k).setZero();
+      curvature(k, k) = 1;
+      downhill[k] = 0;
+    }
+    const Eigen::Vector3d next =
+        (d + curvature.ldlt().solve(downhill)).cwiseMax(low).cwiseMin(high);
+    const Eigen::VectorXd left = model.at(next);
+    if (!(left.squaredNorm() < residual.squaredNorm())) {
+      damping *= 10;
+      continue;
+    }
+    const bool still = (next - d).cwiseAbs().maxCoeff() < kStill;
+    d = next;
+    residual = left;
+    damping = std::max(kLeastDamping, 0.1 * damping);
+    if (still) break;
   }
-  Eigen::LevenbergMarquardt<BoundedModel> optimizer(bounded);
-  optimizer.minimize(x);
-  Eigen::Vector3d d = bounded.whole(x);
   for (int k = 0; k < 3; ++k) {
     if (d[k] < low[k] + kAtBound) d[k] = low[k];
     if (d[k] > high[k] - kAtBound) d[k] = high[k];
@@ -184,7 +167,7 @@ Stencil stencil_at(const FitPoint& point, const FitOptions& options,
 
 // What a film can be, in stencils of the fit; what is fixed stays.
 struct Box {
-  explicit Box(const Fit& fit)
+  explicit Box(const FilmFit& fit)
       : low((kLeastNatural - fit.center).cwiseQuotient(fit.step)),
         high((kMostNatural - fit.center).cwiseQuotient(fit.step)),
         answer((fit.point - fit.center).cwiseQuotient(fit.step)) {
@@ -274,8 +257,9 @@ FitPoint stencil_step(const FitPoint& center, const FitPoint& widest) {
   return step;
 }
 
-Fit fit_parameters(const FitPoint& start, const MisfitsAt& misfits_at, const FitOptions& options) {
-  Fit fit;
+FilmFit fit_parameters(const FitPoint& start, const MisfitsAt& misfits_at,
+                       const FitOptions& options) {
+  FilmFit fit;
   for (int k = 0; k < 3; ++k) fit.free[std::size_t(k)] = options.low[k] < options.high[k];
   FitPoint from = start;
   while (true) {
@@ -326,7 +310,7 @@ Fit fit_parameters(const FitPoint& start, const MisfitsAt& misfits_at, const Fit
   }
 }
 
-Certainty certainty(const Fit& fit, const Eigen::VectorXd& doubt_mm) {
+Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm) {
   std::vector<Eigen::Index> rows, free;
   for (Eigen::Index i = 0; i < fit.residual.size(); ++i)
     if (std::isfinite(fit.residual[i])) rows.push_back(i);
@@ -374,7 +358,8 @@ Certainty certainty(const Fit& fit, const Eigen::VectorXd& doubt_mm) {
   return result;
 }
 
-double joint_distance(const Fit& fit, double noise_mm, int first, double a, int second, double b) {
+double joint_distance(const FilmFit& fit, double noise_mm, int first, double a, int second,
+                      double b) {
   Box box(fit);
   Eigen::Vector3d at = box.answer;
   at[first] = (a - fit.center[first]) / fit.step[first];

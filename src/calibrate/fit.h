@@ -44,7 +44,7 @@ struct QuadraticModel {
   Eigen::MatrixX3d slope_at(const Eigen::Vector3d& d) const;
 };
 
-struct Fit {
+struct FilmFit {
   FitPoint point = FitPoint::Zero();
   std::array<bool, 3> free{};      // not fixed
   std::array<bool, 3> at_bound{};  // the answer lies at the edge of where it was looked for
@@ -70,7 +70,7 @@ FitPoint stencil_step(const FitPoint& center, const FitPoint& widest);
 // Least squares by Levenberg and Marquardt on a quadratic model of every row, made from simulations
 // on a stencil of the lattice, until the answer lies in its own stencil. With noise that is alike
 // and independent in all rows that is the most likely answer.
-Fit fit_parameters(const FitPoint& start, const MisfitsAt& misfits, const FitOptions& options);
+FilmFit fit_parameters(const FitPoint& start, const MisfitsAt& misfits, const FitOptions& options);
 
 // How well the scans determine an answer.
 struct Certainty {
@@ -83,10 +83,11 @@ struct Certainty {
 // The intervals come from the profile of the likelihood: one parameter held, the others at their
 // best, as far as the sum of squares allows. `doubt_mm`: by how much each row may be wrong in
 // simulation, all together; what that does to the answer widens the intervals. Empty: nothing.
-Certainty certainty(const Fit& fit, const Eigen::VectorXd& doubt_mm = {});
+Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm = {});
 
 // Two parameters' joint region: by how many of its standard deviations the sum of squares at
 // (a, b), the third parameter at its best, is off: up to 2.45 is the 95 % region.
-double joint_distance(const Fit& fit, double noise_mm, int first, double a, int second, double b);
+double joint_distance(const FilmFit& fit, double noise_mm, int first, double a, int second,
+                      double b);
 
 }  // namespace hydrodip

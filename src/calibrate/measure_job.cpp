@@ -103,13 +103,14 @@ void warn_of_bare_corners(const Subject& subject, const Measurement& full,
 
 }  // namespace
 
-JobResult measure_job(const JobConfig& config, const CalibrationRequest& request,
+JobResult measure_job(const JobConfig& given, const CalibrationRequest& request,
                       const RunContext& context) {
-  const RunScope scope(context.with_threads(config.threads));
-  const Board board = board_named(request.board, request.square_mm);
-  const ScanSettings settings = {
-      {request.scan_units, request.square_mm, request.mirrored}, board, request.aligned};
-  const std::vector<Subject> subjects = load_subjects(request.scans, settings, config, context);
+  const RunScope scope(context.with_threads(given.threads));
+  const ScanSetup setup = scan_setup(given, request);
+  const JobConfig& config = setup.config;
+  const Board& board = setup.settings.board;
+  const std::vector<Subject> subjects =
+      load_subjects(request.scans, setup.settings, config, context);
   const CheckeredFilm film = checkered_film(config.design, board);
 
   JobResult result;
@@ -119,7 +120,7 @@ JobResult measure_job(const JobConfig& config, const CalibrationRequest& request
     std::vector<Measurement> measurements;
     for (const Method& method : kMethods)
       measurements.push_back(
-          measure(subject, film, config.design, method, request.square_mm, context));
+          measure(subject, film, config.design, method, board.square_mm, context));
     if (measurements.front().error.edges == 0)
       throw InputError(fmt::format(
           "{}: the simulated dip lays no film on any two neighbouring corners; check the depth "

@@ -7,9 +7,11 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "calibrate/misfit.h"
 
 namespace hydrodip {
 namespace {
@@ -105,6 +107,7 @@ Search::Search(const std::vector<Subject>& subjects, const DesignOptions& design
       board_(board),
       same_film_(options.elements_factor == 1 && options.step_factor == 1),
       store_(store),
+      design_(design),
       grid_film_(subjects, grid_design(design, options), board,
                  fmt::format("grid-{:g}-{:g}", options.elements_factor, options.step_factor),
                  store),
@@ -258,7 +261,7 @@ Answer Search::answer(const std::string& name, const std::vector<std::size_t>& s
 }
 
 // Read off on the film, by the map of the dip at the fit's centre.
-std::vector<InkMisfit> Search::misfits_by_ink(const Fit& fit,
+std::vector<InkMisfit> Search::misfits_by_ink(const FilmFit& fit,
                                               const std::vector<std::size_t>& subjects,
                                               const RunContext& context) {
   std::vector<SimulationRequest> requests;
@@ -294,6 +297,41 @@ std::vector<InkMisfit> Search::misfits_by_ink(const Fit& fit,
     list.push_back({ink / 255.0, values.size(), mean, deviation});
   }
   return list;
+}
+
+// From dips at the fit's centre in which one ink after the other is stiffer.
+StiffnessTable Search::stiffness_of_inks(const FilmFit& fit,
+                                         const std::vector<std::size_t>& subjects,
+                                         const RunContext& context) {
+  constexpr double kStiffer = 1.3, kLeastRatio = 1.1;
+  const double ratio = from_fit(fit.center).stiffness_ratio;
+  std::vector<double> densities;
+  for (const std::uint8_t ink : std::set<std::uint8_t>(board_.ink.begin(), board_.ink.end()))
+    if (ink > 0) densities.push_back(ink / 255.0);
+  if (ratio < kLeastRatio) return {};
+  std::vector<Vec2> film_off_mm;
+  const Misfits here =
+      misfits_at(film_, subjects, {fit.center}, "weighing inks", film_off_mm, context);
+  Eigen::MatrixXd by_ink(here.value.rows(), Eigen::Index(densities.size()));
+  for (std::size_t i = 0; i < densities.size(); ++i) {
+    Simulations bent(subjects_, design_,
+                     with_ink_stiffer(film_.film(), densities, i, kStiffer, ratio),
+                     fmt::format("film-ink-{:g}", densities[i]), store_);
+    const Misfits there =
+        misfits_at(bent, subjects, {fit.center}, "weighing inks", film_off_mm, context);
+    by_ink.col(Eigen::Index(i)) = (there.value - here.value) / std::log(kStiffer);
+  }
+  // As the fit's own rows: what nobody has measured is left out of them.
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index row = 0; row < by_ink.rows(); ++row)
+    if (std::isfinite(fit.residual[row]) && by_ink.row(row).allFinite() &&
+        (here.open.cols() == 0 || here.open.row(row).allFinite()))
+      rows.push_back(row);
+  const Eigen::MatrixXd left =
+      without(by_ink(rows, Eigen::all), orthonormal(here.open(rows, Eigen::all)));
+  by_ink.setConstant(kNaN);
+  for (std::size_t i = 0; i < rows.size(); ++i) by_ink.row(rows[i]) = left.row(Eigen::Index(i));
+  return stiffness_table(fit, densities, by_ink);
 }
 
 // Differences of landings, for the scan's corners.
@@ -342,6 +380,7 @@ Calibration Search::run(const RunContext& context) {
   const std::vector<std::size_t> everyone = all_indices(subjects_.size());
   result.all = fit_from(best->parameters, context);
   result.correction_mm = result.all.correction_mm;
+  result.stiffness = stiffness_of_inks(result.all.fit, everyone, context);
 
   FitPoint sum = FitPoint::Zero();
   for (const std::size_t s : everyone) {

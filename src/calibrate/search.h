@@ -9,6 +9,7 @@
 #include "calibrate/fit.h"
 #include "calibrate/resolution.h"
 #include "calibrate/simulations.h"
+#include "calibrate/stiffness_table.h"
 #include "calibrate/subject.h"
 
 namespace hydrodip {
@@ -47,7 +48,7 @@ struct InkMisfit {
 struct Answer {
   std::string name;
   FilmParameters parameters;
-  Fit fit;
+  FilmFit fit;
   Certainty certainty;
   double correction_mm = 0;       // as the calibration's
   std::vector<InkMisfit> by_ink;  // least ink first
@@ -58,7 +59,8 @@ struct Calibration {
   std::vector<GridPointError> grid;
   Answer all;
   std::vector<Answer> each;
-  FilmParameters average;  // of each, in FitPoint; the paper's protocol
+  FilmParameters average;    // of each, in FitPoint; the paper's protocol
+  StiffnessTable stiffness;  // at the answer of all
   // At the answer of all, on the configuration's own film: per subject.
   std::vector<GridError> error;
   // What the configuration's film lacks: root mean square over all corners' coordinates, mm.
@@ -96,8 +98,12 @@ class Search {
   // On the grid's film: good enough to begin from.
   FitPoint rough_answer(const std::vector<std::size_t>& subjects, const FitPoint& start,
                         const RunContext& context);
-  std::vector<InkMisfit> misfits_by_ink(const Fit& fit, const std::vector<std::size_t>& subjects,
+  std::vector<InkMisfit> misfits_by_ink(const FilmFit& fit,
+                                        const std::vector<std::size_t>& subjects,
                                         const RunContext& context);
+  // How stiff the board's inks are by themselves. Empty where ink hardly stiffens film.
+  StiffnessTable stiffness_of_inks(const FilmFit& fit, const std::vector<std::size_t>& subjects,
+                                   const RunContext& context);
   // What a film lacks at a point, by finer_film() of it.
   Correction correction_at(Simulations& film, Simulations& finer,
                            const std::vector<std::size_t>& subjects, const FitPoint& point,
@@ -110,6 +116,7 @@ class Search {
   Board board_;
   bool same_film_;  // the grid's is the configuration's own
   SimulationStore& store_;
+  DesignOptions design_;
   Simulations grid_film_;
   Simulations film_;
   Simulations finer_film_;

@@ -99,11 +99,11 @@ class Crew {
 
 Simulations::Simulations(const std::vector<Subject>& subjects, const DesignOptions& design,
                          const Board& board, const std::string& level, SimulationStore& store)
-    : subjects_(subjects),
-      design_(design),
-      film_(checkered_film(design, board)),
-      level_(level),
-      store_(store) {}
+    : Simulations(subjects, design, checkered_film(design, board), level, store) {}
+
+Simulations::Simulations(const std::vector<Subject>& subjects, const DesignOptions& design,
+                         CheckeredFilm film, const std::string& level, SimulationStore& store)
+    : subjects_(subjects), design_(design), film_(std::move(film)), level_(level), store_(store) {}
 
 SimulationKey Simulations::key_of(const SimulationRequest& request) const {
   return {subjects_[request.subject].fingerprint + "-" + level_, request.parameters};

@@ -23,6 +23,10 @@ class Simulations {
   // Refers to all but the board. `level` tells films apart in the store ("search", "fine").
   Simulations(const std::vector<Subject>& subjects, const DesignOptions& design, const Board& board,
               const std::string& level, SimulationStore& store);
+  // The same on a film that is at hand.
+  Simulations(const std::vector<Subject>& subjects, const DesignOptions& design, CheckeredFilm film,
+              const std::string& level, SimulationStore& store);
+  const CheckeredFilm& film() const { return film_; }
 
   // In the order of the requests. Computes what the store does not have, as many at once as there
   // are threads, and keeps each as it is done. Progress under the name `activity`. Throws

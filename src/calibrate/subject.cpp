@@ -11,6 +11,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "calibrate/calibrate.h"
+#include "calibrate/measured_dip.h"
 #include "calibrate/misfit.h"
 #include "samples/samples.h"
 
@@ -209,6 +211,16 @@ class OpenAmounts {
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_;
 };
 
+bool same(const Board& a, const Board& b) {
+  return a.square_mm == b.square_mm && a.about_square == b.about_square && a.period == b.period &&
+         a.ink == b.ink;
+}
+
+bool same(const FilmOptions& a, const FilmOptions& b) {
+  return a.width_mm == b.width_mm && a.height_mm == b.height_mm && a.margin_mm == b.margin_mm &&
+         a.shape == b.shape;
+}
+
 // Lays the scan on a dip's corners: as a whole, then so that what the film's place explains is left
 // to the film.
 Eigen::Isometry3d laid_on(const Subject& subject, const Board& board, const Landings& landings,
@@ -300,6 +312,32 @@ ScanMisfits misfits_of(const Subject& subject, const Board& board,
   return result;
 }
 
+ScanSetup scan_setup(const JobConfig& config, const CalibrationRequest& request) {
+  ScanSetup setup = {config,
+                     {{request.scan_units, request.square_mm, request.mirrored},
+                      board_named(request.board, request.square_mm),
+                      request.aligned}};
+  setup.settings.file.square_mm = setup.settings.board.square_mm;
+  std::string first;
+  for (const std::string& text : request.scans) {
+    if (!is_measured_dip(text)) continue;
+    const MeasuredDip dip = read_measured_dip(text);
+    FilmOptions& film = setup.config.design.film;
+    if (!first.empty() && (!same(dip.board, setup.settings.board) || !same(dip.film, film)))
+      throw InputError(
+          fmt::format("{}: another board or sheet was dipped than in {}; calibrate them one by one",
+                      text, first));
+    first = text;
+    setup.settings.board = dip.board;
+    setup.settings.file.square_mm = dip.board.square_mm;
+    film.width_mm = dip.film.width_mm;
+    film.height_mm = dip.film.height_mm;
+    film.margin_mm = dip.film.margin_mm;
+    film.shape = dip.film.shape;
+  }
+  return setup;
+}
+
 std::vector<Subject> load_subjects(const std::vector<std::string>& texts,
                                    const ScanSettings& settings, const JobConfig& config,
                                    const RunContext& context) {
@@ -308,11 +346,20 @@ std::vector<Subject> load_subjects(const std::vector<std::string>& texts,
   std::vector<Subject> subjects;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     context.progress("reading scans", double(i) / double(texts.size()));
-    const SubjectText text = split(texts[i]);
     Subject subject;
-    subject.file = text.file;
-    subject.scan = read_scan(text.file, settings.file);
-    subject.object = calibration_object(text.object, config, context);
+    std::string object;
+    if (is_measured_dip(texts[i])) {
+      MeasuredDip dip = read_measured_dip(texts[i]);
+      object = fmt::format("{}@{}", dip.object, dip.depth_mm);
+      subject.file = texts[i];
+      subject.scan = std::move(dip.scan);
+    } else {
+      const SubjectText text = split(texts[i]);
+      object = text.object;
+      subject.file = text.file;
+      subject.scan = read_scan(text.file, settings.file, context);
+    }
+    subject.object = calibration_object(object, config, context);
     subject.lengths = grid_lengths(subject.scan.grid);
     find_how_it_lies(subject, settings, config, context);
     subject.fingerprint = fingerprint_of(subject.object, settings.board, config.design, program);

@@ -15,12 +15,22 @@
 
 namespace hydrodip {
 
+struct CalibrationRequest;
+
 // How scans are to be read and compared.
 struct ScanSettings {
   ScanOptions file;      // unit, square (the board's), mirrored
   Board board;           // what was printed
   bool aligned = false;  // the scan is in the posed-object frame already
 };
+
+// The same for a request, with the configuration: measured dips among its scans say themselves
+// which board and which sheet were dipped. Throws InputError if they do not agree.
+struct ScanSetup {
+  JobConfig config;
+  ScanSettings settings;
+};
+ScanSetup scan_setup(const JobConfig& config, const CalibrationRequest& request);
 
 struct Subject {
   std::string name;  // of the object; numbered where two scans show the same

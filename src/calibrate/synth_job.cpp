@@ -38,10 +38,11 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
   // Finer than any film that calibrate dips with the same configuration.
   const DesignOptions fine = finer_film(finer_film(config.design));
   const FilmParameters truth = film_parameters(config.design);
-  const CheckeredFilm film = checkered_film(fine, board_named(request.board, request.square_mm));
+  const Board board = board_named(request.board, request.square_mm);
+  const CheckeredFilm film = checkered_film(fine, board);
   OutputFolder folder(config.output, config.earlier_result);
   JobResult result;
-  const GridPlace reach = reach_of(config.design.film, request.square_mm);
+  const GridPlace reach = reach_of(config.design.film, board.square_mm);
   nlohmann::ordered_json scans = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < request.scans.size(); ++i) {
     const CalibrationObject object = calibration_object(request.scans[i], config, context);

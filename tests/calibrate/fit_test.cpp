@@ -46,8 +46,8 @@ MisfitsAt scan_with(const FitPoint& truth, const Eigen::VectorXd& noise, int* ca
 TEST(FitTest, FindsTheTruthFromAfar) {
   const FitPoint truth(0.65, 0.18, 0.1);
   int calls = 0;
-  const Fit fit = fit_parameters({0.8, 0.3, 0.3},
-                                 scan_with(truth, Eigen::VectorXd::Zero(kLengths), &calls), wide());
+  const FilmFit fit = fit_parameters(
+      {0.8, 0.3, 0.3}, scan_with(truth, Eigen::VectorXd::Zero(kLengths), &calls), wide());
   EXPECT_TRUE(fit.settled);
   EXPECT_LT((fit.point - truth).norm(), 2e-3);
   EXPECT_LE(calls, 10 * fit.rounds);
@@ -55,7 +55,7 @@ TEST(FitTest, FindsTheTruthFromAfar) {
 
 TEST(FitTest, StaysWithinTheRangeAndSaysSo) {
   const FitPoint truth(0.65, 0.18, -0.05);
-  const Fit fit =
+  const FilmFit fit =
       fit_parameters({0.6, 0.2, 0.1}, scan_with(truth, Eigen::VectorXd::Zero(kLengths)), wide());
   EXPECT_GE(fit.point[2], 0);
   EXPECT_NEAR(fit.point[2], 0, 1e-12);
@@ -68,7 +68,7 @@ TEST(FitTest, AKnownParameterStaysAndCostsNothing) {
   FitOptions options = wide();
   options.low[2] = options.high[2] = 0.1;
   int calls = 0;
-  const Fit fit = fit_parameters(
+  const FilmFit fit = fit_parameters(
       {0.75, 0.25, 0.1}, scan_with(truth, Eigen::VectorXd::Zero(kLengths), &calls), options);
   EXPECT_DOUBLE_EQ(fit.point[2], 0.1);
   EXPECT_LT((fit.point - truth).norm(), 2e-3);
@@ -79,7 +79,7 @@ TEST(FitTest, UnknownLengthsAreLeftOut) {
   const FitPoint truth(0.65, 0.18, 0.1);
   Eigen::VectorXd noise = Eigen::VectorXd::Zero(kLengths);
   for (int i = 0; i < kLengths; i += 3) noise[i] = std::nan("");
-  const Fit fit = fit_parameters({0.6, 0.2, 0.2}, scan_with(truth, noise), wide());
+  const FilmFit fit = fit_parameters({0.6, 0.2, 0.2}, scan_with(truth, noise), wide());
   EXPECT_LT((fit.point - truth).norm(), 2e-3);
   EXPECT_TRUE(std::isnan(fit.residual[0]));
 }
@@ -89,8 +89,9 @@ TEST(FitTest, OpenMotionsDoNotMatter) {
   const FitPoint truth(0.65, 0.18, 0.1);
   const Eigen::MatrixXd open = Eigen::MatrixXd::Random(kLengths, 4);
   const Eigen::VectorXd noise = 1e-3 * Eigen::VectorXd::Random(kLengths);
-  const Fit still = fit_parameters({0.6, 0.2, 0.2}, scan_with(truth, noise, nullptr, open), wide());
-  const Fit moved = fit_parameters(
+  const FilmFit still =
+      fit_parameters({0.6, 0.2, 0.2}, scan_with(truth, noise, nullptr, open), wide());
+  const FilmFit moved = fit_parameters(
       {0.6, 0.2, 0.2},
       scan_with(truth, noise + open * Eigen::Vector4d(1, -2, 0.5, 3), nullptr, open), wide());
   EXPECT_LT((still.point - moved.point).norm(), 1e-6);
@@ -125,7 +126,7 @@ TEST(CertaintyTest, IntervalsCoverTheTruthAsOftenAsTheySay) {
   for (int seed = 0; seed < kSeeds; ++seed) {
     Eigen::VectorXd noise(kLengths);
     for (double& n : noise) n = 0.01 * normal(random);
-    const Fit fit = fit_parameters(truth, scan_with(truth, noise, nullptr, open), wide());
+    const FilmFit fit = fit_parameters(truth, scan_with(truth, noise, nullptr, open), wide());
     const Certainty found = certainty(fit);
     noise_mm += found.noise_mm / kSeeds;
     const FilmParameters t = from_fit(truth);
@@ -140,8 +141,8 @@ TEST(CertaintyTest, IntervalsCoverTheTruthAsOftenAsTheySay) {
 }
 
 // A fit whose rows are straight in the parameters.
-Fit straight_fit(const FitPoint& answer, const Eigen::MatrixX3d& jacobian,
-                 const Eigen::VectorXd& residual) {
+FilmFit straight_fit(const FitPoint& answer, const Eigen::MatrixX3d& jacobian,
+                     const Eigen::VectorXd& residual) {
   FitOptions options = wide();
   options.low = FitPoint(0, 1e-4, 0);
   options.high = FitPoint(5, 1, 0.48);
@@ -176,7 +177,7 @@ TEST(CertaintyTest, ARatioThatNothingBoundsIsUnbounded) {
 TEST(CertaintyTest, ProfileAndCurvatureAgreeWhereAllIsStraight) {
   const Eigen::MatrixX3d jacobian = Eigen::MatrixX3d::Random(200, 3);
   const FitPoint answer(0.65, 0.3, 0.2);
-  const Fit fit = straight_fit(answer, jacobian, unexplained(jacobian, 0.05));
+  const FilmFit fit = straight_fit(answer, jacobian, unexplained(jacobian, 0.05));
   const Certainty found = certainty(fit);
   const FitPoint half = 1.96 * found.covariance.diagonal().cwiseSqrt();
   EXPECT_LT((fit.point - answer).norm(), 1e-6);
@@ -196,7 +197,7 @@ TEST(CertaintyTest, ProfileAndCurvatureAgreeWhereAllIsStraight) {
 // Rows that are wrong just as another parameter would make them move the answer by that much.
 TEST(CertaintyTest, DoubtsWidenTheIntervalsByWhatTheyDoToTheAnswer) {
   const Eigen::MatrixX3d jacobian = Eigen::MatrixX3d::Random(40, 3);
-  const Fit fit = straight_fit({0.6, 0.2, 0.2}, jacobian, Eigen::VectorXd::Zero(40));
+  const FilmFit fit = straight_fit({0.6, 0.2, 0.2}, jacobian, Eigen::VectorXd::Zero(40));
   const Certainty sure = certainty(fit, jacobian * Eigen::Vector3d(0.01, 0.02, 0.03));
   EXPECT_NEAR(sure.low.z_stretch, 0.59, 1e-6);
   EXPECT_NEAR(sure.high.z_stretch, 0.61, 1e-6);

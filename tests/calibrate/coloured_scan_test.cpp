@@ -1,0 +1,67 @@
+#include "coloured_scan.h"
+
+#include <gtest/gtest.h>
+
+#include "scan/dark_squares.h"
+#include "scans.h"
+
+namespace hydrodip {
+namespace {
+
+// Fifty views: bench/calibrate/corners.cpp.
+class ColouredScanSlow : public testing::TestWithParam<const char*> {};
+
+TEST_P(ColouredScanSlow, CornersAreWhereTheDipLaidThem) {
+  const RunContext context;
+  const scans::Truth truth(GetParam(), {0.65, 30, 0.1}, context);
+  const scans::ColouredScans scanner(truth.object, truth.surface, truth.dip, 0.1);
+  const scans::ColouredScans::Scan scan = scanner.scan(1);
+  const CornerGrid grid = grid_of_dark_squares(find_dark_squares(scan.object, 5));
+  const scans::CornersFound found =
+      scans::judge(grid, scan, truth.dip.landing(truth.object), {12, 12});
+  EXPECT_GE(found.corners, 40u);
+  EXPECT_EQ(found.misnumbered, 0u);
+  EXPECT_LT(found.worst_mm, 0.1);
+  EXPECT_LT(found.rms_mm, 0.04);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, ColouredScanSlow, testing::Values("sphere", "pyramid"));
+
+// A flat board, of which everything is known: corners to a hundredth of a texel's size or so.
+TEST(DarkSquaresTest, OnAFlatSheetSquaresAreSquares) {
+  constexpr int kTexels = 500;
+  constexpr double kSide_mm = 45;
+  Object sheet;
+  sheet.positions = {{0, 0, 0}, {kSide_mm, 0, 0}, {kSide_mm, kSide_mm, 0}, {0, kSide_mm, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  sheet.material_of = {0, 0};
+  sheet.materials.resize(1);
+  sheet.materials[0].texture = 0;
+  using Uv = Eigen::Vector2f;
+  sheet.uvs = {{Uv(0, 0), Uv(1, 0), Uv(1, 1)}, {Uv(0, 0), Uv(1, 1), Uv(0, 1)}};
+  auto image = std::make_shared<Image>(kTexels, kTexels);
+  for (int y = 0; y < kTexels; ++y)
+    for (int x = 0; x < kTexels; ++x) {
+      const double a = kSide_mm * (x + 0.5) / kTexels, b = kSide_mm * (y + 0.5) / kTexels;
+      const bool dark = int(a / 5) % 2 == 1 && int(b / 5) % 2 == 1;
+      std::uint8_t* pixel = image->pixel(x, kTexels - 1 - y);
+      pixel[0] = pixel[1] = pixel[2] = dark ? 20 : 240;
+      pixel[3] = 255;
+    }
+  sheet.textures.push_back(image);
+  const CornerGrid grid = grid_of_dark_squares(find_dark_squares(sheet, 5));
+  ASSERT_EQ(grid.position.size(), 64u);  // of 4 by 4 squares
+  for (std::size_t c = 0; c < grid.position.size(); ++c) {
+    EXPECT_EQ(grid.patch[c], 0);
+    for (int k = 0; k < 2; ++k)
+      EXPECT_NEAR(grid.position[c][k], 5 * std::round(grid.position[c][k] / 5), 0.05);
+    for (std::size_t d = 0; d < c; ++d) {
+      // Lengths on the sheet are those of the places.
+      const Vec2 apart(grid.place[c][0] - grid.place[d][0], grid.place[c][1] - grid.place[d][1]);
+      EXPECT_NEAR((grid.position[c] - grid.position[d]).norm(), 5 * apart.norm(), 0.1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hydrodip
