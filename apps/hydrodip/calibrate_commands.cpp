@@ -13,7 +13,8 @@ constexpr const char* kSearchGroup = "Search";
 void declare_scans(CLI::App& app, Request& request) {
   app.add_option(
          "OBJECT=SCAN", request.calibration.scans,
-         "sphere, pyramid, ellipsoid or a model file, with @DEPTH in mm if it was dipped "
+         "sphere-90, pyramid-90, ellipsoid-135 (the kit's), sphere, pyramid, ellipsoid (the "
+         "samples) or a model file, with @DEPTH in mm if it was dipped "
          "deeper or less than the kit says; quad mesh (OBJ, PLY) or table (CSV). Or a dip that "
          "'calibrate pack' made (ZIP)")
       ->type_name("");
@@ -21,7 +22,7 @@ void declare_scans(CLI::App& app, Request& request) {
 
 void declare_objects(CLI::App& app, Request& request) {
   app.add_option("OBJECT", request.calibration.scans,
-                 "sphere, pyramid, ellipsoid or a model file, with @DEPTH in mm (default: the "
+                 "the shapes of 'calibrate', or a model file, with @DEPTH in mm (default: the "
                  "kit's three)")
       ->type_name("");
 }
@@ -89,7 +90,7 @@ void check_square(const Request& request) {
 
 void require_scans(const Request& request, const std::string& command) {
   if (request.calibration.scans.empty())
-    throw InputError("name object and scan, as in 'hydrodip " + command + " sphere=scan.obj'");
+    throw InputError("name object and scan, as in 'hydrodip " + command + " sphere-90=scan.obj'");
   check_square(request);
 }
 
@@ -122,7 +123,8 @@ JobResult run_measure(const Request& request, const RunContext& context) {
 CalibrationRequest with_objects(const Request& request) {
   check_square(request);
   CalibrationRequest wanted = request.calibration;
-  if (wanted.scans.empty()) wanted.scans = {"sphere", "pyramid", "ellipsoid"};
+  if (wanted.scans.empty())
+    for (const KitShape& shape : kit_shapes()) wanted.scans.emplace_back(shape.name);
   return wanted;
 }
 
@@ -217,7 +219,7 @@ std::vector<Command> calibrate_commands() {
        "and 'calibrate synth', and docs/calibration.md.",
        declare_calibrate, run_calibrate},
       {"calibrate kit", "what a calibration needs: shapes to print, film, instructions",
-       "Writes sphere.stl, pyramid.stl, ellipsoid.stl, dome.stl, checkerboard.pdf and "
+       "Writes sphere-90.stl, pyramid-90.stl, ellipsoid-135.stl, dome.stl, checkerboard.pdf and "
        "tear-film.pdf\n"
        "(print them at 100 %) and instructions.pdf.",
        declare_kit, run_kit},

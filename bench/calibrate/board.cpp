@@ -21,7 +21,11 @@ namespace {
 constexpr double kNoise_mm = 0.05;
 const FilmParameters kTruths[] = {
     {0.65, 30, 0.1}, {0.8, 150, 0.2}, {0.65, 600, 0}, {0.65, 3, 0.1}, {0.65, 3000, 0}};
-const std::vector<std::string> kKit = {"sphere", "pyramid", "ellipsoid"};
+std::vector<std::string> kit() {
+  std::vector<std::string> names;
+  for (const KitShape& shape : kit_shapes()) names.emplace_back(shape.name);
+  return names;
+}
 
 // A board that looks the same in mirrors and after a quarter turn, about the middle of a dark
 // square, from the inks of its first half period's squares and one more along both axes.
@@ -72,11 +76,11 @@ class Study {
 };
 
 void show_boards(Study& study) {
-  study.show("black", black_board(5), kKit);
-  study.show("tints", tint_board(5), kKit);
+  study.show("black", black_board(5), kit());
+  study.show("tints", tint_board(5), kit());
   for (const double square_mm : {5.0, 4.0, 3.0}) {
-    study.show("255,3,0", symmetric(square_mm, {255, 3, 3, 0}), kKit);
-    study.show("255,0,3 sparse", symmetric(square_mm, {255, 0, 255, 0, 0, 3, 255, 3, 255}), kKit);
+    study.show("255,3,0", symmetric(square_mm, {255, 3, 3, 0}), kit());
+    study.show("255,0,3 sparse", symmetric(square_mm, {255, 0, 255, 0, 0, 3, 255, 3, 255}), kit());
   }
 }
 
@@ -91,7 +95,7 @@ void show_lines(Study& study, std::istream& lines) {
     for (std::string value; std::getline(values, value, ',');)
       quarter.push_back(std::clamp(atoi(value.c_str()), 0, 255));
     const std::vector<std::string> shapes{std::istream_iterator<std::string>(words), {}};
-    study.show(inks, symmetric(square_mm, quarter), shapes.empty() ? kKit : shapes, 3);
+    study.show(inks, symmetric(square_mm, quarter), shapes.empty() ? kit() : shapes, 3);
   }
 }
 

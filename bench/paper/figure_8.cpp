@@ -69,7 +69,7 @@ std::string figure_8(const Study& study) {
   std::vector<Panel> pictures;
   Table table(
       {"object", "depth (mm)", "steps", "simulated in (s)", "pixels recovered rightly (%)"});
-  for (const KitShape& shape : kit_shapes()) {
+  for (const KitShape& shape : sample_shapes()) {
     options.trajectory.depth_mm = shape.depth_mm;
     const DippedObject truth = dipped(shape.name, finer_film(options), board, study.context);
     const auto begin = std::chrono::steady_clock::now();

@@ -39,7 +39,7 @@ std::string figure_9(const Study& study) {
   const CheckeredFilm film = checkered_film(config.design, black_board(kSquare_mm));
   std::vector<std::vector<ErrorMap>> maps;
   Table table({"object", "projection (mm)", "single step (mm)", "full (mm)", "lengths"});
-  for (const KitShape& shape : kit_shapes()) {
+  for (const KitShape& shape : sample_shapes()) {
     const CalibrationObject object = calibration_object(shape.name, config, study.context);
     const Surface surface(object.object.positions, object.object.triangles);
     const CornerGrid grid = true_corners(object, surface, config.design, study.context);

@@ -25,7 +25,7 @@ std::vector<Subject> scans(const JobConfig& config, const Board& board, const St
   const DesignOptions fine = finer_film(finer_film(config.design));  // as `calibrate synth`
   const CheckeredFilm film = checkered_film(fine, board);
   std::vector<std::string> texts;
-  for (const KitShape& shape : kit_shapes()) {
+  for (const KitShape& shape : sample_shapes()) {
     const CalibrationObject object = calibration_object(shape.name, config, study.context);
     const Surface surface(object.object.positions, object.object.triangles);
     const CheckerboardDip dip = dip_checkerboard(

@@ -14,17 +14,6 @@
 namespace hydrodip {
 namespace {
 
-bool is_kit_shape(const std::string& name) {
-  return std::any_of(kit_shapes().begin(), kit_shapes().end(),
-                     [&](const KitShape& shape) { return name == shape.name; });
-}
-
-double kit_depth_mm(const std::string& name) {
-  for (const KitShape& shape : kit_shapes())
-    if (name == shape.name) return shape.depth_mm;
-  return 0;
-}
-
 // "sphere@12" into "sphere" and 12; 0: no depth given. A '@' in a file's name is left alone.
 std::pair<std::string, double> split_depth(const std::string& text) {
   const std::size_t at = text.rfind('@');
@@ -46,8 +35,36 @@ FilmParameters film_parameters(const DesignOptions& design) {
 }
 
 const std::vector<KitShape>& kit_shapes() {
-  static const std::vector<KitShape> shapes = {{"sphere", 12}, {"pyramid", 22}, {"ellipsoid", 11}};
+  static const std::vector<KitShape> shapes = {{"sphere-90", "sphere", 1.5, 17},
+                                               {"pyramid-90", "pyramid", 1.5, 32},
+                                               {"ellipsoid-135", "ellipsoid", 1.5, 15.5}};
   return shapes;
+}
+
+const std::vector<KitShape>& sample_shapes() {
+  static const std::vector<KitShape> shapes = {{"sphere", "sphere", 1, 12},
+                                               {"pyramid", "pyramid", 1, 22},
+                                               {"ellipsoid", "ellipsoid", 1, 11}};
+  return shapes;
+}
+
+std::vector<KitShape> known_shapes() {
+  std::vector<KitShape> all = kit_shapes();
+  all.insert(all.end(), sample_shapes().begin(), sample_shapes().end());
+  return all;
+}
+
+const KitShape* find_shape(const std::string& name) {
+  for (const auto* shapes : {&kit_shapes(), &sample_shapes()})
+    for (const KitShape& shape : *shapes)
+      if (name == shape.name) return &shape;
+  return nullptr;
+}
+
+TriangleMesh mesh_of(const KitShape& shape) {
+  TriangleMesh mesh = make_sample(shape.sample);
+  for (Vec3& p : mesh.positions) p *= shape.scale;
+  return mesh;
 }
 
 CalibrationObject calibration_object(const std::string& text, const JobConfig& config,
@@ -55,9 +72,9 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
   const auto [name, depth] = split_depth(text);
   CalibrationObject result;
   result.name = name;
-  if (is_kit_shape(name)) {
-    result.object = make_sample(name);
-    result.depth_mm = depth > 0 ? depth : kit_depth_mm(name);
+  if (const KitShape* shape = find_shape(name)) {
+    result.object = mesh_of(*shape);
+    result.depth_mm = depth > 0 ? depth : shape->depth_mm;
   } else {
     result.object = prepare_object(name, config.object, context).posed.mesh();
     result.name = std::filesystem::path(name).stem().string();

@@ -29,14 +29,25 @@ struct CalibrationObject {
   double depth_mm = 0;
 };
 
-// The shapes of the kit.
+// A shape that calibrations know: a sample, so much larger.
 struct KitShape {
-  const char* name;  // of the sample
-  double depth_mm;   // where its slope gets to what films bear
+  const char* name;
+  const char* sample;
+  double scale;
+  double depth_mm;  // where its slope gets to what films bear
 };
+// Those that the kit prints: as large as a sheet of paper bears. What moves corners about grows
+// with a shape, a scan's noise does not.
 const std::vector<KitShape>& kit_shapes();
+// The samples as they are: the paper's figures are made with them.
+const std::vector<KitShape>& sample_shapes();
+// All of them; a name that begins like another one comes before it.
+std::vector<KitShape> known_shapes();
+// nullptr: none of that name.
+const KitShape* find_shape(const std::string& name);
+TriangleMesh mesh_of(const KitShape& shape);  // posed, as it dips
 
-// "sphere", "ellipsoid@11" (depth in mm) or a model file with its depth. Throws InputError.
+// "sphere-90", "ellipsoid@11" (depth in mm) or a model file with its depth. Throws InputError.
 CalibrationObject calibration_object(const std::string& text, const JobConfig& config,
                                      const RunContext& context);
 

@@ -224,7 +224,7 @@ JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
   JobResult result;
   for (const KitShape& shape : kit_shapes()) {
     const std::string name = std::string(shape.name) + ".stl";
-    write_stl(folder.path(name), kit_shape(shape.name), "hydrodip calibration shape, mm");
+    write_stl(folder.path(name), kit_shape(shape), "hydrodip calibration shape, mm");
     result.files.push_back(name);
   }
   write_stl(folder.path("dome.stl"), dome_to_print(), "hydrodip calibration dome, mm");

@@ -135,11 +135,12 @@ void stand_on_mount(Object& object) {
 
 }  // namespace
 
-Object kit_shape(const std::string& sample) {
-  // The samples' own sizes, so that a printed shape and its simulation cannot drift apart.
-  const Box3 box = make_sample(sample).bounds();
-  Object object = sample == "pyramid" ? pyramid_shape(box.size().x(), box.size().z())
-                                      : round_shape(0.5 * box.size());
+Object kit_shape(const KitShape& shape) {
+  // The simulated mesh's own size, so that a printed shape and its simulation cannot drift apart.
+  const Box3 box = mesh_of(shape).bounds();
+  Object object = std::string(shape.sample) == "pyramid"
+                      ? pyramid_shape(box.size().x(), box.size().z())
+                      : round_shape(0.5 * box.size());
   stand_on_mount(object);
   return object;
 }

@@ -260,7 +260,7 @@ void write_measured_dip(const std::filesystem::path& file, const MeasuredDip& di
   const Json json = {
       {"kind", kKind},
       {"schema_version", kSchemaVersion},
-      {"object", {{"kit_shape", dip.object}, {"depth_mm", dip.depth_mm}}},
+      {"object", {{"shape", dip.object}, {"depth_mm", dip.depth_mm}}},
       {"board",
        {{"name", board.name},
         {"square_mm", board.square_mm},
@@ -304,11 +304,8 @@ MeasuredDip read_measured_dip(const std::filesystem::path& file) {
     refuse(file, "a newer hydrodip made this measured dip; it is needed to read it");
 
   MeasuredDip dip;
-  dip.object = reader.at("object").text("kit_shape");
-  const auto& shapes = kit_shapes();
-  if (std::none_of(shapes.begin(), shapes.end(),
-                   [&](const KitShape& shape) { return dip.object == shape.name; }))
-    reader.at("object").damaged("kit_shape");
+  dip.object = reader.at("object").text("shape");
+  if (find_shape(dip.object) == nullptr) reader.at("object").damaged("shape");
   dip.depth_mm = reader.at("object").number("depth_mm", 0.1, 5000);
   dip.board = board_of(reader.at("board"));
   dip.film = film_of(reader.at("sheet"));

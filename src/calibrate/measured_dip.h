@@ -27,7 +27,7 @@ struct DipFacts {
 void require_facts(const DipFacts& facts);
 
 struct MeasuredDip {
-  std::string object;  // a shape of the kit
+  std::string object;  // a shape that has a name
   double depth_mm = 0;
   Board board;
   FilmOptions film;  // only what the sheet is: extents, margin, shape

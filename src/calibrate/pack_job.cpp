@@ -27,12 +27,10 @@ JobResult pack_job(const JobConfig& config, const CalibrationRequest& request,
 
   MeasuredDip dip;
   dip.object = subject.object.name;
-  bool of_kit = false;
-  for (const KitShape& shape : kit_shapes()) of_kit |= dip.object == shape.name;
-  if (!of_kit)
+  if (find_shape(dip.object) == nullptr)
     throw InputError(fmt::format(
-        "calibrate pack: {}: only dips of the kit's shapes (sphere, pyramid, ellipsoid) are "
-        "packed: everybody has those",
+        "calibrate pack: {}: only dips of the shapes that calibrations know by name are packed: "
+        "everybody has those",
         request.scans.front()));
   dip.depth_mm = subject.object.depth_mm;
   dip.board = setup.settings.board;

@@ -38,7 +38,7 @@ SubjectText split(const std::string& text) {
   if (equals != std::string::npos && equals > 0 && equals + 1 < text.size())
     return {text.substr(0, equals), text.substr(equals + 1)};
   const std::string stem = std::filesystem::path(text).stem().string();
-  for (const KitShape& shape : kit_shapes())
+  for (const KitShape& shape : known_shapes())
     if (stem.find(shape.name) != std::string::npos) return {shape.name, text};
   throw InputError(fmt::format(
       "{}: say which object was scanned, as in 'sphere={}', 'ellipsoid@11=...' (dipped 11 mm deep) "

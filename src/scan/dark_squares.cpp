@@ -29,15 +29,15 @@ constexpr double kLeastFacing = 0.6;
 // Edges are looked at between these shares of their length, so far aside (in edges).
 constexpr double kEdgeBegin = 0.12, kEdgeEnd = 0.88, kAside = 0.3;
 constexpr int kAlong = 17, kAcross = 41;
-constexpr double kLeastContrast = 0.15;  // of an edge, in encoded brightness
+// Of an edge: how much less light comes from its dark side. Pictures are blurred in light, so that
+// an edge is where light, not its encoded value, is half way.
+constexpr double kLeastContrast = 0.35;
 constexpr int kFewestOnEdge = 9;
 constexpr double kOutlier = 0.05;  // off an edge's line, in edges
 constexpr int kRefinements = 3;
 
-// As people and pictures grade brightness.
-double brightness(const LinearColor& color) {
-  return linear_to_srgb(
-      std::clamp(0.2126F * color.r + 0.7152F * color.g + 0.0722F * color.b, 0.0F, 1.0F));
+double light_of(const LinearColor& color) {
+  return std::clamp(0.2126 * color.r + 0.7152 * color.g + 0.0722 * color.b, 0.0, 1.0);
 }
 
 // The scan's colours where rays meet it.
@@ -50,7 +50,8 @@ class Look {
 
   struct Seen {
     Vec3 position, normal;
-    double brightness = 0;
+    double light = 0;                                                   // linear
+    double brightness() const { return linear_to_srgb(float(light)); }  // as people grade it
   };
   // Of the outside only.
   std::optional<Seen> along(const Vec3& origin, const Vec3& direction, double most) const {
@@ -59,7 +60,7 @@ class Look {
     const Vec3 normal = surface_.normal(*hit);
     if (normal.dot(direction) >= 0) return std::nullopt;
     const LinearColor color = color_at(scan_, {hit->triangle, hit->u, hit->v}, {1, 1, 1, 1});
-    return Seen{surface_.position(*hit), normal, brightness(color)};
+    return Seen{surface_.position(*hit), normal, light_of(color)};
   }
 
  private:
@@ -125,7 +126,7 @@ class ParallelView {
       for (std::size_t x = 1; x < n; ++x) {
         const auto& seen = seen_[(y - 1) * std::size_t(side_) + x - 1];
         const std::size_t i = y * n + x;
-        sum[i] = sum[i - 1] + sum[i - n] - sum[i - n - 1] + (seen ? seen->brightness : 0);
+        sum[i] = sum[i - 1] + sum[i - n] - sum[i - n - 1] + (seen ? seen->brightness() : 0);
         count[i] = count[i - 1] + count[i - n] - count[i - n - 1] + (seen ? 1 : 0);
       }
     std::vector<char> dark(seen_.size(), 0);
@@ -140,7 +141,7 @@ class ParallelView {
         const auto within = [&](const std::vector<double>& s) {
           return s[y1 * n + x1] - s[y0 * n + x1] - s[y1 * n + x0] + s[y0 * n + x0];
         };
-        dark[i] = seen_[i]->brightness < kDarkShare * within(sum) / within(count);
+        dark[i] = seen_[i]->brightness() < kDarkShare * within(sum) / within(count);
       }
     return dark;
   }
@@ -172,10 +173,13 @@ class ParallelView {
         next.push_back(j);
       }
     }
+    // Over an edge of the object no square is a square.
+    constexpr double kFlat = 0.97;
+    const bool flat = spot.normal.norm() > kFlat * double(spot.point.size());
     spot.normal.normalize();
     spot.facing = spot.normal.dot(plane_.normal);
     for (const Vec3& p : spot.point) spot.middle += p / double(spot.point.size());
-    if (!whole || !(spot.facing > kLeastFacing)) return std::nullopt;
+    if (!whole || !flat || !(spot.facing > kLeastFacing)) return std::nullopt;
     const double area = double(spot.point.size()) * pixel_mm_ * pixel_mm_ / spot.facing;
     if (area < kLeastArea * square_mm * square_mm || area > kMostArea * square_mm * square_mm)
       return std::nullopt;
@@ -263,7 +267,7 @@ std::optional<double> crossing(const Look& look, const Plane& plane, const Vec2&
     const auto seen = look.along(plane.at(at + s * outwards) + above_mm * plane.normal,
                                  -plane.normal, 2 * above_mm);
     if (!seen) return std::nullopt;
-    profile[std::size_t(i)] = seen->brightness;
+    profile[std::size_t(i)] = seen->light;
   }
   constexpr int kLevel = kAcross / 4;
   double inside = 0, outside = 0;
@@ -271,7 +275,7 @@ std::optional<double> crossing(const Look& look, const Plane& plane, const Vec2&
     inside += profile[std::size_t(i)] / kLevel;
     outside += profile[std::size_t(kAcross - 1 - i)] / kLevel;
   }
-  if (outside - inside < kLeastContrast) return std::nullopt;
+  if (inside > (1 - kLeastContrast) * outside) return std::nullopt;
   const double middle = 0.5 * (inside + outside);
   // From the middle of the ramp: the last sample that is dark.
   for (int i = kAcross - kLevel; i > 0; --i) {
@@ -364,6 +368,19 @@ std::optional<DarkSquare> square_of(const Look& look, const Spot& spot) {
   return square;
 }
 
+// Opposite sides of a whole square are much alike; of one that is cut off or was not read well they
+// are not.
+bool is_whole(const DarkSquare& square) {
+  constexpr double kMostUnlike = 0.2;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Vec3 side = square.corner[k + 1] - square.corner[k];
+    const Vec3 opposite = square.corner[(k + 3) % 4] - square.corner[k + 2];
+    if ((side + opposite).norm() > kMostUnlike * std::max(side.norm(), opposite.norm()))
+      return false;
+  }
+  return true;
+}
+
 // ---- rows and columns ----
 
 // A square's side, and what lies beyond it.
@@ -420,6 +437,20 @@ std::vector<std::array<std::optional<Link>, 4>> links_of(const std::vector<DarkS
   return links;
 }
 
+// Whether a square is much shorter than the one beside it in the direction in which they lie: where
+// the film ends, squares may be cut off along a side.
+bool is_cut_off(const std::vector<DarkSquare>& squares,
+                const std::array<std::optional<Link>, 4>& links, std::size_t i) {
+  constexpr double kShortest = 0.85;
+  const auto length = [&](std::size_t square, std::size_t side) {
+    return side_of(squares[square], side).outwards.norm();
+  };
+  return std::any_of(links.begin(), links.end(), [&, k = std::size_t(0)](const auto& link) mutable {
+    const std::size_t side = k++;
+    return link && length(i, side) < kShortest * length(link->square, link->side);
+  });
+}
+
 }  // namespace
 
 std::vector<DarkSquare> find_dark_squares(const Object& scan, double square_mm) {
@@ -431,7 +462,7 @@ std::vector<DarkSquare> find_dark_squares(const Object& scan, double square_mm) 
   });
   std::vector<DarkSquare> squares;
   for (const auto& square : found)
-    if (square) squares.push_back(*square);
+    if (square && is_whole(*square)) squares.push_back(*square);
   return squares;
 }
 
@@ -444,7 +475,7 @@ CornerGrid grid_of_dark_squares(const std::vector<DarkSquare>& squares) {
     int patch = -1;
     GridPlace at{};
     std::size_t turn = 0;  // side k looks along kWays[(k + turn) % 4]
-    bool contradicted = false;
+    bool left_out = false;
   };
   const auto links = links_of(squares);
   std::vector<Lying> lying(squares.size());
@@ -466,7 +497,7 @@ CornerGrid grid_of_dark_squares(const std::vector<DarkSquare>& squares) {
           lying[j] = {lying[i].patch, at, turn, false};
           next.push_back(j);
         } else if (lying[j].at != at || lying[j].turn != turn) {
-          lying[i].contradicted = lying[j].contradicted = true;
+          lying[i].left_out = lying[j].left_out = true;
         }
       }
     }
@@ -475,11 +506,13 @@ CornerGrid grid_of_dark_squares(const std::vector<DarkSquare>& squares) {
   for (std::size_t i = 0; i < squares.size(); ++i) {
     const auto [entry, is_new] =
         at_place.try_emplace({lying[i].patch, lying[i].at[0], lying[i].at[1]}, i);
-    if (!is_new) lying[i].contradicted = lying[entry->second].contradicted = true;
+    if (!is_new) lying[i].left_out = lying[entry->second].left_out = true;
   }
+  for (std::size_t i = 0; i < squares.size(); ++i)
+    if (is_cut_off(squares, links[i], i)) lying[i].left_out = true;
   CornerGrid grid;
   for (std::size_t i = 0; i < squares.size(); ++i) {
-    if (lying[i].contradicted) continue;
+    if (lying[i].left_out) continue;
     for (std::size_t k = 0; k < 4; ++k) {
       const GridPlace& corner = kCornerAfter[(k + lying[i].turn) % 4];
       grid.position.push_back(squares[i].corner[(k + 1) % 4]);

@@ -24,7 +24,7 @@ class ColouredScans {
     for (const Triangle& t : object.object.triangles) {
       double top = -1e300;
       for (const auto v : t) top = std::max(top, object.object.positions[std::size_t(v)].z());
-      if (top < box.min.z() + object.depth_mm + 3) triangles_.push_back(t);
+      if (top < box.min.z() + object.depth_mm + 1) triangles_.push_back(t);
     }
     half_ = 0.5 * std::max(box.size().x(), box.size().y());
     side_ = int(std::ceil(2 * half_ / texel_mm));
@@ -54,7 +54,8 @@ class ColouredScans {
       for (int x = 0; x < side_; ++x) {
         const Texel& texel = texels_[std::size_t(y) * std::size_t(side_) + std::size_t(x)];
         const double light = 0.45 + 0.5 * std::max(0.0, lamp.dot(texel.normal));
-        const double value = light * (0.95 - 0.8 * texel.ink) + 0.01 * normal(random);
+        const double seen = light * (0.85 - 0.8 * texel.ink);
+        const double value = double(linear_to_srgb(float(seen))) + 0.01 * normal(random);
         std::uint8_t* pixel = image->pixel(x, side_ - 1 - y);
         for (int k = 0; k < 3; ++k) pixel[k] = std::uint8_t(255 * std::clamp(value, 0.0, 1.0));
         pixel[3] = 255;

@@ -145,8 +145,8 @@ TEST_F(OwnFilmSlow, NoiseLeavesAllThreeKnownAndScansShareTheirSimulations) {
     for (const InkMisfit& ink : found.all.by_ink)
       EXPECT_LT(std::abs(ink.more_stretch), 4 * ink.deviation + 1e-3) << ink.density;
     if (seed == 1) simulations = found.simulations;
-    // Some for stencils around another node, one for the error at the answer.
-    EXPECT_LE(found.simulations, simulations + 12 * std::size_t(seed));
+    // Some for stencils around another node with their inks, one for the error at the answer.
+    EXPECT_LE(found.simulations, simulations + 15 * std::size_t(seed));
   }
 }
 

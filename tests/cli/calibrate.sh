@@ -20,7 +20,7 @@ refuse() {
 "$hydrodip" calibrate kit -o kit --film letter --quiet > /dev/null || fail "kit"
 [ "$(find kit -type f | wc -l)" -eq 7 ] || fail "the kit has not seven files: $(ls kit)"
 pdfinfo kit/checkerboard.pdf | grep -q '612 x 792 pts (letter)' || fail "the film is not letter"
-for shape in sphere pyramid ellipsoid dome; do
+for shape in sphere-90 pyramid-90 ellipsoid-135 dome; do
   "$hydrodip" inspect kit/$shape.stl > said.txt || fail "inspect $shape.stl"
   grep -q '1 shell, closed' said.txt || fail "$shape.stl is not closed: $(cat said.txt)"
 done
@@ -124,7 +124,7 @@ awk -F, '/^[0-9]/ {printf "%s,%s,%s,%s,%s\n", $1, $2, -$3, $4, $5; next} {print}
 # shellcheck disable=SC2086
 "$hydrodip" measure sphere=mirrored.csv $film --quiet > said.txt || fail "a mirrored sphere"
 grep -q 'wrong way round' said.txt || fail "does not say that the scan is mirrored: $(cat said.txt)"
-refuse 'sphere=scan.obj' calibrate
+refuse 'sphere-90=scan.obj' calibrate
 refuse 'which object' calibrate unknown.obj
 refuse 'no-such.csv' calibrate sphere=no-such.csv
 refuse '--poisson' calibrate sphere=scans/sphere-scan.csv --poisson 0:1:0.1
