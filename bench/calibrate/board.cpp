@@ -78,10 +78,10 @@ class Study {
 void show_boards(Study& study) {
   study.show("black", black_board(5), kit());
   study.show("tints", tint_board(5), kit());
-  for (const double square_mm : {5.0, 4.0, 3.0}) {
-    study.show("255,3,0", symmetric(square_mm, {255, 3, 3, 0}), kit());
-    study.show("255,0,3 sparse", symmetric(square_mm, {255, 0, 255, 0, 0, 3, 255, 3, 255}), kit());
-  }
+  study.show("tints", tint_board(4), kit());
+  study.show("tints, samples' sizes", tint_board(5), {"sphere", "pyramid", "ellipsoid"});
+  // The half of the pale squares that touch dark ones' edges tinted, or blank.
+  study.show("255,0,3", symmetric(5, {255, 0, 255, 0, 0, 3, 255, 3, 255}), kit());
 }
 
 void show_lines(Study& study, std::istream& lines) {

@@ -21,8 +21,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastShare = 0.8;
 // Widest stencil of the refinement, and the distance of its lattice's nodes.
 const FitPoint kWidestStep(0.03, 0.1, 0.06);
-// Rounds of a refinement; a scan alone has the others' simulations to go by.
-constexpr int kRounds = 8, kRoundsAlone = 3;
+// Rounds of a refinement; a scan alone is read off the last stencil of all, which costs nothing.
+constexpr int kRounds = 8, kRoundsAlone = 1;
 
 DesignOptions grid_design(const DesignOptions& design, const SearchOptions& options) {
   DesignOptions result = design;

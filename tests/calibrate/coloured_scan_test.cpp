@@ -1,19 +1,46 @@
 #include "coloured_scan.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/file.h"
+#include "image/files.h"
 #include "scan/dark_squares.h"
 #include "scans.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
 
-// Fifty views: bench/calibrate/corners.cpp.
-class ColouredScanSlow : public testing::TestWithParam<const char*> {};
+// Many views: bench/calibrate/corners.cpp.
+class ColouredScanSlow : public testing::Test {
+ protected:
+  // As a scanner exports it.
+  std::filesystem::path write(const Object& object) {
+    std::string text = "mtllib scan.mtl\nusemtl print\n", faces;
+    for (const Vec3& p : object.positions)
+      text += fmt::format("v {:.6f} {:.6f} {:.6f}\n", p.x(), p.y(), p.z());
+    std::size_t number = 0;
+    for (std::size_t t = 0; t < object.triangles.size(); ++t) {
+      faces += "f";
+      for (std::size_t k = 0; k < 3; ++k) {
+        text += fmt::format("vt {:.6f} {:.6f}\n", object.uvs[t][k].x(), object.uvs[t][k].y());
+        faces += fmt::format(" {}/{}", object.triangles[t][k] + 1, ++number);
+      }
+      faces += "\n";
+    }
+    write_file(folder_ / "scan.obj", text + faces);
+    write_file(folder_ / "scan.mtl", "newmtl print\nKd 1 1 1\nmap_Kd print.png\n");
+    save_png(folder_ / "print.png", *object.textures.front());
+    return folder_ / "scan.obj";
+  }
 
-TEST_P(ColouredScanSlow, CornersAreWhereTheDipLaidThem) {
-  const RunContext context;
-  const scans::Truth truth(GetParam(), {0.65, 30, 0.1}, context);
+  RunContext context_;
+  TemporaryFolder folder_;
+};
+
+TEST_F(ColouredScanSlow, CornersOfAPyramidAreWhereTheDipLaidThem) {
+  const scans::Truth truth("pyramid", {0.65, 30, 0.1}, context_);
   const scans::ColouredScans scanner(truth.object, truth.surface, truth.dip, 0.1);
   const scans::ColouredScans::Scan scan = scanner.scan(1);
   const CornerGrid grid = grid_of_dark_squares(find_dark_squares(scan.object, 5));
@@ -25,7 +52,29 @@ TEST_P(ColouredScanSlow, CornersAreWhereTheDipLaidThem) {
   EXPECT_LT(found.rms_mm, 0.04);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, ColouredScanSlow, testing::Values("sphere", "pyramid"));
+// Through its files, as every scan; and its places on the board are found.
+TEST_F(ColouredScanSlow, ASphereIsReadFromItsFilesAndLaidOnTheSphere) {
+  const scans::Truth truth("sphere", {0.65, 30, 0.1}, context_);
+  const scans::ColouredScans scanner(truth.object, truth.surface, truth.dip, 0.1);
+  const scans::ColouredScans::Scan scan = scanner.scan(2);
+  const std::vector<Subject> subjects =
+      load_subjects({"sphere=" + write(scan.object).string()}, scans::settings(),
+                    scans::quick_config(), context_);
+  const CornerGrid& grid = subjects[0].scan.grid;
+  const scans::CornersFound found =
+      scans::judge(grid, scan, truth.dip.landing(truth.object), {12, 12});
+  EXPECT_GE(found.corners, 40u);
+  EXPECT_EQ(found.misnumbered, 0u);
+  EXPECT_LT(found.worst_mm, 0.1);
+  ASSERT_TRUE(subjects[0].match);
+  std::size_t near = 0;
+  for (std::size_t c = 0; c < grid.position.size(); ++c) {
+    if (!subjects[0].place[c]) continue;
+    const auto landed = truth.dip.landing(truth.object)(*subjects[0].place[c]);
+    near += landed && (subjects[0].match->pose * grid.position[c] - *landed).norm() < 1;
+  }
+  EXPECT_GE(near, 9 * grid.position.size() / 10);
+}
 
 // A flat board, of which everything is known, with texels of 0.1 mm.
 TEST(DarkSquaresTest, OnAFlatSheetSquaresAreSquares) {
