@@ -20,11 +20,11 @@ class ColouredScans {
                 double texel_mm)
       : object_(object), texel_mm_(texel_mm) {
     const Box3 box = object.object.bounds();
-    // Film does not reach higher than the dip.
+    // What lies above the dip all over is not looked at: from below one cannot see it.
     for (const Triangle& t : object.object.triangles) {
-      double top = -1e300;
-      for (const auto v : t) top = std::max(top, object.object.positions[std::size_t(v)].z());
-      if (top < box.min.z() + object.depth_mm + 1) triangles_.push_back(t);
+      double bottom = 1e300;
+      for (const auto v : t) bottom = std::min(bottom, object.object.positions[std::size_t(v)].z());
+      if (bottom < box.min.z() + object.depth_mm) triangles_.push_back(t);
     }
     half_ = 0.5 * std::max(box.size().x(), box.size().y());
     side_ = int(std::ceil(2 * half_ / texel_mm));
