@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "base/error.h"
+#include "calibrate/checkerboard_dip.h"
 
 namespace hydrodip {
 namespace {
