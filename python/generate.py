@@ -69,7 +69,7 @@ DEFAULTS = {
 COMMON = ["film", "quality", "profile", "config", "settings", "progress"]
 SCANS = ["board", "square_mm", "scan_units", "aligned", "mirrored"]
 MODEL = ("model", "ModelLike", "a model's or a job's file, a Mesh, or anything with vertices and faces")
-SCAN = ("scans", "ScansLike", "scanned dips: {'sphere': 'scan.obj', 'ellipsoid@11': 'other.csv'}, or the command line's texts; quad meshes or tables of corners")
+SCAN = ("scans", "ScansLike", "scanned dips: {'sphere': 'scan.obj', 'ellipsoid@11': 'other.csv'}, or the command line's texts; scans with their colours, quad meshes or tables of corners")
 
 # name: (what is given first, own arguments, groups of parameters, result, first line, more)
 FUNCTIONS = {
