@@ -49,7 +49,7 @@ TEST_F(ColouredScanSlow, CornersOfAPyramidAreWhereTheDipLaidThem) {
   EXPECT_GE(found.corners, 40u);
   EXPECT_EQ(found.misnumbered, 0u);
   EXPECT_LT(found.worst_mm, 0.1);
-  EXPECT_LT(found.rms_mm, 0.04);
+  EXPECT_LT(found.rms_mm, 0.07);
 }
 
 // Through its files, as every scan; and its places on the board are found.
