@@ -85,7 +85,8 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
   page.y -= 6;
   page.text(page.left(), page.y, "Calibrating a film", PageWriter::kTitle_pt, PdfFont::kBold);
   page.y -= 3;
-  say("Dip a printed checkerboard onto shapes that are known, scan where its corners came to lie, "
+  say("Dip a printed board of squares onto shapes that are known, scan where its corners came to "
+      "lie, "
       "and let hydrodip find the film's parameters. One dip of each shape takes an afternoon; a "
       "second one of each tells how alike your dips are.");
 
@@ -128,7 +129,9 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
   page.heading("Scan");
   page.task(
       "Scan the printed side with its colours; 5 samples a millimetre or better. Keep "
-      "millimetres.");
+      "millimetres. With a texture or coloured vertices the scan does as it is (OBJ, PLY, GLB): "
+      "cut "
+      "off all but the shape. Else:");
   page.task(
       board.about_square
           ? "On the scan, draw a quad mesh: a vertex on every corner of every dark square, a face "

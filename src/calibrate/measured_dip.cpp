@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -289,13 +290,24 @@ void write_measured_dip(const std::filesystem::path& file, const MeasuredDip& di
 MeasuredDip read_measured_dip(const std::filesystem::path& file) {
   const std::string name = file.string();
   const std::vector<std::uint8_t> bytes = read_file(file);
-  Package package(name, bytes);
+  const auto or_damaged = [&](const auto& act) {
+    try {
+      return act();
+    } catch (const InputError&) {  // speaks of models
+      refuse(file, "this is no measured dip, or a damaged one; fetch it again");
+    }
+  };
+  const auto opened = or_damaged([&] { return std::make_unique<Package>(name, bytes); });
+  Package& package = *opened;
+  const auto read = [&](const std::string& part) {
+    return or_damaged([&] { return package.read(part); });
+  };
   const auto has = [&](const std::string& part) {
     return std::find(package.names().begin(), package.names().end(), part) != package.names().end();
   };
   if (!has(kFactsName) || !has(kCornersName))
     refuse(file, "this is no measured dip: 'hydrodip calibrate pack' makes them");
-  const std::vector<std::uint8_t> facts = package.read(kFactsName);
+  const std::vector<std::uint8_t> facts = read(kFactsName);
   const Json json = Json::parse(facts.begin(), facts.end(), nullptr, false);
   if (!json.is_object() || !json.contains("kind") || json["kind"] != kKind)
     refuse(file, "this is no measured dip: 'hydrodip calibrate pack' makes them");
@@ -316,7 +328,7 @@ MeasuredDip read_measured_dip(const std::filesystem::path& file) {
     const Reader part(file, entry);
     const std::string part_name = part.text("name");
     if (!has(part_name)) refuse(file, fmt::format("{} is missing from it", part_name));
-    std::vector<std::uint8_t> content = package.read(part_name);
+    std::vector<std::uint8_t> content = read(part_name);
     if (sha256_hex(content) != part.text("sha256"))
       refuse(file, fmt::format("{} was changed since it was packed, or is damaged", part_name));
     if (part_name == kCornersName) {
