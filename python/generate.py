@@ -46,13 +46,15 @@ OWN = {
     "config": ("Optional[Union[PathLike, Sequence[PathLike]]]", "TOML files for this job; they win over profiles"),
     "settings": ("Optional[Mapping[str, object]]", "parameters by the names of `hydrodip params`, as {'film.elements': 4000}; they win over all else"),
     "progress": ("Progress", "is called with what is being done and how much of that is done, 0 to 1; what it raises cancels the work"),
-    "square_mm": ("float", "side of the checkerboard's squares"),
+    "board": ("Literal['tints', 'black']", "which board was printed: the kit's tints, or black and blank squares in turn"),
+    "square_mm": ("float", "side of the board's squares; 0: as the board is"),
     "scan_units": ("Literal['mm', 'cm', 'm', 'in']", "unit of the scans"),
     "aligned": ("bool", "the scans are in the posed object's frame: do not register them"),
     "mirrored": ("bool", "the scans are mirror images: turn them back"),
     "z_stretch": ("str", "values to try: FROM:TO:STEP, FROM:TO:xFACTOR, values with commas, or one that is known"),
     "ratio": ("str", "the same of material.ink_stiffness_ratio"),
     "poisson": ("str", "the same of Poisson's ratio"),
+    "torn_rings": ("Sequence[int]", "of each dip of the kit's dome, the innermost ring on which film is torn: fits material.tear_stretch as well"),
     "shard": ("str", "only this part of the grid, as in '2/4'"),
     "merge": ("Sequence[PathLike]", "folders of shards whose simulations to use"),
     "noise_mm": ("float", "standard deviation of every coordinate"),
@@ -60,14 +62,14 @@ OWN = {
     "seed": ("int", "of noise, gaps and pose"),
 }
 DEFAULTS = {
-    "square_mm": "5.0", "scan_units": "'mm'", "aligned": "False", "mirrored": "False",
-    "z_stretch": "'0.4:0.9:0.1'", "ratio": "'10:2560:x4'", "poisson": "'0:0.4:0.1'",
-    "shard": "''", "merge": "()", "noise_mm": "0.0", "missing_share": "0.0", "seed": "1",
+    "board": "'tints'", "square_mm": "0.0", "scan_units": "'mm'", "aligned": "False", "mirrored": "False",
+    "z_stretch": "'0.4,0.55,0.7,0.85'", "ratio": "'3:3072:x8'", "poisson": "'0:0.4:0.2'",
+    "torn_rings": "()", "shard": "''", "merge": "()", "noise_mm": "0.0", "missing_share": "0.0", "seed": "1",
 }
 COMMON = ["film", "quality", "profile", "config", "settings", "progress"]
-SCANS = ["square_mm", "scan_units", "aligned", "mirrored"]
+SCANS = ["board", "square_mm", "scan_units", "aligned", "mirrored"]
 MODEL = ("model", "ModelLike", "a model's or a job's file, a Mesh, or anything with vertices and faces")
-SCAN = ("scans", "ScansLike", "scanned dips: {'sphere': 'scan.obj', 'ellipsoid@11': 'other.csv'}, or the command line's texts; quad meshes or tables of corners")
+SCAN = ("scans", "ScansLike", "scanned dips: {'sphere': 'scan.obj', 'ellipsoid@11': 'other.csv'}, or the command line's texts; scans with their colours, quad meshes or tables of corners")
 
 # name: (what is given first, own arguments, groups of parameters, result, first line, more)
 FUNCTIONS = {
@@ -87,11 +89,11 @@ FUNCTIONS = {
         "With `output` it writes plan.toml, a job to print."),
     "measure": (SCAN, ["output", "material"] + SCANS + COMMON, DIP + INK + RUN, "Measurement",
         "The error of simulated dips against scans, Eq. 4 of the paper.", ""),
-    "calibrate": (SCAN, ["output"] + SCANS + ["z_stretch", "ratio", "poisson", "shard", "merge"] + COMMON, DIP + INK + RUN, "Calibration",
+    "calibrate": (SCAN, ["output"] + SCANS + ["z_stretch", "ratio", "poisson", "torn_rings", "shard", "merge"] + COMMON, DIP + INK + RUN, "Calibration",
         "Fits z_stretch, ink stiffness and Poisson's ratio to scanned dips.",
         "Started again with the same `output`, an interrupted calibration goes on where it was."),
     "synth": (("objects", "Sequence[str]", "'sphere', 'pyramid', 'ellipsoid' or model files, with @DEPTH in mm"),
-        ["output", "square_mm", "noise_mm", "missing_share", "seed", "aligned"] + COMMON, DIP + INK + RUN, "JobFiles",
+        ["output", "board", "square_mm", "noise_mm", "missing_share", "seed", "aligned"] + COMMON, DIP + INK + RUN, "JobFiles",
         "Scans computed from known parameters, to try calibrations on.", "`output` has to be given."),
 }
 

@@ -25,13 +25,13 @@ Image as_image(const InkImage& inks) {
 }
 
 DippedObject dipped(const std::string& name, const DesignOptions& options,
-                    const Checkerboard& board, const RunContext& context) {
+                    const PrintedBoard& board, const RunContext& context) {
   return dip_printed(posed(make_sample(name)), board.inks, options, context);
 }
 
 // Every point of the film gets the colour that lies on the true object where the simulation takes
 // the point. In a perfect simulation that is the printed image.
-Image recovered(const DippedObject& truth, const DippedObject& simulated, const Checkerboard& board,
+Image recovered(const DippedObject& truth, const DippedObject& simulated, const PrintedBoard& board,
                 double& share_right) {
   const TriangleMesh& mesh = truth.posed.mesh();
   const Image printed = as_image(board.inks);
@@ -63,13 +63,13 @@ Image recovered(const DippedObject& truth, const DippedObject& simulated, const 
 
 std::string figure_8(const Study& study) {
   DesignOptions options = paper_config().design;
-  const Checkerboard board = checkerboard_to_print(options.film, kSquare_mm);
+  const PrintedBoard board = print_board(options.film, black_board(kSquare_mm));
   options.dpi = board.raster.dpi;
   const Image printed = as_image(board.inks);
   std::vector<Panel> pictures;
   Table table(
       {"object", "depth (mm)", "steps", "simulated in (s)", "pixels recovered rightly (%)"});
-  for (const KitShape& shape : kit_shapes()) {
+  for (const KitShape& shape : sample_shapes()) {
     options.trajectory.depth_mm = shape.depth_mm;
     const DippedObject truth = dipped(shape.name, finer_film(options), board, study.context);
     const auto begin = std::chrono::steady_clock::now();

@@ -26,19 +26,20 @@ constexpr Method kMethods[] = {{"projection", DipMethod::kProjection},
 CornerGrid true_corners(const CalibrationObject& object, const Surface& surface,
                         const DesignOptions& design, const RunContext& context) {
   const DesignOptions fine = finer_film(design);
-  const CheckerboardDip dip = dip_checkerboard(checkered_film(fine, kSquare_mm), object, surface,
-                                               film_parameters(design), fine.dip, context);
-  return synthetic_scan(dip, object, {30, 30}, {.aligned = true});
+  const CheckerboardDip dip =
+      dip_checkerboard(checkered_film(fine, black_board(kSquare_mm)), object, surface,
+                       film_parameters(design), fine.dip, context);
+  return synthetic_scan(dip.landing(object), {30, 30}, {.aligned = true});
 }
 
 }  // namespace
 
 std::string figure_9(const Study& study) {
   const JobConfig config = paper_config();
-  const CheckeredFilm film = checkered_film(config.design, kSquare_mm);
+  const CheckeredFilm film = checkered_film(config.design, black_board(kSquare_mm));
   std::vector<std::vector<ErrorMap>> maps;
   Table table({"object", "projection (mm)", "single step (mm)", "full (mm)", "lengths"});
-  for (const KitShape& shape : kit_shapes()) {
+  for (const KitShape& shape : sample_shapes()) {
     const CalibrationObject object = calibration_object(shape.name, config, study.context);
     const Surface surface(object.object.positions, object.object.triangles);
     const CornerGrid grid = true_corners(object, surface, config.design, study.context);

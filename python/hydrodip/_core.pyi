@@ -192,6 +192,7 @@ class Config: ...
 
 class CalibrationRequest:
     scans: List[str]
+    board: str
     square_mm: float
     scan_units: str
     aligned: bool
@@ -199,6 +200,7 @@ class CalibrationRequest:
     z_stretch: str
     ratio: str
     poisson: str
+    torn_rings: List[int]
     shard: str
     merge: List[str]
     noise_mm: float

@@ -22,7 +22,7 @@ _OWN = set(
     "settings progress square_mm scan_units aligned mirrored z_stretch ratio poisson shard merge "
     "noise_mm missing_share seed".split()
 )
-_SCANS = "square_mm scan_units aligned mirrored z_stretch ratio poisson shard noise_mm missing_share seed".split()
+_SCANS = "board square_mm scan_units aligned mirrored z_stretch ratio poisson shard noise_mm missing_share seed".split()
 
 _known: Dict[str, Dict[str, Any]] = {}
 
@@ -238,6 +238,7 @@ def _request(given: Dict[str, Any], scans: List[str]) -> Any:
     for name in _SCANS:
         if name in given:
             setattr(request, name, given[name])
+    request.torn_rings = list(given.get("torn_rings") or ())
     request.merge = _files(given.get("merge"))
     return request
 

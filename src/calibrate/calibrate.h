@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "calibrate/measured_dip.h"
 #include "job/jobs.h"
 #include "settings/config.h"
 
@@ -15,17 +16,27 @@ namespace hydrodip {
 // What the commands ask beside the configuration.
 struct CalibrationRequest {
   std::vector<std::string> scans;  // "sphere=scan.obj", or of synth and kit: "sphere"
-  double square_mm = 5;
+  std::string board = "tints";     // which board was printed; board.h
+  double square_mm = 0;            // 0: as the board is
   std::string scan_units = "mm";
   bool aligned = false;
   bool mirrored = false;
 
   // calibrate: the grid, "FROM:TO:STEP", "FROM:TO:xFACTOR", "A,B,C" or one value
-  std::string z_stretch = "0.4:0.9:0.1";
-  std::string stiffness_ratio = "10:2560:x4";
-  std::string poisson = "0:0.4:0.1";
+  std::string z_stretch = "0.4,0.55,0.7,0.85";
+  std::string stiffness_ratio = "3:3072:x8";
+  std::string poisson = "0:0.4:0.2";
+  // calibrate: of each dip of the kit's dome, the innermost ring on which film is torn
+  std::vector<int> torn_rings;
+
   std::string shard;                // "1/4"; empty: everything
   std::vector<std::string> merged;  // folders or stores of other shards
+
+  // kit: a scan's noise, for which to say how well the parameters will be known; 0: do not
+  double expected_noise_mm = 0;
+
+  // pack
+  DipFacts facts;
 
   // synth
   double noise_mm = 0;
@@ -51,6 +62,11 @@ JobResult measure_job(const JobConfig& config, const CalibrationRequest& request
 // Scans from known parameters: NAME-scan.obj and .csv for each object, truth.toml.
 JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
                     const RunContext& context);
+
+// One dip with its scan and what its owner tells of it, for others to compute against:
+// SHAPE-dip.zip. Throws InputError for what nobody could use.
+JobResult pack_job(const JobConfig& config, const CalibrationRequest& request,
+                   const RunContext& context);
 
 // What a calibration needs: the shapes as STL, the film's PDF, instructions.
 JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,

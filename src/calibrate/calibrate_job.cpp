@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -11,7 +13,9 @@
 #include "calibrate/calibrate.h"
 #include "calibrate/pictures.h"
 #include "calibrate/search.h"
+#include "calibrate/tear_limit.h"
 #include "image/files.h"
+#include "job/prepare.h"
 
 namespace hydrodip {
 namespace {
@@ -19,7 +23,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kStoreName = "simulations.jsonl";
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;  // 2: board, curvature, by_ink,
+                                   // stiffness_table, film_off_mm
 constexpr std::size_t kMostGridPoints = 100000;
 
 SearchOptions search_options(const CalibrationRequest& request) {
@@ -74,9 +79,10 @@ constexpr ParameterText kParameters[] = {{"z_stretch", &FilmParameters::z_stretc
 // An interval that takes in a good part of what is possible says little.
 bool poorly_determined(const Answer& answer, int k) {
   if (!answer.fit.free[std::size_t(k)]) return false;
-  const double half = 1.96 * std::sqrt(answer.certainty.covariance(k, k));
-  const double limits[3] = {0.1, 0.1, 0.1};
-  return half > limits[k] || (k == 1 && !std::isfinite(answer.certainty.high.stiffness_ratio));
+  constexpr double kWide = 0.2, kWideFactor = 4;
+  const FilmParameters &low = answer.certainty.low, &high = answer.certainty.high;
+  if (k == 1) return !(high.stiffness_ratio < kWideFactor * low.stiffness_ratio);
+  return high.*kParameters[k].member - low.*kParameters[k].member > kWide;
 }
 
 std::string describe(const Answer& answer) {
@@ -116,9 +122,18 @@ Json json_of(const Answer& answer) {
   Json at_edge = Json::array();
   for (std::size_t k = 0; k < 3; ++k)
     if (answer.fit.at_bound[k]) at_edge.push_back(kParameters[k].name);
+  const auto at = [&](double quantile) {
+    const FitPoint half = quantile * c.diagonal().cwiseSqrt();
+    const FitPoint point = answer.fit.point + FitPoint(half[0], -half[1], half[2]);
+    FilmParameters result = from_fit(point);
+    if (point[1] <= 0) result.stiffness_ratio = std::numeric_limits<double>::infinity();
+    return json_of(result);
+  };
   return {{"parameters", json_of(answer.parameters)},
           {"low_95", json_of(answer.certainty.low)},
           {"high_95", json_of(answer.certainty.high)},
+          {"curvature_low_95", at(-1.96)},
+          {"curvature_high_95", at(1.96)},
           {"correlation", correlation},
           {"noise_mm", answer.certainty.noise_mm},
           {"rms_mm", answer.fit.rms_mm},
@@ -143,7 +158,8 @@ std::string source_of(const std::vector<Subject>& subjects) {
   return any_synthetic(subjects) ? text + ", of which some were computed, not scanned" : text;
 }
 
-std::string profile_toml(const Calibration& calibration, const std::vector<Subject>& subjects) {
+std::string profile_toml(const Calibration& calibration, const std::vector<Subject>& subjects,
+                         const std::optional<TearLimit>& tear) {
   std::string text =
       fmt::format("# A film's parameters, calibrated by hydrodip on {}.\n", source_of(subjects));
   for (const Subject& subject : subjects)
@@ -163,6 +179,10 @@ std::string profile_toml(const Calibration& calibration, const std::vector<Subje
                           interval(all.certainty.low.*p.member, all.certainty.high.*p.member));
     text += "\n";
   }
+  if (tear)
+    text += fmt::format(
+        "tear_stretch = {:.4f}  # {:.3f} to {:.3f}\nsafe_stretch = {:.4f}\nlost_stretch = {:.4f}\n",
+        tear->stretch, tear->low, tear->high, tear->low, tear->high);
   return text;
 }
 
@@ -183,28 +203,76 @@ std::string surface_csv(const Calibration& calibration, const std::vector<Subjec
 }
 
 Json calibration_json(const Calibration& calibration, const std::vector<Subject>& subjects,
-                      const JobConfig& config, double square_mm, const RunContext& context) {
+                      const JobConfig& config, const Board& board,
+                      const std::optional<TearLimit>& tear, const RunContext& context) {
+  Json by_ink = Json::array();
+  for (const InkMisfit& misfit : calibration.all.by_ink)
+    by_ink.push_back({{"density", misfit.density},
+                      {"squares", misfit.squares},
+                      {"more_stretch", misfit.more_stretch},
+                      {"deviation", misfit.deviation}});
+  const auto bounded = [](double value) { return value < 1e6 ? Json(value) : Json(nullptr); };
+  Json stiffness = Json::array();
+  for (const InkStiffness& ink : calibration.stiffness.inks)
+    stiffness.push_back({{"density", ink.density},
+                         {"law", ink.law},
+                         {"stiffness", bounded(ink.stiffness)},
+                         {"low_95", ink.low_95},
+                         {"high_95", bounded(ink.high_95)}});
   Json scans = Json::array();
   for (std::size_t s = 0; s < subjects.size(); ++s)
-    scans.push_back({{"name", subjects[s].name},
-                     {"file", subjects[s].file.string()},
-                     {"synthetic", subjects[s].scan.synthetic},
-                     {"depth_mm", subjects[s].object.depth_mm},
-                     {"corners", subjects[s].scan.grid.position.size()},
-                     {"error", json_of(calibration.error[s])},
-                     {"alone", json_of(calibration.each[s])}});
+    scans.push_back(
+        {{"name", subjects[s].name},
+         {"file", subjects[s].file.string()},
+         {"synthetic", subjects[s].scan.synthetic},
+         {"depth_mm", subjects[s].object.depth_mm},
+         {"corners", subjects[s].scan.grid.position.size()},
+         {"film_off_mm", {calibration.all.film_off_mm[s].x(), calibration.all.film_off_mm[s].y()}},
+         {"error", json_of(calibration.error[s])},
+         {"alone", json_of(calibration.each[s])}});
+  const Json tear_json =
+      tear ? Json{{"stretch", tear->stretch}, {"low_95", tear->low}, {"high_95", tear->high}}
+           : Json(nullptr);
   return {{"schema_version", kSchemaVersion},
           {"command", "calibrate"},
           {"folder", config.output.string()},
-          {"square_mm", square_mm},
+          {"board", board.name},
+          {"square_mm", board.square_mm},
           {"film_elements", config.design.film.elements},
           {"step_mm", config.design.dip.step_mm},
           {"result", json_of(calibration.all)},
+          {"tear_limit", tear_json},
+          {"by_ink", by_ink},
+          {"stiffness_table", stiffness},
+          {"stiffness_law_holds", calibration.stiffness.law_holds},
           {"average_of_each", json_of(calibration.average)},
           {"scans", scans},
           {"grid_points", calibration.grid.size()},
           {"correction_mm", calibration.correction_mm},
           {"warnings", context.warnings()}};
+}
+
+void warn_of_misfits(const Calibration& calibration, const std::vector<Subject>& subjects,
+                     const RunContext& context) {
+  constexpr double kFar_mm = 1, kMostDeviations = 4, kLeastStretch = 0.003;
+  for (std::size_t s = 0; s < subjects.size(); ++s)
+    if (const double off_mm = calibration.all.film_off_mm[s].norm(); off_mm > kFar_mm)
+      context.warn(fmt::format(
+          "{}: the film seems to have lain {:.1f} mm off the {}'s middle; what that does to the "
+          "ink's place under the object is left out. Aim at the board's middle.",
+          subjects[s].file.string(), off_mm, subjects[s].object.name));
+  if (!calibration.stiffness.law_holds)
+    context.warn(
+        "This ink does not stiffen film as 1 + ink (ratio - 1); calibration.json has a table of "
+        "what the scans say of each ink (stiffness_table). Take the ratio that fits the inks of "
+        "your prints.");
+  for (const InkMisfit& misfit : calibration.all.by_ink)
+    if (std::abs(misfit.more_stretch) > std::max(kLeastStretch, kMostDeviations * misfit.deviation))
+      context.warn(fmt::format(
+          "Squares with {:.1f} % ink came out {:.1f} % (+- {:.1f}) {} stretched than stiffness "
+          "1 + ink (ratio - 1) has it; see by_ink in calibration.json.",
+          100 * misfit.density, 100 * std::abs(misfit.more_stretch), 100 * misfit.deviation,
+          misfit.more_stretch > 0 ? "more" : "less"));
 }
 
 void warn_of_edges(const Calibration& calibration, const RunContext& context) {
@@ -222,10 +290,34 @@ void warn_of_edges(const Calibration& calibration, const RunContext& context) {
     context.warn("The refinement did not settle; the scans hardly determine the parameters.");
 }
 
+// What the readings of the dome say, with the film's parameters as they were found.
+std::optional<TearLimit> read_tear_limit(const JobConfig& config, const CalibrationRequest& request,
+                                         const FilmParameters& film, const RunContext& context) {
+  if (request.torn_rings.empty()) return std::nullopt;
+  context.progress("tearing", 0);
+  const TearLimit limit =
+      tear_limit(ring_stretches(config.design, film, context), request.torn_rings);
+  context.progress("tearing", 1);
+  return limit;
+}
+
+// Before hours are spent: the dome has to fit, and the rings have to be rings.
+void check_tear_readings(const JobConfig& config, const CalibrationRequest& request,
+                         const RunContext& context) {
+  if (request.torn_rings.empty()) return;
+  const CalibrationObject dome = tear_dome();
+  require_fit(dome.object, room_of(dome.object, dome.depth_mm), config.design.film, config.bath,
+              context);
+  tear_limit(std::vector<double>(kDomeRings, 1.0), request.torn_rings);
+}
+
 std::string summary(const Calibration& calibration, const std::vector<Subject>& subjects,
-                    const RunContext& context) {
+                    const std::optional<TearLimit>& tear, const RunContext& context) {
   std::string text =
       fmt::format("Calibrated on {}:\n{}", source_of(subjects), describe(calibration.all));
+  if (tear)
+    text += fmt::format("  {:<20} {:>8.3f}   95 %: {:.3f} to {:.3f}\n", "tear_stretch",
+                        tear->stretch, tear->low, tear->high);
   text += fmt::format("The scans' noise seems to be {:.3f} mm. Eq. 4 with these parameters, mm:\n",
                       calibration.all.certainty.noise_mm);
   for (std::size_t s = 0; s < subjects.size(); ++s) {
@@ -271,23 +363,26 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
 
 }  // namespace
 
-JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& request,
+JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& request,
                         const RunContext& context) {
-  const RunScope scope(context.with_threads(config.threads));
+  const RunScope scope(context.with_threads(given.threads));
   const SearchOptions options = search_options(request);
   const Shard shard = parse_shard(request.shard);
+  const ScanSetup setup = scan_setup(given, request);
+  const JobConfig& config = setup.config;
+  const Board& board = setup.settings.board;
   if (config.design.dip.method != DipMethod::kFull)
     throw InputError("calibrate: only --method full has parameters to calibrate");
-  const ScanSettings settings = {{request.scan_units, request.square_mm, request.mirrored},
-                                 request.aligned};
-  const std::vector<Subject> subjects = load_subjects(request.scans, settings, config, context);
+  check_tear_readings(config, request, context);
+  const std::vector<Subject> subjects =
+      load_subjects(request.scans, setup.settings, config, context);
 
   make_folder(config.output);
   SimulationStore store(config.output / kStoreName, store_files(request.merged));
   std::vector<std::string> fingerprints;
   for (const Subject& subject : subjects) fingerprints.push_back(subject.fingerprint);
   for (const std::string& oddity : store.oddities(fingerprints)) context.warn(oddity);
-  Search search(subjects, config.design, request.square_mm, options, store);
+  Search search(subjects, config.design, board, options, store);
   if (!request.shard.empty()) {
     search.simulate_grid(shard, context);
     return shard_result(config, shard, search, grid_points(options).size() * subjects.size(),
@@ -295,28 +390,33 @@ JobResult calibrate_job(const JobConfig& config, const CalibrationRequest& reque
   }
   const Calibration calibration = search.run(context);
   warn_of_edges(calibration, context);
+  warn_of_misfits(calibration, subjects, context);
+  const std::optional<TearLimit> tear =
+      read_tear_limit(config, request, calibration.all.parameters, context);
 
   OutputFolder folder(config.output, config.earlier_result);
-  folder.announce({"profile.toml", "calibration.json", "error-surface.csv", "error-surface.png"},
+  folder.announce({"profile.toml", "calibration.json", "error-surface.csv", "error-surface.png",
+                   "joint-regions.png"},
                   files_of(subjects));
-  write_file(folder.path("profile.toml"), profile_toml(calibration, subjects));
-  const std::string json =
-      calibration_json(calibration, subjects, config, request.square_mm, context)
-          .dump(2, ' ', false, Json::error_handler_t::replace) +
-      "\n";
+  write_file(folder.path("profile.toml"), profile_toml(calibration, subjects, tear));
+  const std::string json = calibration_json(calibration, subjects, config, board, tear, context)
+                               .dump(2, ' ', false, Json::error_handler_t::replace) +
+                           "\n";
   write_file(folder.path("calibration.json"), json);
   write_file(folder.path("error-surface.csv"), surface_csv(calibration, subjects));
   save_png(folder.path("error-surface.png"),
            draw_error_surface(options, calibration.grid, calibration.all.parameters,
                               "Calibrated on " + source_of(subjects)));
+  save_png(folder.path("joint-regions.png"),
+           draw_joint_regions(calibration.all, "Calibrated on " + source_of(subjects)));
   context.check_cancelled();
   folder.commit();
 
   JobResult result;
   result.folder = config.output;
-  result.files = {"profile.toml", "calibration.json", "error-surface.csv", "error-surface.png",
-                  kStoreName};
-  result.text = summary(calibration, subjects, context);
+  result.files = {"profile.toml",      "calibration.json",  "error-surface.csv",
+                  "error-surface.png", "joint-regions.png", kStoreName};
+  result.text = summary(calibration, subjects, tear, context);
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (config.output / file).string());
   result.json = json;

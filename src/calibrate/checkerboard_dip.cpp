@@ -14,20 +14,6 @@
 namespace hydrodip {
 namespace {
 
-// Finer than the stiffness filter by far; squares are whole pixels.
-constexpr double kPixel_mm = 0.1;
-
-bool is_kit_shape(const std::string& name) {
-  return std::any_of(kit_shapes().begin(), kit_shapes().end(),
-                     [&](const KitShape& shape) { return name == shape.name; });
-}
-
-double kit_depth_mm(const std::string& name) {
-  for (const KitShape& shape : kit_shapes())
-    if (name == shape.name) return shape.depth_mm;
-  return 0;
-}
-
 // "sphere@12" into "sphere" and 12; 0: no depth given. A '@' in a file's name is left alone.
 std::pair<std::string, double> split_depth(const std::string& text) {
   const std::size_t at = text.rfind('@');
@@ -48,26 +34,37 @@ FilmParameters film_parameters(const DesignOptions& design) {
   return {design.dip.material.z_stretch, design.stiffness.ratio, design.dip.material.poisson};
 }
 
-Checkerboard checkerboard_to_print(const FilmOptions& film, double square_mm) {
-  const double pixels = std::max(4.0, std::round(square_mm / kPixel_mm));
-  Checkerboard board;
-  board.raster = {film.width_mm, film.height_mm, pixels * kMmPerInch / square_mm};
-  board.inks = InkImage(board.raster.width_px(), board.raster.height_px());
-  const Vec2 edge(0.5 * film.width_mm - film.margin_mm, 0.5 * film.height_mm - film.margin_mm);
-  for (int y = 0; y < board.inks.height_px; ++y)
-    for (int x = 0; x < board.inks.width_px; ++x) {
-      const Vec2 u = board.raster.to_film(x + 0.5, y + 0.5);
-      if (std::abs(u.x()) > edge.x() || std::abs(u.y()) > edge.y()) continue;
-      const long column = long(std::floor(u.x() / square_mm));
-      const long row = long(std::floor(u.y() / square_mm));
-      if ((column + row) % 2 == 0) board.inks.pixel(x, y)[3] = 255;
-    }
-  return board;
+const std::vector<KitShape>& kit_shapes() {
+  static const std::vector<KitShape> shapes = {{"sphere-90", "sphere", 1.5, 17},
+                                               {"pyramid-90", "pyramid", 1.5, 32},
+                                               {"ellipsoid-135", "ellipsoid", 1.5, 15.5}};
+  return shapes;
 }
 
-const std::vector<KitShape>& kit_shapes() {
-  static const std::vector<KitShape> shapes = {{"sphere", 12}, {"pyramid", 22}, {"ellipsoid", 11}};
+const std::vector<KitShape>& sample_shapes() {
+  static const std::vector<KitShape> shapes = {{"sphere", "sphere", 1, 12},
+                                               {"pyramid", "pyramid", 1, 22},
+                                               {"ellipsoid", "ellipsoid", 1, 11}};
   return shapes;
+}
+
+std::vector<KitShape> known_shapes() {
+  std::vector<KitShape> all = kit_shapes();
+  all.insert(all.end(), sample_shapes().begin(), sample_shapes().end());
+  return all;
+}
+
+const KitShape* find_shape(const std::string& name) {
+  for (const auto* shapes : {&kit_shapes(), &sample_shapes()})
+    for (const KitShape& shape : *shapes)
+      if (name == shape.name) return &shape;
+  return nullptr;
+}
+
+TriangleMesh mesh_of(const KitShape& shape) {
+  TriangleMesh mesh = make_sample(shape.sample);
+  for (Vec3& p : mesh.positions) p *= shape.scale;
+  return mesh;
 }
 
 CalibrationObject calibration_object(const std::string& text, const JobConfig& config,
@@ -75,9 +72,9 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
   const auto [name, depth] = split_depth(text);
   CalibrationObject result;
   result.name = name;
-  if (is_kit_shape(name)) {
-    result.object = make_sample(name);
-    result.depth_mm = depth > 0 ? depth : kit_depth_mm(name);
+  if (const KitShape* shape = find_shape(name)) {
+    result.object = mesh_of(*shape);
+    result.depth_mm = depth > 0 ? depth : shape->depth_mm;
   } else {
     result.object = prepare_object(name, config.object, context).posed.mesh();
     result.name = std::filesystem::path(name).stem().string();
@@ -90,21 +87,21 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
   return result;
 }
 
-CheckeredFilm checkered_film(const DesignOptions& design, double square_mm) {
+CheckeredFilm checkered_film(const DesignOptions& design, const Board& board) {
   CheckeredFilm film;
-  film.square_mm = square_mm;
+  film.board = board;
   film.mesh = std::make_shared<const FilmMesh>(make_film_mesh(design.film));
-  const Checkerboard board = checkerboard_to_print(design.film, square_mm);
+  const PrintedBoard printed = print_board(design.film, board);
   // A ratio of 2 makes the modulus 1 more than the density.
   film.ink_density =
-      film_modulus(*film.mesh, board.inks, board.raster, {2, design.stiffness.filter_mm});
+      film_modulus(*film.mesh, printed.inks, printed.raster, {2, design.stiffness.filter_mm});
   for (double& density : film.ink_density) density -= 1;
   return film;
 }
 
 GridLanding CheckerboardDip::landing(const CalibrationObject& object) const {
   return [this, &object](const GridPlace& place) -> std::optional<Vec3> {
-    const auto point = map->to_object(square_mm * Vec2(place[0], place[1]));
+    const auto point = map->to_object(board.on_film(place));
     if (!point) return std::nullopt;
     return position_at(object.object, *point);
   };
@@ -122,7 +119,7 @@ CheckerboardDip dip_checkerboard(const CheckeredFilm& film, const CalibrationObj
     for (double& value : dip_options.modulus) value = 1 + value * (parameters.stiffness_ratio - 1);
   }
   CheckerboardDip result;
-  result.square_mm = film.square_mm;
+  result.board = film.board;
   result.film = std::make_unique<DippedFilm>(
       dip(film.mesh, object.object.positions, object.object.triangles, surface,
           make_trajectory({object.depth_mm}, object.object.positions), dip_options, context)

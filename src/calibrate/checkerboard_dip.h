@@ -6,12 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "ink/inks.h"
+#include "calibrate/board.h"
 #include "object/surface.h"
 #include "scan/registration.h"
 #include "settings/config.h"
 #include "transfer/film_map.h"
-#include "transfer/raster.h"
 
 namespace hydrodip {
 
@@ -23,14 +22,6 @@ struct FilmParameters {
 };
 FilmParameters film_parameters(const DesignOptions& design);
 
-// Printed black over the whole sheet inside the taped margin, in squares of square_mm; one corner
-// is at the film's centre, and the square between +x and +y is black.
-struct Checkerboard {
-  InkImage inks;
-  SheetRaster raster;
-};
-Checkerboard checkerboard_to_print(const FilmOptions& film, double square_mm);
-
 // What is dipped, in the posed-object frame, and how deep.
 struct CalibrationObject {
   std::string name;
@@ -38,14 +29,25 @@ struct CalibrationObject {
   double depth_mm = 0;
 };
 
-// The shapes of the kit.
+// A shape that calibrations know: a sample, so much larger.
 struct KitShape {
-  const char* name;  // of the sample
-  double depth_mm;   // where its slope gets to what films bear
+  const char* name;
+  const char* sample;
+  double scale;
+  double depth_mm;  // where its slope gets to what films bear
 };
+// Those that the kit prints: as large as a sheet of paper bears. What moves corners about grows
+// with a shape, a scan's noise does not.
 const std::vector<KitShape>& kit_shapes();
+// The samples as they are: the paper's figures are made with them.
+const std::vector<KitShape>& sample_shapes();
+// All of them; a name that begins like another one comes before it.
+std::vector<KitShape> known_shapes();
+// nullptr: none of that name.
+const KitShape* find_shape(const std::string& name);
+TriangleMesh mesh_of(const KitShape& shape);  // posed, as it dips
 
-// "sphere", "ellipsoid@11" (depth in mm) or a model file with its depth. Throws InputError.
+// "sphere-90", "ellipsoid@11" (depth in mm) or a model file with its depth. Throws InputError.
 CalibrationObject calibration_object(const std::string& text, const JobConfig& config,
                                      const RunContext& context);
 
@@ -53,16 +55,16 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
 struct CheckeredFilm {
   SharedFilmMesh mesh;
   std::vector<double> ink_density;  // per triangle, after the stiffness filter
-  double square_mm = 5;
+  Board board;
 };
-CheckeredFilm checkered_film(const DesignOptions& design, double square_mm);
+CheckeredFilm checkered_film(const DesignOptions& design, const Board& board);
 
 // One simulated dip with what is asked of it. Refers to the object and its surface.
 struct CheckerboardDip {
   std::unique_ptr<DippedFilm> film;
   std::unique_ptr<FilmMap> map;  // refers to it
-  double square_mm = 5;
-  // Where a corner of the checkerboard ends up.
+  Board board;
+  // Where a corner of the board ends up.
   GridLanding landing(const CalibrationObject& object) const;
 };
 

@@ -3,103 +3,85 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <unsupported/Eigen/LevenbergMarquardt>
+#include <limits>
 
 #include "base/error.h"
+#include "calibrate/misfit.h"
 
 namespace hydrodip {
 namespace {
 
 // What a dip can be computed for, with room for a stencil.
 const FitPoint kLeast(0.0, 1e-4, -0.4), kMost(5.0, 1.0, 0.48);
-// An answer that moved less than this share of the stencil stays.
-constexpr double kSettled = 0.1;
+// What a film can be.
+const FitPoint kLeastNatural(0.0, 1e-4, 0.0), kMostNatural(5.0, 1.0, 0.48);
+// An answer this near to its stencil's centre, in stencils, stays: further than half of the
+// lattice's distance, so that it does not go to and fro.
+constexpr double kSettled = 0.75;
 // How far one round may go, in stencils.
 constexpr double kTrust = 1.5;
 // This near a bound, in stencils, an answer lies at it.
 constexpr double kAtBound = 1e-3;
-// An answer without bounds only says where noise has driven it.
-constexpr int kUnboundedRounds = 4;
+// Stencils of the ratio: half size over 1 / sqrt(ratio), and least; nodes of the lattice rise by
+// this factor.
+constexpr double kShareOfRatio = 0.3, kLeastRatioStep = 0.01, kLatticeFactor = 1.3;
 // 97.5 % quantile of the normal distribution.
 constexpr double kQuantile = 1.96;
 
-// Quadratic in every row: r(d) = r0 + J d + (1/2) sum d_i d_j H_ij, d in stencils.
-struct QuadraticModel {
-  Eigen::VectorXd value;
-  Eigen::MatrixX3d slope;
-  Eigen::MatrixXd bend;  // columns: 00, 11, 22, 01, 02, 12
+constexpr int kPairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
-  static constexpr int kPairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+// The same sums of squares from ten rows.
+QuadraticModel compressed(const QuadraticModel& model) {
+  const Eigen::Index rows = model.value.size();
+  if (rows <= 10) return model;
+  Eigen::MatrixXd all(rows, 10);
+  all << model.value, model.slope, model.bend;
+  const Eigen::MatrixXd r = Eigen::HouseholderQR<Eigen::MatrixXd>(all)
+                                .matrixQR()
+                                .topRows(10)
+                                .triangularView<Eigen::Upper>();
+  return {r.col(0), r.middleCols<3>(1), r.rightCols(6)};
+}
 
-  Eigen::VectorXd at(const Eigen::Vector3d& d) const {
-    Eigen::VectorXd r = value + slope * d;
-    for (int k = 0; k < 6; ++k)
-      r += (k < 3 ? 0.5 : 1.0) * d[kPairs[k][0]] * d[kPairs[k][1]] * bend.col(k);
-    return r;
-  }
-  Eigen::MatrixX3d slope_at(const Eigen::Vector3d& d) const {
-    Eigen::MatrixX3d j = slope;
-    for (int k = 0; k < 6; ++k) {
-      const int a = kPairs[k][0], b = kPairs[k][1];
-      j.col(a) += d[b] * bend.col(k);
-      if (a != b) j.col(b) += d[a] * bend.col(k);
-    }
-    return j;
-  }
-};
-
-// The model over the free parameters, for Eigen's optimiser, which knows no bounds: each parameter
-// is the sine of one that has none, from its lowest value at -1 to its highest at 1.
-struct BoundedModel : Eigen::DenseFunctor<double> {
-  BoundedModel(const QuadraticModel& m, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
-               const std::vector<int>& f)
-      : DenseFunctor(int(f.size()), int(m.value.size())),
-        model(m),
-        middle(0.5 * (low + high)),
-        half(0.5 * (high - low)),
-        free(f) {}
-
-  Eigen::Vector3d whole(const Eigen::VectorXd& x) const {
-    Eigen::Vector3d d = middle;
-    for (std::size_t i = 0; i < free.size(); ++i)
-      d[free[i]] += half[free[i]] * std::sin(x[Eigen::Index(i)]);
-    return d;
-  }
-  int operator()(const Eigen::VectorXd& x, Eigen::VectorXd& r) const {
-    r = model.at(whole(x));
-    return 0;
-  }
-  int df(const Eigen::VectorXd& x, Eigen::MatrixXd& j) const {
-    const Eigen::MatrixX3d all = model.slope_at(whole(x));
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      const auto k = Eigen::Index(i);
-      j.col(k) = half[free[i]] * std::cos(x[k]) * all.col(free[i]);
-    }
-    return 0;
-  }
-
-  const QuadraticModel& model;
-  Eigen::Vector3d middle, half;
-  const std::vector<int>& free;
-};
-
-// The model's least squares within a box, from where it was made.
+// The model's least squares within a box, from `start`: Gauss and Newton's steps, damped as
+// Levenberg and Marquardt do, over the parameters that no bound holds. Equal bounds hold a
+// parameter.
 Eigen::Vector3d minimize(const QuadraticModel& model, const Eigen::Vector3d& low,
-                         const Eigen::Vector3d& high) {
-  // At a bound itself nothing would move.
-  constexpr double kFurthestStart = 0.9;
-  std::vector<int> free;
-  for (int k = 0; k < 3; ++k)
-    if (low[k] < high[k]) free.push_back(k);
-  BoundedModel bounded(model, low, high, free);
-  if (free.empty() || model.value.size() < Eigen::Index(free.size())) return bounded.middle;
-  Eigen::VectorXd x(Eigen::Index(free.size()));
-  for (std::size_t i = 0; i < free.size(); ++i)
-    x[Eigen::Index(i)] = std::asin(std::clamp(-bounded.middle[free[i]] / bounded.half[free[i]],
-                                              -kFurthestStart, kFurthestStart));
-  Eigen::LevenbergMarquardt<BoundedModel> optimizer(bounded);
-  optimizer.minimize(x);
-  Eigen::Vector3d d = bounded.whole(x);
+                         const Eigen::Vector3d& high,
+                         const Eigen::Vector3d& start = Eigen::Vector3d::Zero()) {
+  constexpr int kMostSteps = 200;
+  constexpr double kLeastDamping = 1e-9, kMostDamping = 1e9, kStill = 1e-9;
+  Eigen::Vector3d d = start.cwiseMax(low).cwiseMin(high);
+  Eigen::VectorXd residual = model.at(d);
+  double damping = 1e-3;
+  for (int step = 0; step < kMostSteps && damping < kMostDamping; ++step) {
+    const Eigen::MatrixX3d slope = model.slope_at(d);
+    const Eigen::Vector3d uphill = slope.transpose() * residual;
+    Eigen::Matrix3d curvature = slope.transpose() * slope;
+    Eigen::Vector3d downhill = -uphill;
+    for (int k = 0; k < 3; ++k) {
+      const bool held = low[k] == high[k] || (d[k] <= low[k] && uphill[k] > 0) ||
+                        (d[k] >= high[k] && uphill[k] < 0);
+      curvature(k, k) *= 1 + damping;
+      if (!held && curvature(k, k) > 0) continue;
+      curvature.row(k).setZero();
+      curvature.col(k).setZero();
+      curvature(k, k) = 1;
+      downhill[k] = 0;
+    }
+    const Eigen::Vector3d next =
+        (d + curvature.ldlt().solve(downhill)).cwiseMax(low).cwiseMin(high);
+    const Eigen::VectorXd left = model.at(next);
+    if (!(left.squaredNorm() < residual.squaredNorm())) {
+      damping *= 10;
+      continue;
+    }
+    const bool still = (next - d).cwiseAbs().maxCoeff() < kStill;
+    d = next;
+    residual = left;
+    damping = std::max(kLeastDamping, 0.1 * damping);
+    if (still) break;
+  }
   for (int k = 0; k < 3; ++k) {
     if (d[k] < low[k] + kAtBound) d[k] = low[k];
     if (d[k] > high[k] - kAtBound) d[k] = high[k];
@@ -153,10 +135,12 @@ struct Stencil {
   }
 };
 
-std::vector<Eigen::Index> known_rows(const Eigen::MatrixXd& values) {
+std::vector<Eigen::Index> known_rows(const Misfits& misfits) {
   std::vector<Eigen::Index> rows;
-  for (Eigen::Index i = 0; i < values.rows(); ++i)
-    if (values.row(i).allFinite()) rows.push_back(i);
+  for (Eigen::Index i = 0; i < misfits.value.rows(); ++i)
+    if (misfits.value.row(i).allFinite() &&
+        (misfits.open.cols() == 0 || misfits.open.row(i).allFinite()))
+      rows.push_back(i);
   return rows;
 }
 
@@ -169,20 +153,86 @@ FitPoint inside(const FitPoint& point, const FitPoint& step) {
   return point.cwiseMax(kLeast + step).cwiseMin(kMost - step);
 }
 
-// A fit's known lengths and free parameters.
-struct KnownFit {
-  explicit KnownFit(const Fit& fit) {
-    for (Eigen::Index i = 0; i < fit.residual.size(); ++i)
-      if (std::isfinite(fit.residual[i])) rows.push_back(i);
+Stencil stencil_at(const FitPoint& point, const FitOptions& options,
+                   const std::array<bool, 3>& free) {
+  const FitPoint center = stencil_center(point, options.step);
+  const FitPoint step = stencil_step(center, options.step);
+  Stencil stencil{inside(center, step), step, free};
+  for (int k = 0; k < 3; ++k)
+    if (!free[std::size_t(k)]) stencil.center[k] = point[k];
+  return stencil;
+}
+
+// ---- how well it is known ----
+
+// What a film can be, in stencils of the fit; what is fixed stays.
+struct Box {
+  explicit Box(const FilmFit& fit)
+      : low((kLeastNatural - fit.center).cwiseQuotient(fit.step)),
+        high((kMostNatural - fit.center).cwiseQuotient(fit.step)),
+        answer((fit.point - fit.center).cwiseQuotient(fit.step)) {
     for (int k = 0; k < 3; ++k)
-      if (fit.free[std::size_t(k)]) free.push_back(k);
-    jacobian = fit.jacobian(rows, free);
+      if (!fit.free[std::size_t(k)]) low[k] = high[k] = answer[k];
+    low = low.cwiseMin(answer);
+    high = high.cwiseMax(answer);
   }
-  std::vector<Eigen::Index> rows, free;
-  Eigen::MatrixXd jacobian;
+  Eigen::Vector3d low, high, answer;
 };
 
+// The least sum of squares with some parameters held.
+double least_squares(const QuadraticModel& model, Box box, const std::array<bool, 3>& held,
+                     const Eigen::Vector3d& at) {
+  for (int k = 0; k < 3; ++k)
+    if (held[std::size_t(k)]) box.low[k] = box.high[k] = at[k];
+  return model.at(minimize(model, box.low, box.high, box.answer)).squaredNorm();
+}
+
+// How far one parameter can go to a side, in stencils.
+double profile_end(const QuadraticModel& model, const Box& box, int parameter, double side,
+                   double first_guess, double allowed) {
+  std::array<bool, 3> held{};
+  held[std::size_t(parameter)] = true;
+  const double bound = side < 0 ? box.low[parameter] : box.high[parameter];
+  const auto bears = [&](double value) {
+    Eigen::Vector3d at = box.answer;
+    at[parameter] = value;
+    return least_squares(model, box, held, at) <= allowed;
+  };
+  const auto within = [&](double value) {
+    return side < 0 ? std::max(bound, value) : std::min(bound, value);
+  };
+  double reached = box.answer[parameter], missed = reached;
+  for (double way = first_guess; way < 1e6; way *= 2) {
+    missed = within(box.answer[parameter] + side * way);
+    if (!bears(missed)) break;
+    reached = missed;
+    if (missed == bound) return bound;
+  }
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (reached + missed);
+    (bears(middle) ? reached : missed) = middle;
+  }
+  return reached;
+}
+
 }  // namespace
+
+Eigen::VectorXd QuadraticModel::at(const Eigen::Vector3d& d) const {
+  Eigen::VectorXd r = value + slope * d;
+  for (int k = 0; k < 6; ++k)
+    r += (k < 3 ? 0.5 : 1.0) * d[kPairs[k][0]] * d[kPairs[k][1]] * bend.col(k);
+  return r;
+}
+
+Eigen::MatrixX3d QuadraticModel::slope_at(const Eigen::Vector3d& d) const {
+  Eigen::MatrixX3d j = slope;
+  for (int k = 0; k < 6; ++k) {
+    const int a = kPairs[k][0], b = kPairs[k][1];
+    j.col(a) += d[b] * bend.col(k);
+    if (a != b) j.col(b) += d[a] * bend.col(k);
+  }
+  return j;
+}
 
 FitPoint to_fit(const FilmParameters& parameters) {
   return {parameters.z_stretch, 1 / std::sqrt(parameters.stiffness_ratio), parameters.poisson};
@@ -192,39 +242,39 @@ FilmParameters from_fit(const FitPoint& point) {
   return {point[0], 1 / (point[1] * point[1]), point[2]};
 }
 
-FitOptions without_bounds(const FitOptions& options) {
-  FitOptions free = options;
-  for (int k = 0; k < 3; ++k)
-    if (options.low[k] < options.high[k]) free.low[k] = kLeast[k], free.high[k] = kMost[k];
-  free.rounds_max = std::min(options.rounds_max, kUnboundedRounds);
-  return free;
+FitPoint stencil_center(const FitPoint& point, const FitPoint& widest) {
+  const auto nearest = [](double value, double distance) {
+    return distance * std::round(value / distance);
+  };
+  const double power = std::log(std::max(point[1], kLeast[1])) / std::log(kLatticeFactor);
+  return {nearest(point[0], widest[0]), std::pow(kLatticeFactor, std::round(power)),
+          nearest(point[2], widest[2])};
 }
 
 FitPoint stencil_step(const FitPoint& center, const FitPoint& widest) {
   FitPoint step = widest;
-  step[1] = std::min(step[1], std::max(0.01, 0.4 * center[1]));
+  step[1] = std::min(step[1], std::max(kLeastRatioStep, kShareOfRatio * center[1]));
   return step;
 }
 
-Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitOptions& options) {
-  Fit fit;
+FilmFit fit_parameters(const FitPoint& start, const MisfitsAt& misfits_at,
+                       const FitOptions& options) {
+  FilmFit fit;
   for (int k = 0; k < 3; ++k) fit.free[std::size_t(k)] = options.low[k] < options.high[k];
-  FitPoint center = start;
+  FitPoint from = start;
   while (true) {
     ++fit.rounds;
-    const FitPoint step = stencil_step(center, options.step);
-    Stencil stencil{inside(center, step), step, fit.free};
-    for (int k = 0; k < 3; ++k)
-      if (!fit.free[std::size_t(k)]) stencil.center[k] = center[k];
-    const Eigen::MatrixXd values = errors(stencil.points());
-    const std::vector<Eigen::Index> rows = known_rows(values);
-    if (rows.size() < 4)
+    const Stencil stencil = stencil_at(from, options, fit.free);
+    const Misfits misfits = misfits_at(stencil.points());
+    const std::vector<Eigen::Index> rows = known_rows(misfits);
+    if (rows.size() < 12)
       throw InputError(
           "the scans have too few corners on the film that the simulation lays down; check the "
           "objects' depths");
-    const QuadraticModel model = stencil.model(values(rows, Eigen::all));
+    const Eigen::MatrixXd open = orthonormal(misfits.open(rows, Eigen::all));
+    const QuadraticModel model = stencil.model(without(misfits.value(rows, Eigen::all), open));
     const auto in_stencils = [&](const FitPoint& point) -> Eigen::Vector3d {
-      return (point - stencil.center).cwiseQuotient(step);
+      return (point - stencil.center).cwiseQuotient(stencil.step);
     };
     const Eigen::Vector3d trust = Eigen::Vector3d::Constant(kTrust);
     Eigen::Vector3d low = in_stencils(options.low).cwiseMax(-trust);
@@ -232,96 +282,93 @@ Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitO
     low = low.cwiseMin(high);
     for (int k = 0; k < 3; ++k)
       if (!fit.free[std::size_t(k)]) low[k] = high[k] = 0;
-    const Eigen::Vector3d d = minimize(model, low, high);
+    fit.model = compressed(model);
+    const Eigen::Vector3d d = minimize(fit.model, low, high);
 
+    fit.center = stencil.center;
+    fit.step = stencil.step;
+    fit.open = std::size_t(open.cols());
     fit.point = stencil.at(d);
     for (int k = 0; k < 3; ++k)
       fit.at_bound[std::size_t(k)] =
           fit.free[std::size_t(k)] &&
           (fit.point[k] <= options.low[k] + 1e-9 || fit.point[k] >= options.high[k] - 1e-9);
     fit.residual =
-        Eigen::VectorXd::Constant(values.rows(), std::numeric_limits<double>::quiet_NaN());
-    fit.jacobian = Eigen::MatrixX3d::Zero(values.rows(), 3);
+        Eigen::VectorXd::Constant(misfits.value.rows(), std::numeric_limits<double>::quiet_NaN());
+    fit.jacobian = Eigen::MatrixX3d::Zero(misfits.value.rows(), 3);
     const Eigen::VectorXd residual = model.at(d);
-    const Eigen::MatrixX3d slope = model.slope_at(d) * step.cwiseInverse().asDiagonal();
+    const Eigen::MatrixX3d slope = model.slope_at(d) * stencil.step.cwiseInverse().asDiagonal();
     for (std::size_t i = 0; i < rows.size(); ++i) {
       fit.residual[rows[i]] = residual[Eigen::Index(i)];
       fit.jacobian.row(rows[i]) = slope.row(Eigen::Index(i));
     }
     fit.rms_mm = root_mean_square(residual);
-    const double moved = (fit.point - center).cwiseQuotient(step).cwiseAbs().maxCoeff();
-    // Inside its stencil, the answer is the model's own.
-    fit.settled = moved < kSettled || (fit.rounds > 1 && d.cwiseAbs().maxCoeff() < 0.5);
+    const Stencil next = stencil_at(fit.point, options, fit.free);
+    fit.settled = d.cwiseAbs().maxCoeff() <= kSettled || next.center == stencil.center;
     if (fit.settled || fit.rounds >= options.rounds_max) return fit;
-    center = fit.point;
+    from = fit.point;
   }
 }
 
-Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
-                    const Eigen::VectorXd& doubt_mm) {
-  const KnownFit known(fit);
-  const std::vector<Eigen::Index>&rows = known.rows, &free = known.free;
+Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm) {
+  std::vector<Eigen::Index> rows, free;
+  for (Eigen::Index i = 0; i < fit.residual.size(); ++i)
+    if (std::isfinite(fit.residual[i])) rows.push_back(i);
+  for (int k = 0; k < 3; ++k)
+    if (fit.free[std::size_t(k)]) free.push_back(k);
+  const Eigen::MatrixXd j = fit.jacobian(rows, free);
   Certainty result;
-  const Eigen::MatrixXd& j = known.jacobian;
-  const Eigen::MatrixXd g = noise_gradient(rows, Eigen::all);
-  const Eigen::VectorXd residual = fit.residual(rows);
+  const double left = double(rows.size()) - double(fit.open) - double(free.size());
+  const double squares = fit.residual(rows).squaredNorm();
+  result.noise_mm = left > 0 ? std::sqrt(squares / left) : 0;
 
-  // Least squares takes d = -(J^T J)^-1 J^T r, and what is left is (I - H) r.
-  const Eigen::MatrixXd solve =
-      (j.transpose() * j).completeOrthogonalDecomposition().solve(j.transpose());
-  const Eigen::MatrixXd left = g - j * (solve * g);
-  const double share = left.squaredNorm();
-  result.noise_mm = share > 0 ? std::sqrt(residual.squaredNorm() / share) : 0;
-  const Eigen::MatrixXd spread = result.noise_mm * (solve * g);
-  const Eigen::MatrixXd covariance = spread * spread.transpose();
+  const Eigen::MatrixXd curvature = j.transpose() * j;
+  const auto solver = curvature.completeOrthogonalDecomposition();
+  const Eigen::MatrixXd covariance = result.noise_mm * result.noise_mm * solver.pseudoInverse();
   for (std::size_t a = 0; a < free.size(); ++a)
     for (std::size_t b = 0; b < free.size(); ++b)
       result.covariance(free[a], free[b]) = covariance(Eigen::Index(a), Eigen::Index(b));
 
-  Eigen::Vector3d half = kQuantile * result.covariance.diagonal().cwiseSqrt();
-  if (doubt_mm.size() > 0) {
-    const Eigen::VectorXd moved = solve * doubt_mm(rows);
-    for (std::size_t a = 0; a < free.size(); ++a)
-      half[free[a]] = std::hypot(half[free[a]], moved[Eigen::Index(a)]);
+  const QuadraticModel& model = fit.model;
+  const Box box(fit);
+  const double allowed = squares + kQuantile * kQuantile * result.noise_mm * result.noise_mm;
+  FitPoint low = fit.point, high = fit.point;
+  for (const Eigen::Index k : free) {
+    const double guess =
+        std::clamp(kQuantile * std::sqrt(result.covariance(k, k)) / fit.step[k], 1e-6, 1e3);
+    low[k] = fit.center[k] + fit.step[k] * profile_end(model, box, int(k), -1, guess, allowed);
+    high[k] = fit.center[k] + fit.step[k] * profile_end(model, box, int(k), 1, guess, allowed);
   }
-  const FitPoint low = fit.point - half, high = fit.point + half;
+  if (doubt_mm.size() > 0) {
+    const Eigen::VectorXd moved = solver.solve(j.transpose() * doubt_mm(rows));
+    for (std::size_t a = 0; a < free.size(); ++a) {
+      const Eigen::Index k = free[a];
+      low[k] = fit.point[k] - std::hypot(fit.point[k] - low[k], moved[Eigen::Index(a)]);
+      high[k] = fit.point[k] + std::hypot(high[k] - fit.point[k], moved[Eigen::Index(a)]);
+    }
+  }
   // A film is no stiffer without ink, and its Poisson's ratio is a material's.
   const double softest = std::max(high[1], kLeast[1]);
   result.low = {std::max(0.0, low[0]), softest >= 1 ? 1 : 1 / (softest * softest),
                 std::max(0.0, low[2])};
-  result.high = {high[0],
-                 low[1] > 0 ? 1 / (low[1] * low[1]) : std::numeric_limits<double>::infinity(),
-                 std::clamp(high[2], 0.0, 0.499)};
+  result.high = {
+      high[0],
+      low[1] > 1.5 * kLeast[1] ? 1 / (low[1] * low[1]) : std::numeric_limits<double>::infinity(),
+      std::clamp(high[2], 0.0, 0.499)};
   return result;
 }
 
-// The sum of squares to be expected is that without noise and noise_mm^2 times that of the noise
-// gradient. Where the first one's slope is 0, the second one's is not.
-FitPoint noise_bias(const Fit& fit, double noise_mm, const NoiseGradient& gradient,
-                    const FitPoint& step) {
-  const KnownFit known(fit);
-  const auto count = Eigen::Index(known.free.size());
-  const FitPoint center = inside(fit.point, step);
-  // Per length, on both sides of the answer.
-  Eigen::MatrixXd before(Eigen::Index(known.rows.size()), count), after = before;
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const FitPoint way =
-        step[known.free[std::size_t(k)]] * Eigen::Vector3d::Unit(known.free[std::size_t(k)]);
-    before.col(k) = gradient(center - way)(known.rows, Eigen::all).rowwise().squaredNorm();
-    after.col(k) = gradient(center + way)(known.rows, Eigen::all).rowwise().squaredNorm();
-  }
-  Eigen::VectorXd slope = Eigen::VectorXd::Zero(count);
-  for (Eigen::Index i = 0; i < before.rows(); ++i)
-    if (before.row(i).minCoeff() > 0 && after.row(i).minCoeff() > 0)
-      slope += (after.row(i) - before.row(i)).transpose();
-  for (Eigen::Index k = 0; k < count; ++k) slope[k] /= 2 * step[known.free[std::size_t(k)]];
-
-  const Eigen::MatrixXd curvature = known.jacobian.transpose() * known.jacobian;
-  const Eigen::VectorXd moved =
-      curvature.completeOrthogonalDecomposition().solve(-0.5 * noise_mm * noise_mm * slope);
-  FitPoint bias = FitPoint::Zero();
-  bias(known.free) = moved;
-  return bias;
+double joint_distance(const FilmFit& fit, double noise_mm, int first, double a, int second,
+                      double b) {
+  Box box(fit);
+  Eigen::Vector3d at = box.answer;
+  at[first] = (a - fit.center[first]) / fit.step[first];
+  at[second] = (b - fit.center[second]) / fit.step[second];
+  std::array<bool, 3> held{};
+  held[std::size_t(first)] = held[std::size_t(second)] = true;
+  const double more =
+      least_squares(fit.model, box, held, at) - fit.model.at(box.answer).squaredNorm();
+  return noise_mm > 0 ? std::sqrt(std::max(0.0, more)) / noise_mm : 0;
 }
 
 }  // namespace hydrodip

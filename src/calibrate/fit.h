@@ -1,11 +1,10 @@
-// The local refinement: parameters that make the warped grids as regular as they get, and how well
-// the scans determine them.
+// The local refinement: parameters with which a dip lays the corners where the scans have them, and
+// how well the scans determine them.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <functional>
-#include <limits>
-#include <string>
 #include <vector>
 
 #include "calibrate/checkerboard_dip.h"
@@ -19,9 +18,15 @@ using FitPoint = Eigen::Vector3d;
 FitPoint to_fit(const FilmParameters& parameters);
 FilmParameters from_fit(const FitPoint& point);
 
-// Length errors (mm) at each of the points, one matrix column per point and the same rows in all;
-// NaN where a length is not known there.
-using LengthErrors = std::function<Eigen::MatrixXd(const std::vector<FitPoint>& points)>;
+// By how much scanned corners lie elsewhere than simulated ones, mm: a row per coordinate, NaN
+// where that is not known.
+struct Misfits {
+  Eigen::MatrixXd value;  // a column per point
+  // Motions of the rows that nobody has measured (misfit.h), at the first point: any amount of
+  // them is as good as none. May have no columns.
+  Eigen::MatrixXd open;
+};
+using MisfitsAt = std::function<Misfits(const std::vector<FitPoint>& points)>;
 
 struct FitOptions {
   FitPoint low, high;  // where the answer is looked for; equal: fixed
@@ -29,48 +34,60 @@ struct FitOptions {
   int rounds_max = 12;
 };
 
-struct Fit {
+// Quadratic in every row: r(d) = r0 + J d + (1/2) sum d_i d_j H_ij, d in stencils.
+struct QuadraticModel {
+  Eigen::VectorXd value;
+  Eigen::MatrixX3d slope;
+  Eigen::MatrixXd bend;  // columns: 00, 11, 22, 01, 02, 12
+
+  Eigen::VectorXd at(const Eigen::Vector3d& d) const;
+  Eigen::MatrixX3d slope_at(const Eigen::Vector3d& d) const;
+};
+
+struct FilmFit {
   FitPoint point = FitPoint::Zero();
   std::array<bool, 3> free{};      // not fixed
   std::array<bool, 3> at_bound{};  // the answer lies at the edge of where it was looked for
-  Eigen::VectorXd residual;        // mm, at the answer; NaN where not known
+  Eigen::VectorXd residual;        // mm, at the answer, without open motions; NaN where not known
   Eigen::MatrixX3d jacobian;       // of the residual, by FitPoint
+  std::size_t open = 0;            // how many open motions there were
   int rounds = 0;
   bool settled = false;
   double rms_mm = 0;
+  // What the answer was read off: the known rows around a centre, or fewer with the same sums of
+  // squares.
+  QuadraticModel model;
+  FitPoint center = FitPoint::Zero(), step = FitPoint::Zero();
 };
 
-// The same with nothing but what a dip can be computed for as bounds, and few rounds.
-FitOptions without_bounds(const FitOptions& options);
-
-// How wide a stencil around a point may be: in the ratio, one that is wide at soft inks would leave
-// out all stiff ones.
+// The centre of the stencil that is used at a point: one of a lattice, so that fits that end near
+// each other share their simulations; and the stencil's half size there, no wider than `widest`. In
+// the ratio both go by what factor they are: a stencil that is wide at soft inks would leave out
+// all stiff ones.
+FitPoint stencil_center(const FitPoint& point, const FitPoint& widest);
 FitPoint stencil_step(const FitPoint& center, const FitPoint& widest);
 
-// Least squares by Levenberg and Marquardt on a quadratic model of every length, made from
-// simulations on a stencil around the last answer, until the answer stays.
-Fit fit_parameters(const FitPoint& start, const LengthErrors& errors, const FitOptions& options);
-
-// How a scan's noise shows in the lengths: rows as those of LengthErrors, zero where that is not
-// known; a column for each coordinate of each corner.
-using NoiseGradient = std::function<Eigen::MatrixXd(const FitPoint& point)>;
+// Least squares by Levenberg and Marquardt on a quadratic model of every row, made from simulations
+// on a stencil of the lattice, until the answer lies in its own stencil. With noise that is alike
+// and independent in all rows that is the most likely answer.
+FilmFit fit_parameters(const FitPoint& start, const MisfitsAt& misfits, const FitOptions& options);
 
 // How well the scans determine an answer.
 struct Certainty {
   double noise_mm = 0;  // of a corner's coordinate, judged by what the fit leaves
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of FitPoint, by noise; 0 where fixed
+  // Of FitPoint, by noise, from the curvature of the least squares; 0 where fixed.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   // 95 % intervals in film parameters. A ratio without upper bound: infinity.
   FilmParameters low, high;
 };
-// `noise_gradient`: at the answer. `doubt_mm`: by how much each length may be wrong in simulation,
-// all together; what that does to the answer widens the intervals. Empty: nothing.
-Certainty certainty(const Fit& fit, const Eigen::MatrixXd& noise_gradient,
-                    const Eigen::VectorXd& doubt_mm = {});
+// The intervals come from the profile of the likelihood: one parameter held, the others at their
+// best, as far as the sum of squares allows. `doubt_mm`: by how much each row may be wrong in
+// simulation, all together; what that does to the answer widens the intervals. Empty: nothing.
+Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm = {});
 
-// By how much noise moves an answer on average. The further a simulated film is stretched, the less
-// a scan's noise shows in lengths carried back to it, and least squares prefers such a film.
-// `step`: over which the noise's gradient is looked at.
-FitPoint noise_bias(const Fit& fit, double noise_mm, const NoiseGradient& gradient,
-                    const FitPoint& step);
+// Two parameters' joint region: by how many of its standard deviations the sum of squares at
+// (a, b), the third parameter at its best, is off: up to 2.45 is the 95 % region.
+double joint_distance(const FilmFit& fit, double noise_mm, int first, double a, int second,
+                      double b);
 
 }  // namespace hydrodip

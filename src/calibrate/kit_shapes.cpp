@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "calibrate/tear_limit.h"
 #include "samples/samples.h"
 
 namespace hydrodip {
@@ -94,6 +95,38 @@ Object pyramid_shape(double base_mm, double height_mm) {
   return with_mount(std::move(stack), square, height_mm);
 }
 
+// Outlines of the dome from its lowest point up: smooth, with a groove at every ring.
+Object grooved_dome() {
+  constexpr double kGroove_mm = 0.25, kHalfWidth_mm = 0.2, kHalfWidthOfFifth_mm = 0.4;
+  constexpr double kEdge_mm = 0.1, kFirst_mm = 1, kMargin_mm = 1;
+  struct Point {
+    double arc_mm, deep_mm;
+  };
+  std::vector<Point> profile;
+  const double before = ring_arc_mm(1) - kMargin_mm;
+  for (int i = 1; i <= int(before / kFirst_mm); ++i) profile.push_back({kFirst_mm * i, 0});
+  for (int ring = 1; ring <= kDomeRings; ++ring) {
+    const double half = ring % 5 == 0 ? kHalfWidthOfFifth_mm : kHalfWidth_mm;
+    const double arc = ring_arc_mm(ring);
+    profile.insert(profile.end(), {{arc - half - kEdge_mm, 0},
+                                   {arc - half, kGroove_mm},
+                                   {arc + half, kGroove_mm},
+                                   {arc + half + kEdge_mm, 0}});
+  }
+  const double end = kDomeRadius_mm * std::acos(1 - (kDomeDepth_mm + 2) / kDomeRadius_mm);
+  profile.push_back({end, 0});
+  const auto circle = [](double radius_mm) {
+    return outline([&](const Vec2& d) -> Vec2 { return radius_mm * d; });
+  };
+  Stack stack(Vec3::Zero());
+  for (const Point& point : profile) {
+    const double angle = point.arc_mm / kDomeRadius_mm, r = kDomeRadius_mm - point.deep_mm;
+    stack.add(circle(r * std::sin(angle)), kDomeRadius_mm - r * std::cos(angle));
+  }
+  return with_mount(std::move(stack), circle(kDomeRadius_mm * std::sin(end / kDomeRadius_mm)),
+                    kDomeDepth_mm + 2);
+}
+
 // Half a turn about x: the flat end comes down.
 void stand_on_mount(Object& object) {
   const double top = object.bounds().max.z();
@@ -102,13 +135,20 @@ void stand_on_mount(Object& object) {
 
 }  // namespace
 
-Object kit_shape(const std::string& sample) {
-  // The samples' own sizes, so that a printed shape and its simulation cannot drift apart.
-  const Box3 box = make_sample(sample).bounds();
-  Object object = sample == "pyramid" ? pyramid_shape(box.size().x(), box.size().z())
-                                      : round_shape(0.5 * box.size());
+Object kit_shape(const KitShape& shape) {
+  // The simulated mesh's own size, so that a printed shape and its simulation cannot drift apart.
+  const Box3 box = mesh_of(shape).bounds();
+  Object object = std::string(shape.sample) == "pyramid"
+                      ? pyramid_shape(box.size().x(), box.size().z())
+                      : round_shape(0.5 * box.size());
   stand_on_mount(object);
   return object;
+}
+
+Object dome_to_print() {
+  Object dome = grooved_dome();
+  stand_on_mount(dome);
+  return dome;
 }
 
 }  // namespace hydrodip

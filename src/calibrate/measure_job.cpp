@@ -103,13 +103,15 @@ void warn_of_bare_corners(const Subject& subject, const Measurement& full,
 
 }  // namespace
 
-JobResult measure_job(const JobConfig& config, const CalibrationRequest& request,
+JobResult measure_job(const JobConfig& given, const CalibrationRequest& request,
                       const RunContext& context) {
-  const RunScope scope(context.with_threads(config.threads));
-  const ScanSettings settings = {{request.scan_units, request.square_mm, request.mirrored},
-                                 request.aligned};
-  const std::vector<Subject> subjects = load_subjects(request.scans, settings, config, context);
-  const CheckeredFilm film = checkered_film(config.design, request.square_mm);
+  const RunScope scope(context.with_threads(given.threads));
+  const ScanSetup setup = scan_setup(given, request);
+  const JobConfig& config = setup.config;
+  const Board& board = setup.settings.board;
+  const std::vector<Subject> subjects =
+      load_subjects(request.scans, setup.settings, config, context);
+  const CheckeredFilm film = checkered_film(config.design, board);
 
   JobResult result;
   Json scans = Json::array();
@@ -118,7 +120,7 @@ JobResult measure_job(const JobConfig& config, const CalibrationRequest& request
     std::vector<Measurement> measurements;
     for (const Method& method : kMethods)
       measurements.push_back(
-          measure(subject, film, config.design, method, request.square_mm, context));
+          measure(subject, film, config.design, method, board.square_mm, context));
     if (measurements.front().error.edges == 0)
       throw InputError(fmt::format(
           "{}: the simulated dip lays no film on any two neighbouring corners; check the depth "
@@ -140,7 +142,8 @@ JobResult measure_job(const JobConfig& config, const CalibrationRequest& request
                       {{"z_stretch", parameters.z_stretch},
                        {"ink_stiffness_ratio", parameters.stiffness_ratio},
                        {"poisson", parameters.poisson}}},
-                     {"square_mm", request.square_mm},
+                     {"board", board.name},
+                     {"square_mm", board.square_mm},
                      {"scans", scans},
                      {"warnings", context.warnings()}}
                     .dump(2, ' ', false, Json::error_handler_t::replace) +

@@ -125,6 +125,56 @@ void draw_surface(Image& page, int left, int top, const std::array<Axis, 3>& axe
             style(16, kTitleInk));
 }
 
+// ---- how well pairs of parameters are known ----
+
+constexpr const char* kAxisNames[3] = {"z_stretch", "ink_stiffness_ratio", "poisson"};
+// Of the distance in joint_distance, for two parameters.
+constexpr double kHalf = 1.177, kNearlyAll = 2.448;
+
+void draw_region(Image& page, int left, int top, const Answer& answer, int x, int y) {
+  constexpr int kAxis = 88, kSide = kSurfacePanel - kAxis;
+  // Wide enough for both regions, and not beyond what a film can be.
+  const auto range = [&](int k) {
+    const double deviation = std::sqrt(answer.certainty.covariance(k, k));
+    const double middle = answer.fit.point[k];
+    return std::pair(std::max(0.0, middle - 3.5 * deviation), middle + 3.5 * deviation);
+  };
+  const auto [x_low, x_high] = range(x);
+  const auto [y_low, y_high] = range(y);
+  const int x0 = left + kAxis, y1 = top + kSide;
+  constexpr int kCell = 6;
+  for (int i = 0; i < kSide; i += kCell)
+    for (int j = 0; j < kSide; j += kCell) {
+      const double distance =
+          joint_distance(answer.fit, answer.certainty.noise_mm, x,
+                         x_low + (x_high - x_low) * (i + 0.5 * kCell) / kSide, y,
+                         y_low + (y_high - y_low) * (j + 0.5 * kCell) / kSide);
+      const double t = distance <= kHalf ? 1 : distance <= kNearlyAll ? 0.5 : 0.02;
+      fill(page, x0 + i, y1 - j - kCell, x0 + i + kCell, y1 - j, surface_ramp().at(t));
+    }
+  const auto column = [&, low = x_low, high = x_high](double value) {
+    return x0 + int(std::lround(kSide * (value - low) / (high - low)));
+  };
+  const auto row = [&, low = y_low, high = y_high](double value) {
+    return y1 - int(std::lround(kSide * (value - low) / (high - low)));
+  };
+  const int mark_x = column(answer.fit.point[x]), mark_y = row(answer.fit.point[y]);
+  fill(page, mark_x - 7, mark_y - 1, mark_x + 8, mark_y + 2, kMark);
+  fill(page, mark_x - 1, mark_y - 7, mark_x + 2, mark_y + 8, kMark);
+  const auto label = [](int k, double value) {
+    return k == 1 && value > 0 ? fmt::format("{:.3g}", 1 / (value * value))
+                               : fmt::format("{:.4g}", value);
+  };
+  for (const double share : {0.0, 0.5, 1.0}) {
+    const double at_x = x_low + share * (x_high - x_low), at_y = y_low + share * (y_high - y_low);
+    draw_centered(page, label(x, at_x), column(at_x), y1 + 26, style(13));
+    const std::string text = label(y, at_y);
+    draw_text(page, text, x0 - 10 - text_width_px(text, style(13)), row(at_y) + 6, style(13));
+  }
+  draw_centered(page, kAxisNames[x], x0 + 0.5 * kSide, y1 + 60, style(16, kTitleInk));
+  draw_text(page, kAxisNames[y], left + 4, top - 14, style(16, kTitleInk));
+}
+
 // ---- the error over the film ----
 
 void blend(Image& page, int x, int y, double coverage, const LinearColor& color) {
@@ -222,6 +272,30 @@ Image draw_error_surface(const SearchOptions& options, const std::vector<GridPoi
   int left = kMargin;
   for (const auto& [x, y] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)}) {
     draw_surface(page, left, kHeader + 30, axes, x, y, profile(grid, axes, x, y), answer);
+    left += kSurfacePanel + kGap;
+  }
+  const TextStyle small = style(15);
+  draw_centered(page, fit_text(caption, small, page.width_px - 2.0 * kMargin), 0.5 * page.width_px,
+                page.height_px - 24, small);
+  return page;
+}
+
+Image draw_joint_regions(const Answer& answer, const std::string& caption) {
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& pair : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)})
+    if (answer.certainty.covariance(pair.first, pair.first) > 0 &&
+        answer.certainty.covariance(pair.second, pair.second) > 0)
+      pairs.push_back(pair);
+  const int panels = std::max(1, int(pairs.size()));
+  Image page = blank_page(2 * kMargin + panels * (kSurfacePanel + kGap) - kGap,
+                          kHeader + 30 + kSurfacePanel + kFooter);
+  draw_centered(page,
+                pairs.empty() ? "Fewer than two parameters were looked for"
+                              : "Where two parameters can be together: dark 50 %, pale 95 %",
+                0.5 * page.width_px, 40, style(22, kTitleInk));
+  int left = kMargin;
+  for (const auto& [x, y] : pairs) {
+    draw_region(page, left, kHeader + 30, answer, x, y);
     left += kSurfacePanel + kGap;
   }
   const TextStyle small = style(15);

@@ -14,6 +14,11 @@ namespace hydrodip {
 Image draw_error_surface(const SearchOptions& options, const std::vector<GridPointError>& grid,
                          const FilmParameters& answer, const std::string& caption);
 
+// Where each pair of parameters can be together, the third as good as it gets: joint regions of 50
+// and 95 % with the answer, the single intervals beside them. Needs two free parameters; pairs of
+// others are left out.
+Image draw_joint_regions(const Answer& answer, const std::string& caption);
+
 // A warped grid: the film, with each length in the colour of its error.
 struct ErrorMap {
   std::string title;   // above it

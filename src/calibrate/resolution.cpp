@@ -17,12 +17,11 @@ DesignOptions finer_film(const DesignOptions& design) {
   return fine;
 }
 
-Correction correction(const Eigen::VectorXd& here, const Eigen::VectorXd& fine,
-                      const Eigen::VectorXd& finest) {
-  const Eigen::VectorXd step = finest - fine;
+Correction correction(const Eigen::VectorXd& here, const Eigen::VectorXd& finer) {
+  const Eigen::VectorXd step = finer - here;
   const Eigen::VectorXd beyond = step / (kFiner * kFiner - 1);
   const Eigen::VectorXd at_worst = step / (kFiner - 1);
-  return {finest + beyond - here, at_worst - beyond};
+  return {step + beyond, at_worst - beyond};
 }
 
 }  // namespace hydrodip

@@ -7,8 +7,11 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "base/error.h"
+#include "base/parallel.h"
+#include "calibrate/misfit.h"
 
 namespace hydrodip {
 namespace {
@@ -16,13 +19,12 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // A dip that misses more than this share of the corners that others have is no candidate.
 constexpr double kLeastShare = 0.8;
-// The correction is found anew where the answer moved further than this, in stencils.
-constexpr double kMovedFar = 1.0;
-constexpr int kMostCorrections = 3;
-// Widest stencil of the refinement.
+// Widest stencil of the refinement, and the distance of its lattice's nodes.
 const FitPoint kWidestStep(0.03, 0.1, 0.06);
+// Rounds of a refinement; a scan alone is read off the last stencil of all, which costs nothing.
+constexpr int kRounds = 8, kRoundsAlone = 1;
 
-DesignOptions search_design(const DesignOptions& design, const SearchOptions& options) {
+DesignOptions grid_design(const DesignOptions& design, const SearchOptions& options) {
   DesignOptions result = design;
   result.film.elements = std::max(8, int(design.film.elements * options.elements_factor));
   result.dip.step_mm = std::min(10.0, design.dip.step_mm * options.step_factor);
@@ -56,14 +58,25 @@ double sum_of_squares(const std::vector<double>& errors, const std::vector<std::
   return sum;  // NaN if one is missing
 }
 
+// Eq. 4's lengths of a scan carried back by a simulated dip.
+std::vector<LengthError> length_errors_by(const Subject& subject, const Board& board,
+                                          const SimulationResult& result) {
+  if (!result) return {};
+  return length_errors(subject.lengths, warped_near(subject, board, *result), board.square_mm);
+}
+
+// The same by the subject's lengths; NaN where the dip does not know one.
+std::vector<double> lengths_by(const Subject& subject, const Board& board,
+                               const SimulationResult& result) {
+  std::optional<WarpedGrid> warped;
+  if (result) warped = warped_near(subject, board, *result);
+  return errors_by_length(subject, warped, board.square_mm);
+}
+
 std::vector<std::size_t> all_indices(std::size_t count) {
   std::vector<std::size_t> list(count);
   std::iota(list.begin(), list.end(), 0);
   return list;
-}
-
-Eigen::MatrixXd with(const Eigen::MatrixXd& errors, const Eigen::VectorXd& correction) {
-  return correction.size() == errors.rows() ? (errors.colwise() + correction).eval() : errors;
 }
 
 // Of what is known.
@@ -77,15 +90,6 @@ double root_mean_square(const Eigen::VectorXd& values) {
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-// The part of a correction for all subjects that belongs to one of them; empty if that is.
-Eigen::VectorXd part(const Eigen::VectorXd& whole,
-                     const std::vector<std::vector<std::size_t>>& compared, std::size_t subject) {
-  if (whole.size() == 0) return {};
-  Eigen::Index begin = 0;
-  for (std::size_t s = 0; s < subject; ++s) begin += Eigen::Index(compared[s].size());
-  return whole.segment(begin, Eigen::Index(compared[subject].size()));
-}
-
 }  // namespace
 
 std::vector<FilmParameters> grid_points(const SearchOptions& options) {
@@ -96,17 +100,19 @@ std::vector<FilmParameters> grid_points(const SearchOptions& options) {
   return points;
 }
 
-Search::Search(const std::vector<Subject>& subjects, const DesignOptions& design, double square_mm,
-               const SearchOptions& options, SimulationStore& store)
+Search::Search(const std::vector<Subject>& subjects, const DesignOptions& design,
+               const Board& board, const SearchOptions& options, SimulationStore& store)
     : subjects_(subjects),
       options_(options),
-      square_mm_(square_mm),
+      board_(board),
+      same_film_(options.elements_factor == 1 && options.step_factor == 1),
       store_(store),
-      search_film_(subjects, search_design(design, options), square_mm,
-                   fmt::format("search-{:g}-{:g}", options.elements_factor, options.step_factor),
-                   store),
-      fine_film_(subjects, design, square_mm, "fine", store),
-      finest_film_(subjects, finer_film(design), square_mm, "finest", store) {}
+      design_(design),
+      grid_film_(subjects, grid_design(design, options), board,
+                 fmt::format("grid-{:g}-{:g}", options.elements_factor, options.step_factor),
+                 store),
+      film_(subjects, design, board, "film", store),
+      finer_film_(subjects, finer_film(design), board, "finer", store) {}
 
 namespace {
 
@@ -124,17 +130,17 @@ void Search::simulate_grid(const Shard& shard, const RunContext& context) {
   std::vector<SimulationRequest> mine;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (shard.has(i)) mine.push_back(all[i]);
-  search_film_.get(mine, "searching", context);
+  grid_film_.get(mine, "searching", context);
 }
 
 std::size_t Search::missing() const {
-  return search_film_.missing(grid_requests(options_, subjects_.size()));
+  return grid_film_.missing(grid_requests(options_, subjects_.size()));
 }
 
 std::vector<GridPointError> Search::grid_errors(const RunContext& context) {
   const std::vector<FilmParameters> points = grid_points(options_);
   const std::vector<SimulationResult> results =
-      search_film_.get(grid_requests(options_, subjects_.size()), "searching", context);
+      grid_film_.get(grid_requests(options_, subjects_.size()), "searching", context);
   std::vector<GridPointError> grid;
   grid.reserve(points.size());
   for (const FilmParameters& parameters : points)
@@ -143,9 +149,11 @@ std::vector<GridPointError> Search::grid_errors(const RunContext& context) {
   double count = 0;
   compared_.clear();
   for (std::size_t s = 0; s < subjects_.size(); ++s) {
-    std::vector<std::vector<double>> rows;
-    for (std::size_t p = 0; p < points.size(); ++p)
-      rows.push_back(errors_by_length(subjects_[s], results[p * subjects_.size() + s], square_mm_));
+    std::vector<std::vector<double>> rows(points.size());
+    parallel_for(points.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p)
+        rows[p] = lengths_by(subjects_[s], board_, results[p * subjects_.size() + s]);
+    });
     compared_.push_back(common_lengths(rows));
     const auto number = double(compared_.back().size());
     if (number < 4)
@@ -173,100 +181,187 @@ FitOptions Search::fit_options() const {
   return options;
 }
 
-Eigen::MatrixXd Search::errors_at(Simulations& simulations,
-                                  const std::vector<std::size_t>& subjects,
-                                  const std::vector<FitPoint>& points, const std::string& activity,
-                                  const RunContext& context) {
+Misfits Search::misfits_at(Simulations& simulations, const std::vector<std::size_t>& subjects,
+                           const std::vector<FitPoint>& points, const std::string& activity,
+                           std::vector<Vec2>& film_off_mm, const RunContext& context) {
   std::vector<SimulationRequest> requests;
   for (const FitPoint& point : points)
     for (const std::size_t s : subjects) requests.push_back({s, from_fit(point)});
   const std::vector<SimulationResult> results = simulations.get(requests, activity, context);
-  Eigen::Index rows = 0;
-  for (const std::size_t s : subjects) rows += Eigen::Index(compared_[s].size());
-  Eigen::MatrixXd errors(rows, Eigen::Index(points.size()));
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    Eigen::Index row = 0;
-    for (std::size_t i = 0; i < subjects.size(); ++i) {
-      const std::vector<double> all =
-          errors_by_length(subjects_[subjects[i]], results[p * subjects.size() + i], square_mm_);
-      for (const std::size_t length : compared_[subjects[i]])
-        errors(row++, Eigen::Index(p)) = all[length];
+  std::vector<Misfits> parts;
+  Eigen::Index rows = 0, open = 0;
+  film_off_mm.clear();
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    std::vector<const Landings*> dips;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const SimulationResult& result = results[p * subjects.size() + i];
+      dips.push_back(result ? &*result : nullptr);
     }
+    ScanMisfits found = misfits_of(subjects_[subjects[i]], board_, dips);
+    film_off_mm.push_back(found.film_off_mm);
+    parts.push_back(std::move(found.misfits));
+    rows += parts.back().value.rows();
+    open += parts.back().open.cols();
   }
-  return errors;
+  Misfits all = {Eigen::MatrixXd(rows, Eigen::Index(points.size())),
+                 Eigen::MatrixXd::Zero(rows, open)};
+  rows = open = 0;
+  for (const Misfits& part : parts) {
+    all.value.middleRows(rows, part.value.rows()) = part.value;
+    all.open.block(rows, open, part.open.rows(), part.open.cols()) = part.open;
+    rows += part.value.rows();
+    open += part.open.cols();
+  }
+  return all;
 }
 
-Correction Search::correction_at(const std::vector<std::size_t>& subjects, const FitPoint& point,
-                                 const RunContext& context) {
-  const auto errors = [&](Simulations& simulations) -> Eigen::VectorXd {
-    return errors_at(simulations, subjects, {point}, "correcting", context).col(0);
-  };
-  return correction(errors(search_film_), errors(fine_film_), errors(finest_film_));
-}
-
-Eigen::MatrixXd Search::noise_gradient(const std::vector<std::size_t>& subjects,
-                                       const FitPoint& point, const RunContext& context) {
-  Eigen::Index rows = 0, columns = 0;
-  for (const std::size_t s : subjects) {
-    rows += Eigen::Index(compared_[s].size());
-    columns += 3 * Eigen::Index(subjects_[s].scan.grid.position.size());
-  }
-  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(rows, columns);
-  Eigen::Index row = 0, column = 0;
-  for (const std::size_t s : subjects) {
-    const Subject& subject = subjects_[s];
-    RunContext quiet = context.quiet();
-    const CheckerboardDip dip = search_film_.dip({s, from_fit(point)}, quiet);
-    const Comparison comparison = compare(subject, dip);
-    gradient.block(row, column, Eigen::Index(compared_[s].size()),
-                   3 * Eigen::Index(subject.scan.grid.position.size())) =
-        noise_gradient_of(subject, dip, comparison)(compared_[s], Eigen::all);
-    row += Eigen::Index(compared_[s].size());
-    column += 3 * Eigen::Index(subject.scan.grid.position.size());
-  }
-  return gradient;
-}
-
-LengthErrors Search::errors_with(const std::vector<std::size_t>& subjects,
-                                 const Eigen::VectorXd& correction, const RunContext& context) {
-  return [this, subjects, correction, &context](const std::vector<FitPoint>& points) {
-    return with(errors_at(search_film_, subjects, points, "refining", context), correction);
-  };
+FitPoint Search::rough_answer(const std::vector<std::size_t>& subjects, const FitPoint& start,
+                              const RunContext& context) {
+  std::vector<Vec2> film_off_mm;
+  FitOptions options = fit_options();
+  options.rounds_max = kRounds;
+  return fit_parameters(
+             start,
+             [&](const std::vector<FitPoint>& points) {
+               Misfits misfits =
+                   misfits_at(grid_film_, subjects, points, "refining", film_off_mm, context);
+               // Coarse films take hard ink for soft: without this they lead far astray.
+               if (options_.correct)
+                 misfits.value.colwise() +=
+                     correction_at(grid_film_, film_, subjects, points.front(), context).all;
+               return misfits;
+             },
+             options)
+      .point;
 }
 
 Answer Search::answer(const std::string& name, const std::vector<std::size_t>& subjects,
-                      const FitPoint& start, const Eigen::VectorXd& correction,
-                      const RunContext& context) {
+                      const FitPoint& start, int rounds, const RunContext& context) {
   Answer result;
   result.name = name;
-  result.fit = fit_parameters(start, errors_with(subjects, correction, context), fit_options());
+  FitOptions options = fit_options();
+  options.rounds_max = rounds;
+  Correction lacking;
+  result.fit = fit_parameters(
+      start,
+      [&](const std::vector<FitPoint>& points) {
+        Misfits misfits =
+            misfits_at(film_, subjects, points, "refining", result.film_off_mm, context);
+        if (!options_.correct) return misfits;
+        lacking = correction_at(film_, finer_film_, subjects, points.front(), context);
+        misfits.value.colwise() += lacking.all;
+        return misfits;
+      },
+      options);
   result.parameters = from_fit(result.fit.point);
+  result.certainty = certainty(result.fit, lacking.doubt);
+  result.correction_mm = root_mean_square(lacking.all);
+  result.by_ink = misfits_by_ink(result.fit, subjects, context);
   return result;
 }
 
-// Takes out what noise does to the answer on average, and says how sure it is. Where the answer is
-// at the edge of its range, both start from where noise has driven it beyond.
-void Search::judge(Answer& answer, const std::vector<std::size_t>& subjects,
-                   const Correction& lacking, const RunContext& context) {
-  Fit fit = answer.fit;
-  const bool at_edge = fit.at_bound[0] || fit.at_bound[1] || fit.at_bound[2];
-  if (at_edge)
-    fit = fit_parameters(fit.point, errors_with(subjects, lacking.all, context),
-                         without_bounds(fit_options()));
-  const auto asked = 1 + 2 * std::count(fit.free.begin(), fit.free.end(), true);
-  int known = 0;
-  const NoiseGradient gradient = [&](const FitPoint& point) {
-    context.progress("weighing noise", double(known++) / double(asked));
-    return noise_gradient(subjects, point, context);
-  };
-  const Eigen::MatrixXd here = gradient(fit.point);
-  const double noise_mm = certainty(fit, here).noise_mm;
-  const FitPoint step = stencil_step(fit.point, kWidestStep);
-  fit.point -= noise_bias(fit, noise_mm, gradient, step);
-  answer.certainty = certainty(fit, here, lacking.doubt);
-  const FitOptions range = fit_options();
-  answer.fit.point = fit.point.cwiseMax(range.low).cwiseMin(range.high);
-  answer.parameters = from_fit(answer.fit.point);
+// Read off on the film, by the map of the dip at the fit's centre.
+std::vector<InkMisfit> Search::misfits_by_ink(const FilmFit& fit,
+                                              const std::vector<std::size_t>& subjects,
+                                              const RunContext& context) {
+  std::vector<SimulationRequest> requests;
+  for (const std::size_t s : subjects) requests.push_back({s, from_fit(fit.center)});
+  const std::vector<SimulationResult> dips = film_.get(requests, "refining", context);
+  std::map<std::uint8_t, std::vector<double>> by_ink;
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    std::map<GridPlace, Vec2> off;  // of a corner, on the film
+    for (const auto& place : subjects_[subjects[i]].place) {
+      const Vec3 misfit = fit.residual.segment<3>(row);
+      row += 3;
+      const Landing* landing = place && dips[i] ? dips[i]->find(*place) : nullptr;
+      if (landing != nullptr && misfit.allFinite()) off[*place] = by_object(*landing) * misfit;
+    }
+    for (const auto& [place, low] : off) {
+      const auto right = off.find({place[0] + 1, place[1]});
+      const auto up = off.find({place[0], place[1] + 1});
+      const auto far = off.find({place[0] + 1, place[1] + 1});
+      if (right == off.end() || up == off.end() || far == off.end()) continue;
+      const double longer = 0.25 * ((right->second - low).x() + (far->second - up->second).x() +
+                                    (up->second - low).y() + (far->second - right->second).y());
+      by_ink[board_.ink_of(place)].push_back(longer / board_.square_mm);
+    }
+  }
+  std::vector<InkMisfit> list;
+  for (const auto& [ink, values] : by_ink) {
+    const auto count = double(values.size());
+    double mean = 0, spread = 0;
+    for (const double value : values) mean += value / count;
+    for (const double value : values) spread += (value - mean) * (value - mean);
+    const double deviation = count > 1 ? std::sqrt(spread / (count - 1) / count) : 0;
+    list.push_back({ink / 255.0, values.size(), mean, deviation});
+  }
+  return list;
+}
+
+// From dips at the fit's centre in which one ink after the other is stiffer.
+StiffnessTable Search::stiffness_of_inks(const FilmFit& fit,
+                                         const std::vector<std::size_t>& subjects,
+                                         const RunContext& context) {
+  constexpr double kStiffer = 1.3, kLeastRatio = 1.1;
+  const double ratio = from_fit(fit.center).stiffness_ratio;
+  std::vector<double> densities;
+  for (const std::uint8_t ink : std::set<std::uint8_t>(board_.ink.begin(), board_.ink.end()))
+    if (ink > 0) densities.push_back(ink / 255.0);
+  if (ratio < kLeastRatio) return {};
+  std::vector<Vec2> film_off_mm;
+  const Misfits here =
+      misfits_at(film_, subjects, {fit.center}, "weighing inks", film_off_mm, context);
+  Eigen::MatrixXd by_ink(here.value.rows(), Eigen::Index(densities.size()));
+  for (std::size_t i = 0; i < densities.size(); ++i) {
+    Simulations bent(subjects_, design_,
+                     with_ink_stiffer(film_.film(), densities, i, kStiffer, ratio),
+                     fmt::format("film-ink-{:g}", densities[i]), store_);
+    const Misfits there =
+        misfits_at(bent, subjects, {fit.center}, "weighing inks", film_off_mm, context);
+    by_ink.col(Eigen::Index(i)) = (there.value - here.value) / std::log(kStiffer);
+  }
+  // As the fit's own rows: what nobody has measured is left out of them.
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index row = 0; row < by_ink.rows(); ++row)
+    if (std::isfinite(fit.residual[row]) && by_ink.row(row).allFinite() &&
+        (here.open.cols() == 0 || here.open.row(row).allFinite()))
+      rows.push_back(row);
+  const Eigen::MatrixXd left =
+      without(by_ink(rows, Eigen::all), orthonormal(here.open(rows, Eigen::all)));
+  by_ink.setConstant(kNaN);
+  for (std::size_t i = 0; i < rows.size(); ++i) by_ink.row(rows[i]) = left.row(Eigen::Index(i));
+  return stiffness_table(fit, densities, by_ink);
+}
+
+// Differences of landings, for the scan's corners.
+Correction Search::correction_at(Simulations& film, Simulations& finer_film,
+                                 const std::vector<std::size_t>& subjects, const FitPoint& point,
+                                 const RunContext& context) {
+  std::vector<SimulationRequest> requests;
+  for (const std::size_t s : subjects) requests.push_back({s, from_fit(point)});
+  const std::vector<SimulationResult> here = film.get(requests, "correcting", context);
+  const std::vector<SimulationResult> finer = finer_film.get(requests, "correcting", context);
+  std::vector<double> minus_here, minus_finer;
+  for (std::size_t i = 0; i < subjects.size(); ++i)
+    for (const auto& place : subjects_[subjects[i]].place) {
+      const Landing* a = place && here[i] ? here[i]->find(*place) : nullptr;
+      const Landing* b = place && finer[i] ? finer[i]->find(*place) : nullptr;
+      for (int k = 0; k < 3; ++k) {
+        minus_here.push_back(a != nullptr ? -a->position[k] : kNaN);
+        minus_finer.push_back(b != nullptr ? -b->position[k] : kNaN);
+      }
+    }
+  const auto count = Eigen::Index(minus_here.size());
+  return correction(Eigen::Map<Eigen::VectorXd>(minus_here.data(), count),
+                    Eigen::Map<Eigen::VectorXd>(minus_finer.data(), count));
+}
+
+Answer Search::fit_from(const FilmParameters& start, const RunContext& context) {
+  const std::vector<std::size_t> everyone = all_indices(subjects_.size());
+  FitPoint from = to_fit(start);
+  if (!same_film_) from = rough_answer(everyone, from, context);
+  return answer("all", everyone, from, kRounds, context);
 }
 
 Calibration Search::run(const RunContext& context) {
@@ -283,25 +378,17 @@ Calibration Search::run(const RunContext& context) {
         "depths and the ranges");
 
   const std::vector<std::size_t> everyone = all_indices(subjects_.size());
-  result.all = answer("all", everyone, to_fit(best->parameters), {}, context);
-  Correction lacking;
-  for (int i = 0; options_.correct && i < kMostCorrections; ++i) {
-    const FitPoint before = result.all.fit.point;
-    lacking = correction_at(everyone, before, context);
-    result.all = answer("all", everyone, before, lacking.all, context);
-    const FitPoint moved = (result.all.fit.point - before).cwiseQuotient(kWidestStep);
-    if (moved.cwiseAbs().maxCoeff() < kMovedFar) break;
-  }
-  result.correction_mm = root_mean_square(lacking.all);
-  const FitPoint end = result.all.fit.point;
-  judge(result.all, everyone, lacking, context);
+  result.all = fit_from(best->parameters, context);
+  result.correction_mm = result.all.correction_mm;
+  result.stiffness = stiffness_of_inks(result.all.fit, everyone, context);
 
   FitPoint sum = FitPoint::Zero();
   for (const std::size_t s : everyone) {
     result.each.push_back(
-        answer(subjects_[s].name, {s}, end, part(lacking.all, compared_, s), context));
-    judge(result.each.back(), {s},
-          {part(lacking.all, compared_, s), part(lacking.doubt, compared_, s)}, context);
+        subjects_.size() == 1
+            ? result.all
+            : answer(subjects_[s].name, {s}, result.all.fit.point, kRoundsAlone, context));
+    result.each.back().name = subjects_[s].name;
     sum += result.each.back().fit.point;
   }
   result.average = from_fit(sum / double(subjects_.size()));
@@ -309,13 +396,10 @@ Calibration Search::run(const RunContext& context) {
   std::vector<SimulationRequest> last;
   last.reserve(everyone.size());
   for (const std::size_t s : everyone) last.push_back({s, result.all.parameters});
-  const std::vector<SimulationResult> ends = fine_film_.get(last, "measuring", context);
+  const std::vector<SimulationResult> ends = film_.get(last, "measuring", context);
   for (const std::size_t s : everyone)
-    result.error.push_back(grid_error(
-        length_errors(subjects_[s].lengths,
-                      ends[s].value_or(WarpedGrid(subjects_[s].scan.grid.position.size())),
-                      square_mm_),
-        square_mm_));
+    result.error.push_back(
+        grid_error(length_errors_by(subjects_[s], board_, ends[s]), board_.square_mm));
   result.simulations = store_.size();
   return result;
 }

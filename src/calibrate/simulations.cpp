@@ -98,28 +98,24 @@ class Crew {
 }  // namespace
 
 Simulations::Simulations(const std::vector<Subject>& subjects, const DesignOptions& design,
-                         double square_mm, const std::string& level, SimulationStore& store)
-    : subjects_(subjects),
-      options_(design.dip),
-      film_(checkered_film(design, square_mm)),
-      level_(level),
-      store_(store) {}
+                         const Board& board, const std::string& level, SimulationStore& store)
+    : Simulations(subjects, design, checkered_film(design, board), level, store) {}
+
+Simulations::Simulations(const std::vector<Subject>& subjects, const DesignOptions& design,
+                         CheckeredFilm film, const std::string& level, SimulationStore& store)
+    : subjects_(subjects), design_(design), film_(std::move(film)), level_(level), store_(store) {}
 
 SimulationKey Simulations::key_of(const SimulationRequest& request) const {
   return {subjects_[request.subject].fingerprint + "-" + level_, request.parameters};
 }
 
-CheckerboardDip Simulations::dip(const SimulationRequest& request,
-                                 const RunContext& context) const {
-  const Subject& subject = subjects_[request.subject];
-  return dip_checkerboard(film_, subject.object, *subject.surface, request.parameters, options_,
-                          context);
-}
-
 SimulationResult Simulations::compute(const SimulationRequest& request,
                                       const RunContext& context) const {
+  const Subject& subject = subjects_[request.subject];
   try {
-    return compare(subjects_[request.subject], dip(request, context)).warped;
+    const CheckerboardDip dip = dip_checkerboard(film_, subject.object, *subject.surface,
+                                                 request.parameters, design_.dip, context);
+    return landings_of(dip, subject.object, reach_of(design_.film, film_.board.square_mm));
   } catch (const DipError&) {
     return std::nullopt;
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/board.h"
 #include "calibrate/store.h"
 #include "calibrate/subject.h"
 
@@ -19,9 +20,13 @@ struct SimulationRequest {
 // Dips subjects on one film, or looks up what is known already.
 class Simulations {
  public:
-  // Refers to all. `level` tells films apart in the store ("search", "fine").
-  Simulations(const std::vector<Subject>& subjects, const DesignOptions& design, double square_mm,
+  // Refers to all but the board. `level` tells films apart in the store ("search", "fine").
+  Simulations(const std::vector<Subject>& subjects, const DesignOptions& design, const Board& board,
               const std::string& level, SimulationStore& store);
+  // The same on a film that is at hand.
+  Simulations(const std::vector<Subject>& subjects, const DesignOptions& design, CheckeredFilm film,
+              const std::string& level, SimulationStore& store);
+  const CheckeredFilm& film() const { return film_; }
 
   // In the order of the requests. Computes what the store does not have, as many at once as there
   // are threads, and keeps each as it is done. Progress under the name `activity`. Throws
@@ -32,15 +37,12 @@ class Simulations {
   // How many of the requests the store lacks.
   std::size_t missing(const std::vector<SimulationRequest>& requests) const;
 
-  // One dip with its map, for what the store does not keep.
-  CheckerboardDip dip(const SimulationRequest& request, const RunContext& context) const;
-
  private:
   SimulationKey key_of(const SimulationRequest& request) const;
   SimulationResult compute(const SimulationRequest& request, const RunContext& context) const;
 
   const std::vector<Subject>& subjects_;
-  DipOptions options_;
+  DesignOptions design_;
   CheckeredFilm film_;
   std::string level_;
   SimulationStore& store_;

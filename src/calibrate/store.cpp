@@ -18,43 +18,78 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr int kNumbers = 11;  // of a corner: place, position, slopes
+
 std::string line_of(const SimulationKey& key, const SimulationResult& result) {
   Json line = {{"subject", key.subject},
                {"z_stretch", key.parameters.z_stretch},
                {"ink_stiffness_ratio", key.parameters.stiffness_ratio},
                {"poisson", key.parameters.poisson},
-               {"film_mm", nullptr}};
+               {"reach", nullptr},
+               {"corners", nullptr}};
   if (result) {
+    line["reach"] = result->reach;
     Json corners = Json::array();
-    for (const auto& corner : *result)
-      corners.push_back(corner ? Json{corner->x(), corner->y()} : Json(nullptr));
-    line["film_mm"] = corners;
+    for (int row = -result->reach[1]; row <= result->reach[1]; ++row)
+      for (int column = -result->reach[0]; column <= result->reach[0]; ++column) {
+        const Landing* landing = result->find({column, row});
+        if (landing == nullptr) continue;
+        Json corner = {column, row};
+        for (const double x : landing->position) corner.push_back(x);
+        for (const double slope : landing->by_film.reshaped()) corner.push_back(slope);
+        corners.push_back(corner);
+      }
+    line["corners"] = corners;
   }
   return line.dump() + "\n";
 }
 
-// Whether the line is one of ours.
-bool parse_line(const std::string& text, SimulationKey& key, SimulationResult& result) {
-  const Json line = Json::parse(text, nullptr, false);
-  if (!line.is_object()) return false;
-  for (const char* name : {"z_stretch", "ink_stiffness_ratio", "poisson"})
-    if (!line.contains(name) || !line[name].is_number()) return false;
-  if (!line.contains("subject") || !line["subject"].is_string() || !line.contains("film_mm"))
-    return false;
-  key.subject = line["subject"];
-  key.parameters = {line["z_stretch"], line["ink_stiffness_ratio"], line["poisson"]};
-  const Json& corners = line["film_mm"];
-  result.reset();
-  if (corners.is_null()) return true;
-  if (!corners.is_array()) return false;
-  result.emplace();
-  for (const Json& corner : corners) {
-    const bool is_point =
-        corner.is_array() && corner.size() == 2 && corner[0].is_number() && corner[1].is_number();
-    if (!is_point && !corner.is_null()) return false;
-    result->push_back(is_point ? std::optional<Vec2>(Vec2(corner[0], corner[1])) : std::nullopt);
+bool parse_landings(const Json& line, Landings& landings) {
+  constexpr int kMostReach = 100000;
+  const Json &reach = line["reach"], &corners = line["corners"];
+  if (!reach.is_array() || reach.size() != 2 || !corners.is_array()) return false;
+  double squares = 1;
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (!reach[k].is_number_integer()) return false;
+    const auto value = reach[k].get<std::int64_t>();
+    if (value < 0 || value > kMostReach) return false;
+    landings.reach[k] = int(value);
+    squares *= double(2 * value + 1);
+  }
+  constexpr double kMostCorners = 1e6;
+  if (squares > kMostCorners) return false;
+  landings.corner.resize(std::size_t(squares));
+  for (const Json& numbers : corners) {
+    if (!numbers.is_array() || numbers.size() != kNumbers) return false;
+    for (const Json& number : numbers)
+      if (!number.is_number()) return false;
+    if (!numbers[0].is_number_integer() || !numbers[1].is_number_integer()) return false;
+    const auto column = numbers[0].get<std::int64_t>(), row = numbers[1].get<std::int64_t>();
+    if (std::abs(column) > landings.reach[0] || std::abs(row) > landings.reach[1]) return false;
+    Landing landing;
+    for (int k = 0; k < 3; ++k) landing.position[k] = numbers[std::size_t(2 + k)];
+    for (int k = 0; k < 6; ++k) landing.by_film(k % 3, k / 3) = numbers[std::size_t(5 + k)];
+    landings.corner[landings.index_of({int(column), int(row)})] = landing;
   }
   return true;
+}
+
+enum class Line { kDamaged, kOld, kGood };
+
+// Lines of programs that kept where each scan's corners lie on the film are no use any more.
+Line parse_line(const std::string& text, SimulationKey& key, SimulationResult& result) {
+  const Json line = Json::parse(text, nullptr, false);
+  if (!line.is_object()) return Line::kDamaged;
+  for (const char* name : {"z_stretch", "ink_stiffness_ratio", "poisson"})
+    if (!line.contains(name) || !line[name].is_number()) return Line::kDamaged;
+  if (!line.contains("subject") || !line["subject"].is_string()) return Line::kDamaged;
+  key.subject = line["subject"];
+  key.parameters = {line["z_stretch"], line["ink_stiffness_ratio"], line["poisson"]};
+  if (line.contains("film_mm")) return Line::kOld;
+  if (!line.contains("reach") || !line.contains("corners")) return Line::kDamaged;
+  result.reset();
+  if (line["corners"].is_null()) return Line::kGood;
+  return parse_landings(line, result.emplace()) ? Line::kGood : Line::kDamaged;
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
@@ -112,12 +147,12 @@ void SimulationStore::read(const std::filesystem::path& file) {
     ++number;
     SimulationKey key;
     SimulationResult result;
-    if (parse_line(text.substr(begin, end - begin), key, result)) {
-      results_.try_emplace(key, result);
-      ++about.of_subject[key.subject];
-    } else {
+    const Line kind = parse_line(text.substr(begin, end - begin), key, result);
+    if (kind == Line::kGood) results_.try_emplace(key, result);
+    if (kind == Line::kDamaged)
       about.damaged.push_back(number);
-    }
+    else
+      ++about.of_subject[key.subject];
     begin = end + 1;
   }
   if (about.of_subject.empty() && !about.damaged.empty())
@@ -145,8 +180,10 @@ std::vector<std::string> SimulationStore::oddities(const std::vector<std::string
     }
     if (foreign > 0 && about.file != file_)
       sentences.push_back(fmt::format(
-          "{}: {} of its {} simulations are not used: they are of other scans, other objects or "
-          "other settings (film.elements, dip.step_mm, ...) than this calibration's.",
+          "{}: {} of its {} simulations are not used: they are of other objects, another "
+          "board or other settings (film.elements, dip.step_mm, ...) than this calibration's, or "
+          "of an "
+          "older program.",
           about.file.string(), foreign, all));
   }
   return sentences;

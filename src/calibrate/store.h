@@ -9,20 +9,19 @@
 #include <tuple>
 #include <vector>
 
-#include "calibrate/checkerboard_dip.h"
-#include "scan/grid_error.h"
+#include "calibrate/landings.h"
 
 namespace hydrodip {
 
-// Which simulation: a subject's fingerprint says scan, object and film.
+// Which simulation: a subject's fingerprint says object, film and board. Scans do not matter.
 struct SimulationKey {
   std::string subject;
   FilmParameters parameters;
   bool operator<(const SimulationKey& other) const;
 };
 
-// The scan's corners on the film; empty if that dip cannot be computed.
-using SimulationResult = std::optional<WarpedGrid>;
+// Empty if that dip cannot be computed.
+using SimulationResult = std::optional<Landings>;
 
 // Text, a line of JSON per simulation, so that stores merge by putting one behind the other. A line
 // cut short by a kill or a crash is dropped when the store is opened, other damaged lines are

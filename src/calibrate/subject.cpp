@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -9,6 +11,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "calibrate/calibrate.h"
+#include "calibrate/measured_dip.h"
+#include "calibrate/misfit.h"
 #include "samples/samples.h"
 
 namespace hydrodip {
@@ -20,8 +25,8 @@ constexpr double kReach_mm = 2;
 constexpr double kSuspiciousDistance_mm = 0.3;
 constexpr double kLargestDistance_mm = 0.7;
 // To find out how a scan lies, this is good enough.
-constexpr int kCoarseElements = 10000;
-constexpr double kCoarseStep_mm = 0.25;
+constexpr int kCoarseElements = 5000;
+constexpr double kCoarseStep_mm = 0.4;
 
 struct SubjectText {
   std::string object;
@@ -33,16 +38,12 @@ SubjectText split(const std::string& text) {
   if (equals != std::string::npos && equals > 0 && equals + 1 < text.size())
     return {text.substr(0, equals), text.substr(equals + 1)};
   const std::string stem = std::filesystem::path(text).stem().string();
-  for (const KitShape& shape : kit_shapes())
+  for (const KitShape& shape : known_shapes())
     if (stem.find(shape.name) != std::string::npos) return {shape.name, text};
   throw InputError(fmt::format(
       "{}: say which object was scanned, as in 'sphere={}', 'ellipsoid@11=...' (dipped 11 mm deep) "
       "or 'model.stl@20=...'",
       text, text));
-}
-
-GridPlace reach_of(const FilmOptions& film, double square_mm) {
-  return {int(0.5 * film.width_mm / square_mm), int(0.5 * film.height_mm / square_mm)};
 }
 
 // Warns, or refuses what cannot be a scan of this object.
@@ -80,26 +81,32 @@ void find_how_it_lies(Subject& subject, const ScanSettings& settings, const JobC
                       const RunContext& context) {
   const TriangleMesh& object = subject.object.object;
   subject.surface = std::make_unique<Surface>(object.positions, object.triangles);
-  if (settings.aligned) {
+  subject.place.resize(subject.scan.grid.position.size());
+  if (settings.aligned)
     judge(subject, as_it_lies(subject.scan.grid, *subject.surface), true, context);
-    return;
-  }
   DesignOptions coarse = config.design;
   coarse.film.elements = std::min(config.design.film.elements, kCoarseElements);
   coarse.dip.step_mm = std::max(config.design.dip.step_mm, kCoarseStep_mm);
   coarse.dip.method = DipMethod::kFull;
-  const double square_mm = settings.file.square_mm;
+  const Board& board = settings.board;
   RunContext quiet = context.quiet();
   const CheckerboardDip dip =
-      dip_checkerboard(checkered_film(coarse, square_mm), subject.object, *subject.surface,
+      dip_checkerboard(checkered_film(coarse, board), subject.object, *subject.surface,
                        film_parameters(config.design), coarse.dip, quiet);
   const GridLanding landing = dip.landing(subject.object);
-  GridMatch match = match_grid(subject.scan.grid, landing, reach_of(config.design.film, square_mm),
-                               square_mm, subject.file.string());
+  const GridPlace reach = reach_of(config.design.film, board.square_mm);
+  const auto place_the_rest = [&](const Eigen::Isometry3d& pose, bool turned) {
+    place_patches(subject.scan.grid, pose, turned, landing, reach, board.square_mm, subject.place);
+  };
+  if (settings.aligned) return place_the_rest(Eigen::Isometry3d::Identity(), false);
+  GridMatch match =
+      match_grid(subject.scan.grid, landing, reach, board.square_mm, subject.file.string());
   judge_match(subject, match, settings.file.mirrored, context);
   const Alignment alignment = align(subject.scan.grid, match, *subject.surface, landing);
   judge(subject, alignment, false, context);
   match.pose = alignment.pose;
+  subject.place = match.place;
+  place_the_rest(match.pose, match.turned);
   subject.match = match;
 }
 
@@ -128,35 +135,27 @@ double program_mark(const RunContext& context) {
   object.object = make_sample("pyramid");
   object.depth_mm = 4;
   const Surface surface(object.object.positions, object.object.triangles);
-  const CheckerboardDip dip = dip_checkerboard(checkered_film(small, 5), object, surface,
-                                               film_parameters(small), small.dip, context);
+  const CheckerboardDip dip = dip_checkerboard(checkered_film(small, black_board(5)), object,
+                                               surface, film_parameters(small), small.dip, context);
   double sum = 0;
   for (std::size_t v = 0; v < dip.film->position.size(); ++v)
     sum += double(v % 7 + 1) * (dip.film->position[v] - Vec3(0.3, 0.7, 0.1)).squaredNorm();
   return sum;
 }
 
-std::string fingerprint_of(const Subject& subject, const ScanSettings& settings,
+std::string fingerprint_of(const CalibrationObject& object, const Board& board,
                            const DesignOptions& design, double program) {
   Fingerprint print;
   print.add(program);
-  for (const Vec3& p : subject.scan.grid.position)
-    for (int k = 0; k < 3; ++k) print.add(p[k]);
-  for (std::size_t c = 0; c < subject.scan.grid.place.size(); ++c)
-    for (const int value :
-         {subject.scan.grid.place[c][0], subject.scan.grid.place[c][1], subject.scan.grid.patch[c]})
-      print.add(value);
-  for (const Vec3& p : subject.object.object.positions)
+  for (const Vec3& p : object.object.positions)
     for (int k = 0; k < 3; ++k) print.add(p[k]);
   for (const double value :
-       {subject.object.depth_mm, settings.file.square_mm, double(settings.aligned),
+       {object.depth_mm, board.square_mm, double(board.about_square), double(board.period),
         design.film.width_mm, design.film.height_mm, design.film.margin_mm,
         double(design.film.elements), design.film.grading, double(design.film.shape),
         design.dip.step_mm, double(design.dip.scheme), design.stiffness.filter_mm})
     print.add(value);
-  // The search begins to look for the pose where the given parameters laid it.
-  if (subject.match)
-    for (int i = 0; i < 12; ++i) print.add(subject.match->pose.matrix()(i % 3, i / 3));
+  for (const std::uint8_t ink : board.ink) print.add(ink);
   return print.text();
 }
 
@@ -171,28 +170,80 @@ void number_namesakes(std::vector<Subject>& subjects) {
   }
 }
 
-// Film coordinates by scan coordinates, per corner: how an error of the scan shows on the film.
-using WarpGradient = Eigen::Matrix<double, 2, 3>;
-std::vector<std::optional<WarpGradient>> warp_gradients(const Subject& subject,
-                                                        const CheckerboardDip& dip,
-                                                        const Eigen::Isometry3d& pose) {
-  constexpr double kShift_mm = 0.25;  // about as far as a cell of the film
-  std::vector<std::optional<WarpGradient>> gradients(subject.scan.grid.position.size(),
-                                                     WarpGradient(WarpGradient::Zero()));
-  for (int axis = 0; axis < 3; ++axis) {
-    std::array<WarpedGrid, 2> sides;
-    for (const int side : {0, 1}) {
-      Eigen::Isometry3d shifted = pose;
-      shifted.pretranslate((side == 0 ? -kShift_mm : kShift_mm) * Vec3::Unit(axis));
-      sides[std::size_t(side)] =
-          warp(moved(subject.scan.grid, shifted), *subject.surface, *dip.map, kReach_mm);
-    }
-    for (std::size_t c = 0; c < gradients.size(); ++c) {
-      if (!sides[0][c] || !sides[1][c]) gradients[c].reset();
-      if (gradients[c]) gradients[c]->col(axis) = (*sides[1][c] - *sides[0][c]) / (2 * kShift_mm);
-    }
+// The scan's corners that a dip lays down as well.
+struct Pairs {
+  std::vector<std::size_t> corner;
+  Eigen::Matrix3Xd scanned, landed;
+};
+
+Pairs pairs_of(const Subject& subject, const Landings& landings) {
+  Pairs pairs;
+  for (std::size_t c = 0; c < subject.place.size(); ++c)
+    if (subject.place[c] && landings.find(*subject.place[c]) != nullptr) pairs.corner.push_back(c);
+  const auto count = Eigen::Index(pairs.corner.size());
+  pairs.scanned.resize(3, count);
+  pairs.landed.resize(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::size_t c = pairs.corner[std::size_t(i)];
+    pairs.scanned.col(i) = subject.scan.grid.position[c];
+    pairs.landed.col(i) = landings.find(*subject.place[c])->position;
   }
-  return gradients;
+  return pairs;
+}
+
+// How much of each open motion is in a misfit. Motions that are nearly the same, as a turn of a
+// round object and one of the film under it, share alike.
+class OpenAmounts {
+ public:
+  explicit OpenAmounts(const Eigen::MatrixXd& motions)
+      : length_(motions.colwise().norm().cwiseMax(1e-12).transpose()) {
+    solver_.setThreshold(kNearlySame);
+    solver_.compute(motions * length_.cwiseInverse().asDiagonal());
+  }
+  Eigen::VectorXd of(const Eigen::VectorXd& misfit) const {
+    const Eigen::VectorXd amount = solver_.solve(misfit);
+    return amount.cwiseQuotient(length_);
+  }
+
+ private:
+  static constexpr double kNearlySame = 0.02;
+  Eigen::VectorXd length_;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_;
+};
+
+bool same(const Board& a, const Board& b) {
+  return a.square_mm == b.square_mm && a.about_square == b.about_square && a.period == b.period &&
+         a.ink == b.ink;
+}
+
+bool same(const FilmOptions& a, const FilmOptions& b) {
+  return a.width_mm == b.width_mm && a.height_mm == b.height_mm && a.margin_mm == b.margin_mm &&
+         a.shape == b.shape;
+}
+
+// Lays the scan on a dip's corners: as a whole, then so that what the film's place explains is left
+// to the film.
+Eigen::Isometry3d laid_on(const Subject& subject, const Board& board, const Landings& landings,
+                          Vec2& film_off_mm) {
+  constexpr int kRounds = 5;
+  constexpr std::size_t kFewest = 6;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  const Pairs pairs = pairs_of(subject, landings);
+  if (pairs.corner.size() < kFewest) return pose;
+  if (subject.match) pose.matrix() = Eigen::umeyama(pairs.scanned, pairs.landed, false);
+  std::vector<GridPlace> places;
+  for (const std::size_t c : pairs.corner) places.push_back(*subject.place[c]);
+  const bool pose_known = !subject.match;
+  const OpenAmounts amounts(open_motions(board, landings, places, pose_known));
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::Matrix3Xd left =
+        ((pose.linear() * pairs.scanned).colwise() + pose.translation()) - pairs.landed;
+    const Eigen::VectorXd amount = amounts.of(left.reshaped());
+    film_off_mm = amount.segment<2>(pose_known ? 0 : 6);
+    if (pose_known) break;
+    pose = moved_a_little(pose, -amount.head<3>(), -amount.segment<3>(3));
+  }
+  return pose;
 }
 
 }  // namespace
@@ -221,24 +272,70 @@ std::vector<double> errors_by_length(const Subject& subject,
   return errors;
 }
 
-Eigen::MatrixXd noise_gradient_of(const Subject& subject, const CheckerboardDip& dip,
-                                  const Comparison& comparison) {
-  const auto corners = warp_gradients(subject, dip, comparison.alignment.pose);
-  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(
-      Eigen::Index(subject.lengths.size()), 3 * Eigen::Index(subject.scan.grid.position.size()));
-  for (std::size_t i = 0; i < subject.lengths.size(); ++i) {
-    const auto from = std::size_t(subject.lengths[i].from);
-    const auto to = std::size_t(subject.lengths[i].to);
-    const auto &a = comparison.warped[from], &b = comparison.warped[to];
-    if (!a || !b) continue;
-    const Vec2 along = (*b - *a).normalized();
-    const auto row = Eigen::Index(i);
-    if (corners[from])
-      gradient.block<1, 3>(row, 3 * Eigen::Index(from)) = -along.transpose() * *corners[from];
-    if (corners[to])
-      gradient.block<1, 3>(row, 3 * Eigen::Index(to)) = along.transpose() * *corners[to];
+WarpedGrid warped_near(const Subject& subject, const Board& board, const Landings& landings) {
+  CornerGrid grid = subject.scan.grid;
+  if (subject.match) {
+    const GridLanding landing = [&](const GridPlace& place) -> std::optional<Vec3> {
+      const Landing* found = landings.find(place);
+      return found != nullptr ? std::optional<Vec3>(found->position) : std::nullopt;
+    };
+    grid = moved(grid, align(grid, *subject.match, *subject.surface, landing).pose);
   }
-  return gradient;
+  WarpedGrid warped(grid.position.size());
+  for (std::size_t c = 0; c < warped.size(); ++c) {
+    const Landing* landing = subject.place[c] ? landings.find(*subject.place[c]) : nullptr;
+    if (landing != nullptr)
+      warped[c] = board.on_film(*subject.place[c]) +
+                  by_object(*landing) * (grid.position[c] - landing->position);
+  }
+  return warped;
+}
+
+ScanMisfits misfits_of(const Subject& subject, const Board& board,
+                       const std::vector<const Landings*>& dips) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::size_t corners = subject.place.size();
+  std::vector<GridPlace> places;
+  for (const auto& place : subject.place) places.push_back(place.value_or(GridPlace{1 << 20, 0}));
+  ScanMisfits result;
+  result.misfits.value =
+      Eigen::MatrixXd::Constant(3 * Eigen::Index(corners), Eigen::Index(dips.size()), nan);
+  result.misfits.open = open_motions(board, dips.front() != nullptr ? *dips.front() : Landings(),
+                                     places, !subject.match);
+  if (dips.front() == nullptr) return result;
+  const Eigen::Isometry3d pose = laid_on(subject, board, *dips.front(), result.film_off_mm);
+  for (std::size_t d = 0; d < dips.size(); ++d)
+    for (std::size_t c = 0; c < corners && dips[d] != nullptr; ++c)
+      if (const Landing* landing = dips[d]->find(places[c]))
+        result.misfits.value.block<3, 1>(3 * Eigen::Index(c), Eigen::Index(d)) =
+            pose * subject.scan.grid.position[c] - landing->position;
+  return result;
+}
+
+ScanSetup scan_setup(const JobConfig& config, const CalibrationRequest& request) {
+  ScanSetup setup = {config,
+                     {{request.scan_units, request.square_mm, request.mirrored},
+                      board_named(request.board, request.square_mm),
+                      request.aligned}};
+  setup.settings.file.square_mm = setup.settings.board.square_mm;
+  std::string first;
+  for (const std::string& text : request.scans) {
+    if (!is_measured_dip(text)) continue;
+    const MeasuredDip dip = read_measured_dip(text);
+    FilmOptions& film = setup.config.design.film;
+    if (!first.empty() && (!same(dip.board, setup.settings.board) || !same(dip.film, film)))
+      throw InputError(
+          fmt::format("{}: another board or sheet was dipped than in {}; calibrate them one by one",
+                      text, first));
+    first = text;
+    setup.settings.board = dip.board;
+    setup.settings.file.square_mm = dip.board.square_mm;
+    film.width_mm = dip.film.width_mm;
+    film.height_mm = dip.film.height_mm;
+    film.margin_mm = dip.film.margin_mm;
+    film.shape = dip.film.shape;
+  }
+  return setup;
 }
 
 std::vector<Subject> load_subjects(const std::vector<std::string>& texts,
@@ -249,14 +346,23 @@ std::vector<Subject> load_subjects(const std::vector<std::string>& texts,
   std::vector<Subject> subjects;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     context.progress("reading scans", double(i) / double(texts.size()));
-    const SubjectText text = split(texts[i]);
     Subject subject;
-    subject.file = text.file;
-    subject.scan = read_scan(text.file, settings.file);
-    subject.object = calibration_object(text.object, config, context);
+    std::string object;
+    if (is_measured_dip(texts[i])) {
+      MeasuredDip dip = read_measured_dip(texts[i]);
+      object = fmt::format("{}@{}", dip.object, dip.depth_mm);
+      subject.file = texts[i];
+      subject.scan = std::move(dip.scan);
+    } else {
+      const SubjectText text = split(texts[i]);
+      object = text.object;
+      subject.file = text.file;
+      subject.scan = read_scan(text.file, settings.file, context);
+    }
+    subject.object = calibration_object(object, config, context);
     subject.lengths = grid_lengths(subject.scan.grid);
     find_how_it_lies(subject, settings, config, context);
-    subject.fingerprint = fingerprint_of(subject, settings, config.design, program);
+    subject.fingerprint = fingerprint_of(subject.object, settings.board, config.design, program);
     subjects.push_back(std::move(subject));
   }
   number_namesakes(subjects);

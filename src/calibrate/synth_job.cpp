@@ -7,6 +7,7 @@
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "calibrate/calibrate.h"
+#include "calibrate/landings.h"
 #include "calibrate/resolution.h"
 #include "calibrate/synthetic.h"
 #include "scan/read_scan.h"
@@ -37,18 +38,18 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
   // Finer than any film that calibrate dips with the same configuration.
   const DesignOptions fine = finer_film(finer_film(config.design));
   const FilmParameters truth = film_parameters(config.design);
-  const CheckeredFilm film = checkered_film(fine, request.square_mm);
+  const Board board = board_named(request.board, request.square_mm);
+  const CheckeredFilm film = checkered_film(fine, board);
   OutputFolder folder(config.output, config.earlier_result);
   JobResult result;
-  const GridPlace reach = {int(0.5 * config.design.film.width_mm / request.square_mm),
-                           int(0.5 * config.design.film.height_mm / request.square_mm)};
+  const GridPlace reach = reach_of(config.design.film, board.square_mm);
   nlohmann::ordered_json scans = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < request.scans.size(); ++i) {
     const CalibrationObject object = calibration_object(request.scans[i], config, context);
     const Surface surface(object.object.positions, object.object.triangles);
     const CheckerboardDip dip = dip_checkerboard(film, object, surface, truth, fine.dip, context);
     const CornerGrid grid = synthetic_scan(
-        dip, object, reach,
+        dip.landing(object), reach,
         {request.noise_mm, request.missing_share, request.seed * 1000 + i, request.aligned});
     const std::string comment = fmt::format(
         "{}: {} dipped {:g} mm, z_stretch {:g}, ink_stiffness_ratio {:g}, poisson {:g}, noise {:g} "

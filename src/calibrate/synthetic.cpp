@@ -39,12 +39,11 @@ class Chance {
 
 }  // namespace
 
-CornerGrid synthetic_scan(const CheckerboardDip& dip, const CalibrationObject& object,
-                          const GridPlace& reach, const SyntheticOptions& options) {
+CornerGrid synthetic_scan(const GridLanding& landing, const GridPlace& reach,
+                          const SyntheticOptions& options) {
   Chance chance(options.seed);
   const Eigen::Isometry3d random_pose = chance.pose();
   const Eigen::Isometry3d pose = options.aligned ? Eigen::Isometry3d::Identity() : random_pose;
-  const GridLanding landing = dip.landing(object);
   CornerGrid grid;
   for (int row = -reach[1]; row <= reach[1]; ++row)
     for (int column = -reach[0]; column <= reach[0]; ++column) {

@@ -3,8 +3,7 @@
 
 #include <cstdint>
 
-#include "calibrate/checkerboard_dip.h"
-#include "scan/corner_grid.h"
+#include "scan/registration.h"
 
 namespace hydrodip {
 
@@ -17,7 +16,7 @@ struct SyntheticOptions {
 
 // The corners that a dip laid on the object, as a scanner would find them; places are the film's
 // own. The same for the same seed on every machine.
-CornerGrid synthetic_scan(const CheckerboardDip& dip, const CalibrationObject& object,
-                          const GridPlace& reach, const SyntheticOptions& options);
+CornerGrid synthetic_scan(const GridLanding& landing, const GridPlace& reach,
+                          const SyntheticOptions& options);
 
 }  // namespace hydrodip

@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "model_io/load.h"
 #include "model_io/text.h"
+#include "scan/dark_squares.h"
 
 namespace hydrodip {
 
@@ -73,6 +74,32 @@ CornerGrid read_quads(const std::filesystem::path& file) {
         "checkerboard: delete the others",
         file.string(), triangles + others, mesh.faces.size()));
   return grid_of_quads(mesh.positions, quads, file.string());
+}
+
+// ---- scans with colours ----
+
+bool has_quads(const std::filesystem::path& file) {
+  const PolygonMesh mesh = load_polygons(file);
+  return std::any_of(mesh.faces.begin(), mesh.faces.end(),
+                     [](const auto& face) { return face.size() == 4; });
+}
+
+CornerGrid read_colours(const std::filesystem::path& file, double square_mm,
+                        const std::string& units, const RunContext& context) {
+  const LoadedObject loaded = load_object(file, {units, {}}, context.quiet());
+  if (!loaded.object.has_appearance())
+    throw InputError(fmt::format(
+        "{}: a scan of triangles needs its colours, as a texture or of its vertices{}; or draw a "
+        "quad mesh over it, a face for each square (docs/calibration.md)",
+        file.string(),
+        loaded.picture_problems.empty() ? "" : ": " + loaded.picture_problems.front()));
+  CornerGrid grid = grid_of_dark_squares(find_dark_squares(loaded.object, square_mm));
+  if (grid.position.size() < kFewestCorners)
+    throw InputError(fmt::format(
+        "{}: no dark squares of {:g} mm, each alone, are to be seen on it; check --square and "
+        "--scan-units, or draw a quad mesh over it (docs/calibration.md)",
+        file.string(), square_mm));
+  return grid;
 }
 
 // ---- tables ----
@@ -178,6 +205,24 @@ bool says_synthetic(std::string_view text) {
 }
 
 }  // namespace
+
+Scan read_scan(const std::filesystem::path& file, const ScanOptions& options,
+               const RunContext& context) {
+  const std::string extension = lower_extension(file);
+  const bool may_be_quads = extension == ".obj" || extension == ".ply";
+  const bool is_table = extension == ".csv" || extension == ".txt" || extension == ".tsv";
+  if (is_table || (may_be_quads && has_quads(file))) return read_scan(file, options);
+  find_unit(options.units);
+  const std::vector<std::uint8_t> bytes = read_file(file);
+  Scan scan;
+  scan.synthetic = says_synthetic({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  scan.grid = read_colours(file, options.square_mm, options.units, context);
+  if (options.mirrored) {
+    for (Vec3& p : scan.grid.position) p.x() = -p.x();
+    for (GridPlace& place : scan.grid.place) place[0] = -place[0];
+  }
+  return scan;
+}
 
 Scan read_scan(const std::filesystem::path& file, const ScanOptions& options) {
   const Unit& unit = find_unit(options.units);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "base/context.h"
 #include "scan/corner_grid.h"
 
 namespace hydrodip {
@@ -25,6 +26,12 @@ struct Scan {
 // Throws InputError for what is no grid of at least 4 corners, and where the corners' distances say
 // that the unit is wrong.
 Scan read_scan(const std::filesystem::path& file, const ScanOptions& options);
+
+// The same, and also scans with their colours, in any format of models that has such: triangles
+// with a texture or coloured vertices, on which the corners of dark squares are found (of a board
+// on which these touch no other: dark_squares.h). Throws InputError if it shows too few.
+Scan read_scan(const std::filesystem::path& file, const ScanOptions& options,
+               const RunContext& context);
 
 // The first line of a computed scan, after its '#'.
 extern const char* const kSyntheticMark;

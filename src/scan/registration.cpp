@@ -174,16 +174,98 @@ std::array<Vec3, 2> tangents(const Vec3& normal) {
   return {first, normal.cross(first)};
 }
 
-Eigen::Isometry3d small_motion(const Eigen::Matrix<double, 6, 1>& step) {
-  const Vec3 turn = step.head<3>();
+// Finds how one patch lies, by trying all that one of its corners could be.
+class PatchPlacer {
+ public:
+  PatchPlacer(const CornerGrid& grid, const Eigen::Isometry3d& pose, bool turned,
+              const Landings& landings, double square_mm)
+      : grid_(grid), pose_(pose), turned_(turned), landings_(landings), square_mm_(square_mm) {}
+
+  // The corners' places, or nothing.
+  std::vector<GridPlace> places(const std::vector<std::size_t>& corners) const {
+    std::vector<GridPlace> best;
+    double least_mm = kLargestMisfit * square_mm_;
+    for (int turns = 0; turns < 4; ++turns)
+      for (int row = landings_.low()[1]; row <= landings_.high()[1]; ++row)
+        for (int column = landings_.low()[0]; column <= landings_.high()[0]; ++column) {
+          const Vec3* lands = landings_.find({column, row});
+          if (lands == nullptr) continue;
+          if ((*lands - pose_ * grid_.position[anchor(corners)]).norm() > square_mm_) continue;
+          std::vector<GridPlace> candidate = laid(corners, turns, {column, row});
+          const double misfit_mm = misfit(corners, candidate);
+          if (misfit_mm < least_mm * (1 - 1e-6)) {
+            least_mm = misfit_mm;
+            best = std::move(candidate);
+          }
+        }
+    return best;
+  }
+
+ private:
+  // One amidst them, which lands if any does.
+  static std::size_t anchor(const std::vector<std::size_t>& corners) {
+    return corners[corners.size() / 2];
+  }
+
+  std::vector<GridPlace> laid(const std::vector<std::size_t>& corners, int turns,
+                              const GridPlace& at) const {
+    std::vector<GridPlace> places;
+    for (const std::size_t c : corners) {
+      GridPlace place = grid_.place[c];
+      if (turned_) place[0] = -place[0];
+      places.push_back(hydrodip::turned(place, turns));
+    }
+    const GridPlace from = places[places.size() / 2];
+    const GridPlace shift = {at[0] - from[0], at[1] - from[1]};
+    for (GridPlace& place : places) place = {place[0] + shift[0], place[1] + shift[1]};
+    return places;
+  }
+
+  // Root mean square; endless if too few of them land.
+  double misfit(const std::vector<std::size_t>& corners,
+                const std::vector<GridPlace>& places) const {
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vec3* lands = landings_.find(places[i]);
+      if (lands == nullptr) continue;
+      sum += (*lands - pose_ * grid_.position[corners[i]]).squaredNorm();
+      ++count;
+    }
+    return count < kLeastOverlap * double(corners.size()) ? 1e300 : std::sqrt(sum / count);
+  }
+
+  const CornerGrid& grid_;
+  const Eigen::Isometry3d& pose_;
+  bool turned_;
+  const Landings& landings_;
+  double square_mm_;
+};
+
+}  // namespace
+
+Eigen::Isometry3d moved_a_little(const Eigen::Isometry3d& pose, const Vec3& shift,
+                                 const Vec3& turn) {
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
   const double angle = turn.norm();
   if (angle > 0) motion.rotate(Eigen::AngleAxisd(angle, turn / angle));
-  motion.pretranslate(step.tail<3>());
-  return motion;
+  motion.pretranslate(shift);
+  return motion * pose;
 }
 
-}  // namespace
+void place_patches(const CornerGrid& grid, const Eigen::Isometry3d& pose, bool turned,
+                   const GridLanding& landing, const GridPlace& reach, double square_mm,
+                   std::vector<std::optional<GridPlace>>& place) {
+  const Landings landings(landing, reach);
+  if (landings.empty()) return;
+  std::map<int, std::vector<std::size_t>> patches;
+  for (std::size_t c = 0; c < grid.patch.size(); ++c)
+    if (!place[c]) patches[grid.patch[c]].push_back(c);
+  const PatchPlacer placer(grid, pose, turned, landings, square_mm);
+  for (const auto& [number, corners] : patches) {
+    const std::vector<GridPlace> found = placer.places(corners);
+    for (std::size_t i = 0; i < found.size(); ++i) place[corners[i]] = found[i];
+  }
+}
 
 CornerGrid moved(const CornerGrid& grid, const Eigen::Isometry3d& pose) {
   CornerGrid result = grid;
@@ -244,7 +326,7 @@ Alignment align(const CornerGrid& grid, const GridMatch& match, const Surface& s
     for (int k = 0; k < 6; ++k) equations.matrix(k, k) *= 1 + 1e-12;
     const Eigen::Matrix<double, 6, 1> step = equations.matrix.ldlt().solve(equations.right);
     if (!step.allFinite()) break;
-    pose = small_motion(step) * pose;
+    pose = moved_a_little(pose, step.tail<3>(), step.head<3>());
     if (step.norm() < kSettled_mm) break;
   }
   Alignment alignment = as_it_lies(moved(grid, pose), surface);

@@ -12,8 +12,8 @@
 
 namespace hydrodip {
 
-// Where the printed corner of an absolute place (square * place on the film, from its centre) lies
-// on the object, by a simulation; nothing if it stays off the object.
+// Where the printed corner of an absolute place (columns and rows of the board, from its centre)
+// lies on the object, by a simulation; nothing if it stays off the object.
 using GridLanding = std::function<std::optional<Vec3>(const GridPlace&)>;
 
 // How a scan's own rows and columns lie on the film.
@@ -33,6 +33,17 @@ struct GridMatch {
 // than 6 corners hang together or nothing fits to half a square.
 GridMatch match_grid(const CornerGrid& grid, const GridLanding& landing, const GridPlace& reach,
                      double square_mm, const std::string& name);
+
+// Absolute places for the corners that have none yet, patch by patch, once the scan lies in the
+// posed-object frame: the quarter turn and shift with which a patch lies nearest to where its
+// corners land. None for a patch that nowhere comes as near as half a square.
+void place_patches(const CornerGrid& grid, const Eigen::Isometry3d& pose, bool turned,
+                   const GridLanding& landing, const GridPlace& reach, double square_mm,
+                   std::vector<std::optional<GridPlace>>& place);
+
+// Moves the pose by a small turn about the origin (rad) and a shift (mm).
+Eigen::Isometry3d moved_a_little(const Eigen::Isometry3d& pose, const Vec3& shift,
+                                 const Vec3& turn);
 
 struct Alignment {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // scan to posed object

@@ -11,11 +11,11 @@
 namespace hydrodip {
 namespace {
 
-TEST(CheckerboardTest, SquaresAlternateAroundTheCentreAndStayInsideTheTape) {
+TEST(BlackBoardTest, SquaresAlternateAroundTheCentreAndStayInsideTheTape) {
   FilmOptions film;
   film.width_mm = 100;
   film.height_mm = 80;
-  const Checkerboard board = checkerboard_to_print(film, 5);
+  const PrintedBoard board = print_board(film, black_board(5));
   const auto inked = [&](double x, double y) {
     const Vec2 p = board.raster.to_pixel({x, y});
     return board.inks.pixel(int(p.x()), int(p.y()))[3] == 255;
@@ -32,6 +32,47 @@ TEST(CheckerboardTest, SquaresAlternateAroundTheCentreAndStayInsideTheTape) {
   EXPECT_NEAR(sum * pixel_mm * pixel_mm, 0.5 * 80 * 60, 20);
 }
 
+// So that no scan of a shape that looks alike from several sides can be read the wrong way round.
+TEST(TintBoardTest, LooksTheSameAfterAQuarterTurnAndInAMirror) {
+  const Board board = tint_board(4);
+  for (int column = -9; column <= 9; ++column)
+    for (int row = -9; row <= 9; ++row) {
+      EXPECT_EQ(board.ink_of({column, row}), board.ink_of({-row, column}));
+      EXPECT_EQ(board.ink_of({column, row}), board.ink_of({-column, row}));
+    }
+  // The middle of a square is the film's centre: turned about it, corners are corners.
+  EXPECT_EQ(board.on_film({0, 0}), Vec2(-2, -2));
+  EXPECT_EQ(board.on_film({1, 1}), Vec2(2, 2));
+  EXPECT_EQ(board.square_at({0, 0}), (GridPlace{0, 0}));
+  EXPECT_EQ(board.square_at({-2.1, 1.9}), (GridPlace{-1, 0}));
+}
+
+TEST(TintBoardTest, EveryCornerIsADarkSquares) {
+  const Board board = tint_board(5);
+  for (int column = -9; column <= 9; ++column)
+    for (int row = -9; row <= 9; ++row) {
+      int dark = 0;
+      for (const int dx : {-1, 0})
+        for (const int dy : {-1, 0}) dark += board.ink_of({column + dx, row + dy}) > 200;
+      EXPECT_EQ(dark, 1);
+    }
+}
+
+TEST(TintBoardTest, IsPrintedAsItIsSimulated) {
+  FilmOptions film;
+  film.width_mm = 101;
+  film.height_mm = 80;
+  const Board board = tint_board(5);
+  const PrintedBoard printed = print_board(film, board);
+  for (double x = -37.3; x < 38; x += 1.9)
+    for (double y = -27.2; y < 28; y += 1.7) {
+      const Vec2 p = printed.raster.to_pixel({x, y});
+      EXPECT_EQ(printed.inks.pixel(int(p.x()), int(p.y()))[3],
+                board.ink_of(board.square_at({x, y})))
+          << x << " " << y;
+    }
+}
+
 TEST(CalibrationObjectTest, DepthsAndNames) {
   RunContext context;
   const JobConfig config = scans::quick_config();
@@ -45,7 +86,7 @@ TEST(SyntheticTest, SameSeedSameScanAndNoiseAsAsked) {
   RunContext context;
   const scans::Truth truth("sphere", {0.65, 30, 0.1}, context);
   const auto scan = [&](const SyntheticOptions& options) {
-    return synthetic_scan(truth.dip, truth.object, {12, 12}, options);
+    return synthetic_scan(truth.dip.landing(truth.object), {12, 12}, options);
   };
   const CornerGrid clean = scan({.aligned = true});
   const CornerGrid noisy = scan({.noise_mm = 0.05, .seed = 3, .aligned = true});
@@ -59,18 +100,20 @@ TEST(SyntheticTest, SameSeedSameScanAndNoiseAsAsked) {
   EXPECT_NEAR(std::sqrt(sum / (3.0 * double(clean.position.size()))), 0.05, 0.01);
   const CornerGrid gaps = scan({.missing_share = 0.33, .seed = 5});
   EXPECT_NEAR(double(gaps.position.size()) / double(clean.position.size()), 0.67, 0.15);
-  // A corner of the film in the middle lands on the lowest point.
-  for (std::size_t c = 0; c < clean.place.size(); ++c) {
-    if (clean.place[c] != GridPlace{0, 0}) continue;
-    EXPECT_LT(clean.position[c].norm(), 0.05);
-  }
+  // The film's middle is the middle of a square, and lands on the lowest point.
+  Vec3 middle = Vec3::Zero();
+  for (std::size_t c = 0; c < clean.place.size(); ++c)
+    for (const GridPlace& around : {GridPlace{0, 0}, {1, 0}, {0, 1}, {1, 1}})
+      if (clean.place[c] == around) middle += clean.position[c] / 4;
+  EXPECT_LT(middle.head<2>().norm(), 0.05);
 }
 
 class KitShapeTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(KitShapeTest, IsOneClosedBodyWhoseDippedSideIsTheSamples) {
   const std::string name = GetParam();
-  Object shape = kit_shape(name);
+  const KitShape& known = *find_shape(name);
+  Object shape = kit_shape(known);
   // Every edge twice, once in each direction.
   std::map<std::pair<int, int>, int> edges;
   for (const Triangle& t : shape.triangles)
@@ -90,14 +133,11 @@ TEST_P(KitShapeTest, IsOneClosedBodyWhoseDippedSideIsTheSamples) {
   // Hung up again, it is the sample below the depth of its dip.
   const double top = shape.bounds().max.z();
   for (Vec3& p : shape.positions) p = Vec3(p.x(), -p.y(), top - p.z());
-  const Object sample = make_sample(name);
+  const TriangleMesh sample = mesh_of(known);
   const Surface a(shape.positions, shape.triangles), b(sample.positions, sample.triangles);
-  double depth = 0;
-  for (const KitShape& known : kit_shapes())
-    if (name == known.name) depth = known.depth_mm;
   int compared = 0;
   for (const Vec3& p : sample.positions) {
-    if (p.z() > depth) continue;
+    if (p.z() > known.depth_mm) continue;
     const auto hit = a.closest_point(p, 1);
     ASSERT_TRUE(hit);
     EXPECT_LT(hit->t, 0.02);
@@ -106,7 +146,8 @@ TEST_P(KitShapeTest, IsOneClosedBodyWhoseDippedSideIsTheSamples) {
   EXPECT_GT(compared, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, KitShapeTest, testing::Values("sphere", "pyramid", "ellipsoid"));
+INSTANTIATE_TEST_SUITE_P(All, KitShapeTest,
+                         testing::Values("sphere-90", "pyramid-90", "ellipsoid-135"));
 
 }  // namespace
 }  // namespace hydrodip

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <random>
 
@@ -30,22 +31,23 @@ FitOptions wide() {
   return options;
 }
 
-// Errors of a scan whose lengths carry some fixed noise.
-LengthErrors scan_with(const FitPoint& truth, const Eigen::VectorXd& noise, int* calls = nullptr) {
+// Misfits of a scan whose rows carry some fixed noise.
+MisfitsAt scan_with(const FitPoint& truth, const Eigen::VectorXd& noise, int* calls = nullptr,
+                    const Eigen::MatrixXd& open = Eigen::MatrixXd(kLengths, 0)) {
   return [=](const std::vector<FitPoint>& points) {
     if (calls) *calls += int(points.size());
     Eigen::MatrixXd errors(kLengths, Eigen::Index(points.size()));
     for (std::size_t p = 0; p < points.size(); ++p)
       errors.col(Eigen::Index(p)) = lengths_at(points[p], truth) + noise;
-    return errors;
+    return Misfits{errors, open};
   };
 }
 
 TEST(FitTest, FindsTheTruthFromAfar) {
   const FitPoint truth(0.65, 0.18, 0.1);
   int calls = 0;
-  const Fit fit = fit_parameters({0.8, 0.3, 0.3},
-                                 scan_with(truth, Eigen::VectorXd::Zero(kLengths), &calls), wide());
+  const FilmFit fit = fit_parameters(
+      {0.8, 0.3, 0.3}, scan_with(truth, Eigen::VectorXd::Zero(kLengths), &calls), wide());
   EXPECT_TRUE(fit.settled);
   EXPECT_LT((fit.point - truth).norm(), 2e-3);
   EXPECT_LE(calls, 10 * fit.rounds);
@@ -53,7 +55,7 @@ TEST(FitTest, FindsTheTruthFromAfar) {
 
 TEST(FitTest, StaysWithinTheRangeAndSaysSo) {
   const FitPoint truth(0.65, 0.18, -0.05);
-  const Fit fit =
+  const FilmFit fit =
       fit_parameters({0.6, 0.2, 0.1}, scan_with(truth, Eigen::VectorXd::Zero(kLengths)), wide());
   EXPECT_GE(fit.point[2], 0);
   EXPECT_NEAR(fit.point[2], 0, 1e-12);
@@ -66,7 +68,7 @@ TEST(FitTest, AKnownParameterStaysAndCostsNothing) {
   FitOptions options = wide();
   options.low[2] = options.high[2] = 0.1;
   int calls = 0;
-  const Fit fit = fit_parameters(
+  const FilmFit fit = fit_parameters(
       {0.75, 0.25, 0.1}, scan_with(truth, Eigen::VectorXd::Zero(kLengths), &calls), options);
   EXPECT_DOUBLE_EQ(fit.point[2], 0.1);
   EXPECT_LT((fit.point - truth).norm(), 2e-3);
@@ -77,9 +79,39 @@ TEST(FitTest, UnknownLengthsAreLeftOut) {
   const FitPoint truth(0.65, 0.18, 0.1);
   Eigen::VectorXd noise = Eigen::VectorXd::Zero(kLengths);
   for (int i = 0; i < kLengths; i += 3) noise[i] = std::nan("");
-  const Fit fit = fit_parameters({0.6, 0.2, 0.2}, scan_with(truth, noise), wide());
+  const FilmFit fit = fit_parameters({0.6, 0.2, 0.2}, scan_with(truth, noise), wide());
   EXPECT_LT((fit.point - truth).norm(), 2e-3);
   EXPECT_TRUE(std::isnan(fit.residual[0]));
+}
+
+// However much of what nobody has measured is in a scan, the answer and its noise stay.
+TEST(FitTest, OpenMotionsDoNotMatter) {
+  const FitPoint truth(0.65, 0.18, 0.1);
+  const Eigen::MatrixXd open = Eigen::MatrixXd::Random(kLengths, 4);
+  const Eigen::VectorXd noise = 1e-3 * Eigen::VectorXd::Random(kLengths);
+  const FilmFit still =
+      fit_parameters({0.6, 0.2, 0.2}, scan_with(truth, noise, nullptr, open), wide());
+  const FilmFit moved = fit_parameters(
+      {0.6, 0.2, 0.2},
+      scan_with(truth, noise + open * Eigen::Vector4d(1, -2, 0.5, 3), nullptr, open), wide());
+  EXPECT_LT((still.point - moved.point).norm(), 1e-6);
+  EXPECT_NEAR(certainty(still).noise_mm, certainty(moved).noise_mm, 1e-7);
+  EXPECT_EQ(still.open, 4u);
+}
+
+// Answers near each other are read off the same simulations.
+TEST(FitTest, StencilsLieOnALattice) {
+  const FitPoint widest = wide().step;
+  const FitPoint node = stencil_center({0.65, 0.04, 0.1}, widest);
+  EXPECT_EQ(node, stencil_center({0.651, 0.0405, 0.102}, widest));
+  EXPECT_EQ(node, stencil_center(node, widest));
+  // Wherever the answer is, a node is no further than its stencil reaches.
+  for (double ratio = 1.2; ratio < 5000; ratio *= 1.1) {
+    const FitPoint point = to_fit({0.617, ratio, 0.233});
+    const FitPoint center = stencil_center(point, widest);
+    const FitPoint off = (point - center).cwiseQuotient(stencil_step(center, widest));
+    EXPECT_LT(off.cwiseAbs().maxCoeff(), 1.5) << ratio;
+  }
 }
 
 // 95 % intervals hold the truth 95 times in 100; binomial, 4 standard deviations of leeway.
@@ -88,19 +120,14 @@ TEST(CertaintyTest, IntervalsCoverTheTruthAsOftenAsTheySay) {
   constexpr int kSeeds = 400;
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0, 1);
-  // Each length sees two of the noise's coordinates, as edges do.
-  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(kLengths, kLengths / 2 + 1);
-  for (int i = 0; i < kLengths; ++i) {
-    gradient(i, i / 2) = 1;
-    gradient(i, i / 2 + 1) = -0.6;
-  }
+  const Eigen::MatrixXd open = Eigen::MatrixXd::Random(kLengths, 10);
   std::array<int, 3> covered{};
   double noise_mm = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {
-    Eigen::VectorXd corners(gradient.cols());
-    for (double& c : corners) c = 0.01 * normal(random);
-    const Fit fit = fit_parameters(truth, scan_with(truth, gradient * corners), wide());
-    const Certainty found = certainty(fit, gradient);
+    Eigen::VectorXd noise(kLengths);
+    for (double& n : noise) n = 0.01 * normal(random);
+    const FilmFit fit = fit_parameters(truth, scan_with(truth, noise, nullptr, open), wide());
+    const Certainty found = certainty(fit);
     noise_mm += found.noise_mm / kSeeds;
     const FilmParameters t = from_fit(truth);
     covered[0] += found.low.z_stretch <= t.z_stretch && t.z_stretch <= found.high.z_stretch;
@@ -113,64 +140,71 @@ TEST(CertaintyTest, IntervalsCoverTheTruthAsOftenAsTheySay) {
   for (const int count : covered) EXPECT_NEAR(count, 0.95 * kSeeds, leeway);
 }
 
+// A fit whose rows are straight in the parameters.
+FilmFit straight_fit(const FitPoint& answer, const Eigen::MatrixX3d& jacobian,
+                     const Eigen::VectorXd& residual) {
+  FitOptions options = wide();
+  options.low = FitPoint(0, 1e-4, 0);
+  options.high = FitPoint(5, 1, 0.48);
+  return fit_parameters(
+      answer,
+      [&](const std::vector<FitPoint>& points) {
+        Eigen::MatrixXd values(jacobian.rows(), Eigen::Index(points.size()));
+        for (std::size_t p = 0; p < points.size(); ++p)
+          values.col(Eigen::Index(p)) = residual + jacobian * (points[p] - answer);
+        return Misfits{values, Eigen::MatrixXd(jacobian.rows(), 0)};
+      },
+      options);
+}
+
+// Residuals at right angles to all that the parameters do, so that the answer is as it is.
+Eigen::VectorXd unexplained(const Eigen::MatrixX3d& jacobian, double size) {
+  const Eigen::VectorXd random = Eigen::VectorXd::Random(jacobian.rows());
+  const Eigen::VectorXd left = random - jacobian * jacobian.householderQr().solve(random).eval();
+  return size * left / left.norm() * std::sqrt(double(left.size()));
+}
+
 TEST(CertaintyTest, ARatioThatNothingBoundsIsUnbounded) {
-  Fit fit;
-  fit.point = FitPoint(0.65, 0.05, 0.1);
-  fit.free = {true, true, true};
-  fit.residual = Eigen::VectorXd::Constant(30, 0.05);
-  fit.jacobian = Eigen::MatrixX3d::Random(30, 3);
-  fit.jacobian.col(1) *= 0.1;
-  const Certainty found = certainty(fit, Eigen::MatrixXd::Identity(30, 30));
+  Eigen::MatrixX3d jacobian = Eigen::MatrixX3d::Random(30, 3);
+  jacobian.col(1) *= 0.1;
+  const Certainty found =
+      certainty(straight_fit({0.65, 0.05, 0.1}, jacobian, unexplained(jacobian, 0.05)));
   EXPECT_TRUE(std::isinf(found.high.stiffness_ratio));
   EXPECT_GE(found.low.stiffness_ratio, 1);
 }
 
-// Lengths that are wrong just as another parameter would make them move the answer by that much.
-TEST(CertaintyTest, DoubtsWidenTheIntervalsByWhatTheyDoToTheAnswer) {
-  Fit fit;
-  fit.point = FitPoint(0.6, 0.2, 0.2);
-  fit.free = {true, true, true};
-  fit.jacobian = Eigen::MatrixX3d::Random(40, 3);
-  fit.residual = Eigen::VectorXd::Zero(40);
-  const Eigen::Vector3d moved(0.01, 0.02, 0.03);
-  const Certainty sure = certainty(fit, Eigen::MatrixXd::Identity(40, 40), fit.jacobian * moved);
-  EXPECT_NEAR(sure.low.z_stretch, 0.59, 1e-9);
-  EXPECT_NEAR(sure.high.z_stretch, 0.61, 1e-9);
-  EXPECT_NEAR(sure.low.stiffness_ratio, 1 / (0.22 * 0.22), 1e-6);
-  EXPECT_NEAR(sure.high.stiffness_ratio, 1 / (0.18 * 0.18), 1e-6);
-  EXPECT_NEAR(sure.low.poisson, 0.17, 1e-9);
-  EXPECT_NEAR(sure.high.poisson, 0.23, 1e-9);
+// Where rows are straight, the profile of the likelihood is the curvature's parabola.
+TEST(CertaintyTest, ProfileAndCurvatureAgreeWhereAllIsStraight) {
+  const Eigen::MatrixX3d jacobian = Eigen::MatrixX3d::Random(200, 3);
+  const FitPoint answer(0.65, 0.3, 0.2);
+  const FilmFit fit = straight_fit(answer, jacobian, unexplained(jacobian, 0.05));
+  const Certainty found = certainty(fit);
+  const FitPoint half = 1.96 * found.covariance.diagonal().cwiseSqrt();
+  EXPECT_LT((fit.point - answer).norm(), 1e-6);
+  EXPECT_NEAR(found.low.z_stretch, answer[0] - half[0], 1e-3 * half[0]);
+  EXPECT_NEAR(found.high.z_stretch, answer[0] + half[0], 1e-3 * half[0]);
+  EXPECT_NEAR(1 / std::sqrt(found.low.stiffness_ratio), answer[1] + half[1], 1e-3 * half[1]);
+  EXPECT_NEAR(found.high.poisson, answer[2] + half[2], 1e-3 * half[2]);
+  // And two parameters' joint distance is that of their covariance.
+  const Eigen::Vector2d way(0.004, -0.003);
+  Eigen::Matrix2d both;
+  both << found.covariance(0, 0), found.covariance(0, 2), found.covariance(2, 0),
+      found.covariance(2, 2);
+  EXPECT_NEAR(joint_distance(fit, found.noise_mm, 0, answer[0] + way[0], 2, answer[2] + way[1]),
+              std::sqrt(way.dot(both.inverse() * way)), 1e-3);
 }
 
-// Lengths that show noise the less, the larger the first parameter is: least squares answers too
-// high on average, by what is predicted (to first order; the rest is what remains of 400 seeds).
-TEST(NoiseBiasTest, IsHowFarNoiseMovesTheAnswerOnAverage) {
-  const FitPoint truth(0.65, 0.25, 0.2);
-  constexpr int kSeeds = 400;
-  constexpr double kNoise = 0.03;
-  const auto shown = [](const FitPoint& point) { return 1 - 0.8 * point[0]; };
-  std::mt19937 random(1);
-  std::normal_distribution<double> normal(0, 1);
-  FitPoint mean = FitPoint::Zero(), predicted = FitPoint::Zero();
-  Eigen::VectorXd noise(kLengths);
-  const Eigen::MatrixXd independent = Eigen::MatrixXd::Identity(kLengths, kLengths);
-  const LengthErrors errors = [&](const std::vector<FitPoint>& points) {
-    Eigen::MatrixXd list(kLengths, Eigen::Index(points.size()));
-    for (std::size_t p = 0; p < points.size(); ++p)
-      list.col(Eigen::Index(p)) = lengths_at(points[p], truth) + shown(points[p]) * noise;
-    return list;
-  };
-  const NoiseGradient gradient = [&](const FitPoint& point) {
-    return Eigen::MatrixXd(shown(point) * independent);
-  };
-  for (int seed = 0; seed < kSeeds; ++seed) {
-    for (double& n : noise) n = kNoise * normal(random);
-    const Fit fit = fit_parameters(truth, errors, wide());
-    mean += (fit.point - truth) / kSeeds;
-    predicted += noise_bias(fit, kNoise, gradient, wide().step) / kSeeds;
-  }
-  EXPECT_GT(predicted[0], 3e-4);
-  EXPECT_NEAR(mean[0], predicted[0], 0.4 * predicted[0]);
+// Rows that are wrong just as another parameter would make them move the answer by that much.
+TEST(CertaintyTest, DoubtsWidenTheIntervalsByWhatTheyDoToTheAnswer) {
+  const Eigen::MatrixX3d jacobian = Eigen::MatrixX3d::Random(40, 3);
+  const FilmFit fit = straight_fit({0.6, 0.2, 0.2}, jacobian, Eigen::VectorXd::Zero(40));
+  const Certainty sure = certainty(fit, jacobian * Eigen::Vector3d(0.01, 0.02, 0.03));
+  EXPECT_NEAR(sure.low.z_stretch, 0.59, 1e-6);
+  EXPECT_NEAR(sure.high.z_stretch, 0.61, 1e-6);
+  EXPECT_NEAR(sure.low.stiffness_ratio, 1 / (0.22 * 0.22), 1e-3);
+  EXPECT_NEAR(sure.high.stiffness_ratio, 1 / (0.18 * 0.18), 1e-3);
+  EXPECT_NEAR(sure.low.poisson, 0.17, 1e-6);
+  EXPECT_NEAR(sure.high.poisson, 0.23, 1e-6);
 }
 
 TEST(FitPointTest, ComesBack) {

@@ -12,8 +12,8 @@ TEST(CorrectionTest, LeadsToTheLimitOfErrorsThatFallAsTheSquareOfTheCells) {
   const auto on_cells_of = [&](double size) {
     return Eigen::VectorXd(limit + size * size * slope);
   };
-  const Eigen::VectorXd here = on_cells_of(0.4), fine = on_cells_of(0.2), finest = on_cells_of(0.1);
-  const Correction found = correction(here, fine, finest);
+  const Eigen::VectorXd here = on_cells_of(0.4);
+  const Correction found = correction(here, on_cells_of(0.2));
   EXPECT_LT((here + found.all - limit).norm(), 1e-12);
 }
 
@@ -25,7 +25,7 @@ TEST(CorrectionTest, DoubtReachesTheLimitOfErrorsThatFallAsTheCells) {
       return Eigen::VectorXd(limit + std::pow(size, order) * slope);
     };
     const Eigen::VectorXd here = on_cells_of(0.4);
-    const Correction found = correction(here, on_cells_of(0.2), on_cells_of(0.1));
+    const Correction found = correction(here, on_cells_of(0.2));
     const Eigen::ArrayXd missed = (here + found.all - limit).array().abs();
     EXPECT_TRUE((missed <= found.doubt.array().abs() + 1e-12).all()) << order;
   }

@@ -16,10 +16,13 @@ namespace hydrodip::scans {
 inline JobConfig quick_config() {
   JobConfig config;
   config.design.film.width_mm = config.design.film.height_mm = 110;
-  config.design.film.elements = 6000;
-  config.design.dip.step_mm = 0.4;
+  config.design.film.elements = 3000;
+  config.design.dip.step_mm = 0.5;
   return config;
 }
+
+inline Board board() { return tint_board(5); }
+inline ScanSettings settings() { return {{}, board(), false}; }
 
 // A dip of a kit shape on film finer than quick_config's, simulated once.
 struct Truth {
@@ -30,11 +33,12 @@ struct Truth {
   Truth(const std::string& name, const FilmParameters& parameters, const RunContext& context)
       : object(calibration_object(name, quick_config(), context)),
         surface(object.object.positions, object.object.triangles),
-        dip(dip_checkerboard(checkered_film(finer_film(quick_config().design), 5), object, surface,
-                             parameters, finer_film(quick_config().design).dip, context)) {}
+        dip(dip_checkerboard(checkered_film(finer_film(quick_config().design), board()), object,
+                             surface, parameters, finer_film(quick_config().design).dip, context)) {
+  }
 
   void write(const std::filesystem::path& file, const SyntheticOptions& options) const {
-    write_scan_table(file, synthetic_scan(dip, object, {12, 12}, options), kSyntheticMark);
+    write_scan_table(file, synthetic_scan(dip.landing(object), {12, 12}, options), kSyntheticMark);
   }
 };
 

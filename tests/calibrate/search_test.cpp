@@ -26,7 +26,7 @@ class SearchSlow : public testing::Test {
       truth(name).write(file, options);
       texts.push_back(name + "=" + file.string());
     }
-    return load_subjects(texts, {}, scans::quick_config(), context_);
+    return load_subjects(texts, scans::settings(), scans::quick_config(), context_);
   }
 
   static const scans::Truth& truth(const std::string& name) {
@@ -41,7 +41,8 @@ class SearchSlow : public testing::Test {
                         const std::vector<std::filesystem::path>& merged = {}) {
     SimulationStore store(folder_ / store_name, merged);
     RunContext context;
-    return Search(scanned, scans::quick_config().design, 5, options, store).run(context);
+    return Search(scanned, scans::quick_config().design, scans::board(), options, store)
+        .run(context);
   }
 
   static void expect_same(const Calibration& a, const Calibration& b) {
@@ -71,19 +72,19 @@ class OwnFilmSlow : public SearchSlow {
     config_.design.dip.step_mm = 0.5;
     object_ = calibration_object(name_, config_, context_);
     surface_.emplace(object_->object.positions, object_->object.triangles);
-    dip_ = dip_checkerboard(checkered_film(config_.design, 5), *object_, *surface_, kTruth,
-                            config_.design.dip, context_);
+    dip_ = dip_checkerboard(checkered_film(config_.design, scans::board()), *object_, *surface_,
+                            kTruth, config_.design.dip, context_);
   }
 
   Calibration fit(const SyntheticOptions& scan, SearchOptions options) {
     const std::filesystem::path file = folder_ / "own.csv";
-    write_scan_table(file, synthetic_scan(*dip_, *object_, {12, 12}, scan), kSyntheticMark);
+    write_scan_table(file, synthetic_scan(dip_->landing(*object_), {12, 12}, scan), kSyntheticMark);
     const std::vector<Subject> scanned =
-        load_subjects({name_ + "=" + file.string()}, {}, config_, context_);
+        load_subjects({name_ + "=" + file.string()}, scans::settings(), config_, context_);
     options.elements_factor = options.step_factor = 1;
     options.correct = false;
-    SimulationStore store(folder_ / (std::to_string(scan.seed) + ".jsonl"), {});
-    return Search(scanned, config_.design, 5, options, store).run(context_);
+    SimulationStore store(folder_ / "own.jsonl", {});
+    return Search(scanned, config_.design, scans::board(), options, store).run(context_);
   }
 
   std::string name_;
@@ -125,6 +126,30 @@ TEST_F(OwnSphereSlow, NoiseStaysWithinTheStatedUncertainty) {
   EXPECT_GE(covered, kSeeds - 1) << "a 95 % interval misses once in twenty";
 }
 
+// Simulations know nothing of scans: a second scan of the same object costs none.
+TEST_F(OwnFilmSlow, NoiseLeavesAllThreeKnownAndScansShareTheirSimulations) {
+  SearchOptions options;
+  options.z_stretch = {0.6, 0.7};
+  options.stiffness_ratio = {20, 80};
+  options.poisson = {0, 0.3};
+  std::size_t simulations = 0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Calibration found = fit({.noise_mm = 0.05, .seed = seed}, options);
+    EXPECT_NEAR(found.all.parameters.z_stretch, kTruth.z_stretch, 0.015) << seed;
+    EXPECT_NEAR(std::log(found.all.parameters.stiffness_ratio / kTruth.stiffness_ratio), 0,
+                std::log(1.6))
+        << seed;
+    EXPECT_LT(found.all.certainty.high.stiffness_ratio, 5 * kTruth.stiffness_ratio) << seed;
+    EXPECT_NEAR(found.all.certainty.noise_mm, 0.05, 0.01) << seed;
+    EXPECT_LT(found.all.film_off_mm[0].norm(), 0.2);
+    for (const InkMisfit& ink : found.all.by_ink)
+      EXPECT_LT(std::abs(ink.more_stretch), 4 * ink.deviation + 1e-3) << ink.density;
+    if (seed == 1) simulations = found.simulations;
+    // Some for stencils around another node with their inks, one for the error at the answer.
+    EXPECT_LE(found.simulations, simulations + 15 * std::size_t(seed));
+  }
+}
+
 TEST_F(SearchSlow, InterruptedAnywhereItEndsTheSame) {
   const std::vector<Subject> scanned = subjects({.noise_mm = 0.05}, {"sphere"});
   const SearchOptions options = scans::around(kTruth);
@@ -137,8 +162,9 @@ TEST_F(SearchSlow, InterruptedAnywhereItEndsTheSame) {
     context.on_progress([&](const std::string&, double) {
       if (++seen >= reports) context.cancel();
     });
-    EXPECT_THROW(Search(scanned, scans::quick_config().design, 5, options, store).run(context),
-                 Cancelled);
+    EXPECT_THROW(
+        Search(scanned, scans::quick_config().design, scans::board(), options, store).run(context),
+        Cancelled);
     EXPECT_GE(store.size(), kept);
     kept = store.size();
   }
@@ -158,13 +184,15 @@ TEST_F(SearchSlow, ShardsMergedAreOneRun) {
     stores.push_back(folder_ / ("shard" + std::to_string(number)));
     SimulationStore store(stores.back(), {});
     RunContext context;
-    Search search(scanned, scans::quick_config().design, 5, options, store);
+    Search search(scanned, scans::quick_config().design, scans::board(), options, store);
     search.simulate_grid({number, 2}, context);
     EXPECT_EQ(search.missing(), number == 1 ? 1u : 2u);
   }
   {
     SimulationStore store(folder_ / "merged.jsonl", stores);
-    EXPECT_EQ(Search(scanned, scans::quick_config().design, 5, options, store).missing(), 0u);
+    EXPECT_EQ(
+        Search(scanned, scans::quick_config().design, scans::board(), options, store).missing(),
+        0u);
   }
   expect_same(calibrate(scanned, options, "merged.jsonl", stores), whole);
 }

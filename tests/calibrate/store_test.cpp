@@ -17,7 +17,12 @@ class StoreTest : public testing::Test {
  protected:
   static SimulationKey key(double z) { return {"abc-search", {z, 600, 0.1}}; }
   static SimulationResult result(double x) {
-    return WarpedGrid{Vec2(x, 1.0 / 3), std::nullopt, Vec2(-0.1, 1e-17)};
+    Landings landings;
+    landings.reach = {1, 0};
+    landings.corner.resize(3);
+    landings.corner[0] = Landing{Vec3(x, 1.0 / 3, 0), Eigen::Matrix<double, 3, 2>::Ones()};
+    landings.corner[2] = Landing{Vec3(-0.1, 1e-17, 5), -0.1 * Eigen::Matrix<double, 3, 2>::Ones()};
+    return landings;
   }
   std::string text() const {
     std::ifstream in(file_, std::ios::binary);
@@ -43,9 +48,10 @@ TEST_F(StoreTest, ResultsComeBackToTheLastBit) {
   const SimulationResult* found = store.find(key(0.1 + 0.2));
   ASSERT_NE(found, nullptr);
   ASSERT_TRUE(found->has_value());
-  EXPECT_EQ((*found)->at(0)->y(), 1.0 / 3);
-  EXPECT_FALSE((*found)->at(1).has_value());
-  EXPECT_EQ((*found)->at(2)->y(), 1e-17);
+  EXPECT_EQ((*found)->find({-1, 0})->position.y(), 1.0 / 3);
+  EXPECT_EQ((*found)->find({0, 0}), nullptr);
+  EXPECT_EQ((*found)->find({1, 0})->position.y(), 1e-17);
+  EXPECT_EQ((*found)->find({2, 0}), nullptr);
   ASSERT_NE(store.find(key(0.6)), nullptr);
   EXPECT_FALSE(store.find(key(0.6))->has_value());
 }
@@ -111,6 +117,28 @@ TEST_F(StoreTest, DamagedLinesArePassedOverAndSaid) {
   EXPECT_NE(said[0].find("line 2"), std::string::npos);
   store.add(key(0.2), result(0.2));
   EXPECT_EQ(store.size(), 3u);
+}
+
+TEST_F(StoreTest, OlderProgramsResultsAreSaidAndNotUsed) {
+  const std::filesystem::path other = folder_ / "older.jsonl";
+  std::ofstream(other) << R"({"subject":"abc-search","z_stretch":0.2,"ink_stiffness_ratio":600,)"
+                       << R"("poisson":0.1,"film_mm":[[1,2],null]})"
+                       << "\n";
+  const SimulationStore store(file_, {other});
+  EXPECT_EQ(store.size(), 0u);
+}
+
+TEST_F(StoreTest, PlacesBeyondTheReachAreDamage) {
+  SimulationStore(file_, {}).add(key(0.1), result(1));
+  const std::string good = text();
+  for (const char* corners : {"[[2,0,1,2,3,1,0,0,1,0,0]]", "[[0,0,1,2,3,1,0,0,1,0]]", "[1]",
+                              "[[0.5,0,1,2,3,1,0,0,1,0,0]]", "7"}) {
+    std::string bad = good;
+    const std::size_t at = bad.find("\"corners\":") + 10;
+    bad = bad.substr(0, at) + corners + "}\n";
+    write(good + bad);
+    EXPECT_EQ(SimulationStore(file_, {}).oddities({"abc"}).size(), 1u) << corners;
+  }
 }
 
 TEST_F(StoreTest, ResultsOfOtherSubjectsAreSaid) {

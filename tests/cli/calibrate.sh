@@ -18,9 +18,9 @@ refuse() {
 }
 
 "$hydrodip" calibrate kit -o kit --film letter --quiet > /dev/null || fail "kit"
-[ "$(find kit -type f | wc -l)" -eq 5 ] || fail "the kit has not five files: $(ls kit)"
+[ "$(find kit -type f | wc -l)" -eq 7 ] || fail "the kit has not seven files: $(ls kit)"
 pdfinfo kit/checkerboard.pdf | grep -q '612 x 792 pts (letter)' || fail "the film is not letter"
-for shape in sphere pyramid ellipsoid; do
+for shape in sphere-90 pyramid-90 ellipsoid-135 dome; do
   "$hydrodip" inspect kit/$shape.stl > said.txt || fail "inspect $shape.stl"
   grep -q '1 shell, closed' said.txt || fail "$shape.stl is not closed: $(cat said.txt)"
 done
@@ -40,6 +40,23 @@ node -e '
     ["full", "single-step", "projection"].map((name) => m[name].rms_mm);
   if (!(full < single && full < straight)) process.exit(1);
 ' || fail "the full method is not the best: $(cat said.json)"
+
+# A dip packed is a scan like any other, with its board, sheet and depth.
+told='--film-product f --printer p --ink i --activator a --activator-g 3.5 --water-c 28 --soak-s 70
+  --wait-s 30 --owner o --licence CC0-1.0'
+# shellcheck disable=SC2086
+"$hydrodip" calibrate pack sphere@11.9=scans/sphere-scan.obj $film $told -o packed --quiet \
+  > said.txt || fail "pack"
+# shellcheck disable=SC2086
+"$hydrodip" measure sphere@11.9=scans/sphere-scan.obj $film --quiet | sed 's/([^)]*)//' > by-scan.txt
+"$hydrodip" measure packed/sphere-dip.zip --set film.elements=3000 --set dip.step_mm=0.5 --quiet |
+  sed 's/([^)]*)//' > by-dip.txt
+cmp -s by-scan.txt by-dip.txt || fail "a packed dip measures differently: $(diff by-scan.txt by-dip.txt)"
+printf 'PK no archive' > killed.zip
+# shellcheck disable=SC2086
+refuse '--printer' calibrate pack sphere=scans/sphere-scan.obj $film
+# shellcheck disable=SC2086
+refuse 'killed.zip' measure killed.zip $film
 
 # A calibration in one go, then one that is killed again and again.
 # shellcheck disable=SC2086
@@ -107,10 +124,10 @@ awk -F, '/^[0-9]/ {printf "%s,%s,%s,%s,%s\n", $1, $2, -$3, $4, $5; next} {print}
 # shellcheck disable=SC2086
 "$hydrodip" measure sphere=mirrored.csv $film --quiet > said.txt || fail "a mirrored sphere"
 grep -q 'wrong way round' said.txt || fail "does not say that the scan is mirrored: $(cat said.txt)"
-refuse 'sphere=scan.obj' calibrate
+refuse 'sphere-90=scan.obj' calibrate
 refuse 'which object' calibrate unknown.obj
 refuse 'no-such.csv' calibrate sphere=no-such.csv
 refuse '--poisson' calibrate sphere=scans/sphere-scan.csv --poisson 0:1:0.1
 refuse '--shard' calibrate sphere=scans/sphere-scan.csv --shard 3/2
-refuse '--square' measure sphere=scans/sphere-scan.csv --square 0
+refuse '--square' measure sphere=scans/sphere-scan.csv --square 0.1
 finish
