@@ -58,7 +58,7 @@ struct DipOptions {
   // infinity: only when it is stretched well beyond what film bears. Empty: stretch alone decides.
   // What another dip found, so that two dips can be compared smoothly.
   std::vector<double> tears_at_mm;
-  // Where film tears: dip twice more, on coarser film, to see what depends on how torn film falls.
+  // Where film tears: dip twice more, in longer steps, to see what depends on how torn film falls.
   bool asks_what_moves = false;
   // DippedFilm::moved_mm that another dip found; then that is not asked again.
   std::vector<double> moved_mm = {};
