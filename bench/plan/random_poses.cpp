@@ -42,6 +42,16 @@ void show(const char* what, const Trial& trial) {
       hold_options(trial.pose), describe_hold(trial.pose, ModelSide::kPlusY));
 }
 
+// As `print` with the options that are recommended dips it.
+double score_in_the_job(const TrialTask& task, const Trial& trial) {
+  const PosedObject posed(task.object, trial.pose);
+  Timings unheard;
+  const DippedObject dipped =
+      dip_object(posed, std::make_shared<const FilmMesh>(make_film_mesh(task.film)),
+                 Trajectory::straight_down(trial.depth_mm), task.dip, unheard, RunContext());
+  return judge_dip(task, trial.pose, dipped).figures.score;
+}
+
 int run(int argc, char** argv) {
   JobConfig config;
   const double size_mm = argc > 2 ? std::atof(argv[2]) : 0;
@@ -67,6 +77,9 @@ int run(int argc, char** argv) {
     if (i >= found.drafted.size()) continue;
     fmt::print("           its trial dip said {:.4f} ({:+.2f} %)\n", found.drafted[i],
                100 * (found.drafted[i] / found.best[i].figures.score - 1));
+    const double again = score_in_the_job(task, found.best[i]);
+    fmt::print("           the job's dip comes to {:.4f} ({:+.2f} %)\n", again,
+               100 * (found.best[i].figures.score / again - 1));
   }
 
   start = std::chrono::steady_clock::now();

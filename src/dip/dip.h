@@ -58,7 +58,7 @@ struct DipOptions {
   // infinity: only when it is stretched well beyond what film bears. Empty: stretch alone decides.
   // What another dip found, so that two dips can be compared smoothly.
   std::vector<double> tears_at_mm;
-  // Where film tears: dip twice more, on coarser film, to see what depends on how torn film falls.
+  // Where film tears: dip twice more, in longer steps, to see what depends on how torn film falls.
   bool asks_what_moves = false;
   // A coat's dip asks that by itself (dip_object()), unless it is only a quick look.
   bool quick_look = false;

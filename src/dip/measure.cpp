@@ -136,8 +136,8 @@ void tear_overstretched(const DipOptions& options, const std::vector<TriangleMea
 double let_go_limit(const DipOptions& options) {
   const FilmMaterial& material = options.material;
   if (!(material.tear_stretch > 0)) return 0;
-  return std::max(material.tear_stretch, material.lost_stretch) *
-         (options.tears_at_mm.empty() ? 1 : kToldMargin);
+  const double middle = 0.5 * (material.safe_stretch + material.lost_stretch);
+  return std::max(material.tear_stretch, middle) * (options.tears_at_mm.empty() ? 1 : kToldMargin);
 }
 
 void add_moved(std::vector<double> moved_mm, const DipOptions& options, DippedFilm& film) {

@@ -16,7 +16,9 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
 // that.
 void add_moved(std::vector<double> moved_mm, const DipOptions& options, DippedFilm& film);
 
-// The principal stretch beyond which film lets go without being told to; 0: never.
+// The principal stretch beyond which floating film lets go without being told to: in the middle
+// between where it may tear and where no film holds, so that it lies as near as can be to where it
+// lies in either case; 0: never.
 double let_go_limit(const DipOptions& options);
 
 }  // namespace hydrodip

@@ -7,10 +7,12 @@
 
 namespace hydrodip {
 
-// Per vertex of the film: how far it lies elsewhere, mm, if floating film lets go as soon as it may
-// tear (material.safe_stretch) than if it holds as long as any film could (lost_stretch). From two
-// dips on coarser film in longer steps. The other arguments are those of the dip that asks; the way
-// may end earlier than its own, for what lay on the object by then.
+// Per vertex of the film: how far from where it was dipped it may lie, mm: the farther of where it
+// lies if floating film lets go as soon as it may tear (material.safe_stretch), and if it holds as
+// long as any film could (lost_stretch). From dips of the same film in longer steps. The other
+// arguments are those of the dip that asks; the way may end earlier than its own, for what lay on
+// the object by then. If its own steps are long already it is compared with, and the way should be
+// a whole number of them.
 std::vector<double> moved_by_tears(const DippedFilm& dipped, const std::vector<Vec3>& positions,
                                    const std::vector<Triangle>& triangles, const Surface& surface,
                                    const Trajectory& trajectory, const DipOptions& options,

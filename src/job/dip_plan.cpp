@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace hydrodip {
 namespace {
@@ -13,6 +14,9 @@ namespace {
 // much below what it bears, so that what is counted on stays whole with its ink.
 constexpr double kStretchKept = 0.96;
 constexpr double kDeeper_mm = 3;
+constexpr int kDirections = 98;
+// Triangles: from there on film is dipped by all threads, one at a time.
+constexpr int kSmallFilm = 100000;
 
 PoseOptions pose_of(const DipEntry& entry, const PoseOptions& base) {
   PoseOptions pose = base;
@@ -104,25 +108,50 @@ class Planning {
     SearchOptions options;
     options.confirm = false;
     options.first_elements = kDraftElements;
-    options.refined = std::max(options.refined, wanted);
+    options.directions = kDirections;
+    // What is good alone need not be among several: those are bettered when they are chosen.
+    options.refined = 0;
     const SearchResult found = search_holds(task_, config_.object.pose, options, context_);
     plan_.trial_dips += found.trials.size();
     const TrialTask coarse = trial_task(task_);
     ChoiceOptions choice;
     choice.dips = wanted;
     choice.kept = given_;
-    const std::vector<Trial> chosen = choose_dips(coarse, found.trials, choice, context_);
-    plan_.dips = given_;
-    for (std::size_t i = given_.size(); i < chosen.size(); ++i) {
-      context_.progress("dipping them for good", double(i) / double(chosen.size()));
+    choice.kept = choose_dips(coarse, found.trials, choice, context_);
+    // What trial dips promise the job's own need not keep: as many again are there to choose from.
+    choice.dips = 2 * wanted;
+    choice.better = false;
+    std::vector<Trial> sure;
+    for (auto& dip : dipped_for_good(choose_dips(coarse, found.trials, choice, context_)))
+      if (dip) sure.push_back(std::move(*dip));
+    const ChoiceOptions last{.dips = wanted, .kept = given_, .better = false};
+    plan_.dips = choose_dips(task_, sure, last, context_);
+  }
+
+  // Those that are not given; nothing where one cannot be computed. Side by side as long as their
+  // films are small beside the memory.
+  std::vector<std::optional<Trial>> dipped_for_good(const std::vector<Trial>& chosen) const {
+    std::vector<std::optional<Trial>> sure(chosen.size());
+    const bool side_by_side = task_.film.elements <= kSmallFilm;
+    const auto dip_one = [&](std::size_t i, const RunContext& context) {
       try {
-        if (auto sure = fine(task_, chosen[i].pose, chosen[i].depth_mm + kDeeper_mm))
-          plan_.dips.push_back(std::move(*sure));
+        sure[i] = try_pose(task_, chosen[i].pose, chosen[i].depth_mm + kDeeper_mm, context);
       } catch (const DipError&) {
-        continue;  // none to recommend
+        // None to recommend.
       }
+    };
+    context_.progress("dipping them for good", 0);
+    if (side_by_side)
+      parallel_for(chosen.size() - given_.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+          dip_one(given_.size() + n, context_.quiet().with_threads(1));
+      });
+    for (std::size_t i = given_.size(); i < chosen.size() && !side_by_side; ++i) {
+      context_.progress("dipping them for good", double(i) / double(chosen.size()));
+      dip_one(i, context_.quiet());
     }
     context_.progress("dipping them for good", 1);
+    return sure;
   }
 
   void count_up() {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 
 #include "base/parallel.h"
 #include "base/run_scope.h"
@@ -11,8 +13,15 @@ namespace {
 
 constexpr double kLeastGain = 1e-4;  // of the weight
 constexpr int kMostExchanges = 40;
-constexpr double kRings_deg[] = {12, 6};
+// Poses so far from the chosen ones are tried, all around, and not again near one that was.
+constexpr double kRings_deg[] = {16, 12, 8, 5};
 constexpr int kAround = 6;
+constexpr double kNew = 0.6;  // of the ring's angle from all others
+
+// That a place is covered at all counts for so much, and how well for the rest.
+constexpr double kCovered = 0.75;
+
+double value_of(float worth) { return worth > 0 ? kCovered + (1 - kCovered) * double(worth) : 0; }
 
 // The best worth at each target so far, and the weights.
 class Reached {
@@ -27,7 +36,7 @@ class Reached {
     double sum = 0;
     for (std::size_t i = 0; i < worth_.size(); ++i) {
       const float worth = trial ? std::max(worth_[i], trial->worth[i]) : worth_[i];
-      sum += targets_.list[i].area * targets_.list[i].importance * double(worth);
+      sum += targets_.list[i].area * targets_.list[i].importance * value_of(worth);
     }
     return Coverage::share(sum, targets_.weight);
   }
@@ -48,8 +57,7 @@ class Choosing {
     while (int(chosen_.size()) < options_.dips)
       if (!add_best()) break;
     exchange();
-    if (options_.better)
-      for (const double ring_deg : kRings_deg) better(ring_deg);
+    if (options_.better) better();
     put_in_order();
     return std::move(chosen_);
   }
@@ -82,8 +90,9 @@ class Choosing {
 
   std::vector<const Trial*> library() const {
     std::vector<const Trial*> list;
-    for (const Trial& trial : trials_)
-      if (trial.depth_mm > 0) list.push_back(&trial);
+    for (const auto& trials : {std::cref(trials_), std::cref(found_)})
+      for (const Trial& trial : trials.get())
+        if (trial.depth_mm > 0) list.push_back(&trial);
     return list;
   }
 
@@ -114,23 +123,33 @@ class Choosing {
     }
   }
 
-  void better(double ring_deg) {
-    for (std::size_t i = options_.kept.size(); i < chosen_.size(); ++i) {
+  // What is tried around one of them may do better in another's place.
+  void better() {
+    for (std::size_t ring = 0; ring < std::size(kRings_deg); ++ring) {
       context_.progress("trying poses like the chosen ones",
-                        double(i) / double(std::max<std::size_t>(1, chosen_.size())));
-      const PoseOptions& pose = chosen_[i].pose;
-      std::vector<PoseOptions> poses;
-      for (const Vec3& near : directions_around(down_of(pose), ring_deg, kAround))
-        poses.push_back(hold(pose, near, pose.rotate_deg.z()));
-      const auto tried = try_poses(task_, poses, context_);
-      std::vector<const Trial*> list;
-      for (const auto& trial : tried)
-        if (trial && trial->depth_mm > 0) list.push_back(&*trial);
-      const Reached others = all_but(i);
-      const auto [best, with] = best_addition(others, list);
-      if (best && with > others.gain_with(&chosen_[i]) + kLeastGain) chosen_[i] = *best;
+                        double(ring) / double(std::size(kRings_deg)));
+      for (auto& trial : try_poses(task_, around_chosen(kRings_deg[ring]), context_))
+        if (trial) found_.push_back(std::move(*trial));
+      exchange();
     }
     context_.progress("trying poses like the chosen ones", 1);
+  }
+
+  std::vector<PoseOptions> around_chosen(double ring_deg) const {
+    std::vector<PoseOptions> poses;
+    for (std::size_t i = options_.kept.size(); i < chosen_.size(); ++i) {
+      const PoseOptions& pose = chosen_[i].pose;
+      for (const Vec3& near : directions_around(down_of(pose), ring_deg, kAround)) {
+        const PoseOptions next = hold(pose, near, pose.rotate_deg.z());
+        const auto is_near = [&](const Trial& trial) {
+          return angle_between_deg(trial.pose, next) < kNew * ring_deg;
+        };
+        if (std::none_of(trials_.begin(), trials_.end(), is_near) &&
+            std::none_of(found_.begin(), found_.end(), is_near))
+          poses.push_back(next);
+      }
+    }
+    return poses;
   }
 
   // So that the first few dips do as much as they can.
@@ -157,18 +176,13 @@ class Choosing {
 
   const TrialTask& task_;
   const std::vector<Trial>& trials_;
+  std::vector<Trial> found_;  // poses like the chosen ones
   const ChoiceOptions& options_;
   const RunContext& context_;
   std::vector<Trial> chosen_;
 };
 
 }  // namespace
-
-double gain_of(const Targets& targets, const std::vector<const Trial*>& dips) {
-  Reached reached(targets);
-  for (const Trial* trial : dips) reached.add(*trial);
-  return reached.gain_with(nullptr);
-}
 
 double covered_share_of(const Targets& targets, const std::vector<const Trial*>& dips) {
   double covered = 0;

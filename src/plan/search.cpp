@@ -52,17 +52,20 @@ class Search {
 
   SearchResult run() {
     look_around();
-    std::vector<Trial> found = best_of(result_.trials, options_.refined);
+    std::vector<Trial> found =
+        best_of(result_.trials, options_.refined > 0 ? options_.refined : options_.best);
     if (found.empty())
       throw InputError(
           "the object fits film and bath in none of the poses that were tried: shrink it with "
           "--size, take a larger --film, or give the size of your bath with --set "
           "bath.width_mm=..., bath.height_mm, bath.depth_mm");
     if (rough_.film.elements < coarse_.film.elements) dip_again(found);
-    for (const double ring_deg : kRings_deg) {
-      better(found, ring_deg);
-      // Those that fall behind are not followed any further.
-      found = best_of(found, std::max(options_.best, int(found.size()) - 1));
+    if (options_.refined > 0) {
+      for (const double ring_deg : kRings_deg) {
+        better(found, ring_deg);
+        // Those that fall behind are not followed any further.
+        found = best_of(found, std::max(options_.best, int(found.size()) - 1));
+      }
     }
     found = best_of(found, options_.best);
     leave_out_poor(found);

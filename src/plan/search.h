@@ -13,7 +13,7 @@ namespace hydrodip {
 struct SearchOptions {
   int best = 3;         // how many ways to hold it are wanted
   int directions = 74;  // tried before the best of them are bettered
-  int refined = 4;      // so many of them, that far apart at least
+  int refined = 4;      // so many of them, that far apart at least; 0: none are bettered
   double apart_deg = 30;
   int first_elements = 5000;  // of the film in which the directions are tried
   bool confirm = true;        // dip the best as finely as the job

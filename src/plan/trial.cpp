@@ -252,8 +252,12 @@ class StraightTrial {
     DippedFilm film = dipped(way, context);
     Trial trial = judge(film, film.depth_mm);
     if (!task_.asks_what_moves || !tears(film, trial.depth_mm)) return trial;
+    // In the steps that were made.
+    const double step_mm = deepest_mm / std::ceil(deepest_mm / task_.dip.step_mm - 1e-9);
+    const double asked_mm = step_mm * std::ceil(trial.depth_mm / step_mm - 1e-9);
     std::vector<double> moved = moved_by_tears(
-        film, posed_, *air_, Trajectory::straight_down(trial.depth_mm), task_.dip, context);
+        film, posed_, *air_, Trajectory::straight_down(std::min(asked_mm, deepest_mm)), task_.dip,
+        context);
     add_moved(std::move(moved), task_.dip, film);
     watch_.take(film);
     return judge(film, trial.depth_mm);

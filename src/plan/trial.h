@@ -37,10 +37,10 @@ struct Trial {
 // A depth that no object reaches: all of it goes in.
 inline constexpr double kWholeObject_mm = 1e9;
 
-// Of a single dip. Where another dip does what this one's torn film leaves, torn film is blank and
-// harmless, and costs little.
+// Of a single dip. Among several another one does what torn film leaves, which is blank and does no
+// harm: it only costs film.
 inline constexpr double kTornPrice = 3;
-inline constexpr double kTornPriceAmongSeveral = 0.3;
+inline constexpr double kTornPriceAmongSeveral = 0.02;
 
 // What all trials of an object have in common. Refers to what it does not share.
 struct TrialTask {

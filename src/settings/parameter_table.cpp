@@ -322,7 +322,7 @@ std::vector<Parameter> material_records() {
       number(
           "material.lost_stretch", "", 1, 100,
           [](C& c) -> double& { return c.design.dip.material.lost_stretch; },
-          "principal stretch from which on no film holds; it lets go there"),
+          "principal stretch from which on no film holds"),
       number(
           "material.wrinkle_stretch", "", 0, 1,
           [](C& c) -> double& { return c.design.dip.material.wrinkle_stretch; },

@@ -171,6 +171,24 @@ TEST_F(SphereTrial, DipsAreChosenTogether) {
   EXPECT_GT(before, 0.97);
 }
 
+// Caps around the axes leave gaps between them that others need not.
+TEST_F(SphereTrial, PosesLikeTheChosenOnesCoverMore) {
+  TrialTask whole = trial_task(task());
+  whole.film.elements = 2000;
+  std::vector<PoseOptions> poses;
+  for (const Vec3& down : spread_directions(6)) poses.push_back(hold({}, down, 0));
+  std::vector<Trial> trials;
+  for (auto& trial : try_poses(whole, poses, context_)) trials.push_back(std::move(*trial));
+  const auto covered = [&](bool better) {
+    const std::vector<Trial> chosen =
+        choose_dips(whole, trials, {.dips = 5, .kept = {}, .better = better}, context_);
+    std::vector<const Trial*> list;
+    for (const Trial& trial : chosen) list.push_back(&trial);
+    return covered_share_of(targets_, list);
+  };
+  EXPECT_GT(covered(true), covered(false) + 0.01);
+}
+
 TEST_F(SphereTrial, KeptDipsComeFirstAndStay) {
   TrialTask whole = trial_task(task());
   std::vector<PoseOptions> poses;
