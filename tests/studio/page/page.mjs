@@ -131,12 +131,8 @@ const sameAs = async (page, document) => until('the document', async () => JSON.
 
 // ---- Begin ----
 
-// One page for nearly everything: a new one costs seconds.
+// One page as long as it goes: a new one costs seconds.
 let toy;
-const toStart = async (page) => {
-  await page.evaluate(() => { location.hash = ''; });
-  await page.waitForSelector('.dropzone');
-};
 
 test('the empty page: what this is, samples, a place to drop things', async () => {
   toy = await session.page();
@@ -447,8 +443,8 @@ part = 'artwork';
 
 let dome;
 test('an STL and a PNG dropped together: the picture is on the object at once', async () => {
-  dome = toy ?? (await session.page());
-  await toStart(dome);
+  dome = await session.page();
+  await dome.waitForSelector('.dropzone');
   const [model, image] = ['dome.stl', 'logo.png'].map((name) => readFileSync(join(work, name)).toString('base64'));
   await dome.evaluate(async ([a, b]) => {
     const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -658,9 +654,8 @@ test('? lists the keys', async () => {
 });
 
 test('a phone may look: verdict, object, sheet and findings, and nothing to change', async () => {
-  const phone = dome;
-  await phone.setViewportSize({ width: 390, height: 844 });
-  await toStart(phone);
+  const phone = await session.page({ width: 390, height: 844 });
+  await phone.waitForSelector('.recent button');
   await phone.locator('.recent li > button').first().click();
   await newResult(phone, '');
   assert.equal(await phone.locator('.steps, [data-name="print"]').count(), 0);
@@ -668,14 +663,12 @@ test('a phone may look: verdict, object, sheet and findings, and nothing to chan
   assert.ok(wide <= 390, `${wide} px wide`);
   await phone.click('[data-value="object"]');
   await picture(phone, 'phone');
-  await phone.setViewportSize(USUAL);
+  await phone.context().close();
 });
 
 test('nothing is cut off at 1024 x 768, and dark is dark', async () => {
-  const small = dome;
-  await small.setViewportSize({ width: 1024, height: 768 });
-  await small.emulateMedia({ colorScheme: 'dark' });
-  await toStart(small);
+  const small = await session.page({ width: 1024, height: 768, dark: true });
+  await small.waitForSelector('.recent button');
   await small.locator('.recent li > button').first().click();
   await newResult(small, '');
   const over = await small.evaluate(() => {
@@ -686,6 +679,7 @@ test('nothing is cut off at 1024 x 768, and dark is dark', async () => {
   const [back] = (await small.evaluate(() => getComputedStyle(document.body).backgroundColor)).match(/\d+/g).map(Number);
   assert.ok(back < 60);
   await picture(small, 'small-dark');
+  await small.context().close();
 });
 
 part = wanted ?? 'object';
