@@ -5,7 +5,6 @@ add_executable(hydrodip_manual ${manual_sources})
 if(HYDRODIP_UNITY)
   hydrodip_unity(hydrodip_manual ${manual_sources})
 endif()
-hydrodip_precompile(hydrodip_manual hydrodip_base)
 target_link_libraries(hydrodip_manual PRIVATE hydrodip_command_line CLI11::CLI11
                                               nlohmann_json::nlohmann_json)
 

@@ -452,7 +452,8 @@ void bind_design(py::module_& m) {
           [](const Design& d, const std::filesystem::path& folder, const py::object& progress) {
             run(progress, [&](const RunContext& context) {
               write_sheet(folder, *d.designed, d.job->printer,
-                          sheet_of(d.job->config, report_of(d, context)), context);
+                          sheet_of(d.job->config, d.designed->dipped.posed, report_of(d, context)),
+                          context);
             });
           },
           py::arg("folder"), py::arg("progress") = py::none(),
