@@ -19,8 +19,8 @@ SHORT: Dict[str, str] = {}
 # Arguments that are no parameters.
 _OWN = set(
     "model scans objects film_image material artwork dip_tables output film quality profile config "
-    "settings progress square_mm scan_units aligned mirrored z_stretch ratio poisson shard merge "
-    "noise_mm missing_share seed".split()
+    "settings progress board square_mm scan_units aligned mirrored z_stretch ratio poisson torn_rings "
+    "shard merge noise_mm missing_share seed".split()
 )
 _SCANS = "board square_mm scan_units aligned mirrored z_stretch ratio poisson shard noise_mm missing_share seed".split()
 

@@ -8,9 +8,9 @@ trap 'stop_slurm; rm -rf "$work"' EXIT
 start_slurm
 
 # The grid, half of it on each node.
-calibrate="$hydrodip calibrate scans/sphere-scan.obj --film 110x110 --set film.elements=400 --set dip.step_mm=2
+calibrate="$hydrodip calibrate scans/sphere-scan.obj --film 110x110 --set film.elements=1000 --set dip.step_mm=2
   --z-stretch 0.55,0.75 --ratio 30 --poisson 0.1 --quiet"
-"$hydrodip" calibrate synth sphere --film 110x110 --set film.elements=400 --set dip.step_mm=2 -o scans --quiet \
+"$hydrodip" calibrate synth sphere --film 110x110 --set film.elements=1000 --set dip.step_mm=2 -o scans --quiet \
   > /dev/null || fail 'calibrate synth'
 sbatch --array=1-2 --output=/dev/null --wrap "cd '$work' && $(echo $calibrate) \
   --shard \$SLURM_ARRAY_TASK_ID/2 -o shard-\$SLURM_ARRAY_TASK_ID" > said.txt || fail "sbatch: $(cat said.txt)"

@@ -135,9 +135,9 @@ test('says first what to expect, without scripts, without WebGL and on paper too
 });
 
 test('the slider moves object, film and contact line', async () => {
-  await openView(mask);
+  await openView(partial);
   await view('dip');
-  const depth = mask.json.figures.depth_mm;
+  const depth = partial.json.figures.depth_mm;
   let last = -1;
   const pictures = [];
   for (const share of [0, 0.4, 1]) {
@@ -149,7 +149,7 @@ test('the slider moves object, film and contact line', async () => {
     pictures.push((await stage()).toString('base64'));
   }
   assert.equal(new Set(pictures).size, pictures.length, 'every depth looks different');
-  const { film_on_object_mm2: lying, torn_mm2: torn } = mask.json.coverage;
+  const { film_on_object_mm2: lying, torn_mm2: torn } = partial.json.coverage;
   assert.ok(Math.abs(100 * last - lying - torn) < 0.03 * lying, `${100 * last} mm2 at the end, ${lying + torn} in report.json`);
   await choose('#depth', 0, 'input');
   assert.equal(await film(), 0);
@@ -182,7 +182,7 @@ test('every overlay changes the picture and explains itself', async () => {
 });
 
 test('side by side, both views turn together', async () => {
-  await openView(mask);
+  await openView(partial);
   const before = await stage();
   const { x, y, width, height } = await browser.box('.stage');
   const at = { x: x + 0.25 * width, y: y + 0.5 * height, button: 'left', buttons: 1, clickCount: 1 };
