@@ -12,7 +12,7 @@ import hydrodip
 QUICK = "HYDRODIP_EXAMPLE_QUICK" in os.environ  # for the project's tests
 options = dict(
     film=(130, 130),
-    film_elements=1500 if QUICK else 20000,
+    film_elements=4000 if QUICK else 20000,
     dip_step_mm=1.0 if QUICK else 0.2,
 )
 
@@ -32,7 +32,8 @@ dip = hydrodip.simulate(
 )
 back = dip.to_film(position)
 printed = 5.0 * place
-printed += 5.0 * np.round(np.nanmedian(back - printed, axis=0) / 5.0)  # counted from some corner
+# Places are counted from some corner, and the film's centre is the middle of a square.
+printed += 2.5 * np.round(np.nanmedian(back - printed, axis=0) / 2.5)
 off = np.linalg.norm(back - printed, axis=1)
 known = ~np.isnan(off)
 
