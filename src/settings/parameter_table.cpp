@@ -410,8 +410,8 @@ std::vector<Parameter> print_records() {
       choice<bool>(
           "print.outlines", {{"on", true}, {"off", false}},
           [](C& c) -> bool& { return c.print.outlines; },
-          "thin lines beside the colours of print.pdf, to aim by: where the water cuts the object just "
-          "after the first touch, and in the end"),
+          "thin lines beside the colours of print.pdf, to aim by: where the water cuts the object, "
+          "just after the first touch and in the end"),
       number(
           "print.scale_x", "", 0.9, 1.1, [](C& c) -> double& { return c.print.scale_x; },
           "what the printer makes of 1 mm across; print.pdf is drawn so that it comes out true"),
