@@ -341,6 +341,8 @@ ScanSetup scan_setup(const JobConfig& config, const CalibrationRequest& request)
 std::vector<Subject> load_subjects(const std::vector<std::string>& texts,
                                    const ScanSettings& settings, const JobConfig& config,
                                    const RunContext& context) {
+  if (texts.empty())
+    throw InputError("no scan is given: name object and scan, as sphere-90=scan.obj");
   RunContext quiet = context.quiet();
   const double program = program_mark(quiet);
   std::vector<Subject> subjects;

@@ -115,6 +115,10 @@ class Arguments(InFolder):
         with self.assertRaisesRegex(hydrodip.InputError, pattern):
             hydrodip.simulate(textured_cone(), **{**QUICK, **arguments})
 
+    def test_no_scan_is_no_calibration(self):
+        with self.assertRaisesRegex(hydrodip.InputError, "no scan is given"):
+            hydrodip.calibrate({})
+
     def test_values_are_checked_as_by_the_program(self):
         self.refused("film_elements: film.elements must be a whole number", film_elements=3.5)
         self.refused("dip_step_mm", dip_step_mm=-1)
