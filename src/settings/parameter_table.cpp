@@ -167,6 +167,7 @@ template <class Enum>
 std::vector<std::pair<std::string, Enum>> named(const char* (*name)(Enum),
                                                 const std::vector<Enum>& values) {
   std::vector<std::pair<std::string, Enum>> pairs;
+  pairs.reserve(values.size());
   for (const Enum value : values) pairs.emplace_back(name(value), value);
   return pairs;
 }
