@@ -69,7 +69,8 @@ py::array taken(std::vector<Item> items, const std::vector<py::ssize_t>& shape_o
 using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
 inline py::ssize_t require_rows(const Rows& rows, py::ssize_t width, const std::string& what) {
   if (rows.ndim() != 2 || rows.shape(1) != width)
-    throw InputError(what + " must be given as an array of shape (n, " + std::to_string(width) + ")");
+    throw InputError(what + " must be given as an array of shape (n, " + std::to_string(width) +
+                     ")");
   return rows.shape(0);
 }
 
