@@ -43,6 +43,7 @@ SearchOptions search_options(const CalibrationRequest& request) {
 // A folder stands for the store in it.
 std::vector<std::filesystem::path> store_files(const std::vector<std::string>& merged) {
   std::vector<std::filesystem::path> files;
+  files.reserve(merged.size());
   std::error_code ignored;
   for (const std::filesystem::path path : merged)
     files.push_back(std::filesystem::is_directory(path, ignored) ? path / kStoreName : path);
@@ -380,6 +381,7 @@ JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& reques
   make_folder(config.output);
   SimulationStore store(config.output / kStoreName, store_files(request.merged));
   std::vector<std::string> fingerprints;
+  fingerprints.reserve(subjects.size());
   for (const Subject& subject : subjects) fingerprints.push_back(subject.fingerprint);
   for (const std::string& oddity : store.oddities(fingerprints)) context.warn(oddity);
   Search search(subjects, config.design, board, options, store);

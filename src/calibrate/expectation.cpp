@@ -54,6 +54,7 @@ Expectation expect(const std::vector<CalibrationObject>& objects, const Checkere
       points.push_back(center + side * step[k] * FitPoint::Unit(k));
 
   std::vector<std::unique_ptr<Surface>> surfaces;
+  surfaces.reserve(objects.size());
   for (const CalibrationObject& object : objects)
     surfaces.push_back(std::make_unique<Surface>(object.object.positions, object.object.triangles));
   const GridPlace reach = reach_of(design.film, film.board.square_mm);

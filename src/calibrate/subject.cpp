@@ -379,6 +379,7 @@ bool any_synthetic(const std::vector<Subject>& subjects) {
 
 std::vector<std::filesystem::path> files_of(const std::vector<Subject>& subjects) {
   std::vector<std::filesystem::path> files;
+  files.reserve(subjects.size());
   for (const Subject& subject : subjects) files.push_back(subject.file);
   return files;
 }
