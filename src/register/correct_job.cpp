@@ -105,6 +105,14 @@ DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
                     "of this job's object in its pose",
                     file.string()));
   dip.mean_off /= double(dip.samples.size());
+  // The kit's usual board has a square's middle where the black one has a corner.
+  constexpr double kNearlyHalf = 0.4;
+  if (!is_place_table(file) &&
+      (dip.mean_off.cwiseAbs().array() > kNearlyHalf * request.square_mm).all())
+    throw InputError(fmt::format(
+        "{}: its corners lie half a square beside their places; dip the board whose corner is the "
+        "film's centre (hydrodip calibrate kit --board black), or tell places in a table",
+        file.string()));
   dip.rms_off_mm = std::sqrt(square / double(dip.samples.size()));
   if (on_object_count > 0) dip.rms_on_object_mm = std::sqrt(on_object / on_object_count);
   return dip;
