@@ -1,7 +1,6 @@
 #include "calibrate/measured_dip.h"
 
 #include <fmt/format.h>
-#include <zip.h>
 
 #include <algorithm>
 #include <cctype>
@@ -13,6 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "calibrate/checkerboard_dip.h"
+#include "model_io/archive_writer.h"
 #include "model_io/package.h"
 #include "model_io/text.h"
 
@@ -183,45 +183,6 @@ CornerGrid corners_of(const std::filesystem::path& file, std::string_view rest) 
 
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-// A new archive; nothing of it is on disk before close().
-class NewArchive {
- public:
-  explicit NewArchive(const std::filesystem::path& file) : file_(file) {
-    int code = 0;
-    zip_ = zip_open(file.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
-    if (zip_ == nullptr) fail();
-    zip_set_archive_comment(zip_, kKind, zip_uint16_t(std::char_traits<char>::length(kKind)));
-  }
-  ~NewArchive() {
-    if (zip_ != nullptr) zip_discard(zip_);
-  }
-  NewArchive(const NewArchive&) = delete;
-  NewArchive& operator=(const NewArchive&) = delete;
-
-  // The bytes have to outlive close().
-  void add(const std::string& name, const std::vector<std::uint8_t>& bytes) {
-    constexpr zip_uint16_t kFirstDate = (1 << 5) | 1;  // 1980-01-01: bytes depend on no clock
-    zip_source_t* const source = zip_source_buffer(zip_, bytes.data(), bytes.size(), 0);
-    const zip_int64_t index =
-        source != nullptr ? zip_file_add(zip_, name.c_str(), source, ZIP_FL_ENC_UTF_8) : -1;
-    if (index < 0) {
-      if (source != nullptr) zip_source_free(source);
-      fail();
-    }
-    zip_file_set_dostime(zip_, zip_uint64_t(index), 0, kFirstDate, 0);
-  }
-  void close() {
-    if (zip_close(zip_) != 0) fail();
-    zip_ = nullptr;
-  }
-
- private:
-  [[noreturn]] void fail() { refuse(file_, "the archive cannot be written; free some space"); }
-
-  std::filesystem::path file_;
-  zip_t* zip_ = nullptr;
-};
-
 }  // namespace
 
 void require_facts(const DipFacts& facts) {
@@ -280,7 +241,7 @@ void write_measured_dip(const std::filesystem::path& file, const MeasuredDip& di
         {{"name", dip.scan_file}, {"sha256", sha256_hex(dip.source)}}}}};
   const std::vector<std::uint8_t> facts =
       bytes_of(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-  NewArchive archive(file);
+  ArchiveWriter archive(file, file.string(), kKind);
   archive.add(kFactsName, facts);
   archive.add(kCornersName, corners);
   archive.add(dip.scan_file, dip.source);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "model_io/archive_writer.h"
 #include "studio/api_error.h"
 #include "studio/job_files.h"
 
@@ -85,24 +86,9 @@ void unpack_zip(const std::filesystem::path& archive, std::uintmax_t most_bytes,
 
 void pack_zip(const std::filesystem::path& archive,
               const std::vector<std::pair<std::string, std::filesystem::path>>& files) {
-  int code = 0;
-  zip_t* const zip = zip_open(archive.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
-  if (!zip) refuse(archive, "the archive cannot be written; free some space");
-  for (const auto& [name, path] : files) {
-    zip_source_t* const source = zip_source_file(zip, path.c_str(), 0, -1);
-    const zip_int64_t index =
-        source ? zip_file_add(zip, name.c_str(), source, ZIP_FL_ENC_UTF_8) : -1;
-    if (index < 0) {
-      if (source) zip_source_free(source);
-      zip_discard(zip);
-      refuse(archive, "the archive cannot be made");
-    }
-    constexpr zip_uint16_t kFirstDate = (1 << 5) | 1;  // 1980-01-01
-    zip_file_set_dostime(zip, zip_uint64_t(index), 0, kFirstDate, 0);
-  }
-  if (zip_close(zip) == 0) return;
-  zip_discard(zip);
-  refuse(archive, "the archive cannot be written; free some space");
+  ArchiveWriter writer(archive, archive.filename().string());
+  for (const auto& [name, path] : files) writer.add(name, path);
+  writer.close();
 }
 
 }  // namespace hydrodip
