@@ -52,10 +52,6 @@ const Landing* Landings::find(const GridPlace& place) const {
   return index < corner.size() && corner[index] ? &*corner[index] : nullptr;
 }
 
-GridPlace reach_of(const FilmOptions& film, double square_mm) {
-  return {int(0.5 * film.width_mm / square_mm), int(0.5 * film.height_mm / square_mm)};
-}
-
 Landings landings_of(const CheckerboardDip& dip, const CalibrationObject& object,
                      const GridPlace& reach) {
   Landings result;

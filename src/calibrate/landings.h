@@ -29,9 +29,6 @@ struct Landings {
   std::size_t index_of(const GridPlace& place) const;  // within reach
 };
 
-// How far from the centre corners can be on a sheet.
-GridPlace reach_of(const FilmOptions& film, double square_mm);
-
 Landings landings_of(const CheckerboardDip& dip, const CalibrationObject& object,
                      const GridPlace& reach);
 

@@ -230,7 +230,7 @@ Eigen::Isometry3d laid_on(const Subject& subject, const Board& board, const Land
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   const Pairs pairs = pairs_of(subject, landings);
   if (pairs.corner.size() < kFewest) return pose;
-  if (subject.match) pose.matrix() = Eigen::umeyama(pairs.scanned, pairs.landed, false);
+  if (subject.match) pose = rigid_motion(pairs.scanned, pairs.landed);
   std::vector<GridPlace> places;
   for (const std::size_t c : pairs.corner) places.push_back(*subject.place[c]);
   const bool pose_known = !subject.match;

@@ -46,9 +46,8 @@ std::vector<Landed> read_grid(const std::filesystem::path& file, const PrintedFi
                               const FilmOptions& sheet, const CorrectRequest& request) {
   const Scan scan = read_scan(file, {request.scan_units, request.square_mm, false});
   const GridLanding landing = landing_of(film, request.square_mm);
-  const GridPlace reach = {int(0.5 * sheet.width_mm / request.square_mm),
-                           int(0.5 * sheet.height_mm / request.square_mm)};
-  const GridMatch match = match_grid(scan.grid, landing, reach, request.square_mm, file.string());
+  const GridMatch match = match_grid(scan.grid, landing, reach_of(sheet, request.square_mm),
+                                     request.square_mm, file.string());
   if (match.mirrored)
     throw InputError(
         fmt::format("{}: only the scan's mirror image fits the object; save it without mirroring",
@@ -76,7 +75,8 @@ struct DipSeen {
 DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
                 const FilmOptions& sheet, const CorrectRequest& request) {
   std::vector<Landed> landed;
-  if (is_place_table(file))
+  const bool is_table = is_place_table(file);
+  if (is_table)
     for (const PlaceRow& row : read_place_table(file))
       landed.push_back({row.on_sheet, row.position});
   else
@@ -107,8 +107,7 @@ DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
   dip.mean_off /= double(dip.samples.size());
   // The kit's usual board has a square's middle where the black one has a corner.
   constexpr double kNearlyHalf = 0.4;
-  if (!is_place_table(file) &&
-      (dip.mean_off.cwiseAbs().array() > kNearlyHalf * request.square_mm).all())
+  if (!is_table && (dip.mean_off.cwiseAbs().array() > kNearlyHalf * request.square_mm).all())
     throw InputError(fmt::format(
         "{}: its corners lie half a square beside their places; dip the board whose corner is the "
         "film's centre (hydrodip calibrate kit --board black), or tell places in a table",

@@ -445,10 +445,10 @@ bool is_cut_off(const std::vector<DarkSquare>& squares,
   const auto length = [&](std::size_t square, std::size_t side) {
     return side_of(squares[square], side).outwards.norm();
   };
-  return std::any_of(links.begin(), links.end(), [&, k = std::size_t(0)](const auto& link) mutable {
-    const std::size_t side = k++;
-    return link && length(i, side) < kShortest * length(link->square, link->side);
-  });
+  for (std::size_t k = 0; k < links.size(); ++k)
+    if (links[k] && length(i, k) < kShortest * length(links[k]->square, links[k]->side))
+      return true;
+  return false;
 }
 
 }  // namespace

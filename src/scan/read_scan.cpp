@@ -51,8 +51,7 @@ std::string lower_extension(const std::filesystem::path& path) {
 
 // ---- quads ----
 
-CornerGrid read_quads(const std::filesystem::path& file) {
-  const PolygonMesh mesh = load_polygons(file);
+CornerGrid read_quads(const std::filesystem::path& file, const PolygonMesh& mesh) {
   std::vector<std::array<std::int32_t, 4>> quads;
   std::size_t triangles = 0, others = 0;
   for (const auto& face : mesh.faces) {
@@ -78,8 +77,7 @@ CornerGrid read_quads(const std::filesystem::path& file) {
 
 // ---- scans with colours ----
 
-bool has_quads(const std::filesystem::path& file) {
-  const PolygonMesh mesh = load_polygons(file);
+bool has_quads(const PolygonMesh& mesh) {
   return std::any_of(mesh.faces.begin(), mesh.faces.end(),
                      [](const auto& face) { return face.size() == 4; });
 }
@@ -204,47 +202,70 @@ bool says_synthetic(std::string_view text) {
   return text.substr(0, 400).find(kSyntheticMark) != std::string_view::npos;
 }
 
+enum class ScanKind { kTable, kPolygons, kOther };
+
+ScanKind kind_of(const std::filesystem::path& file) {
+  const std::string extension = lower_extension(file);
+  if (extension == ".csv" || extension == ".txt" || extension == ".tsv") return ScanKind::kTable;
+  return extension == ".obj" || extension == ".ply" ? ScanKind::kPolygons : ScanKind::kOther;
+}
+
+// A mesh's faces turn round with it.
+void turn_back(CornerGrid& grid, bool has_faces) {
+  for (Vec3& p : grid.position) p.x() = -p.x();
+  if (has_faces)
+    for (GridPlace& place : grid.place) place[0] = -place[0];
+}
+
+// Corners that somebody drew, or listed: by `read` from the file's text.
+template <class Read>
+Scan read_corners(const std::filesystem::path& file, const ScanOptions& options, const Read& read) {
+  const Unit& unit = find_unit(options.units);
+  const std::vector<std::uint8_t> bytes = read_file(file);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  Scan scan;
+  scan.synthetic = says_synthetic(text);
+  scan.grid = read(text);
+  for (Vec3& p : scan.grid.position) p *= unit.mm;
+  check_size(scan.grid, unit, options.square_mm, file.string());
+  if (options.mirrored) turn_back(scan.grid, kind_of(file) == ScanKind::kPolygons);
+  return scan;
+}
+
 }  // namespace
 
 Scan read_scan(const std::filesystem::path& file, const ScanOptions& options,
                const RunContext& context) {
-  const std::string extension = lower_extension(file);
-  const bool may_be_quads = extension == ".obj" || extension == ".ply";
-  const bool is_table = extension == ".csv" || extension == ".txt" || extension == ".tsv";
-  if (is_table || (may_be_quads && has_quads(file))) return read_scan(file, options);
+  const ScanKind kind = kind_of(file);
+  if (kind == ScanKind::kTable) return read_scan(file, options);
+  if (kind == ScanKind::kPolygons) {
+    const PolygonMesh mesh = load_polygons(file);
+    if (has_quads(mesh))
+      return read_corners(file, options, [&](auto) { return read_quads(file, mesh); });
+  }
   find_unit(options.units);
   const std::vector<std::uint8_t> bytes = read_file(file);
   Scan scan;
   scan.synthetic = says_synthetic({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   scan.grid = read_colours(file, options.square_mm, options.units, context);
-  if (options.mirrored) {
-    for (Vec3& p : scan.grid.position) p.x() = -p.x();
-    for (GridPlace& place : scan.grid.place) place[0] = -place[0];
-  }
+  if (options.mirrored) turn_back(scan.grid, true);
   return scan;
 }
 
 Scan read_scan(const std::filesystem::path& file, const ScanOptions& options) {
-  const Unit& unit = find_unit(options.units);
-  const std::string extension = lower_extension(file);
-  const bool is_table = extension == ".csv" || extension == ".txt" || extension == ".tsv";
-  if (!is_table && extension != ".obj" && extension != ".ply")
-    throw InputError(fmt::format(
-        "{}: a scan is a quad mesh (OBJ, PLY) or a table of corners (CSV, TXT)", file.string()));
-  const std::vector<std::uint8_t> bytes = read_file(file);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  Scan scan;
-  scan.synthetic = says_synthetic(text);
-  scan.grid = is_table ? read_table(file, text) : read_quads(file);
-  for (Vec3& p : scan.grid.position) p *= unit.mm;
-  check_size(scan.grid, unit, options.square_mm, file.string());
-  if (options.mirrored) {
-    for (Vec3& p : scan.grid.position) p.x() = -p.x();
-    // A mesh's faces turn round with it.
-    if (!is_table)
-      for (GridPlace& place : scan.grid.place) place[0] = -place[0];
+  find_unit(options.units);
+  switch (kind_of(file)) {
+    case ScanKind::kTable:
+      return read_corners(file, options,
+                          [&](std::string_view text) { return read_table(file, text); });
+    case ScanKind::kPolygons:
+      return read_corners(file, options,
+                          [&](auto) { return read_quads(file, load_polygons(file)); });
+    case ScanKind::kOther:
+      break;
   }
-  return scan;
+  throw InputError(fmt::format(
+      "{}: a scan is a quad mesh (OBJ, PLY) or a table of corners (CSV, TXT)", file.string()));
 }
 
 void write_scan_table(const std::filesystem::path& file, const CornerGrid& grid,

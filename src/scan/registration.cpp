@@ -74,10 +74,9 @@ struct Reading {
   double rms_mm = 1e300;
 };
 
-// The rigid motion that takes `from` to `to` with the least squares, and what is left.
+// The rigid motion of a reading, and what is left.
 void fit_rigidly(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to, Reading& reading) {
-  const Eigen::Matrix4d pose = Eigen::umeyama(from, to, false);
-  reading.pose.matrix() = pose;
+  reading.pose = rigid_motion(from, to);
   const Eigen::Matrix3Xd left =
       (reading.pose.linear() * from).colwise() + reading.pose.translation() - to;
   reading.rms_mm = std::sqrt(left.squaredNorm() / double(from.cols()));
@@ -242,6 +241,16 @@ class PatchPlacer {
 };
 
 }  // namespace
+
+GridPlace reach_of(const FilmOptions& film, double square_mm) {
+  return {int(0.5 * film.width_mm / square_mm), int(0.5 * film.height_mm / square_mm)};
+}
+
+Eigen::Isometry3d rigid_motion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
+  Eigen::Isometry3d motion;
+  motion.matrix() = Eigen::umeyama(from, to, false);
+  return motion;
+}
 
 Eigen::Isometry3d moved_a_little(const Eigen::Isometry3d& pose, const Vec3& shift,
                                  const Vec3& turn) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "film/film.h"
 #include "object/surface.h"
 #include "scan/corner_grid.h"
 
@@ -28,6 +29,9 @@ struct GridMatch {
   bool mirrored = false;  // only the scan's mirror image fits the object
 };
 
+// How far from the centre corners can be on a sheet.
+GridPlace reach_of(const FilmOptions& film, double square_mm);
+
 // Tries every quarter turn and shift of the largest patch on the film. `reach` bounds the places
 // that can land: columns and rows from -reach to reach. Throws InputError (naming `name`) if fewer
 // than 6 corners hang together or nothing fits to half a square.
@@ -44,6 +48,9 @@ void place_patches(const CornerGrid& grid, const Eigen::Isometry3d& pose, bool t
 // Moves the pose by a small turn about the origin (rad) and a shift (mm).
 Eigen::Isometry3d moved_a_little(const Eigen::Isometry3d& pose, const Vec3& shift,
                                  const Vec3& turn);
+
+// The motion that takes `from` to `to` (columns) with the least squares.
+Eigen::Isometry3d rigid_motion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
 
 struct Alignment {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // scan to posed object
