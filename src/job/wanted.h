@@ -9,9 +9,11 @@
 
 namespace hydrodip {
 
+inline constexpr int kWantedPoints = 20000;
+
 // Looked at in about so many points of the surface. Nothing where the paint says nothing, or wants
 // colour all over the object: coverage says it then.
 std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Paint& paint,
-                                            int points = 20000);
+                                            int points = kWantedPoints);
 
 }  // namespace hydrodip

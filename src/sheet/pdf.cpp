@@ -6,6 +6,7 @@
 #include "sheet/page.h"
 #include "sheet/pdf_document.h"
 #include "sheet/sheet.h"
+#include "transfer/raster.h"
 
 namespace hydrodip {
 
@@ -37,10 +38,9 @@ void draw_marks(PdfDocument& document, const SheetOptions& options, const RunCon
 // Whether nothing is printed there, nor a line's width beside it. From the image's middle.
 bool is_blank(const Picture& picture, const SheetOptions& options, const Vec2& at_mm) {
   constexpr double kGap_mm = 0.3;
-  const double px_per_mm = options.dpi / 25.4;
-  const double x = 0.5 * picture.width_px + px_per_mm * at_mm.x();
-  const double y = 0.5 * picture.height_px - px_per_mm * at_mm.y();
-  const double gap = px_per_mm * kGap_mm;
+  const SheetRaster raster{options.width_mm, options.height_mm, options.dpi};
+  const double x = raster.to_pixel(at_mm).x(), y = raster.to_pixel(at_mm).y();
+  const double gap = options.dpi / kMmPerInch * kGap_mm;
   const auto pixel = [](double at, int count) { return std::clamp(int(std::floor(at)), 0, count); };
   for (int row = pixel(y - gap, picture.height_px); row < pixel(y + gap + 1, picture.height_px);
        ++row)

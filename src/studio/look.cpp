@@ -28,7 +28,7 @@ constexpr double kSketchPixels = 3.5e5, kDraftPixels = 7e5, kNormalPixels = 4e6;
 constexpr double kSketchDpi = 60, kDraftDpi = 100, kNormalDpi = 150;
 constexpr int kSketchElements = 5000, kSketchAirCells = 10000;
 constexpr std::size_t kSketchTriangles = 20000;
-constexpr int kSketchPoints = 4000, kPoints = 20000;  // at which the report asks what is covered
+constexpr int kSketchPoints = 4000;  // at which the report asks what is covered
 constexpr double kSketchStep_mm = 2;
 constexpr double kTiny_mm = 5, kHuge_mm = 1000;  // as require_size() has them
 
@@ -246,8 +246,9 @@ Report report_of(const Look& look, const RunContext& context) {
   const Timings times;
   JobRecord record{"print", look.config, prepared,        inputs, finish,
                    times,   words,       &look.made->ink, "",     ""};
-  record.wanted = wanted_coverage(look.made->dipped, *look.paint,
-                                  look.quality == LookQuality::kSketch ? kSketchPoints : kPoints);
+  record.wanted =
+      wanted_coverage(look.made->dipped, *look.paint,
+                      look.quality == LookQuality::kSketch ? kSketchPoints : kWantedPoints);
   return make_report(record);
 }
 
