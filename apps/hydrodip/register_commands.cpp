@@ -123,14 +123,20 @@ JobResult run_register(const Request& request, const RunContext& context) {
 
 void declare_correct(CLI::App& app, Request& request) {
   app.add_option("JOB_DIR", request.model, "folder that 'hydrodip print' wrote")->type_name("");
-  app.add_option("SCAN", request.jobs,
-                 "what dips of it came to: the corners of a printed checkerboard as a quad mesh "
-                 "(OBJ, PLY) or a table (CSV), or a table of places with the header "
-                 "film_x_mm,film_y_mm,x,y,z; several dips are averaged")
+  app.add_option(
+         "SCAN", request.jobs,
+         "what dips of it came to: the corners of the kit's board as a quad mesh (OBJ, PLY) or "
+         "a table (CSV), a scan with its colours, or a table of places with the header "
+         "film_x_mm,film_y_mm,x,y,z; several dips are averaged")
       ->type_name("");
   CorrectRequest& correction = request.correction;
+  app.add_option("--board", correction.board,
+                 "which board was dipped, tints (what the kit prints) or black (default: the one "
+                 "that fits clearly better)")
+      ->group(kScanGroup)
+      ->type_name("tints|black");
   app.add_option("--square", correction.square_mm,
-                 "side of the checkerboard's squares (default: 5)")
+                 "side of the board's squares (default: as the board's)")
       ->group(kScanGroup)
       ->type_name("MM")
       ->check(CLI::Range(0.5, 100.0));

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/board.h"
+#include "calibrate/printed_board.h"
 #include "object/surface.h"
 #include "scan/registration.h"
 #include "settings/config.h"

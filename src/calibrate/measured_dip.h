@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/board.h"
 #include "film/film.h"
+#include "scan/board.h"
 #include "scan/read_scan.h"
 
 namespace hydrodip {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/board.h"
 #include "calibrate/store.h"
 #include "calibrate/subject.h"
+#include "scan/board.h"
 
 namespace hydrodip {
 

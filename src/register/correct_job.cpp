@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,7 @@
 #include "register/place_table.h"
 #include "register/printed_film.h"
 #include "register/register.h"
+#include "scan/board.h"
 #include "scan/read_scan.h"
 #include "scan/registration.h"
 
@@ -34,38 +36,134 @@ struct Landed {
   Vec3 position = Vec3::Zero();  // where it lies: posed-object frame
 };
 
-GridLanding landing_of(const PrintedFilm& film, double square_mm) {
-  return [&film, square_mm](const GridPlace& place) -> std::optional<Vec3> {
-    const auto at = film.map->to_object(square_mm * Vec2(place[0], place[1]));
+GridLanding landing_of(const PrintedFilm& film, const Board& board) {
+  return [&film, board](const GridPlace& place) -> std::optional<Vec3> {
+    const auto at = film.map->to_object(board.on_film(place));
     if (!at) return std::nullopt;
     return position_at(film.posed.mesh(), *at);
   };
 }
 
-std::vector<Landed> read_grid(const std::filesystem::path& file, const PrintedFilm& film,
-                              const FilmOptions& sheet, const CorrectRequest& request) {
-  const Scan scan = read_scan(file, {request.scan_units, request.square_mm, false});
-  const GridLanding landing = landing_of(film, request.square_mm);
-  const GridMatch match = match_grid(scan.grid, landing, reach_of(sheet, request.square_mm),
-                                     request.square_mm, file.string());
-  if (match.mirrored)
+// A scan, taken for one of a board.
+struct Reading {
+  Board board;
+  std::vector<std::optional<GridPlace>> place;
+  CornerGrid grid;  // posed-object frame
+  bool turned = false, mirrored = false;
+  double off_mm = 0;  // rms of the corners from where the job lays them
+};
+
+double distance_mm(const Reading& reading, const GridLanding& landing) {
+  double square = 0, count = 0;
+  for (std::size_t c = 0; c < reading.place.size(); ++c) {
+    if (!reading.place[c]) continue;
+    const auto lands = landing(*reading.place[c]);
+    if (!lands) continue;
+    square += (*lands - reading.grid.position[c]).squaredNorm();
+    ++count;
+  }
+  return count > 0 ? std::sqrt(square / count) : 1e300;
+}
+
+Reading reading_as(const Board& board, const CornerGrid& scan, const PrintedFilm& film,
+                   const FilmOptions& sheet, bool aligned, const std::string& name) {
+  const GridLanding landing = landing_of(film, board);
+  const GridPlace reach = reach_of(sheet, board.square_mm);
+  Reading reading{board, {}, scan};
+  reading.place.resize(scan.position.size());
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (!aligned) {
+    const GridMatch match = match_grid(scan, landing, reach, board.square_mm, name);
+    pose = align(scan, match, film.posed.surface(), landing).pose;
+    reading.place = match.place;
+    reading.turned = match.turned;
+    reading.mirrored = match.mirrored;
+  }
+  place_patches(scan, pose, reading.turned, landing, reach, board.square_mm, reading.place);
+  reading.grid = moved(scan, pose);
+  reading.off_mm = distance_mm(reading, landing);
+  return reading;
+}
+
+// The boards lie half a square beside each other along both axes. One is believed that fits clearly
+// better, and so well that film that lay that far off is not taken for the other one.
+bool is_clear(const Reading& best, const Reading& other) {
+  constexpr double kClearlyBetter = 0.7, kLargestOff_squares = 0.25;
+  return best.off_mm < kClearlyBetter * other.off_mm &&
+         best.off_mm < kLargestOff_squares * best.board.square_mm;
+}
+
+Reading best_reading(const std::vector<Board>& boards, const CornerGrid& scan,
+                     const PrintedFilm& film, const FilmOptions& sheet, bool aligned,
+                     const std::string& name) {
+  std::vector<Reading> readings;
+  std::string refusal;
+  for (const Board& board : boards) {
+    try {
+      readings.push_back(reading_as(board, scan, film, sheet, aligned, name));
+    } catch (const InputError& error) {
+      refusal = error.what();
+    }
+  }
+  if (readings.empty()) throw InputError(refusal);
+  std::sort(readings.begin(), readings.end(),
+            [](const Reading& a, const Reading& b) { return a.off_mm < b.off_mm; });
+  if (readings.size() > 1 && !is_clear(readings[0], readings[1]))
+    throw InputError(
+        fmt::format("{}: could be of the {} board, {:.2f} mm off, or of the {} one, {:.2f} mm off; "
+                    "say which one "
+                    "was dipped, with --board tints (what the kit prints) or --board black",
+                    name, readings[0].board.name, readings[0].off_mm, readings[1].board.name,
+                    readings[1].off_mm));
+  return readings[0];
+}
+
+std::vector<Board> boards_asked(const CorrectRequest& request) {
+  if (!request.board.empty()) return {board_named(request.board, request.square_mm)};
+  return {tint_board(request.square_mm > 0 ? request.square_mm : kTintSquare_mm),
+          black_board(request.square_mm > 0 ? request.square_mm : kBlackSquare_mm)};
+}
+
+// What a dip came to.
+struct Landings {
+  std::vector<Landed> places;
+  std::string board;  // whose corners these are; empty: places from a table
+};
+
+Landings read_grid(const std::filesystem::path& file, const PrintedFilm& film,
+                   const FilmOptions& sheet, const CorrectRequest& request,
+                   const RunContext& context) {
+  const std::vector<Board> boards = boards_asked(request);
+  const Scan scan = read_scan(file, {request.scan_units, boards.front().square_mm, false}, context);
+  const Reading reading =
+      best_reading(boards, scan.grid, film, sheet, request.aligned, file.string());
+  if (reading.mirrored)
     throw InputError(
         fmt::format("{}: only the scan's mirror image fits the object; save it without mirroring",
                     file.string()));
-  const CornerGrid grid =
-      request.aligned
-          ? scan.grid
-          : moved(scan.grid, align(scan.grid, match, film.posed.surface(), landing).pose);
-  std::vector<Landed> landed;
-  for (std::size_t i = 0; i < grid.position.size(); ++i)
-    if (match.place[i])
-      landed.push_back(
-          {request.square_mm * Vec2((*match.place[i])[0], (*match.place[i])[1]), grid.position[i]});
-  return landed;
+  if (reading.turned)
+    context.warn(fmt::format(
+        "{}: rows and columns run the wrong way round: its faces look into the object, or it is a "
+        "mirror image, of which the correction would be wrong.",
+        file.string()));
+  Landings landings{{}, reading.board.name};
+  for (std::size_t i = 0; i < reading.place.size(); ++i)
+    if (reading.place[i])
+      landings.places.push_back(
+          {reading.board.on_film(*reading.place[i]), reading.grid.position[i]});
+  return landings;
+}
+
+Landings read_table(const std::filesystem::path& file) {
+  Landings landings;
+  for (const PlaceRow& row : read_place_table(file))
+    landings.places.push_back({row.on_sheet, row.position});
+  return landings;
 }
 
 struct DipSeen {
   std::filesystem::path file;
+  std::string board;  // as of its landings
   std::vector<CorrectionSample> samples;
   Vec2 mean_off = Vec2::Zero();  // from what the print meant, on the sheet
   double rms_off_mm = 0;
@@ -73,17 +171,13 @@ struct DipSeen {
 };
 
 DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
-                const FilmOptions& sheet, const CorrectRequest& request) {
-  std::vector<Landed> landed;
-  const bool is_table = is_place_table(file);
-  if (is_table)
-    for (const PlaceRow& row : read_place_table(file))
-      landed.push_back({row.on_sheet, row.position});
-  else
-    landed = read_grid(file, film, sheet, request);
-  DipSeen dip{file, {}, {}, 0, 0};
+                const FilmOptions& sheet, const CorrectRequest& request,
+                const RunContext& context) {
+  const Landings landings =
+      is_place_table(file) ? read_table(file) : read_grid(file, film, sheet, request, context);
+  DipSeen dip{file, landings.board, {}, {}, 0, 0};
   double square = 0, on_object = 0, on_object_count = 0;
-  for (const Landed& place : landed) {
+  for (const Landed& place : landings.places) {
     const auto near = film.posed.surface().closest_point(place.position, kReach_mm);
     if (!near) continue;
     const auto meant =
@@ -105,13 +199,6 @@ DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
                     "of this job's object in its pose",
                     file.string()));
   dip.mean_off /= double(dip.samples.size());
-  // The kit's usual board has a square's middle where the black one has a corner.
-  constexpr double kNearlyHalf = 0.4;
-  if (!is_table && (dip.mean_off.cwiseAbs().array() > kNearlyHalf * request.square_mm).all())
-    throw InputError(fmt::format(
-        "{}: its corners lie half a square beside their places; dip the board whose corner is the "
-        "film's centre (hydrodip calibrate kit --board black), or tell places in a table",
-        file.string()));
   dip.rms_off_mm = std::sqrt(square / double(dip.samples.size()));
   if (on_object_count > 0) dip.rms_on_object_mm = std::sqrt(on_object / on_object_count);
   return dip;
@@ -134,6 +221,7 @@ Json json_of(const std::vector<DipSeen>& dips, const std::vector<CorrectionSampl
   Json seen = Json::array(), moves = Json::array(), kept = Json::array();
   for (const DipSeen& dip : dips)
     seen.push_back({{"file", dip.file.string()},
+                    {"board", dip.board},
                     {"places", dip.samples.size()},
                     {"mean_off_mm", pair_of(dip.mean_off)},
                     {"rms_on_sheet_mm", dip.rms_off_mm},
@@ -193,7 +281,7 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
   std::vector<CorrectionSample> samples;
   double square = 0, on_object = 0, count = 0;
   for (const std::filesystem::path& scan : request.scans) {
-    dips.push_back(seen_by(scan, film, sheet, request));
+    dips.push_back(seen_by(scan, film, sheet, request, context));
     const DipSeen& dip = dips.back();
     const auto n = double(dip.samples.size());
     samples.insert(samples.end(), dip.samples.begin(), dip.samples.end());
@@ -228,6 +316,11 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
     result.text += fmt::format(
         "from dip to dip the film lay {:.3f} mm elsewhere: no correction takes that out\n",
         between_dips_mm(dips));
+  for (const DipSeen& dip : dips)
+    if (!dip.board.empty() && request.board.empty())
+      result.text += fmt::format("{}: taken for the {} board\n", dip.file.string(), dip.board);
+  for (const std::string& warning : context.warnings())
+    result.text += fmt::format("warning: {}\n", warning);
   result.text += fmt::format("wrote {0}/{1} and {0}/{2}\nprint again with --correction {0}/{1}\n",
                              job.folder.string(), kFile, kPicture);
   return result;

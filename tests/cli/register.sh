@@ -1,6 +1,7 @@
 #!/bin/sh
 # calibrate printer, register, correct and rig jig from outside. Usage: sh register.sh HYDRODIP
-. "$(dirname "$0")/common.sh"
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/common.sh"
 
 # number NAME FILE: of a JSON key.
 number() { sed -n "s/.*\"$1\": *\\([-0-9.e]*\\).*/\\1/p" "$2" | head -n 1; }
@@ -93,6 +94,24 @@ assert laid
 assert all(abs(q[3] - p[3] - 1) < 0.02 and abs(q[4] - p[4]) < 0.02 for p, q in laid)
 PY
 expect 0 'off by' correct second places.csv
+
+# Scans of both boards, 1 mm and half a millimetre off, say so without a word on which was dipped.
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $quick --film 140x130 --size 90 --depth 18 -o large --quiet \
+  --set film.elements=4000 > /dev/null || fail "print a large one"
+for board in tints black; do
+  python3 "$here/corner_scan.py" large/film.ply $board 5 1 0.5 > "$board.csv" || fail "corner_scan.py"
+  expect 0 "taken for the $board board" correct large "$board.csv" --aligned
+  expect 0 'off by 1.1[0-3]' correct large "$board.csv" --aligned
+  expect 0 'off by 1.1[0-3]' correct large "$board.csv" --aligned --board $board
+  python3 "$here/corner_scan.py" large/film.ply $board 5 1 0.5 askew > askew.csv
+  expect 0 'off by' correct large askew.csv --board $board
+done
+# As far off as this, either could be meant.
+python3 "$here/corner_scan.py" job/film.ply tints 2.5 1 0.5 > small.csv || fail "corner_scan.py"
+expect 2 'say which one was dipped' correct job small.csv --square 2.5
+expect 0 'off by 1.[12]' correct job small.csv --square 2.5 --board tints
+expect 2 "'white'" correct large black.csv --board white
 expect 2 'name the job' correct job
 expect 2 'not a correction' print colored.ply --correction registration.json
 expect 2 'of one dip' print colored.ply --dips 2 --correction job/correction.json -o twice

@@ -1,14 +1,12 @@
-// The board of inked squares whose corners a calibration looks for on the dipped object.
+// The board of inked squares whose corners are looked for on the dipped object.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "film/film.h"
-#include "ink/inks.h"
+#include "base/math.h"
 #include "scan/corner_grid.h"
-#include "transfer/raster.h"
 
 namespace hydrodip {
 
@@ -46,12 +44,5 @@ Board tint_board(double square_mm);
 
 // "tints" or "black"; squares of 0 mm: its own. Throws InputError.
 Board board_named(const std::string& name, double square_mm);
-
-// Printed inside the taped margin.
-struct PrintedBoard {
-  InkImage inks;
-  SheetRaster raster;
-};
-PrintedBoard print_board(const FilmOptions& film, const Board& board);
 
 }  // namespace hydrodip
