@@ -1,10 +1,10 @@
 #include "calibrate/fit.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/dense_solvers.h"
 #include "base/error.h"
 #include "calibrate/misfit.h"
 
@@ -36,10 +36,7 @@ QuadraticModel compressed(const QuadraticModel& model) {
   if (rows <= 10) return model;
   Eigen::MatrixXd all(rows, 10);
   all << model.value, model.slope, model.bend;
-  const Eigen::MatrixXd r = Eigen::HouseholderQR<Eigen::MatrixXd>(all)
-                                .matrixQR()
-                                .topRows(10)
-                                .triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd r = triangular_factor(all);
   return {r.col(0), r.middleCols<3>(1), r.rightCols(6)};
 }
 
@@ -70,7 +67,7 @@ Eigen::Vector3d minimize(const QuadraticModel& model, const Eigen::Vector3d& low
       downhill[k] = 0;
     }
     const Eigen::Vector3d next =
-        (d + curvature.ldlt().solve(downhill)).cwiseMax(low).cwiseMin(high);
+        (d + solve_symmetric(curvature, downhill)).cwiseMax(low).cwiseMin(high);
     const Eigen::VectorXd left = model.at(next);
     if (!(left.squaredNorm() < residual.squaredNorm())) {
       damping *= 10;
@@ -323,8 +320,8 @@ Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm) {
   result.noise_mm = left > 0 ? std::sqrt(squares / left) : 0;
 
   const Eigen::MatrixXd curvature = j.transpose() * j;
-  const auto solver = curvature.completeOrthogonalDecomposition();
-  const Eigen::MatrixXd covariance = result.noise_mm * result.noise_mm * solver.pseudoInverse();
+  const MinimumNorm solver(curvature);
+  const Eigen::MatrixXd covariance = result.noise_mm * result.noise_mm * solver.pseudo_inverse();
   for (std::size_t a = 0; a < free.size(); ++a)
     for (std::size_t b = 0; b < free.size(); ++b)
       result.covariance(free[a], free[b]) = covariance(Eigen::Index(a), Eigen::Index(b));

@@ -1,8 +1,9 @@
 #include "calibrate/misfit.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <limits>
+
+#include "base/dense_solvers.h"
 
 namespace hydrodip {
 namespace {
@@ -52,10 +53,7 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd scaled = columns;
   for (Eigen::Index k = 0; k < scaled.cols(); ++k)
     if (const double length = scaled.col(k).norm(); length > 0) scaled.col(k) /= length;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled.rows(), scaled.cols());
-  qr.setThreshold(kSameSpace);
-  qr.compute(scaled);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(scaled.rows(), qr.rank());
+  return column_space(scaled, kSameSpace);
 }
 
 Eigen::MatrixXd without(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& space) {

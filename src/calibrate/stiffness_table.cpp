@@ -1,9 +1,10 @@
 #include "calibrate/stiffness_table.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+
+#include "base/dense_solvers.h"
 
 namespace hydrodip {
 namespace {
@@ -54,12 +55,11 @@ StiffnessTable stiffness_table(const FilmFit& fit, const std::vector<double>& de
   Eigen::MatrixXd slope(Eigen::Index(rows.size()), free + inks);
   slope << fit.jacobian(rows, others), by_ink(rows, Eigen::all);
   const Eigen::VectorXd residual = fit.residual(rows);
-  const auto solver = slope.completeOrthogonalDecomposition();
-  const Eigen::VectorXd change = solver.solve(-residual);
+  const Eigen::VectorXd change = MinimumNorm(slope).solve(-residual);
   const double squares = (residual + slope * change).squaredNorm();
   const double variance = squares / left;
   const Eigen::MatrixXd covariance =
-      variance * (slope.transpose() * slope).completeOrthogonalDecomposition().pseudoInverse();
+      variance * MinimumNorm(slope.transpose() * slope).pseudo_inverse();
 
   const double ratio = from_fit(fit.point).stiffness_ratio;
   std::vector<double> logarithms, weights;

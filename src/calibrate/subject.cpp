@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "base/dense_solvers.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "calibrate/calibrate.h"
@@ -196,10 +196,8 @@ Pairs pairs_of(const Subject& subject, const Landings& landings) {
 class OpenAmounts {
  public:
   explicit OpenAmounts(const Eigen::MatrixXd& motions)
-      : length_(motions.colwise().norm().cwiseMax(1e-12).transpose()) {
-    solver_.setThreshold(kNearlySame);
-    solver_.compute(motions * length_.cwiseInverse().asDiagonal());
-  }
+      : length_(motions.colwise().norm().cwiseMax(1e-12).transpose()),
+        solver_(motions * length_.cwiseInverse().asDiagonal(), kNearlySame) {}
   Eigen::VectorXd of(const Eigen::VectorXd& misfit) const {
     const Eigen::VectorXd amount = solver_.solve(misfit);
     return amount.cwiseQuotient(length_);
@@ -208,7 +206,7 @@ class OpenAmounts {
  private:
   static constexpr double kNearlySame = 0.02;
   Eigen::VectorXd length_;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_;
+  MinimumNorm solver_;
 };
 
 bool same(const Board& a, const Board& b) {

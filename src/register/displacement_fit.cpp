@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
+#include "base/dense_solvers.h"
 #include "base/error.h"
 #include "base/run_scope.h"
 
@@ -78,7 +78,7 @@ Kriging krige(const std::vector<Place>& places, double length_mm, double noise_s
     system.block<kDrift, 1>(n, i) = drift(p.at);
     right.row(i) = p.move;
   }
-  Kriging result{length_mm, noise_share, system.partialPivLu().inverse(), {}, 0, 0};
+  Kriging result{length_mm, noise_share, inverse_of(system), {}, 0, 0};
   result.weights = result.inverse * right;
   double count = 0, square = 0;
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -1,6 +1,6 @@
 #include "scan/dark_squares.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -226,6 +226,12 @@ std::vector<Spot> find_spots(const Look& look, double square_mm) {
 
 using Corners = std::array<Vec2, 4>;
 
+// Of a symmetric matrix with positive eigenvalues.
+Mat2 square_root(const Mat2& matrix) {
+  const double root = std::sqrt(matrix.determinant());
+  return (matrix + root * Mat2::Identity()) / std::sqrt(matrix.trace() + 2 * root);
+}
+
 // A spot's corners as if it were a square that was stretched evenly: by its second moments, made
 // round, and which way its fourth moments then point.
 Corners rough_corners(const Spot& spot, const Plane& plane) {
@@ -235,8 +241,7 @@ Corners rough_corners(const Spot& spot, const Plane& plane) {
   const Vec2 middle = points.rowwise().mean();
   points.colwise() -= middle;
   const Eigen::Matrix2d spread = points * points.transpose() / double(points.cols());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
-  const Eigen::Matrix2d round = axes.operatorInverseSqrt(), back = axes.operatorSqrt();
+  const Mat2 back = square_root(spread), round = back.inverse();
   std::complex<double> fourth = 0;
   for (const Vec2 p : points.colwise()) {
     const Vec2 q = round * p;
@@ -341,7 +346,8 @@ std::optional<Corners> refined(const Look& look, const Plane& plane, const Corne
       Eigen::Matrix2d slope;
       slope << (on_edge(before, end + kAhead) - on_edge(before, end)) / kAhead,
           -(on_edge(k, begin + kAhead) - on_edge(k, begin)) / kAhead;
-      const Vec2 change = slope.fullPivLu().solve(-off);
+      if (slope.determinant() == 0) return std::nullopt;
+      const Vec2 change = slope.inverse() * -off;
       end += change.x();
       begin += change.y();
     }

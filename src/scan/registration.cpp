@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "base/dense_solvers.h"
+#include "base/eigenpairs.h"
 #include "base/error.h"
 
 namespace hydrodip {
@@ -247,8 +248,17 @@ GridPlace reach_of(const FilmOptions& film, double square_mm) {
 }
 
 Eigen::Isometry3d rigid_motion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
-  Eigen::Isometry3d motion;
-  motion.matrix() = Eigen::umeyama(from, to, false);
+  // Horn 1987: the unit quaternion of the turn belongs to the largest eigenvalue.
+  const Vec3 from_middle = from.rowwise().mean(), to_middle = to.rowwise().mean();
+  const Mat3 s = (from.colwise() - from_middle) * (to.colwise() - to_middle).transpose();
+  Eigen::Matrix4d by_quaternion;
+  by_quaternion << s.trace(), s(1, 2) - s(2, 1), s(2, 0) - s(0, 2), s(0, 1) - s(1, 0),   //
+      s(1, 2) - s(2, 1), 2 * s(0, 0) - s.trace(), s(0, 1) + s(1, 0), s(2, 0) + s(0, 2),  //
+      s(2, 0) - s(0, 2), s(0, 1) + s(1, 0), 2 * s(1, 1) - s.trace(), s(1, 2) + s(2, 1),  //
+      s(0, 1) - s(1, 0), s(2, 0) + s(0, 2), s(1, 2) + s(2, 1), 2 * s(2, 2) - s.trace();
+  const Eigen::VectorXd q = eigenpairs(by_quaternion).vectors.col(3);
+  Eigen::Isometry3d motion(Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
+  motion.pretranslate(to_middle - motion * from_middle);
   return motion;
 }
 
@@ -333,7 +343,7 @@ Alignment align(const CornerGrid& grid, const GridMatch& match, const Surface& s
     }
     // A trace of damping: a motion that nothing determines is none.
     for (int k = 0; k < 6; ++k) equations.matrix(k, k) *= 1 + 1e-12;
-    const Eigen::Matrix<double, 6, 1> step = equations.matrix.ldlt().solve(equations.right);
+    const Eigen::Matrix<double, 6, 1> step = solve_symmetric(equations.matrix, equations.right);
     if (!step.allFinite()) break;
     pose = moved_a_little(pose, step.tail<3>(), step.head<3>());
     if (step.norm() < kSettled_mm) break;
