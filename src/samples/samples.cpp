@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <iterator>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -52,17 +51,15 @@ std::string obj_text(const Object& object, const std::string& name) {
       "# hydrodip sample: {}; millimetres, z up, dips towards -z\n"
       "mtllib {}.mtl\no {}\n",
       name, name, name);
-  auto out = std::back_inserter(text);
   CheckEvery check(256);
   for (const Vec3& p : object.positions) {
     check();
-    fmt::format_to(out, "v {:.6f} {:.6f} {:.6f}\n", p.x(), p.y(), p.z());
+    text += fmt::format("v {:.6f} {:.6f} {:.6f}\n", p.x(), p.y(), p.z());
   }
   // Corners that share a vertex and a texture coordinate share a vt line.
   std::vector<std::vector<std::pair<Eigen::Vector2f, long>>> known(object.positions.size());
   long count = 0;
   std::string faces = fmt::format("usemtl {}\n", name);
-  auto face_out = std::back_inserter(faces);
   for (std::size_t t = 0; t < object.triangles.size(); ++t) {
     check();
     faces += 'f';
@@ -73,10 +70,10 @@ std::string obj_text(const Object& object, const std::string& name) {
       auto found = std::find_if(at_vertex.begin(), at_vertex.end(),
                                 [&](const auto& entry) { return entry.first == uv; });
       if (found == at_vertex.end()) {
-        fmt::format_to(out, "vt {:.8f} {:.8f}\n", uv.x(), uv.y());
+        text += fmt::format("vt {:.8f} {:.8f}\n", uv.x(), uv.y());
         found = at_vertex.insert(at_vertex.end(), {uv, ++count});
       }
-      fmt::format_to(face_out, " {}/{}", vertex + 1, found->second);
+      faces += fmt::format(" {}/{}", vertex + 1, found->second);
     }
     faces += '\n';
   }

@@ -240,7 +240,8 @@ Corners rough_corners(const Spot& spot, const Plane& plane) {
     points.col(Eigen::Index(i)) = plane.of(spot.point[i]);
   const Vec2 middle = points.rowwise().mean();
   points.colwise() -= middle;
-  const Eigen::Matrix2d spread = points * points.transpose() / double(points.cols());
+  Mat2 spread = Mat2::Zero();
+  for (const Vec2 p : points.colwise()) spread += p * p.transpose() / double(points.cols());
   const Mat2 back = square_root(spread), round = back.inverse();
   std::complex<double> fourth = 0;
   for (const Vec2 p : points.colwise()) {
@@ -305,14 +306,14 @@ std::optional<Bend> edge(const Look& look, const Plane& plane, const Vec2& from,
   Bend bend = Bend::Zero();
   for (int round = 0; round < 3; ++round) {
     if (points.size() < kFewestOnEdge) return std::nullopt;
-    Eigen::MatrixX3d basis(Eigen::Index(points.size()), 3);
-    Eigen::VectorXd value(Eigen::Index(points.size()));
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double t = points[i].x();
-      basis.row(Eigen::Index(i)) << 1, t, t * t;
-      value[Eigen::Index(i)] = points[i].y();
+    Mat3 squares = Mat3::Zero();
+    Bend right = Bend::Zero();
+    for (const Vec2& p : points) {
+      const Bend powers(1, p.x(), p.x() * p.x());
+      squares += powers * powers.transpose();
+      right += p.y() * powers;
     }
-    bend = basis.householderQr().solve(value);
+    bend = squares.inverse() * right;
     const std::size_t before = points.size();
     std::erase_if(points, [&](const Vec2& p) {
       return std::abs(bend.dot(Bend(1, p.x(), p.x() * p.x())) - p.y()) > kOutlier * length;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <numbers>
 #include <string_view>
@@ -275,9 +274,9 @@ void write_scan_table(const std::filesystem::path& file, const CornerGrid& grid,
     low = {std::min(low[0], place[0]), std::min(low[1], place[1])};
   std::string text = fmt::format("# {}\ncolumn,row,x,y,z\n", comment);
   for (std::size_t c = 0; c < grid.position.size(); ++c)
-    fmt::format_to(std::back_inserter(text), "{},{},{:.6f},{:.6f},{:.6f}\n",
-                   grid.place[c][0] - low[0], grid.place[c][1] - low[1], grid.position[c].x(),
-                   grid.position[c].y(), grid.position[c].z());
+    text += fmt::format("{},{},{:.6f},{:.6f},{:.6f}\n", grid.place[c][0] - low[0],
+                        grid.place[c][1] - low[1], grid.position[c].x(), grid.position[c].y(),
+                        grid.position[c].z());
   write_file(file, text);
 }
 
@@ -286,9 +285,8 @@ void write_scan_quads(const std::filesystem::path& file, const CornerGrid& grid,
   std::map<GridPlace, std::size_t> corner_at;
   for (std::size_t c = 0; c < grid.place.size(); ++c) corner_at[grid.place[c]] = c;
   std::string text = fmt::format("# {}\n", comment);
-  auto out = std::back_inserter(text);
   for (const Vec3& p : grid.position)
-    fmt::format_to(out, "v {:.6f} {:.6f} {:.6f}\n", p.x(), p.y(), p.z());
+    text += fmt::format("v {:.6f} {:.6f} {:.6f}\n", p.x(), p.y(), p.z());
   for (const auto& [place, corner] : corner_at) {
     // Clockwise on the film, which is counter-clockwise from outside the object.
     std::array<std::size_t, 4> quad{};
@@ -299,7 +297,7 @@ void write_scan_quads(const std::filesystem::path& file, const CornerGrid& grid,
       whole = whole && found != corner_at.end();
       if (whole) quad[k] = found->second + 1;
     }
-    if (whole) fmt::format_to(out, "f {} {} {} {}\n", quad[0], quad[1], quad[2], quad[3]);
+    if (whole) text += fmt::format("f {} {} {} {}\n", quad[0], quad[1], quad[2], quad[3]);
   }
   write_file(file, text);
 }
