@@ -37,6 +37,9 @@ ReadReport read_report(const std::filesystem::path& folder) {
                     folder.string()));
   const std::vector<std::uint8_t> bytes = read_file(file);
   Json report = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  if (report.is_object() && report.contains("dips"))
+    throw InputError(fmt::format("{}: this job has several dips; name one of them, as {}",
+                                 folder.string(), (folder / "dip-1").string()));
   const bool usable = report.is_object() && report.contains("parameters") &&
                       report["parameters"].is_object() && report.contains("figures") &&
                       report["figures"].is_object() && report["figures"].contains("depth_mm");

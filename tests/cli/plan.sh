@@ -57,6 +57,7 @@ refused() {
   [ "$(wc -l < err.txt)" -eq 1 ] || fail "$*: $(cat err.txt)"
   grep -q -e "$why" err.txt || fail "$*: $(cat err.txt)"
 }
+refused 'name one of them, as dips/dip-1' rig sheet dips
 refused 'how many dips' plan colored.ply
 printf '[object]\nfile = "colored.ply"\n[[dip]]\nrotate_deg = [0, 0]\n' > bad.toml
 refused 'bad.toml:4' print bad.toml
