@@ -34,7 +34,7 @@ class Settling {
         film_(std::make_shared<const FilmMesh>(make_film_mesh(task.options.film))) {}
 
   Designed run() {
-    air_ = timings_.measure("air", [&] {
+    air_ = task_.blank ? task_.blank->air : timings_.measure("air", [&] {
       const TriangleMesh& mesh = task_.posed.mesh();
       return std::make_shared<const TrappedAir>(
           find_air(mesh, task_.posed.surface(),
@@ -45,12 +45,20 @@ class Settling {
     result_.rounds = rounds.rounds();
     result_.settled = outcome == Outcome::kSettled;
     warn(outcome);
+    if (went_in_longer_steps() && outcome != Outcome::kFailed) {
+      if (!rounds.last()) warn(Outcome::kFailed);
+      result_.rounds = rounds.rounds();
+    }
     finish(rounds);
     return {rounds.dipped(), std::move(result_), raster_of(options().film, options().dpi)};
   }
 
  private:
   const DesignOptions& options() const { return task_.options; }
+
+  bool went_in_longer_steps() const {
+    return options().rounds_step_mm > options().dip.step_mm && result_.rounds.size() > 1;
+  }
 
   Outcome settle(InkRounds& rounds) {
     if (!ink_matters(options()) || options().rounds_max == 1) {
@@ -71,7 +79,7 @@ class Settling {
       context_.warn(fmt::format(
           "after {} rounds the ink still moves the film by {:.2g} mm on average (settled: {:g} "
           "mm); raise ink.rounds_max, or film.elements if it does not help",
-          result_.rounds.size(), result_.last_change_mm(), kSettled_mm));
+          result_.rounds.size(), result_.last_change_mm(), options().settled_mm));
   }
 
   void finish(const InkRounds& rounds) {

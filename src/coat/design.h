@@ -15,6 +15,9 @@
 
 namespace hydrodip {
 
+// Rounds are settled when the film on the object moved less than this on average.
+inline constexpr double kSettled_mm = 1e-4;
+
 struct DesignOptions {
   FilmOptions film;
   TrajectoryOptions trajectory;
@@ -22,7 +25,11 @@ struct DesignOptions {
   AirOptions air;
   StiffnessOptions stiffness;
   int rounds_max = 10;  // simulate, invert, stiffen, repeat: at most this often
-  double dpi = 300;     // of what is printed
+  double settled_mm = kSettled_mm;
+  // Rounds after the first go in steps so long until they are settled, and one more in the dip's
+  // own; 0: all go in the dip's own.
+  double rounds_step_mm = 0;
+  double dpi = 300;  // of what is printed
   InverseOptions inverse;
   InkingOptions inking;  // its base is the paint's
 };
@@ -51,9 +58,6 @@ struct InkRound {
   DipStatistics dip;
 };
 
-// A loop is settled when the film on the object moved less than this on average.
-inline constexpr double kSettled_mm = 1e-4;
-
 struct InkResult {
   FilmInk ink;  // of the last round
   Reach reach;
@@ -77,6 +81,9 @@ struct DesignTask {
   const Allotment& allotment;  // what of the paint this film brings
   const ColorModel& model;
   const DesignOptions& options;
+  // That dip without ink, where it was made already: then the first round makes none. Null: it was
+  // not.
+  const DippedObject* blank = nullptr;
 };
 
 // What to print on film that was dipped without ink, and what comes of it: one round, which makes

@@ -94,6 +94,15 @@ Outcome InkRounds::next() {
   return outcome();
 }
 
+bool InkRounds::last() {
+  stiffen();
+  dip_options_.step_mm = options_.dip.step_mm;
+  if (!dip()) return false;
+  ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
+  judge();
+  return true;
+}
+
 // That the ink of the last round gives to the film.
 std::vector<double> InkRounds::modulus() const {
   return film_modulus(*film_, ink_.inking.inks, raster_of(options_.film, rounds_dpi_),
@@ -110,6 +119,10 @@ FilmInk InkRounds::print(double dpi, bool all) const {
 // False if the film cannot be dipped with its ink: then the last dip stays.
 bool InkRounds::dip() {
   if (number() > 0) before_ = dipped_;
+  if (number() == 0 && task_.blank) {
+    dipped_ = *task_.blank;
+    return true;
+  }
   dip_options_.failed_share_max = dip_options_.modulus.empty() ? 1 : kFailedSteps;
   try {
     dipped_ = dip_object(task_.posed, film_, trajectory_, dip_options_, timings_, context_, {},
@@ -139,7 +152,7 @@ double InkRounds::change(int rounds_ago) const {
 }
 
 Outcome InkRounds::outcome() const {
-  if (before_ && change(0) < kSettled_mm) return Outcome::kSettled;
+  if (before_ && change(0) < options_.settled_mm) return Outcome::kSettled;
   if (number() >= options_.rounds_max) return Outcome::kUnsettled;
   // What does not settle costs a dip each round.
   const bool stands = number() > kFreeRounds + 2 && change(0) > kLeastProgress * change(2);
@@ -148,6 +161,7 @@ Outcome InkRounds::outcome() const {
 
 // The film to dip next.
 void InkRounds::stiffen() {
+  dip_options_.step_mm = std::max(options_.dip.step_mm, options_.rounds_step_mm);
   if (number() == kFreeRounds) {
     dip_options_.tears_at_mm = dipped_->film->torn_at_mm;
     dip_options_.moved_mm = dipped_->film->moved_mm;
