@@ -133,9 +133,10 @@ Json dips_schema() {
                          {"description", "planning leaves this dip as it is"}};
       continue;
     }
-    const std::string name = key == "path"       ? key
-                             : key == "depth_mm" ? "dip." + key
-                                                 : "object." + key;
+    const std::string name = key == "path"         ? key
+                             : key == "depth_mm"   ? "dip." + key
+                             : key == "correction" ? "film." + key
+                                                   : "object." + key;
     properties[key] = file_schema(find_parameter(name, "job_schema"));
     properties[key].erase("default");
   }

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "dip/tear_doubt.h"
+#include "settings/correction_file.h"
 
 namespace hydrodip {
 namespace {
@@ -38,6 +39,13 @@ bool is_given(const DipEntry& entry, bool again) {
   throw InputError(
       fmt::format("dip {} {}: turn it with rotate_deg, or leave that out and let it be found",
                   number, trial ? "reaches nothing at any depth" : "does not fit film and bath"));
+}
+
+[[noreturn]] void refuse_correction(std::size_t number) {
+  throw InputError(
+      fmt::format("dip {}: its correction is of one pose: give that with rotate_deg, and where the "
+                  "job is planned again say locked = true",
+                  number));
 }
 
 class Planning {
@@ -78,10 +86,12 @@ class Planning {
     std::vector<Trial> given;
     for (std::size_t i = 0; i < config_.dips.size(); ++i) {
       const DipEntry& entry = config_.dips[i];
+      if (!entry.correction.empty() && !is_given(entry, again_)) refuse_correction(i + 1);
       if (!is_given(entry, again_)) {
         if (entry.depth_mm && !again_) hold_best(task_to(entry), given);
         continue;
       }
+      if (!entry.correction.empty()) read_correction(entry.correction);
       context_.progress("dipping what is given", double(i) / double(config_.dips.size()));
       const auto trial =
           try_pose(task_to(entry), pose_of(entry, config_.object.pose), 0, context_.quiet());
@@ -185,7 +195,7 @@ class Planning {
     Timings unheard;
     PlannedDip dip{
         trial,
-        dip_object(posed, std::make_shared<const FilmMesh>(make_film_mesh(config_.design.film)),
+        dip_object(posed, std::make_shared<const FilmMesh>(make_film_mesh(film_of(config_, trial))),
                    make_trajectory(way, posed.mesh().positions), config_.design.dip, unheard,
                    context, {}, {.options = config_.design.air, .found = {}})};
     dip.trial = judge_dip(task_, trial.pose, dip.blank);
@@ -235,6 +245,24 @@ DipPlan plan_dips(const JobConfig& config, const PreparedObject& prepared, const
   return Planning(config, prepared, targets, again, context).run();
 }
 
+std::filesystem::path correction_of(const JobConfig& config, const Trial& trial) {
+  for (const DipEntry& entry : config.dips) {
+    const PoseOptions pose = pose_of(entry, config.object.pose);
+    if (!entry.correction.empty() && pose.down == trial.pose.down &&
+        pose.rotate_deg == trial.pose.rotate_deg)
+      return entry.correction;
+  }
+  return {};
+}
+
+FilmOptions film_of(const JobConfig& config, const Trial& trial) {
+  FilmOptions film = config.design.film;
+  const std::filesystem::path file = correction_of(config, trial);
+  if (!file.empty())
+    film.correction = std::make_shared<const FilmCorrection>(read_correction(file).field);
+  return film;
+}
+
 std::vector<DipEntry> entries_of(const DipPlan& plan, const std::vector<DipEntry>& earlier) {
   std::vector<DipEntry> entries;
   for (const PlannedDip& planned : plan.dips) {
@@ -244,9 +272,13 @@ std::vector<DipEntry> entries_of(const DipPlan& plan, const std::vector<DipEntry
     entry.rotate_deg = dip.pose.rotate_deg;
     if (dip.path.empty()) entry.depth_mm = dip.depth_mm;
     entry.path = dip.path;
-    entry.locked = std::any_of(earlier.begin(), earlier.end(), [&](const DipEntry& other) {
-      return other.locked && other.rotate_deg && *other.rotate_deg == *entry.rotate_deg;
+    const auto same = std::find_if(earlier.begin(), earlier.end(), [&](const DipEntry& other) {
+      return other.rotate_deg && *other.rotate_deg == *entry.rotate_deg;
     });
+    if (same != earlier.end()) {
+      entry.locked = same->locked;
+      entry.correction = same->correction;
+    }
     entries.push_back(entry);
   }
   return entries;

@@ -25,6 +25,12 @@ struct DipPlan {
 DipPlan plan_dips(const JobConfig& config, const PreparedObject& prepared, const Targets& targets,
                   bool again, const RunContext& context);
 
+// The sheet of a planned dip, with the correction of the job's dip that is held so. Throws
+// InputError if the file is none.
+FilmOptions film_of(const JobConfig& config, const Trial& trial);
+// That correction's file; empty: none.
+std::filesystem::path correction_of(const JobConfig& config, const Trial& trial);
+
 // The plan's dips as the job's, everything given.
 std::vector<DipEntry> entries_of(const DipPlan& plan, const std::vector<DipEntry>& earlier);
 

@@ -140,6 +140,8 @@ std::vector<ReportInput> describe_inputs(const JobConfig& config, const Prepared
     inputs.push_back(describe_input(role_of(file, config, prepared), file));
   if (!config.film_image.empty()) inputs.push_back(describe_input("film image", config.film_image));
   if (!config.correction.empty()) inputs.push_back(describe_input("correction", config.correction));
+  for (const DipEntry& dip : config.dips)
+    if (!dip.correction.empty()) inputs.push_back(describe_input("correction", dip.correction));
   if (!printer.profile_file.empty())
     inputs.push_back({"printer profile", printer.profile_file.string(),
                       sha256_hex(printer.profile_bytes), printer.profile_bytes.size()});

@@ -33,6 +33,8 @@ JobConfig config_of(const JobConfig& config, const Trial& trial, std::size_t num
   own.object.pose = trial.pose;
   own.design.trajectory.depth_mm = trial.path.empty() ? trial.depth_mm : 0;
   own.design.trajectory.path = trial.path;
+  own.correction = correction_of(config, trial);
+  own.design.film = film_of(config, trial);
   own.design.rounds_step_mm = longer_step_mm(own.design.dip.step_mm);
   own.design.settled_mm = std::max(own.design.settled_mm, kSettledAmongSeveral_mm);
   own.dips.clear();
@@ -100,7 +102,8 @@ std::vector<float> worth_at_nodes(const MadeDips& all, const MadeDip& dip, const
 void require_no_correction(const JobConfig& config) {
   if (config.design.film.correction)
     throw InputError(
-        "film.correction: a correction is of one dip, and this job has several; leave it out");
+        "film.correction: a correction is of one dip, and this job has several; name it in the "
+        "[[dip]] table of its dip");
 }
 
 MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,

@@ -96,8 +96,9 @@ struct DipEntry {
   std::optional<ModelSide> down;
   std::optional<Vec3> rotate_deg;
   std::optional<double> depth_mm;
-  std::vector<Keyframe> path;  // the way in; empty: straight down
-  bool locked = false;         // planning leaves it as it is
+  std::vector<Keyframe> path;        // the way in; empty: straight down
+  bool locked = false;               // planning leaves it as it is
+  std::filesystem::path correction;  // what dips of it told; empty: nothing
 };
 
 // What is looked for, and how several dips share the object.

@@ -51,7 +51,8 @@ bool checked_flag(const Setting& setting) {
 }  // namespace
 
 const std::vector<std::string>& dip_keys() {
-  static const std::vector<std::string> keys = {"down", "rotate_deg", "depth_mm", "path", "locked"};
+  static const std::vector<std::string> keys = {"down", "rotate_deg", "depth_mm",
+                                                "path", "locked",     "correction"};
   return keys;
 }
 
@@ -62,8 +63,8 @@ bool apply_dip_setting(JobConfig& config, const Setting& setting) {
     throw InputError(fmt::format("{}: a job has at most {} dips", setting.origin, kMostDips));
   if (std::find(dip_keys().begin(), dip_keys().end(), at.key) == dip_keys().end())
     throw InputError(fmt::format(
-        "{}: unknown value '{}' of a [[dip]] table{}; it has down, rotate_deg, depth_mm, path and "
-        "locked, and what holds for all dips is given with --set or in a profile",
+        "{}: unknown value '{}' of a [[dip]] table{}; it has down, rotate_deg, depth_mm, path, "
+        "locked and correction, and what holds for all dips is given with --set or in a profile",
         setting.origin, at.key, did_you_mean(at.key, dip_keys())));
   if (int(config.dips.size()) < at.number) config.dips.resize(std::size_t(at.number));
   DipEntry& dip = config.dips[std::size_t(at.number - 1)];
@@ -79,6 +80,8 @@ bool apply_dip_setting(JobConfig& config, const Setting& setting) {
     if (!value.plan.find_depth) dip.depth_mm = value.design.trajectory.depth_mm;
   } else if (at.key == "path") {
     dip.path = checked_as("path", setting).design.trajectory.path;
+  } else if (at.key == "correction") {
+    dip.correction = checked_as("film.correction", setting).correction;
   } else {
     dip.locked = checked_flag(setting);
   }
@@ -93,7 +96,9 @@ std::string path_text(const std::vector<Keyframe>& path) {
   return "[" + rows + "]";
 }
 
-std::string dip_tables_toml(const std::vector<DipEntry>& dips) {
+std::string dip_tables_toml(
+    const std::vector<DipEntry>& dips,
+    const std::function<std::string(const std::filesystem::path&)>& correction_text) {
   std::string text;
   for (const DipEntry& dip : dips) {
     text += "\n[[dip]]\n";
@@ -104,6 +109,8 @@ std::string dip_tables_toml(const std::vector<DipEntry>& dips) {
     if (dip.depth_mm) text += fmt::format("depth_mm = {}\n", *dip.depth_mm);
     if (!dip.path.empty()) text += fmt::format("path = {}\n", path_text(dip.path));
     if (dip.locked) text += "locked = true\n";
+    if (!dip.correction.empty())
+      text += fmt::format("correction = {}\n", correction_text(dip.correction));
   }
   return text;
 }

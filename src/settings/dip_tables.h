@@ -1,6 +1,8 @@
 // The [[dip]] tables of a job file: one for each of several dips.
 #pragma once
 
+#include <functional>
+
 #include "settings/params.h"
 
 namespace hydrodip {
@@ -15,7 +17,9 @@ bool apply_dip_setting(JobConfig& config, const Setting& setting);
 // A way in as TOML has it: [[0, 0, 0, 0, 0, 0], ...].
 std::string path_text(const std::vector<Keyframe>& path);
 
-// The dips as [[dip]] tables.
-std::string dip_tables_toml(const std::vector<DipEntry>& dips);
+// The dips as [[dip]] tables; `correction_text` says a correction's file as TOML has it.
+std::string dip_tables_toml(
+    const std::vector<DipEntry>& dips,
+    const std::function<std::string(const std::filesystem::path&)>& correction_text);
 
 }  // namespace hydrodip

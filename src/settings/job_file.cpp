@@ -91,7 +91,11 @@ std::string job_file(const JobConfig& config, const std::filesystem::path& folde
     group = own;
     text += fmt::format("{} = {}\n", p.name.substr(dot + 1), value_text(p, value, folder));
   }
-  return text + artwork_tables_toml(config.object.artwork, folder) + dip_tables_toml(config.dips);
+  const auto beside = [&folder](const std::filesystem::path& file) {
+    return quoted(from_folder(file.string(), folder));
+  };
+  return text + artwork_tables_toml(config.object.artwork, folder) +
+         dip_tables_toml(config.dips, beside);
 }
 
 std::string settings_file(const JobConfig& config, const std::vector<std::string>& names) {

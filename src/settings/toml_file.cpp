@@ -163,8 +163,10 @@ class SettingReader {
 
   // As a parameter of that type is read.
   static ParameterType type_of(const std::string& name, const std::string& origin) {
-    if (name.starts_with("dip["))
+    if (name.starts_with("dip[")) {
+      if (name.ends_with("].correction")) return ParameterType::kPath;
       return name.ends_with("].path") ? ParameterType::kWayIn : ParameterType::kText;
+    }
     const bool table = name.starts_with("artwork[") || name.starts_with("part[");
     if (!table) return find_parameter(name, origin).type;
     return is_artwork_path(name) || name.ends_with("].job") ? ParameterType::kPath

@@ -89,7 +89,8 @@ class Reader {
 
   bool is_path(const std::string& name) const {
     if (name.starts_with("artwork[")) return is_artwork_path(name);
-    return !name.starts_with("dip[") && find_parameter(name, kOrigin).type == ParameterType::kPath;
+    if (name.starts_with("dip[")) return name.ends_with("].correction");
+    return find_parameter(name, kOrigin).type == ParameterType::kPath;
   }
 
   void apply(const std::string& name, const Json& value) {
@@ -178,7 +179,7 @@ Json layer_json(const ArtworkLayer& layer, JobFiles& files) {
   return json;
 }
 
-Json dip_json(const DipEntry& dip) {
+Json dip_json(const DipEntry& dip, JobFiles& files) {
   Json json = Json::object();
   if (dip.down) json["down"] = side_name(*dip.down);
   if (dip.rotate_deg)
@@ -186,6 +187,7 @@ Json dip_json(const DipEntry& dip) {
   if (dip.depth_mm) json["depth_mm"] = *dip.depth_mm;
   if (!dip.path.empty()) json["path"] = rows_of_path(dip.path);
   if (dip.locked) json["locked"] = true;
+  if (!dip.correction.empty()) json["correction"] = files.grant(dip.correction.string());
   return json;
 }
 
@@ -211,7 +213,7 @@ Json document_of(const JobConfig& config, JobFiles& files) {
     document["path"] = rows_of_path(config.design.trajectory.path);
   for (const ArtworkLayer& layer : config.object.artwork)
     document["artwork"].push_back(layer_json(layer, files));
-  for (const DipEntry& dip : config.dips) document["dips"].push_back(dip_json(dip));
+  for (const DipEntry& dip : config.dips) document["dips"].push_back(dip_json(dip, files));
   return document;
 }
 

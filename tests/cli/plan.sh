@@ -1,7 +1,8 @@
 #!/bin/sh
 # How to hold it and several dips: orient, plan, job files, --rotate auto, --strict, and what is
 # refused.
-. "$(dirname "$0")/common.sh"
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/common.sh"
 
 write_colored colored.ply
 small="--film 120x120 --set film.elements=800 --set dip.step_mm=1 --set preview.width_px=200"
@@ -47,6 +48,17 @@ for file in dip-1/print.pdf dip-1/print.png preview.png; do
   cmp "dips/$file" "again/$file" || fail "$file depends on the folder"
 done
 
+# A dip that landed elsewhere is corrected by its own table.
+python3 "$here/film_ply.py" places dips/dip-1/film.ply 1 > places.csv || fail 'places'
+"$hydrodip" correct dips/dip-1 places.csv --quiet > /dev/null || fail "correct of a dip: $?"
+awk '{ print } /^rotate_deg/ && !n++ { print "correction = \"../dips/dip-1/correction.json\"" }' \
+  plan/plan.toml > plan/second.toml
+"$hydrodip" print plan/second.toml --dpi 72 --set print.samples=1 -o second --quiet > second.txt ||
+  fail "print with a dip's correction: $?"
+python3 "$here/film_ply.py" shifted dips/dip-1/film.ply second/dip-1/film.ply 1 0.1 ||
+  fail 'the corrected dip is not moved by 1 mm'
+grep -q 'dip-1/correction.json' second/dip-1/report.json || fail 'the report does not name the correction'
+
 # refused WHY COMMAND...: exits with 2 and says so in one line.
 refused() {
   why=$1
@@ -58,6 +70,8 @@ refused() {
   grep -q -e "$why" err.txt || fail "$*: $(cat err.txt)"
 }
 refused 'name one of them, as dips/dip-1' rig sheet dips
+printf '[object]\nfile = "colored.ply"\n[[dip]]\ncorrection = "dips/dip-1/correction.json"\n' > bad.toml
+refused 'of one pose' print bad.toml
 refused 'how many dips' plan colored.ply
 printf '[object]\nfile = "colored.ply"\n[[dip]]\nrotate_deg = [0, 0]\n' > bad.toml
 refused 'bad.toml:4' print bad.toml

@@ -65,34 +65,13 @@ expect 2 'registration.json' print colored.ply --film-state job/report.json
 
 # ---- a correction ----
 # Everything landed 1 mm farther to +x of the sheet than was meant: places of film.ply say so.
-python3 - job/film.ply > places.csv <<'PY' || fail "film.ply"
-import struct, sys
-data = open(sys.argv[1], "rb").read()
-begin = data.index(b"end_header\n") + 11
-count = int(data[:begin].split(b"element vertex ")[1].split()[0])
-print("film_x_mm,film_y_mm,x,y,z")
-for i in range(count):
-    x, y, z, u, v, state, _, _ = struct.unpack_from("<5fB2f", data, begin + 29 * i)
-    if state == 1:
-        print(f"{u + 1:.6f},{v:.6f},{x:.6f},{y:.6f},{z:.6f}")
-PY
+python3 "$here/film_ply.py" places job/film.ply 1 > places.csv || fail "film.ply"
 expect 0 'off by \(1.00\|0.99\)' correct job places.csv
 # shellcheck disable=SC2086
 "$hydrodip" print colored.ply $quick --film 140x130 --depth 6 -o second --quiet \
   --correction job/correction.json > /dev/null || fail "print --correction"
-python3 - job/film.ply second/film.ply <<'PY' || fail "the second print is not moved by 1 mm"
-import struct, sys
-def film(path):
-    data = open(path, "rb").read()
-    begin = data.index(b"end_header\n") + 11
-    count = int(data[:begin].split(b"element vertex ")[1].split()[0])
-    return [struct.unpack_from("<5fB2f", data, begin + 29 * i) for i in range(count)]
-a, b = film(sys.argv[1]), film(sys.argv[2])
-assert len(a) == len(b)
-laid = [(p, q) for p, q in zip(a, b) if p[5] == 1 and q[5] == 1]
-assert laid
-assert all(abs(q[3] - p[3] - 1) < 0.02 and abs(q[4] - p[4]) < 0.02 for p, q in laid)
-PY
+python3 "$here/film_ply.py" shifted job/film.ply second/film.ply 1 0.02 ||
+  fail "the second print is not moved by 1 mm"
 expect 0 'off by' correct second places.csv
 
 # Scans of both boards, 1 mm and half a millimetre off, say so without a word on which was dipped.

@@ -32,6 +32,7 @@ export interface Dip {
   depth_mm?: number;
   path?: Way | null;
   locked?: boolean;
+  correction?: string;
 }
 
 type Group = { [name: string]: Json | undefined };
@@ -172,7 +173,7 @@ export function withAnotherDip(document: JobDocument): JobDocument {
   const dips = document.dips?.length ? document.dips : [dipFrom(poseOf(document, 0))];
   const last = dips.at(-1)!;
   const over: Record<Side, Side> = { '-z': '+z', '+z': '-z', '-y': '+y', '+y': '-y', '-x': '+x', '+x': '-x' };
-  return { ...document, dips: [...dips, { ...without(last, 'locked', 'path'), down: over[last.down ?? '-z'] }] };
+  return { ...document, dips: [...dips, { ...without(last, 'locked', 'path', 'correction'), down: over[last.down ?? '-z'] }] };
 }
 
 const dipFrom = (pose: Pose): Dip => ({ down: pose.down, rotate_deg: pose.rotate_deg, depth_mm: pose.depth_mm });
