@@ -138,6 +138,12 @@ TEST(QuadsTest, RefusesWhatIsNoCheckerboard) {
   doubled.quads.push_back(doubled.quads[0]);
   doubled.quads.push_back(doubled.quads[0]);
   refuse(doubled);
+  // Three squares at one edge, as a book's pages at its back.
+  QuadMesh book;
+  book.corners = {{0, 0, 0},  {1, 0, 0},  {1, 1, 0}, {0, 1, 0},
+                  {0, -1, 0}, {1, -1, 0}, {1, 0, 1}, {0, 0, 1}};
+  book.quads = {{0, 1, 2, 3}, {1, 0, 4, 5}, {0, 1, 6, 7}};
+  refuse(book);
   QuadMesh pinched = sheet(2, 2);
   pinched.quads[0][2] = pinched.quads[0][1];
   refuse(pinched);
