@@ -18,14 +18,15 @@ write_colored inputs/colored.ply
 # Without what may differ: times and memory, which the reports keep in places of their own.
 cat > comparable.mjs <<'JS'
 import { readFileSync } from "node:fs";
-const text = readFileSync(process.argv[2], "utf8");
-if (process.argv[2].endsWith(".json")) {
-  const report = JSON.parse(text);
-  delete report.seconds;
-  delete report.peak_memory_bytes;
-  console.log(JSON.stringify(report));
+const file = process.argv[2], text = readFileSync(file, "utf8");
+const timeless = (key, value) => (/^(time|elapsed_s|seconds|peak_memory_bytes)$/.test(key) ? undefined : value);
+if (file.endsWith(".json")) {
+  console.log(JSON.stringify(JSON.parse(text, timeless)));
+} else if (file.endsWith("log.jsonl")) {
+  for (const line of text.trim().split("\n")) console.log(JSON.stringify(JSON.parse(line, timeless)));
 } else {
-  console.log(text.replace(/<section id="times">[^]*?<\/section>/, ""));
+  console.log(text.replace(/<section id="times">[^]*?<\/section>/, "")
+    .replace(/[0-9]{4}-[0-9]{2}-[0-9]{2}[T ][0-9:.]+Z?/g, "").replace(/[0-9.]+ s\b/g, ""));
 }
 JS
 
@@ -144,9 +145,10 @@ grep -q ADDRESS C.studio || fail "studio does not start: $(cat C.studio studio.e
 [ "$(wc -l < files.txt)" -gt 30 ] || fail "only $(wc -l < files.txt) files"
 while read -r file; do
   case $file in
-    */report.json | */report.html)
+    */report.json | */report.html | */log.jsonl | */swept/runs/*.json)
       for language in plain german; do node comparable.mjs "$language/$file" > "$language.report"; done
       cmp -s plain.report german.report || fail "$file differs" ;;
+    */history.sqlite) ;;  # with times; history --json has said what is in it
     */simulations.jsonl) # in the order in which they were done
       for language in plain german; do sort "$language/$file" > "$language.report"; done
       cmp -s plain.report german.report || fail "$file differs" ;;
