@@ -418,7 +418,7 @@ JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& reques
   result.folder = config.output;
   result.files = {"profile.toml",      "calibration.json",  "error-surface.csv",
                   "error-surface.png", "joint-regions.png", kStoreName};
-  result.text = summary(calibration, subjects, tear, context);
+  result.text = summary(calibration, subjects, tear, context) + folder.told_replaced();
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (config.output / file).string());
   result.json = json;

@@ -242,6 +242,7 @@ JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
   folder.commit();
 
   result.folder = config.output;
+  result.text = folder.told_replaced();
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (config.output / file).string());
   result.text += text_of(expected, request.expected_noise_mm);

@@ -159,6 +159,7 @@ JobResult measure_job(const JobConfig& given, const CalibrationRequest& request,
   write_file(folder.path("measure.json"), result.json);
   context.check_cancelled();
   folder.commit();
+  result.text += folder.told_replaced();
   result.folder = config.output;
   result.files = {"error-map.png", "measure.json"};
   for (const std::string& file : result.files)

@@ -70,6 +70,7 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
   folder.commit();
 
   result.folder = config.output;
+  result.text = folder.told_replaced();
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (config.output / file).string());
   result.text += "These scans are computed, not measured: they test the calibration, not a film.\n";
