@@ -237,7 +237,7 @@ JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
   write_film(folder.path("tear-film.pdf"), config, even_film(board.square_mm), context);
   result.files.insert(result.files.end(),
                       {"checkerboard.pdf", "tear-film.pdf", "instructions.pdf"});
-  folder.announce(result.files, {});
+  folder.announce(result.files, config.settings_files);
   context.check_cancelled();
   folder.commit();
 

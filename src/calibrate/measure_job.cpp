@@ -151,7 +151,7 @@ JobResult measure_job(const JobConfig& given, const CalibrationRequest& request,
   if (config.output.empty()) return result;
 
   OutputFolder folder(config.output, config.earlier_result);
-  folder.announce({"error-map.png", "measure.json"}, files_of(subjects));
+  folder.announce({"error-map.png", "measure.json"}, files_of(subjects, config));
   save_png(folder.path("error-map.png"),
            draw_error_maps(maps, any_synthetic(subjects)
                                      ? "Some of these scans were computed, not scanned."

@@ -65,7 +65,7 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
   }
   write_file(folder.path("truth.toml"), truth_toml(truth));
   result.files.push_back("truth.toml");
-  folder.announce(result.files, {});
+  folder.announce(result.files, config.settings_files);
   context.check_cancelled();
   folder.commit();
 

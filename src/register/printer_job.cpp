@@ -175,7 +175,7 @@ JobResult printer_job(const JobConfig& config, const PrinterRequest& request,
     where = result.text;
   } else {
     OutputFolder output(config.output, config.earlier_result);
-    output.announce({kProfileFile}, {});
+    output.announce({kProfileFile}, config.settings_files);
     write_file(output.path(kProfileFile), edited_profile({}, edit));
     context.check_cancelled();
     output.commit();

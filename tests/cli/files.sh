@@ -82,6 +82,15 @@ refused 'not written by hydrodip' print slab/slab.obj $quick -o foreign
 "$hydrodip" print slab/slab.obj $quick -o right --quiet > again.txt || fail 'second print'
 grep -q 'replaced the earlier result' again.txt || fail 'an earlier result is replaced in silence'
 grep -q 'replaced' plain.txt && fail 'nothing was replaced the first time'
+# A profile that is read is an input too.
+mkdir profiled
+"$hydrodip" calibrate synth sphere --film 110x110 --set film.elements=1000 --set dip.step_mm=1 -o profiled \
+  --quiet > /dev/null || fail 'synth'
+cp profiled/truth.toml profiled/profile.toml
+(cd profiled && refused 'would overwrite it' calibrate sphere-scan.obj --film 110x110 \
+  --set film.elements=1000 --set dip.step_mm=1 --profile profile.toml --z-stretch 0.6 --ratio 30 \
+  --poisson 0.1 -o .)
+cmp -s profiled/truth.toml profiled/profile.toml || fail 'a profile was overwritten'
 # Every command that writes says so.
 small="--film 120x120 --set film.elements=800 --set dip.step_mm=1 --set preview.pictures=off"
 grid='--film 110x110 --set film.elements=1000 --set dip.step_mm=1'
