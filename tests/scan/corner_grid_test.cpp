@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "contains.h"
 
 namespace hydrodip {
 namespace {
@@ -143,7 +144,12 @@ TEST(QuadsTest, RefusesWhatIsNoCheckerboard) {
   book.corners = {{0, 0, 0},  {1, 0, 0},  {1, 1, 0}, {0, 1, 0},
                   {0, -1, 0}, {1, -1, 0}, {1, 0, 1}, {0, 0, 1}};
   book.quads = {{0, 1, 2, 3}, {1, 0, 4, 5}, {0, 1, 6, 7}};
-  refuse(book);
+  try {
+    grid_of_quads(book.corners, book.quads, "sheet");
+    ADD_FAILURE() << "a book was taken for a board";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(contains(error.what(), "3 quads share one edge")) << error.what();
+  }
   QuadMesh pinched = sheet(2, 2);
   pinched.quads[0][2] = pinched.quads[0][1];
   refuse(pinched);
