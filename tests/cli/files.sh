@@ -92,7 +92,8 @@ cp profiled/truth.toml profiled/profile.toml
   --poisson 0.1 -o .)
 cmp -s profiled/truth.toml profiled/profile.toml || fail 'a profile was overwritten'
 # Every command that writes says so.
-small="--film 120x120 --set film.elements=800 --set dip.step_mm=1 --set preview.pictures=off"
+small="--film 120x120 --set film.elements=200 --set dip.step_mm=5 --set print.dpi=36 --set print.samples=1
+  --set preview.width_px=64"
 grid='--film 110x110 --set film.elements=1000 --set dip.step_mm=1'
 for command in "orient slab/slab.obj $small" "nest slab/slab.obj $small" 'inspect tetra.obj' 'sample sphere' \
   'calibrate printer' 'register board' "calibrate synth sphere $grid" \
