@@ -1,7 +1,10 @@
 #include "base/file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <openssl/evp.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -38,17 +41,64 @@ std::string reason(int error) { return std::generic_category().message(error); }
                                path.string(), reason(error)));
 }
 
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+// Waits for what another program writes, and for a cancel.
+std::vector<std::uint8_t> read_pipe(const std::filesystem::path& path) {
+  constexpr std::size_t kMost = std::size_t(1) << 31;
+  constexpr int kPatience_ms = 20;
+  const Descriptor pipe(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (pipe.number() < 0) refuse_read(path, reason(errno));
+  std::vector<std::uint8_t> bytes;
+  std::uint8_t chunk[1 << 16];
+  for (;;) {
+    check_cancelled();
+    pollfd ready{pipe.number(), POLLIN, 0};
+    if (::poll(&ready, 1, kPatience_ms) < 0 && errno != EINTR) refuse_read(path, reason(errno));
+    if (ready.revents == 0) continue;
+    const ssize_t count = ::read(pipe.number(), chunk, sizeof chunk);
+    if (count < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+    if (count < 0) refuse_read(path, reason(errno));
+    if (count == 0) return bytes;
+    bytes.insert(bytes.end(), chunk, chunk + count);
+    if (bytes.size() > kMost) refuse_read(path, "more than 2 GB come out of it");
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> read_file(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) refuse_read(path, "it is a folder");
+  switch (std::filesystem::status(path, ignored).type()) {
+    case std::filesystem::file_type::directory:
+      refuse_read(path, "it is a folder");
+    case std::filesystem::file_type::character:
+    case std::filesystem::file_type::block:
+    case std::filesystem::file_type::socket:
+      refuse_read(path, "it is a device, not a file");
+    case std::filesystem::file_type::fifo:
+      return read_pipe(path);
+    default:
+      break;
+  }
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file) refuse_read(path, reason(errno));
   std::vector<std::uint8_t> bytes;
   const auto size = std::filesystem::file_size(path, ignored);
   if (!ignored) bytes.reserve(size);
-  // Reads to the end rather than trusting the size: pipes have none.
+  // Reads to the end rather than trusting the size: files of the system have none.
   std::uint8_t chunk[1 << 16];
   while (const std::size_t count = std::fread(chunk, 1, sizeof chunk, file.get())) {
     check_cancelled();

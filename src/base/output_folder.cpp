@@ -107,6 +107,8 @@ bool make_staging_folder(const fs::path& folder, fs::path& staging, int& lock) {
 // Most of what hydrodip writes has its name in it, near one end; JSON results say their command.
 bool names_hydrodip(const fs::path& file) {
   constexpr std::streamoff kPart = 1 << 16;
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;  // a pipe would be waited for
   std::ifstream stream(file, std::ios::binary);
   std::string bytes(std::size_t(kPart), '\0');
   const auto part_speaks = [&](std::streamoff from) {
@@ -118,7 +120,6 @@ bool names_hydrodip(const fs::path& file) {
     return part.find("hydrodip") != std::string_view::npos ||
            part.find("\n  \"command\": \"") != std::string_view::npos;
   };
-  std::error_code error;
   const auto size = std::streamoff(fs::file_size(file, error));
   return !error && (part_speaks(0) || part_speaks(std::max<std::streamoff>(size - kPart, 0)));
 }

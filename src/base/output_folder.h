@@ -31,6 +31,10 @@ class OutputFolder {
                 const std::vector<std::filesystem::path>& inputs);
   // Whether commit() has put new files in the place of earlier ones.
   bool replaced_earlier() const { return replaced_earlier_; }
+  // A line that says so, or nothing.
+  std::string told_replaced() const {
+    return replaced_earlier_ ? "replaced the earlier result there\n" : "";
+  }
 
   // Where to write the file that will be called name; "part/name" lies in a folder inside this one,
   // which is made.

@@ -390,16 +390,16 @@ JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& reques
     return shard_result(config, shard, search, grid_points(options).size() * subjects.size(),
                         context);
   }
+  OutputFolder folder(config.output, config.earlier_result);
+  folder.announce({"profile.toml", "calibration.json", "error-surface.csv", "error-surface.png",
+                   "joint-regions.png"},
+                  files_of(subjects, config));
   const Calibration calibration = search.run(context);
   warn_of_edges(calibration, context);
   warn_of_misfits(calibration, subjects, context);
   const std::optional<TearLimit> tear =
       read_tear_limit(config, request, calibration.all.parameters, context);
 
-  OutputFolder folder(config.output, config.earlier_result);
-  folder.announce({"profile.toml", "calibration.json", "error-surface.csv", "error-surface.png",
-                   "joint-regions.png"},
-                  files_of(subjects));
   write_file(folder.path("profile.toml"), profile_toml(calibration, subjects, tear));
   const std::string json = calibration_json(calibration, subjects, config, board, tear, context)
                                .dump(2, ' ', false, Json::error_handler_t::replace) +
@@ -418,7 +418,7 @@ JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& reques
   result.folder = config.output;
   result.files = {"profile.toml",      "calibration.json",  "error-surface.csv",
                   "error-surface.png", "joint-regions.png", kStoreName};
-  result.text = summary(calibration, subjects, tear, context);
+  result.text = summary(calibration, subjects, tear, context) + folder.told_replaced();
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (config.output / file).string());
   result.json = json;

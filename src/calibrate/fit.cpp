@@ -307,6 +307,21 @@ FilmFit fit_parameters(const FitPoint& start, const MisfitsAt& misfits_at,
   }
 }
 
+namespace {
+
+// A film is no stiffer without ink, and its Poisson's ratio is a material's.
+void set_ends(Certainty& result, const FitPoint& low, const FitPoint& high) {
+  const double softest = std::max(high[1], kLeast[1]);
+  result.low = {std::max(0.0, low[0]), softest >= 1 ? 1 : 1 / (softest * softest),
+                std::max(0.0, low[2])};
+  result.high = {
+      high[0],
+      low[1] > 1.5 * kLeast[1] ? 1 / (low[1] * low[1]) : std::numeric_limits<double>::infinity(),
+      std::clamp(high[2], 0.0, 0.499)};
+}
+
+}  // namespace
+
 Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm) {
   std::vector<Eigen::Index> rows, free;
   for (Eigen::Index i = 0; i < fit.residual.size(); ++i)
@@ -318,6 +333,10 @@ Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm) {
   const double left = double(rows.size()) - double(fit.open) - double(free.size());
   const double squares = fit.residual(rows).squaredNorm();
   result.noise_mm = left > 0 ? std::sqrt(squares / left) : 0;
+  if (free.empty()) {  // all of them are known
+    set_ends(result, fit.point, fit.point);
+    return result;
+  }
 
   const Eigen::MatrixXd curvature = j.transpose() * j;
   const MinimumNorm solver(curvature);
@@ -344,14 +363,7 @@ Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm) {
       high[k] = fit.point[k] + std::hypot(high[k] - fit.point[k], moved[Eigen::Index(a)]);
     }
   }
-  // A film is no stiffer without ink, and its Poisson's ratio is a material's.
-  const double softest = std::max(high[1], kLeast[1]);
-  result.low = {std::max(0.0, low[0]), softest >= 1 ? 1 : 1 / (softest * softest),
-                std::max(0.0, low[2])};
-  result.high = {
-      high[0],
-      low[1] > 1.5 * kLeast[1] ? 1 / (low[1] * low[1]) : std::numeric_limits<double>::infinity(),
-      std::clamp(high[2], 0.0, 0.499)};
+  set_ends(result, low, high);
   return result;
 }
 

@@ -237,11 +237,12 @@ JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
   write_film(folder.path("tear-film.pdf"), config, even_film(board.square_mm), context);
   result.files.insert(result.files.end(),
                       {"checkerboard.pdf", "tear-film.pdf", "instructions.pdf"});
-  folder.announce(result.files, {});
+  folder.announce(result.files, config.settings_files);
   context.check_cancelled();
   folder.commit();
 
   result.folder = config.output;
+  result.text = folder.told_replaced();
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (config.output / file).string());
   result.text += text_of(expected, request.expected_noise_mm);

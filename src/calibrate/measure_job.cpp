@@ -151,7 +151,7 @@ JobResult measure_job(const JobConfig& given, const CalibrationRequest& request,
   if (config.output.empty()) return result;
 
   OutputFolder folder(config.output, config.earlier_result);
-  folder.announce({"error-map.png", "measure.json"}, files_of(subjects));
+  folder.announce({"error-map.png", "measure.json"}, files_of(subjects, config));
   save_png(folder.path("error-map.png"),
            draw_error_maps(maps, any_synthetic(subjects)
                                      ? "Some of these scans were computed, not scanned."
@@ -159,6 +159,7 @@ JobResult measure_job(const JobConfig& given, const CalibrationRequest& request,
   write_file(folder.path("measure.json"), result.json);
   context.check_cancelled();
   folder.commit();
+  result.text += folder.told_replaced();
   result.folder = config.output;
   result.files = {"error-map.png", "measure.json"};
   for (const std::string& file : result.files)

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_nesting.h"
 #include "calibrate/checkerboard_dip.h"
 #include "model_io/archive_writer.h"
 #include "model_io/package.h"
@@ -269,7 +270,7 @@ MeasuredDip read_measured_dip(const std::filesystem::path& file) {
   if (!has(kFactsName) || !has(kCornersName))
     refuse(file, "this is no measured dip: 'hydrodip calibrate pack' makes them");
   const std::vector<std::uint8_t> facts = read(kFactsName);
-  const Json json = Json::parse(facts.begin(), facts.end(), nullptr, false);
+  const Json json = nests_too_deeply(text_of(facts)) ? Json() : Json::parse(facts, nullptr, false);
   if (!json.is_object() || !json.contains("kind") || json["kind"] != kKind)
     refuse(file, "this is no measured dip: 'hydrodip calibrate pack' makes them");
   const Reader reader(file, json);

@@ -52,9 +52,10 @@ JobResult pack_job(const JobConfig& config, const CalibrationRequest& request,
   result.folder = config.output;
   result.files = {name};
   const std::size_t corners = dip.scan.grid.position.size();
-  result.text = fmt::format("wrote {}: a {} dipped {:g} mm, {} corners, {}\n",
-                            (config.output / name).string(), dip.object, dip.depth_mm, corners,
-                            dip.facts.licence);
+  result.text = folder.told_replaced();
+  result.text += fmt::format("wrote {}: a {} dipped {:g} mm, {} corners, {}\n",
+                             (config.output / name).string(), dip.object, dip.depth_mm, corners,
+                             dip.facts.licence);
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
   result.json = nlohmann::ordered_json{{"command", "calibrate pack"},

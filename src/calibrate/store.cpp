@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_nesting.h"
 
 namespace hydrodip {
 namespace {
@@ -78,6 +79,7 @@ enum class Line { kDamaged, kOld, kGood };
 
 // Lines of programs that kept where each scan's corners lie on the film are no use any more.
 Line parse_line(const std::string& text, SimulationKey& key, SimulationResult& result) {
+  if (nests_too_deeply(text)) return Line::kDamaged;
   const Json line = Json::parse(text, nullptr, false);
   if (!line.is_object()) return Line::kDamaged;
   for (const char* name : {"z_stretch", "ink_stiffness_ratio", "poisson"})

@@ -375,9 +375,10 @@ bool any_synthetic(const std::vector<Subject>& subjects) {
                      [](const Subject& subject) { return subject.scan.synthetic; });
 }
 
-std::vector<std::filesystem::path> files_of(const std::vector<Subject>& subjects) {
-  std::vector<std::filesystem::path> files;
-  files.reserve(subjects.size());
+std::vector<std::filesystem::path> files_of(const std::vector<Subject>& subjects,
+                                            const JobConfig& config) {
+  std::vector<std::filesystem::path> files = config.settings_files;
+  files.reserve(files.size() + subjects.size());
   for (const Subject& subject : subjects) files.push_back(subject.file);
   return files;
 }

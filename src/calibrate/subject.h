@@ -44,8 +44,9 @@ struct Subject {
   std::string fingerprint;  // of all that simulations depend on but parameters; not of the scan
 };
 
-// The scans' files.
-std::vector<std::filesystem::path> files_of(const std::vector<Subject>& subjects);
+// The scans' files, and those of the settings: what a result must not overwrite.
+std::vector<std::filesystem::path> files_of(const std::vector<Subject>& subjects,
+                                            const JobConfig& config);
 
 // A scan compared with one simulated dip.
 struct Comparison {

@@ -65,11 +65,12 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
   }
   write_file(folder.path("truth.toml"), truth_toml(truth));
   result.files.push_back("truth.toml");
-  folder.announce(result.files, {});
+  folder.announce(result.files, config.settings_files);
   context.check_cancelled();
   folder.commit();
 
   result.folder = config.output;
+  result.text = folder.told_replaced();
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (config.output / file).string());
   result.text += "These scans are computed, not measured: they test the calibration, not a film.\n";

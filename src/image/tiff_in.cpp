@@ -146,25 +146,48 @@ PictureBytes profile_of(TIFF* file) {
   return {begin, begin + size};
 }
 
-// Four inks of 8 bits in rows, with a profile that says what they show. Of others libtiff makes RGB
-// by a plain formula.
-bool has_known_inks(TIFF* file, std::uint16_t photometric, const PictureBytes& profile) {
+// How many bytes a pixel has if rows of such pixels lie one after another; 0 if they do not.
+int bytes_a_pixel(TIFF* file) {
   std::uint16_t bits = 0, samples = 0, planes = 0, orientation = 0;
   TIFFGetFieldDefaulted(file, TIFFTAG_BITSPERSAMPLE, &bits);
   TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLESPERPIXEL, &samples);
   TIFFGetFieldDefaulted(file, TIFFTAG_PLANARCONFIG, &planes);
   TIFFGetFieldDefaulted(file, TIFFTAG_ORIENTATION, &orientation);
-  return photometric == PHOTOMETRIC_SEPARATED && bits == 8 && samples == 4 &&
-         planes == PLANARCONFIG_CONTIG && orientation == ORIENTATION_TOPLEFT &&
-         !TIFFIsTiled(file) && is_ink_profile(profile);
+  const bool in_rows = bits == 8 && planes == PLANARCONFIG_CONTIG &&
+                       orientation == ORIENTATION_TOPLEFT && !TIFFIsTiled(file);
+  return in_rows ? samples : 0;
+}
+
+// Four inks of 8 bits in rows, with a profile that says what they show. Of others libtiff makes RGB
+// by a plain formula.
+bool has_known_inks(TIFF* file, std::uint16_t photometric, const PictureBytes& profile) {
+  return photometric == PHOTOMETRIC_SEPARATED && bytes_a_pixel(file) == 4 &&
+         is_ink_profile(profile);
+}
+
+// Red, green, blue or one grey in a single strip, which can be read row by row: libtiff's reader of
+// all kinds of pixels unpacks it as a whole, deaf to a cancel.
+bool is_one_plain_strip(TIFF* file, std::uint16_t photometric) {
+  return TIFFNumberOfStrips(file) == 1 &&
+         ((photometric == PHOTOMETRIC_RGB && bytes_a_pixel(file) == 3) ||
+          (photometric == PHOTOMETRIC_MINISBLACK && bytes_a_pixel(file) == 1));
 }
 
 // False if the file is damaged.
-bool read_inks(TIFF* file, Image& to) {
-  if (TIFFScanlineSize(file) != tmsize_t(4) * to.width_px) return false;
+bool read_rows(TIFF* file, Image& to) {
+  const auto bytes = std::size_t(bytes_a_pixel(file));
+  const std::size_t width = std::size_t(to.width_px);
+  std::vector<std::uint8_t> row(bytes * width);
+  if (TIFFScanlineSize(file) != tmsize_t(row.size())) return false;
   for (int y = 0; y < to.height_px; ++y) {
     check_cancelled();
-    if (TIFFReadScanline(file, to.pixel(0, y), std::uint32_t(y), 0) != 1) return false;
+    if (TIFFReadScanline(file, row.data(), std::uint32_t(y), 0) != 1) return false;
+    std::uint8_t* out = to.pixel(0, y);
+    for (std::size_t x = 0; x < width; ++x, out += 4) {
+      const std::uint8_t* in = &row[bytes * x];
+      for (std::size_t c = 0; c < 3; ++c) out[c] = in[bytes == 1 ? 0 : c];
+      out[3] = bytes == 4 ? in[3] : 255;
+    }
   }
   return true;
 }
@@ -185,8 +208,9 @@ StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
   picture.image = Image(int(width), int(height));
   picture.profile = profile_of(file.get());
   picture.inks = has_known_inks(file.get(), photometric, picture.profile);
-  if (picture.inks ? !read_inks(file.get(), picture.image)
-                   : !RgbaReader(file.get(), name).read(picture.image))
+  const bool by_rows = picture.inks || is_one_plain_strip(file.get(), photometric);
+  if (by_rows ? !read_rows(file.get(), picture.image)
+              : !RgbaReader(file.get(), name).read(picture.image))
     refuse_picture(name, "TIFF", source.message);
   if (picture.inks) return picture;
   make_straight(picture.image);

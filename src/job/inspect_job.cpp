@@ -206,13 +206,15 @@ void write_angle_map(const std::filesystem::path& path, const Inspection& i,
   write_file(path, png.data(), png.size());
 }
 
-void write_files(const Inspection& i, const std::string& report, const RunContext& context) {
+// Says in a line if there was an earlier result.
+std::string write_files(const Inspection& i, const std::string& report, const RunContext& context) {
   OutputFolder folder(i.config.output, i.config.earlier_result);
   folder.announce({"angles.png", "report.json"}, i.prepared.files);
   write_angle_map(folder.path("angles.png"), i, context);
   write_file(folder.path("report.json"), report);
   context.check_cancelled();
   folder.commit();
+  return folder.told_replaced();
 }
 
 }  // namespace
@@ -241,7 +243,7 @@ JobResult inspect_job(const JobConfig& given, const RunContext& context) {
   result.json = machine_readable(inspection);
   context.check_cancelled();
   if (config.output.empty()) return result;
-  write_files(inspection, result.json, context);
+  result.text += write_files(inspection, result.json, context);
   result.folder = config.output;
   result.files = {"angles.png", "report.json"};
   result.text += fmt::format(

@@ -338,7 +338,8 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
   result.folder = folder.folder();
   result.files = file_names(nest.parts.size());
   result.json = text;
-  result.text = fmt::format(
+  result.text = folder.told_replaced();
+  result.text += fmt::format(
       "wrote to {}:\n  print.pdf    the sheet with {} pieces: print it at 100 % (no scaling)\n"
       "  print.png    what the sheet will look like\n  print.tif    its inks\n"
       "  nest.html    the run sheet: which part where\n  nest.json    the same for programs\n",

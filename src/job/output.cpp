@@ -267,7 +267,7 @@ JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previe
   record.context.check_cancelled();
   folder.commit();
   JobResult result = describe_result(report, folder.folder());
-  if (folder.replaced_earlier()) result.text = "replaced the earlier result there\n" + result.text;
+  result.text = folder.told_replaced() + result.text;
   return result;
 }
 

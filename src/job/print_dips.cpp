@@ -144,7 +144,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   JobResult result = describe_result(report, folder.folder());
   result.files = file_names(all);
   for (const MadeDip& dip : all.dips) result.dips.push_back(dip.folder);
-  if (folder.replaced_earlier()) result.text = "replaced the earlier result there\n" + result.text;
+  result.text = folder.told_replaced() + result.text;
   return result;
 }
 

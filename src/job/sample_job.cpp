@@ -24,7 +24,7 @@ JobResult sample_job(const std::string& name, const std::filesystem::path& folde
   context.check_cancelled();
   output.commit();
 
-  if (output.replaced_earlier()) result.text += "replaced the earlier files there\n";
+  result.text = output.told_replaced();
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (folder / file).string());
   result.text += fmt::format("try: hydrodip print {}\n", (folder / model).string());

@@ -46,7 +46,7 @@ JobResult SearchOutput::finish(std::string json, const std::string& words,
   }
   context_.check_cancelled();
   folder_.commit();
-  result.text = words;
+  result.text = words + folder_.told_replaced();
   for (const std::string& warning : context_.warnings())
     result.text += "warning: " + warning + "\n";
   result.text += fmt::format("wrote to {}:", folder().string());

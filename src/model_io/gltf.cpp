@@ -104,6 +104,7 @@ class GltfReader {
     visits_left_ = std::int64_t(data_.table_size("nodes"));
     for (const std::int64_t root : roots()) visit(root, Matrix4f::Identity(), 0);
     if (file_.face_end.empty()) data_.refuse("it has no triangles");
+    tell_of_poses();
     return std::move(file_);
   }
 
@@ -302,9 +303,31 @@ class GltfReader {
     const Matrix4f world = parent * local(node);
     const std::int64_t mesh = data_.reference(node, "mesh", "meshes");
     if (mesh >= 0) {
+      has_skin_ = has_skin_ || node.contains("skin");
+      has_morphs_ = has_morphs_ || morphs(node) || morphs(data_.entry("meshes", mesh));
       for (const Matrix4f& instance : instances(node)) add_mesh(mesh, world * instance);
     }
     for (const std::int64_t child : list(node, "children")) visit(child, world, depth + 1);
+  }
+
+  // Whether a node or a mesh is shown with some of its other shapes mixed in.
+  static bool morphs(const json& owner) {
+    const auto weights = owner.find("weights");
+    return weights != owner.end() && weights->is_array() &&
+           std::any_of(weights->begin(), weights->end(), [](const json& weight) {
+             return weight.is_number() && weight.get<double>() != 0;
+           });
+  }
+
+  void tell_of_poses() const {
+    if (!has_skin_ && !has_morphs_) return;
+    input_.context.warn(fmt::format(
+        "{} poses its mesh by {}, which is not read: the mesh is taken as it is stored. To dip it "
+        "as it is posed, apply that in the program that made it and export it again.",
+        input_.name,
+        !has_morphs_ ? "a skeleton"
+        : !has_skin_ ? "shape keys (morph targets)"
+                     : "a skeleton and shape keys (morph targets)"));
   }
 
   Matrix4f local(const json& node) const {
@@ -565,6 +588,7 @@ class GltfReader {
   std::vector<Used> used_;
   std::uint32_t stamp_ = 0;
   bool has_uvs_ = false, has_colors_ = false;
+  bool has_skin_ = false, has_morphs_ = false;
 };
 
 }  // namespace

@@ -34,6 +34,20 @@ bool is_file(const fs::path& path) {
   return path.has_filename() && fs::is_regular_file(path, ignored);
 }
 
+// A path of another computer, and what is left of it when its outer folders are taken away: of
+// C:/me/textures/wood.png also textures/wood.png, which came along with the model, and wood.png.
+void add_with_fewer_folders(const fs::path& path, std::vector<fs::path>& out) {
+  constexpr std::ptrdiff_t kMostFolders = 16;
+  const std::ptrdiff_t parts = std::distance(path.begin(), path.end());
+  out.push_back(path);
+  for (std::ptrdiff_t left = std::min(parts - 1, kMostFolders); left > 0; --left) {
+    fs::path rest;
+    for (auto part = std::next(path.begin(), parts - left); part != path.end(); ++part)
+      rest /= *part;
+    out.push_back(rest);
+  }
+}
+
 }  // namespace
 
 ModelFolder::ModelFolder(const fs::path& model) : folder_(model.parent_path()) {}
@@ -45,7 +59,9 @@ fs::path ModelFolder::find(const std::string& name) {
   std::string forward = name;
   std::replace(forward.begin(), forward.end(), '\\', '/');
   const fs::path plain(forward), decoded(percent_decoded(forward).c_str());
-  const fs::path tried[] = {name, plain, decoded, plain.filename(), decoded.filename()};
+  std::vector<fs::path> tried = {name};
+  add_with_fewer_folders(plain, tried);
+  if (decoded != plain) add_with_fewer_folders(decoded, tried);
   for (const fs::path& candidate : tried)
     if (is_file(folder_ / candidate)) return found_[name] = folder_ / candidate;
   for (const fs::path& candidate : tried) {

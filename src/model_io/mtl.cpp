@@ -19,7 +19,7 @@ struct MtlLines {
   float dissolve = 1;  // d
   float inverse = 0;   // Tr
   bool has_dissolve = false;
-  std::string picture;
+  std::string picture, mask;  // map_Kd, map_d
   bool clamp = false;
   std::array<float, 2> scale{1, 1}, offset{0, 0}, range{0, 1};
 };
@@ -94,6 +94,10 @@ void read_line(std::string_view line, MtlLines& material) {
     if (take_numbers(line, value)) material.inverse = value[0];
   } else if (key == "map_kd") {
     read_map(line, material);
+  } else if (key == "map_d") {
+    MtlLines mask;
+    read_map(line, mask);
+    material.mask = mask.picture;
   }
 }
 
@@ -109,7 +113,7 @@ struct Names {
 
 // Materials whose transparency is taken differently from how it stands there, or is likely wrong.
 struct Oddities {
-  Names invisible, inverted;
+  Names invisible, inverted, masked;
 
   void tell(const std::string& library, const RunContext& context) const {
     if (invisible.count > 0)
@@ -122,6 +126,11 @@ struct Oddities {
           "{} says Tr 1 for {} ({}), which means invisible; it is taken as opaque, as MeshLab "
           "means it. Write d 0 if nothing of it should be printed.",
           library, counted(inverted), inverted.some));
+    if (masked.count > 0)
+      context.warn(fmt::format(
+          "{} gives {} a picture of its transparency (map_d: {}), which is not read; put it into "
+          "the alpha of map_Kd's picture.",
+          library, counted(masked), masked.some));
   }
 
  private:
@@ -149,6 +158,8 @@ MtlMaterial meaning_of(const MtlLines& lines, Oddities& odd) {
   material.base_color =
       linear_from_srgb(lines.kd[0], lines.kd[1], lines.kd[2], alpha_of(lines, odd));
   out.picture = lines.picture;
+  // Exporters name the picture of map_Kd again where its own alpha counts, which it does.
+  if (!lines.mask.empty() && lines.mask != lines.picture) odd.masked.add(lines.name);
   // A grey Kd beside a map_Kd is an exporter's default, not a tint: it would only darken the print.
   const LinearColor& kd = material.base_color;
   const bool grey = kd.r == kd.g && kd.g == kd.b;

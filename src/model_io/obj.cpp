@@ -233,10 +233,14 @@ class ObjReader {
 
   // A library under the model's own name is meant where files were renamed.
   void warn_of_library(const std::string& name) {
+    constexpr int kMost = 20;
+    if (++missing_libraries_ > kMost) return;
     const std::string sentence =
         fmt::format("The file {} that {} refers to is missing; put it beside the model.",
                     name.substr(0, 200), input_.name);
     input_.context.warn(sentence);
+    if (missing_libraries_ == kMost)
+      input_.context.warn("More material libraries may be missing than are named here.");
     if (!read_library(input_.name.substr(0, input_.name.rfind('.')) + ".mtl"))
       file_.color_problems.push_back(sentence);
   }
@@ -298,6 +302,7 @@ class ObjReader {
   std::unordered_map<std::string, std::int32_t> material_named_;
   std::vector<char> defined_;  // per material: whether a library says what it is
   std::unordered_map<std::string, bool> libraries_;
+  int missing_libraries_ = 0;
   std::array<ObjList, 3> lists_{{{"vertex"}, {"texture coordinate"}, {"normal"}}};
 };
 

@@ -157,6 +157,9 @@ bool XmlTags::more() {
   window_.resize(had + kPiece);
   const std::size_t count = stream_.read(window_.data() + had, kPiece);
   window_.resize(had + count);
+  if (begins_ && (window_.starts_with("\xff\xfe") || window_.starts_with("\xfe\xff")))
+    refuse_model(path_, "its XML is written in UTF-16, which is not read");
+  begins_ = false;
   return count > 0;
 }
 

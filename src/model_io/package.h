@@ -86,6 +86,7 @@ class XmlTags {
   CancelCheck cancel_;
   std::string window_;
   std::size_t at_ = 0;  // in it
+  bool begins_ = true;  // nothing was read yet
   int depth_ = 0;
 };
 

@@ -25,6 +25,13 @@ std::uint32_t facet_count(const FileBytes& bytes) {
 
 double size_of(std::uint32_t facets) { return double(kHeader) + double(kFacet) * facets; }
 
+// Many binary files begin with "solid" too, but no text has a NUL, and numbers have.
+bool is_text(const FileBytes& bytes) {
+  std::string_view text = without_bom(text_of(bytes));
+  return text.substr(0, kHeader + kFacet).find('\0') == std::string_view::npos &&
+         lower(take_word(text).substr(0, 10)) == "solid";
+}
+
 // ---- text ---------------------------------------------------------------------------------------
 
 ModelFile read_text(const ModelInput& input) {
@@ -132,15 +139,37 @@ LinearColor color_of(std::uint16_t word, const ColorRule& rule) {
                           channel(rule.red_first ? 10 : 0), 1);
 }
 
-ModelFile read_binary(const ModelInput& input) {
+// Writers that do not know the number beforehand leave it empty, 0 or the largest; others put
+// something of their own behind the triangles. Fewer triangles than are promised is a file cut off.
+std::uint32_t checked_count(const ModelInput& input) {
   const FileBytes& bytes = input.bytes;
-  if (bytes.size() < kHeader) refuse_model(input.path, "too short for an STL file");
   const std::uint32_t count = facet_count(bytes);
-  if (size_of(count) != double(bytes.size()))
+  const std::size_t held = (bytes.size() - kHeader) / kFacet;
+  const bool open =
+      (count == 0 || count == 0xffffffff) && held > 0 && bytes.size() == kHeader + kFacet * held;
+  if (open) {
+    input.context.warn(
+        fmt::format("{} does not say how many triangles it has; it holds {}.", input.name, held));
+    return std::uint32_t(std::min<std::size_t>(held, 0xffffffff));
+  }
+  const double more = double(bytes.size()) - size_of(count);
+  if (more < 0 || (count == 0 && more > 0))
     refuse_model(input.path,
                  fmt::format("as a binary STL file of {} triangles it should have {:.0f} bytes, "
                              "but it has {}",
                              count, size_of(count), bytes.size()));
+  if (more > 0)
+    input.context.warn(
+        fmt::format("{} has {:.0f} bytes behind its {} triangles, which are not "
+                    "read.",
+                    input.name, more, count));
+  return count;
+}
+
+ModelFile read_binary(const ModelInput& input) {
+  const FileBytes& bytes = input.bytes;
+  if (bytes.size() < kHeader) refuse_model(input.path, "too short for an STL file");
+  const std::uint32_t count = checked_count(input);
   if (count == 0) refuse_model(input.path, "it has no triangles");
   check_count(input.path, std::size_t(3) * count);
   ModelFile file;
@@ -149,7 +178,8 @@ ModelFile read_binary(const ModelInput& input) {
   std::vector<std::uint16_t> words;
   words.reserve(count);
   CancelCheck cancel(input.context);
-  for (std::size_t at = kHeader; at < bytes.size(); at += kFacet) {
+  const std::size_t end = kHeader + kFacet * std::size_t(count);
+  for (std::size_t at = kHeader; at < end; at += kFacet) {
     cancel();
     for (std::size_t corner = 0; corner < 3; ++corner) {
       std::array<float, 3> p{};
@@ -173,12 +203,9 @@ ModelFile read_binary(const ModelInput& input) {
 
 ModelFile read_stl(const ModelInput& input) {
   const FileBytes& bytes = input.bytes;
-  // Many binary files begin with "solid" too: the size decides.
-  const bool binary =
+  const bool sized_like_binary =
       bytes.size() >= kHeader && size_of(facet_count(bytes)) == double(bytes.size());
-  std::string_view text = without_bom(text_of(bytes));
-  return !binary && lower(take_word(text).substr(0, 10)) == "solid" ? read_text(input)
-                                                                    : read_binary(input);
+  return !sized_like_binary && is_text(bytes) ? read_text(input) : read_binary(input);
 }
 
 }  // namespace hydrodip

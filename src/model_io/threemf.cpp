@@ -64,6 +64,7 @@ struct Part {
 struct LeftOut {
   std::int64_t painted = 0;  // triangles
   std::set<std::string> features;
+  std::set<std::string> extensions;  // that the file requires
 };
 
 // Numbers of the file's pictures and their materials, shared by all parts.
@@ -160,6 +161,27 @@ class PartReader {
     return foreign ? Space::kForeign : Space::kKnown;
   }
 
+  // What a file may require and still be dipped as it is: it places parts, slices them, or names
+  // shapes that are left out and said.
+  void note_required(const Tag& tag) {
+    static constexpr std::string_view kMeant[] = {
+        "/3dmanufacturing/core/",         "/3dmanufacturing/material/",
+        "/3dmanufacturing/production/",   "/3dmanufacturing/slice/",
+        "/3dmanufacturing/beamlattice/",  "/3dmanufacturing/booleanoperations/",
+        "/3dmanufacturing/displacement/", "/3dmanufacturing/volumetric/",
+        "/3dmanufacturing/trianglesets/"};
+    const std::string prefixes = tag.text("requiredextensions");
+    std::string_view rest = prefixes;
+    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
+      const std::string space = tag.text("xmlns:" + std::string(word));
+      const bool meant = std::any_of(
+          std::begin(kMeant), std::end(kMeant),
+          [&](std::string_view known) { return space.find(known) != std::string::npos; });
+      if (!meant)
+        left_out_.extensions.insert((space.empty() ? std::string(word) : space).substr(0, 120));
+    }
+  }
+
   void note_foreign(std::string_view name) {
     if (name == "beamlattice") left_out_.features.insert("beam lattices");
     if (name == "booleanshape") left_out_.features.insert("boolean shapes");
@@ -216,6 +238,7 @@ class PartReader {
                                                   "inch",   "foot",       "meter"};
     if (std::find(std::begin(kKnown), std::end(kKnown), part_.units) == std::end(kKnown))
       refuse(fmt::format("unknown 3MF unit '{}'", shown(part_.units)));
+    note_required(tag);
   }
 
   std::int32_t integer(const Tag& tag, std::string_view name) const {
@@ -615,6 +638,11 @@ class ThreeMfReader {
       input_.context.warn(fmt::format("{} holds {}; they are left out.", input_.name, kind));
     for (const std::string& feature : left_out_.features)
       input_.context.warn(fmt::format("{} holds {}, which are left out.", input_.name, feature));
+    for (const std::string& extension : left_out_.extensions)
+      input_.context.warn(
+          fmt::format("{} requires the 3MF extension {}, which is not read; what it describes is "
+                      "missing.",
+                      input_.name, extension));
     if (left_out_.painted > 0)
       input_.context.warn(fmt::format(
           "{} is painted in a slicer (paint_color of {} triangles), which is not read: the colours "

@@ -72,7 +72,7 @@ JobResult board_job(const std::filesystem::path& folder, const std::string& pape
   JobResult result;
   result.folder = folder;
   result.files = {"board.pdf"};
-  result.text = fmt::format("wrote {}\n", (folder / "board.pdf").string());
+  result.text = output.told_replaced() + fmt::format("wrote {}\n", (folder / "board.pdf").string());
   result.json =
       nlohmann::ordered_json{
           {"command", "register board"}, {"folder", folder.string()}, {"files", result.files}}

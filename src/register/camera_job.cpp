@@ -59,6 +59,7 @@ JobResult calibrate_camera_job(const CameraRequest& request, const RunContext& c
       "focal length {:.1f} +- {:.1f} px, distortion k1 {:+.4f}, k2 {:+.4f}\nwrote {}\n",
       photos.size(), tank.corner_mm.size(), tank.rms_px, tank.lens.focal_px, focal_sigma,
       tank.lens.k1, tank.lens.k2, request.file.string());
+  result.text += output.told_replaced();
   for (const std::string& warning : context.warnings()) result.text += "warning: " + warning + "\n";
   result.json = nlohmann::ordered_json{{"schema_version", 1},
                                        {"command", "register --calibrate-camera"},

@@ -321,6 +321,7 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
       result.text += fmt::format("{}: taken for the {} board\n", dip.file.string(), dip.board);
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
+  result.text += output.told_replaced();
   result.text += fmt::format("wrote {0}/{1} and {0}/{2}\nprint again with --correction {0}/{1}\n",
                              job.folder.string(), kFile, kPicture);
   return result;

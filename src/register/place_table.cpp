@@ -26,6 +26,8 @@ std::string line_of(std::ifstream& file, bool& any) {
 }  // namespace
 
 bool is_place_table(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return false;
   std::ifstream in(file);
   bool any = false;
   return line_of(in, any) == kHeader;

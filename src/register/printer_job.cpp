@@ -147,7 +147,8 @@ JobResult test_sheet_written(const JobConfig& config, const RunContext& context)
   JobResult result;
   result.folder = config.output;
   result.files = {kSheetFile};
-  result.text = fmt::format("wrote {}\n", (config.output / kSheetFile).string());
+  result.text = output.told_replaced();
+  result.text += fmt::format("wrote {}\n", (config.output / kSheetFile).string());
   result.json = Json{{"command", "calibrate printer"},
                      {"folder", config.output.string()},
                      {"files", result.files}}
@@ -174,14 +175,14 @@ JobResult printer_job(const JobConfig& config, const PrinterRequest& request,
     where = result.text;
   } else {
     OutputFolder output(config.output, config.earlier_result);
-    output.announce({kProfileFile}, {});
+    output.announce({kProfileFile}, config.settings_files);
     write_file(output.path(kProfileFile), edited_profile({}, edit));
     context.check_cancelled();
     output.commit();
     result.folder = config.output;
     result.files = {kProfileFile};
-    where = fmt::format("wrote {0}; print with --profile {0}\n",
-                        (config.output / kProfileFile).string());
+    where = output.told_replaced() + fmt::format("wrote {0}; print with --profile {0}\n",
+                                                 (config.output / kProfileFile).string());
   }
   result.text = fmt::format(
       "the printer makes {:.4f} mm across and {:.4f} mm along of a millimetre, and leans by "

@@ -146,6 +146,7 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
   result.folder = job.folder;
   result.files = {kRegistrationFile, kMapFile};
   result.text += advice({pose.shift_mm, pose.turn_deg, pose.swelling, ""}) + "\n";
+  result.text += output.told_replaced();
   result.text +=
       fmt::format("wrote {0}/{1} and {0}/{2}\n", job.folder.string(), kRegistrationFile, kMapFile);
   return result;

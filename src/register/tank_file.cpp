@@ -8,6 +8,7 @@
 #include "base/eigenpairs.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_nesting.h"
 
 namespace hydrodip {
 namespace {
@@ -63,7 +64,9 @@ std::string tank_as_json(const Tank& tank) {
 
 Tank read_tank(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = read_file(file);
-  const Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (nests_too_deeply(text)) refuse(file);
+  const Json json = Json::parse(text, nullptr, false);
   Tank tank;
   const auto px = numbers(json, "photo_px", 2, file);
   const auto lens = numbers(json, "lens_focal_center_k1_k2_p1_p2", Lens::kValues, file);

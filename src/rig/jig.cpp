@@ -411,7 +411,8 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
   output.commit();
 
   result.folder = folder;
-  result.text = fmt::format(
+  result.text = output.told_replaced();
+  result.text += fmt::format(
       "the mount holds {:.1f} mm of the object, and the frame's shoulders end the dip at {:.2f} "
       "mm\n",
       jig.socket_depth_mm, job.depth_mm);

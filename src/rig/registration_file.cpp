@@ -1,9 +1,11 @@
 #include "rig/registration_file.h"
+#include "base/json_nesting.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 namespace hydrodip {
@@ -26,14 +28,19 @@ std::optional<double> number(const Json& json, const char* group, const char* na
 std::optional<Registration> read_registration(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) return {};
-  const Json json = Json::parse(file, nullptr, false);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (nests_too_deeply(text)) return {};
+  const Json json = Json::parse(text, nullptr, false);
   const auto x = number(json, "shift_mm", "x"), y = number(json, "shift_mm", "y"),
              turn = number(json, "turn_deg", "value"), sx = number(json, "swelling", "x"),
              sy = number(json, "swelling", "y");
   if (!x || !y || !turn || !sx || !sy) return {};
   Registration result{{*x, *y}, *turn, {*sx, *sy}, ""};
-  if (json.contains("photo") && json["photo"].is_object())
-    result.photo_sha256 = json["photo"].value("sha256", "");
+  if (json.contains("photo") && json["photo"].is_object()) {
+    const Json& photo = json["photo"];
+    if (photo.contains("sha256") && photo["sha256"].is_string())
+      result.photo_sha256 = photo["sha256"];
+  }
   return result;
 }
 

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_nesting.h"
 #include "settings/params.h"
 
 namespace hydrodip {
@@ -18,10 +21,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kLevelFile = "rig-water-level.json";
 
-Json read_json(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file(file);
-  return Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+// Discarded if it is none, or one made to harm.
+Json parsed(const std::vector<std::uint8_t>& bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return nests_too_deeply(text) ? Json(Json::value_t::discarded)
+                                : Json::parse(text, nullptr, false);
 }
+
+Json read_json(const std::filesystem::path& file) { return parsed(read_file(file)); }
 
 struct ReadReport {
   Json json;
@@ -36,7 +43,7 @@ ReadReport read_report(const std::filesystem::path& folder) {
         fmt::format("{}: there is no report.json; name the folder that 'hydrodip print' wrote",
                     folder.string()));
   const std::vector<std::uint8_t> bytes = read_file(file);
-  Json report = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  Json report = parsed(bytes);
   if (report.is_object() && report.contains("dips"))
     throw InputError(fmt::format("{}: this job has several dips; name one of them, as {}",
                                  folder.string(), (folder / "dip-1").string()));
@@ -73,6 +80,13 @@ std::vector<Setting> settings_of(const Json& parameters, const std::string& orig
 
 std::string text_of(const Json& object, const char* key) {
   return object.contains(key) && object[key].is_string() ? object[key].get<std::string>() : "";
+}
+
+// At least 1.
+int count_of(const Json& object, const char* key) {
+  constexpr double kMost = 1000;
+  if (!object.contains(key) || !object[key].is_number()) return 1;
+  return int(std::clamp(object[key].get<double>(), 1.0, kMost));
 }
 
 std::string title_of(const Json& report) {
@@ -199,7 +213,7 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
     job.alarm = "Do not dip it like this: " + text_of(report, "short_verdict");
   if (report.contains("dip_of_several") && report["dip_of_several"].is_object()) {
     const Json& dip = report["dip_of_several"];
-    const int number = dip.value("number", 1), of = dip.value("of", 1);
+    const int number = count_of(dip, "number"), of = count_of(dip, "of");
     job.earlier_dips = std::max(0, number - 1);
     job.next_dip = number < of ? number + 1 : 0;
   }

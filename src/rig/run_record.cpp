@@ -109,7 +109,8 @@ BrokenRun last_broken_run(const RigJob& job) {
       run.steps.push_back(entry["step"]);
     // Only guided runs can be taken up again.
     if (entry["event"] == "end")
-      finished = !entry.contains("guided") || entry.value("outcome", "") == "done";
+      finished =
+          !entry.contains("guided") || (entry.contains("outcome") && entry["outcome"] == "done");
   }
   return finished ? BrokenRun{} : run;
 }

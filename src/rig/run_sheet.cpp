@@ -349,7 +349,7 @@ JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
   JobResult result;
   result.folder = output.folder();
   result.files = {path.filename().string()};
-  result.text = fmt::format("wrote {}\n", path.string());
+  result.text = output.told_replaced() + fmt::format("wrote {}\n", path.string());
   result.json = nlohmann::ordered_json{{"command", "rig sheet"}, {"file", path.string()}}.dump(
                     2, ' ', false, nlohmann::json::error_handler_t::replace) +
                 "\n";

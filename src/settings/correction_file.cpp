@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_nesting.h"
 
 namespace hydrodip {
 namespace {
@@ -53,7 +54,9 @@ class Reader {
 
 CorrectionFile read_correction(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = read_file(file);
-  const Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (nests_too_deeply(text)) refuse(file);
+  const Json json = Json::parse(text, nullptr, false);
   const Reader read(file);
   const Json& grid = read.member(json, "grid");
   CorrectionFile result;

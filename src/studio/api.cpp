@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_nesting.h"
 #include "report/plain_words.h"
 #include "samples/samples.h"
 #include "settings/artwork_tables.h"
@@ -139,6 +140,8 @@ std::string read_text(HttpRequest& request, std::uintmax_t most) {
 
 Json read_json(HttpRequest& request) {
   const std::string text = read_text(request, kMostJson);
+  if (nests_too_deeply(text))
+    throw ApiError(400, "bad-request", "The request is nested too deeply.");
   Json json = text.empty() ? Json::object() : Json::parse(text, nullptr, false);
   if (!json.is_object()) throw ApiError(400, "bad-request", "The request is no JSON object.");
   return json;

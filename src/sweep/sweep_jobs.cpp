@@ -79,6 +79,7 @@ JobResult sweep_plan_job(const SweepPlanRequest& request, const RunContext& cont
       "sbatch "
       "{0}/slurm.sh   ({1} tasks)\nand then:      hydrodip sweep collect {0}\n",
       folder, tasks);
+  result.text += output.told_replaced();
   if (!trouble.empty()) result.text += "the first run failed: " + trouble + "\n";
   result.json = dump({{"folder", folder},
                       {"runs", plan.runs.size()},
@@ -135,7 +136,7 @@ JobResult sweep_collect_job(const fs::path& folder, const RunContext& context) {
   if (shown > kShown) result.text += fmt::format("  and {} more, see table.csv\n", shown - kShown);
   result.text += fmt::format("wrote to {}:", folder.string());
   for (const std::string& file : result.files) result.text += " " + file;
-  result.text += "\n";
+  result.text += "\n" + output.told_replaced();
   result.json = dump({{"runs", table.rows.size()},
                       {"done", count(RunState::kDone)},
                       {"failed", count(RunState::kFailed)},

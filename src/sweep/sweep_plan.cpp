@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_nesting.h"
 #include "base/nearest_name.h"
 #include "settings/params.h"
 
@@ -450,7 +451,8 @@ SweepPlan read_manifest(const fs::path& folder) {
                     folder.string()));
   const std::vector<std::uint8_t> bytes = read_file(file);
   try {
-    const Json json = Json::parse(bytes.begin(), bytes.end());
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const Json json = nests_too_deeply(text) ? Json() : Json::parse(text);
     if (json.at("hydrodip_sweep").get<int>() != kSchemaVersion)
       throw InputError(
           fmt::format("{}: made by another version; plan the sweep again", file.string()));

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_nesting.h"
 #include "job/jobs.h"
 
 namespace hydrodip {
@@ -164,8 +165,13 @@ std::optional<SweepOutcome> read_outcome(const fs::path& folder, const std::stri
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return {};
   const std::vector<std::uint8_t> bytes = read_file(file);
-  const Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
-  if (!json.is_object() || !json.contains("seconds") || !json["seconds"].is_number())
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const Json json = nests_too_deeply(text) ? Json() : Json::parse(text, nullptr, false);
+  const bool usable =
+      json.is_object() && json.contains("seconds") && json["seconds"].is_number() &&
+      (json.contains("report") ? json["report"].is_object()
+                               : json.contains("error") && json["error"].is_string());
+  if (!usable)
     throw InputError(fmt::format(
         "{}: this is no run's outcome; remove it, and 'hydrodip sweep run' does the run again",
         file.string()));
@@ -174,7 +180,7 @@ std::optional<SweepOutcome> read_outcome(const fs::path& folder, const std::stri
   if (json.contains("report"))
     outcome.report = json["report"].dump();
   else
-    outcome.error = json.value("error", "it failed");
+    outcome.error = json["error"].get<std::string>();
   return outcome;
 }
 

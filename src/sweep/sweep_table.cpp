@@ -59,7 +59,8 @@ SweepTable make_table(const std::filesystem::path& folder, const SweepPlan& plan
       row.error = outcome->error;
       if (row.state == RunState::kDone) {
         const Json report = Json::parse(outcome->report);
-        row.verdict = report.value("concern", "");
+        if (report.contains("concern") && report["concern"].is_string())
+          row.verdict = report["concern"].get<std::string>();
         std::vector<std::string> order;
         for (const char* part : kParts)
           if (report.contains(part)) flatten(report[part], part, figures[i], order);

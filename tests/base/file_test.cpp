@@ -1,10 +1,13 @@
 #include "base/file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <string>
+#include <thread>
 
 #include "base/error.h"
+#include "base/run_scope.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {
@@ -33,6 +36,28 @@ TEST(File, WhatIsWrittenIsRead) {
   write_file(path, "");
   EXPECT_TRUE(read_file(path).empty());
 }
+
+TEST(File, PipesAreReadToTheirEnd) {
+  const TemporaryFolder folder;
+  const std::filesystem::path pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const std::string text(300000, 'x');  // more than a pipe holds
+  std::thread writer([&] { write_file(pipe, text); });
+  const std::vector<std::uint8_t> bytes = read_file(pipe);
+  writer.join();
+  EXPECT_EQ(std::string(bytes.begin(), bytes.end()), text);
+}
+
+TEST(File, APipeThatNobodyWritesToCanBeGivenUp) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const RunContext context;
+  const RunScope scope(context);
+  context.cancel_at_check(3);
+  EXPECT_THROW(read_file(folder / "pipe"), Cancelled);
+}
+
+TEST(File, DevicesWithoutEndAreRefused) { EXPECT_THROW(read_file("/dev/zero"), InputError); }
 
 TEST(File, ErrorsNameThePath) {
   const auto check = [](const auto& action, const std::string& name) {

@@ -82,6 +82,28 @@ refused 'not written by hydrodip' print slab/slab.obj $quick -o foreign
 "$hydrodip" print slab/slab.obj $quick -o right --quiet > again.txt || fail 'second print'
 grep -q 'replaced the earlier result' again.txt || fail 'an earlier result is replaced in silence'
 grep -q 'replaced' plain.txt && fail 'nothing was replaced the first time'
+# A profile that is read is an input too.
+mkdir profiled
+"$hydrodip" calibrate synth sphere --film 110x110 --set film.elements=1000 --set dip.step_mm=1 -o profiled \
+  --quiet > /dev/null || fail 'synth'
+cp profiled/truth.toml profiled/profile.toml
+(cd profiled && refused 'would overwrite it' calibrate sphere-scan.obj --film 110x110 \
+  --set film.elements=1000 --set dip.step_mm=1 --profile profile.toml --z-stretch 0.6 --ratio 30 \
+  --poisson 0.1 -o .)
+cmp -s profiled/truth.toml profiled/profile.toml || fail 'a profile was overwritten'
+# Every command that writes says so.
+small="--film 120x120 --set film.elements=200 --set dip.step_mm=5 --set print.dpi=36 --set print.samples=1
+  --set preview.width_px=64"
+grid='--film 110x110 --set film.elements=1000 --set dip.step_mm=1'
+for command in "orient slab/slab.obj $small" "nest slab/slab.obj $small" 'inspect tetra.obj' 'sample sphere' \
+  'calibrate printer' 'register board' "calibrate synth sphere $grid" \
+  "calibrate twice/sphere-scan.obj $grid --z-stretch 0.6 --ratio 30 --poisson 0.1"; do
+  for turn in first second; do
+    # shellcheck disable=SC2086
+    "$hydrodip" $command -o twice --quiet > $turn.txt 2> $turn.err || fail "$command: $(cat $turn.err)"
+  done
+  grep -q 'replaced the earlier result' second.txt || fail "$command replaces in silence: $(cat second.txt)"
+done
 
 # The next run clears what a killed one left.
 mkdir -p killed/.hydrodip-abcdef

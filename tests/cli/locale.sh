@@ -13,34 +13,40 @@ export LOCPATH
 
 mkdir plain german inputs
 write_colored inputs/colored.ply
+"$hydrodip" sample box -o inputs > /dev/null || fail 'sample box'
 
 # Without what may differ: times and memory, which the reports keep in places of their own.
 cat > comparable.mjs <<'JS'
 import { readFileSync } from "node:fs";
-const text = readFileSync(process.argv[2], "utf8");
-if (process.argv[2].endsWith(".json")) {
-  const report = JSON.parse(text);
-  delete report.seconds;
-  delete report.peak_memory_bytes;
-  console.log(JSON.stringify(report));
+const file = process.argv[2], text = readFileSync(file, "utf8");
+const timeless = (key, value) => (/^(time|elapsed_s|seconds|peak_memory_bytes)$/.test(key) ? undefined : value);
+if (file.endsWith(".json")) {
+  console.log(JSON.stringify(JSON.parse(text, timeless)));
+} else if (file.endsWith("log.jsonl")) {
+  for (const line of text.trim().split("\n")) console.log(JSON.stringify(JSON.parse(line, timeless)));
 } else {
-  console.log(text.replace(/<section id="times">[^]*?<\/section>/, ""));
+  console.log(text.replace(/<section id="times">[^]*?<\/section>/, "")
+    .replace(/[0-9]{4}-[0-9]{2}-[0-9]{2}[T ][0-9:.]+Z?/g, "").replace(/[0-9.]+ s\b/g, ""));
 }
 JS
 
-# same ARGUMENTS...: in both folders.
+# same ARGUMENTS...: in both folders; what it asks for is answered by the file answers.
+: > answers
 same() {
   for language in plain german; do
     locale=C
     if [ "$language" = german ]; then locale=de_DE.UTF-8; fi
-    (cd "$language" && LC_ALL=$locale "$hydrodip" "$@" > "../$language.out" 2> "../$language.err")
+    (cd "$language" && LC_ALL=$locale XDG_CONFIG_HOME=$PWD/config "$hydrodip" "$@" \
+      > "../$language.out" 2> "../$language.err" < "../answers")
     echo "$?" > "$language.code"
   done
   cmp -s plain.code german.code || fail "$*: exit code $(cat german.code): $(cat german.err)"
   [ "$(cat plain.code)" -eq 0 ] || fail "$*: exit code $(cat plain.code): $(cat plain.err)"
   # Some name their files with the whole path.
   sed "s|$work/german|$work/plain|" german.out > german.said
-  cmp -s plain.out german.said || fail "$*: says something else: $(diff plain.out german.out)"
+  # When it was, and how long it took.
+  sed -i -E 's/[0-9]{4}-[0-9]{2}-[0-9]{2}[T ][0-9:.]+Z?/TIME/g; s/[0-9.]+ s( |$)/TIME\1/g' plain.out german.said
+  cmp -s plain.out german.said || fail "$*: says something else: $(diff plain.out german.said)"
   grep -v '%' plain.err > plain.said
   grep -v '%' german.err > german.said
   cmp -s plain.said german.said || fail "$*: stderr: $(diff plain.said german.said)"
@@ -68,15 +74,81 @@ same measure sphere=scans/sphere-scan.csv $film --profile scans/truth.toml -o me
 # shellcheck disable=SC2086
 same calibrate scans/sphere-scan.obj $film --z-stretch 0.55,0.75 --ratio 30 --poisson 0.1 \
   -o calibrated --quiet
+# shellcheck disable=SC2086
+same calibrate pack sphere=scans/sphere-scan.obj $film --film-product f --printer p --ink i \
+  --activator a --activator-g 3.5 --water-c 28.5 --soak-s 70 --wait-s 30 --owner o --licence CC0-1.0 \
+  -o packed --quiet
+small='--film 120x120 --set film.elements=800 --set dip.step_mm=1 --set preview.width_px=200'
+# shellcheck disable=SC2086
+same pattern ../inputs/colored.ply --tile ../inputs/box.png --tile-mm 12.5 $small --dpi 72 -o patterned --quiet
+# shellcheck disable=SC2086
+same nest ../inputs/colored.ply ../inputs/colored.ply $small --film 200x120 --dpi 72 -o nested --quiet
+# shellcheck disable=SC2086
+same orient ../inputs/colored.ply $small -o ways --quiet
+# shellcheck disable=SC2086
+same plan ../inputs/colored.ply $small --dips 2 -o plan --quiet
+same register board -o board
+same calibrate printer -o printer
+same calibrate printer --readings 180.9,250.2,308.8,308.7 -o printer
+same profile save shop --film 100x80 --set cost.film_per_m2=30.5 --set process.soak_min_s=0 \
+  --set process.activator_wait_s=0 --set process.dwell_s=0 --set process.speed_mm_per_min=6000
+same profile import printer/printer.toml mine
+same profile list
+same profile show mine
+printf '%s\n' '' '' 28.5 '' '' 100 '' 98.9 '' '' '' 28.5 'no notes' > answers
+same rig guide printed --profile shop --batch B7
+: > answers
+same history printed --add --outcome good --water 28.5,27.9 --activator 1.25
+same history printed --json
+cat > inputs/sweep.toml <<'TOML'
+[sweep]
+models = ["colored.ply"]
+quality = "draft"
+[set]
+"film.width_mm" = 100
+"film.height_mm" = 80
+"film.elements" = 800
+"dip.step_mm" = 1
+[vary]
+"material.z_stretch" = [0.55, 0.65]
+TOML
+same sweep plan ../inputs/sweep.toml -o swept --quiet
+same sweep run swept --quiet
+same sweep collect swept --quiet
+# As if all of it had landed half a millimetre off.
+python3 - plain/printed/film.ply > inputs/places.csv <<'PY' || fail 'film.ply'
+import struct, sys
+data = open(sys.argv[1], "rb").read()
+begin = data.index(b"end_header\n") + 11
+print("film_x_mm,film_y_mm,x,y,z")
+for at in range(begin, begin + 29 * int(data.split(b"element vertex ")[1].split()[0]), 29):
+    x, y, z, u, v, state, _, _ = struct.unpack_from("<5fB2f", data, at)
+    if state == 1:
+        print(f"{u + 0.5:.6f},{v:.6f},{x:.6f},{y:.6f},{z:.6f}")
+PY
+same correct printed ../inputs/places.csv
+# The studio starts, and ends with Ctrl-C.
+for locale in C de_DE.UTF-8; do
+  LC_ALL=$locale XDG_DATA_HOME=$work/studio "$hydrodip" studio --no-browser > studio.out 2> studio.err &
+  studio=$!
+  n=0
+  until grep -q 'http://' studio.out || [ $((n += 1)) -gt 100 ]; do sleep 0.1; done
+  kill -INT $studio
+  wait $studio
+  echo "$? $(sed 's|http://[^ ]*|ADDRESS|' studio.out)" > "$locale.studio"
+done
+cmp -s C.studio de_DE.UTF-8.studio || fail "studio: $(diff C.studio de_DE.UTF-8.studio)"
+grep -q ADDRESS C.studio || fail "studio does not start: $(cat C.studio studio.err)"
 
 (cd plain && find . -type f | LC_ALL=C sort) > files.txt
 (cd german && find . -type f | LC_ALL=C sort) | cmp -s files.txt - || fail 'other files'
 [ "$(wc -l < files.txt)" -gt 30 ] || fail "only $(wc -l < files.txt) files"
 while read -r file; do
   case $file in
-    */report.json | */report.html)
+    */report.json | */report.html | */log.jsonl | */swept/runs/*.json)
       for language in plain german; do node comparable.mjs "$language/$file" > "$language.report"; done
       cmp -s plain.report german.report || fail "$file differs" ;;
+    */history.sqlite) ;;  # with times; history --json has said what is in it
     */simulations.jsonl) # in the order in which they were done
       for language in plain german; do sort "$language/$file" > "$language.report"; done
       cmp -s plain.report german.report || fail "$file differs" ;;

@@ -35,6 +35,7 @@ struct TiffLayout {
   std::uint32_t strip_rows = 0;  // 0: tiles of 32 x 32
   std::uint16_t compression = COMPRESSION_LZW;
   bool upside_down = false;
+  std::uint16_t samples = 4;  // the first ones of each pixel
 };
 
 Bytes tiff(const Image& image, const TiffLayout& layout) {
@@ -44,12 +45,13 @@ Bytes tiff(const Image& image, const TiffLayout& layout) {
   TIFFSetField(file, TIFFTAG_IMAGEWIDTH, image.width_px);
   TIFFSetField(file, TIFFTAG_IMAGELENGTH, image.height_px);
   TIFFSetField(file, TIFFTAG_BITSPERSAMPLE, 8);
-  TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, 4);
-  TIFFSetField(file, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
+  TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, layout.samples);
+  TIFFSetField(file, TIFFTAG_PHOTOMETRIC,
+               layout.samples == 1 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB);
   TIFFSetField(file, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
   TIFFSetField(file, TIFFTAG_COMPRESSION, layout.compression);
   const std::uint16_t extra[] = {EXTRASAMPLE_UNASSALPHA};
-  TIFFSetField(file, TIFFTAG_EXTRASAMPLES, 1, extra);
+  if (layout.samples == 4) TIFFSetField(file, TIFFTAG_EXTRASAMPLES, 1, extra);
   if (layout.upside_down) TIFFSetField(file, TIFFTAG_ORIENTATION, ORIENTATION_BOTLEFT);
   const auto row = [&](int y) {
     return const_cast<std::uint8_t*>(
@@ -57,7 +59,12 @@ Bytes tiff(const Image& image, const TiffLayout& layout) {
   };
   if (layout.strip_rows > 0) {
     TIFFSetField(file, TIFFTAG_ROWSPERSTRIP, layout.strip_rows);
-    for (int y = 0; y < image.height_px; ++y) TIFFWriteScanline(file, row(y), std::uint32_t(y), 0);
+    for (int y = 0; y < image.height_px; ++y) {
+      Bytes line;
+      for (int x = 0; x < image.width_px; ++x)
+        line.insert(line.end(), row(y) + 4 * x, row(y) + 4 * x + layout.samples);
+      TIFFWriteScanline(file, line.data(), std::uint32_t(y), 0);
+    }
   } else {
     constexpr int kTile = 32;
     TIFFSetField(file, TIFFTAG_TILEWIDTH, kTile);
@@ -83,6 +90,20 @@ TEST(LongPictures, TiffIsTheSameInStripsTilesAndUpsideDown) {
         EXPECT_EQ(decode_image(tiff(image, {rows, compression, upside_down}), "a.tif").rgba,
                   image.rgba)
             << rows << " rows, compression " << compression << (upside_down ? ", upside down" : "");
+}
+
+// Without alpha, grey or not: in one strip by rows, in several by libtiff's own reader.
+TEST(LongPictures, TiffInOneStripIsThatOfSeveral) {
+  const Image image = noise(70, 203);
+  for (const std::uint16_t samples : {1, 3})
+    for (const std::uint16_t compression :
+         {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS}) {
+      const auto read = [&](std::uint32_t rows) {
+        return decode_image(tiff(image, {rows, compression, false, samples}), "a.tif").rgba;
+      };
+      EXPECT_EQ(read(203), read(50)) << samples << " samples, compression " << compression;
+      EXPECT_EQ(read(203)[0], image.rgba[0]);
+    }
 }
 
 Bytes webp(const Image& image) {
@@ -217,6 +238,7 @@ TEST(LongPictures, OfEveryKindAreGivenUpOnTheWay) {
       {"WebP", webp(image)},
       {"TIFF in strips", tiff(image, {8})},
       {"TIFF in tiles", tiff(image, {})},
+      {"TIFF in one strip", tiff(image, {320, COMPRESSION_LZW, false, 3})},
       {"GIF", gif(image)},
       {"BMP", bmp(image)},
       {"TGA", tga(image)},

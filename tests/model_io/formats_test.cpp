@@ -6,9 +6,11 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "contains.h"
 #include "model_io/load.h"
 #include "model_io/model_files.h"
+#include "model_io/packed.h"
 
 namespace hydrodip {
 namespace {
@@ -147,11 +149,19 @@ TEST_F(Formats, MtlTransparencyThatMeansOpaque) {
   EXPECT_EQ(seen_at(half, 0.5, 0.5)[0], linear_to_srgb8(0.5F));
 }
 
+TEST_F(Formats, MtlPicturesOfTransparencyAreSaid) {
+  EXPECT_TRUE(warned(obj("newmtl m\nmap_Kd tex.png\nmap_d other.png\n"), "map_d: m"));
+  // Its own alpha counts anyway.
+  EXPECT_TRUE(obj("newmtl m\nmap_Kd tex.png\nmap_d -imfchan m tex.png\n").warnings.empty());
+}
+
 TEST_F(Formats, PicturesByAnyLetterCaseAndWindowsPath) {
   std::filesystem::create_directory(folder_ / "Textures");
   folder_.write("Textures/Wood Grain.PNG", fixtures::four_colour_png());
-  for (const char* name : {"TEX.PNG", "C:\\work\\tex.png", ".\\Tex.png", "textures\\wood grain.png",
-                           "Textures/Wood%20Grain.PNG"})
+  for (const char* name :
+       {"TEX.PNG", "C:\\work\\tex.png", ".\\Tex.png", "textures\\wood grain.png",
+        "Textures/Wood%20Grain.PNG", "D:\\me\\model\\textures\\wood grain.png",
+        "/home/me/Textures/Wood%20Grain.PNG", "../model/Textures/Wood Grain.PNG"})
     expect_four_colours(obj(fmt::format("newmtl m\nmap_Kd {}\n", name)));
 }
 
@@ -163,6 +173,9 @@ TEST_F(Formats, MissingFilesAreNamedWithWhoAsksForThem) {
   const Loaded without = load(folder_.write("b.obj", "mtllib gone.mtl\n" + std::string(kSquare)));
   EXPECT_TRUE(warned(without, "gone.mtl that b.obj refers to"));
   EXPECT_EQ(without.object.picture_problems.size(), 1u);
+  std::string very_many;
+  for (int i = 0; i < 1000; ++i) very_many += fmt::format("mtllib gone{}.mtl\n", i);
+  EXPECT_LT(load(folder_.write("c.obj", very_many + kSquare)).warnings.size(), 30u);
   EXPECT_TRUE(warned(obj("newmtl other\nKd 1 0 0\n"), "no material library defines (m)"));
 }
 
@@ -296,6 +309,17 @@ TEST_F(Formats, OffFacesOfAnySizeAndTheirColours) {
   EXPECT_EQ(seen_at(loaded, -0.1, -0.1), kRed);
 }
 
+TEST_F(Formats, OffTextureCoordinatesAndBinaryFiles) {
+  LoadOptions options;
+  options.texture = folder_ / "tex.png";
+  expect_four_colours(
+      load(folder_.write("a.off",
+                         "STOFF\n4 1 0\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n"
+                         "4 0 1 2 3\n"),
+           options));
+  EXPECT_TRUE(contains(refusal_of(folder_.write("a.off", "OFF BINARY\n")), "export it as text"));
+}
+
 // A square of two facets in the plane z = 0 with their colour words.
 Bytes stl_square(const std::string& header, std::uint16_t first, std::uint16_t second) {
   Bytes out(header.begin(), header.end());
@@ -336,6 +360,26 @@ TEST_F(Formats, StlColoursOfMagicsInBothConventions) {
   EXPECT_EQ(seen_at(other, 0.2, 0.8), kBlue);
   const Loaded whole = load(folder_.write("a.stl", stl_square(header, 0, 0)));
   EXPECT_EQ(seen_at(whole, 0.8, 0.2), kGreen);
+}
+
+TEST_F(Formats, StlBytesBehindTheTrianglesAndOpenNumbers) {
+  const Bytes plain = stl_square("solid of a writer", 0, 0);
+  const auto with = [&](std::array<std::uint8_t, 4> count, std::size_t more) {
+    Bytes bytes = plain;
+    std::copy(count.begin(), count.end(), bytes.begin() + 80);
+    bytes.resize(bytes.size() + more, 7);
+    return folder_.write("a.stl", bytes);
+  };
+  const Loaded footer = load(with({2, 0, 0, 0}, 37));
+  EXPECT_EQ(footer.object.health.triangles, 2);
+  EXPECT_TRUE(warned(footer, "37 bytes behind its 2 triangles"));
+  for (const std::uint8_t byte : {0, 255}) {
+    const Loaded open = load(with({byte, byte, byte, byte}, 0));
+    EXPECT_EQ(open.object.health.triangles, 2);
+    EXPECT_TRUE(warned(open, "it holds 2"));
+  }
+  EXPECT_NE(refusal_of(with({3, 0, 0, 0}, 0)), "");  // cut off
+  EXPECT_NE(refusal_of(with({0, 0, 0, 0}, 1)), "");
 }
 
 // ---- glTF ---------------------------------------------------------------------------------------
@@ -403,6 +447,15 @@ class Gltf : public Formats {
             attributes, primitive, material, texture, accessors, views, bin.size(), root));
   }
 
+  // The same with more in its node.
+  Loaded with_node(const std::vector<Piece>& pieces, const std::string& more) {
+    const Bytes written = read_file(write(pieces, kTextured));
+    std::string text(written.begin(), written.end());
+    const std::string plain_node = R"({"mesh": 0})";
+    text.replace(text.find(plain_node), plain_node.size(), R"({"mesh": 0, )" + more + "}");
+    return load(folder_.write("a.gltf", text));
+  }
+
   static constexpr const char* kTextured =
       R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0}})";
   static Rgb at(const Loaded& loaded, double x, double y) {
@@ -430,6 +483,92 @@ TEST_F(Gltf, QuantisedAndNormalisedNumbers) {
   pieces[1].accessor = R"("componentType": 5121, "normalized": true, "count": 4, "type": "VEC2")";
   pieces[1].view_extra = R"(, "byteStride": 4)";
   expect_picture(gltf(pieces, kTextured, R"(, "extensionsRequired": ["KHR_mesh_quantization"])"));
+}
+
+TEST_F(Gltf, StripsAndFans) {
+  for (const auto& [mode, order] : {std::pair{5, std::array<std::uint16_t, 4>{0, 1, 3, 2}},
+                                    {6, std::array<std::uint16_t, 4>{0, 1, 2, 3}}}) {
+    std::vector<Piece> pieces = plain();
+    pieces[2].bytes.clear();
+    append(pieces[2].bytes, order);
+    pieces[2].accessor = R"("componentType": 5123, "count": 4, "type": "SCALAR")";
+    const Loaded loaded =
+        gltf(pieces, kTextured, "", "", R"("source": 0)", fmt::format(R"(, "mode": {})", mode));
+    expect_picture(loaded);
+    EXPECT_EQ(loaded.object.health.flipped, 0);
+  }
+}
+
+TEST_F(Gltf, TheSetOfCoordinatesThatTheTextureNames) {
+  std::vector<Piece> pieces = plain();
+  pieces.push_back(pieces[1]);
+  pieces[1].bytes.assign(pieces[1].bytes.size(), 0);
+  expect_picture(
+      gltf(pieces, R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 1}})",
+           "", R"(, "TEXCOORD_1": 3)"));
+}
+
+TEST_F(Gltf, WebpTextures) {
+  static constexpr std::uint8_t kFourColours[] = {
+      0x52, 0x49, 0x46, 0x46, 0x2c, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50, 0x56,
+      0x50, 0x38, 0x4c, 0x1f, 0x00, 0x00, 0x00, 0x2f, 0x01, 0x40, 0x00, 0x00, 0x1f,
+      0x20, 0x10, 0x48, 0xde, 0x1f, 0x3a, 0x8d, 0xf9, 0x17, 0x10, 0x14, 0xfc, 0x1f,
+      0xdd, 0xfc, 0x47, 0x64, 0x0f, 0xe0, 0x06, 0x0c, 0x11, 0xfd, 0x0f, 0x01, 0x00};
+  folder_.write("tex.png", Bytes(std::begin(kFourColours), std::end(kFourColours)));
+  expect_picture(gltf(plain(), kTextured, R"(, "extensionsRequired": ["EXT_texture_webp"])", "",
+                      R"("extensions": {"EXT_texture_webp": {"source": 0}})"));
+}
+
+TEST_F(Gltf, CompressedByDraco) {
+  const fixtures::DracoMesh mesh =
+      fixtures::draco_mesh({{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {0, 0, -1}},
+                           {{0, 1}, {1, 1}, {1, 0}, {0, 0}}, {{0, 1, 2}, {0, 2, 3}});
+  std::vector<Piece> pieces = plain();
+  for (Piece& piece : pieces) piece.bytes.assign(piece.bytes.size(), 0);
+  pieces.push_back({mesh.bytes, "", ""});
+  expect_picture(
+      gltf(pieces, kTextured, R"(, "extensionsRequired": ["KHR_draco_mesh_compression"])", "",
+           R"("source": 0)",
+           fmt::format(R"(, "extensions": {{"KHR_draco_mesh_compression": {{"bufferView": 3,
+"attributes": {{"POSITION": {}, "TEXCOORD_0": {}}}}}}})",
+                       mesh.positions, mesh.uvs)));
+}
+
+TEST_F(Gltf, CompressedByMeshoptimizer) {
+  const std::vector<Piece> packed = {
+      {fixtures::meshopt_vertices(positions_, 12), "", ""},
+      {fixtures::meshopt_vertices(uvs_, 8), "", ""},
+      {fixtures::meshopt_triangles({{0, 1, 2}, {0, 2, 3}}, 4), "", ""}};
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+    std::vector<Piece> pieces = plain();
+    std::size_t at = 0;
+    const auto after = [](std::size_t end) { return (end + 3) / 4 * 4; };
+    for (const Piece& piece : pieces) at = after(at + piece.bytes.size());
+    const std::size_t stride[] = {12, 8, 2}, count[] = {4, 4, 6};
+    for (std::size_t i = 0; i < 3; ++i) {
+      pieces[i].bytes.assign(pieces[i].bytes.size(), 0);
+      pieces[i].view_extra = fmt::format(
+          R"(, "extensions": {{"{}": {{"buffer": 0, "byteOffset": {}, "byteLength": {},
+"byteStride": {}, "count": {}, "mode": "{}"}}}})",
+          name, at, packed[i].bytes.size(), stride[i], count[i],
+          i < 2 ? "ATTRIBUTES" : "TRIANGLES");
+      at = after(at + packed[i].bytes.size());
+    }
+    pieces.insert(pieces.end(), packed.begin(), packed.end());
+    expect_picture(gltf(pieces, kTextured, fmt::format(R"(, "extensionsRequired": ["{}"])", name)));
+  }
+}
+
+TEST_F(Gltf, CopiesOfAMesh) {
+  std::vector<Piece> pieces = plain();
+  Bytes places;
+  append(places, std::array<float, 6>{0, 0, 0, 2, 0, 0});
+  pieces.push_back({places, R"("componentType": 5126, "count": 2, "type": "VEC3")", ""});
+  const Loaded loaded = with_node(
+      pieces, R"("extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 3}}})");
+  EXPECT_EQ(loaded.object.health.triangles, 4);
+  EXPECT_NEAR(loaded.object.object.bounds().max.x(), 3000, 1e-3);
+  EXPECT_EQ(at(loaded, 2.25, 0.75), kRed);
 }
 
 TEST_F(Gltf, SparseNumbers) {
@@ -483,6 +622,13 @@ TEST_F(Gltf, TexturesThatCannotBeReadSayHowToExport) {
   EXPECT_TRUE(contains(said, "PNG, JPEG or WebP"));
   // With another picture to fall back on it is read.
   expect_picture(gltf(plain(), kTextured, "", "", R"("source": 0, )" + basisu));
+}
+
+TEST_F(Gltf, PosesThatAreNotReadAreSaid) {
+  const auto node = [&](const std::string& more) { return with_node(plain(), more); };
+  EXPECT_TRUE(warned(node(R"("skin": 0)"), "by a skeleton, which"));
+  EXPECT_TRUE(warned(node(R"("weights": [0, 0.5])"), "shape keys"));
+  EXPECT_TRUE(node(R"("weights": [0, 0])").warnings.empty());
 }
 
 TEST_F(Gltf, MissingPicturesAreNamedWithTheModel) {
@@ -619,6 +765,16 @@ TEST_F(ThreeMf, PartsOfTheProductionExtension) {
   EXPECT_NEAR((loaded.object.object.bounds().max - Vec3(0, 6, 0)).norm(), 0, 1e-6);
 }
 
+TEST_F(ThreeMf, StreamedArchivesOfZip64) {
+  const Loaded loaded = load(folder_.write(
+      "a.3mf", fixtures::streamed_zip(
+                   {{"_rels/.rels", kRelations},
+                    {"3D/3dmodel.model", model("<resources><object id=\"1\">" + square("") +
+                                               "</object></resources><build>"
+                                               "<item objectid=\"1\"/></build>")}})));
+  EXPECT_EQ(loaded.object.health.triangles, 2);
+}
+
 TEST_F(ThreeMf, SlicesAreNoVerticesAndLatticesAreSaid) {
   const Loaded loaded =
       package({{"3D/3dmodel.model",
@@ -655,6 +811,27 @@ TEST_F(ThreeMf, PaintOfSlicersIsNamed) {
                                      "</object></resources><build><item objectid=\"1\"/>"
                                      "</build>")}}),
                      "paint_color"));
+}
+
+TEST_F(ThreeMf, WhatItRequiresAndIsNotReadIsSaid) {
+  const auto with = [&](const std::string& attributes) {
+    std::string text = model("<resources><object id=\"1\">" + square("") +
+                             "</object></resources><build><item objectid=\"1\"/></build>");
+    text.insert(text.find("<model ") + 7, attributes + " ");
+    return package({{"3D/3dmodel.model", text}});
+  };
+  EXPECT_TRUE(with("requiredextensions=\"m p s b\"").warnings.empty());
+  EXPECT_TRUE(warned(with("xmlns:q=\"http://a.org/q\" requiredextensions=\"p q\""),
+                     "requires the 3MF extension http://a.org/q, which is not read"));
+}
+
+TEST_F(ThreeMf, XmlInUtf16IsNamed) {
+  try {
+    package({{"3D/3dmodel.model", std::string("\xff\xfe<\0", 4)}});
+    ADD_FAILURE() << "it was loaded";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(contains(error.what(), "UTF-16")) << error.what();
+  }
 }
 
 TEST_F(ThreeMf, SupportsAreNotDipped) {

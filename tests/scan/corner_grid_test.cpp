@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "contains.h"
 
 namespace hydrodip {
 namespace {
@@ -138,6 +139,17 @@ TEST(QuadsTest, RefusesWhatIsNoCheckerboard) {
   doubled.quads.push_back(doubled.quads[0]);
   doubled.quads.push_back(doubled.quads[0]);
   refuse(doubled);
+  // Three squares at one edge, as a book's pages at its back.
+  QuadMesh book;
+  book.corners = {{0, 0, 0},  {1, 0, 0},  {1, 1, 0}, {0, 1, 0},
+                  {0, -1, 0}, {1, -1, 0}, {1, 0, 1}, {0, 0, 1}};
+  book.quads = {{0, 1, 2, 3}, {1, 0, 4, 5}, {0, 1, 6, 7}};
+  try {
+    grid_of_quads(book.corners, book.quads, "sheet");
+    ADD_FAILURE() << "a book was taken for a board";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(contains(error.what(), "3 quads share one edge")) << error.what();
+  }
   QuadMesh pinched = sheet(2, 2);
   pinched.quads[0][2] = pinched.quads[0][1];
   refuse(pinched);

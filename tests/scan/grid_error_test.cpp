@@ -81,5 +81,13 @@ TEST(GridErrorTest, CornersWithoutFilmTakeTheirLengthsWithThem) {
   EXPECT_TRUE(corners[0].has_value());
 }
 
+TEST(CornerErrors, AreThoseOfAllLengthsThatEndThere) {
+  const auto corners = corner_errors({{{0, 1, false}, 3}, {{1, 2, false}, -4}}, 4);
+  EXPECT_DOUBLE_EQ(corners[0].value(), 3);
+  EXPECT_DOUBLE_EQ(corners[1].value(), std::sqrt((9 + 16) / 2.0));
+  EXPECT_DOUBLE_EQ(corners[2].value(), 4);
+  EXPECT_FALSE(corners[3].has_value());
+}
+
 }  // namespace
 }  // namespace hydrodip

@@ -141,6 +141,27 @@ TEST(RegistrationTest, RefusesAnotherShape) {
   EXPECT_THROW(match_grid(scan, std::cref(sphere), {6, 6}, kBoardSquare_mm, "scan"), InputError);
 }
 
+// A few misread squares beside the board, found first, decide nothing.
+TEST(RegistrationTest, TheLargestPatchIsMatched) {
+  const Landed landed("sphere", true);
+  CornerGrid scan;
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> off(-2, 2);
+  for (const bool misread : {true, false}) {
+    const CornerGrid whole = landed_grid(landed);
+    for (std::size_t c = 0; c < whole.position.size(); ++c) {
+      const int column = whole.place[c][0];
+      if (misread ? column > -3 : column < -1) continue;
+      const Vec3 error = misread ? Vec3(off(random), off(random), off(random)) : Vec3::Zero();
+      scan.position.push_back(whole.position[c] + error);
+      scan.place.push_back(whole.place[c]);
+      scan.patch.push_back(misread ? 0 : 1);
+    }
+  }
+  scan = moved(scan, some_pose(2));
+  EXPECT_LT(match_grid(scan, std::cref(landed), {6, 6}, kBoardSquare_mm, "scan").rms_mm, 1e-6);
+}
+
 TEST(RegistrationTest, RefusesScatteredSquares) {
   const Landed sphere("sphere");
   CornerGrid scan = landed_grid(sphere);

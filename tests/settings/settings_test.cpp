@@ -193,6 +193,15 @@ TEST_F(Settings, BrokenTomlSaysFileLineAndColumn) {
   EXPECT_TRUE(contains(toml_error("a = \"\"\"\n[=]\n\"\"\"\n[=]\nb = 1\n"), "job.toml:4:1"));
 }
 
+// toml++ looks whether each of these is blank, by a table that has holes.
+TEST_F(Settings, LettersOfOtherAlphabetsOutsideQuotesAreRefused) {
+  for (const char* text :
+       {"gr\xc3\xb6\xc3\x9f"
+        "e = 1\n",
+        "film.width_mm = \xc3\xa4\n", "\xef\xbb\xbd", "film.width_mm = 200 \xd2\x80\n"})
+    EXPECT_TRUE(contains(toml_error(text), "not valid TOML")) << text;
+}
+
 TEST_F(Settings, DeepKeysAndTheSmallestIntegerAreRefusedInOneSentence) {
   std::string deep = "a";
   for (int i = 0; i < 9999; ++i) deep += ".a";
