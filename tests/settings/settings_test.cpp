@@ -107,6 +107,7 @@ TEST_F(Settings, QualityGivesWayToEverythingElse) {
   apply_sources(draft, sources);
   EXPECT_EQ(draft.design.film.elements, 10000);
   EXPECT_FALSE(draft.pictures);
+  EXPECT_FALSE(draft.plan.suggest);
   sources.sets = {parse_set("film.elements=2000")};
   JobConfig own;
   apply_sources(own, sources);
