@@ -84,11 +84,10 @@ LinearColor reach_color(float difference) {
   return {1 - 0.65F * t * t, 0.75F * (1 - t) * (1 - t), 0.05F * (1 - t), 1};
 }
 
-// What comes out beside how far it is from what was wanted.
-PreviewPair reach_pair(const JobRecord& record, const Appearance& shown,
-                       const SheetRaster& raster) {
+// What comes out, which the first pair shows, beside how far it is from what was wanted.
+PreviewPair reach_pair(const JobRecord& record, const SheetRaster& raster) {
   PreviewPair pair;
-  pair.shown.wanted = shown.predicted;
+  pair.left_is_firsts_right = true;
   pair.shown.predicted = [&](const SurfacePoint&, const Vec3& position, const Vec3& normal) {
     const auto u = record.dipped().map->to_film(position, normal);
     if (!u) return record.paint().base();
@@ -136,7 +135,7 @@ std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
   std::vector<PreviewPair> pairs(1);
   pairs[0].shown = fading(shown, record);
   pairs[0].caption = caption;
-  if (!gamut_png.empty()) pairs.push_back(reach_pair(record, shown, raster));
+  if (!gamut_png.empty()) pairs.push_back(reach_pair(record, raster));
   const std::vector<Image> pictures =
       render_previews(views, pairs, record.paint().base(), record.context);
   if (!gamut_png.empty()) write_picture(gamut_png, pictures[1]);

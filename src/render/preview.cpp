@@ -71,15 +71,18 @@ std::vector<Image> render_previews(const TellingViews& views, const std::vector<
   context.progress(stage, 0);
   const ViewLayout& cells = views.layout();
   std::vector<Image> pages;
+  std::array<Image, 2> firsts_right;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     const PageLayout layout(cells, !pairs[n].caption.empty());
     Image page = blank_page(cells.width, layout.height);
     for (std::size_t i = 0; i < 2; ++i) {
       context.progress(stage, (double(n) + 0.5 * double(i)) / double(pairs.size()));
       const int y = layout.header + (i == 0 ? 0 : cells.cell_height[0] + cells.gap);
-      const ViewPair seen = views.view(i).show(completed(pairs[n].shown, base));
-      paste(page, seen.wanted, cells.margin, y);
+      ViewPair seen = views.view(i).show(completed(pairs[n].shown, base));
+      const Image& left = pairs[n].left_is_firsts_right ? firsts_right[i] : seen.wanted;
+      paste(page, left, cells.margin, y);
       paste(page, seen.predicted, cells.margin + cells.cell_width + cells.gap, y);
+      if (n == 0) firsts_right[i] = std::move(seen.predicted);
     }
     write_labels(page, layout, pairs[n]);
     pages.push_back(std::move(page));

@@ -25,6 +25,8 @@ struct PreviewPair {
   Appearance shown;  // what is absent is the bare object
   std::array<std::string, 2> titles = {"wanted", "predicted"};
   std::string caption;  // one line under the picture, e.g. the verdict
+  // On the left, instead of what is wanted, what the first pair has on the right.
+  bool left_is_firsts_right = false;
 };
 
 // Ray-cast pictures, one for each pair: wanted beside predicted, from the two most telling

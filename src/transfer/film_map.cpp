@@ -150,7 +150,8 @@ struct FilmMap::Impl {
                                      const Vec3& direction) const {
     std::optional<SurfaceHit> best;
     double nearest = reach_mm;
-    for (const double side : {1.0, -1.0}) {
+    // Film's chords lie inside of what is rounded: there first, and the other ray is short.
+    for (const double side : {-1.0, 1.0}) {
       const auto hit = sheet.first_hit(position, side * direction, 0, nearest);
       // The film's upper side lies against the object: film on the far side of a thin wall, whose
       // upper side looks the other way, is not the film of this point.
