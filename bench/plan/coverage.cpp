@@ -1,20 +1,21 @@
 // How much of a surface several dips cover: each model is planned for six, and what one, two,
 // three, four and six of them come to is shown, by film that is whole.
 //
-//   bench_coverage [draft|normal] [MODEL:SIZE_MM | SAMPLE | list]...
+//   bench_coverage [draft|normal] [MODEL:SIZE_MM | SAMPLE | FOLDER]...
 //
-// "list": the samples and shapes that are made by code. "normal" dips the chosen ones as finely as
-// a job; "draft" as trial dips are.
+// FOLDER, of test shapes (or any folder, for those that are made by code): the 20 models of
+// torn_models.h. "normal" dips the chosen ones as finely as a job; "draft" as trial dips are.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
 #include "base/context.h"
 #include "coat/design.h"
-#include "dip/zoo_shapes.h"
+#include "dip/torn_models.h"
 #include "job/dip_plan.h"
 #include "model_io/load.h"
 #include "object/paint.h"
@@ -54,15 +55,10 @@ bool is_sample(const std::string& name) {
   return std::any_of(list.begin(), list.end(), [&](const auto& s) { return s.name == name; });
 }
 
-std::vector<Named> listed() {
+std::vector<Named> listed(const std::filesystem::path& folder) {
   std::vector<Named> list;
-  for (const auto& sample : samples())
-    list.push_back({sample.name, std::make_shared<const Object>(make_sample(sample.name))});
-  for (const auto& [name, shape] : shapes::zoo()) {
-    // Balls and cubes in other poses are the samples again, and a needle is held in no film.
-    if (name.starts_with("cube") || name == "full sphere" || name == "needle") continue;
-    list.push_back({name, of_shape(shape)});
-  }
+  for (const shapes::Named& model : shapes::torn_models(folder))
+    list.push_back({model.name, of_shape(model.shape)});
   return list;
 }
 
@@ -107,10 +103,12 @@ void plan(const Named& model, bool normal) {
   try {
     const Targets targets = job_targets(config, prepared, context);
     const DipPlan made = plan_dips(config, prepared, targets, true, context);
+    std::vector<Trial> dips;
+    for (const PlannedDip& dip : made.dips) dips.push_back(dip.trial);
     fmt::print("{:<20} ", model.name);
-    show(targets, made.dips);
+    show(targets, dips);
     double torn = 0;
-    for (const Trial& dip : made.dips) torn = std::max(torn, dip.figures.torn_share);
+    for (const Trial& dip : dips) torn = std::max(torn, dip.figures.torn_share);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     fmt::print("  torn up to {:.0f} %, {} trials, {:.1f} s\n", 100 * torn, made.trial_dips,
@@ -128,8 +126,8 @@ int run(int argc, char** argv) {
     const std::string word = argv[i];
     if (word == "draft" || word == "normal") {
       normal = word == "normal";
-    } else if (word == "list") {
-      for (const Named& model : listed()) plan(model, normal);
+    } else if (std::filesystem::is_directory(word)) {
+      for (const Named& model : listed(word)) plan(model, normal);
     } else if (is_sample(word)) {
       plan({word, std::make_shared<const Object>(make_sample(word))}, normal);
     } else {

@@ -34,7 +34,7 @@ class Settling {
         film_(std::make_shared<const FilmMesh>(make_film_mesh(task.options.film))) {}
 
   Designed run() {
-    air_ = timings_.measure("air", [&] {
+    air_ = task_.blank ? task_.blank->air : timings_.measure("air", [&] {
       const TriangleMesh& mesh = task_.posed.mesh();
       return std::make_shared<const TrappedAir>(
           find_air(mesh, task_.posed.surface(),

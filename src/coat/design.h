@@ -77,6 +77,9 @@ struct DesignTask {
   const Allotment& allotment;  // what of the paint this film brings
   const ColorModel& model;
   const DesignOptions& options;
+  // That dip without ink, where it was made already: then the first round makes none. Null: it was
+  // not.
+  const DippedObject* blank = nullptr;
 };
 
 // What to print on film that was dipped without ink, and what comes of it: one round, which makes

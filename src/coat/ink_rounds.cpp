@@ -110,6 +110,10 @@ FilmInk InkRounds::print(double dpi, bool all) const {
 // False if the film cannot be dipped with its ink: then the last dip stays.
 bool InkRounds::dip() {
   if (number() > 0) before_ = dipped_;
+  if (number() == 0 && task_.blank) {
+    dipped_ = *task_.blank;
+    return true;
+  }
   dip_options_.failed_share_max = dip_options_.modulus.empty() ? 1 : kFailedSteps;
   try {
     dipped_ = dip_object(task_.posed, film_, trajectory_, dip_options_, timings_, context_, {},

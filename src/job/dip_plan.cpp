@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -10,11 +12,16 @@
 namespace hydrodip {
 namespace {
 
-// Ink stiffens film, and what is next to it stretches more: planned dips count film as torn that
+// Ink stiffens film, and what is next to it stretches more: dips are chosen as if film tore that
 // much below what it bears, so that what is counted on stays whole with its ink.
 constexpr double kStretchKept = 0.96;
 constexpr double kDeeper_mm = 3;
 constexpr int kDirections = 98;
+// What trial dips promise finer film need not keep: so many times as many dips as are wanted are
+// looked at again on the job's film, in steps so many times as long as the job's.
+constexpr int kLookedAtAgain = 3;
+constexpr double kLongerSteps = 6;
+constexpr double kLongestStep_mm = 1;
 // Triangles: from there on film is dipped by all threads, one at a time.
 constexpr int kSmallFilm = 100000;
 
@@ -43,121 +50,174 @@ class Planning {
       : config_(config),
         again_(again),
         context_(context),
-        task_(job_trials(config, prepared, targets)) {
-    task_.depth_mm = 0;
-    task_.keep_film = true;
-    task_.torn_price = kTornPriceAmongSeveral;
-    task_.dip.material.tear_stretch *= kStretchKept;
-  }
+        task_(among_several(job_trials(config, prepared, targets))),
+        sought_(as_sought(task_)) {}
 
   DipPlan run() {
-    find_given();
+    std::vector<Trial> chosen = given();
     const int wanted = std::max(config_.plan.dips, int(config_.dips.size()));
-    if (int(given_.size()) < wanted)
-      search(wanted);
-    else
-      plan_.dips = given_;
-    if (plan_.dips.empty())
+    if (int(chosen.size()) < wanted) chosen = search(std::move(chosen), wanted);
+    if (chosen.empty())
       throw InputError(
           "no way to hold the object was found in which film stays whole on it: use film that "
           "bears more (material.tear_stretch), or a smaller object");
+    dip_for_good(chosen);
     count_up();
     return std::move(plan_);
   }
 
  private:
-  void find_given() {
+  static TrialTask among_several(TrialTask task) {
+    task.depth_mm = 0;
+    task.torn_price = kTornPriceAmongSeveral;
+    return task;
+  }
+  static TrialTask as_sought(TrialTask task) {
+    DipOptions& dip = task.dip;
+    dip.material.tear_stretch *= kStretchKept;
+    dip.step_mm = std::min(kLongerSteps * dip.step_mm, std::max(dip.step_mm, kLongestStep_mm));
+    return task;
+  }
+
+  std::vector<Trial> given() {
+    std::vector<Trial> given;
     for (std::size_t i = 0; i < config_.dips.size(); ++i) {
       const DipEntry& entry = config_.dips[i];
       if (!is_given(entry, again_)) {
-        if (entry.depth_mm && !again_) hold_best(task_to(entry));
+        if (entry.depth_mm && !again_) hold_best(task_to(entry), given);
         continue;
       }
       context_.progress("dipping what is given", double(i) / double(config_.dips.size()));
-      const TrialTask task = task_to(entry);
-      const auto trial = fine(task, pose_of(entry, config_.object.pose), 0);
+      const auto trial =
+          try_pose(task_to(entry), pose_of(entry, config_.object.pose), 0, context_.quiet());
       if (!trial || !(trial->depth_mm > 0)) refuse_dip(i + 1, trial ? &*trial : nullptr);
-      given_.push_back(*trial);
+      given.push_back(*trial);
     }
+    return given;
   }
 
   TrialTask task_to(const DipEntry& entry) const {
-    TrialTask task = task_;
+    TrialTask task = sought_;
     if (entry.depth_mm) task.depth_mm = *entry.depth_mm > 0 ? *entry.depth_mm : kWholeObject_mm;
     if (!entry.path.empty()) task.way = {.path = entry.path, .pivot_mm = task.way.pivot_mm};
     return task;
   }
 
   // One of which the depth alone is given: held so that it adds most to what is given so far.
-  void hold_best(const TrialTask& task) {
+  void hold_best(const TrialTask& task, std::vector<Trial>& given) {
     const PoseOptions& pose = config_.object.pose;
     const SearchResult found = search_holds(task, pose, quick_search(), context_);
     plan_.trial_dips += found.trials.size();
-    const ChoiceOptions choice{.dips = int(given_.size()) + 1, .kept = given_, .better = false};
-    const std::vector<Trial> chosen = choose_dips(trial_task(task), found.trials, choice, context_);
-    if (chosen.size() == given_.size()) return;
-    if (auto sure = fine(task, chosen.back().pose, 0)) given_.push_back(std::move(*sure));
+    const ChoiceOptions choice{.dips = int(given.size()) + 1, .kept = given, .better = false};
+    const auto chosen = choose_dips(trial_task(task), found.trials, choice, context_).dips;
+    if (chosen.size() == given.size()) return;
+    if (auto sure = try_pose(task, chosen.back().pose, 0, context_.quiet()))
+      given.push_back(std::move(*sure));
   }
 
-  std::optional<Trial> fine(const TrialTask& task, const PoseOptions& pose, double depth_most_mm) {
-    RunContext quiet = context_.quiet();
-    return try_pose(task, pose, depth_most_mm, quiet);
-  }
-
-  void search(int wanted) {
+  // On the film of trial dips first; then what is chosen of those is looked at again, until it has
+  // been, or enough have.
+  std::vector<Trial> search(std::vector<Trial> given, int wanted) {
     SearchOptions options;
     options.confirm = false;
     options.first_elements = kDraftElements;
     options.directions = kDirections;
     // What is good alone need not be among several: those are bettered when they are chosen.
     options.refined = 0;
-    const SearchResult found = search_holds(task_, config_.object.pose, options, context_);
-    plan_.trial_dips += found.trials.size();
-    const TrialTask coarse = trial_task(task_);
-    ChoiceOptions choice;
-    choice.dips = wanted;
-    choice.kept = given_;
-    choice.kept = choose_dips(coarse, found.trials, choice, context_);
-    // What trial dips promise the job's own need not keep: as many again are there to choose from.
-    choice.dips = 2 * wanted;
+    SearchResult found = search_holds(sought_, config_.object.pose, options, context_);
+    ChoiceOptions choice{.dips = wanted, .kept = std::move(given), .better = true};
+    ChosenDips chosen = choose_dips(trial_task(sought_), found.trials, choice, context_);
+    std::vector<Trial> hoped = std::move(found.trials);
+    std::move(chosen.tried.begin(), chosen.tried.end(), std::back_inserter(hoped));
+    plan_.trial_dips += hoped.size();
+
     choice.better = false;
     std::vector<Trial> sure;
-    for (auto& dip : dipped_for_good(choose_dips(coarse, found.trials, choice, context_)))
-      if (dip) sure.push_back(std::move(*dip));
-    const ChoiceOptions last{.dips = wanted, .kept = given_, .better = false};
-    plan_.dips = choose_dips(task_, sure, last, context_);
+    for (int looked_at = 0; looked_at < kLookedAtAgain * wanted;) {
+      std::vector<Trial> all = sure;
+      all.insert(all.end(), hoped.begin(), hoped.end());
+      std::vector<Trial> next;
+      for (const Trial& dip : choose_dips(sought_, all, choice, context_).dips) {
+        const auto at = std::find_if(hoped.begin(), hoped.end(), [&](const Trial& other) {
+          return other.pose.rotate_deg == dip.pose.rotate_deg && other.pose.down == dip.pose.down;
+        });
+        if (at == hoped.end()) continue;
+        next.push_back(std::move(*at));
+        hoped.erase(at);
+      }
+      if (next.empty()) break;
+      looked_at += int(next.size());
+      for (auto& trial : looked_at_again(next))
+        if (trial) sure.push_back(std::move(*trial));
+    }
+    return choose_dips(sought_, sure, choice, context_).dips;
   }
 
-  // Those that are not given; nothing where one cannot be computed. Side by side as long as their
-  // films are small beside the memory.
-  std::vector<std::optional<Trial>> dipped_for_good(const std::vector<Trial>& chosen) const {
-    std::vector<std::optional<Trial>> sure(chosen.size());
-    const bool side_by_side = task_.film.elements <= kSmallFilm;
-    const auto dip_one = [&](std::size_t i, const RunContext& context) {
-      try {
-        sure[i] = try_pose(task_, chosen[i].pose, chosen[i].depth_mm + kDeeper_mm, context);
-      } catch (const DipError&) {
-        // None to recommend.
-      }
-    };
-    context_.progress("dipping them for good", 0);
-    if (side_by_side)
-      parallel_for(chosen.size() - given_.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n)
-          dip_one(given_.size() + n, context_.quiet().with_threads(1));
-      });
-    for (std::size_t i = given_.size(); i < chosen.size() && !side_by_side; ++i) {
-      context_.progress("dipping them for good", double(i) / double(chosen.size()));
-      dip_one(i, context_.quiet());
-    }
-    context_.progress("dipping them for good", 1);
+  // Nothing where one cannot be computed.
+  std::vector<std::optional<Trial>> looked_at_again(const std::vector<Trial>& trials) const {
+    std::vector<std::optional<Trial>> sure(trials.size());
+    each_of(
+        trials.size(), "looking at the best again", [&](std::size_t i, const RunContext& context) {
+          try {
+            sure[i] = try_pose(sought_, trials[i].pose, trials[i].depth_mm + kDeeper_mm, context);
+          } catch (const DipError&) {
+            // None to recommend.
+          }
+        });
     return sure;
+  }
+
+  // As the job dips them, blank. What they promise counts.
+  void dip_for_good(const std::vector<Trial>& chosen) {
+    std::vector<std::optional<PlannedDip>> made(chosen.size());
+    std::vector<std::vector<std::string>> warnings(chosen.size());
+    each_of(chosen.size(), "dipping them for good", [&](std::size_t i, const RunContext& context) {
+      made[i] = made_of(chosen[i], context);
+      warnings[i] = context.warnings();
+    });
+    for (auto& dip : made) plan_.dips.push_back(std::move(*dip));
+    for (const auto& list : warnings)
+      for (const std::string& warning : list) context_.warn(warning);
+  }
+
+  PlannedDip made_of(const Trial& trial, const RunContext& context) const {
+    const PosedObject posed(task_.object, trial.pose);
+    TrajectoryOptions way = config_.design.trajectory;
+    way.depth_mm = trial.path.empty() ? trial.depth_mm : 0;
+    way.path = trial.path;
+    Timings unheard;
+    PlannedDip dip{
+        trial,
+        dip_object(posed, std::make_shared<const FilmMesh>(make_film_mesh(config_.design.film)),
+                   make_trajectory(way, posed.mesh().positions), config_.design.dip, unheard,
+                   context, {}, {.options = config_.design.air, .found = {}})};
+    dip.trial = judge_dip(task_, trial.pose, dip.blank);
+    dip.trial.depth_mm = trial.depth_mm;
+    dip.trial.path = trial.path;
+    return dip;
+  }
+
+  // Side by side as long as their films are small beside the memory.
+  void each_of(std::size_t count, const std::string& activity,
+               const std::function<void(std::size_t, const RunContext&)>& dip) const {
+    if (config_.design.film.elements > kSmallFilm) {
+      for (std::size_t i = 0; i < count; ++i) {
+        context_.progress(activity, double(i) / double(count));
+        dip(i, context_.quiet());
+      }
+      return;
+    }
+    const int threads = std::max(1, context_.threads() / std::max(1, int(count)));
+    std::vector<std::function<void()>> tasks;
+    for (std::size_t i = 0; i < count; ++i)
+      tasks.emplace_back([&, i] { dip(i, context_.quiet().with_threads(threads)); });
+    context_.side_by_side(activity, tasks);
   }
 
   void count_up() {
     std::vector<const Trial*> so_far;
-    for (const Trial& dip : plan_.dips) {
-      so_far.push_back(&dip);
+    for (const PlannedDip& dip : plan_.dips) {
+      so_far.push_back(&dip.trial);
       plan_.covered_after.push_back(covered_share_of(task_.targets, so_far));
     }
   }
@@ -165,8 +225,8 @@ class Planning {
   const JobConfig& config_;
   const bool again_;
   const RunContext& context_;
-  TrialTask task_;
-  std::vector<Trial> given_;
+  const TrialTask task_;    // as the job dips
+  const TrialTask sought_;  // as dips are chosen
   DipPlan plan_;
 };
 
@@ -180,7 +240,8 @@ DipPlan plan_dips(const JobConfig& config, const PreparedObject& prepared, const
 
 std::vector<DipEntry> entries_of(const DipPlan& plan, const std::vector<DipEntry>& earlier) {
   std::vector<DipEntry> entries;
-  for (const Trial& dip : plan.dips) {
+  for (const PlannedDip& planned : plan.dips) {
+    const Trial& dip = planned.trial;
     DipEntry entry;
     entry.down = dip.pose.down;
     entry.rotate_deg = dip.pose.rotate_deg;

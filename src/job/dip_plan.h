@@ -8,8 +8,13 @@
 
 namespace hydrodip {
 
+struct PlannedDip {
+  Trial trial;         // judged by the job's own dip, without its film
+  DippedObject blank;  // that dip, without ink
+};
+
 struct DipPlan {
-  std::vector<Trial> dips;            // by the job's own dips, in the order in which they are made
+  std::vector<PlannedDip> dips;       // in the order in which they are made
   std::vector<double> covered_after;  // share of the surface under film after each
   std::size_t trial_dips = 0;         // made to find them; 0: none had to be found
 };

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/timings.h"
 #include "hydrodip/hydrodip.h"
 #include "job/ways.h"
@@ -18,6 +20,8 @@ namespace {
 constexpr double kNodesInOverlap = 3.5;
 constexpr double kLeastSpacing_mm = 0.3;
 constexpr int kFewestNodes = 8000, kMostNodes = 60000;
+// Triangles: from there on one film is dipped at a time.
+constexpr int kSmallFilm = 100000;
 
 JobConfig config_of(const JobConfig& config, const Trial& trial, std::size_t number,
                     std::size_t of) {
@@ -40,6 +44,47 @@ std::shared_ptr<const SurfaceNodes> make_nodes(const PreparedObject& prepared, d
   return std::make_shared<const SurfaceNodes>(spread_targets(prepared.posed.object(), count));
 }
 
+void design_one(MadeDips& all, std::size_t k, const SharedSurface& shared, const Printer& printer,
+                const RunContext& context) {
+  MadeDip& dip = all.dips[k];
+  const auto mesh = std::make_shared<const TriangleMesh>(all.prepared.posed.object());
+  Timings unheard;
+  dip.made = design({dip.posed, *all.prepared.paint, shared.allotment(k, mesh), *printer.model,
+                     dip.config.design, &dip.blank},
+                    unheard, context);
+}
+
+int at_once(const MadeDips& all, const RunContext& context) {
+  return std::min(int(all.dips.size()), context.threads());
+}
+
+// Two dips on one thread each take less time than one after the other on both, but twice the
+// memory.
+bool may_be_side_by_side(const MadeDips& all, const RunContext& context) {
+  const DesignOptions& options = all.config.design;
+  return options.film.elements <= kSmallFilm &&
+         at_once(all, context) * sheet_memory_bytes(options) <= 0.5 * memory_limit_bytes();
+}
+
+void design_side_by_side(MadeDips& all, const SharedSurface& shared, const Printer& printer,
+                         const RunContext& context) {
+  const int threads = std::max(1, context.threads() / int(all.dips.size()));
+  std::vector<std::vector<std::string>> warnings(all.dips.size());
+  std::vector<std::function<void()>> tasks;
+  for (std::size_t k = 0; k < all.dips.size(); ++k)
+    tasks.emplace_back([&, k] {
+      const RunContext own = context.quiet().with_threads(threads);
+      design_one(all, k, shared, printer, own);
+      warnings[k] = own.warnings();
+    });
+  context.side_by_side("making films and ink agree", tasks);
+  for (std::size_t k = 0; k < all.dips.size(); ++k) {
+    context.log(fmt::format("dip {} of {}: {} rounds", k + 1, all.dips.size(),
+                            all.dips[k].made.ink.rounds.size()));
+    for (const std::string& warning : warnings[k]) context.warn(warning);
+  }
+}
+
 std::vector<float> worth_at_nodes(const MadeDips& all, const MadeDip& dip, const DippedFilm& film) {
   return worth_at(job_trials(dip.config, all.prepared, all.nodes->targets()), dip.posed, film);
 }
@@ -56,9 +101,10 @@ MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const 
                  const RunContext& context) {
   MadeDips all{config, prepared, {}, make_nodes(prepared, config.plan.overlap_mm), {}};
   for (std::size_t k = 0; k < plan.dips.size(); ++k) {
-    const PosedObject posed(prepared.posed.shared_object(), plan.dips[k].pose);
-    MadeDip dip{config_of(config, plan.dips[k], k + 1, plan.dips.size()),
-                plan.dips[k],
+    const PosedObject& posed = plan.dips[k].blank.posed;
+    MadeDip dip{config_of(config, plan.dips[k].trial, k + 1, plan.dips.size()),
+                plan.dips[k].trial,
+                plan.dips[k].blank,
                 posed,
                 {DippedObject{.posed = posed}, {}, {}},
                 fmt::format("dip-{}", k + 1),
@@ -72,7 +118,7 @@ MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const 
 
 SharedSurface divide(const MadeDips& all, const RunContext& context) {
   std::vector<std::vector<float>> worth;
-  for (const MadeDip& dip : all.dips) worth.push_back(worth_at_nodes(all, dip, *dip.trial.film));
+  for (const MadeDip& dip : all.dips) worth.push_back(worth_at_nodes(all, dip, *dip.blank.film));
   const Object& object = all.prepared.posed.object();
   const Surface surface(object.positions, object.triangles);
   return {{all.nodes, std::move(worth), *all.prepared.paint, surface, all.prepared.posed.scale(),
@@ -82,14 +128,17 @@ SharedSurface divide(const MadeDips& all, const RunContext& context) {
 
 Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& printer, Timings& times,
                  const RunContext& context) {
-  const auto mesh = std::make_shared<const TriangleMesh>(all.prepared.posed.object());
+  times.measure("design", [&] {
+    if (may_be_side_by_side(all, context))
+      design_side_by_side(all, shared, printer, context);
+    else
+      for (std::size_t k = 0; k < all.dips.size(); ++k) {
+        context.log(fmt::format("dip {} of {}", k + 1, all.dips.size()));
+        design_one(all, k, shared, printer, context);
+      }
+  });
   std::vector<Designed> designs;
-  for (std::size_t k = 0; k < all.dips.size(); ++k) {
-    MadeDip& dip = all.dips[k];
-    context.log(fmt::format("dip {} of {}", k + 1, all.dips.size()));
-    dip.made = design({dip.posed, *all.prepared.paint, shared.allotment(k, mesh), *printer.model,
-                       dip.config.design},
-                      times, context);
+  for (const MadeDip& dip : all.dips) {
     designs.push_back(dip.made);
     all.worth.push_back(worth_at_nodes(all, dip, *dip.made.dipped.film));
   }

@@ -22,6 +22,7 @@ namespace hydrodip {
 struct MadeDip {
   JobConfig config;  // of this dip alone
   Trial trial;
+  DippedObject blank;  // without ink
   PosedObject posed;
   Designed made;       // with its ink; empty until then
   std::string folder;  // "dip-1"

@@ -8,7 +8,6 @@
 #include "job/search_output.h"
 #include "render/hold_pictures.h"
 #include "settings/job_file.h"
-#include "transfer/film_map.h"
 
 namespace hydrodip {
 namespace {
@@ -33,7 +32,7 @@ json path_json(const std::vector<Keyframe>& path) {
 std::string machine_readable(const JobConfig& config, const DipPlan& plan) {
   json dips = json::array(), counts = json::array();
   for (std::size_t k = 0; k < plan.dips.size(); ++k) {
-    const Trial& dip = plan.dips[k];
+    const Trial& dip = plan.dips[k].trial;
     const Vec3& rotate = dip.pose.rotate_deg;
     dips.push_back({{"down", side_name(dip.pose.down)},
                     {"rotate_deg", {rotate.x(), rotate.y(), rotate.z()}},
@@ -57,8 +56,9 @@ std::string in_words(const JobConfig& config, const DipPlan& plan) {
     text += fmt::format("{} {}: {:.0f} %", k > 0 ? "," : "", k + 1, 100 * plan.covered_after[k]);
   text += "\n";
   for (std::size_t k = 0; k < plan.dips.size(); ++k)
-    text += fmt::format("{}. {}\n   {}\n", k + 1, describe_trial(plan.dips[k], way_up(config)),
-                        trial_options(plan.dips[k]));
+    text +=
+        fmt::format("{}. {}\n   {}\n", k + 1, describe_trial(plan.dips[k].trial, way_up(config)),
+                    trial_options(plan.dips[k].trial));
   return text;
 }
 
@@ -66,20 +66,14 @@ std::string in_words(const JobConfig& config, const DipPlan& plan) {
 // blue.
 Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,
            const RunContext& context) {
-  std::vector<PosedObject> posed;
-  for (const Trial& dip : plan.dips) posed.emplace_back(prepared.posed.shared_object(), dip.pose);
-  std::vector<FilmMap> maps;
-  for (std::size_t k = 0; k < plan.dips.size(); ++k)
-    maps.emplace_back(posed[k].mesh(), posed[k].surface(), *plan.dips[k].film);
   const Paint& paint = *prepared.paint;
   std::vector<HoldPicture> pictures;
   for (std::size_t k = 0; k < plan.dips.size(); ++k) {
-    const auto look = [&paint, &posed, &maps, k](const SurfacePoint& point, const Vec3&,
-                                                 const Vec3&) {
+    const auto look = [&paint, &plan, k](const SurfacePoint& point, const Vec3&, const Vec3&) {
       const auto lies = [&](std::size_t j) {
-        const TriangleMesh& mesh = posed[j].mesh();
-        return maps[j]
-            .to_film(position_at(mesh, point), face_normal(mesh, point.triangle))
+        const DippedObject& dipped = plan.dips[j].blank;
+        const TriangleMesh& mesh = dipped.posed.mesh();
+        return dipped.map->to_film(position_at(mesh, point), face_normal(mesh, point.triangle))
             .has_value();
       };
       for (std::size_t j = 0; j < k; ++j)
@@ -87,9 +81,9 @@ Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPla
       if (!lies(k)) return kHoldBare;
       return paint.says_anything() ? paint.color_at(point) : kHoldCovered;
     };
-    const Trial& dip = plan.dips[k];
+    const Trial& dip = plan.dips[k].trial;
     pictures.push_back(
-        {posed[k].mesh(), posed[k].surface(), look, dip.depth_mm,
+        {plan.dips[k].blank.posed.mesh(), plan.dips[k].blank.posed.surface(), look, dip.depth_mm,
          fmt::format("dip {}: {}, {:.4g} mm deep", k + 1, describe_hold(dip.pose, way_up(config)),
                      dip.depth_mm),
          fmt::format("adds {:.1f} %, {:.1f} % are covered after it; blue: done before",

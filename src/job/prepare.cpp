@@ -78,10 +78,15 @@ void require_size(const PosedObject& posed, const ObjectOptions& options,
       model.string(), largest_mm));
 }
 
+double sheet_memory_bytes(const DesignOptions& options) {
+  const double px_per_mm = options.dpi / kMmPerInch;
+  return kBytesPerPixel * options.film.width_mm * px_per_mm * options.film.height_mm * px_per_mm;
+}
+
 void require_memory(const DesignOptions& options) {
   const double width_px = options.film.width_mm / kMmPerInch * options.dpi;
   const double height_px = options.film.height_mm / kMmPerInch * options.dpi;
-  const double needed = kBytesPerPixel * width_px * height_px, limit = memory_limit_bytes();
+  const double needed = sheet_memory_bytes(options), limit = memory_limit_bytes();
   if (needed <= limit) return;
   throw InputError(fmt::format(
       "the sheet of {:.0f} x {:.0f} px needs about {:.1f} GB of memory, but there are {:.1f} GB; "

@@ -46,5 +46,7 @@ void require_appearance(const PreparedObject& prepared, const std::filesystem::p
 
 // Throws InputError if the sheet's pictures cannot fit the memory that there is.
 void require_memory(const DesignOptions& options);
+// What a sheet takes while it is designed and written, about.
+double sheet_memory_bytes(const DesignOptions& options);
 
 }  // namespace hydrodip

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <cstdint>
 #include <iterator>
+#include <random>
 
 #include "base/parallel.h"
 #include "base/run_scope.h"
@@ -11,141 +12,206 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kLeastGain = 1e-4;  // of the weight
+// What is reached is counted in whole parts of the weight, so that sums are exact in any order.
+constexpr double kParts = 1e8;
+constexpr std::int32_t kLeastGain = std::int32_t(1e-4 * kParts);
 constexpr int kMostExchanges = 40;
+// Exchanging one at a time ends where no single one helps: so it is begun from as many random
+// choices as well.
+constexpr int kRandomBeginnings = 15;
 // Poses so far from the chosen ones are tried, all around, and not again near one that was.
 constexpr double kRings_deg[] = {16, 12, 8, 5};
 constexpr int kAround = 6;
 constexpr double kNew = 0.6;  // of the ring's angle from all others
 
 // That a place is covered at all counts for so much, and how well for the rest.
-constexpr double kCovered = 0.75;
+constexpr double kCovered = 0.85;
 
-double value_of(float worth) { return worth > 0 ? kCovered + (1 - kCovered) * double(worth) : 0; }
+using Values = std::vector<std::int32_t>;  // per target
 
-// The best worth at each target so far, and the weights.
-class Reached {
+Values values_of(const Targets& targets, const Trial& trial) {
+  Values values(targets.list.size(), 0);
+  if (!(targets.weight > 0)) return values;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double worth = trial.worth[i];
+    if (!(worth > 0)) continue;
+    const double share = targets.list[i].area * targets.list[i].importance / targets.weight;
+    values[i] = std::int32_t(std::lround(kParts * share * (kCovered + (1 - kCovered) * worth)));
+  }
+  return values;
+}
+
+void reach(Values& reached, const Values& more) {
+  for (std::size_t i = 0; i < reached.size(); ++i) reached[i] = std::max(reached[i], more[i]);
+}
+
+std::int32_t sum_with(const Values& reached, const Values& more) {
+  std::int32_t sum = 0;
+  for (std::size_t i = 0; i < reached.size(); ++i) sum += std::max(reached[i], more[i]);
+  return sum;
+}
+
+// Trials by number, and what is chosen of them: numbers too.
+class Pool {
  public:
-  explicit Reached(const Targets& targets) : targets_(targets), worth_(targets.list.size(), 0.0F) {}
+  explicit Pool(const Targets& targets) : targets_(targets) {}
 
   void add(const Trial& trial) {
-    for (std::size_t i = 0; i < worth_.size(); ++i) worth_[i] = std::max(worth_[i], trial.worth[i]);
+    trials_.push_back(trial);
+    values_.push_back(values_of(targets_, trial));
+  }
+  std::size_t size() const { return trials_.size(); }
+  const Trial& trial(std::size_t n) const { return trials_[n]; }
+
+  Values reached_by(const std::vector<std::size_t>& chosen, std::size_t left_out) const {
+    Values reached(targets_.list.size(), 0);
+    for (std::size_t k = 0; k < chosen.size(); ++k)
+      if (k != left_out) reach(reached, values_[chosen[k]]);
+    return reached;
+  }
+  std::int32_t gain(const std::vector<std::size_t>& chosen) const {
+    const Values none(targets_.list.size(), 0);
+    return sum_with(reached_by(chosen, chosen.size()), none);
   }
 
-  double gain_with(const Trial* trial) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < worth_.size(); ++i) {
-      const float worth = trial ? std::max(worth_[i], trial->worth[i]) : worth_[i];
-      sum += targets_.list[i].area * targets_.list[i].importance * value_of(worth);
+  struct Addition {
+    std::size_t number = 0;
+    std::int32_t gain = -1;  // of all with it
+  };
+  // Which of the numbers adds most; the first of several.
+  template <class Numbers>
+  Addition best_addition(const Values& reached, const Numbers& numbers) const {
+    Addition best;
+    for (const std::size_t n : numbers) {
+      const std::int32_t with = sum_with(reached, values_[n]);
+      if (with > best.gain) best = {n, with};
     }
-    return Coverage::share(sum, targets_.weight);
+    return best;
   }
 
  private:
   const Targets& targets_;
-  std::vector<float> worth_;
+  std::vector<Trial> trials_;
+  std::vector<Values> values_;
 };
 
 class Choosing {
  public:
   Choosing(const TrialTask& task, const std::vector<Trial>& trials, const ChoiceOptions& options,
            const RunContext& context)
-      : task_(task), trials_(trials), options_(options), context_(context) {}
+      : task_(task), options_(options), context_(context), pool_(task.targets) {
+    for (const Trial& trial : options.kept) pool_.add(trial);
+    for (std::size_t n = 0; n < pool_.size(); ++n) kept_.push_back(n);
+    for (const Trial& trial : trials) add(trial);
+  }
 
-  std::vector<Trial> run() {
-    chosen_ = options_.kept;
-    while (int(chosen_.size()) < options_.dips)
-      if (!add_best()) break;
-    exchange();
+  ChosenDips run() {
+    choose();
     if (options_.better) better();
-    put_in_order();
-    return std::move(chosen_);
+    ChosenDips result;
+    for (const std::size_t n : in_order()) result.dips.push_back(pool_.trial(n));
+    result.tried = std::move(tried_);
+    return result;
   }
 
  private:
-  Reached all_but(std::size_t left_out) const {
-    Reached reached(task_.targets);
-    for (std::size_t i = 0; i < chosen_.size(); ++i)
-      if (i != left_out) reached.add(chosen_[i]);
-    return reached;
-  }
-  double gain() const { return all_but(chosen_.size()).gain_with(nullptr); }
+  struct Chosen {
+    std::vector<std::size_t> numbers;  // the kept ones first
+    std::int32_t gain = -1;
+  };
 
-  // Which of them adds most, and what all reach with it.
-  std::pair<const Trial*, double> best_addition(const Reached& reached,
-                                                const std::vector<const Trial*>& from) const {
-    std::vector<double> gains(from.size());
-    parallel_for(from.size(), 8, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) gains[i] = reached.gain_with(from[i]);
+  void add(const Trial& trial) {
+    if (!(trial.depth_mm > 0)) return;
+    pool_.add(trial);
+    free_.push_back(pool_.size() - 1);
+  }
+
+  void choose() {
+    const std::size_t wanted = std::size_t(std::max(options_.dips, 0));
+    std::vector<Chosen> ends(1 + kRandomBeginnings);
+    parallel_for(ends.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Chosen& chosen = ends[i];
+        chosen.numbers = kept_;
+        if (i > 0) add_any(chosen, wanted, std::uint32_t(i));
+        add_best(chosen, wanted);
+        exchange(chosen);
+        leave_out_idle(chosen);
+      }
     });
-    const Trial* best = nullptr;
-    double most = reached.gain_with(nullptr) + kLeastGain;
-    for (std::size_t i = 0; i < from.size(); ++i)
-      if (gains[i] > most) {
-        most = gains[i];
-        best = from[i];
-      }
-    return {best, most};
+    for (Chosen& end : ends)
+      if (end.gain > chosen_.gain) chosen_ = std::move(end);
   }
 
-  std::vector<const Trial*> library() const {
-    std::vector<const Trial*> list;
-    for (const auto& trials : {std::cref(trials_), std::cref(found_)})
-      for (const Trial& trial : trials.get())
-        if (trial.depth_mm > 0) list.push_back(&trial);
-    return list;
+  void add_any(Chosen& chosen, std::size_t wanted, std::uint32_t beginning) const {
+    if (free_.empty()) return;
+    std::mt19937 random(beginning);
+    while (chosen.numbers.size() < wanted) chosen.numbers.push_back(free_[random() % free_.size()]);
   }
 
-  bool add_best() {
-    const auto [best, most] = best_addition(all_but(chosen_.size()), library());
-    if (!best) return false;
-    chosen_.push_back(*best);
-    return true;
+  void add_best(Chosen& chosen, std::size_t wanted) const {
+    chosen.gain = pool_.gain(chosen.numbers);
+    while (chosen.numbers.size() < wanted) {
+      const auto best =
+          pool_.best_addition(pool_.reached_by(chosen.numbers, chosen.numbers.size()), free_);
+      if (best.gain <= chosen.gain + kLeastGain) return;
+      chosen.numbers.push_back(best.number);
+      chosen.gain = best.gain;
+    }
   }
 
-  void exchange() {
-    const std::vector<const Trial*> list = library();
-    double now = gain();
+  // One for another, as long as that helps, and always where it helps most.
+  void exchange(Chosen& chosen) const {
     for (int n = 0; n < kMostExchanges; ++n) {
-      std::size_t out = chosen_.size();
-      const Trial* in = nullptr;
-      double most = now + kLeastGain;
-      for (std::size_t i = options_.kept.size(); i < chosen_.size(); ++i) {
-        const auto [best, with] = best_addition(all_but(i), list);
-        if (!best || with <= most) continue;
-        most = with;
-        out = i;
+      std::size_t out = chosen.numbers.size();
+      Pool::Addition in{0, chosen.gain + kLeastGain};
+      for (std::size_t k = kept_.size(); k < chosen.numbers.size(); ++k) {
+        const auto best = pool_.best_addition(pool_.reached_by(chosen.numbers, k), free_);
+        if (best.gain <= in.gain) continue;
         in = best;
+        out = k;
       }
-      if (!in) return;
-      chosen_[out] = *in;
-      now = most;
+      if (out == chosen.numbers.size()) return;
+      chosen.numbers[out] = in.number;
+      chosen.gain = in.gain;
+    }
+  }
+
+  // A dip more is work: not for nothing.
+  void leave_out_idle(Chosen& chosen) const {
+    const Values none(task_.targets.list.size(), 0);
+    for (std::size_t k = chosen.numbers.size(); k-- > kept_.size();) {
+      const std::int32_t without = sum_with(pool_.reached_by(chosen.numbers, k), none);
+      if (without + kLeastGain < chosen.gain) continue;
+      chosen.numbers.erase(chosen.numbers.begin() + std::ptrdiff_t(k));
+      chosen.gain = without;
     }
   }
 
   // What is tried around one of them may do better in another's place.
   void better() {
+    const std::string activity = "trying poses like the chosen ones";
     for (std::size_t ring = 0; ring < std::size(kRings_deg); ++ring) {
-      context_.progress("trying poses like the chosen ones",
-                        double(ring) / double(std::size(kRings_deg)));
-      for (auto& trial : try_poses(task_, around_chosen(kRings_deg[ring]), context_))
-        if (trial) found_.push_back(std::move(*trial));
-      exchange();
+      context_.progress(activity, double(ring) / double(std::size(kRings_deg)));
+      for (auto& trial : try_poses(task_, around_chosen(kRings_deg[ring]), context_)) {
+        if (!trial) continue;
+        add(*trial);
+        tried_.push_back(std::move(*trial));
+      }
+      choose();
     }
-    context_.progress("trying poses like the chosen ones", 1);
+    context_.progress(activity, 1);
   }
 
   std::vector<PoseOptions> around_chosen(double ring_deg) const {
     std::vector<PoseOptions> poses;
-    for (std::size_t i = options_.kept.size(); i < chosen_.size(); ++i) {
-      const PoseOptions& pose = chosen_[i].pose;
+    for (std::size_t k = kept_.size(); k < chosen_.numbers.size(); ++k) {
+      const PoseOptions& pose = pool_.trial(chosen_.numbers[k]).pose;
       for (const Vec3& near : directions_around(down_of(pose), ring_deg, kAround)) {
         const PoseOptions next = hold(pose, near, pose.rotate_deg.z());
-        const auto is_near = [&](const Trial& trial) {
-          return angle_between_deg(trial.pose, next) < kNew * ring_deg;
-        };
-        if (std::none_of(trials_.begin(), trials_.end(), is_near) &&
-            std::none_of(found_.begin(), found_.end(), is_near))
+        if (std::none_of(free_.begin(), free_.end(), [&](std::size_t n) {
+              return angle_between_deg(pool_.trial(n).pose, next) < kNew * ring_deg;
+            }))
           poses.push_back(next);
       }
     }
@@ -153,33 +219,25 @@ class Choosing {
   }
 
   // So that the first few dips do as much as they can.
-  void put_in_order() {
-    std::vector<Trial> ordered = options_.kept;
-    std::vector<Trial> left(chosen_.begin() + std::ptrdiff_t(options_.kept.size()), chosen_.end());
-    Reached reached(task_.targets);
-    for (const Trial& trial : ordered) reached.add(trial);
+  std::vector<std::size_t> in_order() const {
+    std::vector<std::size_t> ordered = kept_;
+    std::vector<std::size_t> left(chosen_.numbers.begin() + std::ptrdiff_t(kept_.size()),
+                                  chosen_.numbers.end());
     while (!left.empty()) {
-      std::size_t best = 0;
-      double most = -1;
-      for (std::size_t i = 0; i < left.size(); ++i) {
-        const double with = reached.gain_with(&left[i]);
-        if (with <= most + 1e-12) continue;
-        most = with;
-        best = i;
-      }
-      reached.add(left[best]);
-      ordered.push_back(left[best]);
-      left.erase(left.begin() + std::ptrdiff_t(best));
+      const auto best = pool_.best_addition(pool_.reached_by(ordered, ordered.size()), left);
+      ordered.push_back(best.number);
+      left.erase(std::find(left.begin(), left.end(), best.number));
     }
-    chosen_ = std::move(ordered);
+    return ordered;
   }
 
   const TrialTask& task_;
-  const std::vector<Trial>& trials_;
-  std::vector<Trial> found_;  // poses like the chosen ones
   const ChoiceOptions& options_;
   const RunContext& context_;
-  std::vector<Trial> chosen_;
+  Pool pool_;
+  std::vector<std::size_t> kept_, free_;  // numbers in the pool: given, and to choose from
+  Chosen chosen_;
+  std::vector<Trial> tried_;
 };
 
 }  // namespace
@@ -192,8 +250,8 @@ double covered_share_of(const Targets& targets, const std::vector<const Trial*>&
   return Coverage::share(covered, targets.area);
 }
 
-std::vector<Trial> choose_dips(const TrialTask& task, const std::vector<Trial>& trials,
-                               const ChoiceOptions& options, const RunContext& context) {
+ChosenDips choose_dips(const TrialTask& task, const std::vector<Trial>& trials,
+                       const ChoiceOptions& options, const RunContext& context) {
   const RunScope scope(context);
   return Choosing(task, trials, options, context).run();
 }

@@ -160,7 +160,7 @@ TEST_F(SphereTrial, DipsAreChosenTogether) {
   double before = 0;
   for (int dips = 1; dips <= 6; ++dips) {
     options.dips = dips;
-    const std::vector<Trial> chosen = choose_dips(whole, trials, options, context_);
+    const std::vector<Trial> chosen = choose_dips(whole, trials, options, context_).dips;
     ASSERT_EQ(int(chosen.size()), dips);
     std::vector<const Trial*> list;
     for (const Trial& trial : chosen) list.push_back(&trial);
@@ -181,12 +181,42 @@ TEST_F(SphereTrial, PosesLikeTheChosenOnesCoverMore) {
   for (auto& trial : try_poses(whole, poses, context_)) trials.push_back(std::move(*trial));
   const auto covered = [&](bool better) {
     const std::vector<Trial> chosen =
-        choose_dips(whole, trials, {.dips = 5, .kept = {}, .better = better}, context_);
+        choose_dips(whole, trials, {.dips = 5, .kept = {}, .better = better}, context_).dips;
     std::vector<const Trial*> list;
     for (const Trial& trial : chosen) list.push_back(&trial);
     return covered_share_of(targets_, list);
   };
   EXPECT_GT(covered(true), covered(false) + 0.01);
+}
+
+// A trial that reaches the targets from one share of the list to another.
+Trial reaching(const Targets& targets, double from, double to, float worth = 1) {
+  Trial trial;
+  trial.depth_mm = 1;
+  const double count = double(targets.list.size());
+  for (std::size_t i = 0; i < targets.list.size(); ++i)
+    trial.worth.push_back(double(i) >= from * count && double(i) < to * count ? worth : 0.0F);
+  return trial;
+}
+
+// The largest first, and then one for another, ends at 90 %: two have to be exchanged at once.
+TEST_F(SphereTrial, TheBestPairIsFoundWhereGreedIsMisled) {
+  const std::vector<Trial> trials = {reaching(targets_, 0.1, 0.8), reaching(targets_, 0.8, 1),
+                                     reaching(targets_, 0, 0.5, 0.9F),
+                                     reaching(targets_, 0.5, 1, 0.9F)};
+  const auto chosen =
+      choose_dips(task(), trials, {.dips = 2, .kept = {}, .better = false}, context_).dips;
+  ASSERT_EQ(chosen.size(), 2U);
+  EXPECT_NEAR(covered_share_of(targets_, {&chosen[0], &chosen[1]}), 1, 1e-9);
+}
+
+TEST_F(SphereTrial, NoDipIsMadeForNothing) {
+  const std::vector<Trial> trials = {reaching(targets_, 0, 0.4), reaching(targets_, 0.2, 0.6),
+                                     reaching(targets_, 0, 1), reaching(targets_, 0.5, 0.9)};
+  const auto chosen =
+      choose_dips(task(), trials, {.dips = 3, .kept = {}, .better = false}, context_).dips;
+  ASSERT_EQ(chosen.size(), 1U);
+  EXPECT_EQ(chosen[0].worth, trials[2].worth);
 }
 
 TEST_F(SphereTrial, KeptDipsComeFirstAndStay) {
@@ -199,7 +229,7 @@ TEST_F(SphereTrial, KeptDipsComeFirstAndStay) {
   options.dips = 3;
   options.better = false;
   options.kept = {trials[9]};
-  const std::vector<Trial> chosen = choose_dips(whole, trials, options, context_);
+  const std::vector<Trial> chosen = choose_dips(whole, trials, options, context_).dips;
   ASSERT_EQ(chosen.size(), 3U);
   EXPECT_EQ(chosen[0].pose.rotate_deg, trials[9].pose.rotate_deg);
   EXPECT_EQ(chosen[0].worth, trials[9].worth);
