@@ -71,7 +71,7 @@ class Settling {
       context_.warn(fmt::format(
           "after {} rounds the ink still moves the film by {:.2g} mm on average (settled: {:g} "
           "mm); raise ink.rounds_max, or film.elements if it does not help",
-          result_.rounds.size(), result_.last_change_mm(), kSettled_mm));
+          result_.rounds.size(), result_.last_change_mm(), options().settled_mm));
   }
 
   void finish(const InkRounds& rounds) {

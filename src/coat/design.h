@@ -15,6 +15,9 @@
 
 namespace hydrodip {
 
+// Rounds are settled when the film on the object moved less than this on average.
+inline constexpr double kSettled_mm = 1e-4;
+
 struct DesignOptions {
   FilmOptions film;
   TrajectoryOptions trajectory;
@@ -22,7 +25,8 @@ struct DesignOptions {
   AirOptions air;
   StiffnessOptions stiffness;
   int rounds_max = 10;  // simulate, invert, stiffen, repeat: at most this often
-  double dpi = 300;     // of what is printed
+  double settled_mm = kSettled_mm;
+  double dpi = 300;  // of what is printed
   InverseOptions inverse;
   InkingOptions inking;  // its base is the paint's
 };
@@ -50,9 +54,6 @@ struct InkRound {
   double mean_modulus = 1;  // of the film that was dipped, over blank film
   DipStatistics dip;
 };
-
-// A loop is settled when the film on the object moved less than this on average.
-inline constexpr double kSettled_mm = 1e-4;
 
 struct InkResult {
   FilmInk ink;  // of the last round

@@ -143,7 +143,7 @@ double InkRounds::change(int rounds_ago) const {
 }
 
 Outcome InkRounds::outcome() const {
-  if (before_ && change(0) < kSettled_mm) return Outcome::kSettled;
+  if (before_ && change(0) < options_.settled_mm) return Outcome::kSettled;
   if (number() >= options_.rounds_max) return Outcome::kUnsettled;
   // What does not settle costs a dip each round.
   const bool stands = number() > kFreeRounds + 2 && change(0) > kLeastProgress * change(2);

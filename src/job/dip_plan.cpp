@@ -16,7 +16,7 @@ namespace {
 // much below what it bears, so that what is counted on stays whole with its ink.
 constexpr double kStretchKept = 0.96;
 constexpr double kDeeper_mm = 3;
-constexpr int kDirections = 98;
+constexpr int kDirections = 74;
 // What trial dips promise finer film need not keep: so many times as many dips as are wanted are
 // looked at again on the job's film, in steps so many times as long as the job's.
 constexpr int kLookedAtAgain = 3;

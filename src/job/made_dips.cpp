@@ -20,6 +20,9 @@ namespace {
 constexpr double kNodesInOverlap = 3.5;
 constexpr double kLeastSpacing_mm = 0.3;
 constexpr int kFewestNodes = 8000, kMostNodes = 60000;
+// No two dips land nearer to each other than some tenths of a millimetre, and their inks fade over
+// more: what ink still moves below that is not worth a dip.
+constexpr double kSettledAmongSeveral_mm = 0.01;
 // Triangles: from there on one film is dipped at a time.
 constexpr int kSmallFilm = 100000;
 
@@ -29,6 +32,7 @@ JobConfig config_of(const JobConfig& config, const Trial& trial, std::size_t num
   own.object.pose = trial.pose;
   own.design.trajectory.depth_mm = trial.path.empty() ? trial.depth_mm : 0;
   own.design.trajectory.path = trial.path;
+  own.design.settled_mm = std::max(own.design.settled_mm, kSettledAmongSeveral_mm);
   own.dips.clear();
   own.plan.dips = 0;
   const std::string name =
