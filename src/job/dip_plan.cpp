@@ -12,9 +12,6 @@
 namespace hydrodip {
 namespace {
 
-// Ink stiffens film, and what is next to it stretches more: dips are chosen as if film tore that
-// much below what it bears, so that what is counted on stays whole with its ink.
-constexpr double kStretchKept = 0.96;
 constexpr double kDeeper_mm = 3;
 constexpr int kDirections = 74;
 // What trial dips promise finer film need not keep: so many times as many dips as are wanted are
@@ -74,7 +71,6 @@ class Planning {
   }
   static TrialTask as_sought(TrialTask task) {
     DipOptions& dip = task.dip;
-    dip.material.tear_stretch *= kStretchKept;
     dip.step_mm = std::min(kLongerSteps * dip.step_mm, std::max(dip.step_mm, kLongestStep_mm));
     return task;
   }

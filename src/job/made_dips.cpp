@@ -22,7 +22,7 @@ constexpr double kLeastSpacing_mm = 0.3;
 constexpr int kFewestNodes = 8000, kMostNodes = 60000;
 // No two dips land nearer to each other than some tenths of a millimetre, and their inks fade over
 // more: what ink still moves below that is not worth a dip.
-constexpr double kSettledAmongSeveral_mm = 0.01;
+constexpr double kSettledAmongSeveral_mm = 0.03;
 // Triangles: from there on one film is dipped at a time.
 constexpr int kSmallFilm = 100000;
 

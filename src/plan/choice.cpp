@@ -20,7 +20,7 @@ constexpr int kMostExchanges = 40;
 // choices as well.
 constexpr int kRandomBeginnings = 15;
 // Poses so far from the chosen ones are tried, all around, and not again near one that was.
-constexpr double kRings_deg[] = {16, 12, 8, 5};
+constexpr double kRings_deg[] = {15, 10, 6};
 constexpr int kAround = 6;
 constexpr double kNew = 0.6;  // of the ring's angle from all others
 
