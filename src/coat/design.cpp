@@ -45,12 +45,20 @@ class Settling {
     result_.rounds = rounds.rounds();
     result_.settled = outcome == Outcome::kSettled;
     warn(outcome);
+    if (went_in_longer_steps() && outcome != Outcome::kFailed) {
+      if (!rounds.last()) warn(Outcome::kFailed);
+      result_.rounds = rounds.rounds();
+    }
     finish(rounds);
     return {rounds.dipped(), std::move(result_), raster_of(options().film, options().dpi)};
   }
 
  private:
   const DesignOptions& options() const { return task_.options; }
+
+  bool went_in_longer_steps() const {
+    return options().rounds_step_mm > options().dip.step_mm && result_.rounds.size() > 1;
+  }
 
   Outcome settle(InkRounds& rounds) {
     if (!ink_matters(options()) || options().rounds_max == 1) {

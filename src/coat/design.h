@@ -26,6 +26,9 @@ struct DesignOptions {
   StiffnessOptions stiffness;
   int rounds_max = 10;  // simulate, invert, stiffen, repeat: at most this often
   double settled_mm = kSettled_mm;
+  // Rounds after the first go in steps so long until they are settled, and one more in the dip's
+  // own; 0: all go in the dip's own.
+  double rounds_step_mm = 0;
   double dpi = 300;  // of what is printed
   InverseOptions inverse;
   InkingOptions inking;  // its base is the paint's

@@ -94,6 +94,15 @@ Outcome InkRounds::next() {
   return outcome();
 }
 
+bool InkRounds::last() {
+  stiffen();
+  dip_options_.step_mm = options_.dip.step_mm;
+  if (!dip()) return false;
+  ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
+  judge();
+  return true;
+}
+
 // That the ink of the last round gives to the film.
 std::vector<double> InkRounds::modulus() const {
   return film_modulus(*film_, ink_.inking.inks, raster_of(options_.film, rounds_dpi_),
@@ -152,6 +161,7 @@ Outcome InkRounds::outcome() const {
 
 // The film to dip next.
 void InkRounds::stiffen() {
+  dip_options_.step_mm = std::max(options_.dip.step_mm, options_.rounds_step_mm);
   if (number() == kFreeRounds) {
     dip_options_.tears_at_mm = dipped_->film->torn_at_mm;
     dip_options_.moved_mm = dipped_->film->moved_mm;

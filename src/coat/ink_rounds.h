@@ -29,6 +29,9 @@ class InkRounds {
             std::shared_ptr<const TrappedAir> air, Timings& timings, const RunContext& context);
 
   Outcome next();
+  // One more, of a loop whose rounds went in longer steps: in the dip's own. False if it cannot be
+  // computed: then the last round stays.
+  bool last();
 
   const std::vector<InkRound>& rounds() const { return rounds_; }
   // As dipped last.

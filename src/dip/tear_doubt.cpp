@@ -25,12 +25,16 @@ std::vector<std::uint8_t> left_over(const DippedFilm& film) {
 
 }  // namespace
 
+double longer_step_mm(double step_mm) {
+  return std::min(kLonger * step_mm, std::max(step_mm, kLongestStep_mm));
+}
+
 std::vector<double> moved_by_tears(const DippedFilm& dipped, const std::vector<Vec3>& positions,
                                    const std::vector<Triangle>& triangles, const Surface& surface,
                                    const Trajectory& trajectory, const DipOptions& options,
                                    const RunContext& context) {
   DipOptions other = options;
-  other.step_mm = std::min(kLonger * options.step_mm, std::max(options.step_mm, kLongestStep_mm));
+  other.step_mm = longer_step_mm(options.step_mm);
   other.asks_what_moves = false;
   other.moved_mm.clear();
   const auto in_longer_steps = [&] {

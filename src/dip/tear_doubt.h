@@ -7,6 +7,9 @@
 
 namespace hydrodip {
 
+// Steps so long take a sixth of the time, and film lies nearly where it does in the dip's own.
+double longer_step_mm(double step_mm);
+
 // Per vertex of the film: how far from where it was dipped it may lie, mm: the farther of where it
 // lies if floating film lets go as soon as it may tear (material.safe_stretch), and if it holds as
 // long as any film could (lost_stretch). From dips of the same film in longer steps. The other

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "dip/tear_doubt.h"
 
 namespace hydrodip {
 namespace {
@@ -15,10 +16,8 @@ namespace {
 constexpr double kDeeper_mm = 3;
 constexpr int kDirections = 74;
 // What trial dips promise finer film need not keep: so many times as many dips as are wanted are
-// looked at again on the job's film, in steps so many times as long as the job's.
+// looked at again on the job's film, in longer steps.
 constexpr int kLookedAtAgain = 3;
-constexpr double kLongerSteps = 6;
-constexpr double kLongestStep_mm = 1;
 // Triangles: from there on film is dipped by all threads, one at a time.
 constexpr int kSmallFilm = 100000;
 
@@ -70,8 +69,7 @@ class Planning {
     return task;
   }
   static TrialTask as_sought(TrialTask task) {
-    DipOptions& dip = task.dip;
-    dip.step_mm = std::min(kLongerSteps * dip.step_mm, std::max(dip.step_mm, kLongestStep_mm));
+    task.dip.step_mm = longer_step_mm(task.dip.step_mm);
     return task;
   }
 

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/timings.h"
+#include "dip/tear_doubt.h"
 #include "hydrodip/hydrodip.h"
 #include "job/ways.h"
 
@@ -32,6 +33,7 @@ JobConfig config_of(const JobConfig& config, const Trial& trial, std::size_t num
   own.object.pose = trial.pose;
   own.design.trajectory.depth_mm = trial.path.empty() ? trial.depth_mm : 0;
   own.design.trajectory.path = trial.path;
+  own.design.rounds_step_mm = longer_step_mm(own.design.dip.step_mm);
   own.design.settled_mm = std::max(own.design.settled_mm, kSettledAmongSeveral_mm);
   own.dips.clear();
   own.plan.dips = 0;

@@ -90,7 +90,7 @@ void add(ContentKey& key, const DesignOptions& design) {
   add(key, design.dip);
   key.add(design.air.cells);
   key.add(design.stiffness.ratio).add(design.stiffness.filter_mm);
-  key.add(design.rounds_max).add(design.settled_mm).add(design.dpi);
+  key.add(design.rounds_max).add(design.settled_mm).add(design.rounds_step_mm).add(design.dpi);
   key.add(design.inverse.bleed_mm).add(design.inverse.samples_per_axis);
   key.add(design.inverse.quick_look);
   key.add(design.inking.compensate).add(design.inking.policy).add(design.inking.limit);
