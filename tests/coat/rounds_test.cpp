@@ -19,13 +19,14 @@ DesignOptions coarse() {
   return options;
 }
 
-Designed designed(const std::string& sample, const DesignOptions& options) {
+Designed designed(const std::string& sample, const DesignOptions& options,
+                  const DippedObject* blank = nullptr) {
   RunContext context;
   Timings timings;
   const auto shared = std::make_shared<const Object>(make_sample(sample));
   const PosedObject posed(shared, {});
-  return design({posed, *model_paint(shared), Allotment(), *make_device_model(), options}, timings,
-                context);
+  return design({posed, *model_paint(shared), Allotment(), *make_device_model(), options, blank},
+                timings, context);
 }
 
 // Film that floats leaves no trace: only what lies on the object after both dips counts.
@@ -53,6 +54,35 @@ TEST(InkRound, MovesTheFilmThatLiesThereInBothDips) {
   ASSERT_GT(count, 20);
   EXPECT_NEAR(second.ink.rounds[1].change_mm, sum / count, 1e-12);
   EXPECT_GT(std::abs(sum / count - all), 1e-4);  // or this would tell nothing
+}
+
+// The first round is the dip without ink: whoever has it already need not make it again.
+TEST(InkRound, OfADipThatWasMadeIsThatDip) {
+  DesignOptions options = coarse();
+  options.trajectory.depth_mm = 6;
+  options.rounds_max = 1;
+  const Designed alone = designed("sphere", options);
+  options.rounds_max = 3;
+  const Designed anew = designed("sphere", options);
+  const Designed going_on = designed("sphere", options, &alone.dipped);
+  EXPECT_EQ(anew.dipped.film->position, going_on.dipped.film->position);
+  EXPECT_EQ(anew.ink.ink.inking.inks.cmyk, going_on.ink.ink.inking.inks.cmyk);
+}
+
+// Rounds in longer steps only look for the ink; the film is the dip's own.
+TEST(InkRound, InLongerStepsLeadsToTheSameFilm) {
+  DesignOptions options = coarse();
+  options.dip.step_mm = 0.2;
+  options.trajectory.depth_mm = 6;
+  const Designed own = designed("sphere", options);
+  options.rounds_step_mm = 1;
+  const Designed longer = designed("sphere", options);
+  ASSERT_GT(longer.ink.rounds.size(), 2U);
+  EXPECT_EQ(longer.ink.rounds.front().dip.steps, 30);
+  EXPECT_EQ(longer.ink.rounds[1].dip.steps, 6);
+  EXPECT_EQ(longer.ink.rounds.back().dip.steps, 30);
+  for (std::size_t v = 0; v < own.dipped.film->position.size(); ++v)
+    EXPECT_LT((own.dipped.film->position[v] - longer.dipped.film->position[v]).norm(), 0.05);
 }
 
 // The flat bottom of the sample box, 40 x 40 mm, and half a millimetre of its walls; film ends less
