@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kDeeper_mm = 3;
 constexpr int kDirections = 74;
+constexpr int kFirstElements = 5000;
 // What trial dips promise finer film need not keep: so many times as many dips as are wanted are
 // looked at again on the job's film, in longer steps.
 constexpr int kLookedAtAgain = 3;
@@ -112,13 +113,15 @@ class Planning {
   // On the film of trial dips first; then what is chosen of those is looked at again, until it has
   // been, or enough have.
   std::vector<Trial> search(std::vector<Trial> given, int wanted) {
+    TrialTask first = sought_;
+    first.film.elements = std::min(first.film.elements, kFirstElements);
     SearchOptions options;
     options.confirm = false;
-    options.first_elements = kDraftElements;
+    options.first_elements = kFirstElements;
     options.directions = kDirections;
     // What is good alone need not be among several: those are bettered when they are chosen.
     options.refined = 0;
-    SearchResult found = search_holds(sought_, config_.object.pose, options, context_);
+    SearchResult found = search_holds(first, config_.object.pose, options, context_);
     ChoiceOptions choice{.dips = wanted, .kept = std::move(given), .better = true};
     ChosenDips chosen = choose_dips(trial_task(sought_), found.trials, choice, context_);
     std::vector<Trial> hoped = std::move(found.trials);
