@@ -93,15 +93,19 @@ class Search {
 
   std::vector<std::optional<Trial>> try_all(const TrialTask& task,
                                             const std::vector<PoseOptions>& poses,
-                                            const std::string& stage) {
+                                            const std::string& stage,
+                                            const std::vector<double>& worth_asking = {}) {
     std::vector<std::optional<Trial>> tried;
     constexpr std::size_t kRound = 16;
     for (std::size_t first = 0; first < poses.size(); first += kRound) {
       context_.progress(stage, double(first) / double(poses.size()));
       const std::size_t last = std::min(first + kRound, poses.size());
-      for (auto& trial : try_poses(
-               task, {poses.begin() + std::ptrdiff_t(first), poses.begin() + std::ptrdiff_t(last)},
-               context_)) {
+      const auto from = std::ptrdiff_t(first), to = std::ptrdiff_t(last);
+      std::vector<double> least;
+      if (!worth_asking.empty())
+        least.assign(worth_asking.begin() + from, worth_asking.begin() + to);
+      for (auto& trial :
+           try_poses(task, {poses.begin() + from, poses.begin() + to}, context_, least)) {
         if (trial) result_.trials.push_back(*trial);
         tried.push_back(std::move(trial));
       }
@@ -147,10 +151,12 @@ class Search {
       if (trial) found.push_back(std::move(*trial));
   }
 
-  // Tries what lies around each of them.
+  // Tries what lies around each of them. What is no better even before it is asked what moves is
+  // not asked.
   void better(std::vector<Trial>& found, double ring_deg) {
     std::vector<PoseOptions> poses;
     std::vector<std::size_t> of;
+    std::vector<double> to_beat;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const PoseOptions& pose = found[i].pose;
       const Vec3 down = down_of(pose);
@@ -163,7 +169,8 @@ class Search {
         of.push_back(i);
       }
     }
-    const auto tried = try_all(coarse_, poses, "trying poses like the best");
+    for (const std::size_t i : of) to_beat.push_back(found[i].figures.score);
+    const auto tried = try_all(coarse_, poses, "trying poses like the best", to_beat);
     for (std::size_t n = 0; n < tried.size(); ++n)
       if (tried[n] && is_better(*tried[n], found[of[n]])) found[of[n]] = *tried[n];
   }
@@ -234,14 +241,17 @@ TrialTask trial_task(TrialTask task) {
 
 std::vector<std::optional<Trial>> try_poses(const TrialTask& task,
                                             const std::vector<PoseOptions>& poses,
-                                            const RunContext& context) {
+                                            const RunContext& context,
+                                            const std::vector<double>& worth_asking) {
   const RunScope scope(context);
   std::vector<std::optional<Trial>> tried(poses.size());
   parallel_for(poses.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       RunContext alone = context.quiet().with_threads(1);
+      TrialTask own = task;
+      if (!worth_asking.empty()) own.worth_asking = worth_asking[i];
       try {
-        tried[i] = try_pose(task, poses[i], 0, alone);
+        tried[i] = try_pose(own, poses[i], 0, alone);
       } catch (const DipError&) {
         // One that cannot be computed is none to recommend.
       }

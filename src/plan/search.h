@@ -42,9 +42,11 @@ SearchResult search_holds(const TrialTask& task, const PoseOptions& pose,
 TrialTask trial_task(TrialTask task);
 
 // Tries poses side by side, each on one thread. One result a pose; nothing where it does not fit.
+// `worth_asking`: per pose, instead of the task's; empty: the task's.
 std::vector<std::optional<Trial>> try_poses(const TrialTask& task,
                                             const std::vector<PoseOptions>& poses,
-                                            const RunContext& context);
+                                            const RunContext& context,
+                                            const std::vector<double>& worth_asking = {});
 
 // Angle between the directions that point down.
 double angle_between_deg(const PoseOptions& a, const PoseOptions& b);

@@ -251,7 +251,9 @@ class StraightTrial {
         find_air(posed_.mesh(), posed_.surface(), way, task_.air, context));
     DippedFilm film = dipped(way, context);
     Trial trial = judge(film, film.depth_mm);
-    if (!task_.asks_what_moves || !tears(film, trial.depth_mm)) return trial;
+    if (!task_.asks_what_moves || !(trial.figures.score > task_.worth_asking) ||
+        !tears(film, trial.depth_mm))
+      return trial;
     // In the steps that were made.
     const double step_mm = deepest_mm / std::ceil(deepest_mm / task_.dip.step_mm - 1e-9);
     const double asked_mm = step_mm * std::ceil(trial.depth_mm / step_mm - 1e-9);

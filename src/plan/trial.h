@@ -1,6 +1,7 @@
 // Trial dips: what one way to hold an object is worth, and how deep it should go.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -58,6 +59,8 @@ struct TrialTask {
   double torn_price = kTornPrice;
   // Film whose place depends on how torn film falls is worth nothing.
   bool asks_what_moves = true;
+  // Asking lowers a score: straight down, what is not above that one before is not asked.
+  double worth_asking = -std::numeric_limits<double>::infinity();
   bool keep_film = false;
 };
 

@@ -183,11 +183,6 @@ void require_lowering_only(const RigJob& job) {
 RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& sources) {
   const ReadReport read = read_report(folder);
   const Json& report = read.json;
-  if (report.contains("dips"))
-    throw InputError(fmt::format(
-        "{}: this job has several dips, each with a run sheet of its own: name one of them, as in "
-        "'{}'",
-        folder.string(), (folder / "dip-1").string()));
   RigJob job;
   job.folder = folder;
   job.title = title_of(report);
