@@ -103,6 +103,7 @@ SharedSurface::SharedSurface(const SeamTask& task, const RunContext& context) {
   parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
     std::vector<std::int32_t> close;
     for (std::size_t i = begin; i < end; ++i) {
+      check_cancelled();
       const Target& node = nodes.nodes()[i];
       color[i] = to_cielab(task.paint.color_at(node.point));
       seen[i] = exposure(task.surface, node, nodes.spacing(), extent);
@@ -170,6 +171,7 @@ SharedSurface::SharedSurface(const SeamTask& task, const RunContext& context) {
   parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
     std::vector<std::int32_t> close;
     for (std::size_t i = begin; i < end; ++i) {
+      check_cancelled();
       const Target& node = nodes.nodes()[i];
       nodes.near(node.position, node.normal, reach, close);
       data->at_seam[i] = std::any_of(close.begin(), close.end(), [&](std::int32_t j) {

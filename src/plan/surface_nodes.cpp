@@ -21,29 +21,39 @@ SurfaceNodes::SurfaceNodes(Targets targets) : targets_(std::move(targets)) {
   corner_ = box.min;
   spacing_ = std::max(std::sqrt(targets_.area / double(targets_.list.size())), 1e-12);
   cell_ = std::max(2 * spacing_, box.size().maxCoeff() / double(1 << (kBits - 1)));
+  last_ = {1 << (kBits - 1), 1 << (kBits - 1), 1 << (kBits - 1)};
+  last_ = cell_at(box.max);
   CheckEvery check(1 << 12);
   for (std::size_t i = 0; i < targets_.list.size(); ++i) {
     check();
-    in_cell_[cell_of(targets_.list[i].position)].push_back(std::int32_t(i));
+    in_cell_[key_of(cell_at(targets_.list[i].position))].push_back(std::int32_t(i));
   }
 }
 
-std::uint64_t SurfaceNodes::cell_of(const Vec3& position) const {
-  const auto coordinate = [&](int axis) {
-    const double at = std::floor((position[axis] - corner_[axis]) / cell_) + 1024;
-    return std::uint64_t(std::clamp(at, 0.0, double((1 << kBits) - 1)));
-  };
-  return coordinate(0) | (coordinate(1) << kBits) | (coordinate(2) << (2 * kBits));
+SurfaceNodes::Cell SurfaceNodes::cell_at(const Vec3& position) const {
+  Cell cell;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double at = std::floor((position[axis] - corner_[axis]) / cell_);
+    cell[std::size_t(axis)] = int(std::clamp(at, 0.0, double(last_[std::size_t(axis)])));
+  }
+  return cell;
+}
+
+std::uint64_t SurfaceNodes::key_of(const Cell& cell) {
+  return std::uint64_t(cell[0]) | (std::uint64_t(cell[1]) << kBits) |
+         (std::uint64_t(cell[2]) << (2 * kBits));
 }
 
 void SurfaceNodes::near(const Vec3& position, const Vec3& normal, double reach,
                         std::vector<std::int32_t>& found) const {
   found.clear();
-  const int cells = int(std::ceil(reach / cell_));
-  for (int z = -cells; z <= cells; ++z)
-    for (int y = -cells; y <= cells; ++y)
-      for (int x = -cells; x <= cells; ++x) {
-        const auto at = in_cell_.find(cell_of(position + cell_ * Vec3(x, y, z)));
+  // Only as far as there are nodes: the reach can be many times the object.
+  const Cell low = cell_at(position - Vec3::Constant(reach));
+  const Cell high = cell_at(position + Vec3::Constant(reach));
+  for (int z = low[2]; z <= high[2]; ++z)
+    for (int y = low[1]; y <= high[1]; ++y)
+      for (int x = low[0]; x <= high[0]; ++x) {
+        const auto at = in_cell_.find(key_of({x, y, z}));
         if (at == in_cell_.end()) continue;
         for (const std::int32_t i : at->second) {
           const Target& node = targets_.list[std::size_t(i)];
@@ -52,7 +62,6 @@ void SurfaceNodes::near(const Vec3& position, const Vec3& normal, double reach,
         }
       }
   std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
 std::vector<std::array<std::int32_t, 2>> SurfaceNodes::neighbors() const {

@@ -29,11 +29,15 @@ class SurfaceNodes {
   std::vector<std::array<std::int32_t, 2>> neighbors() const;
 
  private:
-  std::uint64_t cell_of(const Vec3& position) const;
+  using Cell = std::array<int, 3>;
+  // Of a point; beyond the nodes' box the nearest within it.
+  Cell cell_at(const Vec3& position) const;
+  static std::uint64_t key_of(const Cell& cell);
 
   Targets targets_;
   double spacing_ = 1, cell_ = 1;
   Vec3 corner_ = Vec3::Zero();
+  Cell last_ = {0, 0, 0};
   std::unordered_map<std::uint64_t, std::vector<std::int32_t>> in_cell_;
 };
 

@@ -1,4 +1,5 @@
 #include "plan/seams.h"
+#include "exact/shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -135,6 +136,28 @@ TEST_F(Plate, OneDipDoesAll) {
 }
 
 // Both sides of a thin plate are far from each other.
+// Also where the reach is a million times the object, and from far away.
+TEST(SurfaceNodes, NearIsWhatADistanceSays) {
+  const shapes::Shape ball = shapes::full_sphere(10, 20, 30);
+  TriangleMesh object;
+  object.positions = ball.positions;
+  object.triangles = ball.triangles;
+  const SurfaceNodes nodes(spread_targets(object, 800));
+  std::vector<std::int32_t> found;
+  for (const Vec3& from : {Vec3(10, 0, 0), Vec3(0, -7, 7), Vec3(300, -20, 5)})
+    for (const double reach : {1e-3, 3.0, 15.0, 400.0, 1e7}) {
+      const Vec3 normal = from.normalized();
+      nodes.near(from, normal, reach, found);
+      std::vector<std::int32_t> wanted;
+      for (std::size_t i = 0; i < nodes.nodes().size(); ++i) {
+        const Target& node = nodes.nodes()[i];
+        if ((node.position - from).norm() <= reach && node.normal.dot(normal) > 0.5)
+          wanted.push_back(std::int32_t(i));
+      }
+      EXPECT_EQ(found, wanted) << reach;
+    }
+}
+
 TEST(SurfaceNodes, AThinWallHasTwoSides) {
   TriangleMesh wall;
   wall.positions = {{0, 0, 0},   {10, 0, 0},   {10, 10, 0},   {0, 10, 0},
