@@ -32,7 +32,7 @@ void declare_printer(CLI::App& app, Request& request) {
                  "its resolution (default: what the picture records)")
       ->group(kReadingGroup)
       ->type_name("DPI")
-      ->check(CLI::Range(50, 5000));
+      ->check(between(50, 5000));
   app.add_option("--save", printer.profile,
                  "keep it in this profile of yours (default: printer.toml in the output folder)")
       ->group(kReadingGroup)
@@ -84,17 +84,17 @@ void declare_register(CLI::App& app, Request& request) {
          "says; 0)")
       ->group(kCameraGroup)
       ->type_name("MM")
-      ->check(CLI::Range(-500.0, 500.0));
+      ->check(between(-500.0, 500.0));
   app.add_option("--water-sigma", registration.water_sigma_mm,
                  "how well that is known (default: 0.3)")
       ->group(kCameraGroup)
       ->type_name("MM")
-      ->check(CLI::Range(0.01, 10.0));
+      ->check(between(0.01, 10.0));
   app.add_option("--tolerance", registration.tolerance_mm,
                  "how far the marks may lie off an evenly swollen sheet, rms (default: 1)")
       ->group(kCameraGroup)
       ->type_name("MM")
-      ->check(CLI::Range(0.01, 50.0));
+      ->check(between(0.01, 50.0));
   app.add_flag("--set-place", registration.set_place,
                "this film lies as film is to lie: keep that in the camera's file")
       ->group(kCameraGroup);
@@ -139,7 +139,7 @@ void declare_correct(CLI::App& app, Request& request) {
                  "side of the board's squares (default: as the board's)")
       ->group(kScanGroup)
       ->type_name("MM")
-      ->check(CLI::Range(0.5, 100.0));
+      ->check(between(0.5, 100.0));
   app.add_option("--scan-units", correction.scan_units, "unit of the scans (default: mm)")
       ->group(kScanGroup)
       ->type_name("mm|cm|m|in");

@@ -1,5 +1,7 @@
 #include "request.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -51,6 +53,18 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
   throw InputError(option + ": write " + std::to_string(least) +
                    (most > least ? " or " + std::to_string(most) : std::string()) +
                    " numbers with commas between them, not '" + text + "'");
+}
+
+CLI::Validator between(double low, double high) {
+  const auto refusal = [low, high](const std::string& text) {
+    double number = 0;
+    const auto [rest, error] = parse_double(text.data(), text.data() + text.size(), number);
+    const bool good = error == std::errc() && rest == text.data() + text.size() && number >= low &&
+                      number <= high;
+    return good ? std::string()
+                : fmt::format("'{}': give a number from {:g} to {:g}", text, low, high);
+  };
+  return {refusal, ""};
 }
 
 std::filesystem::path profile_folder() {
@@ -294,7 +308,8 @@ void declare_pattern(CLI::App& app, Request& request) {
   app.add_option("--tile-mm", pattern.tile_mm,
                  "its width on the film, as bought pattern film has it")
       ->group(kPatternGroup)
-      ->type_name("MM");
+      ->type_name("MM")
+      ->check(between(0.01, 10000));
   app.add_flag("--compensate", pattern.compensate,
                "draw the pattern so that it looks unstretched on the part")
       ->group(kPatternGroup);
@@ -323,7 +338,8 @@ void declare_pattern(CLI::App& app, Request& request) {
          "--tile-turn", [&pattern](const double& turn) { pattern.turn_deg = turn; },
          "turn of the pattern, counter-clockwise from above (default: as it does least harm)")
       ->group(kPatternGroup)
-      ->type_name("DEG");
+      ->type_name("DEG")
+      ->check(between(-360, 360));
 }
 
 void declare_nest(CLI::App& app, Request& request) {
@@ -334,7 +350,8 @@ void declare_nest(CLI::App& app, Request& request) {
   app.add_option("--clearance", request.clearance_mm,
                  "free film around each part (default: a quarter of its depth, 10 mm or more)")
       ->group(kFilmGroup)
-      ->type_name("MM");
+      ->type_name("MM")
+      ->check(between(0, 1000));
 }
 
 void declare_sample(CLI::App& app, Request& request) {

@@ -14,8 +14,9 @@
 #include "sweep/sweep_jobs.h"
 
 namespace CLI {
+class Validator;
 class App;
-}
+}  // namespace CLI
 
 namespace hydrodip {
 
@@ -83,6 +84,9 @@ std::filesystem::path profile_folder();
 // "1,2,3" as given to an option, from least to most numbers. Throws InputError.
 std::vector<double> numbers_of(const std::string& option, const std::string& text,
                                std::size_t least, std::size_t most);
+
+// Refuses what is no number, or not within these.
+CLI::Validator between(double low, double high);
 
 // The options as a job's configuration. Throws InputError.
 JobConfig configure(const Request& request);

@@ -105,7 +105,7 @@ void declare_jig(CLI::App& app, Request& request) {
                  "between parts, and between object and socket (default: 0.3)")
       ->group("Jig")
       ->type_name("MM")
-      ->check(CLI::Range(0.0, 3.0));
+      ->check(between(0.0, 3.0));
   declare_reporting(app, request);
   declare_configuration(app, request);
 }
@@ -123,6 +123,7 @@ void declare_stage(CLI::App& app, Request& request) {
   declare_job(app, request);
   declare_port(app, request);
   app.add_option("--by", request.jog_mm, "of jog: how far down; negative lifts")
+      ->check(between(-2000, 2000))
       ->group("Stage")
       ->type_name("MM");
   app.add_flag("--dry-run", request.dry_run, "print the plan of movements and move nothing")

@@ -62,7 +62,7 @@ double distance_mm(const Reading& reading, const GridLanding& landing) {
     square += (*lands - reading.grid.position[c]).squaredNorm();
     ++count;
   }
-  return count > 0 ? std::sqrt(square / count) : 1e300;
+  return std::sqrt(square / count);
 }
 
 Reading reading_as(const Board& board, const CornerGrid& scan, const PrintedFilm& film,
@@ -80,6 +80,12 @@ Reading reading_as(const Board& board, const CornerGrid& scan, const PrintedFilm
     reading.mirrored = match.mirrored;
   }
   place_patches(scan, pose, reading.turned, landing, reach, board.square_mm, reading.place);
+  if (std::none_of(reading.place.begin(), reading.place.end(),
+                   [](const auto& place) { return place.has_value(); }))
+    throw InputError(fmt::format(
+        "{}: its corners lie nowhere near those of the {} board on this job's object (not within "
+        "half a square); leave out --aligned, or check --square and --board",
+        name, board.name));
   reading.grid = moved(scan, pose);
   reading.off_mm = distance_mm(reading, landing);
   return reading;
@@ -142,9 +148,10 @@ Landings read_grid(const std::filesystem::path& file, const PrintedFilm& film,
         fmt::format("{}: only the scan's mirror image fits the object; save it without mirroring",
                     file.string()));
   if (reading.turned)
-    context.warn(fmt::format(
+    throw InputError(fmt::format(
         "{}: rows and columns run the wrong way round: its faces look into the object, or it is a "
-        "mirror image, of which the correction would be wrong.",
+        "mirror image, of which the correction would be wrong; turn its faces outwards, or save it "
+        "without mirroring",
         file.string()));
   Landings landings{{}, reading.board.name};
   for (std::size_t i = 0; i < reading.place.size(); ++i)
@@ -154,7 +161,12 @@ Landings read_grid(const std::filesystem::path& file, const PrintedFilm& film,
   return landings;
 }
 
-Landings read_table(const std::filesystem::path& file) {
+Landings read_table(const std::filesystem::path& file, const CorrectRequest& request) {
+  if (request.scan_units != "mm" || !request.board.empty() || request.square_mm > 0)
+    throw InputError(fmt::format(
+        "{}: a table of places is in mm and of no board: leave out --scan-units, --board and "
+        "--square",
+        file.string()));
   Landings landings;
   for (const PlaceRow& row : read_place_table(file))
     landings.places.push_back({row.on_sheet, row.position});
@@ -170,11 +182,22 @@ struct DipSeen {
   double rms_on_object_mm = 0;
 };
 
+// Places that lie elsewhere are left out; of another dip nearly all do.
+void require_most(const std::filesystem::path& file, std::size_t used, std::size_t of,
+                  const RunContext& context) {
+  constexpr double kLeast = 0.5, kUsual = 0.9;
+  const std::string said =
+      fmt::format("{}: {} of its {} places lie on the film of this job", file.string(), used, of);
+  if (double(used) < kLeast * double(of))
+    throw InputError(said + "; check that it is a dip of this job's object in its pose, in mm");
+  if (double(used) < kUsual * double(of)) context.warn(said + "; the others are left out.");
+}
+
 DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
                 const FilmOptions& sheet, const CorrectRequest& request,
                 const RunContext& context) {
-  const Landings landings =
-      is_place_table(file) ? read_table(file) : read_grid(file, film, sheet, request, context);
+  const Landings landings = is_place_table(file) ? read_table(file, request)
+                                                 : read_grid(file, film, sheet, request, context);
   DipSeen dip{file, landings.board, {}, {}, 0, 0};
   double square = 0, on_object = 0, on_object_count = 0;
   for (const Landed& place : landings.places) {
@@ -198,6 +221,7 @@ DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
         fmt::format("{}: none of its places lies on the film of this job; check that it is a dip "
                     "of this job's object in its pose",
                     file.string()));
+  require_most(file, dip.samples.size(), landings.places.size(), context);
   dip.mean_off /= double(dip.samples.size());
   dip.rms_off_mm = std::sqrt(square / double(dip.samples.size()));
   if (on_object_count > 0) dip.rms_on_object_mm = std::sqrt(on_object / on_object_count);

@@ -19,6 +19,7 @@ constexpr double kFarthest_mm = 1e5;
 std::string line_of(std::ifstream& file, bool& any) {
   std::string line;
   any = bool(std::getline(file, line));
+  if (line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
   return line;
 }

@@ -91,7 +91,16 @@ python3 "$here/corner_scan.py" job/film.ply tints 2.5 1 0.5 > small.csv || fail 
 expect 2 'say which one was dipped' correct job small.csv --square 2.5
 expect 0 'off by 1.[12]' correct job small.csv --square 2.5 --board tints
 expect 2 "'white'" correct large black.csv --board white
+expect 2 'board' correct large black.csv --aligned --square 6
+awk -F, -v OFS=, 'NR > 1 && NR % 4 { $3 += 500 } 1' places.csv > elsewhere.csv
+expect 2 'places lie on the film' correct job elsewhere.csv
+expect 2 'in mm' correct job places.csv --scan-units cm
 expect 2 'name the job' correct job
+for option in '--clearance' '--water-sigma' '--tolerance'; do
+  case $option in --clearance) command='rig jig' ;; *) command='register photo.png' ;; esac
+  # shellcheck disable=SC2086
+  expect 2 'give a number from' $command job $option nan
+done
 expect 2 'not a correction' print colored.ply --correction registration.json
 expect 2 'of one dip' print colored.ply --dips 2 --correction job/correction.json -o twice
 
