@@ -1,26 +1,24 @@
 #include "base/json_nesting.h"
 
-#include <cstddef>
+#include <algorithm>
 
 namespace hydrodip {
 
-bool nests_too_deeply(std::string_view json) {
-  constexpr int kDeepest = 100;
-  int depth = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (quoted) {
-      if (c == '\\') ++i;
-      quoted = c != '"';
-      continue;
-    }
-    quoted = c == '"';
-    if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') --depth;
-    if (depth > kDeepest) return true;
+bool JsonNesting::take(char c) {
+  if (quoted_) {
+    quoted_ = escaped_ || c != '"';
+    escaped_ = !escaped_ && c == '\\';
+    return true;
   }
-  return false;
+  quoted_ = c == '"';
+  if (c == '[' || c == '{') ++depth_;
+  if (c == ']' || c == '}') --depth_;
+  return depth_ <= deepest_;
+}
+
+bool nests_too_deeply(std::string_view json) {
+  JsonNesting nesting(100);
+  return !std::all_of(json.begin(), json.end(), [&](char c) { return nesting.take(c); });
 }
 
 }  // namespace hydrodip

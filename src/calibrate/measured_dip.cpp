@@ -270,7 +270,7 @@ MeasuredDip read_measured_dip(const std::filesystem::path& file) {
   if (!has(kFactsName) || !has(kCornersName))
     refuse(file, "this is no measured dip: 'hydrodip calibrate pack' makes them");
   const std::vector<std::uint8_t> facts = read(kFactsName);
-  const Json json = nests_too_deeply(text_of(facts)) ? Json() : Json::parse(facts, nullptr, false);
+  const Json json = parsed_json<Json>(facts);
   if (!json.is_object() || !json.contains("kind") || json["kind"] != kKind)
     refuse(file, "this is no measured dip: 'hydrodip calibrate pack' makes them");
   const Reader reader(file, json);

@@ -79,8 +79,7 @@ enum class Line { kDamaged, kOld, kGood };
 
 // Lines of programs that kept where each scan's corners lie on the film are no use any more.
 Line parse_line(const std::string& text, SimulationKey& key, SimulationResult& result) {
-  if (nests_too_deeply(text)) return Line::kDamaged;
-  const Json line = Json::parse(text, nullptr, false);
+  const Json line = parsed_json<Json>(text);
   if (!line.is_object()) return Line::kDamaged;
   for (const char* name : {"z_stretch", "ink_stiffness_ratio", "poisson"})
     if (!line.contains(name) || !line[name].is_number()) return Line::kDamaged;

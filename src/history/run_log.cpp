@@ -3,6 +3,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/json_nesting.h"
+
 namespace hydrodip {
 namespace {
 
@@ -53,7 +55,7 @@ std::optional<DipRun> read_run_log(const std::filesystem::path& run_folder) {
   run.outcome = "unfinished";
   bool guided = false;
   for (std::string line; std::getline(log, line);) {
-    const Json entry = Json::parse(line, nullptr, false);
+    const Json entry = parsed_json<Json>(line);
     if (!entry.is_object()) continue;
     // Only `rig guide` begins with what is dipped.
     guided = guided || (text(entry, "event") == "start" && entry.contains("depth_mm"));

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_nesting.h"
 #include "model_io/text.h"
 
 namespace hydrodip {
@@ -182,22 +183,11 @@ void GltfData::open() {
 }
 
 void GltfData::parse(std::string_view text) {
-  // Values nest by recursion: a file of nothing but "[" must not exhaust the stack.
-  int depth = 0;
-  bool quoted = false;
   CancelCheck cancel(input_.context);
-  for (std::size_t i = 0; i < text.size(); ++i) {
+  JsonNesting nesting(kMaxDepth);
+  for (const char c : text) {
     cancel();
-    const char c = text[i];
-    if (quoted) {
-      if (c == '\\') ++i;
-      quoted = c != '"';
-      continue;
-    }
-    quoted = c == '"';
-    if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') --depth;
-    if (depth > kMaxDepth) refuse("its JSON is nested too deeply");
+    if (!nesting.take(c)) refuse("its JSON is nested too deeply");
   }
   // Without a callback: with one, nlohmann's parser looks through a list again after every entry.
   *root_ = json::parse(WatchedText(text.data(), cancel),

@@ -64,9 +64,7 @@ std::string tank_as_json(const Tank& tank) {
 
 Tank read_tank(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = read_file(file);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (nests_too_deeply(text)) refuse(file);
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parsed_json<Json>(bytes);
   Tank tank;
   const auto px = numbers(json, "photo_px", 2, file);
   const auto lens = numbers(json, "lens_focal_center_k1_k2_p1_p2", Lens::kValues, file);

@@ -29,8 +29,7 @@ std::optional<Registration> read_registration(const std::filesystem::path& path)
   std::ifstream file(path);
   if (!file) return {};
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (nests_too_deeply(text)) return {};
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parsed_json<Json>(text);
   const auto x = number(json, "shift_mm", "x"), y = number(json, "shift_mm", "y"),
              turn = number(json, "turn_deg", "value"), sx = number(json, "swelling", "x"),
              sy = number(json, "swelling", "y");

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <string_view>
 #include <utility>
 
 #include "base/error.h"
@@ -21,14 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kLevelFile = "rig-water-level.json";
 
-// Discarded if it is none, or one made to harm.
-Json parsed(const std::vector<std::uint8_t>& bytes) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return nests_too_deeply(text) ? Json(Json::value_t::discarded)
-                                : Json::parse(text, nullptr, false);
-}
-
-Json read_json(const std::filesystem::path& file) { return parsed(read_file(file)); }
+Json read_json(const std::filesystem::path& file) { return parsed_json<Json>(read_file(file)); }
 
 struct ReadReport {
   Json json;
@@ -43,7 +35,7 @@ ReadReport read_report(const std::filesystem::path& folder) {
         fmt::format("{}: there is no report.json; name the folder that 'hydrodip print' wrote",
                     folder.string()));
   const std::vector<std::uint8_t> bytes = read_file(file);
-  Json report = parsed(bytes);
+  Json report = parsed_json<Json>(bytes);
   if (report.is_object() && report.contains("dips"))
     throw InputError(fmt::format("{}: this job has several dips; name one of them, as {}",
                                  folder.string(), (folder / "dip-1").string()));

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_nesting.h"
 #include "base/output_folder.h"
 
 namespace hydrodip {
@@ -103,7 +104,7 @@ BrokenRun last_broken_run(const RigJob& job) {
   std::ifstream log(job.folder / run.name / "log.jsonl");
   bool finished = run.name.empty() || !log;
   for (std::string line; std::getline(log, line);) {
-    const Json entry = Json::parse(line, nullptr, false);
+    const Json entry = parsed_json<Json>(line);
     if (!entry.is_object() || !entry.contains("event") || !entry["event"].is_string()) continue;
     if (entry["event"] == "step done" && entry.contains("step") && entry["step"].is_string())
       run.steps.push_back(entry["step"]);

@@ -54,9 +54,7 @@ class Reader {
 
 CorrectionFile read_correction(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = read_file(file);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (nests_too_deeply(text)) refuse(file);
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parsed_json<Json>(bytes);
   const Reader read(file);
   const Json& grid = read.member(json, "grid");
   CorrectionFile result;

@@ -451,8 +451,7 @@ SweepPlan read_manifest(const fs::path& folder) {
                     folder.string()));
   const std::vector<std::uint8_t> bytes = read_file(file);
   try {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const Json json = nests_too_deeply(text) ? Json() : Json::parse(text);
+    const Json json = parsed_json<Json>(bytes);
     if (json.at("hydrodip_sweep").get<int>() != kSchemaVersion)
       throw InputError(
           fmt::format("{}: made by another version; plan the sweep again", file.string()));

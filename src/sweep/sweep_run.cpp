@@ -165,8 +165,7 @@ std::optional<SweepOutcome> read_outcome(const fs::path& folder, const std::stri
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return {};
   const std::vector<std::uint8_t> bytes = read_file(file);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const Json json = nests_too_deeply(text) ? Json() : Json::parse(text, nullptr, false);
+  const Json json = parsed_json<Json>(bytes);
   const bool usable =
       json.is_object() && json.contains("seconds") && json["seconds"].is_number() &&
       (json.contains("report") ? json["report"].is_object()

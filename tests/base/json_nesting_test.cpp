@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 namespace hydrodip {
@@ -24,6 +25,13 @@ TEST(JsonNesting, WhatStandsInQuotesDoesNotCount) {
   EXPECT_FALSE(nests_too_deeply("\"" + std::string(1000, '[') + "\""));
   EXPECT_FALSE(nests_too_deeply("\"\\\"" + std::string(1000, '[') + "\""));
   EXPECT_TRUE(nests_too_deeply("\"\\\\\"" + std::string(1000, '[')));
+}
+
+TEST(JsonNesting, WhatNestsTooDeeplyIsDiscardedAsWhatIsNoJson) {
+  using Json = nlohmann::json;
+  EXPECT_EQ(parsed_json<Json>("[1, {\"a\": 2}]"), Json({1, {{"a", 2}}}));
+  EXPECT_TRUE(parsed_json<Json>(nested(101, '[', ']')).is_discarded());
+  EXPECT_TRUE(parsed_json<Json>("[1,").is_discarded());
 }
 
 }  // namespace
