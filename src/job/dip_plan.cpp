@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "dip/tear_doubt.h"
+#include "job/dips_side_by_side.h"
 #include "settings/correction_file.h"
 
 namespace hydrodip {
@@ -20,8 +20,6 @@ constexpr int kFirstElements = 5000;
 // What trial dips promise finer film need not keep: so many times as many dips as are wanted are
 // looked at again on the job's film, in longer steps.
 constexpr int kLookedAtAgain = 3;
-// Triangles: from there on film is dipped by all threads, one at a time.
-constexpr int kSmallFilm = 100000;
 
 PoseOptions pose_of(const DipEntry& entry, const PoseOptions& base) {
   PoseOptions pose = base;
@@ -166,7 +164,8 @@ class Planning {
     each_of(
         trials.size(), "looking at the best again", [&](std::size_t i, const RunContext& context) {
           try {
-            sure[i] = try_pose(sought_, trials[i].pose, trials[i].depth_mm + kDeeper_mm, context);
+            sure[i] =
+                try_pose(sought_, trials[i].pose, trials[i].depth_mm + kDeeper_mm, context.quiet());
           } catch (const DipError&) {
             // None to recommend.
           }
@@ -177,14 +176,10 @@ class Planning {
   // As the job dips them, blank. What they promise counts.
   void dip_for_good(const std::vector<Trial>& chosen) {
     std::vector<std::optional<PlannedDip>> made(chosen.size());
-    std::vector<std::vector<std::string>> warnings(chosen.size());
     each_of(chosen.size(), "dipping them for good", [&](std::size_t i, const RunContext& context) {
       made[i] = made_of(chosen[i], context);
-      warnings[i] = context.warnings();
     });
     for (auto& dip : made) plan_.dips.push_back(std::move(*dip));
-    for (const auto& list : warnings)
-      for (const std::string& warning : list) context_.warn(warning);
   }
 
   PlannedDip made_of(const Trial& trial, const RunContext& context) const {
@@ -207,18 +202,14 @@ class Planning {
   // Side by side as long as their films are small beside the memory.
   void each_of(std::size_t count, const std::string& activity,
                const std::function<void(std::size_t, const RunContext&)>& dip) const {
-    if (config_.design.film.elements > kSmallFilm) {
-      for (std::size_t i = 0; i < count; ++i) {
-        context_.progress(activity, double(i) / double(count));
-        dip(i, context_.quiet());
-      }
-      return;
+    if (config_.design.film.elements <= kSmallFilm)
+      return dip_side_by_side(count, activity, context_, dip);
+    for (std::size_t i = 0; i < count; ++i) {
+      context_.progress(activity, double(i) / double(count));
+      const RunContext own = context_.quiet();
+      dip(i, own);
+      for (const std::string& warning : own.warnings()) context_.warn(warning);
     }
-    const int threads = std::max(1, context_.threads() / std::max(1, int(count)));
-    std::vector<std::function<void()>> tasks;
-    for (std::size_t i = 0; i < count; ++i)
-      tasks.emplace_back([&, i] { dip(i, context_.quiet().with_threads(threads)); });
-    context_.side_by_side(activity, tasks);
   }
 
   void count_up() {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include "base/error.h"
@@ -12,6 +11,7 @@
 #include "base/timings.h"
 #include "dip/tear_doubt.h"
 #include "hydrodip/hydrodip.h"
+#include "job/dips_side_by_side.h"
 #include "job/ways.h"
 
 namespace hydrodip {
@@ -24,8 +24,6 @@ constexpr int kFewestNodes = 8000, kMostNodes = 60000;
 // No two dips land nearer to each other than some tenths of a millimetre, and their inks fade over
 // more: what ink still moves below that is not worth a dip.
 constexpr double kSettledAmongSeveral_mm = 0.03;
-// Triangles: from there on one film is dipped at a time.
-constexpr int kSmallFilm = 100000;
 
 JobConfig config_of(const JobConfig& config, const Trial& trial, std::size_t number,
                     std::size_t of) {
@@ -52,16 +50,6 @@ std::shared_ptr<const SurfaceNodes> make_nodes(const PreparedObject& prepared, d
   return std::make_shared<const SurfaceNodes>(spread_targets(prepared.posed.object(), count));
 }
 
-void design_one(MadeDips& all, std::size_t k, const SharedSurface& shared, const Printer& printer,
-                const RunContext& context) {
-  MadeDip& dip = all.dips[k];
-  const auto mesh = std::make_shared<const TriangleMesh>(all.prepared.posed.object());
-  Timings unheard;
-  dip.made = design({dip.posed, *all.prepared.paint, shared.allotment(k, mesh), *printer.model,
-                     dip.config.design, &dip.blank},
-                    unheard, context);
-}
-
 int at_once(const MadeDips& all, const RunContext& context) {
   return std::min(int(all.dips.size()), context.threads());
 }
@@ -72,25 +60,6 @@ bool may_be_side_by_side(const MadeDips& all, const RunContext& context) {
   const DesignOptions& options = all.config.design;
   return options.film.elements <= kSmallFilm &&
          at_once(all, context) * sheet_memory_bytes(options) <= 0.5 * memory_limit_bytes();
-}
-
-void design_side_by_side(MadeDips& all, const SharedSurface& shared, const Printer& printer,
-                         const RunContext& context) {
-  const int threads = std::max(1, context.threads() / int(all.dips.size()));
-  std::vector<std::vector<std::string>> warnings(all.dips.size());
-  std::vector<std::function<void()>> tasks;
-  for (std::size_t k = 0; k < all.dips.size(); ++k)
-    tasks.emplace_back([&, k] {
-      const RunContext own = context.quiet().with_threads(threads);
-      design_one(all, k, shared, printer, own);
-      warnings[k] = own.warnings();
-    });
-  context.side_by_side("making films and ink agree", tasks);
-  for (std::size_t k = 0; k < all.dips.size(); ++k) {
-    context.log(fmt::format("dip {} of {}: {} rounds", k + 1, all.dips.size(),
-                            all.dips[k].made.ink.rounds.size()));
-    for (const std::string& warning : warnings[k]) context.warn(warning);
-  }
 }
 
 std::vector<float> worth_at_nodes(const MadeDips& all, const MadeDip& dip, const DippedFilm& film) {
@@ -137,14 +106,26 @@ SharedSurface divide(const MadeDips& all, const RunContext& context) {
 
 Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& printer, Timings& times,
                  const RunContext& context) {
+  const auto mesh = std::make_shared<const TriangleMesh>(all.prepared.posed.object());
+  const auto design_one = [&](std::size_t k, const RunContext& own) {
+    MadeDip& dip = all.dips[k];
+    Timings unheard;
+    dip.made = design({dip.posed, *all.prepared.paint, shared.allotment(k, mesh), *printer.model,
+                       dip.config.design, &dip.blank},
+                      unheard, own);
+  };
   times.measure("design", [&] {
-    if (may_be_side_by_side(all, context))
-      design_side_by_side(all, shared, printer, context);
-    else
-      for (std::size_t k = 0; k < all.dips.size(); ++k) {
-        context.log(fmt::format("dip {} of {}", k + 1, all.dips.size()));
-        design_one(all, k, shared, printer, context);
+    if (may_be_side_by_side(all, context)) {
+      dip_side_by_side(all.dips.size(), "making films and ink agree", context, design_one);
+      for (const MadeDip& dip : all.dips)
+        context.log(fmt::format("dip {} of {}: {} rounds", dip.number, all.dips.size(),
+                                dip.made.ink.rounds.size()));
+    } else {
+      for (const MadeDip& dip : all.dips) {
+        context.log(fmt::format("dip {} of {}", dip.number, all.dips.size()));
+        design_one(std::size_t(dip.number - 1), context);
       }
+    }
   });
   std::vector<Designed> designs;
   for (const MadeDip& dip : all.dips) {
