@@ -7,21 +7,16 @@ import math
 import struct
 import sys
 
-SIZE, KINDS = {"float": 4, "uchar": 1, "int": 4}, {"float": "f", "uchar": "B", "int": "i"}
+from film_ply import vertices
 
 
 def film(path):
+    """Its vertices, and three of them for each triangle."""
+    points = vertices(path)
     data = open(path, "rb").read()
-    begin = data.index(b"end_header\n") + 11
-    lines = data[:begin].decode().split("\n")
-    counts = {w[1]: int(w[2]) for w in (line.split() for line in lines) if w[:1] == ["element"]}
-    vertices = [struct.unpack_from("<5fB2f", data, begin + 29 * i) for i in range(counts["vertex"])]
-    faces, at = [], begin + 29 * counts["vertex"]
-    for _ in range(counts["face"]):
-        faces.append(struct.unpack_from("<3i", data, at + 1))
-        at += 13
-    assert at <= len(data)
-    return vertices, faces
+    at = data.index(b"end_header\n") + 11 + 29 * len(points)
+    count = int(data[:at].split(b"element face ")[1].split()[0])
+    return points, [struct.unpack_from("<3i", data, at + 13 * i + 1) for i in range(count)]
 
 
 def corners_on_object(vertices, faces, square, middle, shift):

@@ -33,4 +33,5 @@ def shifted(first, second, shift, limit):
     assert worst < float(limit), worst
 
 
-{"places": places, "shifted": shifted}[sys.argv[1]](*sys.argv[2:])
+if __name__ == "__main__":
+    {"places": places, "shifted": shifted}[sys.argv[1]](*sys.argv[2:])

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Another country's way to write numbers changes nothing: every command says and writes the same
 # bytes under a German locale, but for times and memory.
-. "$(dirname "$0")/common.sh"
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/common.sh"
 
 localedef -i de_DE -f UTF-8 "$work/de_DE.UTF-8" 2> /dev/null
 [ -d "$work/de_DE.UTF-8" ] || exit 77
@@ -104,32 +105,16 @@ works rig guide printed --profile shop --batch B7
 : > answers
 works history printed --add --outcome good --water 28.5,27.9 --activator 1.25
 works history printed --json
-cat > inputs/sweep.toml <<'TOML'
-[sweep]
-models = ["colored.ply"]
-quality = "draft"
-[set]
-"film.width_mm" = 100
-"film.height_mm" = 80
-"film.elements" = 800
-"dip.step_mm" = 1
-[vary]
+cd inputs || exit 1
+write_sweep 800 1 <<'TOML'
 "material.z_stretch" = [0.55, 0.65]
 TOML
+cd .. || exit 1
 same sweep plan ../inputs/sweep.toml -o swept --quiet
 same sweep run swept --quiet
 same sweep collect swept --quiet
 # As if all of it had landed half a millimetre off.
-python3 - plain/printed/film.ply > inputs/places.csv <<'PY' || fail 'film.ply'
-import struct, sys
-data = open(sys.argv[1], "rb").read()
-begin = data.index(b"end_header\n") + 11
-print("film_x_mm,film_y_mm,x,y,z")
-for at in range(begin, begin + 29 * int(data.split(b"element vertex ")[1].split()[0]), 29):
-    x, y, z, u, v, state, _, _ = struct.unpack_from("<5fB2f", data, at)
-    if state == 1:
-        print(f"{u + 0.5:.6f},{v:.6f},{x:.6f},{y:.6f},{z:.6f}")
-PY
+python3 "$here/film_ply.py" places plain/printed/film.ply 0.5 > inputs/places.csv || fail 'film.ply'
 same correct printed ../inputs/places.csv
 # The studio starts, and ends with Ctrl-C.
 for locale in C de_DE.UTF-8; do

@@ -79,15 +79,15 @@ expect 0 'off by' correct second places.csv
 "$hydrodip" print colored.ply $quick --film 140x130 --size 90 --depth 18 -o large --quiet \
   --set film.elements=4000 > /dev/null || fail "print a large one"
 for board in tints black; do
-  python3 "$here/corner_scan.py" large/film.ply $board 5 1 0.5 > "$board.csv" || fail "corner_scan.py"
+  python3 -B "$here/corner_scan.py" large/film.ply $board 5 1 0.5 > "$board.csv" || fail "corner_scan.py"
   expect 0 "taken for the $board board" correct large "$board.csv" --aligned
   expect 0 'off by 1.1[0-3]' correct large "$board.csv" --aligned
   expect 0 'off by 1.1[0-3]' correct large "$board.csv" --aligned --board $board
-  python3 "$here/corner_scan.py" large/film.ply $board 5 1 0.5 askew > askew.csv
+  python3 -B "$here/corner_scan.py" large/film.ply $board 5 1 0.5 askew > askew.csv
   expect 0 'off by' correct large askew.csv --board $board
 done
 # As far off as this, either could be meant.
-python3 "$here/corner_scan.py" job/film.ply tints 2.5 1 0.5 > small.csv || fail "corner_scan.py"
+python3 -B "$here/corner_scan.py" job/film.ply tints 2.5 1 0.5 > small.csv || fail "corner_scan.py"
 expect 2 'say which one was dipped' correct job small.csv --square 2.5
 expect 0 'off by 1.[12]' correct job small.csv --square 2.5 --board tints
 expect 2 "'white'" correct large black.csv --board white
