@@ -62,6 +62,17 @@ HttpAnswer bytes_answer(std::shared_ptr<const std::vector<std::uint8_t>> bytes,
   return answer;
 }
 
+// Of what was shown and has been replaced meanwhile, nothing is left. That is no error: whoever
+// asks a moment too late, as a busy page does, is told of the successor anyway.
+HttpAnswer bundle_answer(const OpenJob& job, const std::string& id,
+                         std::shared_ptr<const std::vector<std::uint8_t>> bytes) {
+  if (bytes || !job.has_given(id)) return bytes_answer(std::move(bytes));
+  HttpAnswer answer;
+  answer.status = 204;
+  answer.headers = {{"Cache-Control", "no-store"}};
+  return answer;
+}
+
 std::string type_of(const std::filesystem::path& file) {
   static const std::map<std::string, std::string> types = {{".pdf", "application/pdf"},
                                                            {".png", "image/png"},
@@ -468,17 +479,20 @@ HttpAnswer Api::read_job(const HttpRequest&, const Parts& parts, OpenJob& job) {
     return answer;
   }
   if (what == "job.zip") return file_answer(job.pack(), job.name() + ".zip");
-  if (what == "meshes" && parts.size() == 5) return bytes_answer(job.mesh(parts[4]));
+  if (what == "meshes" && parts.size() == 5)
+    return bundle_answer(job, parts[4], job.mesh(parts[4]));
   if (what == "meshes" && parts.size() == 7 && parts[5] == "textures") {
     const auto texture = job.texture(parts[4], std::size_t(std::atoi(parts[6].c_str())));
     if (!texture) throw not_found();
     const ShownPicture& picture = texture->picture();
     return bytes_answer({texture, &picture.bytes}, picture.type);
   }
-  if (what == "finish" && parts.size() == 5) return bytes_answer(job.finish(parts[4]));
-  if (what == "results" && parts.size() == 5) return bytes_answer(job.result(parts[4]));
+  if (what == "finish" && parts.size() == 5)
+    return bundle_answer(job, parts[4], job.finish(parts[4]));
+  if (what == "results" && parts.size() == 5)
+    return bundle_answer(job, parts[4], job.result(parts[4]));
   if (what == "results" && parts.size() == 6 && parts[5] == "dip")
-    return bytes_answer(job.dip(parts[4]));
+    return bundle_answer(job, parts[4], job.dip(parts[4]));
   if (what == "tasks" && parts.size() > 6 && parts[5] == "files")
     return file_answer(file_in(job.task_folder(parts[4]), joined(parts, 6)));
   if (what == "tasks" && parts.size() == 6 && parts[5] == "files.zip") {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <set>
 #include <utility>
 
@@ -605,6 +606,18 @@ void OpenJob::tell(const std::string& event, const Json& data, bool newest_only,
 // With the lock.
 std::string OpenJob::new_id(char kind) {
   return fmt::format("{}-{}{}", run_.substr(0, 8), kind, ++number_);
+}
+
+bool OpenJob::has_given(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const std::string prefix = run_.substr(0, 8) + "-";
+  if (!id.starts_with(prefix) || id.size() < prefix.size() + 2) return false;
+  const char kind = id[prefix.size()];
+  long number = 0;
+  const char* const end = id.data() + id.size();
+  const auto [rest, error] = std::from_chars(id.data() + prefix.size() + 1, end, number);
+  return (kind == 'm' || kind == 'r' || kind == 'f') && error == std::errc() && rest == end &&
+         number > 0 && number <= number_;
 }
 
 std::string OpenJob::show_mesh(const Model& model, const Object& object) {

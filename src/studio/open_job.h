@@ -92,6 +92,8 @@ class OpenJob {
   std::shared_ptr<const std::vector<std::uint8_t>> result(const std::string& id) const;
   std::shared_ptr<const std::vector<std::uint8_t>> finish(const std::string& id) const;
   std::shared_ptr<const std::vector<std::uint8_t>> dip(const std::string& id) const;
+  // Whether an ID is one of this run's, kept or not.
+  bool has_given(const std::string& id) const;
   Json counts() const;
 
   // ---- long work ----

@@ -215,6 +215,32 @@ TEST_F(JobTest, ANewerRequestIsTheOneThatIsShown) {
   EXPECT_FALSE(events.next("result", {}, 0.5));  // nothing older comes after it
 }
 
+// Whoever fetches a moment too late is not told that something is wrong.
+TEST_F(JobTest, OfAResultThatWasReplacedNothingIsLeft) {
+  const std::string job = sample("pyramid");
+  json document = quick(describe(job)["document"]);
+  Events events(*client, at(job, "/events?client=c1"));
+  std::vector<std::string> results;
+  for (int n = 0; n < 8; ++n) {
+    document["object"]["rotate_deg"] = {0, 0, 3 * n};
+    const long revision = put(job, document, true).json()["revision"];
+    const auto told =
+        events.next("result", [&](const json& e) { return e["revision"] == revision; });
+    ASSERT_TRUE(told);
+    results.push_back(told->data["result"]);
+  }
+  const auto got = [&](const std::string& id) { return client->get(at(job, "/results/" + id)); };
+  EXPECT_EQ(got(results.back()).status, 200);
+  const Reply old = got(results.front());
+  EXPECT_EQ(old.status, 204);
+  EXPECT_EQ(old.body, "");
+  EXPECT_EQ(client->get(at(job, "/results/" + results.front() + "/dip")).status, 204);
+  const std::string run = results.front().substr(0, results.front().find("-r"));
+  for (const std::string& never : {run + "-r999", run + "-r", run + "-r0", run + "-r1x",
+                                   run + "-x1", std::string("other-r1"), std::string("r1")})
+    EXPECT_EQ(got(never).status, 404) << never;
+}
+
 // A normal result of a fine film would take many seconds: a newer request does not wait for it.
 TEST_F(JobTest, ANewerRequestCancelsTheOlder) {
   const std::string job = sample("pyramid");

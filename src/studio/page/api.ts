@@ -393,7 +393,13 @@ const json = async <T>(path: string, method: string, body?: unknown): Promise<T>
 };
 
 const part = encodeURIComponent;
-const bytes = async (path: string): Promise<ArrayBuffer> => (await ask(path)).arrayBuffer();
+
+// A bundle; ApiError 'replaced' where a newer one has taken its place.
+const bytes = async (path: string): Promise<ArrayBuffer> => {
+  const response = await ask(path);
+  if (response.status === 204) throw new ApiError('replaced', '', null, {});
+  return response.arrayBuffer();
+};
 
 export const api = {
   hello: () => json<Hello>('/api/hello', 'GET'),
