@@ -19,7 +19,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 // Trial dips go by less fine steps still, in film that is as fine as a draft's.
 constexpr double kTrialStep_mm = 1;
 
-// The best are bettered by trying poses at these angles around them.
+// The best are bettered by trying poses at these angles around them; the last only around the very
+// best.
 constexpr double kRings_deg[] = {14, 7, 4};
 constexpr int kAround = 6;
 constexpr double kTurn_deg = 30;
@@ -60,9 +61,11 @@ class Search {
           "--size, take a larger --film, or give the size of your bath with --set "
           "bath.width_mm=..., bath.height_mm, bath.depth_mm");
     if (rough_.film.elements < coarse_.film.elements) dip_again(found);
+    leave_out_poor(found);
     if (options_.refined > 0) {
       for (const double ring_deg : kRings_deg) {
-        better(found, ring_deg);
+        better(found, ring_deg == kRings_deg[std::size(kRings_deg) - 1] ? 1 : found.size(),
+               ring_deg);
         // Those that fall behind are not followed any further.
         found = best_of(found, std::max(options_.best, int(found.size()) - 1));
       }
@@ -136,8 +139,10 @@ class Search {
   }
 
   static void leave_out_poor(std::vector<Trial>& found) {
-    if (found.empty() || !(found.front().figures.score > 0)) return;
-    const double least = kWorthShowing * found.front().figures.score;
+    if (found.empty()) return;
+    const double best = std::min_element(found.begin(), found.end(), is_better)->figures.score;
+    if (!(best > 0)) return;
+    const double least = kWorthShowing * best;
     std::erase_if(found, [&](const Trial& trial) { return trial.figures.score < least; });
   }
 
@@ -151,13 +156,13 @@ class Search {
       if (trial) found.push_back(std::move(*trial));
   }
 
-  // Tries what lies around each of them. What is no better even before it is asked what moves is
-  // not asked.
-  void better(std::vector<Trial>& found, double ring_deg) {
+  // Tries what lies around each of the first so many. What is no better even before it is asked
+  // what moves is not asked.
+  void better(std::vector<Trial>& found, std::size_t first, double ring_deg) {
     std::vector<PoseOptions> poses;
     std::vector<std::size_t> of;
     std::vector<double> to_beat;
-    for (std::size_t i = 0; i < found.size(); ++i) {
+    for (std::size_t i = 0; i < std::min(first, found.size()); ++i) {
       const PoseOptions& pose = found[i].pose;
       const Vec3 down = down_of(pose);
       for (const Vec3& near : directions_around(down, ring_deg, kAround)) {
