@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_nesting.h"
 #include "studio/guard.h"
 
 namespace hydrodip {
@@ -91,8 +92,8 @@ std::filesystem::path JobStore::home(const std::string& job) const {
 
 Json JobStore::read(const std::string& job) const {
   try {
-    const std::vector<std::uint8_t> bytes = read_file(home(job) / kState);
-    return Json::parse(bytes.begin(), bytes.end());
+    Json state = parsed_json<Json>(read_file(home(job) / kState));
+    return state.is_discarded() ? Json(nullptr) : state;
   } catch (const std::exception&) {
     return nullptr;
   }
