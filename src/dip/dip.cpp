@@ -128,9 +128,7 @@ void check_solved(const DipStatistics& statistics, int steps, const DipOptions& 
 // Whether film tears, in a scheme in which that makes a difference.
 bool may_move(const DippedFilm& film, const DipOptions& options) {
   return options.material.tear_stretch > 0 && options.method == DipMethod::kFull &&
-         options.scheme == DipScheme::kContactLine &&
-         (!film.excess.empty() ||
-          std::find(film.torn.begin(), film.torn.end(), 1) != film.torn.end());
+         options.scheme == DipScheme::kContactLine && std::isfinite(first_let_go_mm(film));
 }
 
 int number_of_steps(double length_mm, const DipOptions& options) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hydrodip {
 
@@ -27,6 +28,12 @@ std::vector<std::uint8_t> left_over(const DippedFilm& film) {
 
 double longer_step_mm(double step_mm) {
   return std::min(kLonger * step_mm, std::max(step_mm, kLongestStep_mm));
+}
+
+double first_let_go_mm(const DippedFilm& dipped) {
+  double first = std::numeric_limits<double>::infinity();
+  for (const double at : dipped.torn_at_mm) first = std::min(first, at);
+  return first;
 }
 
 std::vector<double> moved_by_tears(const DippedFilm& dipped, const std::vector<Vec3>& positions,
@@ -55,6 +62,12 @@ std::vector<double> moved_by_tears(const DippedFilm& dipped, const std::vector<V
       const double way = (film.position[v] - middle.position[v]).norm();
       moved[v] = std::max(moved[v], left[v] ? std::min(way, kNowhere_mm) : kNowhere_mm);
     }
+  }
+  if (trajectory.is_straight_down()) {
+    const double first_mm = first_let_go_mm(dipped);
+    for (std::size_t v = 0; v < moved.size(); ++v)
+      if (dipped.state[v] == VertexState::kAttached && dipped.position[v].z() < first_mm)
+        moved[v] = 0;
   }
   return moved;
 }

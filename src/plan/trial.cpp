@@ -8,6 +8,7 @@
 #include "air/air.h"
 #include "base/run_scope.h"
 #include "dip/measure.h"
+#include "dip/tear_doubt.h"
 #include "film/locate.h"
 #include "plan/dip_watch.h"
 #include "transfer/film_map.h"
@@ -252,7 +253,7 @@ class StraightTrial {
     DippedFilm film = dipped(way, context);
     Trial trial = judge(film, film.depth_mm);
     if (!task_.asks_what_moves || !(trial.figures.score > task_.worth_asking) ||
-        !tears(film, trial.depth_mm))
+        !(task_.dip.material.tear_stretch > 0) || first_let_go_mm(film) > trial.depth_mm)
       return trial;
     // In the steps that were made.
     const double step_mm = deepest_mm / std::ceil(deepest_mm / task_.dip.step_mm - 1e-9);
@@ -289,15 +290,6 @@ class StraightTrial {
   Trial judge(const DippedFilm& film, double deepest_mm) const {
     const FilmMap map(posed_.mesh(), posed_.surface(), film);
     return judged(task_, pose_, {posed_, map, film, watch_, air_.get()}, depth_mm_, deepest_mm);
-  }
-
-  // By that depth.
-  bool tears(const DippedFilm& film, double depth_mm) const {
-    if (!(task_.dip.material.tear_stretch > 0)) return false;
-    const DippedFilm there = watch_.film_at(depth_mm, film);
-    for (std::size_t t = 0; t < there.torn.size(); ++t)
-      if (there.torn[t] || (there.lies_on_object(t) && there.whole_part(t).share < 1)) return true;
-    return false;
   }
 
   const TrialTask& task_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dip/dip.h"
+#include "dip/tear_doubt.h"
 #include "dip/zoo_shapes.h"
 
 namespace hydrodip {
@@ -94,6 +95,31 @@ TEST(Tears, FilmThatMovesIsNotPromised) {
     moved += film.state[v] == VertexState::kAttached;
   }
   EXPECT_GT(moved, 0);
+}
+
+// A dip passes through every shallower one: it takes back nothing of what those promise that end
+// before any film lets go.
+TEST(Tears, WhatAShallowerDipPromisesIsPromised) {
+  const shapes::Shape grooved = shapes::turned(
+      {{0, 0}, {8, 0.8}, {9, 1}, {10, 2.5}, {16, 2.5}, {17, 1.4}, {30, 12}, {31, 30}, {0, 30}});
+  const DippedFilm deep = dipped(grooved, options_with(0.5)).film;
+  const double first_mm = first_let_go_mm(deep);
+  ASSERT_TRUE(std::isfinite(first_mm));
+  const double before_mm = 0.5 * std::ceil(2 * first_mm - 1) - 0.5;
+  ASSERT_GT(before_mm, 0);
+  const DippedFilm shallow = dipped(grooved, options_with(0.5), before_mm).film;
+  // At the water line film is measured before all around it lies.
+  std::vector<std::uint8_t> lies(shallow.position.size(), 1);
+  for (std::size_t t = 0; t < shallow.torn.size(); ++t)
+    if (!shallow.lies_on_object(t))
+      for (const std::int32_t v : shallow.mesh().triangles[t]) lies[std::size_t(v)] = 0;
+  int promised = 0;
+  for (std::size_t v = 0; v < deep.position.size(); ++v) {
+    if (!lies[v] || shallow.excess_of(std::int32_t(v)) > 0) continue;
+    EXPECT_LE(deep.excess_of(std::int32_t(v)), 0) << shallow.position[v].transpose();
+    ++promised;
+  }
+  EXPECT_GT(promised, 300);
 }
 
 // What a first dip found decides when film lets go in the next.

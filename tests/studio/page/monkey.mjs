@@ -127,7 +127,7 @@ while (Date.now() - began < minutes * 60000) {
   if (session.complaints.length) break;
 }
 page.setDefaultTimeout(120000);
-assert.deepEqual(session.complaints, [], `after ${JSON.stringify(counts)}`);
+assert.deepEqual(session.complaints, [], `${session.refusals.join('\n')} after ${JSON.stringify(counts)}`);
 
 await press('Escape');
 for (let k = 0; k < 50000 && !(await page.locator('[data-name="undo"]').isDisabled()); ++k) await press('Control+z');

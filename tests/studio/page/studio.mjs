@@ -70,6 +70,7 @@ export class Session {
     session.program = program;
     session.browser = await driver.launch({ executablePath: chromium, args: FLAGS });
     session.complaints = [];
+    session.refusals = [];
     session.mayFail = false;
     return session;
   }
@@ -87,6 +88,12 @@ export class Session {
     };
     page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complain(message.text()));
     page.on('pageerror', (error) => complain(String(error.stack)));
+    // The console says of a refusal only that there was one.
+    page.on('response', async (response) => {
+      if (response.status() < 400 || this.mayFail) return;
+      const request = response.request();
+      this.refusals.push(`${request.method()} ${response.url()}: ${await response.text().catch(() => '')}`);
+    });
     page.on('request', (request) => {
       const url = request.url();
       if (!url.startsWith(this.program.origin) && !/^(data|blob):/.test(url)) complain(`asks for ${url}`);
