@@ -35,6 +35,7 @@ for wrong in '[film]\nwidth_mm = 9\n' '[film]\nwidht_mm = 100\n' '[[artwork]]\np
   printf "$wrong" > "wrong/$(ls wrong | wc -l).toml"
 done
 sed 's/"concern": "[a-z]*"/"concern": "perhaps"/' print/report.json > wrong/report.json
+sed 's/"generator":"hydrodip correct"/"generator":"by hand"/' print/correction.json > wrong/correction.json
 "$python" "$source/tests/schemas/validate.py" --refuses "$schemas" wrong/* || fail 'something wrong is taken'
 rm -r wrong
 finish
