@@ -314,6 +314,18 @@ Image draw_field(const DisplacementFit& fit, const FilmOptions& film, double bef
        "arrows where the field is known"});
 }
 
+// The same dip twice is no second witness.
+void require_different(const std::vector<DipSeen>& dips) {
+  const auto same = [](const CorrectionSample& a, const CorrectionSample& b) {
+    return a.model_mm == b.model_mm && a.move_mm == b.move_mm;
+  };
+  for (std::size_t i = 0; i < dips.size(); ++i)
+    for (std::size_t j = i + 1; j < dips.size(); ++j)
+      if (std::ranges::equal(dips[i].samples, dips[j].samples, same))
+        throw InputError(fmt::format("{} and {} say the same, place by place: give each dip once",
+                                     dips[i].file.string(), dips[j].file.string()));
+}
+
 // Places are looked up on the model as it is now.
 void warn_of_change(const RigJob& job, const CorrectedDip& of, const RunContext& context) {
   if (of.model_sha256.empty() || job.model_sha256.empty() || of.model_sha256 == job.model_sha256)
@@ -348,6 +360,7 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
     on_object += n * dip.rms_on_object_mm * dip.rms_on_object_mm;
     count += n;
   }
+  require_different(dips);
   // What earlier dips said counts as much.
   if (film.correction)
     for (const CorrectionSample& s : read_correction(job.config.correction).samples)
@@ -382,8 +395,11 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
   result.text += output.told_replaced();
-  result.text += fmt::format("wrote {0}/{1} and {0}/{2}\nprint again with --correction {0}/{1}\n",
-                             job.folder.string(), kFile, kPicture);
+  const bool of_several = job.earlier_dips > 0 || job.next_dip > 0;
+  result.text += fmt::format("wrote {0}/{1} and {0}/{2}\nprint again with {3}{0}/{1}{4}\n",
+                             job.folder.string(), kFile, kPicture,
+                             of_several ? "correction = \"" : "--correction ",
+                             of_several ? "\" in this dip's [[dip]] table of the job file" : "");
   return result;
 }
 

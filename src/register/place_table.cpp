@@ -73,6 +73,9 @@ std::vector<PlaceRow> read_place_table(const std::filesystem::path& file) {
                                    file.string(), kMostRows));
     rows.push_back({{value[0], value[1]}, {value[2], value[3], value[4]}});
   }
+  if (rows.empty())
+    throw InputError(fmt::format("{}: has its header and no place: one row for each, {}",
+                                 file.string(), kHeader));
   return rows;
 }
 

@@ -135,6 +135,13 @@ sed 's/255 0 0$/200 9 9/' colored.ply > repainted.ply
   expect 2 'pieces of other sizes' nest colored.ply --set film.correction=job/correction.json
   expect 0 'wrote' print repainted.ply $quick $dip -o repainted --correction job/correction.json
 }
+expect 2 'give each dip once' correct job places.csv places.csv
+head -n 1 places.csv > none.csv
+expect 2 'no place' correct job none.csv
+cp colored.ply kept.ply
+cp otherwise.ply colored.ply
+expect 0 'has changed since it was printed' correct job places.csv
+cp kept.ply colored.ply
 sed '0,/"of"/s//"for"/' job/correction.json > of-nothing.json
 expect 2 'of which dip' print colored.ply --correction of-nothing.json
 sed '0,/"schema_version":1/s//"schema_version":2/' job/correction.json > newer.json
@@ -178,4 +185,9 @@ expect 2 'of one dip' print colored.ply --dips 2 --correction job/correction.jso
 # ---- a jig ----
 expect 2 'gives no hold' rig jig job
 expect 2 '3 numbers' rig jig job --bed 220
+expect 2 '50 or more each' rig jig job --bed 220,220,0
+"$hydrodip" print colored.ply --film 140x130 --size 60 --depth 4 --quality draft -o held --quiet > /dev/null ||
+  fail 'print of what a jig holds'
+expect 0 'jig.png' rig jig held
+expect 2 'no_clobber' rig jig held --no-clobber
 finish
