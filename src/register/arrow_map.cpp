@@ -13,7 +13,7 @@ namespace {
 constexpr int kLongSide_px = 760, kMargin_px = 70, kHeader_px = 110;
 constexpr double kLine_px = 22;
 // The longest arrow: over the sheet, and over the distance of its neighbours.
-constexpr double kLongest = 0.06, kOfSpacing = 0.9;
+constexpr double kLongest = 0.06, kOfSpacing = 0.7;
 constexpr LinearColor kSheet{1, 1, 1, 1}, kEdge{0.35F, 0.36F, 0.4F, 1},
     kTape{0.82F, 0.83F, 0.85F, 1};
 constexpr LinearColor kInk{0.55F, 0.02F, 0.02F, 1};
