@@ -47,7 +47,7 @@ std::string difference(const CorrectedDip& then, const CorrectedDip& now) {
   if (!(turn_deg < kSameTurn_deg))
     return fmt::format("was found with the object turned by {:.1f} degrees against this pose",
                        turn_deg);
-  const double larger = now.to_posed.col(0).norm() / then.to_posed.col(0).norm() - 1;
+  const double larger = now.size_mm.norm() / std::max(then.size_mm.norm(), 1e-300) - 1;
   if (!(std::abs(larger) < kSameSize))
     return fmt::format("was found for the object at another size: this one is {:.1f} % {}",
                        100 * std::abs(larger), larger > 0 ? "larger" : "smaller");
@@ -93,6 +93,7 @@ CorrectedDip corrected_dip(const JobConfig& config, const PosedObject& posed, do
     dip.model_sha256 = sha256_hex(read_file(config.model));
   dip.shape_sha256 = shape_hash(posed.object());
   dip.to_posed = posed.matrix().topLeftCorner<3, 3>();
+  dip.size_mm = posed.mesh().bounds().size();
   dip.depth_mm = depth_mm;
   dip.film_mm = {film.width_mm, film.height_mm};
   dip.margin_mm = film.margin_mm;

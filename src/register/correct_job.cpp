@@ -249,6 +249,7 @@ Json json_of(const CorrectedDip& of) {
   return {{"model",
            {{"path", of.model}, {"sha256", of.model_sha256}, {"shape_sha256", of.shape_sha256}}},
           {"to_posed", rows},
+          {"size_mm", {of.size_mm.x(), of.size_mm.y(), of.size_mm.z()}},
           {"depth_mm", of.depth_mm},
           {"film",
            {{"width_mm", of.film_mm.x()},

@@ -70,6 +70,9 @@ CorrectedDip read_dip(const Json& json, const Reader& read) {
     if (row.size() != 3) read.damaged();
     for (int j = 0; j < 3; ++j) dip.to_posed(i, j) = read.number(row[std::size_t(j)], -1e9, 1e9);
   }
+  const Json& size = read.list(read.member(json, "size_mm"));
+  if (size.size() != 3) read.damaged();
+  for (int k = 0; k < 3; ++k) dip.size_mm[k] = read.number(size[std::size_t(k)], 0, kMostLength_mm);
   dip.depth_mm = read.number(read.member(json, "depth_mm"), 0, kMostLength_mm);
   const auto value = [&](const char* group, const char* name, double most) {
     return read.number(read.member(read.member(json, group), name), 0, most);

@@ -25,6 +25,7 @@ struct CorrectedDip {
   std::string model_sha256;  // of that file
   std::string shape_sha256;  // of vertices and triangles, which new colours leave as they are
   Mat3 to_posed = Mat3::Identity();  // from the model's coordinates: turn and size
+  Vec3 size_mm = Vec3::Zero();       // of the posed object, whatever unit its file was read in
   double depth_mm = 0;               // of the deepest point
   Vec2 film_mm = Vec2::Zero();
   double margin_mm = 0;
