@@ -219,7 +219,8 @@ void declare_sample_command(CLI::App& app, Request& request) {
 
 JobResult run_sample(const Request& request, const RunContext& context) {
   if (request.sample.empty()) return list_samples();
-  return sample_job(request.sample, request.output.empty() ? "." : request.output, context);
+  return sample_job(request.sample, request.output.empty() ? "." : request.output, context,
+                    configure(request).earlier_result);
 }
 
 std::vector<std::string> sample_names() {

@@ -45,6 +45,14 @@ JobResult run_printer(const Request& request, const RunContext& context) {
   PrinterRequest printer = request.printer;
   if (printer.readings && !printer.scan.empty())
     throw InputError("--readings and --scan say the same: give one of them");
+  const bool told = printer.readings || !printer.scan.empty();
+  if (!told && !printer.profile.empty())
+    throw InputError(
+        "--save keeps what the printed test sheet tells: give its --readings or a --scan of it");
+  if (printer.scan_dpi > 0 && printer.scan.empty())
+    throw InputError("--scan-dpi is the resolution of a --scan, and there is none");
+  if (!printer.profile.empty() && !request.output.empty())
+    throw InputError("--save keeps it in a profile, and -o in a folder: give one of them");
   printer.profile_folder = profile_folder();
   JobConfig config = configure(request);
   if (config.output.empty()) config.output = ".";
@@ -58,7 +66,8 @@ void declare_board(CLI::App& app, Request& request) {
 }
 
 JobResult run_board(const Request& request, const RunContext& context) {
-  return board_job(request.output.empty() ? "." : request.output, request.paper, context);
+  return board_job(request.output.empty() ? "." : request.output, request.paper,
+                   configure(request).earlier_result, context);
 }
 
 void declare_register(CLI::App& app, Request& request) {
@@ -105,17 +114,24 @@ void declare_register(CLI::App& app, Request& request) {
 JobResult run_register(const Request& request, const RunContext& context) {
   const std::vector<std::string>& given = request.photos;
   if (request.calibrate_camera) {
+    if (!request.registration.camera.empty() || request.registration.set_place)
+      throw InputError(
+          "--camera and --set-place are of a photo of film; --calibrate-camera writes to the file "
+          "of -o");
     if (given.empty())
       throw InputError("name the photos, as in 'hydrodip register --calibrate-camera board-*.jpg'");
     CameraRequest camera;
     camera.photos.assign(given.begin(), given.end());
     camera.file = request.output.empty() ? "camera.json" : request.output;
-    camera.water_below_mm = request.registration.water_below_mm.value_or(0);
+    camera.water_below_mm = request.registration.water_below_mm;
     return calibrate_camera_job(camera, context);
   }
   if (given.size() != 2)
     throw InputError(
         "name one photo and the job's folder, as in 'hydrodip register photo.jpg mask-print'");
+  if (!request.output.empty())
+    throw InputError(
+        "-o is of --calibrate-camera; what a photo tells is written into the job's folder");
   RegisterRequest registration = request.registration;
   registration.photo = given[0];
   return register_job(load_rig_job(given[1], request.sources), registration, context);

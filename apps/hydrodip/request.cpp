@@ -199,6 +199,13 @@ void take_film_state(Request& request, const std::string& file) {
     request.sources.profiles.emplace_back(file);
     return;
   }
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    throw InputError("--film-state: " + file +
+                     ": there is no such file; 'hydrodip register' writes registration.json into "
+                     "the job's folder");
+  if (std::filesystem::is_directory(file, ignored))
+    throw InputError("--film-state: " + file + " is a folder; name the registration.json in it");
   const auto registration = read_registration(file);
   if (!registration)
     throw InputError("--film-state: " + file +

@@ -1,6 +1,9 @@
 #include "rig_commands.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <optional>
 
 #include "base/error.h"
@@ -96,6 +99,11 @@ void declare_jig(CLI::App& app, Request& request) {
          "--bed",
          [&request](const std::string& text) {
            const std::vector<double> mm = numbers_of("--bed", text, 3, 3);
+           constexpr double kLeast_mm = 50;
+           if (!(*std::min_element(mm.begin(), mm.end()) >= kLeast_mm))
+             throw InputError(fmt::format(
+                 "--bed: give the printer's bed and height in mm, {:g} or more each, not '{}'",
+                 kLeast_mm, text));
            request.jig.bed_mm = {mm[0], mm[1], mm[2]};
          },
          "of the 3D printer (default: 220,220,250)")

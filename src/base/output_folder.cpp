@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/obstacle.h"
 
 namespace hydrodip {
 
@@ -28,14 +29,18 @@ constexpr const char* kEarlierFolder = "..earlier";
 
 [[noreturn]] void refuse_folder(const fs::path& folder, const std::error_code& why) {
   throw InputError(fmt::format(
-      "{}: the output folder cannot be created or written to ({}); choose another one with -o.",
+      "{}: the output folder cannot be created or written to ({}); write to another one.",
       folder.string(), why.message()));
 }
 
 [[noreturn]] void refuse_file(const fs::path& file, const std::string& why) {
-  throw InputError(
-      fmt::format("{}: cannot be written ({}); free the name or choose another output folder.",
-                  file.string(), why));
+  throw InputError(fmt::format("{}: cannot be written ({}); free the name, or write elsewhere.",
+                               file.string(), why));
+}
+
+void require_free_name(const fs::path& file) {
+  const std::string obstacle = obstacle_at(file);
+  if (!obstacle.empty()) refuse_file(file, obstacle + " of that name is in the way");
 }
 
 // The folder and its missing ancestors, outermost last.
@@ -213,15 +218,15 @@ void OutputFolder::announce(const std::vector<std::string>& names,
     if (!fs::exists(file, ignored)) continue;
     for (const fs::path& input : inputs)
       if (fs::equivalent(file, input, ignored))
-        throw InputError(
-            fmt::format("{}: the job reads this file, and its result {} would overwrite it; choose "
-                        "another output folder with -o.",
-                        input.string(), name));
-    if (!fs::is_regular_file(file, ignored)) continue;  // commit() says what is in the way
+        throw InputError(fmt::format(
+            "{}: the job reads this file, and its result {} would overwrite it; move it "
+            "elsewhere, or write to another folder.",
+            input.string(), name));
+    require_free_name(file);
     if (earlier_ == EarlierResult::kKept)
       throw InputError(
-          fmt::format("{}: there is a result already, and no_clobber keeps it; choose another "
-                      "output folder with -o, or allow it with --set output.no_clobber=off.",
+          fmt::format("{}: there is a result already, and no_clobber keeps it; write to another "
+                      "folder, or leave out --no-clobber (output.no_clobber).",
                       file.string()));
     if (names_hydrodip(file)) {
       ours = true;
@@ -231,8 +236,8 @@ void OutputFolder::announce(const std::vector<std::string>& names,
   }
   if (!foreign.empty() && !ours)
     throw InputError(
-        fmt::format("{}: this file was not written by hydrodip, and would be replaced; choose "
-                    "another output folder with -o, or move it away.",
+        fmt::format("{}: this file was not written by hydrodip, and would be replaced; move it "
+                    "away, or write to another folder.",
                     (folder_ / foreign.front()).string()));
 }
 
@@ -258,9 +263,7 @@ void OutputFolder::commit() {
     if (!fs::is_regular_file(staging_ / name, error)) {
       refuse_file(folder_ / name, "it was not finished");
     }
-    if (fs::is_directory(folder_ / name, error)) {
-      refuse_file(folder_ / name, "a folder of that name is in the way");
-    }
+    require_free_name(folder_ / name);
   }
   Replacement replacement(staging_, folder_);
   for (const std::string& name : names_) {

@@ -15,6 +15,7 @@
 #include "export/stl.h"
 #include "ink/color_model.h"
 #include "job/sheet_of.h"
+#include "sheet/film_marks.h"
 #include "sheet/page_writer.h"
 #include "sheet/sheet.h"
 
@@ -100,13 +101,15 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
       kMountHole_mm));
 
   page.heading("Film");
+  const FilmOptions& film = config.design.film;
   page.task(
       fmt::format("Print checkerboard.pdf once for each dip at 100 %, no scaling; the ruler in its "
                   "margin must measure true. Four squares together are {:g} mm wide.",
                   4 * board.square_mm),
       {"Four squares, mm"});
-  page.task(fmt::format("Tape {:g} mm around all four edges. Dry for as long as your ink needs.",
-                        config.design.film.margin_mm));
+  page.task(fmt::format(
+      "Tape {:g} mm around all four edges. Dry for as long as your ink needs.",
+      tape_mm(film.width_mm, film.height_mm, film.margin_mm, config.print.camera_marks)));
 
   page.heading("Dip");
   for (const std::string& text : objects) {

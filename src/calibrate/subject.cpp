@@ -98,7 +98,15 @@ void find_how_it_lies(Subject& subject, const ScanSettings& settings, const JobC
   const auto place_the_rest = [&](const Eigen::Isometry3d& pose, bool turned) {
     place_patches(subject.scan.grid, pose, turned, landing, reach, board.square_mm, subject.place);
   };
-  if (settings.aligned) return place_the_rest(Eigen::Isometry3d::Identity(), false);
+  if (settings.aligned) {
+    place_the_rest(Eigen::Isometry3d::Identity(), false);
+    if (std::none_of(subject.place.begin(), subject.place.end(),
+                     [](const auto& place) { return place.has_value(); }))
+      throw InputError(fmt::format(
+          "{}: {}", subject.file.string(),
+          why_unplaced(subject.scan.grid, *subject.surface, landing, reach, board.square_mm)));
+    return;
+  }
   GridMatch match =
       match_grid(subject.scan.grid, landing, reach, board.square_mm, subject.file.string());
   judge_match(subject, match, settings.file.mirrored, context);

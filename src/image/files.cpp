@@ -14,6 +14,7 @@
 #include <csetjmp>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <new>
 #include <span>
 #include <string_view>
@@ -24,6 +25,7 @@
 #include "base/run_scope.h"
 #include "image/decoders.h"
 #include "image/deflate_rows.h"
+#include "image/picture_file.h"
 
 namespace hydrodip {
 
@@ -490,20 +492,37 @@ const char* foreign_kind(const Bytes& bytes) {
   return bytes.empty() ? "an empty file" : nullptr;
 }
 
-StoredPicture decode_any(const Bytes& bytes, const std::string& name) {
-  if (is_png(bytes)) return decode_png(bytes, name);
-  if (is_jpeg(bytes)) return decode_jpeg(bytes, name);
-  if (begins(bytes, "RIFF") && begins(bytes, "WEBP", 8)) return decode_webp(bytes, name);
-  if (begins(bytes, "GIF8")) return decode_gif(bytes, name);
-  if (begins(bytes, std::string_view("II*\0", 4)) || begins(bytes, std::string_view("MM\0*", 4)) ||
-      begins(bytes, std::string_view("II+\0", 4)) || begins(bytes, std::string_view("MM\0+", 4)))
-    return decode_tiff(bytes, name);
-  if (begins(bytes, "BM")) return decode_bmp(bytes, name);
+[[noreturn]] void refuse_kind(const Bytes& bytes, const std::string& name) {
   const char* foreign = foreign_kind(bytes);
-  if (!foreign && looks_like_tga(bytes)) return decode_tga(bytes, name);
   throw InputError(fmt::format("{}: {}; give a PNG, JPEG, WebP, TIFF, GIF, BMP or TGA file.", name,
                                foreign ? fmt::format("{}, which is not read", foreign)
                                        : "not a picture of a kind that is read"));
+}
+
+bool is_tiff(const Bytes& bytes) {
+  return begins(bytes, std::string_view("II*\0", 4)) ||
+         begins(bytes, std::string_view("MM\0*", 4)) ||
+         begins(bytes, std::string_view("II+\0", 4)) || begins(bytes, std::string_view("MM\0+", 4));
+}
+
+bool is_webp(const Bytes& bytes) { return begins(bytes, "RIFF") && begins(bytes, "WEBP", 8); }
+
+// By its first bytes; TGA has no mark.
+bool may_be_picture(const Bytes& bytes) {
+  return is_png(bytes) || is_jpeg(bytes) || is_webp(bytes) || begins(bytes, "GIF8") ||
+         is_tiff(bytes) || begins(bytes, "BM") ||
+         (foreign_kind(bytes) == nullptr && looks_like_tga(bytes));
+}
+
+StoredPicture decode_any(const Bytes& bytes, const std::string& name) {
+  if (is_png(bytes)) return decode_png(bytes, name);
+  if (is_jpeg(bytes)) return decode_jpeg(bytes, name);
+  if (is_webp(bytes)) return decode_webp(bytes, name);
+  if (begins(bytes, "GIF8")) return decode_gif(bytes, name);
+  if (is_tiff(bytes)) return decode_tiff(bytes, name);
+  if (begins(bytes, "BM")) return decode_bmp(bytes, name);
+  if (foreign_kind(bytes) == nullptr && looks_like_tga(bytes)) return decode_tga(bytes, name);
+  refuse_kind(bytes, name);
 }
 
 }  // namespace
@@ -524,8 +543,33 @@ Image decode_image(const Bytes& bytes, const std::string& name) {
   }
 }
 
+std::vector<std::uint8_t> read_picture(const std::filesystem::path& path) {
+  // 2^28 pixels of four 16-bit values, stored plainly, and some room.
+  constexpr std::uintmax_t kLargest = (std::uintmax_t(1) << 31) + (std::uintmax_t(1) << 26);
+  constexpr std::size_t kFirst = 4096;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return read_file(path);
+  const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+  std::ifstream file(path, std::ios::binary);
+  Bytes first(kFirst);
+  file.read(reinterpret_cast<char*>(first.data()), kFirst);
+  first.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
+  // What cannot be opened is said by read_file.
+  if (!first.empty() && !may_be_picture(first)) refuse_kind(first, path.string());
+  if (size > kLargest)
+    throw InputError(
+        fmt::format("{}: has {:.1f} GB, more than any picture that is read; scale it "
+                    "down.",
+                    path.string(), double(size) / 1e9));
+  return read_file(path);
+}
+
 Image load_image(const std::filesystem::path& path) {
-  return decode_image(read_file(path), path.string());
+  return decode_image(read_picture(path), path.string());
+}
+
+double scan_dpi(const Bytes& bytes) {
+  return is_tiff(bytes) ? recorded_tiff_dpi(bytes) : recorded_dpi(bytes);
 }
 
 double recorded_dpi(const Bytes& bytes) {

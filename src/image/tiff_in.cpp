@@ -10,6 +10,7 @@
 
 #include "base/run_scope.h"
 #include "image/decoders.h"
+#include "image/picture_file.h"
 
 namespace hydrodip {
 
@@ -193,6 +194,20 @@ bool read_rows(TIFF* file, Image& to) {
 }
 
 }  // namespace
+
+double recorded_tiff_dpi(const PictureBytes& bytes) {
+  TiffSource source{bytes};
+  const Tiff file = open(source);
+  float across = 0, along = 0;
+  std::uint16_t unit = RESUNIT_INCH;
+  if (!file || TIFFGetField(file.get(), TIFFTAG_XRESOLUTION, &across) != 1 ||
+      TIFFGetField(file.get(), TIFFTAG_YRESOLUTION, &along) != 1)
+    return 0;
+  TIFFGetFieldDefaulted(file.get(), TIFFTAG_RESOLUTIONUNIT, &unit);
+  // Without a unit they are an aspect ratio alone.
+  if (unit == RESUNIT_NONE || !(across > 0) || across != along) return 0;
+  return unit == RESUNIT_CENTIMETER ? 2.54 * double(across) : double(across);
+}
 
 StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
   TiffSource source{bytes};

@@ -91,7 +91,7 @@ JobResult view_job(const std::filesystem::path& where);
 
 // Writes a built-in sample model with its texture.
 JobResult sample_job(const std::string& name, const std::filesystem::path& folder,
-                     const RunContext& context);
+                     const RunContext& context, EarlierResult earlier = EarlierResult::kReplaced);
 // The built-in samples' names and what they are; for `hydrodip sample` without a name.
 JobResult list_samples();
 

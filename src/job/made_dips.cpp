@@ -11,6 +11,7 @@
 #include "base/timings.h"
 #include "dip/tear_doubt.h"
 #include "hydrodip/hydrodip.h"
+#include "job/correction_fit.h"
 #include "job/dips_side_by_side.h"
 #include "job/ways.h"
 
@@ -88,7 +89,9 @@ MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const 
                 fmt::format("dip-{}", k + 1),
                 int(k) + 1};
     const Trajectory way = make_trajectory(dip.config.design.trajectory, posed.mesh().positions);
-    require_fit(posed.mesh(), room_of(posed.mesh(), way), config.design.film, config.bath, context);
+    const Room room = room_of(posed.mesh(), way);
+    require_fit(posed.mesh(), room, config.design.film, config.bath, context);
+    require_correction_fits(dip.config, posed, room.depth_mm);
     all.dips.push_back(std::move(dip));
   }
   return all;

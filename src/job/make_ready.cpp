@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "job/computed.h"
+#include "job/correction_fit.h"
 #include "job/ways.h"
 
 namespace hydrodip {
@@ -18,7 +19,9 @@ ReadyJob make_ready(const JobConfig& given, bool to_print, Timings& times,
     times.measure("find", [&] { find_what_is_asked(config, prepared, context); });
   const TriangleMesh& mesh = prepared.posed.mesh();
   Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
-  require_fit(mesh, room_of(mesh, trajectory), config.design.film, config.bath, context);
+  const Room room = room_of(mesh, trajectory);
+  require_fit(mesh, room, config.design.film, config.bath, context);
+  require_correction_fits(config, prepared.posed, room.depth_mm);
   Printer printer = make_printer(config.printer);
   return {std::move(config), std::move(prepared), std::move(trajectory), std::move(printer)};
 }

@@ -68,6 +68,12 @@ FilmOptions piece_for(const Room& room, const FilmOptions& sheet, double clearan
 Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet,
                   const NestRequest& request, const RunContext& context) {
   JobConfig config = wanted.config;
+  for (const std::filesystem::path& correction : {config.correction, sheet.correction})
+    if (!correction.empty())
+      throw InputError(fmt::format(
+          "{}: a correction is of one dip on a sheet of its own, and parts that share a sheet get "
+          "pieces of other sizes; leave it out, or print the part by itself",
+          correction.string()));
   config.printer = sheet.printer;
   config.design.dpi = sheet.design.dpi;
   PreparedObject prepared = prepare_object(config.model, config.object, context, config.design.dpi,

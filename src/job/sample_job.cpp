@@ -10,10 +10,10 @@
 namespace hydrodip {
 
 JobResult sample_job(const std::string& name, const std::filesystem::path& folder,
-                     const RunContext& context) {
+                     const RunContext& context, EarlierResult earlier) {
   const RunScope scope(context);
   const Object sample = make_sample(name);  // refuses unknown names before a folder is made
-  OutputFolder output(folder);
+  OutputFolder output(folder, earlier);
   const std::string model = name + ".obj";
   JobResult result;
   result.folder = folder;

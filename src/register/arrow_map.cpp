@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kLongSide_px = 760, kMargin_px = 70, kHeader_px = 110;
 constexpr double kLine_px = 22;
-constexpr double kLongest = 0.06;  // arrow, over the sheet
+// The longest arrow: over the sheet, and over the distance of its neighbours.
+constexpr double kLongest = 0.06, kOfSpacing = 0.7;
 constexpr LinearColor kSheet{1, 1, 1, 1}, kEdge{0.35F, 0.36F, 0.4F, 1},
     kTape{0.82F, 0.83F, 0.85F, 1};
 constexpr LinearColor kInk{0.55F, 0.02F, 0.02F, 1};
@@ -58,6 +59,18 @@ void draw_arrow(Image& page, const Vec2& from, const Vec2& to) {
     draw_stroke(page, to, to + back + side * Vec2(-back.y(), back.x()), 1.8);
 }
 
+// Of the two that stand nearest to each other; on a grid, the first ones tell.
+double closest_mm(const std::vector<Arrow>& arrows) {
+  double nearest = 1e300;
+  constexpr std::size_t kFirst = 100;
+  for (std::size_t i = 0; i < std::min(kFirst, arrows.size()); ++i)
+    for (std::size_t j = i + 1; j < arrows.size(); ++j) {
+      const double distance = (arrows[i].from_mm - arrows[j].from_mm).norm();
+      if (distance > 0) nearest = std::min(nearest, distance);
+    }
+  return nearest;
+}
+
 double largest(const std::vector<Arrow>& arrows) {
   double most = 0;
   for (const Arrow& arrow : arrows) most = std::max(most, arrow.by_mm.norm());
@@ -79,7 +92,7 @@ Image draw_arrow_map(double width_mm, double height_mm, double margin_mm,
   const int width = int(width_mm * scale), height = int(height_mm * scale);
   const int page_width = std::max(width + 2 * kMargin_px, 560);
   Image page =
-      blank_page(page_width, kHeader_px + height + int(kLine_px * (double(lines.size()) + 5.5)));
+      blank_page(page_width, kHeader_px + height + int(kLine_px * (double(lines.size()) + 6.5)));
   draw_centered(page, title, 0.5 * page_width, 40, style(22, kTitleInk));
   const int left = (page_width - width) / 2;
   fill(page, left - 1, kHeader_px - 1, left + width + 1, kHeader_px + height + 1, kEdge);
@@ -90,15 +103,21 @@ Image draw_arrow_map(double width_mm, double height_mm, double margin_mm,
   const Vec2 middle(left + 0.5 * width, kHeader_px + 0.5 * height);
   const auto to_px = [&](const Vec2& mm) -> Vec2 { return middle + scale * Vec2(mm.x(), -mm.y()); };
   const double most = largest(arrows);
-  const double longer = most > 0 ? kLongest * std::max(width_mm, height_mm) / most : 1;
+  const double longest_mm =
+      std::min(kLongest * std::max(width_mm, height_mm), kOfSpacing * closest_mm(arrows));
+  const double longer = most > 0 ? longest_mm / most : 1;
   for (const Arrow& arrow : arrows)
     draw_arrow(page, to_px(arrow.from_mm), to_px(arrow.from_mm + longer * arrow.by_mm));
   double y = kHeader_px + height + 3.2 * kLine_px;
   if (most > 0) {
     const double shown = round_down(most);
     const double length = shown * longer * scale;
-    draw_stroke(page, {0.5 * page_width - 60 - length, y - 5}, {0.5 * page_width - 60, y - 5}, 2);
+    const double end = 0.5 * page_width - 60;
+    draw_stroke(page, {end - length, y - 5}, {end, y - 5}, 2);
     draw_centered(page, fmt::format("{:g} mm", shown), 0.5 * page_width, y, style(16, kLabelInk));
+    y += kLine_px;
+    draw_centered(page, fmt::format("arrows are drawn {:.2g} times as long as true", longer),
+                  0.5 * page_width, y, style(16, kLabelInk));
     y += kLine_px;
   }
   for (const std::string& line : lines) {

@@ -62,9 +62,9 @@ void write_board(const std::filesystem::path& path, const PaperSize& paper) {
 }  // namespace
 
 JobResult board_job(const std::filesystem::path& folder, const std::string& paper,
-                    const RunContext& context) {
+                    EarlierResult earlier, const RunContext& context) {
   const PaperSize size = paper_named(paper);
-  OutputFolder output(folder);
+  OutputFolder output(folder, earlier);
   output.announce({"board.pdf"}, {});
   write_board(output.path("board.pdf"), size);
   context.check_cancelled();

@@ -35,6 +35,21 @@ std::vector<SeenPhoto> read_photos(const std::vector<std::filesystem::path>& fil
   return photos;
 }
 
+// The file is to be replaced: what it says beside the lens is kept.
+void keep_earlier(const std::filesystem::path& file, const CameraRequest& request, Tank& tank,
+                  const RunContext& context) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(file, ignored)) try {
+      if (!keep_what_was_said(read_tank(file), tank))
+        context.warn(
+            "the strips lie otherwise than before: the film's place is their middle again; set it "
+            "anew with 'hydrodip register PHOTO JOB_DIR --set-place'.");
+    } catch (const InputError&) {
+      // It is none, or of an older kind.
+    }
+  if (request.water_below_mm) tank.water_below_mm = *request.water_below_mm;
+}
+
 }  // namespace
 
 JobResult calibrate_camera_job(const CameraRequest& request, const RunContext& context) {
@@ -45,7 +60,7 @@ JobResult calibrate_camera_job(const CameraRequest& request, const RunContext& c
   int width_px = 0, height_px = 0;
   const std::vector<SeenPhoto> photos = read_photos(request.photos, width_px, height_px, context);
   Tank tank = calibrate_tank(photos, width_px, height_px, context);
-  tank.water_below_mm = request.water_below_mm;
+  keep_earlier(file, request, tank, context);
   write_file(output.path(file.filename().string()), tank_as_json(tank));
   context.check_cancelled();
   output.commit();
@@ -56,9 +71,14 @@ JobResult calibrate_camera_job(const CameraRequest& request, const RunContext& c
   const double focal_sigma = std::sqrt(tank.lens_covariance(0, 0));
   result.text = fmt::format(
       "{} photos, {} marks of the rim; corners fit to {:.3f} px\n"
-      "focal length {:.1f} +- {:.1f} px, distortion k1 {:+.4f}, k2 {:+.4f}\nwrote {}\n",
+      "focal length {:.1f} +- {:.1f} px, distortion k1 {:+.4f}, k2 {:+.4f}\n"
+      "the water stands {:g} mm below the strips{}\nwrote {}\n",
       photos.size(), tank.corner_mm.size(), tank.rms_px, tank.lens.focal_px, focal_sigma,
-      tank.lens.k1, tank.lens.k2, request.file.string());
+      tank.lens.k1, tank.lens.k2, tank.water_below_mm,
+      request.water_below_mm     ? ""
+      : tank.water_below_mm != 0 ? ", as the earlier file says"
+                                 : " (--water-below says how far)",
+      request.file.string());
   result.text += output.told_replaced();
   for (const std::string& warning : context.warnings()) result.text += "warning: " + warning + "\n";
   result.json = nlohmann::ordered_json{{"schema_version", 1},
@@ -69,6 +89,7 @@ JobResult calibrate_camera_job(const CameraRequest& request, const RunContext& c
                                        {"rms_px", tank.rms_px},
                                        {"focal_px", tank.lens.focal_px},
                                        {"focal_sigma_px", focal_sigma},
+                                       {"water_below_mm", tank.water_below_mm},
                                        {"warnings", context.warnings()}}
                     .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
                 "\n";

@@ -9,6 +9,7 @@
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "image/files.h"
+#include "job/correction_fit.h"
 #include "register/arrow_map.h"
 #include "register/displacement_fit.h"
 #include "register/place_table.h"
@@ -83,9 +84,8 @@ Reading reading_as(const Board& board, const CornerGrid& scan, const PrintedFilm
   if (std::none_of(reading.place.begin(), reading.place.end(),
                    [](const auto& place) { return place.has_value(); }))
     throw InputError(fmt::format(
-        "{}: its corners lie nowhere near those of the {} board on this job's object (not within "
-        "half a square); leave out --aligned, or check --square and --board",
-        name, board.name));
+        "{}, taken for the {} board: {}", name, board.name,
+        why_unplaced(moved(scan, pose), film.posed.surface(), landing, reach, board.square_mm)));
   reading.grid = moved(scan, pose);
   reading.off_mm = distance_mm(reading, landing);
   return reading;
@@ -134,6 +134,7 @@ std::vector<Board> boards_asked(const CorrectRequest& request) {
 struct Landings {
   std::vector<Landed> places;
   std::string board;  // whose corners these are; empty: places from a table
+  double square_mm = 0;
 };
 
 Landings read_grid(const std::filesystem::path& file, const PrintedFilm& film,
@@ -153,7 +154,7 @@ Landings read_grid(const std::filesystem::path& file, const PrintedFilm& film,
         "mirror image, of which the correction would be wrong; turn its faces outwards, or save it "
         "without mirroring",
         file.string()));
-  Landings landings{{}, reading.board.name};
+  Landings landings{{}, reading.board.name, reading.board.square_mm};
   for (std::size_t i = 0; i < reading.place.size(); ++i)
     if (reading.place[i])
       landings.places.push_back(
@@ -176,6 +177,7 @@ Landings read_table(const std::filesystem::path& file, const CorrectRequest& req
 struct DipSeen {
   std::filesystem::path file;
   std::string board;  // as of its landings
+  double square_mm = 0;
   std::vector<CorrectionSample> samples;
   Vec2 mean_off = Vec2::Zero();  // from what the print meant, on the sheet
   double rms_off_mm = 0;
@@ -198,7 +200,7 @@ DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
                 const RunContext& context) {
   const Landings landings = is_place_table(file) ? read_table(file, request)
                                                  : read_grid(file, film, sheet, request, context);
-  DipSeen dip{file, landings.board, {}, {}, 0, 0};
+  DipSeen dip{file, landings.board, landings.square_mm, {}, {}, 0, 0};
   double square = 0, on_object = 0, on_object_count = 0;
   for (const Landed& place : landings.places) {
     const auto near = film.posed.surface().closest_point(place.position, kReach_mm);
@@ -240,12 +242,34 @@ double between_dips_mm(const std::vector<DipSeen>& dips) {
 
 Json pair_of(const Vec2& v) { return {v.x(), v.y()}; }
 
-Json json_of(const std::vector<DipSeen>& dips, const std::vector<CorrectionSample>& samples,
-             const DisplacementFit& fit) {
+Json json_of(const CorrectedDip& of) {
+  Json rows = Json::array();
+  for (int i = 0; i < 3; ++i)
+    rows.push_back({of.to_posed(i, 0), of.to_posed(i, 1), of.to_posed(i, 2)});
+  return {{"model",
+           {{"path", of.model}, {"sha256", of.model_sha256}, {"shape_sha256", of.shape_sha256}}},
+          {"to_posed", rows},
+          {"size_mm", {of.size_mm.x(), of.size_mm.y(), of.size_mm.z()}},
+          {"depth_mm", of.depth_mm},
+          {"film",
+           {{"width_mm", of.film_mm.x()},
+            {"height_mm", of.film_mm.y()},
+            {"margin_mm", of.margin_mm},
+            {"swelling_x", of.swelling.x()},
+            {"swelling_y", of.swelling.y()}}},
+          {"material",
+           {{"z_stretch", of.z_stretch},
+            {"poisson", of.poisson},
+            {"ink_stiffness_ratio", of.ink_stiffness_ratio}}}};
+}
+
+Json json_of(const CorrectedDip& of, const std::vector<DipSeen>& dips,
+             const std::vector<CorrectionSample>& samples, const DisplacementFit& fit) {
   Json seen = Json::array(), moves = Json::array(), kept = Json::array();
   for (const DipSeen& dip : dips)
     seen.push_back({{"file", dip.file.string()},
                     {"board", dip.board},
+                    {"square_mm", dip.square_mm},
                     {"places", dip.samples.size()},
                     {"mean_off_mm", pair_of(dip.mean_off)},
                     {"rms_on_sheet_mm", dip.rms_off_mm},
@@ -253,8 +277,9 @@ Json json_of(const std::vector<DipSeen>& dips, const std::vector<CorrectionSampl
   for (const Vec2& move : fit.field.move) moves.push_back(pair_of(move));
   for (const CorrectionSample& s : samples)
     kept.push_back({{"model_mm", pair_of(s.model_mm)}, {"move_mm", pair_of(s.move_mm)}});
-  return {{"schema_version", 1},
+  return {{"schema_version", kCorrectionSchemaVersion},
           {"generator", "hydrodip correct"},
+          {"of", json_of(of)},
           {"dips", seen},
           {"between_dips_mm", between_dips_mm(dips)},
           {"smooth_mm", fit.smooth_mm},
@@ -290,16 +315,39 @@ Image draw_field(const DisplacementFit& fit, const FilmOptions& film, double bef
        "arrows where the field is known"});
 }
 
+// The same dip twice is no second witness.
+void require_different(const std::vector<DipSeen>& dips) {
+  const auto same = [](const CorrectionSample& a, const CorrectionSample& b) {
+    return a.model_mm == b.model_mm && a.move_mm == b.move_mm;
+  };
+  for (std::size_t i = 0; i < dips.size(); ++i)
+    for (std::size_t j = i + 1; j < dips.size(); ++j)
+      if (std::ranges::equal(dips[i].samples, dips[j].samples, same))
+        throw InputError(fmt::format("{} and {} say the same, place by place: give each dip once",
+                                     dips[i].file.string(), dips[j].file.string()));
+}
+
+// Places are looked up on the model as it is now.
+void warn_of_change(const RigJob& job, const CorrectedDip& of, const RunContext& context) {
+  if (of.model_sha256.empty() || job.model_sha256.empty() || of.model_sha256 == job.model_sha256)
+    return;
+  context.warn(fmt::format(
+      "{} has changed since it was printed: if its shape has, print it again first.", of.model));
+}
+
 }  // namespace
 
 JobResult correct_job(const RigJob& job, const CorrectRequest& request, const RunContext& context) {
   const RunScope scope(context.with_threads(job.config.threads));
-  OutputFolder output(job.folder);
+  OutputFolder output(job.folder, job.config.earlier_result);
   std::vector<std::filesystem::path> inputs = request.scans;
   if (!job.config.correction.empty()) inputs.push_back(job.config.correction);
   output.announce({kFile, kPicture}, inputs);
   context.progress("reading the dips", 0);
   const PrintedFilm film = read_printed_film(job, context);
+  require_correction_fits(job.config, film.posed, job.depth_mm);
+  const CorrectedDip of = corrected_dip(job.config, film.posed, job.depth_mm);
+  warn_of_change(job, of, context);
   const FilmOptions& sheet = job.config.design.film;
   std::vector<DipSeen> dips;
   std::vector<CorrectionSample> samples;
@@ -313,6 +361,7 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
     on_object += n * dip.rms_on_object_mm * dip.rms_on_object_mm;
     count += n;
   }
+  require_different(dips);
   // What earlier dips said counts as much.
   if (film.correction)
     for (const CorrectionSample& s : read_correction(job.config.correction).samples)
@@ -323,7 +372,8 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
   const double before_mm = std::sqrt(square / count);
 
   JobResult result;
-  result.json = json_of(dips, samples, fit).dump(-1) + "\n";
+  result.json =
+      json_of(of, dips, samples, fit).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   write_file(output.path(kFile), result.json);
   save_png(output.path(kPicture), draw_field(fit, sheet, before_mm));
   context.progress("fitting the correction", 1);
@@ -346,8 +396,11 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
   result.text += output.told_replaced();
-  result.text += fmt::format("wrote {0}/{1} and {0}/{2}\nprint again with --correction {0}/{1}\n",
-                             job.folder.string(), kFile, kPicture);
+  const bool of_several = job.earlier_dips > 0 || job.next_dip > 0;
+  result.text += fmt::format("wrote {0}/{1} and {0}/{2}\nprint again with {3}{0}/{1}{4}\n",
+                             job.folder.string(), kFile, kPicture,
+                             of_several ? "correction = \"" : "--correction ",
+                             of_several ? "\" in this dip's [[dip]] table of the job file" : "");
   return result;
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/small_file.h"
 #include "job/prepare.h"
 #include "settings/correction_file.h"
 
@@ -71,10 +71,13 @@ void mark_torn(DippedFilm& film, double tear_stretch) {
 
 DippedFilm read_film(const std::filesystem::path& file, const FilmOptions& options,
                      double tear_stretch) {
-  const std::vector<std::uint8_t> bytes = read_file(file);
   DippedFilm film;
   film.shared_mesh = std::make_shared<const FilmMesh>(make_film_mesh(options));
   const FilmMesh& mesh = film.mesh();
+  constexpr std::size_t kHeader = 4096, kPerVertex = 64, kPerTriangle = 32;  // and more than that
+  const std::vector<std::uint8_t> bytes = read_small_file(
+      file, kHeader + kPerVertex * mesh.u.size() + kPerTriangle * mesh.triangles.size(),
+      "this job's film");
   Cursor cursor(bytes, behind_header(bytes, mesh, file), file);
   constexpr double kSame_mm = 1e-3;
   for (const Vec2& u : mesh.u) {

@@ -9,10 +9,12 @@
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "image/files.h"
+#include "image/picture_file.h"
 #include "job/profile_jobs.h"
 #include "register/register.h"
 #include "register/true_size.h"
 #include "settings/profiles.h"
+#include "settings/settings.h"
 #include "sheet/page_writer.h"
 
 namespace hydrodip {
@@ -72,6 +74,17 @@ class Rule {
   double length_mm_;
 };
 
+// "--film letter " where that is not the usual one.
+std::string film_option(double width_mm, double height_mm) {
+  for (const FilmFormat& format : film_formats()) {
+    if (format.width_mm == width_mm && format.height_mm == height_mm)
+      return format.name == "a4" ? "" : fmt::format("--film {} ", format.name);
+    if (format.width_mm == height_mm && format.height_mm == width_mm)
+      return fmt::format("--film {}-landscape ", format.name);
+  }
+  return fmt::format("--film {:g}x{:g} ", width_mm, height_mm);
+}
+
 void draw_test_sheet(const std::filesystem::path& path, double width_mm, double height_mm) {
   const TestSheet sheet = test_sheet(width_mm, height_mm);
   PdfDocument pdf;
@@ -108,14 +121,17 @@ void draw_test_sheet(const std::filesystem::path& path, double width_mm, double 
   page.y -= 1;
   say("Print at 100 %, no scaling, with the driver's settings and the way into the printer that "
       "your film will have.");
-  say("With a scanner: scan it at 300 dpi and more, then hydrodip calibrate printer --scan "
-      "IMAGE.");
+  const std::string film = film_option(width_mm, height_mm);
+  say(
+      fmt::format("With a scanner: scan it at 300 dpi and more, then hydrodip calibrate printer "
+                  "{}--scan IMAGE.",
+                  film));
   say(fmt::format(
       "With a steel rule: lay its zero on A and read the lengths A-B (drawn {:g} mm), A-C ({:g} "
       "mm), A-D and C-B ({:.2f} mm). At B and C read whole millimetres at the cross; the part of a "
       "millimetre is told by the outer line that meets one of the rule's. Then hydrodip calibrate "
-      "printer --readings AB,AC,AD,CB.",
-      sheet.across_mm, sheet.along_mm, std::hypot(sheet.across_mm, sheet.along_mm)));
+      "printer {}--readings AB,AC,AD,CB.",
+      sheet.across_mm, sheet.along_mm, std::hypot(sheet.across_mm, sheet.along_mm), film));
   pdf.save(path);
 }
 
@@ -123,13 +139,13 @@ PrinterScale found_scale(const JobConfig& config, const PrinterRequest& request,
                          const RunContext& context) {
   const TestSheet sheet = test_sheet(config.design.film.width_mm, config.design.film.height_mm);
   if (request.readings) return scale_by(*request.readings, sheet);
-  const std::vector<std::uint8_t> bytes = read_file(request.scan);
-  const double dpi = request.scan_dpi > 0 ? request.scan_dpi : recorded_dpi(bytes);
+  const std::vector<std::uint8_t> bytes = read_picture(request.scan);
+  const Image scan = decode_image(bytes, request.scan.string());
+  const double dpi = request.scan_dpi > 0 ? request.scan_dpi : scan_dpi(bytes);
   if (!(dpi > 0))
     throw InputError(fmt::format("{}: the picture does not say its resolution; give --scan-dpi",
                                  request.scan.string()));
-  return scale_by(find_marks(gray_of(decode_image(bytes, request.scan.string())), context), dpi,
-                  sheet, request.scan.string());
+  return scale_by(find_marks(gray_of(scan), context), dpi, sheet, request.scan.string());
 }
 
 Setting setting(const char* name, double value) {

@@ -40,12 +40,13 @@ JobResult printer_job(const JobConfig& config, const PrinterRequest& request,
 
 // board.pdf: strips of marks for the tank's rim.
 JobResult board_job(const std::filesystem::path& folder, const std::string& paper,
-                    const RunContext& context);
+                    EarlierResult earlier, const RunContext& context);
 
 struct CameraRequest {
   std::vector<std::filesystem::path> photos;
   std::filesystem::path file;  // to write
-  double water_below_mm = 0;   // how far the water stands below the strips
+  // How far the water stands below the strips; else as `file` said before, or 0.
+  std::optional<double> water_below_mm;
 };
 // camera.json from photos of the board on the tank's rim.
 JobResult calibrate_camera_job(const CameraRequest& request, const RunContext& context);

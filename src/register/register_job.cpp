@@ -11,6 +11,7 @@
 #include "base/run_scope.h"
 #include "camera/film_pose.h"
 #include "image/files.h"
+#include "image/picture_file.h"
 #include "register/arrow_map.h"
 #include "register/register.h"
 #include "register/tank_file.h"
@@ -123,10 +124,10 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
   Tank tank = read_tank(camera);
   if (request.water_below_mm) tank.water_below_mm = *request.water_below_mm;
   search.any_turn = request.set_place;
-  OutputFolder output(job.folder);
+  OutputFolder output(job.folder, job.config.earlier_result);
   output.announce({kRegistrationFile, kMapFile}, {request.photo, camera});
   context.progress("looking for the film", 0);
-  const std::vector<std::uint8_t> bytes = read_file(request.photo);
+  const std::vector<std::uint8_t> bytes = read_picture(request.photo);
   const GrayImage photo = gray_of(decode_image(bytes, request.photo.string()));
   const FilmPose pose = find_film(photo, request.photo.string(), tank, search, context);
 

@@ -7,8 +7,8 @@
 
 #include "base/eigenpairs.h"
 #include "base/error.h"
-#include "base/file.h"
 #include "base/json_nesting.h"
+#include "base/small_file.h"
 
 namespace hydrodip {
 namespace {
@@ -16,6 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kLargest = 1e6;
+constexpr std::uintmax_t kLargestFile = 1 << 20;
 
 [[noreturn]] void refuse(const std::filesystem::path& file) {
   throw InputError(fmt::format(
@@ -62,8 +63,23 @@ std::string tank_as_json(const Tank& tank) {
          "\n";
 }
 
+bool keep_what_was_said(const Tank& earlier, Tank& tank) {
+  constexpr double kUnmoved_mm = 1;
+  tank.water_below_mm = earlier.water_below_mm;
+  const bool was_set = earlier.place.middle_mm != Vec2::Zero() || earlier.place.turn_deg != 0;
+  if (!was_set) return true;
+  if (earlier.corner_mm.size() != tank.corner_mm.size()) return false;
+  for (const auto& [tag, corner] : earlier.corner_mm) {
+    const auto now = tank.corner_mm.find(tag);
+    if (now == tank.corner_mm.end() || !((now->second - corner).norm() < kUnmoved_mm)) return false;
+  }
+  tank.place = earlier.place;
+  return true;
+}
+
 Tank read_tank(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file(file);
+  const std::vector<std::uint8_t> bytes =
+      read_small_file(file, kLargestFile, "a camera's calibration");
   const Json json = parsed_json<Json>(bytes);
   Tank tank;
   const auto px = numbers(json, "photo_px", 2, file);

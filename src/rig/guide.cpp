@@ -83,7 +83,7 @@ class Guide {
     person_.say(fmt::format(
         "\nFILM. Print print.pdf at 100 % (check its 100 mm ruler). Tape {:g} mm around the edge. "
         "Peel the backing off.",
-        job_.config.design.film.margin_mm));
+        tape_mm(job_.config)));
     person_.ask("Enter when the film is ready: ");
   }
 

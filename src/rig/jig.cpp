@@ -38,7 +38,7 @@ constexpr double kPegLeft_mm = 6, kPegRight_mm = 8, kPegLength_mm = 7;
 // ---- bar and frame ----
 
 constexpr double kBarWidth_mm = 20, kBarHeight_mm = 12;
-constexpr double kOverFilm_mm = 3;  // of the sheet's edge is taped below the frame
+constexpr double kMostOverFilm_mm = 3;  // of the sheet's edge is taped below the frame
 constexpr double kRing_mm = 16, kRingHeight_mm = 5;
 constexpr double kPostLeft_mm = 8, kPostRight_mm = 10;
 constexpr double kLifted_mm = 12;  // above the water while the film is laid
@@ -209,7 +209,7 @@ JigPart turned_over(const std::string& name, TriangleMesh mesh, double top_mm) {
   to_bed.linear() = Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX()).toRotationMatrix();
   to_bed.translation() = Vec3(0, 0, top_mm);
   for (Vec3& p : mesh.positions) p = to_bed * p;
-  return {name, std::move(mesh), to_bed.inverse()};
+  return {name, std::move(mesh), 0, to_bed.inverse()};
 }
 
 // ---- bar and frame; their z from the film up: 0 is the water at full depth ----
@@ -221,11 +221,15 @@ struct Frame {
   double post_top_mm = 0;
 };
 
+// It covers no mark.
+double over_film_mm(const RigJob& job) { return std::min(kMostOverFilm_mm, tape_mm(job.config)); }
+
 Frame frame_for(const RigJob& job, const Mount& mount) {
   const FilmOptions& film = job.config.design.film;
   const BathOptions& bath = job.config.bath;
   Frame frame;
-  frame.inner = 0.5 * Vec2(film.width_mm, film.height_mm) - Vec2::Constant(kOverFilm_mm);
+  const double over_mm = over_film_mm(job);
+  frame.inner = 0.5 * Vec2(film.width_mm, film.height_mm) - Vec2::Constant(over_mm);
   frame.outer = frame.inner + Vec2::Constant(kRing_mm);
   frame.post_x_mm = frame.outer.x() - 0.5 * kRing_mm;
   frame.shoulder_mm = mount.top_mm - job.depth_mm;
@@ -238,10 +242,11 @@ Frame frame_for(const RigJob& job, const Mount& mount) {
                     "the frame of {:.0f} x {:.0f} mm does not fit the bath of {:g} x {:g} mm; tell "
                     "the bath's size (bath.width_mm, bath.height_mm) or choose a smaller film",
                     2 * frame.outer.x(), 2 * frame.outer.y(), room.x(), room.y()));
-  if (film.margin_mm < kOverFilm_mm)
+  constexpr double kLeastOverFilm_mm = 2;
+  if (over_mm < kLeastOverFilm_mm)
     refuse(job, fmt::format("the frame holds {:g} mm of the film's edge, and its margin is {:g} mm "
                             "wide; set film.margin_mm to {:g} or more",
-                            kOverFilm_mm, film.margin_mm, kOverFilm_mm));
+                            kMostOverFilm_mm, film.margin_mm, kMostOverFilm_mm));
   return frame;
 }
 
@@ -339,13 +344,24 @@ JigPart make_bar(const Frame& frame, const Mount& mount, const JigOptions& optio
   return turned_over("bar", bar.mesh(), z1);
 }
 
-// Straight, or a long and narrow one from corner to corner.
-bool fits_bed(const Vec3& size, const Vec3& bed) {
-  if (size.z() > bed.z()) return false;
-  const auto flat = [&](double x, double y) { return x <= bed.x() && y <= bed.y(); };
-  if (flat(size.x(), size.y()) || flat(size.y(), size.x())) return true;
-  const double across = std::numbers::sqrt2 / 2 * (size.x() + size.y());
-  return flat(across, across);
+bool fits_bed(const TriangleMesh& mesh, const Vec3& bed) {
+  return (mesh.bounds().size().array() <= bed.array() + 1e-9).all();
+}
+
+// As it lies, turned by a quarter, or a long and narrow one from corner to corner.
+JigPart laid_on_bed(const JigPart& part, const Vec3& bed) {
+  constexpr int kTurns_deg[] = {0, 90, 45, 30, 60};
+  for (const int turn_deg : kTurns_deg) {
+    JigPart turned = part;
+    const Eigen::Isometry3d turn(
+        Eigen::AngleAxisd(turn_deg * std::numbers::pi / 180, Vec3::UnitZ()));
+    if (turn_deg != 0)
+      for (Vec3& p : turned.mesh.positions) p = turn * p;
+    turned.in_use = part.in_use * turn.inverse();
+    turned.turned_deg = turn_deg;
+    if (fits_bed(turned.mesh, bed)) return turned;
+  }
+  return part;
 }
 
 }  // namespace
@@ -365,9 +381,10 @@ Jig make_jig(const RigJob& job, const TriangleMesh& object, const Surface& surfa
   jig.parts.push_back(turned_over("mount", mount.mesh, mount.top_mm));
   jig.parts.push_back(make_bar(frame, mount, options));
   for (JigPart& part : frame_parts(job, frame, options)) jig.parts.push_back(std::move(part));
-  for (const JigPart& part : jig.parts) {
+  for (JigPart& part : jig.parts) {
+    part = laid_on_bed(part, options.bed_mm);
     const Vec3 size = part.mesh.bounds().size();
-    if (!fits_bed(size, options.bed_mm))
+    if (!fits_bed(part.mesh, options.bed_mm))
       refuse(job, fmt::format(
                       "{}.stl would measure {:.0f} x {:.0f} x {:.0f} mm, more than the printer's "
                       "bed of {:g} x {:g} x {:g} mm (--bed)",
@@ -388,7 +405,7 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
   const TriangleMesh& object = prepared.posed.mesh();
   const Jig jig = make_jig(job, object, prepared.posed.surface(), options);
 
-  OutputFolder output(folder);
+  OutputFolder output(folder, job.config.earlier_result);
   JobResult result;
   for (const JigPart& part : jig.parts) result.files.push_back(part.name + ".stl");
   result.files.emplace_back("jig.png");
@@ -416,7 +433,12 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
       "the mount holds {:.1f} mm of the object, and the frame's shoulders end the dip at {:.2f} "
       "mm\n",
       jig.socket_depth_mm, job.depth_mm);
-  if (!jig.also_fits_deg.empty())
+  constexpr std::size_t kAnyTurn = 23;  // every 15 degrees
+  if (jig.also_fits_deg.size() == kAnyTurn)
+    result.text +=
+        "warning: the object fits its socket in any turn: mark its front, which is where the bar's "
+        "thinner post stands on the left\n";
+  else if (!jig.also_fits_deg.empty())
     result.text += fmt::format(
         "warning: the object fits its socket turned by {:g} degrees as well: mark its front, which "
         "is where the bar's thinner post stands on the left\n",
@@ -425,8 +447,11 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
   for (const JigPart& part : jig.parts) {
     const Vec3 size = part.mesh.bounds().size();
     result.text +=
-        fmt::format("wrote {} ({:.1f} x {:.1f} x {:.1f} mm)\n",
-                    (folder / (part.name + ".stl")).string(), size.x(), size.y(), size.z());
+        fmt::format("wrote {} ({:.1f} x {:.1f} x {:.1f} mm{})\n",
+                    (folder / (part.name + ".stl")).string(), size.x(), size.y(), size.z(),
+                    part.turned_deg == 0
+                        ? ""
+                        : fmt::format(", turned by {} degrees to fit the bed", part.turned_deg));
     parts.push_back({{"file", part.name + ".stl"}, {"size_mm", {size.x(), size.y(), size.z()}}});
   }
   result.text += fmt::format("wrote {}\n", (folder / "jig.png").string());

@@ -17,10 +17,12 @@ struct JigOptions {
   double clearance_mm = 0.3;          // between parts, and between object and socket
 };
 
-// One part as it is to be printed: standing on z = 0, without overhangs.
+// One part as it is to be printed: standing on z = 0, without overhangs, and turned so that it fits
+// the bed as it lies (a long bar from corner to corner).
 struct JigPart {
   std::string name;  // "mount"
   TriangleMesh mesh;
+  int turned_deg = 0;  // about the vertical, so that it fits the bed
   // From the printed part to where it is at full depth, posed-object frame.
   Eigen::Isometry3d in_use = Eigen::Isometry3d::Identity();
 };
@@ -36,9 +38,9 @@ struct Jig {
 // around it, down to just above the water, so that the object goes in from below and hangs in its
 // pose. Two pins of different size hold the mount under the bar; two posts of different size on the
 // frame guide the bar, and their shoulders end the dip at the job's depth. The frame lies on the
-// water, centred by arms that reach the bath's walls; the film's outermost 3 mm are taped to its
-// underside. Throws InputError where the dry side gives no hold, film or bath leave no room, or a
-// part exceeds the bed.
+// water, centred by arms that reach the bath's walls; the film's outermost 3 mm (less where
+// marks begin nearer to the edge) are taped to its underside. Throws InputError where the dry side
+// gives no hold, film or bath leave no room, or a part exceeds the bed.
 Jig make_jig(const RigJob& job, const TriangleMesh& object, const Surface& surface,
              const JigOptions& options);
 

@@ -1,5 +1,4 @@
 #include "rig/registration_file.h"
-#include "base/json_nesting.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +6,9 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "base/json_nesting.h"
 
 namespace hydrodip {
 namespace {
@@ -15,6 +17,7 @@ using Json = nlohmann::json;
 
 // Less than that nobody can move by hand.
 constexpr double kStill_mm = 0.05, kStill_deg = 0.02;
+constexpr std::uintmax_t kLargestFile = 1 << 20;
 
 std::optional<double> number(const Json& json, const char* group, const char* name) {
   if (!json.is_object() || !json.contains(group) || !json[group].is_object()) return {};
@@ -26,8 +29,10 @@ std::optional<double> number(const Json& json, const char* group, const char* na
 }  // namespace
 
 std::optional<Registration> read_registration(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);  // of regular files alone
   std::ifstream file(path);
-  if (!file) return {};
+  if (error || size > kLargestFile || !file) return {};
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const Json json = parsed_json<Json>(text);
   const auto x = number(json, "shift_mm", "x"), y = number(json, "shift_mm", "y"),

@@ -11,7 +11,9 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_nesting.h"
+#include "base/small_file.h"
 #include "settings/params.h"
+#include "sheet/film_marks.h"
 
 namespace hydrodip {
 namespace {
@@ -20,7 +22,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kLevelFile = "rig-water-level.json";
 
-Json read_json(const std::filesystem::path& file) { return parsed_json<Json>(read_file(file)); }
+constexpr std::uintmax_t kLargestLevel = 1 << 16, kLargestReport = 64 << 20;
 
 struct ReadReport {
   Json json;
@@ -34,7 +36,7 @@ ReadReport read_report(const std::filesystem::path& folder) {
     throw InputError(
         fmt::format("{}: there is no report.json; name the folder that 'hydrodip print' wrote",
                     folder.string()));
-  const std::vector<std::uint8_t> bytes = read_file(file);
+  const std::vector<std::uint8_t> bytes = read_small_file(file, kLargestReport, "a report");
   Json report = parsed_json<Json>(bytes);
   if (report.is_object() && report.contains("dips"))
     throw InputError(fmt::format("{}: this job has several dips; name one of them, as {}",
@@ -151,6 +153,11 @@ double film_area_mm2(const FilmOptions& film) {
   return std::numbers::pi * radius * radius;
 }
 
+double tape_mm(const JobConfig& config) {
+  const FilmOptions& film = config.design.film;
+  return tape_mm(film.width_mm, film.height_mm, film.margin_mm, config.print.camera_marks);
+}
+
 bool moves_aside(const RigJob& job) {
   constexpr double kStill = 1e-9;
   return std::ranges::any_of(job.way_in, [&](const WayPoint& point) {
@@ -179,6 +186,8 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
   job.folder = folder;
   job.title = title_of(report);
   apply_settings(job.config, settings_of(report["parameters"], (folder / "report.json").string()));
+  // What happened to results then is not asked for today.
+  job.config.earlier_result = EarlierResult::kReplaced;
   // The bench can do without what the print was corrected by.
   const std::filesystem::path correction = std::exchange(job.config.correction, {});
   apply_sources(job.config, sources);
@@ -224,7 +233,7 @@ std::optional<double> known_water_level_mm(const RigJob& job) {
   const std::filesystem::path file = job.folder / kLevelFile;
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return {};
-  const Json level = read_json(file);
+  const Json level = parsed_json<Json>(read_small_file(file, kLargestLevel, "a water level"));
   if (!level.is_object() || !level.contains("water_mm") || !level["water_mm"].is_number())
     return {};
   return level["water_mm"].get<double>();

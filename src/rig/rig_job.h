@@ -46,6 +46,7 @@ struct Activator {
 Activator activator_for(const JobConfig& config);  // scaled by area from a letter sheet
 double bath_litres(const BathOptions& bath);
 double film_area_mm2(const FilmOptions& film);  // of the sheet
+double tape_mm(const JobConfig& config);        // of the sheet's edge, all around
 
 // The stage position at which the object's lowest point meets the water: stage.water_mm, else what
 // was found last and saved in the folder.

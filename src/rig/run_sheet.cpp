@@ -149,8 +149,9 @@ class RunSheet {
     const Vec2 corner(x + 0.5 * (width - size.x()), top - size.y());
     const Box2 sheet{corner, corner + size};
     const Vec2 margin = Vec2::Constant(scale * film.margin_mm);
+    const Vec2 tape = Vec2::Constant(scale * tape_mm(job_.config));
     pdf.fill_rectangle(sheet, 0.88);
-    pdf.fill_rectangle({sheet.min + margin, sheet.max - margin}, 1);
+    pdf.fill_rectangle({sheet.min + tape, sheet.max - tape}, 1);
     pdf.set_stroke(0.3);
     pdf.draw_rectangle(sheet);
     pdf.set_stroke(0.15, 0.5);
@@ -171,7 +172,7 @@ class RunSheet {
         x, width,
         fmt::format("Seen from above; grey: {:g} mm of tape. The edge marked 'this edge "
                     "left' lies to the left.",
-                    film.margin_mm),
+                    tape_mm(job_.config)),
         kSmall_pt, PdfFont::kRegular, 0.25);
   }
 
@@ -200,7 +201,7 @@ class RunSheet {
     return {
         {"Film", fmt::format("{:g} x {:g} mm, ink side {}", config.design.film.width_mm,
                              config.design.film.height_mm, ink_side())},
-        {"Tape", fmt::format("{:g} mm all around, no slits", config.design.film.margin_mm)},
+        {"Tape", fmt::format("{:g} mm all around, no slits", tape_mm(config))},
         {"Water", fmt::format("{:g} to {:g} °C, {:.1f} l", process_.water_min_c,
                               process_.water_max_c, bath_litres(config.bath))},
         {"Soak", fmt::format("{:g} to {:g} s", process_.soak_min_s, process_.soak_max_s)},
@@ -270,7 +271,7 @@ class RunSheet {
     page_.task(
         fmt::format("Tape {:g} mm around all four edges, flat and without gaps; no slits. "
                     "Take the protective layer off the film.",
-                    config.design.film.margin_mm));
+                    tape_mm(config)));
     page_.task(
         job_.earlier_dips > 0
             ? fmt::format("Object dry from dip {}, its coat untouched; hung as on page 1, over "
@@ -338,7 +339,7 @@ JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
   const std::filesystem::path path = file.empty() ? job.folder / "run-sheet.pdf" : file;
   const std::vector<PosePicture> pictures = pose_pictures(
       job, kPictureWidth_px, static_cast<int>(kPictureWidth_px / kPictureAspect), context);
-  OutputFolder output(path.has_parent_path() ? path.parent_path() : ".");
+  OutputFolder output(path.has_parent_path() ? path.parent_path() : ".", job.config.earlier_result);
   output.announce({path.filename().string()}, {});
   PdfDocument pdf;
   pdf.set_title("Run sheet, " + job.title);

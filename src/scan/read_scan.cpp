@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/small_file.h"
 #include "model_io/load.h"
 #include "model_io/text.h"
 #include "scan/dark_squares.h"
@@ -216,11 +217,15 @@ void turn_back(CornerGrid& grid, bool has_faces) {
     for (GridPlace& place : grid.place) place[0] = -place[0];
 }
 
+constexpr std::uintmax_t kLargestTable = 64 << 20;
+
 // Corners that somebody drew, or listed: by `read` from the file's text.
 template <class Read>
 Scan read_corners(const std::filesystem::path& file, const ScanOptions& options, const Read& read) {
   const Unit& unit = find_unit(options.units);
-  const std::vector<std::uint8_t> bytes = read_file(file);
+  const std::vector<std::uint8_t> bytes =
+      kind_of(file) == ScanKind::kTable ? read_small_file(file, kLargestTable, "a table of corners")
+                                        : read_file(file);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   Scan scan;
   scan.synthetic = says_synthetic(text);

@@ -183,8 +183,23 @@ class PatchPlacer {
 
   // The corners' places, or nothing.
   std::vector<GridPlace> places(const std::vector<std::size_t>& corners) const {
-    std::vector<GridPlace> best;
-    double least_mm = kLargestMisfit * square_mm_;
+    return best(corners, kLargestMisfit * square_mm_).places;
+  }
+
+  // How far the corners are, rms, from the nearest that they could be; endless if there are none.
+  double nearest_mm(const std::vector<std::size_t>& corners) const {
+    return best(corners, 1e299).misfit_mm;
+  }
+
+ private:
+  struct Placing {
+    std::vector<GridPlace> places;
+    double misfit_mm = 1e300;
+  };
+
+  Placing best(const std::vector<std::size_t>& corners, double limit_mm) const {
+    Placing best;
+    double least_mm = limit_mm;
     for (int turns = 0; turns < 4; ++turns)
       for (int row = landings_.low()[1]; row <= landings_.high()[1]; ++row)
         for (int column = landings_.low()[0]; column <= landings_.high()[0]; ++column) {
@@ -195,13 +210,12 @@ class PatchPlacer {
           const double misfit_mm = misfit(corners, candidate);
           if (misfit_mm < least_mm * (1 - 1e-6)) {
             least_mm = misfit_mm;
-            best = std::move(candidate);
+            best = {std::move(candidate), misfit_mm};
           }
         }
     return best;
   }
 
- private:
   // One amidst them, which lands if any does.
   static std::size_t anchor(const std::vector<std::size_t>& corners) {
     return corners[corners.size() / 2];
@@ -284,6 +298,29 @@ void place_patches(const CornerGrid& grid, const Eigen::Isometry3d& pose, bool t
     const std::vector<GridPlace> found = placer.places(corners);
     for (std::size_t i = 0; i < found.size(); ++i) place[corners[i]] = found[i];
   }
+}
+
+std::string why_unplaced(const CornerGrid& grid, const Surface& surface, const GridLanding& landing,
+                         const GridPlace& reach, double square_mm) {
+  constexpr double kOffObject_mm = 2;
+  const double off_mm = as_it_lies(grid, surface).rms_mm;
+  if (off_mm > kOffObject_mm)
+    return fmt::format(
+        "its corners lie {:.1f} mm off the object's surface (root mean square), so the scan is not "
+        "in the posed object's frame; leave out --aligned to have it laid on the object",
+        off_mm);
+  const Landings landings(landing, reach);
+  const Eigen::Isometry3d as_given = Eigen::Isometry3d::Identity();
+  const PatchPlacer placer(grid, as_given, false, landings, square_mm);
+  const double nearest_mm = landings.empty() ? 1e300 : placer.nearest_mm(largest_patch(grid));
+  if (nearest_mm > 1e299)
+    return "its corners lie where no film of this job lands; check which object was scanned, its "
+           "pose and depth, and --square";
+  return fmt::format(
+      "its corners lie {:.2f} mm (root mean square) from the nearest of the board as this job lays "
+      "it, half a square of {:g} mm or more, so that none can be told from its neighbours; leave "
+      "out --aligned to have the scan laid on the object, or check --square and --board",
+      nearest_mm, square_mm);
 }
 
 CornerGrid moved(const CornerGrid& grid, const Eigen::Isometry3d& pose) {

@@ -45,6 +45,12 @@ void place_patches(const CornerGrid& grid, const Eigen::Isometry3d& pose, bool t
                    const GridLanding& landing, const GridPlace& reach, double square_mm,
                    std::vector<std::optional<GridPlace>>& place);
 
+// Why no patch of a scan that lies in the posed-object frame already has a place: how far its
+// corners are from the board's nearest ones, and what that means. A sentence's end, for after the
+// file's name.
+std::string why_unplaced(const CornerGrid& grid, const Surface& surface, const GridLanding& landing,
+                         const GridPlace& reach, double square_mm);
+
 // Moves the pose by a small turn about the origin (rad) and a shift (mm).
 Eigen::Isometry3d moved_a_little(const Eigen::Isometry3d& pose, const Vec3& shift,
                                  const Vec3& turn);

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "base/json_nesting.h"
+#include "base/small_file.h"
 
 namespace hydrodip {
 namespace {
@@ -16,6 +16,8 @@ using Json = nlohmann::json;
 
 constexpr double kFarthest_mm = 50;  // that a correction moves anything
 constexpr int kMostPoints = 1000000;
+constexpr std::uintmax_t kLargestFile = 256 << 20;  // a million points and as many samples
+constexpr double kMostLength_mm = 1e5;
 
 [[noreturn]] void refuse(const std::filesystem::path& file) {
   throw InputError(fmt::format(
@@ -45,19 +47,61 @@ class Reader {
     if (!json.is_array()) refuse(file_);
     return json;
   }
+  [[noreturn]] void damaged() const { refuse(file_); }
+  std::string text(const Json& json) const {
+    if (!json.is_string()) refuse(file_);
+    return json.get<std::string>();
+  }
 
  private:
   const std::filesystem::path& file_;
 };
 
+CorrectedDip read_dip(const Json& json, const Reader& read) {
+  CorrectedDip dip;
+  const Json& model = read.member(json, "model");
+  dip.model = read.text(read.member(model, "path"));
+  dip.model_sha256 = read.text(read.member(model, "sha256"));
+  dip.shape_sha256 = read.text(read.member(model, "shape_sha256"));
+  const Json& rows = read.list(read.member(json, "to_posed"));
+  if (rows.size() != 3) read.damaged();
+  for (int i = 0; i < 3; ++i) {
+    const Json& row = read.list(rows[std::size_t(i)]);
+    if (row.size() != 3) read.damaged();
+    for (int j = 0; j < 3; ++j) dip.to_posed(i, j) = read.number(row[std::size_t(j)], -1e9, 1e9);
+  }
+  const Json& size = read.list(read.member(json, "size_mm"));
+  if (size.size() != 3) read.damaged();
+  for (int k = 0; k < 3; ++k) dip.size_mm[k] = read.number(size[std::size_t(k)], 0, kMostLength_mm);
+  dip.depth_mm = read.number(read.member(json, "depth_mm"), 0, kMostLength_mm);
+  const auto value = [&](const char* group, const char* name, double most) {
+    return read.number(read.member(read.member(json, group), name), 0, most);
+  };
+  dip.film_mm = {value("film", "width_mm", kMostLength_mm),
+                 value("film", "height_mm", kMostLength_mm)};
+  dip.margin_mm = value("film", "margin_mm", kMostLength_mm);
+  dip.swelling = {value("film", "swelling_x", 10), value("film", "swelling_y", 10)};
+  dip.z_stretch = value("material", "z_stretch", 1e3);
+  dip.poisson = value("material", "poisson", 1);
+  dip.ink_stiffness_ratio = value("material", "ink_stiffness_ratio", 1e9);
+  return dip;
+}
+
 }  // namespace
 
 CorrectionFile read_correction(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file(file);
+  const std::vector<std::uint8_t> bytes = read_small_file(file, kLargestFile, "a correction");
   const Json json = parsed_json<Json>(bytes);
   const Reader read(file);
   const Json& grid = read.member(json, "grid");
+  if (read.number(read.member(json, "schema_version"), 1, 1e6) > kCorrectionSchemaVersion)
+    throw InputError(fmt::format(
+        "{}: a newer hydrodip wrote this correction; it is needed to read it", file.string()));
+  if (!json.contains("of"))
+    throw InputError(fmt::format(
+        "{}: does not say of which dip it is; run 'hydrodip correct' again", file.string()));
   CorrectionFile result;
+  result.of = read_dip(json["of"], read);
   FilmCorrection& field = result.field;
   field.first = read.pair(read.member(grid, "first_mm"), 1e4);
   field.pitch_mm = read.number(read.member(grid, "pitch_mm"), 0.1, 1e3);

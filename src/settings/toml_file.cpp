@@ -30,6 +30,7 @@ constexpr void check(bool holds) {
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/small_file.h"
 #include "settings/artwork_tables.h"
 #include "settings/settings.h"
 
@@ -53,8 +54,9 @@ class SettingReader {
   explicit SettingReader(const std::filesystem::path& file) : file_(file) {}
 
   toml::table table() const {
-    const std::vector<std::uint8_t> bytes = read_file(file_);
-    if (bytes.size() > kLargestFile)
+    const std::vector<std::uint8_t> bytes =
+        read_small_file(file_, kLargestFile, "a configuration file");
+    if (bytes.size() > kLargestFile)  // of a pipe
       throw InputError(fmt::format("{}: too large for a configuration file", file_.string()));
     return parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   }

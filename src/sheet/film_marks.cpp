@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kLeastMarginMm = 6, kLeastSideMm = 120;
 constexpr double kMostOffEdgeMm = 3.5, kOffEdge = 1.0 / 3;
+constexpr double kMostTapeMm = 3;
 // Tags of one sheet, and how many sets of them there are.
 constexpr int kMost = 10, kKinds = kFirstBoardTag / kMost;
 constexpr double kLargestCellMm = 1.2;
@@ -16,11 +17,13 @@ constexpr double kLeastRoomMm = 30, kCellsShare = 0.017;
 // What the bottom's marks leave free in the middle: the ruler with its numbers.
 constexpr double kRulerRoomMm = 112;
 
+double off_edge_mm(double margin_mm) { return std::min(kMostOffEdgeMm, kOffEdge * margin_mm); }
+
 }  // namespace
 
 std::vector<MarkPlace> film_marks(double width_mm, double height_mm, double margin_mm) {
   if (margin_mm < kLeastMarginMm || std::min(width_mm, height_mm) < kLeastSideMm) return {};
-  const double off_edge = std::min(kMostOffEdgeMm, kOffEdge * margin_mm);
+  const double off_edge = off_edge_mm(margin_mm);
   const double room = 0.5 * std::min(width_mm, height_mm) - margin_mm;
   if (room < kLeastRoomMm) return {};
   const double cell =
@@ -50,6 +53,11 @@ std::vector<MarkPlace> film_marks(double width_mm, double height_mm, double marg
   add(8, {-line.x(), 0.55 * end.y()}, Vec2::UnitY());
   add(9, {-line.x(), end.y()}, Vec2::UnitY());
   return marks;
+}
+
+double tape_mm(double width_mm, double height_mm, double margin_mm, bool with_marks) {
+  if (!with_marks || film_marks(width_mm, height_mm, margin_mm).empty()) return margin_mm;
+  return std::min(kMostTapeMm, off_edge_mm(margin_mm));
 }
 
 }  // namespace hydrodip

@@ -18,4 +18,8 @@ inline constexpr int kFirstBoardTag = 100;
 // white, and off the free film by a cell.
 std::vector<MarkPlace> film_marks(double width_mm, double height_mm, double margin_mm);
 
+// How much of a sheet's edge tape may cover: with marks no more than what lies outside of them,
+// else the margin.
+double tape_mm(double width_mm, double height_mm, double margin_mm, bool with_marks);
+
 }  // namespace hydrodip

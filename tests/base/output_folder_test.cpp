@@ -1,10 +1,12 @@
 #include "base/output_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "temporary_folder.h"
@@ -120,6 +122,26 @@ TEST_F(OutputFolderTest, AFolderInTheWayIsRefusedByName) {
   }
   EXPECT_EQ(read(root_ / "one.txt"), "old");
   EXPECT_TRUE(fs::is_directory(root_ / "two.txt"));
+}
+
+TEST_F(OutputFolderTest, PipesAndDevicesAreRefusedBeforeAndAfterTheWork) {
+  ASSERT_EQ(mkfifo((root_ / "pipe").c_str(), 0600), 0);
+  fs::create_symlink("/dev/full", root_ / "link");
+  fs::create_directory(root_ / "folder");
+  for (const auto& [name, what] :
+       {std::pair{"pipe", "a pipe"}, {"link", "a device"}, {"folder", "a folder"}}) {
+    OutputFolder folder(root_);
+    write(folder.path(name), "new");
+    for (const bool after : {false, true}) try {
+        after ? folder.commit() : folder.announce({name}, {});
+        ADD_FAILURE() << name;
+      } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+      }
+  }
+  EXPECT_TRUE(fs::is_fifo(root_ / "pipe"));
+  EXPECT_TRUE(fs::is_symlink(root_ / "link"));
+  EXPECT_EQ(entries(root_), 3);
 }
 
 TEST_F(OutputFolderTest, AFailureHalfWayRestoresWhatWasThere) {

@@ -14,7 +14,7 @@ failures=0
 keep_described_files() {
   [ -n "${HYDRODIP_TEST_FILES:-}" ] || return 0
   (cd "$work" && find . -type f \( -name report.json -o -name plan.json -o -name orient.json \
-    -o -name nest.json -o -name plan.toml -o -name profile.toml -o -name truth.toml \)) |
+    -o -name nest.json -o -name correction.json -o -name plan.toml -o -name profile.toml -o -name truth.toml \)) |
     while read -r file; do
       mkdir -p "$HYDRODIP_TEST_FILES/$(basename "$work")/$(dirname "$file")"
       cp "$work/$file" "$HYDRODIP_TEST_FILES/$(basename "$work")/$file"

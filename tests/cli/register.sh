@@ -28,6 +28,25 @@ expect 0 'scale_x = 1.005' profile show other
 expect 2 'miss each other' calibrate printer --readings 180,250,320,320
 expect 2 'at 100 %' calibrate printer --readings 90,125,154.03,154.03
 expect 2 '--readings' calibrate printer --readings 180,250
+expect 2 'none is so far off' calibrate printer --readings 180,230,292.06,292.06
+expect 2 'give --film letter' calibrate printer --readings 180,230,292.06,292.06
+expect 0 'printer-test.pdf' calibrate printer --film letter -o letter
+if command -v pdftotext > /dev/null; then
+  pdftotext letter/printer-test.pdf - | tr '\n' ' ' > letter.txt
+  for option in '--scan IMAGE' '--readings AB,AC,AD,CB'; do
+    grep -qF -- "calibrate printer --film letter $option" letter.txt ||
+      fail "the letter sheet's command is not its own: $(cat letter.txt)"
+  done
+fi
+expect 2 'give its --readings' calibrate printer --save mine
+expect 2 'there is none' calibrate printer --readings 180.9,250.2,308.8,308.7 --scan-dpi 300
+expect 2 'one of them' calibrate printer --readings 180.9,250.2,308.8,308.7 --save mine -o printer
+echo words > words.txt
+expect 2 'not a picture' calibrate printer --scan words.txt
+if [ -f scan.png ] && command -v convert > /dev/null; then
+  convert scan.png -units PixelsPerInch -density 200 scan.tif
+  expect 0 'makes 1.000' calibrate printer --scan scan.tif -o printer
+fi
 
 # ---- a job with marks ----
 write_colored colored.ply
@@ -40,6 +59,24 @@ cmp -s job/print.png bare/print.png || fail "marks change the film image"
 cmp -s job/print.pdf bare/print.pdf && fail "there are no marks"
 
 expect 0 'board.pdf' register board -o board
+expect 2 'no_clobber' register board -o board --no-clobber
+expect 2 'no_clobber' rig sheet job -o board/board.pdf --set output.no_clobber=on
+expect 0 'sphere.obj' sample sphere -o samples
+expect 2 'no_clobber' sample sphere -o samples --no-clobber
+mkfifo pipe.pdf
+expect 2 'a pipe of that name' rig sheet job -o pipe.pdf
+[ -p pipe.pdf ] || fail 'a pipe was replaced'
+expect 2 'cannot be written' rig sheet job -o board
+expect 2 'is of --calibrate-camera' register scan.png job -o here.json
+expect 2 '--set-place are of a photo' register --calibrate-camera --set-place scan.png
+truncate -s 3G large.bin
+expect 2 'not a picture' calibrate printer --scan large.bin
+expect 2 'not a picture' register --calibrate-camera large.bin
+expect 2 'too many for' register scan.png job --camera large.bin
+expect 2 'too many for' print colored.ply --correction large.bin
+cp large.bin large.csv
+expect 2 'too many for' correct job large.csv
+rm large.*
 expect 2 'name one photo' register
 expect 2 'camera.json' register scan.png job
 printf '{}' > camera.json
@@ -62,6 +99,8 @@ near "$(grep -A3 '"film.swelling_x"' swollen/report.json | number value /dev/std
   fail "the report does not say how film swells"
 cmp -s job/print.png swollen/print.png && fail "swollen film gets the same print"
 expect 2 'registration.json' print colored.ply --film-state job/report.json
+expect 2 'no such file' print colored.ply --film-state nowhere.json
+expect 2 'is a folder' print colored.ply --film-state job
 
 # ---- a correction ----
 # Everything landed 1 mm farther to +x of the sheet than was meant: places of film.ply say so.
@@ -73,6 +112,40 @@ expect 0 'off by \(1.00\|0.99\)' correct job places.csv
 python3 "$here/film_ply.py" shifted job/film.ply second/film.ply 1 0.02 ||
   fail "the second print is not moved by 1 mm"
 expect 0 'off by' correct second places.csv
+
+# It is of that dip alone, whatever its colours.
+refused() {
+  pattern=$1
+  shift
+  # shellcheck disable=SC2086
+  expect 2 "this correction $pattern" print $quick "$@" -o other --correction job/correction.json
+}
+dip='--film 140x130 --depth 6'
+sed 's/^0 0 0/0 0 1/' colored.ply > otherwise.ply
+sed 's/255 0 0$/200 9 9/' colored.ply > repainted.ply
+# shellcheck disable=SC2086
+{
+  refused 'is of another model' otherwise.ply $dip
+  refused 'was found with the object turned by 90.0' colored.ply $dip --rotate 0,0,90
+  refused 'was found for the object at another size: .* 10.0 % larger' colored.ply $dip --size 44
+  refused 'was found 6.0 mm deep, and this dip goes 7.0' colored.ply --film 140x130 --depth 7
+  refused 'was found on film of 140 x 130 mm' colored.ply --film 150x130 --depth 6
+  refused 'was found on a print for film that swells' colored.ply $dip --film-state registration.json
+  refused 'was found with film of z_stretch' colored.ply $dip --set material.z_stretch=0.9
+  expect 2 'pieces of other sizes' nest colored.ply --set film.correction=job/correction.json
+  expect 0 'wrote' print repainted.ply $quick $dip -o repainted --correction job/correction.json
+}
+expect 2 'give each dip once' correct job places.csv places.csv
+head -n 1 places.csv > none.csv
+expect 2 'no place' correct job none.csv
+cp colored.ply kept.ply
+cp otherwise.ply colored.ply
+expect 0 'has changed since it was printed' correct job places.csv
+cp kept.ply colored.ply
+sed '0,/"of"/s//"for"/' job/correction.json > of-nothing.json
+expect 2 'of which dip' print colored.ply --correction of-nothing.json
+sed '0,/"schema_version":1/s//"schema_version":2/' job/correction.json > newer.json
+expect 2 'a newer hydrodip' print colored.ply --correction newer.json
 
 # Scans of both boards, 1 mm and half a millimetre off, say so without a word on which was dipped.
 # shellcheck disable=SC2086
@@ -86,6 +159,11 @@ for board in tints black; do
   python3 -B "$here/corner_scan.py" large/film.ply $board 5 1 0.5 askew > askew.csv
   expect 0 'off by' correct large askew.csv --board $board
 done
+# Half a square and more along x is told as that; so is a scan that lies elsewhere.
+python3 -B "$here/corner_scan.py" large/film.ply tints 5 2.5 0 > half.csv
+expect 2 '2.[4-9].* from the nearest of the board' correct large half.csv --aligned --board tints
+awk -F, -v OFS=, 'NR > 1 { $5 += 100 } 1' tints.csv > high.csv
+expect 2 "off the object's surface" correct large high.csv --aligned
 # As far off as this, either could be meant.
 python3 -B "$here/corner_scan.py" job/film.ply tints 2.5 1 0.5 > small.csv || fail "corner_scan.py"
 expect 2 'say which one was dipped' correct job small.csv --square 2.5
@@ -107,4 +185,9 @@ expect 2 'of one dip' print colored.ply --dips 2 --correction job/correction.jso
 # ---- a jig ----
 expect 2 'gives no hold' rig jig job
 expect 2 '3 numbers' rig jig job --bed 220
+expect 2 '50 or more each' rig jig job --bed 220,220,0
+"$hydrodip" print colored.ply --film 140x130 --size 60 --depth 4 --quality draft -o held --quiet > /dev/null ||
+  fail 'print of what a jig holds'
+expect 0 'jig.png' rig jig held
+expect 2 'no_clobber' rig jig held --no-clobber
 finish

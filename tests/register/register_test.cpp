@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "loop.h"
+#include "refusal.h"
 #include "register/displacement_fit.h"
 #include "register/place_table.h"
 #include "register/tank_file.h"
@@ -102,7 +103,20 @@ TEST(TrueSize, IsReadOffFourLengths) {
   EXPECT_NEAR(250 * truth.y / found.y, 250, 0.05);
   EXPECT_NEAR(found.skew, truth.skew, 4e-4);
   EXPECT_THROW(scale_by(PrinterReadings{180, 250, 310, 290}, sheet), InputError);
-  EXPECT_THROW(scale_by(PrinterReadings{90, 125, 154.03, 154.03}, sheet), InputError);
+  // Said by its likely cause.
+  const auto says = [&sheet](double across_mm, double along_mm, const std::string& cause) {
+    const double diagonal_mm = std::hypot(across_mm, along_mm);
+    EXPECT_NE(refusal([&] {
+                scale_by(PrinterReadings{across_mm, along_mm, diagonal_mm, diagonal_mm}, sheet);
+              }).find(cause),
+              std::string::npos)
+        << cause;
+  };
+  says(180, 230, "--film letter");
+  says(180 * 0.94, 250 * 0.94, "fit the page");
+  says(180 / 25.4, 250 / 25.4, "in inches");
+  says(18, 25, "in centimetres");
+  says(180 * 0.96, 250, "what was measured");
 }
 
 TEST(TrueSize, IsReadOffAScanHoweverTheSheetLay) {
@@ -151,6 +165,23 @@ TEST_F(RegisterFiles, ATankIsReadAsItWasWritten) {
   EXPECT_EQ(read.corner_mm, tank.corner_mm);
   EXPECT_EQ(read.place.turn_deg, 90.5);
   EXPECT_EQ(read.water_below_mm, 22);
+}
+
+TEST_F(RegisterFiles, CalibratingAnewKeepsTheLevelAndThePlaceOfStripsThatStay) {
+  Tank earlier;
+  earlier.water_below_mm = 22;
+  earlier.place = {{3, -4.5}, 90.5};
+  earlier.corner_mm = {{100, {1, 2, 3}}, {117, {-4, 5.5, 0}}};
+  Tank tank;
+  tank.corner_mm = {{100, {1.2, 2, 3}}, {117, {-4, 5.6, 0}}};
+  EXPECT_TRUE(keep_what_was_said(earlier, tank));
+  EXPECT_EQ(tank.water_below_mm, 22);
+  EXPECT_EQ(tank.place.turn_deg, 90.5);
+  Tank moved;
+  moved.corner_mm = {{100, {9, 2, 3}}, {117, {-4, 5.6, 0}}};
+  EXPECT_FALSE(keep_what_was_said(earlier, moved));
+  EXPECT_EQ(moved.water_below_mm, 22);
+  EXPECT_EQ(moved.place.turn_deg, 0);
 }
 
 TEST_F(RegisterFiles, WhatIsNoneIsRefused) {

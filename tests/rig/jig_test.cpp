@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "rig/jig.h"
 #include "rig/solids.h"
+#include "sheet/film_marks.h"
 
 namespace hydrodip {
 namespace {
@@ -87,6 +88,47 @@ TEST(Jig, ItsPartsAreWatertightAndStandOnTheBed) {
     EXPECT_NEAR(part.mesh.bounds().min.z(), 0, 1e-9) << part.name;
   }
   EXPECT_TRUE(jig.also_fits_deg.empty());
+}
+
+TEST(Jig, EveryPartFitsTheBedAsItLies) {
+  const TriangleMesh object = hook(40);
+  const Surface surface(object.positions, object.triangles);
+  JigOptions roomy;
+  roomy.bed_mm = {1000, 1000, 1000};
+  const JigOptions usual;
+  const Jig small = make_jig(job_of(12), object, surface, usual),
+            large = make_jig(job_of(12), object, surface, roomy);
+  for (const JigPart& part : small.parts) {
+    EXPECT_TRUE((part.mesh.bounds().size().array() <= usual.bed_mm.array() + 1e-9).all())
+        << part.name << ": " << part.mesh.bounds().size().transpose();
+    EXPECT_TRUE(is_watertight(part.mesh)) << part.name;
+  }
+  // The bar is longer than the bed, and in use where it would be if it were not turned.
+  ASSERT_GT(large.parts[1].mesh.bounds().size().x(), usual.bed_mm.x());
+  ASSERT_EQ(small.parts[1].mesh.positions.size(), large.parts[1].mesh.positions.size());
+  for (std::size_t i = 0; i < small.parts[1].mesh.positions.size(); ++i)
+    EXPECT_LT((small.parts[1].in_use * small.parts[1].mesh.positions[i] -
+               large.parts[1].in_use * large.parts[1].mesh.positions[i])
+                  .norm(),
+              1e-9);
+}
+
+TEST(Jig, LeavesTheMarksFree) {
+  const TriangleMesh object = hook(40);
+  const Surface surface(object.positions, object.triangles);
+  for (const double margin_mm : {6.0, 8.0, 10.0}) {
+    RigJob job = job_of(12);
+    FilmOptions& film = job.config.design.film;
+    film.margin_mm = margin_mm;
+    const double inner = 0.5 * film.width_mm - tape_mm(job.config);
+    for (const MarkPlace& mark : film_marks(film.width_mm, film.height_mm, margin_mm)) {
+      const Box2 box = mark_outline(mark);
+      EXPECT_LE(std::max(box.max.x(), -box.min.x()), inner + 1e-9);
+    }
+    EXPECT_LE(tape_mm(job.config), 3);
+    job.config.print.camera_marks = false;
+    EXPECT_EQ(tape_mm(job.config), margin_mm);
+  }
 }
 
 TEST(Jig, TheSocketLeavesTheClearanceAndNotMuchMore) {

@@ -69,7 +69,7 @@ TEST_F(RunSheetTest, SaysTheJobsFigures) {
   const std::string text = read_back("pdftotext -layout");
   for (const char* figure :
        {"pyramid", "63 to 77 s", "90 mm/min", "24.25 mm", "3.50 ± 0.50 g", "27 to 30 °C", "15.0 l",
-        "80.0 mm wide", "16.2 s", "ink side up", "10 mm all around", "Gun before, g", "Notes"})
+        "80.0 mm wide", "16.2 s", "ink side up", "3 mm all around", "Gun before, g", "Notes"})
     EXPECT_NE(text.find(figure), std::string::npos) << figure << "\n" << text;
 }
 

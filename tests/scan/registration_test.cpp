@@ -169,5 +169,30 @@ TEST(RegistrationTest, RefusesScatteredSquares) {
   EXPECT_THROW(match_grid(scan, std::cref(sphere), {6, 6}, kBoardSquare_mm, "scan"), InputError);
 }
 
+TEST(AlignedScan, HalfASquareOffIsToldAsThat) {
+  const std::vector<Vec3> plane = {{-99, -99, 0}, {99, -99, 0}, {99, 99, 0}, {-99, 99, 0}};
+  const Surface surface(plane, {{0, 1, 2}, {0, 2, 3}});
+  const GridLanding landing = [](const GridPlace& place) -> std::optional<Vec3> {
+    return Vec3(kBoardSquare_mm * place[0], kBoardSquare_mm * place[1], 0);
+  };
+  const auto said = [&](const Vec3& off) {
+    CornerGrid scan;
+    for (int row = 0; row < 6; ++row)
+      for (int column = 0; column < 6; ++column) {
+        scan.position.push_back(*landing({column, row}) + off);
+        scan.place.push_back({column, row});
+        scan.patch.push_back(0);
+      }
+    std::vector<std::optional<GridPlace>> place(scan.position.size());
+    place_patches(scan, Eigen::Isometry3d::Identity(), false, landing, {15, 15}, kBoardSquare_mm,
+                  place);
+    return place[0] ? std::string("placed")
+                    : why_unplaced(scan, surface, landing, {15, 15}, kBoardSquare_mm);
+  };
+  EXPECT_EQ(said({2, 1, 0}), "placed");
+  EXPECT_NE(said({2.5, 2.5, 0}).find("3.54 mm"), std::string::npos) << said({2.5, 2.5, 0});
+  EXPECT_NE(said({0, 0, 50}).find("50.0 mm off the object's surface"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace hydrodip

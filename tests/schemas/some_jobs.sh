@@ -19,6 +19,8 @@ write_tetrahedron tetra.obj
   "$hydrodip" orient colored.ply $quick_simulate -o orient --quiet || fail 'orient'
   "$hydrodip" nest colored.ply colored.ply --film a4 --set film.elements=800 --set dip.step_mm=1 --dpi 72 \
     --set preview.width_px=200 -o nest --quiet || fail 'nest'
+  python3 -B "$source/tests/cli/film_ply.py" places print/film.ply 1 > places.csv || fail 'film_ply.py'
+  "$hydrodip" correct print places.csv --quiet || fail 'correct'
 } > jobs.txt
 "$python" "$source/tests/schemas/validate.py" "$schemas" . "$source"/examples/jobs/*.toml
 case $? in
@@ -33,6 +35,7 @@ for wrong in '[film]\nwidth_mm = 9\n' '[film]\nwidht_mm = 100\n' '[[artwork]]\np
   printf "$wrong" > "wrong/$(ls wrong | wc -l).toml"
 done
 sed 's/"concern": "[a-z]*"/"concern": "perhaps"/' print/report.json > wrong/report.json
+sed 's/"generator":"hydrodip correct"/"generator":"by hand"/' print/correction.json > wrong/correction.json
 "$python" "$source/tests/schemas/validate.py" --refuses "$schemas" wrong/* || fail 'something wrong is taken'
 rm -r wrong
 finish

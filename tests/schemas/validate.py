@@ -18,6 +18,7 @@ except ImportError:
     sys.exit(77)
 
 KINDS = {"report.json": "report", "plan.json": "plan", "orient.json": "orient", "nest.json": "nest",
+         "correction.json": "correction",
          "plan.toml": "job", "profile.toml": "job", "truth.toml": "job"}
 
 
