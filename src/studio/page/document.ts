@@ -140,10 +140,14 @@ function without<T extends object>(value: T, ...keys: (keyof T)[]): T {
   return copy;
 }
 
+// A way into the water says no more than that: a larger object fits no bath.
+const LONGEST_MM = 5000;
+const within = (mm: number): number => Math.min(Math.max(mm, -LONGEST_MM), LONGEST_MM);
+
 // `height_mm`: of the posed object, needed where a shifted way has to say how deep "the whole object" is.
 export function withPose(document: JobDocument, dip: number, pose: Pose, height_mm: number): JobDocument {
-  const [x, y] = pose.shift_mm;
-  const deep = pose.depth_mm || height_mm;
+  const [x, y] = [within(pose.shift_mm[0]), within(pose.shift_mm[1])];
+  const deep = within(pose.depth_mm || height_mm);
   const way: Way | null = x || y ? [[0, x, y, 0, 0, 0], [deep, x, y, 0, 0, 0]] : null;
   const own = document.dips?.[dip];
   if (own) {

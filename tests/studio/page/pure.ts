@@ -20,6 +20,11 @@ const close = (a: Vector3, b: Vector3, what: string, within = 1e-6): void =>
   assert.ok(a.distanceTo(b) < within, `${what}: ${a.toArray()} is not ${b.toArray()}`);
 
 const tests: Record<string, () => void> = {
+  'a shifted way never says more than a job may'() {
+    const pose: Pose = { down: '-z', rotate_deg: [0, 0, 0], depth_mm: 0, shift_mm: [7000, -9000] };
+    assert.deepEqual(withPose({}, 0, pose, 8600).path, [[0, 5000, -5000, 0, 0, 0], [5000, 5000, -5000, 0, 0, 0]]);
+    assert.deepEqual(withPose({}, 0, { ...pose, shift_mm: [7, 0] }, 86).path, [[0, 7, 0, 0, 0, 0], [86, 7, 0, 0, 0, 0]]);
+  },
   'merge patches do as RFC 7386 says, appendix A'() {
     const cases: [Json, Json, Json][] = [
       [{ a: 'b' }, { a: 'c' }, { a: 'c' }],
