@@ -161,7 +161,11 @@ Outcome InkRounds::outcome() const {
 
 // The film to dip next.
 void InkRounds::stiffen() {
-  dip_options_.step_mm = std::max(options_.dip.step_mm, options_.rounds_step_mm);
+  // Long steps stretch film over hollows further than it is, and tear it: what decides on tears goes
+  // in the job's own.
+  dip_options_.step_mm = number() < kFreeRounds
+                             ? options_.dip.step_mm
+                             : std::max(options_.dip.step_mm, options_.rounds_step_mm);
   if (number() == kFreeRounds) {
     dip_options_.tears_at_mm = dipped_->film->torn_at_mm;
     dip_options_.moved_mm = dipped_->film->moved_mm;

@@ -30,8 +30,8 @@ constexpr int kTrialAirCells = 20000;
 constexpr double kDeeper_mm = 3;
 // Trial dips and the job's are that near to each other.
 constexpr double kClearlyBehind = 0.98;
-// What reaches less than that part of the best is none to choose from.
-constexpr double kWorthShowing = 0.25;
+// What reaches less than that part of the best is none to choose from, and none to better.
+constexpr double kWorthShowing = 0.25, kWorthBettering = 0.45;
 
 bool is_better(const Trial& a, const Trial& b) { return a.figures.score > b.figures.score; }
 
@@ -60,8 +60,9 @@ class Search {
           "the object fits film and bath in none of the poses that were tried: shrink it with "
           "--size, take a larger --film, or give the size of your bath with --set "
           "bath.width_mm=..., bath.height_mm, bath.depth_mm");
+    // By what film covers, before it is asked what moves: that jumps from pose to pose.
+    leave_out_poor(found, kWorthBettering);
     if (rough_.film.elements < coarse_.film.elements) dip_again(found);
-    leave_out_poor(found);
     if (options_.refined > 0) {
       for (const double ring_deg : kRings_deg) {
         better(found, ring_deg == kRings_deg[std::size(kRings_deg) - 1] ? 1 : found.size(),
@@ -71,7 +72,7 @@ class Search {
       }
     }
     found = best_of(found, options_.best);
-    leave_out_poor(found);
+    leave_out_poor(found, kWorthShowing);
     if (options_.confirm) confirm(found);
     result_.best = std::move(found);
     return std::move(result_);
@@ -138,11 +139,11 @@ class Search {
     return best;
   }
 
-  static void leave_out_poor(std::vector<Trial>& found) {
+  static void leave_out_poor(std::vector<Trial>& found, double share) {
     if (found.empty()) return;
     const double best = std::min_element(found.begin(), found.end(), is_better)->figures.score;
     if (!(best > 0)) return;
-    const double least = kWorthShowing * best;
+    const double least = share * best;
     std::erase_if(found, [&](const Trial& trial) { return trial.figures.score < least; });
   }
 
