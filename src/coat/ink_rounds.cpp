@@ -161,8 +161,8 @@ Outcome InkRounds::outcome() const {
 
 // The film to dip next.
 void InkRounds::stiffen() {
-  // Long steps stretch film over hollows further than it is, and tear it: what decides on tears goes
-  // in the job's own.
+  // Long steps stretch film over hollows further than it is, and tear it: what decides on tears
+  // goes in the job's own.
   dip_options_.step_mm = number() < kFreeRounds
                              ? options_.dip.step_mm
                              : std::max(options_.dip.step_mm, options_.rounds_step_mm);
