@@ -24,6 +24,13 @@ void look_at(InkResult& result, const DesignTask& task) {
                                raster_of(task.options.film, task.options.dpi));
 }
 
+std::shared_ptr<const TrappedAir> air_of(const DesignTask& task, const RunContext& context) {
+  const TriangleMesh& mesh = task.posed.mesh();
+  return std::make_shared<const TrappedAir>(
+      find_air(mesh, task.posed.surface(), make_trajectory(task.options.trajectory, mesh.positions),
+               task.options.air, context));
+}
+
 // The rounds and the print that they lead to.
 class Settling {
  public:
@@ -34,12 +41,8 @@ class Settling {
         film_(std::make_shared<const FilmMesh>(make_film_mesh(task.options.film))) {}
 
   Designed run() {
-    air_ = task_.blank ? task_.blank->air : timings_.measure("air", [&] {
-      const TriangleMesh& mesh = task_.posed.mesh();
-      return std::make_shared<const TrappedAir>(
-          find_air(mesh, task_.posed.surface(),
-                   make_trajectory(options().trajectory, mesh.positions), options().air, context_));
-    });
+    air_ = task_.first ? task_.first->dipped.air
+                       : timings_.measure("air", [&] { return air_of(task_, context_); });
     InkRounds rounds(task_, options(), film_, air_, timings_, context_);
     const Outcome outcome = settle(rounds);
     result_.rounds = rounds.rounds();
@@ -118,6 +121,20 @@ Designed design_on(const DesignTask& task, const DippedObject& dipped, const Run
   result.rounds.push_back(round);
   result.settled = true;
   return {dipped, std::move(result), raster_of(task.options.film, task.options.dpi)};
+}
+
+FirstDip dip_with_first_ink(const DesignTask& task, const RunContext& context) {
+  const RunScope scope(context);
+  Timings unheard;
+  InkRounds rounds(task, task.options,
+                   std::make_shared<const FilmMesh>(make_film_mesh(task.options.film)),
+                   task.first ? task.first->dipped.air : air_of(task, context), unheard, context);
+  rounds.next();
+  const FirstDip without{rounds.dipped(), {}};
+  if (!ink_matters(task.options) || task.options.rounds_max == 1 ||
+      rounds.next() == Outcome::kFailed)
+    return without;
+  return {rounds.dipped(), rounds.dipped_modulus()};
 }
 
 Designed design(const DesignTask& task, Timings& timings, const RunContext& context) {

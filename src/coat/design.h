@@ -74,6 +74,12 @@ struct Designed {
   SheetRaster raster;  // of ink's pixels
 };
 
+// A dip that a design begins from.
+struct FirstDip {
+  DippedObject dipped;
+  std::vector<double> modulus = {};  // per triangle, as film_modulus() has it; empty: no ink
+};
+
 // What a design is made for. Refers to all of it.
 struct DesignTask {
   const PosedObject& posed;
@@ -81,10 +87,13 @@ struct DesignTask {
   const Allotment& allotment;  // what of the paint this film brings
   const ColorModel& model;
   const DesignOptions& options;
-  // That dip without ink, where it was made already: then the first round makes none. Null: it was
-  // not.
-  const DippedObject* blank = nullptr;
+  // A dip of it that was made already: then the first round makes none. Null: there is none.
+  const FirstDip* first = nullptr;
 };
+
+// The dip with the ink that it calls for as it lay without: how film falls that carries ink, all
+// but in its place. Where ink does not matter, or such film cannot be dipped, the dip without.
+FirstDip dip_with_first_ink(const DesignTask& task, const RunContext& context);
 
 // What to print on film that was dipped without ink, and what comes of it: one round, which makes
 // no dip of its own. As design() with rounds_max 1.

@@ -119,8 +119,9 @@ FilmInk InkRounds::print(double dpi, bool all) const {
 // False if the film cannot be dipped with its ink: then the last dip stays.
 bool InkRounds::dip() {
   if (number() > 0) before_ = dipped_;
-  if (number() == 0 && task_.blank) {
-    dipped_ = *task_.blank;
+  if (number() == 0 && task_.first) {
+    dipped_ = task_.first->dipped;
+    dip_options_.modulus = task_.first->modulus;
     return true;
   }
   dip_options_.failed_share_max = dip_options_.modulus.empty() ? 1 : kFailedSteps;

@@ -36,6 +36,8 @@ class InkRounds {
   const std::vector<InkRound>& rounds() const { return rounds_; }
   // As dipped last.
   const DippedObject& dipped() const { return *dipped_; }
+  // Of the film that was dipped last; empty: no ink.
+  const std::vector<double>& dipped_modulus() const { return dip_options_.modulus; }
 
   // What to print at `dpi` on the film as it was dipped last; `all`: wherever it lies on the
   // object.

@@ -28,9 +28,9 @@ DipsTogether put_together(const JobConfig& config, const PreparedObject& prepare
   const Targets targets = job_targets(config, prepared, context);
   const DipPlan plan = plan_dips(config, prepared, targets, false, context);
   MadeDips all = hang_up(config, prepared, plan, context);
-  const SharedSurface shared = divide(all, context);
   Timings times;
   const Printer printer = make_printer(config.printer);
+  const SharedSurface shared = divide(all, printer, times, context);
   const Finish finish = make_dips(all, shared, printer, times, context);
   const FinishCheck check(finish, shared, context);
   DipsTogether look;

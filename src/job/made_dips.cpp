@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "base/error.h"
@@ -67,6 +68,49 @@ std::vector<float> worth_at_nodes(const MadeDips& all, const MadeDip& dip, const
   return worth_at(job_trials(dip.config, all.prepared, all.nodes->targets()), dip.posed, film);
 }
 
+SharedSurface divide_by_first(const MadeDips& all, const RunContext& context) {
+  std::vector<std::vector<float>> worth;
+  for (const MadeDip& dip : all.dips)
+    worth.push_back(worth_at_nodes(all, dip, *dip.first.dipped.film));
+  const Object& object = all.prepared.posed.object();
+  const Surface surface(object.positions, object.triangles);
+  return {{all.nodes, std::move(worth), *all.prepared.paint, surface, all.prepared.posed.scale(),
+           all.config.plan.overlap_mm},
+          context};
+}
+
+// What each dip brings of the paint. Refers to all dips.
+class Allotments {
+ public:
+  Allotments(const MadeDips& all, const SharedSurface& shared) : all_(all) {
+    const auto mesh = std::make_shared<const TriangleMesh>(all.prepared.posed.object());
+    for (std::size_t k = 0; k < all.dips.size(); ++k) of_.push_back(shared.allotment(k, mesh));
+  }
+
+  DesignTask task(const MadeDip& dip, const Printer& printer) const {
+    return {dip.posed,      *all_.prepared.paint, of_[std::size_t(dip.number - 1)],
+            *printer.model, dip.config.design,    &dip.first};
+  }
+
+ private:
+  const MadeDips& all_;
+  std::vector<Allotment> of_;
+};
+
+void for_each_dip(MadeDips& all, const std::string& activity, const RunContext& context,
+                  const std::function<void(MadeDip&, const RunContext&)>& work) {
+  if (may_be_side_by_side(all, context)) {
+    dip_side_by_side(all.dips.size(), activity, context,
+                     [&](std::size_t k, const RunContext& own) { work(all.dips[k], own); });
+    return;
+  }
+  for (MadeDip& dip : all.dips) {
+    context.log(fmt::format("dip {} of {}", dip.number, all.dips.size()));
+    context.progress(activity, double(dip.number - 1) / double(all.dips.size()));
+    work(dip, context);
+  }
+}
+
 }  // namespace
 
 void require_no_correction(const JobConfig& config) {
@@ -83,7 +127,7 @@ MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const 
     const PosedObject& posed = plan.dips[k].blank.posed;
     MadeDip dip{config_of(config, plan.dips[k].trial, k + 1, plan.dips.size()),
                 plan.dips[k].trial,
-                plan.dips[k].blank,
+                {plan.dips[k].blank, {}},
                 posed,
                 {DippedObject{.posed = posed}, {}, {}},
                 fmt::format("dip-{}", k + 1),
@@ -97,38 +141,34 @@ MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const 
   return all;
 }
 
-SharedSurface divide(const MadeDips& all, const RunContext& context) {
-  std::vector<std::vector<float>> worth;
-  for (const MadeDip& dip : all.dips) worth.push_back(worth_at_nodes(all, dip, *dip.blank.film));
-  const Object& object = all.prepared.posed.object();
-  const Surface surface(object.positions, object.triangles);
-  return {{all.nodes, std::move(worth), *all.prepared.paint, surface, all.prepared.posed.scale(),
-           all.config.plan.overlap_mm},
-          context};
+SharedSurface divide(MadeDips& all, const Printer& printer, Timings& times,
+                     const RunContext& context) {
+  const auto by_first = [&] {
+    return times.measure("seams", [&] { return divide_by_first(all, context); });
+  };
+  const Allotments rough(all, by_first());
+  times.measure("design", [&] {
+    for_each_dip(all, "dipping with the first ink", context,
+                 [&](MadeDip& dip, const RunContext& own) {
+                   // What it would warn of, the dips that follow do.
+                   dip.first = dip_with_first_ink(rough.task(dip, printer), own.quiet());
+                 });
+  });
+  return by_first();
 }
 
 Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& printer, Timings& times,
                  const RunContext& context) {
-  const auto mesh = std::make_shared<const TriangleMesh>(all.prepared.posed.object());
-  const auto design_one = [&](std::size_t k, const RunContext& own) {
-    MadeDip& dip = all.dips[k];
-    Timings unheard;
-    dip.made = design({dip.posed, *all.prepared.paint, shared.allotment(k, mesh), *printer.model,
-                       dip.config.design, &dip.blank},
-                      unheard, own);
-  };
+  const Allotments allotted(all, shared);
   times.measure("design", [&] {
-    if (may_be_side_by_side(all, context)) {
-      dip_side_by_side(all.dips.size(), "making films and ink agree", context, design_one);
-      for (const MadeDip& dip : all.dips)
-        context.log(fmt::format("dip {} of {}: {} rounds", dip.number, all.dips.size(),
-                                dip.made.ink.rounds.size()));
-    } else {
-      for (const MadeDip& dip : all.dips) {
-        context.log(fmt::format("dip {} of {}", dip.number, all.dips.size()));
-        design_one(std::size_t(dip.number - 1), context);
-      }
-    }
+    for_each_dip(all, "making films and ink agree", context,
+                 [&](MadeDip& dip, const RunContext& own) {
+                   Timings unheard;
+                   dip.made = design(allotted.task(dip, printer), unheard, own);
+                 });
+    for (const MadeDip& dip : all.dips)
+      context.log(fmt::format("dip {} of {}: {} rounds", dip.number, all.dips.size(),
+                              dip.made.ink.rounds.size()));
   });
   std::vector<Designed> designs;
   for (const MadeDip& dip : all.dips) {

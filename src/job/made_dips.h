@@ -22,7 +22,7 @@ namespace hydrodip {
 struct MadeDip {
   JobConfig config;  // of this dip alone
   Trial trial;
-  DippedObject blank;  // without ink
+  FirstDip first;  // without ink, or with that which the first division gave it
   PosedObject posed;
   Designed made;       // with its ink; empty until then
   std::string folder;  // "dip-1"
@@ -45,8 +45,10 @@ void require_no_correction(const JobConfig& config);
 MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,
                  const RunContext& context);
 
-// The surface divided by the films as they lie without ink.
-SharedSurface divide(const MadeDips& all, const RunContext& context);
+// The surface divided by the films as they lie with ink: what tears off with it, another dip may
+// do. To find them each is dipped with the ink of a division by the films without.
+SharedSurface divide(MadeDips& all, const Printer& printer, Timings& times,
+                     const RunContext& context);
 
 // Each dip with its part of the ink, and what comes of all of them.
 Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& printer, Timings& times,

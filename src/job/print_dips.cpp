@@ -111,7 +111,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   for (const ReportInput& input : inputs) input_files.emplace_back(input.path);
   folder.announce(file_names(all), input_files);
 
-  const SharedSurface shared = times.measure("seams", [&] { return divide(all, context); });
+  const SharedSurface shared = divide(all, printer, times, context);
   const Finish finish = make_dips(all, shared, printer, times, context);
   require_some_ink(all);
   times.measure("sheet", [&] {

@@ -20,12 +20,12 @@ DesignOptions coarse() {
 }
 
 Designed designed(const std::string& sample, const DesignOptions& options,
-                  const DippedObject* blank = nullptr) {
+                  const FirstDip* first = nullptr) {
   RunContext context;
   Timings timings;
   const auto shared = std::make_shared<const Object>(make_sample(sample));
   const PosedObject posed(shared, {});
-  return design({posed, *model_paint(shared), Allotment(), *make_device_model(), options, blank},
+  return design({posed, *model_paint(shared), Allotment(), *make_device_model(), options, first},
                 timings, context);
 }
 
@@ -64,9 +64,31 @@ TEST(InkRound, OfADipThatWasMadeIsThatDip) {
   const Designed alone = designed("sphere", options);
   options.rounds_max = 3;
   const Designed anew = designed("sphere", options);
-  const Designed going_on = designed("sphere", options, &alone.dipped);
+  const FirstDip blank{alone.dipped, {}};
+  const Designed going_on = designed("sphere", options, &blank);
   EXPECT_EQ(anew.dipped.film->position, going_on.dipped.film->position);
   EXPECT_EQ(anew.ink.ink.inking.inks.cmyk, going_on.ink.ink.inking.inks.cmyk);
+}
+
+// The dip with its first ink is the second round, whether or not the first one was made before.
+TEST(InkRound, WithTheFirstInkIsTheSecond) {
+  DesignOptions options = coarse();
+  options.trajectory.depth_mm = 6;
+  options.rounds_max = 1;
+  const Designed alone = designed("sphere", options);
+  options.rounds_max = 2;
+  const Designed second = designed("sphere", options);
+  ASSERT_NE(alone.dipped.film->position, second.dipped.film->position);
+  const RunContext context;
+  const auto shared = std::make_shared<const Object>(make_sample("sphere"));
+  const PosedObject posed(shared, {});
+  const FirstDip blank{alone.dipped, {}};
+  for (const FirstDip* from : {static_cast<const FirstDip*>(nullptr), &blank}) {
+    const FirstDip inked = dip_with_first_ink(
+        {posed, *model_paint(shared), Allotment(), *make_device_model(), options, from}, context);
+    EXPECT_EQ(inked.dipped.film->position, second.dipped.film->position);
+    ASSERT_EQ(inked.modulus.size(), inked.dipped.film->mesh().triangles.size());
+  }
 }
 
 // Rounds in longer steps only look for the ink; the film is the dip's own.
