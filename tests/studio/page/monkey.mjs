@@ -94,7 +94,12 @@ async function printAndCompare() {
   await press('Escape');
   await kept(page);
   await press('Control+p');
-  if (await exists('[data-name="print-again"]')) await page.click('[data-name="print-again"]');
+  // The button of an earlier print, which goes when the job turns out to be printing already.
+  const again = '[data-name="print-again"]';
+  if (await exists(again))
+    await page.click(again).catch(async (error) => {
+      if (await exists(again)) throw error;
+    });
   await page.waitForFunction(() => !document.querySelector('.panel.print .progress'), undefined, { timeout: 600000 });
   const printed = await exists('.panel.print [data-file]');
   if (printed) assert.deepEqual((await differencesByHand(page, hydrodip, work)).different, []);
