@@ -1,5 +1,7 @@
 #include "job/dips_side_by_side.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -17,8 +19,9 @@ void dip_side_by_side(std::size_t count, const std::string& activity, const RunC
       warnings[i] = own.warnings();
     });
   context.side_by_side(activity, tasks);
-  for (const auto& list : warnings)
-    for (const std::string& warning : list) context.warn(warning);
+  for (std::size_t i = 0; i < count; ++i)
+    for (const std::string& warning : warnings[i])
+      context.warn(fmt::format("dip {}: {}", i + 1, warning));
 }
 
 }  // namespace hydrodip

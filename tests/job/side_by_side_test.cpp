@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "job/dips_side_by_side.h"
 #include "job/jobs.h"
 #include "samples/samples.h"
 #include "temporary_folder.h"
@@ -165,6 +166,16 @@ TEST_F(Cancellation, StopsInspectingAtAnyCheck) {
 TEST_F(Cancellation, StopsASampleAtAnyCheck) {
   expect_stops_anywhere(
       [&](const RunContext& context) { sample_job("sphere", folder_ / "out", context); });
+}
+
+// Six sheets may each have something to mind: whoever prints has to know of which.
+TEST(DipsSideBySide, SayWhichDipAWarningIsOf) {
+  const RunContext context;
+  dip_side_by_side(3, "dipping", context, [](std::size_t i, const RunContext& own) {
+    if (i != 1) own.warn(i == 0 ? "film is short" : "ink is thin");
+  });
+  EXPECT_EQ(context.warnings(),
+            (std::vector<std::string>{"dip 1: film is short", "dip 3: ink is thin"}));
 }
 
 }  // namespace
