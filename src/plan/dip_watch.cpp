@@ -21,6 +21,7 @@ DipWatch::DipWatch(const SharedFilmMesh& film, double tear_stretch, double hopel
       landed_at_(film->triangles.size(), kNever),
       torn_at_(film->triangles.size(), kNever),
       stretch_(film->triangles.size(), 1),
+      torn_share_(film->triangles.size(), 0),
       flat_mm2_(film->triangles.size(), 0) {
   for (std::size_t t = 0; t < film->triangles.size(); ++t) {
     const Triangle& v = film->triangles[t];
@@ -67,7 +68,10 @@ void DipWatch::take(const DippedFilm& film) {
     // What was laid stretched too far is found torn when the dip ends, and was so from then on.
     torn_at_[t] = film.torn[t] ? std::min({film.torn_at_mm[t], film.depth_mm, laid_at}) : kNever;
     landed_at_[t] = film.lies_on_object(t) ? laid_at : kNever;
-    if (landed_at_[t] < kNever) stretch_[t] = stretch_of(t, film.position);
+    torn_share_[t] = 0;
+    if (!(landed_at_[t] < kNever)) continue;
+    stretch_[t] = stretch_of(t, film.position);
+    torn_share_[t] = 1 - film.whole_part(t).share;
   }
 }
 

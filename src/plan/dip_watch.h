@@ -36,6 +36,8 @@ class DipWatch {
   const std::vector<double>& landed_at() const { return landed_at_; }
   const std::vector<double>& torn_at() const { return torn_at_; }
   const std::vector<double>& stretch() const { return stretch_; }  // largest principal, when landed
+  // Of those that landed: which share is torn all the same, or not promised.
+  const std::vector<double>& torn_share() const { return torn_share_; }
   const std::vector<double>& flat_mm2() const { return flat_mm2_; }
 
  private:
@@ -50,7 +52,7 @@ class DipWatch {
   SharedFilmMesh film_;
   double limit_, hopeless_;
   std::vector<double> attached_at_;  // per vertex
-  std::vector<double> landed_at_, torn_at_, stretch_, flat_mm2_;
+  std::vector<double> landed_at_, torn_at_, stretch_, torn_share_, flat_mm2_;
   double landed_mm2_ = 0, torn_mm2_ = 0;
   Stopped stopped_;
 };

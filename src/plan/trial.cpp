@@ -102,9 +102,13 @@ std::vector<Event> events_of(const TrialTask& task, const MadeDip& dip, const La
                                            targets.weight});
   }
   const DipWatch& watch = dip.watch;
-  for (std::size_t t = 0; t < watch.torn_at().size(); ++t)
+  for (std::size_t t = 0; t < watch.torn_at().size(); ++t) {
+    const double price = task.torn_price * watch.flat_mm2()[t] / object_mm2;
     if (watch.torn_at()[t] < kNever)
-      events.push_back({watch.torn_at()[t], -task.torn_price * watch.flat_mm2()[t] / object_mm2});
+      events.push_back({watch.torn_at()[t], -price});
+    else if (watch.torn_share()[t] > 0)
+      events.push_back({watch.landed_at()[t], -price * watch.torn_share()[t]});
+  }
   if (dip.air)
     for (const AirPocket& pocket : dip.air->pockets)
       events.push_back({pocket.closed_at_mm, -kAirPrice * pocket.area_mm2 / object_mm2});
@@ -153,10 +157,13 @@ Trial judged(const TrialTask& task, const PoseOptions& pose, const MadeDip& dip,
   const DipWatch& watch = dip.watch;
   double torn_mm2 = 0, landed_mm2 = 0;
   for (std::size_t t = 0; t < watch.torn_at().size(); ++t) {
-    if (watch.torn_at()[t] <= trial.depth_mm)
-      torn_mm2 += watch.flat_mm2()[t];
-    else if (watch.landed_at()[t] <= trial.depth_mm)
-      landed_mm2 += watch.flat_mm2()[t];
+    const double flat_mm2 = watch.flat_mm2()[t];
+    if (watch.torn_at()[t] <= trial.depth_mm) {
+      torn_mm2 += flat_mm2;
+    } else if (watch.landed_at()[t] <= trial.depth_mm) {
+      torn_mm2 += watch.torn_share()[t] * flat_mm2;
+      landed_mm2 += (1 - watch.torn_share()[t]) * flat_mm2;
+    }
   }
   figures.torn_share = Coverage::share(torn_mm2, torn_mm2 + landed_mm2);
   if (dip.air)

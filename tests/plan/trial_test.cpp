@@ -86,6 +86,21 @@ TEST_F(SphereTrial, SaysTheSameOfADipThatWasMade) {
   EXPECT_NEAR(judged.figures.covered_share, dipped.coverage.covered_share(), 0.006);
 }
 
+// Film is torn along lines inside triangles: what a trial counts is what the job's report will say.
+TEST_F(SphereTrial, CountsWhatIsTornAsTheJobDoes) {
+  TrialTask given = task();
+  given.depth_mm = 16;
+  const auto trial = try_pose(given, {}, 0, context_);
+  ASSERT_TRUE(trial);
+  Timings timings;
+  const DippedObject dipped =
+      dip_object(PosedObject(sphere_, {}), std::make_shared<const FilmMesh>(make_film_mesh(film_)),
+                 Trajectory::straight_down(16), dip_, timings, context_);
+  ASSERT_GT(dipped.coverage.torn_share(), 0.05);
+  EXPECT_NEAR(judge_dip(given, {}, dipped).figures.torn_share, dipped.coverage.torn_share(), 1e-9);
+  EXPECT_NEAR(trial->figures.torn_share, dipped.coverage.torn_share(), 1e-9);
+}
+
 // A picture drawn from the film shows what the figures say.
 TEST_F(SphereTrial, KeepsTheFilmAsItLiesAtItsDepth) {
   TrialTask keeping = task();
