@@ -1,5 +1,6 @@
 #include "base/file.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -8,10 +9,13 @@
 
 #include "base/error.h"
 #include "base/run_scope.h"
+#include "refusal.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
+
+using testing::HasSubstr;
 
 std::string hash_of(const std::string& text) { return sha256_hex({text.begin(), text.end()}); }
 
@@ -57,7 +61,11 @@ TEST(File, APipeThatNobodyWritesToCanBeGivenUp) {
   EXPECT_THROW(read_file(folder / "pipe"), Cancelled);
 }
 
-TEST(File, DevicesWithoutEndAreRefused) { EXPECT_THROW(read_file("/dev/zero"), InputError); }
+TEST(File, WhatIsNoFileIsRefusedForWhatItIs) {
+  EXPECT_THAT(refusal([] { read_file("/dev/zero"); }), HasSubstr("it is a device"));
+  const TemporaryFolder folder;
+  EXPECT_THAT(refusal([&] { read_file(folder.path()); }), HasSubstr("it is a folder"));
+}
 
 TEST(File, ErrorsNameThePath) {
   const auto check = [](const auto& action, const std::string& name) {
