@@ -100,7 +100,7 @@ class GltfReader {
     file_.y_up = true;
     file_.units = "meter";
     read_materials();
-    corners_left_ = 1'500'000 + 30 * std::int64_t(data_.total_bytes());
+    corners_left_ = most_corners();
     visits_left_ = std::int64_t(data_.table_size("nodes"));
     for (const std::int64_t root : roots()) visit(root, Matrix4f::Identity(), 0);
     if (file_.face_end.empty()) data_.refuse("it has no triangles");
@@ -109,6 +109,13 @@ class GltfReader {
   }
 
  private:
+  // Copies of a mesh cost a few bytes each. A byte of a strip stands for three corners, one of
+  // compressed data for many.
+  std::int64_t most_corners() const {
+    constexpr std::int64_t kAlways = 1'500'000;
+    return kAlways + (data_.is_compressed() ? 30 : 3) * std::int64_t(data_.buffer_bytes());
+  }
+
   void check_extensions() const {
     const auto required = data_.root().find("extensionsRequired");
     if (required == data_.root().end() || !required->is_array()) return;
@@ -372,7 +379,7 @@ class GltfReader {
       if (index < 0) return {};
       GltfNumbers numbers = data_.accessor(index);
       if (numbers.components != components || (count >= 0 && numbers.count != count) ||
-          numbers.count > std::int64_t(data_.total_bytes()))
+          numbers.count > std::int64_t(data_.buffer_bytes()))
         data_.refuse("a mesh's copies are damaged");
       count = numbers.count;
       return numbers;

@@ -150,7 +150,6 @@ std::uint32_t GltfNumbers::index(std::int64_t i) const {
 // ---- container ----------------------------------------------------------------------------------
 
 GltfData::GltfData(const ModelInput& input) : input_(input), root_(std::make_unique<json>()) {
-  total_bytes_ = input.bytes.size();
   open();
   check_version();
   read_buffers();
@@ -300,6 +299,19 @@ const json* GltfData::compression_of(const json& owner) const {
   return compression ? compression : extension(owner, "KHR_meshopt_compression");
 }
 
+bool GltfData::is_compressed() const {
+  for (std::size_t i = 0; i < table_size("bufferViews"); ++i)
+    if (compression_of(entry("bufferViews", std::int64_t(i)))) return true;
+  for (std::size_t i = 0; i < table_size("meshes"); ++i) {
+    const json& mesh = entry("meshes", std::int64_t(i));
+    const auto primitives = mesh.find("primitives");
+    if (primitives == mesh.end() || !primitives->is_array()) continue;
+    for (const json& primitive : *primitives)
+      if (primitive.is_object() && extension(primitive, "KHR_draco_mesh_compression")) return true;
+  }
+  return false;
+}
+
 void GltfData::read_buffers() {
   for (std::size_t i = 0; i < table_size("buffers"); ++i) {
     const json& buffer = entry("buffers", std::int64_t(i));
@@ -324,13 +336,13 @@ void GltfData::read_buffers() {
           throw InputError(fmt::format("{}: its data file {} is missing; put it beside the model.",
                                        input_.path, name.substr(0, 200)));
         owned_.push_back(std::make_unique<FileBytes>(std::move(*read)));
-        total_bytes_ += owned_.back()->size();
       }
       bytes = *owned_.back();
     }
     if (length < 1 || std::size_t(length) > bytes.size())
       refuse(fmt::format("buffer {} is longer than its data", i));
     buffers_.push_back(bytes.first(std::size_t(length)));
+    buffer_bytes_ += std::size_t(length);
   }
 }
 

@@ -65,8 +65,10 @@ class GltfData {
   // The bytes behind "data:...;base64,".
   FileBytes data_uri(const std::string& uri) const;
   GltfNumbers accessor(std::int64_t index);
-  // Of the model and all buffers: bounds what can be made of them.
-  std::size_t total_bytes() const { return total_bytes_; }
+  // Of all buffers: bounds what can be made of them.
+  std::size_t buffer_bytes() const { return buffer_bytes_; }
+  // Whether any of it is compressed, by meshoptimizer or by Draco.
+  bool is_compressed() const;
 
  private:
   void open();
@@ -85,7 +87,7 @@ class GltfData {
   std::vector<std::span<const std::uint8_t>> buffers_;
   std::vector<std::unique_ptr<FileBytes>> owned_;
   std::map<std::int64_t, std::span<const std::uint8_t>> unpacked_;
-  std::size_t total_bytes_ = 0;
+  std::size_t buffer_bytes_ = 0;
 };
 
 }  // namespace hydrodip

@@ -83,7 +83,7 @@ Unit unit_for(const std::string& asked, const std::string& in_file, const Format
 ModelFile read_model(const fs::path& path, const Format& format, ModelFolder& folder,
                      const RunContext& context) {
   const std::string shown = path.string(), name = path.filename().string();
-  const FileBytes bytes = folder.read_path(path);
+  const FileBytes bytes = in_utf8(folder.read_path(path));
   if (bytes.empty())
     throw InputError(fmt::format("{}: the file is empty; export the model again.", shown));
   try {

@@ -72,10 +72,7 @@ void read_map(std::string_view line, MtlLines& material) {
       if (option == "-clamp") material.clamp = value == "on";
     }
   }
-  material.picture = std::string(trimmed(line).substr(0, 900));
-  if (material.picture.size() > 1 && material.picture.front() == '"' &&
-      material.picture.back() == '"')
-    material.picture = material.picture.substr(1, material.picture.size() - 2);
+  material.picture = std::string(unquoted(trimmed(line).substr(0, 900)));
 }
 
 void read_line(std::string_view line, MtlLines& material) {

@@ -197,7 +197,7 @@ class ObjReader {
 
   // Names may have blanks, and a line several names.
   void read_libraries(std::string_view line) {
-    const std::string whole(trimmed(line));
+    const std::string whole(unquoted(trimmed(line)));
     if (whole.empty() || read_library(whole)) return;
     bool found = false;
     std::vector<std::string> missing;
@@ -215,10 +215,10 @@ class ObjReader {
 
   bool read_library(const std::string& name) {
     if (libraries_.contains(name)) return true;
-    const auto bytes = input_.side_files.read(name);
+    auto bytes = input_.side_files.read(name);
     if (!bytes) return false;
     libraries_.emplace(name, true);
-    for (MtlMaterial& found : read_mtl(name, *bytes, input_.context)) {
+    for (MtlMaterial& found : read_mtl(name, in_utf8(std::move(*bytes)), input_.context)) {
       const std::int32_t number = material_index(found.material.name);
       // The first definition of a name counts.
       if (std::exchange(defined_[std::size_t(number)], char(1))) continue;

@@ -167,7 +167,7 @@ class HeaderReader {
       element.properties.back().use = use_of(element.name, element.properties.back());
     } else if (keyword == "comment" || keyword == "obj_info") {
       if (lower(take_word(line)) == "texturefile" && !trimmed(line).empty())
-        header_.pictures.emplace_back(trimmed(line).substr(0, 900));
+        header_.pictures.emplace_back(unquoted(trimmed(line)).substr(0, 900));
     } else if (!keyword.empty()) {
       refuse_model(path_, "the PLY header is damaged");
     }

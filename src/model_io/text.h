@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/parse_double.h"
 
@@ -46,6 +47,17 @@ inline std::string_view without_bom(std::string_view text) {
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
   return text;
 }
+
+// Without the quotation marks that some exporters put around names.
+inline std::string_view unquoted(std::string_view name) {
+  return name.size() > 1 && name.front() == '"' && name.back() == '"'
+             ? name.substr(1, name.size() - 2)
+             : name;
+}
+
+// A text in UTF-16 with its byte order mark, as Windows' editors and shells save it, brought to
+// UTF-8; other bytes stay as they are.
+std::vector<std::uint8_t> in_utf8(std::vector<std::uint8_t> bytes);
 
 inline std::string lower(std::string_view text) {
   std::string out(text);

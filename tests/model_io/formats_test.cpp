@@ -99,6 +99,44 @@ TEST_F(Formats, ObjByteOrderMarks) {
   expect_four_colours(obj(bom + "newmtl m\nmap_Kd tex.png\n"));
 }
 
+// As Windows' shell and editors save "Unicode", in either byte order; 😀 takes two units.
+std::string utf16(std::u16string_view text, bool big) {
+  std::string out;
+  for (const char16_t unit : std::u16string(1, u'\xfeff') + std::u16string(text)) {
+    const char low = char(unit & 0xff), high = char(unit >> 8);
+    out += big ? high : low;
+    out += big ? low : high;
+  }
+  return out;
+}
+
+TEST_F(Formats, TextInUtf16) {
+  for (const bool big : {false, true}) {
+    const Loaded library = obj(utf16(u"newmtl m\r\nmap_Kd tex.png\r\n", big));
+    expect_four_colours(library);
+    EXPECT_TRUE(library.warnings.empty());
+    const std::string square(kSquare);
+    expect_four_colours(load(folder_.write(
+        "a.obj", utf16(u"mtllib a.mtl\n" + std::u16string(square.begin(), square.end()), big))));
+    folder_.write("Größe 😀.png", fixtures::four_colour_png());
+    expect_four_colours(obj(utf16(u"newmtl m\nmap_Kd Größe 😀.png\n", big)));
+    const Loaded off =
+        load(folder_.write("a.off", utf16(u"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", big)));
+    EXPECT_EQ(off.object.object.triangles.size(), 1U);
+  }
+  // Half a character at the end is no reason to read on.
+  std::string cut = utf16(u"newmtl m\nmap_Kd tex.png\n", false) + "\x3d\xd8";
+  expect_four_colours(obj(cut));
+  expect_four_colours(obj(cut + "\n"));
+}
+
+TEST_F(Formats, NamesInQuotationMarks) {
+  folder_.write("my materials.mtl", std::string("newmtl m\nmap_Kd \"tex.png\"\n"));
+  const Loaded loaded = obj("", "mtllib \"my materials.mtl\"\n");
+  expect_four_colours(loaded);
+  EXPECT_TRUE(loaded.warnings.empty());
+}
+
 TEST_F(Formats, ObjSeveralLibrariesInOneLineOrSeveral) {
   folder_.write("b.mtl", std::string("newmtl q\nKd 1 0 0\n"));
   folder_.write("c d.mtl", std::string("newmtl m\nmap_Kd tex.png\n"));
@@ -239,8 +277,9 @@ std::string ply_square(const std::string& comments, const std::string& face_prop
 }
 
 TEST_F(Formats, PlyCoordinatesOfFacesAndTrailingBlanks) {
-  for (const char* comment : {"comment TextureFile tex.png\n", "comment TextureFile tex.png  \t\n",
-                              "comment TextureFile tex.png\r\n"})
+  for (const char* comment :
+       {"comment TextureFile tex.png\n", "comment TextureFile tex.png  \t\n",
+        "comment TextureFile tex.png\r\n", "comment TextureFile \"tex.png\"\n"})
     expect_four_colours(
         load(folder_.write("a.ply", ply_square(comment, "property list uchar float texcoord\n",
                                                " 8 0 0 1 0 1 1 0 1"))));
@@ -569,6 +608,25 @@ TEST_F(Gltf, CopiesOfAMesh) {
   EXPECT_EQ(loaded.object.health.triangles, 4);
   EXPECT_NEAR(loaded.object.object.bounds().max.x(), 3000, 1e-3);
   EXPECT_EQ(at(loaded, 2.25, 0.75), kRed);
+}
+
+// Twenty bytes of text ask for two triangles each.
+TEST_F(Gltf, CopiesWithoutEndAreRefused) {
+  const auto with_copies = [&](int copies) {
+    const Bytes written = read_file(write(plain(), kTextured));
+    std::string text(written.begin(), written.end()), children, nodes;
+    for (int i = 1; i <= copies; ++i) {
+      children += fmt::format("{}{}", i > 1 ? "," : "", i);
+      nodes += R"(,{"mesh":0})";
+    }
+    const std::string plain_node = R"({"mesh": 0})";
+    text.replace(text.find(plain_node), plain_node.size(),
+                 "{\"children\":[" + children + "]}" + nodes);
+    return folder_.write("a.gltf", text);
+  };
+  expect_picture(load(with_copies(100)));
+  const std::string said = refusal_of(with_copies(260'000));
+  EXPECT_TRUE(contains(said, "copies come to too many")) << said;
 }
 
 TEST_F(Gltf, SparseNumbers) {
