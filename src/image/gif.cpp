@@ -62,7 +62,9 @@ Image read_frame(GifFileType* file, int transparent, const PictureBytes& bytes,
   const int height = std::max(file->SHeight, frame.Top + frame.Height);
   if (!colors || frame.Left < 0 || frame.Top < 0 || frame.Width < 1 || frame.Height < 1)
     refuse_picture(name, "GIF", "its first picture is damaged");
-  check_picture_size(name, "GIF", std::uint32_t(width), std::uint32_t(height), 0, bytes.size());
+  // A code has three bits at the least and stands for 4096 pixels at the most.
+  const double least = double(frame.Width) * frame.Height / 4096 * 3 / 8;
+  check_picture_size(name, "GIF", std::uint32_t(width), std::uint32_t(height), least, bytes.size());
   Image image(width, height);
   std::vector<GifPixelType> row(std::size_t(frame.Width));
   for (int y = 0; y < frame.Height; ++y) {

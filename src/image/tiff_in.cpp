@@ -209,6 +209,38 @@ double recorded_tiff_dpi(const PictureBytes& bytes) {
   return unit == RESUNIT_CENTIMETER ? 2.54 * double(across) : double(across);
 }
 
+namespace {
+
+// What a pixel takes in the file at the least.
+double least_bytes_a_pixel(TIFF* file) {
+  std::uint16_t bits = 0, samples = 0, compression = 0;
+  TIFFGetFieldDefaulted(file, TIFFTAG_BITSPERSAMPLE, &bits);
+  TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLESPERPIXEL, &samples);
+  TIFFGetFieldDefaulted(file, TIFFTAG_COMPRESSION, &compression);
+  // Colours of YCbCr may stand for four pixels each: half of the three samples.
+  const double plain = double(bits) * samples / 8 / 2;
+  switch (compression) {
+    case COMPRESSION_NONE:
+      return plain;
+    case COMPRESSION_PACKBITS:  // two bytes for a run of 128
+      return plain / 64;
+    case COMPRESSION_LZW:  // nine bits for 4096 bytes
+      return plain / 4096 * 9 / 8;
+    case COMPRESSION_DEFLATE:
+    case COMPRESSION_ADOBE_DEFLATE:
+      return plain / 1040;
+    case COMPRESSION_CCITTRLE:
+    case COMPRESSION_CCITTRLEW:
+    case COMPRESSION_CCITTFAX3:
+    case COMPRESSION_CCITTFAX4:  // a bit for a row of up to 2^15 that is like the one above
+      return 1.0 / 8 / 32768;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
 StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
   TiffSource source{bytes};
   const Tiff file = open(source);
@@ -218,7 +250,8 @@ StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
   TIFFGetField(file.get(), TIFFTAG_IMAGEWIDTH, &width);
   TIFFGetField(file.get(), TIFFTAG_IMAGELENGTH, &height);
   TIFFGetField(file.get(), TIFFTAG_PHOTOMETRIC, &photometric);
-  check_picture_size(name, "TIFF", width, height, 0, bytes.size());
+  check_picture_size(name, "TIFF", width, height,
+                     double(width) * height * least_bytes_a_pixel(file.get()), bytes.size());
   StoredPicture picture;
   picture.image = Image(int(width), int(height));
   picture.profile = profile_of(file.get());

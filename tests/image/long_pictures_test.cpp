@@ -14,7 +14,9 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_scope.h"
+#include "contains.h"
 #include "image/files.h"
+#include "refusal.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {
@@ -201,6 +203,59 @@ Bytes gif(const Image& image) {
   GifFreeMapObject(map);
   EGifCloseFile(file, &error);
   return bytes;
+}
+
+// One colour is what compressors make smallest.
+TEST(LongPictures, SmallFilesOfLargePicturesAreRead) {
+  Image image(900, 700);
+  std::fill(image.rgba.begin(), image.rgba.end(), std::uint8_t(255));
+  for (const std::uint16_t compression :
+       {COMPRESSION_LZW, COMPRESSION_DEFLATE, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS})
+    for (const std::uint16_t samples : {1, 3, 4}) {
+      const Bytes bytes = tiff(image, {700, compression, false, samples});
+      EXPECT_EQ(decode_image(bytes, "a.tif").rgba, image.rgba) << compression << ", " << samples;
+    }
+  const Image read = decode_image(gif(image), "a.gif");
+  EXPECT_EQ(read.width_px, 900);
+  EXPECT_EQ(read.height_px, 700);
+}
+
+void put16(Bytes& bytes, std::size_t at, int value) {
+  bytes[at] = std::uint8_t(value & 255);
+  bytes[at + 1] = std::uint8_t(value >> 8);
+}
+
+// The value of a TIFF's tag, by the format's own tables.
+void put_tiff_tag(Bytes& bytes, int tag, int value) {
+  const auto number = [&](std::size_t at) { return bytes[at] | bytes[at + 1] << 8; };
+  const auto directory = std::size_t(number(4) | number(6) << 16);
+  for (int i = 0; i < number(directory); ++i) {
+    const std::size_t entry = directory + 2 + std::size_t(12) * std::size_t(i);
+    if (number(entry) == tag) put16(bytes, entry + 8, value);
+  }
+}
+
+// A few hundred bytes that claim a quarter of a gigapixel.
+TEST(LongPictures, ForgedSizesAreRefusedBeforeAnythingIsUnpacked) {
+  constexpr int kSide_px = 16000;
+  const Image image = noise(4, 4);
+  Bytes forged_gif = gif(image);
+  put16(forged_gif, 6, kSide_px);
+  put16(forged_gif, 8, kSide_px);
+  const std::size_t frame = 13 + std::size_t(3) * 256;  // behind the palette
+  ASSERT_EQ(forged_gif[frame], ',');
+  put16(forged_gif, frame + 5, kSide_px);
+  put16(forged_gif, frame + 7, kSide_px);
+  const std::string gif_says = refusal([&] { decode_image(forged_gif, "a.gif"); });
+  EXPECT_TRUE(contains(gif_says, "too few bytes")) << gif_says;
+  for (const std::uint16_t compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_DEFLATE,
+                                          COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS}) {
+    Bytes forged = tiff(image, {4, compression, false, 3});
+    put_tiff_tag(forged, TIFFTAG_IMAGEWIDTH, kSide_px);
+    put_tiff_tag(forged, TIFFTAG_IMAGELENGTH, kSide_px);
+    const std::string said = refusal([&] { decode_image(forged, "a.tif"); });
+    EXPECT_TRUE(contains(said, "too few bytes")) << compression << ": " << said;
+  }
 }
 
 // Header, then three bytes a pixel. TGA and BMP say sizes at other places.
