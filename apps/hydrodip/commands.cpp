@@ -113,6 +113,7 @@ std::vector<NestRequest::Part> parts_of(const Request& request, const JobConfig&
       ++known->count;
   }
   std::vector<NestRequest::Part> parts;
+  parts.reserve(entries.size());
   for (const PartEntry& entry : entries)
     parts.push_back({configure_part(request, entry.job.string()), entry.count});
   return parts;

@@ -1,9 +1,12 @@
 #include "schemas.h"
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
+#include "base/parse_double.h"
 #include "settings/artwork_tables.h"
 #include "settings/dip_tables.h"
 #include "settings/params.h"
@@ -97,11 +100,25 @@ std::vector<std::string> words_of(const std::string& list) {
   return words;
 }
 
+// "a number from 0 to 360"; nothing of other ranges.
+std::optional<std::pair<double, double>> bounds_of(std::string_view range) {
+  constexpr std::string_view kFrom = "a number from ", kTo = " to ";
+  const std::size_t to = range.find(kTo);
+  if (!range.starts_with(kFrom) || to == std::string_view::npos) return {};
+  std::pair<double, double> bounds;
+  const auto is_number = [&](std::size_t begin, std::size_t end, double& value) {
+    return parse_double(range.data() + begin, range.data() + end, value).ec == std::errc();
+  };
+  if (!is_number(kFrom.size(), to, bounds.first) ||
+      !is_number(to + kTo.size(), range.size(), bounds.second))
+    return {};
+  return bounds;
+}
+
 // From what a value of a layer "has to be", in words.
 Json layer_schema(const LayerKey& key) {
-  double min = 0, max = 0;
-  if (std::sscanf(key.range.c_str(), "a number from %lf to %lf", &min, &max) == 2)
-    return {{"type", "number"}, {"minimum", min}, {"maximum", max}};
+  if (const auto bounds = bounds_of(key.range))
+    return {{"type", "number"}, {"minimum", bounds->first}, {"maximum", bounds->second}};
   if (key.range == "three numbers X,Y,Z") return array_of(text("number"), 3, 3);
   if (key.range == "W or W,H, each more than 0") {
     const Json length = {{"type", "number"}, {"exclusiveMinimum", 0}};

@@ -153,6 +153,7 @@ std::vector<SimulationResult> Simulations::get(const std::vector<SimulationReque
         context);
   }
   std::vector<SimulationResult> results;
+  results.reserve(requests.size());
   for (const SimulationRequest& request : requests)
     results.push_back(*store_.find(key_of(request)));
   return results;
