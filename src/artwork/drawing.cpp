@@ -95,9 +95,11 @@ bool may_mix(std::string_view svg) {
 // The first picture in a file of its own that a drawing shows.
 std::string first_linked_picture(std::string_view svg) {
   constexpr std::string_view kLink = "href=";
+  std::size_t end = 0;
   for (std::size_t at = find_element(svg, "image"); at != svg.npos;
-       at = find_element(svg, "image", at)) {
-    const std::string_view tag = svg.substr(at, svg.find('>', at) - at);
+       at = find_element(svg, "image", end)) {
+    end = std::min(svg.find('>', at), svg.size());
+    const std::string_view tag = svg.substr(at, end - at);
     const std::size_t link = tag.find(kLink);
     if (link == tag.npos || link + kLink.size() + 1 >= tag.size()) continue;
     const std::string_view value = tag.substr(link + kLink.size() + 1);

@@ -18,28 +18,18 @@ constexpr double kMostRatio =
     100;  // a model's XML packs to a tenth, a very regular one's to a fortieth
 constexpr std::size_t kPiece = 1 << 16;
 constexpr std::size_t kLongestTag = 1 << 22;
+constexpr std::size_t kLongestEntity = 11;  // "&#x10ffff;", and one zero
 constexpr int kMaxDepth = 64;
-
-void append_utf8(std::string& out, std::uint32_t code) {
-  if (code < 0x80) {
-    out += char(code);
-  } else if (code < 0x800) {
-    out += {char(0xc0 | code >> 6), char(0x80 | (code & 63))};
-  } else if (code < 0x10000) {
-    out += {char(0xe0 | code >> 12), char(0x80 | (code >> 6 & 63)), char(0x80 | (code & 63))};
-  } else if (code < 0x110000) {
-    out += {char(0xf0 | code >> 18), char(0x80 | (code >> 12 & 63)), char(0x80 | (code >> 6 & 63)),
-            char(0x80 | (code & 63))};
-  }
-}
 
 std::string decoded(std::string_view raw) {
   static constexpr std::pair<std::string_view, char> kNamed[] = {
       {"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}};
   std::string out;
   while (!raw.empty()) {
-    const std::size_t end = raw.front() == '&' ? raw.find(';') : std::string_view::npos;
-    if (end == std::string_view::npos || end > 10) {
+    // Never further than an entity is long: there may be millions of "&".
+    const std::size_t end =
+        raw.front() == '&' ? raw.substr(0, kLongestEntity).find(';') : std::string_view::npos;
+    if (end == std::string_view::npos) {
       out += raw.front();
       raw.remove_prefix(1);
       continue;
@@ -51,7 +41,7 @@ std::string decoded(std::string_view raw) {
       entity.remove_prefix(hex ? 2 : 1);
       std::uint32_t code = 0;
       std::from_chars(entity.data(), entity.data() + entity.size(), code, hex ? 16 : 10);
-      append_utf8(out, code);
+      if (code < 0x110000) append_utf8(code, out);
     } else {
       for (const auto& [name, character] : kNamed)
         if (entity == name) out += character;

@@ -36,14 +36,6 @@ Utf16 utf16_of(const std::vector<std::uint8_t>& bytes) {
   return Utf16::kNone;
 }
 
-void append_utf8(std::uint32_t point, std::vector<std::uint8_t>& out) {
-  constexpr std::uint32_t kLead[] = {0, 0xc0, 0xe0, 0xf0};
-  const unsigned more = point < 0x80 ? 0 : point < 0x800 ? 1 : point < 0x10000 ? 2 : 3;
-  out.push_back(std::uint8_t(kLead[more] | point >> (6 * more)));
-  for (unsigned left = more; left-- > 0;)
-    out.push_back(std::uint8_t(0x80 | (point >> (6 * left) & 0x3f)));
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> in_utf8(std::vector<std::uint8_t> bytes) {

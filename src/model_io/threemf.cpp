@@ -521,7 +521,7 @@ class ThreeMfReader {
       while (tags.next(tag)) {
         const std::string type = tag.text("Type");
         if (tag.name != "Relationship" || !type.ends_with("/3dmodel")) continue;
-        const std::string stored = package_.find(tag.text("Target"));
+        std::string stored = package_.find(tag.text("Target"));
         if (!stored.empty()) return stored;
       }
     }

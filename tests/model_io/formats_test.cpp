@@ -892,6 +892,18 @@ TEST_F(ThreeMf, XmlInUtf16IsNamed) {
   }
 }
 
+// Names of characters end soon or are none: looking for the end of each of a million takes minutes.
+TEST_F(ThreeMf, CharactersByName) {
+  const auto unit = [&](const std::string& name) {
+    return refusal_of(folder_.write(
+        "a.3mf",
+        fixtures::zip_of({{"_rels/.rels", kRelations}, {"3D/3dmodel.model", model("", name)}})));
+  };
+  EXPECT_TRUE(contains(unit("&lt;&#228;&#x1F600;&amp;&gt;"), "'<ä😀&>'"));
+  EXPECT_TRUE(contains(unit("&amp"), "'&amp'"));
+  EXPECT_TRUE(contains(unit(std::string(1'000'000, '&')), "'&&&"));
+}
+
 TEST_F(ThreeMf, SupportsAreNotDipped) {
   const Loaded loaded =
       package({{"3D/3dmodel.model",
