@@ -102,11 +102,20 @@ CornerGrid read_colours(const std::filesystem::path& file, double square_mm,
 
 // ---- tables ----
 
-// Blank-separated, whatever separated them.
+// Blank-separated, whatever separated them. Where commas are decimal ones, as in German, semicolons
+// or tabs separate.
 std::string with_blanks(std::string_view line) {
+  const bool commas_are_decimal = line.find_first_of(";\t") != std::string_view::npos;
+  const auto is_digit = [&](std::size_t at) {
+    return at < line.size() && line[at] >= '0' && line[at] <= '9';
+  };
   std::string text(line);
-  for (char& c : text)
-    if (c == ',' || c == ';') c = ' ';
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == ',')
+      text[i] = commas_are_decimal && is_digit(i - 1) && is_digit(i + 1) ? '.' : ' ';
+    else if (line[i] == ';' || line[i] == '"')
+      text[i] = ' ';
+  }
   return text;
 }
 
@@ -224,8 +233,9 @@ template <class Read>
 Scan read_corners(const std::filesystem::path& file, const ScanOptions& options, const Read& read) {
   const Unit& unit = find_unit(options.units);
   const std::vector<std::uint8_t> bytes =
-      kind_of(file) == ScanKind::kTable ? read_small_file(file, kLargestTable, "a table of corners")
-                                        : read_file(file);
+      kind_of(file) == ScanKind::kTable
+          ? in_utf8(read_small_file(file, kLargestTable, "a table of corners"))
+          : read_file(file);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   Scan scan;
   scan.synthetic = says_synthetic(text);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -209,7 +210,9 @@ const Parameter& find_parameter(const std::string& name, const std::string& orig
     names.push_back(p.name);
   }
   const std::string hint = did_you_mean(name, names);
-  throw InputError(fmt::format("{}: unknown parameter '{}'{}", origin, name,
+  std::string brief = name.substr(0, 100);
+  std::replace(brief.begin(), brief.end(), '\0', '?');  // a sentence would end there
+  throw InputError(fmt::format("{}: unknown parameter '{}'{}", origin, brief,
                                hint.empty() ? "; 'hydrodip params' lists them all" : hint));
 }
 

@@ -31,6 +31,7 @@ constexpr void check(bool holds) {
 #include "base/error.h"
 #include "base/file.h"
 #include "base/small_file.h"
+#include "model_io/text.h"
 #include "settings/artwork_tables.h"
 #include "settings/settings.h"
 
@@ -55,7 +56,7 @@ class SettingReader {
 
   toml::table table() const {
     const std::vector<std::uint8_t> bytes =
-        read_small_file(file_, kLargestFile, "a configuration file");
+        in_utf8(read_small_file(file_, kLargestFile, "a configuration file"));
     if (bytes.size() > kLargestFile)  // of a pipe
       throw InputError(fmt::format("{}: too large for a configuration file", file_.string()));
     return parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
@@ -197,6 +198,9 @@ class SettingReader {
     const std::string origin = fmt::format("{}:{}", file_.string(), at.line);
     const std::string name = known_name(given);
     const ParameterType type = type_of(name, origin);
+    const auto text = node.value_exact<std::string>();
+    if (text && text->find('\0') != std::string::npos)
+      throw InputError(fmt::format("{}: {} must be text without NUL characters", origin, name));
     Located located;
     located.line = at.line;
     located.column = at.column;
@@ -204,7 +208,7 @@ class SettingReader {
     setting = {name, std::string(), true, shown(node), origin};
     if (const auto number = as_number(node))
       setting.value = *number;
-    else if (const auto text = node.value_exact<std::string>())
+    else if (text)
       setting.value = type == ParameterType::kPath || type == ParameterType::kWayIn
                           ? beside_file(*text)
                           : *text;

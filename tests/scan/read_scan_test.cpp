@@ -83,6 +83,23 @@ TEST_F(ReadScanTest, SeparatorsAndHeadingsAreFree) {
             4u);
 }
 
+// What a German spreadsheet writes, in Windows' Unicode too: the same numbers.
+TEST_F(ReadScanTest, DecimalCommasBetweenSemicolonsOrTabs) {
+  const std::vector<Vec3> points =
+      read_scan(file("a.csv",
+                     "0,0,0.5,-1.25,0\n1,0,5.5,-1.25,1e-1\n0,1,0.5,3.75,0\n1,1,5.5,3.75,-0.25\n"),
+                {})
+          .grid.position;
+  const std::string semicolons =
+      "Spalte;Zeile;x;y;z\r\n0;0;0,5;-1,25;0\r\n1;0;5,5;-1,25;1e-1\r\n0;1;0,5;3,75;0\r\n"
+      "\"1\";\"1\";\"5,5\";\"3,75\";\"-0,25\"\r\n";
+  std::string tabs = semicolons, utf16 = "\xff\xfe";
+  std::replace(tabs.begin(), tabs.end(), ';', '\t');
+  for (const char c : semicolons) utf16 += {c, '\0'};
+  for (const std::string& text : {semicolons, tabs, utf16})
+    EXPECT_EQ(read_scan(file("b.csv", text), {}).grid.position, points) << text;
+}
+
 TEST_F(ReadScanTest, AWrongUnitIsNamed) {
   const struct {
     double mm;

@@ -218,6 +218,20 @@ TEST_F(Settings, DeepKeysAndTheSmallestIntegerAreRefusedInOneSentence) {
   EXPECT_TRUE(contains(toml_error("film.elements = -9223372036854775808\n"), "film.elements"));
 }
 
+// As Windows' editors save "Unicode".
+TEST_F(Settings, TextInUtf16MeansTheSame) {
+  std::string utf16 = "\xff\xfe";
+  for (const char c : std::string("[film]\r\nwidth_mm = 200\r\n")) utf16 += {c, '\0'};
+  EXPECT_EQ(from_toml(utf16).design.film.width_mm, 200);
+}
+
+TEST_F(Settings, NulCharactersAndEndlessNamesEndInOneWholeSentence) {
+  EXPECT_TRUE(contains(toml_error("print.job_name = \"a\\u0000b\"\n"),
+                       "print.job_name must be text without NUL characters"));
+  EXPECT_TRUE(contains(toml_error("\"a\\u0000b\" = 1\n"), "'a?b'; 'hydrodip params' lists"));
+  EXPECT_LT(toml_error(std::string(100'000, 'k') + " = 1\n").size(), 300U);
+}
+
 TEST_F(Settings, MissingFileIsRefused) {
   EXPECT_THROW(read_settings(folder_ / "nowhere.toml"), InputError);
   EXPECT_THROW(read_settings(folder_), InputError);
