@@ -158,6 +158,7 @@ void announce_outputs(OutputFolder& folder, const std::string& command, const Jo
   std::vector<std::string> names;
   for (const ReportOutput& output : outputs(command, config)) names.push_back(output.name);
   std::vector<std::filesystem::path> paths;
+  paths.reserve(inputs.size());
   for (const ReportInput& input : inputs) paths.emplace_back(input.path);
   folder.announce(names, paths);
 }

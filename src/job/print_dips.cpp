@@ -108,6 +108,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   });
   MadeDips all = hang_up(config, prepared, plan, context);
   std::vector<std::filesystem::path> input_files;
+  input_files.reserve(inputs.size());
   for (const ReportInput& input : inputs) input_files.emplace_back(input.path);
   folder.announce(file_names(all), input_files);
 

@@ -150,6 +150,7 @@ class Search {
   // Those that were looked at on rougher film, on that of the others.
   void dip_again(std::vector<Trial>& found) {
     std::vector<PoseOptions> poses;
+    poses.reserve(found.size());
     for (const Trial& trial : found) poses.push_back(trial.pose);
     found.clear();
     outdone_ = result_.trials.size();
@@ -175,6 +176,7 @@ class Search {
         of.push_back(i);
       }
     }
+    to_beat.reserve(of.size());
     for (const std::size_t i : of) to_beat.push_back(found[i].figures.score);
     const auto tried = try_all(coarse_, poses, "trying poses like the best", to_beat);
     for (std::size_t n = 0; n < tried.size(); ++n)
