@@ -11,6 +11,7 @@ namespace hydrodip::fuzz {
 
 class NoSideFiles : public SideFiles {
  public:
+  std::string identity(const std::string&) override { return {}; }
   std::optional<FileBytes> read(const std::string&) override { return {}; }
 };
 

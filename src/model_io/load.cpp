@@ -130,16 +130,16 @@ void apply_alpha(Image& image, Alpha alpha, float cutoff) {
 // Reads pictures once each, and tells of those that cannot be had.
 class Pictures {
  public:
-  Pictures(const ModelFile& file, ModelFolder& folder, LoadedObject& loaded,
-           const RunContext& context)
-      : file_(file), folder_(folder), loaded_(loaded), context_(context) {}
+  Pictures(const std::string& path, const ModelFile& file, ModelFolder& folder,
+           LoadedObject& loaded, const RunContext& context)
+      : path_(path), file_(file), folder_(folder), loaded_(loaded), context_(context) {}
 
   // Index of the material's picture among the object's textures, or -1.
   int texture(const FileMaterial& material) {
     const FilePicture& picture = file_.pictures[std::size_t(material.picture)];
     const bool mask = material.alpha == Alpha::kMask;
     const auto key =
-        std::make_tuple(picture.embedded ? fmt::format("\n{}", material.picture) : picture.name,
+        std::make_tuple(picture.embedded ? fmt::format("\n{}", material.picture) : file_of(picture),
                         int(material.alpha), mask ? material.alpha_cutoff : 0.0F,
                         material.picture_base, material.picture_gain);
     const auto [known, is_new] = textures_.try_emplace(key, -1);
@@ -149,15 +149,29 @@ class Pictures {
       Image image = read(picture);
       apply_range(image, material.picture_base, material.picture_gain);
       apply_alpha(image, material.alpha, material.alpha_cutoff);
+      pixels_ += double(image.width_px) * image.height_px;
       known->second = int(loaded_.object.textures.size());
       loaded_.object.textures.push_back(std::make_shared<const Image>(std::move(image)));
     } catch (const InputError& error) {
       tell(error.what());
     }
+    if (pixels_ > kMostPixels)
+      throw InputError(
+          fmt::format("{}: its pictures would take more than {:.0f} GB of memory; scale them down.",
+                      path_, 4 * kMostPixels / 1e9));
     return known->second;
   }
 
  private:
+  // Copies for other thresholds of alpha or other ranges count too.
+  static constexpr double kMostPixels = 1U << 30U;
+
+  // One file's names are often written in several ways.
+  std::string file_of(const FilePicture& picture) const {
+    const std::string file = folder_.identity(picture.name);
+    return file.empty() ? picture.name : file;
+  }
+
   Image read(const FilePicture& picture) {
     if (picture.embedded) {
       if (!picture.problem.empty()) throw InputError(picture.problem);
@@ -182,11 +196,13 @@ class Pictures {
     }
   }
 
+  const std::string path_;  // the model's
   const ModelFile& file_;
   ModelFolder& folder_;
   LoadedObject& loaded_;
   const RunContext& context_;
   std::map<std::tuple<std::string, int, float, float, float>, int> textures_;
+  double pixels_ = 0;
 };
 
 // ---- the object ---------------------------------------------------------------------------------
@@ -400,7 +416,7 @@ LoadedObject load_object(const fs::path& path, const LoadOptions& options,
 
   LoadedObject loaded;
   loaded.picture_problems = file.color_problems;
-  Pictures pictures(file, folder, loaded, context);
+  Pictures pictures(path.string(), file, folder, loaded, context);
   Materials materials(file, pictures, only_texture, loaded.object);
   if (only_texture) {
     forget_colors(file, path, options.texture, loaded.object);

@@ -78,7 +78,10 @@ struct ModelFile {
 class SideFiles {
  public:
   virtual ~SideFiles() = default;
-  // Empty if there is none of that name. Letter case, backslashes and percent escapes are forgiven.
+  // The same for all names of one file, which may be written in many ways: letter case,
+  // backslashes and percent escapes are forgiven. Empty if there is none.
+  virtual std::string identity(const std::string& name) = 0;
+  // Empty if there is none of that name, or it cannot be read.
   virtual std::optional<FileBytes> read(const std::string& name) = 0;
 };
 

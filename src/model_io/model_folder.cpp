@@ -71,6 +71,11 @@ fs::path ModelFolder::find(const std::string& name) {
   return {};
 }
 
+std::string ModelFolder::identity(const std::string& name) {
+  std::error_code ignored;
+  return fs::canonical(find(name), ignored).string();
+}
+
 fs::path ModelFolder::in_any_case(const fs::path& relative) {
   if (relative.is_absolute() || !relative.has_filename()) return {};
   fs::path at = folder_;

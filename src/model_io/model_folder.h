@@ -18,6 +18,7 @@ class ModelFolder : public SideFiles {
   // of these in any letter case.
   std::filesystem::path find(const std::string& name);
 
+  std::string identity(const std::string& name) override;
   std::optional<FileBytes> read(const std::string& name) override;
   // Throws InputError if it cannot be read.
   FileBytes read_path(const std::filesystem::path& path);

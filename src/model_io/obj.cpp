@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "base/error.h"
@@ -214,10 +215,11 @@ class ObjReader {
   }
 
   bool read_library(const std::string& name) {
-    if (libraries_.contains(name)) return true;
+    const std::string file = input_.side_files.identity(name);
+    if (libraries_.contains(file)) return true;
     auto bytes = input_.side_files.read(name);
     if (!bytes) return false;
-    libraries_.emplace(name, true);
+    libraries_.insert(file);
     for (MtlMaterial& found : read_mtl(name, in_utf8(std::move(*bytes)), input_.context)) {
       const std::int32_t number = material_index(found.material.name);
       // The first definition of a name counts.
@@ -300,8 +302,8 @@ class ObjReader {
   std::vector<std::int32_t> uv_of_;  // per corner, -1: none; empty while no corner has any
   std::vector<std::array<float, 3>> vertex_colors_;
   std::unordered_map<std::string, std::int32_t> material_named_;
-  std::vector<char> defined_;  // per material: whether a library says what it is
-  std::unordered_map<std::string, bool> libraries_;
+  std::vector<char> defined_;                  // per material: whether a library says what it is
+  std::unordered_set<std::string> libraries_;  // files that were read
   int missing_libraries_ = 0;
   std::array<ObjList, 3> lists_{{{"vertex"}, {"texture coordinate"}, {"normal"}}};
 };

@@ -536,8 +536,7 @@ class ThreeMfReader {
     if (known != parts_.end()) return known->second;
     Package::Stream stream(package_, name);
     Part read = PartReader(input_.path, stream, textures_, left_out_, input_.context).run();
-    for (const auto& [id, object] : read.objects)
-      triangles_left_ += kCopies * std::int64_t(object.triangles.size());
+    for (const auto& [id, object] : read.objects) size_left_ += kCopies * size_of(object);
     return parts_.emplace(name, std::move(read)).first->second;
   }
 
@@ -567,6 +566,11 @@ class ThreeMfReader {
     return known == slicer_parts_.triangles.end() ? kNone : known->second;
   }
 
+  // What a copy of it costs.
+  static std::int64_t size_of(const Object3mf& object) {
+    return std::int64_t(object.triangles.size() + object.vertices.size());
+  }
+
   [[noreturn]] void refuse_copies() const {
     throw InputError(
         fmt::format("{}: its objects' copies come to too many; export what is to be dipped alone, "
@@ -576,7 +580,7 @@ class ThreeMfReader {
 
   void add_mesh(const Part& part, const Object3mf& object, const Matrix4f& world,
                 const std::vector<SlicerParts::Range>& left_out) {
-    if ((triangles_left_ -= std::int64_t(object.triangles.size())) < 0) refuse_copies();
+    if ((size_left_ -= size_of(object)) < 0) refuse_copies();
     const auto first = std::int32_t(file_.positions.size());
     check_count(input_.path, file_.positions.size() + object.vertices.size());
     const Mat3 linear = world.topLeftCorner<3, 3>().cast<double>();
@@ -662,7 +666,7 @@ class ThreeMfReader {
   std::map<std::string, Part> parts_;
   SlicerParts slicer_parts_;
   LeftOut left_out_;
-  std::int64_t triangles_left_ = 500'000;
+  std::int64_t size_left_ = 1'000'000;
   std::int64_t placements_left_ = 20'000;
   bool has_colors_ = false, has_uvs_ = false;
 };

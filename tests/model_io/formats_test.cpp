@@ -144,6 +144,21 @@ TEST_F(Formats, ObjSeveralLibrariesInOneLineOrSeveral) {
   expect_four_colours(obj("newmtl z\nKd 1 0 0\n", "mtllib b.mtl\nmtllib a.mtl\nmtllib c d.mtl\n"));
 }
 
+// However often and in whatever way they are named: thousands of spellings would cost as many
+// reads.
+TEST_F(Formats, FilesAreReadOnceByWhateverName) {
+  folder_.write("a.mtl",
+                std::string("newmtl m\nTr 1\nmap_Kd tex.png\nnewmtl n\nmap_Kd ./TEX.png\n"));
+  const Loaded loaded = load(folder_.write(
+      "a.obj", std::string("mtllib a.mtl\nmtllib ./a.mtl\nmtllib A.MTL\nmtllib C:\\me\\a.mtl\n") +
+                   kSquare + "usemtl n\nv 2 0 0\nv 3 0 0\nv 3 1 0\nf 5/1 6/2 7/3\n"));
+  EXPECT_EQ(std::count_if(loaded.warnings.begin(), loaded.warnings.end(),
+                          [](const std::string& said) { return contains(said, "Tr 1"); }),
+            1);
+  EXPECT_EQ(loaded.object.object.materials.size(), 2U);
+  EXPECT_EQ(loaded.object.object.textures.size(), 1U);
+}
+
 TEST_F(Formats, ObjLineEndsOfAllSystems) {
   std::string text = std::string("mtllib a.mtl\n") + kSquare;
   folder_.write("a.mtl", std::string("newmtl m\rmap_Kd tex.png\r"));
@@ -1008,6 +1023,15 @@ TEST_F(ThreeMf, CopiesWithoutEndAreRefused) {
   EXPECT_TRUE(contains(
       items(1, "<object id=\"1\"><components><component objectid=\"1\"/></components></object>"),
       "nested"));
+  // Vertices are copied with the object, whether triangles use them or not.
+  std::string vertices;
+  for (int i = 0; i < 20'000; ++i) vertices += "<vertex x=\"0\" y=\"0\" z=\"0\"/>";
+  const std::string loose =
+      "<object id=\"1\"><mesh><vertices><vertex x=\"9\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"9\" "
+      "z=\"0\"/>" +
+      vertices +
+      "</vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh></object>";
+  EXPECT_TRUE(contains(items(4000, loose), "copies"));
 }
 
 }  // namespace
