@@ -50,6 +50,12 @@ std::string decoded(std::string_view raw) {
   return out;
 }
 
+// In any letter case, with a leading slash or without.
+std::string comparable(std::string_view name) {
+  if (name.starts_with("/")) name.remove_prefix(1);
+  return lower(name);
+}
+
 }  // namespace
 
 // ---- ZIP ----------------------------------------------------------------------------------------
@@ -67,6 +73,8 @@ Package::Package(const std::string& path, const FileBytes& bytes)
   for (zip_int64_t i = 0; i < count; ++i) {
     const char* name = zip_get_name(archive, zip_uint64_t(i), ZIP_FL_ENC_GUESS);
     names_.emplace_back(name ? name : "");
+    stored_.try_emplace(names_.back(), names_.size() - 1);
+    wanted_.try_emplace(comparable(names_.back()), names_.size() - 1);
   }
 }
 
@@ -77,10 +85,8 @@ void Package::damaged() const {
 }
 
 std::string Package::find(const std::string& name) const {
-  const std::string wanted = lower(name.starts_with("/") ? name.substr(1) : name);
-  for (const std::string& stored : names_)
-    if (lower(stored.starts_with("/") ? stored.substr(1) : stored) == wanted) return stored;
-  return "";
+  const auto known = wanted_.find(comparable(name));
+  return known == wanted_.end() ? "" : names_[known->second];
 }
 
 FileBytes Package::read(const std::string& name) {
@@ -94,11 +100,12 @@ FileBytes Package::read(const std::string& name) {
 
 Package::Stream::Stream(Package& package, const std::string& name) : package_(package) {
   auto* archive = static_cast<zip_t*>(package.archive_);
-  const auto index = std::find(package.names_.begin(), package.names_.end(), name);
+  const auto known = package.stored_.find(name);
+  if (known == package.stored_.end()) package.damaged();
+  const zip_uint64_t number = known->second;
   zip_stat_t about;
-  const auto number = zip_uint64_t(index - package.names_.begin());
-  if (index != package.names_.end() && zip_stat_index(archive, number, 0, &about) == 0 &&
-      (about.valid & ZIP_STAT_SIZE) && double(about.size) > package.unpacked_left_)
+  if (zip_stat_index(archive, number, 0, &about) == 0 && (about.valid & ZIP_STAT_SIZE) &&
+      double(about.size) > package.unpacked_left_)
     throw InputError(fmt::format(
         "{}: its part {} unpacks to {:.0f} MB, far more than any model of this size; export it "
         "again.",

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,8 @@ class Package {
   const std::string& path_;
   void* archive_ = nullptr;
   std::vector<std::string> names_;
+  // The first of each name, as stored and as find() compares them.
+  std::unordered_map<std::string, std::size_t> stored_, wanted_;
   double unpacked_left_ = 0;
 };
 

@@ -306,11 +306,14 @@ class PartReader {
       for (const std::int32_t index : integers(tag.text("matindices")))
         mixed_.emplace_back(base, index);
     } else if (tag.name == "multiproperties") {
-      for (const std::int32_t id_of_layer : integers(tag.text("pids")))
-        mixed_.emplace_back(group_number(id_of_layer), 0);
+      const std::vector<std::int32_t> layers = integers(tag.text("pids"));
+      if (layers.size() > kMostLayers) refuse("a material has more layers than any");
+      for (const std::int32_t layer : layers) mixed_.emplace_back(group_number(layer), 0);
     }
     if (tag.empty) group_ = -1;
   }
+
+  static constexpr std::size_t kMostLayers = 100;
 
   std::int32_t group_number(std::int32_t id) const {
     const auto known = part_.group_of.find(id);
@@ -356,8 +359,10 @@ class PartReader {
     std::array<double, 4> sum{};
     double total = 0;
     for (const auto& [group, index] : mixed_) {
+      const std::string_view word = take_word(rest);
+      if (word.empty()) break;
       double share = 0;
-      if (!parse_number(take_word(rest), share) || share < 0 || group < 0) continue;
+      if (!parse_number(word, share) || share < 0 || group < 0) continue;
       const Rgba& color = entry_of(group, index).color;
       for (std::size_t c = 0; c < 4; ++c) sum[c] += share * color[c];
       total += share;

@@ -1003,6 +1003,47 @@ TEST_F(ThreeMf, HelperVolumesOfPrusaSlicerAreLeftOut) {
   EXPECT_EQ(with("").object.health.triangles, 5);
 }
 
+// Minutes otherwise.
+TEST_F(ThreeMf, ListsOfManyEntriesStayLinear) {
+  const std::string base =
+      "<basematerials id=\"5\"><base name=\"a\" displaycolor=\"#FF0000\"/></basematerials>";
+  const auto with = [&](const std::string& resources) {
+    return model("<resources>" + base + resources + "<object id=\"1\">" +
+                 square("pid=\"9\" p1=\"0\"") +
+                 "</object></resources><build><item objectid=\"1\"/></build>");
+  };
+  const auto repeated = [](const std::string& text, int count) {
+    std::string all;
+    for (int i = 0; i < count; ++i) all += text;
+    return all;
+  };
+  // Of a hundred thousand materials each of many mixtures names the share of one.
+  const Loaded mixed = package(
+      {{"3D/3dmodel.model",
+        with("<m:compositematerials id=\"9\" matid=\"5\" matindices=\"" + repeated("0 ", 100'000) +
+             "\">" + repeated("<m:composite values=\"1\"/>", 20'000) +
+             "</m:compositematerials>")}});
+  EXPECT_EQ(seen_at(mixed, 0.25, 0.5), kRed);
+  EXPECT_TRUE(contains(
+      refusal_of(folder_.write(
+          "a.3mf",
+          fixtures::zip_of(
+              {{"3D/3dmodel.model",
+                with("<m:multiproperties id=\"9\" pids=\"" + repeated("5 ", 100'000) + "\">" +
+                     repeated("<m:multi pindices=\"0\"/>", 20'000) + "</m:multiproperties>")}}))),
+      "layers"));
+  std::vector<std::pair<std::string, std::string>> parts;
+  std::string textures =
+      "<m:multiproperties id=\"9\" pids=\"5\"><m:multi pindices=\"0\"/></m:multiproperties>";
+  for (int i = 0; i < 30'000; ++i) {
+    parts.emplace_back(fmt::format("3D/{}.txt", i), "");
+    textures += fmt::format(
+        "<m:texture2d id=\"{}\" path=\"/3D/{}.png\" contenttype=\"image/png\"/>", i + 10, i);
+  }
+  parts.emplace_back("3D/3dmodel.model", with(textures));
+  EXPECT_EQ(seen_at(package(parts), 0.25, 0.5), kRed);
+}
+
 TEST_F(ThreeMf, CopiesWithoutEndAreRefused) {
   const auto items = [&](int count, const std::string& object) {
     std::string text = "<resources>" + object + "</resources><build>";
