@@ -312,7 +312,10 @@ class GltfReader {
     if (mesh >= 0) {
       has_skin_ = has_skin_ || node.contains("skin");
       has_morphs_ = has_morphs_ || morphs(node) || morphs(data_.entry("meshes", mesh));
-      for (const Matrix4f& instance : instances(node)) add_mesh(mesh, world * instance);
+      for (const Matrix4f& instance : instances(node)) {
+        spend_triangle();
+        add_mesh(mesh, world * instance);
+      }
     }
     for (const std::int64_t child : list(node, "children")) visit(child, world, depth + 1);
   }
@@ -409,6 +412,7 @@ class GltfReader {
       data_.refuse("a mesh has no primitives");
     for (const json& primitive : *primitives) {
       if (!primitive.is_object()) data_.refuse("a primitive is damaged");
+      spend_triangle();
       add_primitive(primitive, world);
     }
   }
@@ -527,12 +531,18 @@ class GltfReader {
     for (const auto& face : mesh.faces) add_triangle(part, {face[0], face[1], face[2]});
   }
 
-  void add_triangle(const Part& part, std::array<std::int64_t, 3> corners) {
+  // Parts and copies without any cost as much as a triangle, or a small file could ask for
+  // billions.
+  void spend_triangle() {
     cancel_();
     if ((corners_left_ -= 3) < 0)
       throw InputError(fmt::format(
           "{}: its parts and their copies come to too many triangles; simplify the model.",
           input_.path));
+  }
+
+  void add_triangle(const Part& part, std::array<std::int64_t, 3> corners) {
+    spend_triangle();
     if (part.mirrored) std::swap(corners[1], corners[2]);
     for (const std::int64_t corner : corners) {
       file_.corners.push_back(vertex(part, corner));

@@ -640,6 +640,16 @@ TEST_F(Gltf, CopiesWithoutEndAreRefused) {
     return folder_.write("a.gltf", text);
   };
   expect_picture(load(with_copies(100)));
+  // Parts without triangles cost time too, by node and part.
+  const Bytes written = read_file(with_copies(3000));
+  std::string text(written.begin(), written.end());
+  const std::size_t parts = text.find("\"primitives\": [") + 15;
+  ASSERT_LT(parts, text.size());
+  std::string points;
+  for (int i = 0; i < 3000; ++i) points += R"({"attributes":{"POSITION":0},"mode":0},)";
+  text.insert(parts, points);
+  const std::string of_points = refusal_of(folder_.write("a.gltf", text));
+  EXPECT_TRUE(contains(of_points, "copies come to too many")) << of_points;
   const std::string said = refusal_of(with_copies(260'000));
   EXPECT_TRUE(contains(said, "copies come to too many")) << said;
 }
