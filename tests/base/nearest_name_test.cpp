@@ -14,6 +14,12 @@ TEST(NearestName, FindsSwappedMissingAndExtraLetters) {
   EXPECT_EQ(nearest_name("FILM.ELEMENTS", kNames), "film.elements");
 }
 
+// In short names one mistake is forgiven, and letters that change places are one.
+TEST(NearestName, ForgivesOneSwapInAShortName) {
+  EXPECT_EQ(nearest_name("prnit", {"print"}), "print");
+  EXPECT_EQ(nearest_name("prmmt", {"print"}), "");
+}
+
 TEST(NearestName, FindsTheLastPartAlone) {
   EXPECT_EQ(nearest_name("elements", kNames), "film.elements");
   EXPECT_EQ(nearest_name("step_mn", kNames), "dip.step_mm");
