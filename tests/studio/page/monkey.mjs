@@ -6,7 +6,7 @@ import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
-import { differencesByHand, documentOf, hasChromium, kept, newResult, openQuick, Program, Session, until } from './studio.mjs';
+import { differencesByHand, documentOf, hasChromium, kept, newResult, openQuick, Program, Session, stateOf, until } from './studio.mjs';
 
 const chromium = process.argv[4] || '/usr/bin/chromium';
 if (!hasChromium(chromium)) {
@@ -89,19 +89,18 @@ const PRINT_EVERY_MS = 10 * 60000;
 const hydrodip = resolve(process.argv[2]);
 const work = mkdtempSync(join(tmpdir(), 'hydrodip-monkey-'));
 process.on('exit', () => rmSync(work, { recursive: true, force: true }));
+const lastPrint = async () => (await stateOf(page)).tasks.filter(({ kind }) => kind === 'print').at(-1);
 async function printAndCompare() {
   await press('Escape');
   await press('Escape');
   await kept(page);
+  const before = (await lastPrint())?.task;
   await press('Control+p');
-  // The button of an earlier print, which goes when the job turns out to be printing already.
-  const again = '[data-name="print-again"]';
-  if (await exists(again))
-    await page.click(again).catch(async (error) => {
-      if (await exists(again)) throw error;
-    });
-  await page.waitForFunction(() => !document.querySelector('.panel.print .progress'), undefined, { timeout: 600000 });
-  const printed = await exists('.panel.print [data-file]');
+  await until('a print', async () => (await lastPrint())?.task !== before);
+  await until('its end', async () => (await lastPrint()).state !== 'running', 900);
+  const { task, state } = await lastPrint();
+  const printed = state === 'done';
+  if (printed) await page.waitForSelector(`.panel.print [data-file][href*="/tasks/${task}/"]`, { timeout: 30000 });
   if (printed) assert.deepEqual((await differencesByHand(page, hydrodip, work)).different, []);
   await press('Escape');
   return printed;
