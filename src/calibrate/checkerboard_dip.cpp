@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parse_double.h"
+#include "calibrate/board_lines.h"
 #include "ink/stiffness.h"
 #include "job/prepare.h"
 #include "samples/samples.h"
@@ -87,10 +88,13 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
   return result;
 }
 
-CheckeredFilm checkered_film(const DesignOptions& design, const Board& board) {
+CheckeredFilm checkered_film(const DesignOptions& design, const Board& board, int halvings) {
   CheckeredFilm film;
   film.board = board;
-  film.mesh = std::make_shared<const FilmMesh>(make_film_mesh(design.film));
+  BoardGrid grid = board_grid(design.film, board, design.stiffness.filter_mm);
+  grid.halvings = halvings;
+  film.mesh = std::make_shared<const FilmMesh>(make_film_mesh(
+      design.film, board_lines(design.film, board, design.stiffness.filter_mm, grid)));
   const PrintedBoard printed = print_board(design.film, board);
   // A ratio of 2 makes the modulus 1 more than the density.
   film.ink_density =

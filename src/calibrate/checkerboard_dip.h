@@ -57,7 +57,9 @@ struct CheckeredFilm {
   std::vector<double> ink_density;  // per triangle, after the stiffness filter
   Board board;
 };
-CheckeredFilm checkered_film(const DesignOptions& design, const Board& board);
+// Its grid lies on the board's squares (board_lines.h) and has about `film.elements` triangles,
+// with every cell halved so many times.
+CheckeredFilm checkered_film(const DesignOptions& design, const Board& board, int halvings = 0);
 
 // One simulated dip with what is asked of it. Refers to the object and its surface.
 struct CheckerboardDip {

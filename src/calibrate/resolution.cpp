@@ -17,11 +17,10 @@ DesignOptions finer_film(const DesignOptions& design) {
   return fine;
 }
 
-Correction correction(const Eigen::VectorXd& here, const Eigen::VectorXd& finer) {
-  const Eigen::VectorXd step = finer - here;
-  const Eigen::VectorXd beyond = step / (kFiner * kFiner - 1);
-  const Eigen::VectorXd at_worst = step / (kFiner - 1);
-  return {step + beyond, at_worst - beyond};
+Correction correction(const Eigen::VectorXd& change) {
+  const Eigen::VectorXd beyond = change / (kFiner * kFiner - 1);
+  const Eigen::VectorXd at_worst = change / (kFiner - 1);
+  return {change + beyond, at_worst - beyond};
 }
 
 }  // namespace hydrodip

@@ -16,10 +16,9 @@ struct Correction {
   Eigen::VectorXd all, doubt;
 };
 
-// From the same misfits on that film and on finer_film() of it. What they still change by from
-// there on follows from how they changed, if errors fall as the square of the cells' size
-// (Richardson). Where ink is stiff and edges are sharp, they may fall only as the size itself
-// (docs/calibration.md): the doubt.
-Correction correction(const Eigen::VectorXd& here, const Eigen::VectorXd& finer);
+// From how misfits change on finer_film(). What they still change by from there on follows from
+// that, if errors fall as the square of the cells' size (Richardson); they may fall only as the
+// size itself: the doubt.
+Correction correction(const Eigen::VectorXd& change);
 
 }  // namespace hydrodip

@@ -112,7 +112,7 @@ Search::Search(const std::vector<Subject>& subjects, const DesignOptions& design
                  fmt::format("grid-{:g}-{:g}", options.elements_factor, options.step_factor),
                  store),
       film_(subjects, design, board, "film", store),
-      finer_film_(subjects, finer_film(design), board, "finer", store) {}
+      finer_film_(subjects, finer_film(design), checkered_film(design, board, 1), "finer", store) {}
 
 namespace {
 
@@ -228,7 +228,7 @@ FitPoint Search::rough_answer(const std::vector<std::size_t>& subjects, const Fi
                // Coarse films take hard ink for soft: without this they lead far astray.
                if (options_.correct)
                  misfits.value.colwise() +=
-                     correction_at(grid_film_, film_, subjects, points.front(), context).all;
+                     change_at(points.front(), grid_film_, film_, subjects, context);
                return misfits;
              },
              options)
@@ -248,7 +248,7 @@ Answer Search::answer(const std::string& name, const std::vector<std::size_t>& s
         Misfits misfits =
             misfits_at(film_, subjects, points, "refining", result.film_off_mm, context);
         if (!options_.correct) return misfits;
-        lacking = correction_at(film_, finer_film_, subjects, points.front(), context);
+        lacking = correction(change_at(points.front(), film_, finer_film_, subjects, context));
         misfits.value.colwise() += lacking.all;
         return misfits;
       },
@@ -335,26 +335,22 @@ StiffnessTable Search::stiffness_of_inks(const FilmFit& fit,
 }
 
 // Differences of landings, for the scan's corners.
-Correction Search::correction_at(Simulations& film, Simulations& finer_film,
-                                 const std::vector<std::size_t>& subjects, const FitPoint& point,
-                                 const RunContext& context) {
+Eigen::VectorXd Search::change_at(const FitPoint& point, Simulations& film, Simulations& finer,
+                                  const std::vector<std::size_t>& subjects,
+                                  const RunContext& context) {
   std::vector<SimulationRequest> requests;
   for (const std::size_t s : subjects) requests.push_back({s, from_fit(point)});
   const std::vector<SimulationResult> here = film.get(requests, "correcting", context);
-  const std::vector<SimulationResult> finer = finer_film.get(requests, "correcting", context);
-  std::vector<double> minus_here, minus_finer;
+  const std::vector<SimulationResult> there = finer.get(requests, "correcting", context);
+  std::vector<double> change;
   for (std::size_t i = 0; i < subjects.size(); ++i)
     for (const auto& place : subjects_[subjects[i]].place) {
       const Landing* a = place && here[i] ? here[i]->find(*place) : nullptr;
-      const Landing* b = place && finer[i] ? finer[i]->find(*place) : nullptr;
-      for (int k = 0; k < 3; ++k) {
-        minus_here.push_back(a != nullptr ? -a->position[k] : kNaN);
-        minus_finer.push_back(b != nullptr ? -b->position[k] : kNaN);
-      }
+      const Landing* b = place && there[i] ? there[i]->find(*place) : nullptr;
+      const bool known = a != nullptr && b != nullptr;
+      for (int k = 0; k < 3; ++k) change.push_back(known ? a->position[k] - b->position[k] : kNaN);
     }
-  const auto count = Eigen::Index(minus_here.size());
-  return correction(Eigen::Map<Eigen::VectorXd>(minus_here.data(), count),
-                    Eigen::Map<Eigen::VectorXd>(minus_finer.data(), count));
+  return Eigen::Map<Eigen::VectorXd>(change.data(), Eigen::Index(change.size()));
 }
 
 Answer Search::fit_from(const FilmParameters& start, const RunContext& context) {

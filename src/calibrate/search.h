@@ -104,10 +104,9 @@ class Search {
   // How stiff the board's inks are by themselves. Empty where ink hardly stiffens film.
   StiffnessTable stiffness_of_inks(const FilmFit& fit, const std::vector<std::size_t>& subjects,
                                    const RunContext& context);
-  // What a film lacks at a point, by finer_film() of it.
-  Correction correction_at(Simulations& film, Simulations& finer,
-                           const std::vector<std::size_t>& subjects, const FitPoint& point,
-                           const RunContext& context);
+  // By how much misfits at a point change from one film to another, finer one.
+  Eigen::VectorXd change_at(const FitPoint& point, Simulations& film, Simulations& finer,
+                            const std::vector<std::size_t>& subjects, const RunContext& context);
   Answer answer(const std::string& name, const std::vector<std::size_t>& subjects,
                 const FitPoint& start, int rounds, const RunContext& context);
 

@@ -12,16 +12,12 @@ namespace hydrodip {
 
 namespace {
 
-struct Extent {
-  double x = 0, y = 0;
-};
-
-Extent free_extent(const FilmOptions& options) {
+Vec2 free_extent(const FilmOptions& options) {
   if (!(options.grading >= 1 && options.grading <= 20))
     throw InputError("film.grading must lie between 1 and 20");
-  Extent free{options.width_mm - 2 * options.margin_mm, options.height_mm - 2 * options.margin_mm};
-  if (options.shape == FilmShape::kDisc) free.x = free.y = std::min(free.x, free.y);
-  if (!(free.x > 0 && free.y > 0))
+  Vec2 free(options.width_mm - 2 * options.margin_mm, options.height_mm - 2 * options.margin_mm);
+  if (options.shape == FilmShape::kDisc) free.setConstant(free.minCoeff());
+  if (!(free.minCoeff() > 0))
     throw InputError(fmt::format(
         "a margin of {:g} mm leaves no free film on a sheet of {:g} x {:g} mm; set film.margin_mm "
         "below {:g}",
@@ -47,14 +43,14 @@ std::vector<double> grid_lines(double half, std::size_t cells, double grading) {
 }
 
 // Even cell counts put a vertex at the centre, so that the alternating diagonals are symmetric.
-void choose_grid(const FilmOptions& options, const Extent& free, double cells, FilmMesh& mesh) {
-  const int cells_x = nearest_even(std::sqrt(cells * free.x / free.y));
-  const int cells_y = free.x == free.y ? cells_x : nearest_even(cells / cells_x);
+void choose_grid(const FilmOptions& options, const Vec2& free, double cells, FilmMesh& mesh) {
+  const int cells_x = nearest_even(std::sqrt(cells * free.x() / free.y()));
+  const int cells_y = free.x() == free.y() ? cells_x : nearest_even(cells / cells_x);
   mesh.nx = cells_x + 1;
   mesh.ny = cells_y + 1;
-  mesh.cell_mm = std::max(free.x / cells_x, free.y / cells_y);
-  mesh.line_x = grid_lines(free.x / 2, std::size_t(cells_x) / 2, options.grading);
-  mesh.line_y = grid_lines(free.y / 2, std::size_t(cells_y) / 2, options.grading);
+  mesh.cell_mm = std::max(free.x() / cells_x, free.y() / cells_y);
+  mesh.line_x = grid_lines(free.x() / 2, std::size_t(cells_x) / 2, options.grading);
+  mesh.line_y = grid_lines(free.y() / 2, std::size_t(cells_y) / 2, options.grading);
 }
 
 // Grid vertices by number j * nx + i, before those outside a disc are left out.
@@ -114,10 +110,10 @@ void cut_disc(Grid& grid, double radius, const FilmMesh& mesh) {
   }
 }
 
-Grid make_grid(const FilmOptions& options, const Extent& free, double cells, FilmMesh& mesh) {
+Grid make_grid(const FilmOptions& options, const Vec2& free, double cells, FilmMesh& mesh) {
   choose_grid(options, free, cells, mesh);
   Grid grid = rectangle_grid(mesh);
-  if (options.shape == FilmShape::kDisc) cut_disc(grid, free.x / 2, mesh);
+  if (options.shape == FilmShape::kDisc) cut_disc(grid, free.x() / 2, mesh);
   return grid;
 }
 
@@ -188,7 +184,28 @@ void tell_printed_from_wet(const FilmOptions& options, FilmMesh& mesh) {
   }
 }
 
+void finish(const FilmOptions& options, Grid& grid, FilmMesh& mesh) {
+  number_vertices(grid, mesh);
+  mesh.options = options;
+  if (mesh.triangles.size() < 8)
+    throw InputError("the film needs at least 8 triangles; set film.elements higher");
+  tell_printed_from_wet(options, mesh);
+  list_incident_triangles(mesh);
+  find_neighbors(mesh);
+}
+
+// From rim to rim, with as many cells on either side of 0.
+void require_grid(const std::vector<double>& lines, double half) {
+  bool good =
+      lines.size() % 2 == 1 && lines.size() > 2 && lines.front() == -half && lines.back() == half;
+  for (std::size_t i = 0; good && i + 1 < lines.size(); ++i) good = lines[i] < lines[i + 1];
+  if (!good)
+    throw InputError("a film's grid lines must ascend from rim to rim, evenly to both sides");
+}
+
 }  // namespace
+
+Vec2 half_of_free_film(const FilmOptions& options) { return free_extent(options) / 2; }
 
 bool is_free(const FilmOptions& options, const Vec2& u) {
   const Vec2 half = 0.5 * Vec2(options.width_mm, options.height_mm);
@@ -198,7 +215,7 @@ bool is_free(const FilmOptions& options, const Vec2& u) {
 }
 
 FilmMesh make_film_mesh(const FilmOptions& options) {
-  const Extent free = free_extent(options);
+  const Vec2 free = free_extent(options);
   FilmMesh mesh;
   double cells = 0.5 * options.elements;
   Grid grid = make_grid(options, free, cells, mesh);
@@ -207,13 +224,23 @@ FilmMesh make_film_mesh(const FilmOptions& options) {
     cells *= options.elements / double(grid.triangles.size());
     grid = make_grid(options, free, cells, mesh);
   }
-  number_vertices(grid, mesh);
-  mesh.options = options;
-  if (mesh.triangles.size() < 8)
-    throw InputError("the film needs at least 8 triangles; set film.elements higher");
-  tell_printed_from_wet(options, mesh);
-  list_incident_triangles(mesh);
-  find_neighbors(mesh);
+  finish(options, grid, mesh);
+  return mesh;
+}
+
+FilmMesh make_film_mesh(const FilmOptions& options, const GridLines& lines) {
+  const Vec2 free = free_extent(options);
+  require_grid(lines.x, free.x() / 2);
+  require_grid(lines.y, free.y() / 2);
+  FilmMesh mesh;
+  mesh.line_x = lines.x;
+  mesh.line_y = lines.y;
+  mesh.nx = int(lines.x.size());
+  mesh.ny = int(lines.y.size());
+  mesh.cell_mm = std::max(free.x() / (mesh.nx - 1), free.y() / (mesh.ny - 1));
+  Grid grid = rectangle_grid(mesh);
+  if (options.shape == FilmShape::kDisc) cut_disc(grid, 0.5 * free.x(), mesh);
+  finish(options, grid, mesh);
   return mesh;
 }
 

@@ -54,6 +54,9 @@ struct FilmMesh {
   std::vector<std::int32_t> incident;
 };
 
+// Half its width and height; of a disc, its radius. Throws InputError if the margin leaves no film.
+Vec2 half_of_free_film(const FilmOptions& options);
+
 // Whether the point of the sheet is inside the taped margin's inner edge.
 bool is_free(const FilmOptions& options, const Vec2& u);
 
@@ -61,6 +64,15 @@ bool is_free(const FilmOptions& options, const Vec2& u);
 // Throws InputError if the margin leaves no film, there are fewer than 8 triangles, or a correction
 // folds the film.
 FilmMesh make_film_mesh(const FilmOptions& options);
+
+// Coordinates of a grid's lines, mm, ascending from rim to rim. An even number of cells each,
+// mirror images of each other about 0, so that the alternating diagonals are symmetric.
+struct GridLines {
+  std::vector<double> x, y;
+};
+
+// The same on lines of one's own; the options' `elements` and `grading` do not matter.
+FilmMesh make_film_mesh(const FilmOptions& options, const GridLines& lines);
 
 // The same film as a mesh whose u is the mesh's `wet`: what floats, without a thought of what was
 // printed. For a mesh that has `wet`.

@@ -13,7 +13,7 @@ TEST(CorrectionTest, LeadsToTheLimitOfErrorsThatFallAsTheSquareOfTheCells) {
     return Eigen::VectorXd(limit + size * size * slope);
   };
   const Eigen::VectorXd here = on_cells_of(0.4);
-  const Correction found = correction(here, on_cells_of(0.2));
+  const Correction found = correction(on_cells_of(0.2) - here);
   EXPECT_LT((here + found.all - limit).norm(), 1e-12);
 }
 
@@ -25,7 +25,7 @@ TEST(CorrectionTest, DoubtReachesTheLimitOfErrorsThatFallAsTheCells) {
       return Eigen::VectorXd(limit + std::pow(size, order) * slope);
     };
     const Eigen::VectorXd here = on_cells_of(0.4);
-    const Correction found = correction(here, on_cells_of(0.2));
+    const Correction found = correction(on_cells_of(0.2) - here);
     const Eigen::ArrayXd missed = (here + found.all - limit).array().abs();
     EXPECT_TRUE((missed <= found.doubt.array().abs() + 1e-12).all()) << order;
   }
