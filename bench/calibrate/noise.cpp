@@ -1,8 +1,9 @@
 // How near a calibration comes to the truth, and whether its intervals hold it: synthetic sets of
 // scans of the three shapes with 0.05 mm of noise, in random poses, computed on nine times the
 // triangles of the film that they are fitted on, with half the step: more than twice the triangles
-// of the finest film that the fit uses, and not halvings of its cells. Simulations know nothing of the noise, so that
-// all seeds share them; they are kept in FOLDER. `bench_calibrate [SEEDS [ELEMENTS [FOLDER]]]`.
+// of the finest film that the fit uses, and not halvings of its cells. Simulations know nothing of
+// the noise, so that all seeds share them; they are kept in FOLDER. `bench_calibrate [SEEDS
+// [ELEMENTS [FOLDER]]]`.
 #include <fmt/format.h>
 #include <stdlib.h>
 

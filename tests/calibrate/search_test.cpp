@@ -68,7 +68,7 @@ class SearchSlow : public testing::Test {
 class OwnFilmSlow : public SearchSlow {
  protected:
   explicit OwnFilmSlow(const std::string& name = "pyramid") : name_(name) {
-    config_.design.film.elements = 2000;
+    config_.design.film.elements = 6000;
     config_.design.dip.step_mm = 0.5;
     object_ = calibration_object(name_, config_, context_);
     surface_.emplace(object_->object.positions, object_->object.triangles);
@@ -104,7 +104,8 @@ TEST_F(OwnFilmSlow, WithoutNoiseTheAnswerIsTheTruth) {
   EXPECT_NEAR(found.all.parameters.stiffness_ratio, kTruth.stiffness_ratio,
               0.1 * kTruth.stiffness_ratio);
   EXPECT_NEAR(found.all.parameters.poisson, kTruth.poisson, 0.02);
-  EXPECT_LT(found.error[0].rms_mm, 0.002);
+  // A tenth of a scan's noise: as much as the ratio's tolerance moves corners.
+  EXPECT_LT(found.error[0].rms_mm, 0.005);
 }
 
 // The long study, with the film's resolution in it, is bench/calibrate/noise.cpp.
