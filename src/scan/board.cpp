@@ -30,9 +30,10 @@ GridPlace Board::square_at(const Vec2& u) const {
 Board black_board(double square_mm) { return {"black", square_mm, false, 2, {255, 0, 0, 255}}; }
 
 Board tint_board(double square_mm) {
-  // The best of those that bench_board tries: along a row, two of three gaps between dark squares
-  // have 1.6 % of ink and one has none, so that it takes more of the stretch, the more the stiffer
-  // ink is. Where all gaps are alike, they share the stretch alike, whatever the ratio.
+  // As good as the best of those in docs/calibration.md at every ratio: along a row, two of three
+  // gaps between dark squares have 1.6 % of ink and one has none, so that it takes more of the
+  // stretch, the more the stiffer ink is. Where all gaps are alike, they share the stretch alike,
+  // whatever the ratio.
   constexpr std::uint8_t d = 255, f = 4, o = 0;
   return {"tints", square_mm, true, 6, {d, f, d, o, d, f,  //
                                         f, f, f, o, f, f,  //
