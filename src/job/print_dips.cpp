@@ -98,7 +98,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   if (prepared.paint->depends_on_film())
     throw InputError(
         "artwork that is laid on the film (projection film) belongs to one dip: give it another "
-        "projection, or leave out --dips and [[dip]]");
+        "projection, or plan a single dip");
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
 

@@ -72,6 +72,13 @@ std::string kind_of_file(const std::string& name) {
   return "unknown";
 }
 
+std::string without_folder(std::string sentence, const std::filesystem::path& folder) {
+  const std::string prefix = folder.string() + "/";
+  for (std::size_t at = 0; (at = sentence.find(prefix, at)) != std::string::npos;)
+    sentence.erase(at, prefix.size());
+  return sentence;
+}
+
 void require_plain_name(const std::string& name) {
   if (is_plain_name(name)) return;
   throw ApiError(400, "bad-name",

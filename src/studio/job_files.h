@@ -47,6 +47,10 @@ class JobFiles {
   std::map<std::string, std::filesystem::path> granted_;
 };
 
+// A sentence in which files of the folder go by their names alone: where the program keeps them is
+// nobody's business.
+std::string without_folder(std::string sentence, const std::filesystem::path& folder);
+
 // Throws ApiError bad-name unless it is a relative path of ordinary names.
 void require_plain_name(const std::string& name);
 

@@ -299,6 +299,10 @@ std::vector<Finding> findings_of(const Look& look, const Report& report) {
          look.paint->says_anything() ? "What the film reaches has the object's own colour."
                                      : "The object has no colours yet: put a picture on it.",
          ""});
+  if (look.dips > 1 && look.paint->depends_on_film())
+    list.push_back({"pattern-dips", Concern::kStop, "Pattern film belongs to one dip", "",
+                    "Films of several dips cannot share a pattern, so this job cannot be printed.",
+                    "Lay the pattern on the object, or take the other dips away."});
   // Worst first, and otherwise as they come.
   std::stable_sort(list.begin(), list.end(),
                    [](const Finding& a, const Finding& b) { return a.concern > b.concern; });

@@ -77,7 +77,10 @@ void add_size(Json& list, const JobConfig& config, const TriangleMesh& posed) {
 void add_depth(Json& list, const JobConfig& config, const TriangleMesh& posed) {
   for (const RoomFit& fit : fits_of(config, posed, config.design.film)) {
     const double depth = std::floor(fit.available_mm);
-    if (fit.what.starts_with("deep") && fit.excess_mm() > kTolerance_mm && depth >= 1)
+    if (!fit.what.starts_with("deep") || fit.excess_mm() <= kTolerance_mm || depth < 1) continue;
+    JobConfig mended = config;
+    mended.design.trajectory.depth_mm = depth;
+    if (all_fit(fits_of(mended, posed, config.design.film)))
       list.push_back(
           mend(fmt::format("Dip {:.0f} mm only", depth), {{"dip", {{"depth_mm", depth}}}}));
   }

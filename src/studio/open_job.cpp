@@ -27,8 +27,8 @@ constexpr std::array<const char*, 7> kOfProfiles = {"film.", "material.", "ink."
                                                     "bath.", "process.",  "report."};
 constexpr std::size_t kMeshesKept = 8, kResultsKept = 6, kMostDips = 24, kMostTabs = 12;
 
-ApiError input_error(const std::string& sentence) {
-  return {422, "bad-file", in_plain_words(sentence)};
+ApiError input_error(const std::string& sentence, const JobFiles& files) {
+  return {422, "bad-file", in_plain_words(without_folder(sentence, files.uploads()))};
 }
 
 // A name for a file from what a person calls a job.
@@ -229,7 +229,7 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
                    return files_.uploads() / inner;
                  });
     } catch (const InputError& error) {
-      throw input_error(error.what());
+      throw input_error(error.what(), files_);
     }
     std::error_code ignored;
     std::filesystem::remove(files_.find(name), ignored);
@@ -293,7 +293,7 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
       }
     }
   } catch (const InputError& error) {
-    throw input_error(error.what());
+    throw input_error(error.what(), files_);
   }
   accept(document, config_of(document, files_), client, false, 0, true);
   tell("files", files_event());
@@ -540,6 +540,7 @@ void OpenJob::disconnect(const std::string& client, const std::shared_ptr<EventS
   const auto gone = std::erase_if(tabs_, [&](const Tab& tab) { return tab.stream == stream; });
   if (gone == 0) return;
   if (tabs_.empty()) {
+    autosave();  // nobody has it open: what comes later recovers nothing
     unwatched_since_ = std::chrono::steady_clock::now();
     at_rest_ = true;
     live_->rest();
@@ -701,14 +702,14 @@ LiveSinks OpenJob::sinks() {
   };
   sinks.no_finish = [this](long revision, const std::string& text) {
     const std::lock_guard lock(mutex_);
-    finish_event_ = {{"revision", revision}, {"problem", text}};
+    finish_event_ = {{"revision", revision}, {"problem", without_folder(text, files_.uploads())}};
     tell("finish", finish_event_, true);
   };
   sinks.problem = [this](long revision, const Problem& problem) {
     const std::lock_guard lock(mutex_);
     problem_event_ = {{"revision", revision},
                       {"code", problem.code},
-                      {"text", problem.text},
+                      {"text", without_folder(problem.text, files_.uploads())},
                       {"mends", problem.mends}};
     tell("problem", problem_event_, true);
   };
@@ -796,6 +797,7 @@ std::string OpenJob::start_task(const Json& request) {
   TaskRequest task;
   task.kind = kind;
   task.address = address() + "/tasks";
+  task.uploads = files_.uploads();
   const std::lock_guard lock(mutex_);
   task.config = checked(document_);
   task.revision = revision_;

@@ -17,6 +17,7 @@
 #include "rig/rig.h"
 #include "settings/settings.h"
 #include "studio/api_error.h"
+#include "studio/job_files.h"
 #include "studio/job_store.h"
 
 namespace hydrodip {
@@ -298,7 +299,7 @@ void Tasks::run(Task& task) {
   std::string state = "failed";
   Json error, result;
   const auto failed = [&](const char* code, const std::string& text) {
-    error = {{"code", code}, {"text", in_plain_words(text)}};
+    error = {{"code", code}, {"text", in_plain_words(without_folder(text, task.request.uploads))}};
   };
   try {
     result = do_task(task.request, task.context);

@@ -18,10 +18,11 @@ namespace hydrodip {
 struct TaskRequest {
   std::string kind;  // "print"
   long revision = 0;
-  JobConfig config;              // of orient and plan: as it is
-  std::filesystem::path job;     // of print: its job file, from which the bytes are made
-  std::filesystem::path folder;  // where its files go
-  std::string address;           // of these files for the page
+  JobConfig config;               // of orient and plan: as it is
+  std::filesystem::path job;      // of print: its job file, from which the bytes are made
+  std::filesystem::path folder;   // where its files go
+  std::string address;            // of these files for the page
+  std::filesystem::path uploads;  // whose files sentences call by their names alone
 };
 
 // How far a task is, from what its steps say of themselves. Rises only.

@@ -193,6 +193,19 @@ TEST_F(JobTest, NothingIsComputedWhileNobodyLooks) {
   EXPECT_TRUE(again.next("working", is_normal));
 }
 
+// A job is recovered whose tab the program did not see close.
+TEST_F(JobTest, WhatWasClosedIsNotRecovered) {
+  const std::string job = sample("pyramid");
+  const auto recovered = [&] { return client->get("/api/recent").json()[0]["recovered"]; };
+  auto tab = std::make_unique<Events>(*client, at(job, "/events?client=c1"));
+  put(job, quick(describe(job)["document"]));
+  ASSERT_EQ(recovered(), true);
+  tab.reset();
+  for (int tries = 0; tries < 500 && recovered() == true; ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(recovered(), false);
+}
+
 // Requests in a drag come faster than drafts: what is shown in the end is the newest, and the first
 // is not waited for.
 TEST_F(JobTest, ANewerRequestIsTheOneThatIsShown) {
@@ -507,6 +520,46 @@ TEST_F(JobTest, AModelAndAPictureBecomeAJob) {
     red = red || (printed[i + 3] > 200 && printed[i] > 150 && printed[i + 1] < 90);
   EXPECT_TRUE(red);
   EXPECT_EQ(client->put(at(job, "/files/part.stl"), stl).json()["file"], "part-2.stl");
+}
+
+// Whoever chose "part.stl" knows it by that name, and not by where this program keeps it.
+TEST_F(JobTest, ABadFileIsCalledByItsNameAlone) {
+  const std::string job = client->post("/api/jobs").json()["job"];
+  ASSERT_EQ(client->put(at(job, "/files/part.stl"), "no model").status, 201);
+  Events events(*client, at(job, "/events?client=c1"));
+  const Reply adopted = client->post(at(job, "/adopt"), R"({"files": ["part.stl"]})");
+  std::string text = adopted.status == 200 ? "" : adopted.json()["error"]["text"];
+  if (text.empty()) {
+    const auto problem = events.next("problem");
+    ASSERT_TRUE(problem);
+    text = problem->data["text"];
+  }
+  EXPECT_TRUE(text.starts_with("part.stl: ")) << text;
+  EXPECT_EQ(text.find(folder.path().string()), std::string::npos) << text;
+}
+
+// It looks well dip by dip: that it cannot be printed has to be said before the print says so.
+TEST_F(JobTest, PatternFilmOfSeveralDipsIsSpokenOfBeforeThePrint) {
+  const std::string job = sample("pyramid");
+  json document = quick(describe(job)["document"]);
+  document["artwork"] = json::array({{{"text", "A"}, {"size_mm", 40}, {"projection", "film"}}});
+  Events events(*client, at(job, "/events?client=c1"));
+  const auto stops = [&](const json& changed) {
+    const long revision = put(job, changed).json()["revision"];
+    const auto told =
+        events.next("result", [&](const json& e) { return e["revision"] == revision; });
+    if (!told) return -1;
+    const ReadBundle result(
+        client->get(at(job, "/results/" + told->data["result"].get<std::string>())).body);
+    int found = 0;
+    for (const json& finding : result.head["findings"])
+      if (finding["key"] == "pattern-dips") found += finding["concern"] == "stop" ? 1 : 100;
+    return found;
+  };
+  EXPECT_EQ(stops(document), 0);
+  const json dip = {{"down", "-z"}, {"rotate_deg", {0, 0, 0}}, {"depth_mm", 0}};
+  document["dips"] = {dip, dip};
+  EXPECT_EQ(stops(document), 1);
 }
 
 TEST_F(JobTest, QuittingIsForThePageAsWell) {
