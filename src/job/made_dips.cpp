@@ -27,6 +27,9 @@ constexpr int kFewestNodes = 8000, kMostNodes = 60000;
 // more: what ink still moves below that is not worth a dip.
 constexpr double kSettledAmongSeveral_mm = 0.03;
 
+// What film is worth that lay on the object until it got ink, beside film that lies there with it.
+constexpr float kHoped = 0.3F;
+
 JobConfig config_of(const JobConfig& config, const Trial& trial, std::size_t number,
                     std::size_t of) {
   JobConfig own = config;
@@ -68,15 +71,31 @@ std::vector<float> worth_at_nodes(const MadeDips& all, const MadeDip& dip, const
   return worth_at(job_trials(dip.config, all.prepared, all.nodes->targets()), dip.posed, film);
 }
 
-SharedSurface divide_by_first(const MadeDips& all, const RunContext& context) {
-  std::vector<std::vector<float>> worth;
+using Worth = std::vector<std::vector<float>>;  // per dip, per node
+
+Worth worth_of_first(const MadeDips& all) {
+  Worth worth;
   for (const MadeDip& dip : all.dips)
     worth.push_back(worth_at_nodes(all, dip, *dip.first.dipped.film));
+  return worth;
+}
+
+SharedSurface divided(const MadeDips& all, Worth worth, const RunContext& context) {
   const Object& object = all.prepared.posed.object();
   const Surface surface(object.positions, object.triangles);
   return {{all.nodes, std::move(worth), *all.prepared.paint, surface, all.prepared.posed.scale(),
            all.config.plan.overlap_mm},
           context};
+}
+
+// Where no film with ink lies, those that lay there without: less ink than was tried may leave them
+// there after all, and then they shall not be blank.
+Worth with_hope(Worth inked, const Worth& blank) {
+  for (std::size_t i = 0; i < inked.front().size(); ++i) {
+    if (std::any_of(inked.begin(), inked.end(), [&](const auto& w) { return w[i] > 0; })) continue;
+    for (std::size_t k = 0; k < inked.size(); ++k) inked[k][i] = kHoped * blank[k][i];
+  }
+  return inked;
 }
 
 // What each dip brings of the paint. Refers to all dips.
@@ -143,10 +162,12 @@ MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const 
 
 SharedSurface divide(MadeDips& all, const Printer& printer, Timings& times,
                      const RunContext& context) {
-  const auto by_first = [&] {
-    return times.measure("seams", [&] { return divide_by_first(all, context); });
-  };
-  const Allotments rough(all, by_first());
+  Worth blank;
+  const SharedSurface by_blank = times.measure("seams", [&] {
+    blank = worth_of_first(all);
+    return divided(all, blank, context);
+  });
+  const Allotments rough(all, by_blank);
   times.measure("design", [&] {
     for_each_dip(all, "dipping with the first ink", context,
                  [&](MadeDip& dip, const RunContext& own) {
@@ -154,7 +175,8 @@ SharedSurface divide(MadeDips& all, const Printer& printer, Timings& times,
                    dip.first = dip_with_first_ink(rough.task(dip, printer), own.quiet());
                  });
   });
-  return by_first();
+  return times.measure(
+      "seams", [&] { return divided(all, with_hope(worth_of_first(all), blank), context); });
 }
 
 Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& printer, Timings& times,
