@@ -205,6 +205,52 @@ test('the arrow keys step a number, and a burst of them is one step to undo', as
   await sameAs(toy, first);
 });
 
+// The share of a part of the 3D view (from 0 to 1 across it) that is not like its upper left corner.
+async function filledShare(page, [x, y, width, height] = [0.1, 0.2, 0.6, 0.6]) {
+  const box = await page.locator('.canvas-box canvas').boundingBox();
+  const clip = { x: box.x + x * box.width, y: box.y + y * box.height, width: width * box.width, height: height * box.height };
+  const shot = (await page.screenshot({ clip })).toString('base64');
+  return page.evaluate(async (data) => {
+    const image = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))]));
+    const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+    context.drawImage(image, 0, 0);
+    const rgba = context.getImageData(0, 0, image.width, image.height).data;
+    let unlike = 0;
+    for (let i = 0; i < rgba.length; i += 4) if ([0, 1, 2].some((k) => Math.abs(rgba[i + k] - rgba[k]) > 24)) ++unlike;
+    return unlike / (rgba.length / 4);
+  }, shot);
+}
+
+test('an object of another size is seen whole in both views, the hidden one too', async () => {
+  const first = await documentOf(toy);
+  const finished = async () => {
+    await toy.click('[data-value="object"]');
+    await toy.click('[data-value="wanted"]');
+    await toy.waitForTimeout(300);
+    const share = await filledShare(toy);
+    await toy.click('[data-value="both"]');
+    return share;
+  };
+  const before = await finished();
+  assert.ok(before > 0.1 && before < 0.9, `${before} of the view is the object`);
+  await toy.click('[data-value="bath"]');
+  await type(toy, 'size', 5);
+  await kept(toy);
+  const small = await finished();
+  assert.ok(Math.abs(small - before) < 0.1, `smaller, ${small} instead of ${before} of the view`);
+  // Enlarged while the bath is hidden: there its water line ends within the view.
+  await type(toy, 'size', 1500);
+  await kept(toy);
+  await toy.click('[data-value="bath"]');
+  await toy.waitForTimeout(300);
+  const [view, grip] = [await toy.locator('.canvas-box canvas').boundingBox(), await middleOf(toy, '[data-name="depth-handle"]')];
+  assert.ok(grip.x > view.x && grip.x < view.x + view.width && grip.y > view.y && grip.y < view.y + view.height);
+  await blur(toy);
+  await undo(toy);
+  await undo(toy);
+  await sameAs(toy, first);
+});
+
 test('R shows the gizmo; its ring turns the object, and one undo takes it back', async () => {
   const first = await documentOf(toy);
   await toy.keyboard.press('r');

@@ -70,6 +70,7 @@ const DIRECTIONS: Record<View, Record<LookFrom, Vec3>> = {
     below: [0, -1, -0.05],
   },
 };
+const RESIZED = 1.5; // by so much larger or smaller, an object is looked at anew
 const WHITE = [1, 1, 1];
 const FILM_BASE = [0.80, 0.80, 0.78]; // wet film, linear
 
@@ -115,7 +116,8 @@ export class Stage {
   private size = { width: 1, height: 1 };
   private waiting = false;
   private flight = 0;
-  private framed: Record<View, boolean> = { bath: false, object: false };
+  // How large the object was (mm) when a camera was placed for it; 0: never.
+  private framed: Record<View, number> = { bath: 0, object: 0 };
   private start: { turn: THREE.Quaternion; pose: Pose } | null = null;
   private sheetShape: SheetShape = { width_mm: 210, height_mm: 297, margin_mm: 10, disc: false };
   private lost = false;
@@ -170,7 +172,7 @@ export class Stage {
     const another = model?.mesh !== this.model?.mesh;
     this.model = model;
     if (!model) this.paint(null, []);
-    if (another) this.framed = { bath: false, object: false };
+    if (another) this.framed = { bath: 0, object: 0 };
     this.place();
   }
 
@@ -384,7 +386,7 @@ export class Stage {
     this.placeGizmo();
     this.glue();
     this.placeWaterLine();
-    if (!this.framed[this.view]) this.fit(false);
+    this.frame();
     this.setLevel(this.level);
   }
 
@@ -507,7 +509,7 @@ export class Stage {
   setView(view: View): void {
     this.view = view;
     for (const [key, orbit] of Object.entries(this.orbits)) orbit.enabled = key === view;
-    if (!this.framed[view] && this.model) this.fit(false);
+    this.frame();
     this.setTool(this.tool);
     this.invalidate();
   }
@@ -522,16 +524,32 @@ export class Stage {
     };
   }
 
-  fit(animated = true): void {
-    this.look('home', animated);
+  // Both views, so that the one that is shown next is not where an earlier size left it.
+  fit(): void {
+    const other = this.view === 'bath' ? 'object' : 'bath';
+    this.lookAlong(other, new THREE.Vector3(...DIRECTIONS[other].home), false);
+    this.look('home');
   }
 
-  look(from: LookFrom, animated = true): void {
-    this.lookAlong(this.view, new THREE.Vector3(...DIRECTIONS[this.view][from]), animated);
-    if (!animated) {
-      const other = this.view === 'bath' ? 'object' : 'bath';
-      if (!this.framed[other] && this.model) this.lookAlong(other, new THREE.Vector3(...DIRECTIONS[other].home), false);
+  look(from: LookFrom): void {
+    this.lookAlong(this.view, new THREE.Vector3(...DIRECTIONS[this.view][from]), true);
+  }
+
+  // Places the cameras that were never placed, or for an object of quite another size; from where they look now.
+  private frame(): void {
+    if (!this.model) return;
+    for (const view of ['bath', 'object'] as const) {
+      const then = this.framed[view];
+      const now = this.size_mm();
+      if (then && now < RESIZED * then && then < RESIZED * now) continue;
+      const direction = then ? this.cameras[view].position.clone().sub(this.orbits[view].target) : new THREE.Vector3(...DIRECTIONS[view].home);
+      this.lookAlong(view, direction, false);
     }
+  }
+
+  // The same however the object is turned.
+  private size_mm(): number {
+    return Math.max(1e-9, (this.model?.largest_mm ?? 0) * this.scale);
   }
 
   private lookAlong(view: View, direction: THREE.Vector3, animated: boolean): void {
@@ -543,7 +561,7 @@ export class Stage {
     camera.far = distance * 20;
     this.orbits[view].minDistance = 0.1 * distance;
     this.orbits[view].maxDistance = 5 * distance;
-    if (this.model) this.framed[view] = true;
+    if (this.model) this.framed[view] = this.size_mm();
     this.fly(view, place, target, animated);
   }
 
@@ -852,8 +870,8 @@ export class Stage {
     this.size = { width, height };
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     this.renderer.setSize(width, height, false);
-    if (first && this.model) this.framed = { bath: false, object: false };
-    if (!this.framed[this.view] && this.model) this.fit(false);
+    if (first && this.model) this.framed = { bath: 0, object: 0 };
+    this.frame();
     this.invalidate();
   }
 
