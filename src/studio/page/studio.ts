@@ -29,6 +29,7 @@ export const layer = signal<number | null>(null);
 export const allDips = signal(false);
 export const pointed = signal<{ hit: Hit | null; u: [number, number] | null }>({ hit: null, u: null });
 export const drawn = signal(0); // counts pictures of the 3D view, for what has to follow them
+export const printToShow = signal(''); // task: a print whose end nobody has seen yet
 export const dropping = signal(false);
 export const narrow = signal(false);
 export const stage: { current: Stage | null } = { current: null };
@@ -131,6 +132,7 @@ function resetView(): void {
   layer.value = null;
   playing.value = false;
   allDips.value = false;
+  printToShow.value = '';
 }
 
 export async function createJob(from: { sample?: string; job?: string } = {}): Promise<Job | null> {

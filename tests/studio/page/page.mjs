@@ -588,10 +588,20 @@ test('print: progress, cancel, then the sheet and the run sheet', async () => {
   await blur(dome);
   await dome.keyboard.press('Control+p');
   await dome.waitForSelector('[data-name="cancel-print"]');
+  // With its panel closed the button says how far it is, and leads back.
+  const says = (pattern) => dome.waitForFunction((text) => new RegExp(text).test(document.querySelector('[data-name="print"]').textContent), pattern);
+  await dome.keyboard.press('Escape');
+  await says('^Printing \\d+ %$');
+  await dome.click('[data-name="print"]');
   await dome.click('[data-name="cancel-print"]', { force: true }); // it need not stand still
   await dome.waitForSelector('[data-name="print-again"]');
   await dome.click('[data-name="print-again"]');
-  await dome.waitForSelector('[data-file="print.pdf"]', { timeout: 240000 });
+  await dome.waitForSelector('[data-name="cancel-print"]');
+  await dome.keyboard.press('Escape');
+  await says('^Printed');
+  await dome.keyboard.press('Control+p');
+  await dome.waitForSelector('[data-file="print.pdf"]', { timeout: 5000 }); // no second print
+  await says('^Print$');
   await picture(dome, 'printed');
   const url = await dome.getAttribute('[data-file="print.pdf"]', 'href');
   const head = await dome.evaluate(async (path) => new TextDecoder().decode((await (await fetch(path)).arrayBuffer()).slice(0, 5)), url);

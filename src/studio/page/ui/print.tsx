@@ -1,6 +1,7 @@
 // Printing: the whole job in the background, then its files.
+import { useEffect } from 'preact/hooks';
 import type { PrintResult } from '../api.ts';
-import { job } from '../studio.ts';
+import { job, printToShow } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button } from './fields.tsx';
 import { Icon } from './icons.tsx';
@@ -15,6 +16,9 @@ export function PrintPanel() {
   const open = job.value!;
   const task = taskOf('print');
   const result = task?.kind === 'print' && task.state === 'done' ? task.result : null;
+  useEffect(() => {
+    printToShow.value = task?.state === 'running' ? task.task : '';
+  }, [task?.task, task?.state]);
   const again = <Button name="print-again" label={t.print.again} changes onClick={() => void open.start('print')} />;
   return (
     <section class="panel right print" aria-label={t.print.title} aria-live="polite">

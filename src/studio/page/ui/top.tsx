@@ -1,11 +1,13 @@
 // The bar above: what is worked on, whether it is kept, and the verdict.
 import { useSignal } from '@preact/signals';
+import { useEffect } from 'preact/hooks';
 import { api, type Concern } from '../api.ts';
-import { change, goToStart, job, narrow, panel, type Panel } from '../studio.ts';
+import { change, goToStart, job, narrow, panel, printToShow, type Panel } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button, TextField } from './fields.tsx';
 import { Icon } from './icons.tsx';
 import { PrintPanel } from './print.tsx';
+import { taskOf } from './progress.tsx';
 import { CONCERN_ICON, FindingCard, sorted } from './side.tsx';
 
 const toggle = (name: Panel): void => {
@@ -17,7 +19,8 @@ export function askPrint(): void {
   if (!open) return;
   panel.value = 'print';
   const task = open.tasks.value.get('print');
-  if (task?.state !== 'running') void open.start('print');
+  // One that goes on, or has ended unseen, is shown first.
+  if (task?.state !== 'running' && (!task || task.task !== printToShow.value)) void open.start('print');
 }
 
 export function askSave(): void {
@@ -52,7 +55,7 @@ export function TopBar() {
         {!narrow.value && (
           <>
             <Button name="save" label={t.top.save} changes expanded={panel.value === 'save'} onClick={askSave} />
-            <Button name="print" label={t.top.print} kind="main" changes disabled={!open.document.value.object?.file} expanded={panel.value === 'print'} onClick={() => (panel.value === 'print' ? toggle('print') : askPrint())} />
+            <PrintButton />
           </>
         )}
       </div>
@@ -61,6 +64,24 @@ export function TopBar() {
       {panel.value === 'save' && <SavePanel />}
       {panel.value === 'keys' && <KeysPanel />}
     </header>
+  );
+}
+
+// Says how far a print is and that it has ended, also while its panel is closed.
+function PrintButton() {
+  const open = job.value!;
+  const task = taskOf('print');
+  const state = task?.state;
+  useEffect(() => {
+    if (task && state === 'running') printToShow.value = task.task;
+  }, [task?.task, state]);
+  const ended = task !== null && task.task === printToShow.value && panel.value !== 'print';
+  let label: string = t.top.print;
+  if (task && state === 'running') label = t.top.printing(task.fraction);
+  else if (ended && state === 'done') label = t.top.printed;
+  else if (ended && state === 'failed') label = t.top.notPrinted;
+  return (
+    <Button name="print" label={label} kind="main" changes disabled={!open.document.value.object?.file} expanded={panel.value === 'print'} onClick={() => (panel.value === 'print' ? toggle('print') : askPrint())} />
   );
 }
 
