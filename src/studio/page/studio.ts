@@ -45,10 +45,16 @@ export const scale = computed(() => {
 export const pose = computed<Pose>(() => {
   const open = job.value;
   if (!open) return { down: '-z', rotate_deg: [0, 0, 0], depth_mm: 0, shift_mm: [0, 0] };
-  const now = poseOf(open.document.value, open.dip.value);
-  const shifted = now.shift_mm.some((s) => s !== 0);
-  return shifted && now.depth_mm >= wholeDepth(now) ? { ...now, depth_mm: 0 } : now;
+  return poseOfDip(open.document.value, open.dip.value);
 });
+
+// A dip's pose as it is shown everywhere: no deeper than the object is tall, 0 for all of it.
+export function poseOfDip(document: JobDocument, dip: number): Pose {
+  const now = poseOf(document, dip);
+  if (now.depth_mm <= 0) return now;
+  const whole = wholeDepth(now);
+  return whole > 0 && now.depth_mm >= whole ? { ...now, depth_mm: 0 } : now;
+}
 
 export function value<T extends Json>(name: string): T {
   return valueOf<T>(job.value?.document.value ?? {}, defaults.value, name);

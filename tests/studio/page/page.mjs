@@ -321,6 +321,22 @@ test('the water line is a handle for the depth; while it moves, drafts follow', 
   await sameAs(toy, first);
 });
 
+test('the depth is one figure: in its field, at the water line and in the step\'s line', async () => {
+  const first = await documentOf(toy);
+  await type(toy, 'depth', 900);
+  await until('the depth is kept', async () => (await documentOf(toy)).dip?.depth_mm === 900);
+  const said = async () => [
+    await toy.inputValue('input[name="depth"]'), await toy.textContent('[data-name="depth-handle"] span'), await toy.textContent('[data-step="dips"] .summary'),
+  ];
+  await until('it is the whole object', async () => JSON.stringify(await said()) === JSON.stringify(['', 'whole', 'one, whole object']));
+  await type(toy, 'depth', 7.3);
+  await until('one figure', async () => JSON.stringify(await said()) === JSON.stringify(['7.3', '7.3 mm', 'one, 7.3 mm deep']));
+  await blur(toy);
+  await undo(toy);
+  await undo(toy);
+  await sameAs(toy, first);
+});
+
 test('ways to hold it are suggested; one click takes one', async () => {
   const first = await documentOf(toy);
   await toy.click('[data-name="orient"]');

@@ -8,7 +8,7 @@ import {
   withoutDip, withoutLayer, withPose, withValue, type Json, type Layer, type Side, type Vec3,
 } from '../document.ts';
 import {
-  addFiles, allDips, change, changePose, chooseOverlay, chooseTool, defaults, drawn, goToStep, hello, job, layer, overlay, pose, readOnly, showView, stage, step,
+  addFiles, allDips, change, changePose, chooseOverlay, chooseTool, defaults, drawn, goToStep, hello, job, layer, overlay, pose, poseOfDip, readOnly, showView, stage, step,
   STEPS, tool, value, type StepName,
 } from '../studio.ts';
 import { t } from '../strings.ts';
@@ -475,7 +475,8 @@ function Together() {
 
 function DipRow({ at }: { at: number }) {
   const open = job.value!;
-  const dip = open.document.value.dips![at]!;
+  const document = open.document.value;
+  const dip = document.dips![at]!;
   const shown = open.dip.value === at;
   const result = open.results.value.get(at);
   const part = open.wholeFinish.value?.dips[at];
@@ -485,7 +486,7 @@ function DipRow({ at }: { at: number }) {
         <DipThumbnail at={at} />
         <span>
           <b>{t.dips.dip(at + 1)}</b>
-          <small>{t.model.shortSides[dip.down ?? '-z']}, {depthText(dip.depth_mm ?? 0)}</small>
+          <small>{t.model.shortSides[dip.down ?? '-z']}, {depthText(poseOfDip(document, at).depth_mm)}</small>
           {part ? (
             <small><i class="chip" style={{ background: part.color }} />{t.dips.prints(part.part_share)}</small>
           ) : (
