@@ -18,6 +18,25 @@ namespace {
 Vec3 upright(const Vec3& p) { return {p.x(), p.z(), -p.y()}; }
 
 constexpr double kAspect = 4.0 / 3;
+
+// Of a page of rows, each with two pictures side by side between a title and a caption.
+struct Layout {
+  double unit;  // px of this page for each of one that is 1600 px wide
+  int width, margin, gap, header, footer, cell_width, cell_height, row;
+
+  explicit Layout(int width_px) : width(std::clamp(width_px, 64, kWidestPicture_px)) {
+    unit = width / 1600.0;
+    const auto px = [&](double length) { return int(std::lround(length * unit)); };
+    margin = px(28);
+    gap = px(12);
+    header = footer = px(64);
+    cell_width = std::max(8, (width - 2 * margin - gap) / 2);
+    cell_height = std::max(8, int(std::lround(0.5 * cell_width * kAspect)));
+    row = header + cell_height + footer;
+  }
+  int below_left() const { return margin + cell_width + gap; }
+};
+
 constexpr float kDryPaleness = 0.55F;
 
 LinearColor paler(const LinearColor& c) {
@@ -55,13 +74,10 @@ Image picture(const HoldPicture& hold, bool from_below, int width_px, int height
 Image render_holds(const std::vector<HoldPicture>& holds, int width_px, const RunContext& context) {
   const RunScope scope(context);
   const std::string stage = "drawing the ways to hold it";
-  const int width = std::clamp(width_px, 64, kWidestPicture_px);
-  const double unit = width / 1600.0;
-  const auto px = [&](double length) { return int(std::lround(length * unit)); };
-  const int margin = px(28), gap = px(12), header = px(64), footer = px(64);
-  const int cell_width = std::max(8, (width - 2 * margin - gap) / 2);
-  const int cell_height = std::max(8, int(std::lround(0.5 * cell_width * kAspect)));
-  const int row = header + cell_height + footer;
+  const Layout layout(width_px);
+  const double unit = layout.unit;
+  const int width = layout.width, margin = layout.margin, header = layout.header, row = layout.row,
+            cell_width = layout.cell_width, cell_height = layout.cell_height;
   Image page = blank_page(width, std::max(8, int(holds.size()) * row));
   TextStyle title, line;
   title.size_px = 25 * unit;
@@ -74,13 +90,19 @@ Image render_holds(const std::vector<HoldPicture>& holds, int width_px, const Ru
     const int top = int(i) * row;
     draw_centered(page, fit_text(holds[i].title, title, room), 0.5 * width, top + 42 * unit, title);
     paste(page, picture(holds[i], false, cell_width, cell_height, context), margin, top + header);
-    paste(page, picture(holds[i], true, cell_width, cell_height, context),
-          margin + cell_width + gap, top + header);
+    paste(page, picture(holds[i], true, cell_width, cell_height, context), layout.below_left(),
+          top + header);
     draw_centered(page, fit_text(holds[i].caption, line, room), 0.5 * width,
                   top + header + cell_height + 34 * unit, line);
   }
   context.progress(stage, 1);
   return page;
+}
+
+HoldPlace hold_from_below(int page_width_px, int row) {
+  const Layout layout(page_width_px);
+  return {layout.below_left(), row * layout.row + layout.header, layout.cell_width,
+          layout.cell_height};
 }
 
 }  // namespace hydrodip

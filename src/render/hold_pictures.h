@@ -30,4 +30,10 @@ struct HoldPicture {
 // and from below, what meets the film. What stays dry is shown paler.
 Image render_holds(const std::vector<HoldPicture>& holds, int width_px, const RunContext& context);
 
+// Where in row `row` of a page so wide the picture from below lies.
+struct HoldPlace {
+  int left_px, top_px, width_px, height_px;
+};
+HoldPlace hold_from_below(int page_width_px, int row);
+
 }  // namespace hydrodip

@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "image/files.h"
 #include "job/jobs.h"
+#include "render/hold_pictures.h"
 #include "report/plain_words.h"
 #include "rig/rig.h"
 #include "settings/settings.h"
@@ -99,6 +100,27 @@ Json print_result(const TaskRequest& request, const RunContext& context) {
   return result;
 }
 
+Image part_of(const Image& whole, const HoldPlace& at) {
+  Image part(at.width_px, at.height_px);
+  for (int y = 0; y < at.height_px; ++y)
+    std::copy_n(whole.pixel(at.left_px, at.top_px + y), 4 * std::size_t(at.width_px),
+                part.pixel(0, y));
+  return part;
+}
+
+// Of each way to hold the object what its film covers, seen from below: what shows its difference
+// when it is small.
+std::vector<std::string> cut_holds(const std::filesystem::path& page,
+                                   const std::filesystem::path& folder, std::size_t ways) {
+  const Image whole = load_image(page);
+  std::vector<std::string> names;
+  for (std::size_t way = 0; way < ways; ++way) {
+    names.push_back(fmt::format("way-{}.png", way + 1));
+    save_png(folder / names.back(), part_of(whole, hold_from_below(whole.width_px, int(way))));
+  }
+  return names;
+}
+
 // Rows of one picture, each as a file of its own.
 std::vector<std::string> cut_rows(const std::filesystem::path& picture,
                                   const std::filesystem::path& folder, std::size_t rows) {
@@ -122,7 +144,8 @@ Json orient_result(const TaskRequest& request, const RunContext& context) {
   config.preview_width_px = 1000;
   const JobResult done = orient_job(config, context);
   const Json found = Json::parse(done.json);
-  const auto names = cut_rows(request.folder / "orient.png", request.folder, found["poses"].size());
+  const auto names =
+      cut_holds(request.folder / "orient.png", request.folder, found["poses"].size());
   Json ways = Json::array();
   for (std::size_t k = 0; k < names.size(); ++k) {
     const Json& pose = found["poses"][k];

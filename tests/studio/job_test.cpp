@@ -474,7 +474,13 @@ TEST_F(JobTest, AWayThatIsFoundCanBeTaken) {
   ASSERT_EQ(task["state"], "done") << task;
   const json ways = task["result"]["ways"];
   ASSERT_FALSE(ways.empty());
-  EXPECT_TRUE(client->get(ways[0]["picture"]).body.starts_with("\x89PNG"));
+  // One picture of the object, not a page of them with words.
+  const std::string picture = client->get(ways[0]["picture"]).body;
+  ASSERT_TRUE(picture.starts_with("\x89PNG"));
+  const auto size_at = [&](std::size_t at) {
+    return 256 * int(std::uint8_t(picture.at(at + 2))) + int(std::uint8_t(picture.at(at + 3)));
+  };
+  EXPECT_NEAR(double(size_at(16)) / size_at(20), 1.5, 0.02);
   json taken = document;
   taken.merge_patch(ways[0]["patch"]);
   const long revision = put(job, taken).json()["revision"];

@@ -107,6 +107,8 @@ export const t = {
     suggest: 'Suggest ways to hold it',
     suggesting: 'Trying ways to hold it',
     ways: 'Click one to hold it so',
+    noWays: 'No way was found in which film covers more than 1 % of it.',
+    waysLess: (now: number, best: number) => `As it hangs now more is covered: ${percent(now)} of the object, ${percent(best)} the best of these ways.`,
     waysLabel: (n: number) => `Way ${n}`,
     covered: (share: number) => `${percent(share)} covered`,
     torn: (share: number) => (share > 0 ? `${percent(share)} of its film torn` : 'nothing torn'),

@@ -343,6 +343,7 @@ test('ways to hold it are suggested; one click takes one', async () => {
   await toy.waitForSelector('.way', { timeout: 180000 });
   const ways = await toy.locator('.way').count(); // those that are worth it
   assert.ok(ways >= 1 && ways <= 3);
+  await toy.locator('.way').first().scrollIntoViewIfNeeded();
   await picture(toy, 'orient');
   const before = await resultOf(toy);
   await toy.locator('.way').last().click();

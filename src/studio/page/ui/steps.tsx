@@ -217,10 +217,17 @@ function PoseFields() {
   );
 }
 
+// Ways that cover less are no use; and trials are coarse, so that a little less says nothing.
+const LEAST_SHARE = 0.01;
+const CLEARLY_LESS = 0.8;
+
 function Orient() {
   const open = job.value!;
   const task = taskOf('orient');
-  const ways = task?.state === 'done' ? (task.result as OrientResult | null)?.ways : null;
+  const found = task?.state === 'done' ? (task.result as OrientResult | null)?.ways : null;
+  const ways = found?.filter((way) => way.covered_share >= LEAST_SHARE);
+  const best = Math.max(0, ...(ways ?? []).map((way) => way.covered_share));
+  const now = open.result.value?.figures['covered_share'] ?? 0;
   return (
     <Group>
       {task?.state === 'running' ? (
@@ -231,7 +238,8 @@ function Orient() {
       {task?.state === 'failed' && <p class="bad">{task.error?.text}</p>}
       {ways && (
         <>
-          <p class="soft">{t.model.ways}</p>
+          <p class="soft">{ways.length ? t.model.ways : t.model.noWays}</p>
+          {ways.length > 0 && best < CLEARLY_LESS * now && <p class="soft" data-name="ways-less">{t.model.waysLess(now, best)}</p>}
           <div class="ways">
             {ways.map((way, k) => (
               <button
@@ -252,8 +260,10 @@ function Orient() {
                 }}
               >
                 <img src={way.picture} alt="" />
-                <b>{t.model.covered(way.covered_share)}</b>
-                <small>{t.model.torn(way.torn_share)}</small>
+                <span>
+                  <b>{t.model.covered(way.covered_share)}</b>
+                  <small>{t.model.torn(way.torn_share)}</small>
+                </span>
               </button>
             ))}
           </div>
