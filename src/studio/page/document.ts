@@ -24,6 +24,17 @@ export interface Layer {
   blend?: 'normal' | 'multiply';
 }
 
+// Around an axis or a centre.
+export const isRound = (projection: Projection | undefined): boolean => projection === 'cylinder' || projection === 'sphere';
+
+// A layer laid on in another way: it stays where it is, but `toward` and `up` mean another thing where it goes round (the
+// axis, not the way it is pushed), and all of them another on the film.
+export function laidAnew(layer: Layer, projection: Projection): Partial<Layer> {
+  if (projection === layer.projection) return {};
+  if (projection === 'film' || layer.projection === 'film') return { projection, at_mm: undefined, toward: undefined, up: undefined };
+  return isRound(projection) === isRound(layer.projection) ? { projection } : { projection, toward: undefined, up: undefined };
+}
+
 export type Way = number[][]; // keyframes: lower, shift x, y, turn x, y, z
 
 export interface Dip {

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { Matrix4, Quaternion, Vector3 } from 'three';
 import {
-  dipCount, equal, merged, patched, poseOf, withAnotherDip, withLayer, withLayerMoved, withNewLayer, withoutDip, withoutLayer, withPose,
+  dipCount, equal, laidAnew, merged, patched, poseOf, withAnotherDip, withLayer, withLayerMoved, withNewLayer, withoutDip, withoutLayer, withPose,
   withValue, type JobDocument, type Json, type Pose, type Side, type Vec3,
 } from '../../../src/studio/page/document.ts';
 import { anglesOf, placeOf, turnedDown, turnOf } from '../../../src/studio/page/stage/pose.ts';
@@ -24,6 +24,17 @@ const tests: Record<string, () => void> = {
     const pose: Pose = { down: '-z', rotate_deg: [0, 0, 0], depth_mm: 0, shift_mm: [7000, -9000] };
     assert.deepEqual(withPose({}, 0, pose, 8600).path, [[0, 5000, -5000, 0, 0, 0], [5000, 5000, -5000, 0, 0, 0]]);
     assert.deepEqual(withPose({}, 0, { ...pose, shift_mm: [7, 0] }, 86).path, [[0, 7, 0, 0, 0, 0], [86, 7, 0, 0, 0, 0]]);
+  },
+  'artwork laid on in another way keeps its place, and never takes a push for an axis'() {
+    const aimed = { image: 'a.png', at_mm: [1, 2, 3] as Vec3, toward: [1, 0, 0] as Vec3, up: [0, 0, 1] as Vec3 };
+    for (const round of ['cylinder', 'sphere'] as const) {
+      const laid = { ...aimed, ...laidAnew(aimed, round) };
+      assert.deepEqual([laid.projection, laid.at_mm, laid.toward, laid.up], [round, aimed.at_mm, undefined, undefined]);
+      assert.equal({ ...laid, ...laidAnew({ ...laid, toward: [0, 0, 1] }, 'planar') }.toward, undefined);
+    }
+    const wrapped = { ...aimed, ...laidAnew(aimed, 'wrap') };
+    assert.deepEqual([wrapped.at_mm, wrapped.toward, wrapped.up], [aimed.at_mm, aimed.toward, aimed.up]);
+    assert.equal({ ...aimed, ...laidAnew(aimed, 'film') }.at_mm, undefined);
   },
   'merge patches do as RFC 7386 says, appendix A'() {
     const cases: [Json, Json, Json][] = [

@@ -1,7 +1,7 @@
 // What is taken hold of in the 3D view: the water line, and the chosen layer's place, width and turn.
 import { useRef } from 'preact/hooks';
 import { api } from '../api.ts';
-import { layerName, layerWidth, withLayer, type Layer, type Vec3 } from '../document.ts';
+import { isRound, layerName, layerWidth, withLayer, type Layer, type Vec3 } from '../document.ts';
 import { changePose, change, chosenLayer, drawn, job, layer, pose, readOnly, stage, view } from '../studio.ts';
 import { t } from '../strings.ts';
 import { resized } from './steps.tsx';
@@ -67,6 +67,7 @@ interface Frame {
   upright: Vec3; // before it is turned
   width: number;
   height: number;
+  bent: boolean; // it goes round the object: only its centre is known
 }
 
 const cross = (a: Vec3, b: Vec3): Vec3 => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -106,6 +107,8 @@ function aspectOf(entry: Layer): number {
 export function frameOf(entry: Layer): Frame | null {
   const shown = stage.current;
   if (!shown || entry.projection === 'film' || entry.projection === 'uv') return null;
+  const bent = isRound(entry.projection);
+  if (bent && !entry.at_mm) return null; // where it lies goes by the whole surface, which only the program looks at
   const flat = entry.projection === undefined || entry.projection === 'planar' || entry.projection === 'wrap';
   const far = 2 * Math.hypot(...shown.extent());
   if (far === 0) return null; // no model yet
@@ -143,6 +146,7 @@ export function frameOf(entry: Layer): Frame | null {
     upright: up,
     width,
     height: width * tall,
+    bent,
   };
 }
 
@@ -163,7 +167,7 @@ export function ArtworkHandles() {
   const grip = shown.project(corner(1, -1));
   const top = shown.project(corner(0, 1.25));
   const edge = shown.project(corner(0, 1));
-  if (points.some((p) => p.behind)) return null;
+  if (middle.behind || (!frame.bent && points.some((p) => p.behind))) return null;
   const name = layerName(entry);
   const set = (part: Partial<Layer>, label: string, live: boolean): void => change((document) => withLayer(document, at, part), label, live);
   const follow = (event: PointerEvent, live: boolean): void => {
@@ -232,13 +236,15 @@ export function ArtworkHandles() {
   );
   return (
     <div class="artwork-handles" data-view={view.value}>
-      <svg aria-hidden="true">
-        <polygon points={points.map((p) => `${p.x},${p.y}`).join(' ')} />
-        <line x1={edge.x} y1={edge.y} x2={top.x} y2={top.y} />
-      </svg>
+      {!frame.bent && (
+        <svg aria-hidden="true">
+          <polygon points={points.map((p) => `${p.x},${p.y}`).join(' ')} />
+          <line x1={edge.x} y1={edge.y} x2={top.x} y2={top.y} />
+        </svg>
+      )}
       {handle('move', middle, t.artwork.move(name))}
-      {handle('scale', grip, t.artwork.scale(name))}
-      {handle('turn', top, t.artwork.rotate(name))}
+      {!frame.bent && handle('scale', grip, t.artwork.scale(name))}
+      {!frame.bent && handle('turn', top, t.artwork.rotate(name))}
     </div>
   );
 }

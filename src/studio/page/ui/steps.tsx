@@ -4,8 +4,8 @@ import type { ComponentChildren } from 'preact';
 import type { OrientResult, Parameter } from '../api.ts';
 import { api } from '../api.ts';
 import {
-  dipCount, layerName, layersOf, layerWidth, patched, poseOf, withAnotherDip, withDip, withLayer, withLayerMoved, withNewLayer,
-  withoutDip, withoutLayer, withPose, withValue, type Json, type Layer, type Side, type Vec3,
+  dipCount, isRound, laidAnew, layerName, layersOf, layerWidth, patched, poseOf, withAnotherDip, withDip, withLayer, withLayerMoved, withNewLayer,
+  withoutDip, withoutLayer, withPose, withValue, type Json, type Layer, type Projection, type Side, type Vec3,
 } from '../document.ts';
 import {
   addFiles, allDips, change, changePose, chooseOverlay, chooseTool, defaults, drawn, goToStep, hello, job, layer, overlay, pose, poseOfDip, readOnly, showView, stage, step,
@@ -357,7 +357,7 @@ function LayerForm() {
         label={t.artwork.projection}
         value={projection}
         options={Object.entries(t.artwork.projections)}
-        onChange={(next) => set({ projection: next as Layer['projection'], ...(next === 'film' || onFilm ? { at_mm: undefined, toward: undefined, up: undefined } : {}) })}
+        onChange={(next) => set(laidAnew(entry, next as Projection))}
       />
       <NumberField
         name="layer-width"
@@ -374,6 +374,7 @@ function LayerForm() {
       <NumberField name="opacity" label={t.artwork.opacity} unit="%" step={5} min={0} max={100} value={100 * (entry.opacity ?? 1)} onChange={(next, live) => set({ opacity: next === null || next === 100 ? undefined : next / 100 }, live)} />
       {laid && laid.size_mm && <p class="soft">{t.artwork.laid(...laid.size_mm)}{laid.stretch && laid.stretch[0] !== laid.stretch[1] ? `, ${t.artwork.stretched(...laid.stretch)}` : ''}</p>}
       {onFilm && <p class="soft">{t.artwork.patternHint}</p>}
+      {isRound(projection) && !center && <p class="soft">{t.artwork.roundHint}</p>}
       <details>
         <summary>{t.artwork.more}</summary>
         <fieldset class={onFilm ? 'triple two' : 'triple'}>
