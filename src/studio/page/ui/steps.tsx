@@ -13,6 +13,7 @@ import {
 } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button, CheckField, ColorField, Files, NumberField, SegmentsField, SelectField, TextField } from './fields.tsx';
+import { frameOf } from './handles.tsx';
 import { Icon } from './icons.tsx';
 import { Progress, taskOf } from './progress.tsx';
 
@@ -293,7 +294,7 @@ function ArtworkStep() {
       <Group>
         <div class="row wrap">
           <Files name="add-picture" label={t.artwork.picture} icon="picture" accept={pictures} many onFiles={(files) => void addFiles(files)} />
-          <Button name="add-text" label={t.artwork.text} icon="text" changes onClick={() => add({ text: t.artwork.newText, font: 'sans bold' })} />
+          <Button name="add-text" label={t.artwork.text} icon="text" changes onClick={() => add(textThatFits())} />
           <Files name="add-pattern" label={t.artwork.pattern} icon="pattern" accept={pictures} onFiles={(files) => void addPattern(files)} />
         </div>
         {layers.length === 0 && <p class="soft">{t.artwork.none}</p>}
@@ -306,6 +307,13 @@ function ArtworkStep() {
       <LayerForm />
     </>
   );
+}
+
+// About half as wide as the object shows there: further out a curved face turns away, and would cut the words.
+function textThatFits(): Layer {
+  const text = { text: t.artwork.newText, font: 'sans bold' };
+  const width = frameOf(text)?.width;
+  return width ? { ...text, size_mm: Math.max(1, Math.round(5 * width) / 10) } : text;
 }
 
 function LayerRow({ entry, at, last }: { entry: Layer; at: number; last: number }) {
