@@ -132,6 +132,7 @@ export const t = {
       planar: 'pushed straight on', cylinder: 'around an axis', sphere: 'around a centre', box: 'from six sides',
       wrap: 'stuck on like a label', uv: 'by the model’s UVs', film: 'pattern of the film',
     } as Record<string, string>,
+    noUvs: 'This model has no UVs.',
     words: 'Text',
     font: 'Font',
     color: 'Colour',
@@ -185,6 +186,7 @@ export const t = {
   film: {
     preset: 'Preset',
     choosePreset: 'choose…',
+    noPreset: 'none yet',
     keepPreset: 'Keep these settings as a preset',
     presetName: 'Name of the preset',
     keep: 'Keep',

@@ -277,6 +277,7 @@ test('F, and a click on a face: it goes down', async () => {
   const at = await middleOf(toy, '.canvas-box canvas');
   await toy.mouse.click(at.x + 50, at.y + 30);
   await until('another turn', async () => JSON.stringify((await documentOf(toy)).object.rotate_deg ?? 0) !== JSON.stringify(first.object.rotate_deg ?? 0));
+  await toy.waitForSelector('[data-name="tool-face"][aria-pressed="false"]'); // it is done
   await undo(toy);
   await sameAs(toy, first);
   await toy.keyboard.press('Escape');
@@ -368,6 +369,7 @@ test('the sheet is chosen from presets, and can be turned', async () => {
 test('what is set for film and printer is kept as a preset, and taken again', async () => {
   const first = await documentOf(toy);
   await type(toy, 'film-margin_mm', 14);
+  assert.deepEqual(await toy.locator('[name="preset"] option').allTextContents(), ['none yet']);
   await toy.click('[data-name="keep-preset"]');
   await toy.fill('[name="preset-name"]', 'our film');
   await toy.locator('[name="preset-name"]').press('Enter');
@@ -547,11 +549,29 @@ test('the picture is dragged, scaled and turned by its handles; each is one step
 });
 
 test('layers: projection, width in figures, text on top, order, removal by key', async () => {
-  await dome.selectOption('[name="projection"]', 'wrap');
+  const laidOn = dome.locator('[name="projection"]');
+  assert.ok(await laidOn.locator('option[value="uv"]').isDisabled()); // an STL has none
+  const room = await laidOn.evaluate((select) => {
+    const context = document.createElement('canvas').getContext('2d');
+    context.font = getComputedStyle(select).font;
+    return select.clientWidth - Math.max(...[...select.options].map((o) => context.measureText(o.text).width));
+  });
+  assert.ok(room > 16, `beside the longest choice there are ${room} px for the arrow`);
+  // Around an axis there is no flat frame of it; by its centre it is moved all the same.
+  await laidOn.selectOption('cylinder');
+  await until('around an axis', async () => (await documentOf(dome)).artwork[0].projection === 'cylinder');
+  await until('no frame', async () => (await dome.locator('[data-grip]').count()) === 1);
+  const at = (await documentOf(dome)).artwork[0].at_mm;
+  await drag(dome, await middleOf(dome, '[data-grip="move"]'), { x: 20, y: 10 }, { hold: 30 });
+  await until('it is moved', async () => JSON.stringify((await documentOf(dome)).artwork[0].at_mm) !== JSON.stringify(at));
+  await undo(dome);
+  await laidOn.selectOption('wrap');
   await type(dome, 'layer-width', 18);
   await until('the width', async () => (await documentOf(dome)).artwork[0].size_mm?.[0] === 18 || (await documentOf(dome)).artwork[0].size_mm === 18);
   await dome.click('[data-name="add-text"]');
   await until('a text', async () => (await documentOf(dome)).artwork.length === 2);
+  const { size_mm } = (await documentOf(dome)).artwork[1];
+  assert.ok(size_mm > 20 && size_mm < 40, `the text is ${size_mm} mm wide on a dome of 60 mm`);
   await dome.fill('[name="words"]', 'No. 7');
   await dome.locator('[name="words"]').blur();
   await until('the words', async () => (await documentOf(dome)).artwork[1].text === 'No. 7');

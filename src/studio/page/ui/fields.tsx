@@ -105,10 +105,11 @@ interface SelectProps {
   name?: string;
   hideLabel?: boolean;
   always?: boolean; // of the view, so usable where nothing may be changed
+  barred?: Record<string, string>; // what cannot be chosen, and why
   onChange: (value: string) => void;
 }
 
-export function SelectField({ label, value, options, name, hideLabel, always, onChange }: SelectProps) {
+export function SelectField({ label, value, options, name, hideLabel, always, barred = {}, onChange }: SelectProps) {
   const id = useId();
   return (
     <div class={hideLabel ? 'field bare' : 'field'}>
@@ -118,7 +119,7 @@ export function SelectField({ label, value, options, name, hideLabel, always, on
         event.currentTarget.value = value; // until what is shown says otherwise: a command can be chosen twice
         onChange(chosen);
       }}>
-        {options.map(([key, text]) => <option key={key} value={key}>{text}</option>)}
+        {options.map(([key, text]) => <option key={key} value={key} disabled={key in barred} title={barred[key]}>{text}</option>)}
       </select>
     </div>
   );

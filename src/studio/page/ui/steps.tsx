@@ -350,6 +350,7 @@ function LayerForm() {
   const laid = open.result.value?.artwork[at];
   const projection = entry.projection ?? 'planar';
   const onFilm = projection === 'film';
+  const mesh = open.mesh.value;
   const center = entry.at_mm ?? null;
   return (
     <section class="group" aria-label={layerName(entry)}>
@@ -365,6 +366,7 @@ function LayerForm() {
         label={t.artwork.projection}
         value={projection}
         options={Object.entries(t.artwork.projections)}
+        barred={mesh && !mesh.uv && projection !== 'uv' ? { uv: t.artwork.noUvs } : {}}
         onChange={(next) => set(laidAnew(entry, next as Projection))}
       />
       <NumberField
@@ -626,7 +628,7 @@ function Presets() {
   return (
     <Group>
       <div class="row">
-        <SelectField name="preset" label={t.film.preset} value="" options={[['', t.film.choosePreset], ...profiles.map((p) => [p, p] as const)]} onChange={(chosen) => void choose(chosen)} />
+        <SelectField name="preset" label={t.film.preset} value="" options={[['', profiles.length ? t.film.choosePreset : t.film.noPreset], ...profiles.map((p) => [p, p] as const)]} onChange={(chosen) => void choose(chosen)} />
         <Button name="keep-preset" label={t.film.keepPreset} icon="plus" iconOnly changes expanded={name.value !== null} onClick={() => (name.value = name.value === null ? '' : null)} />
       </div>
       {name.value !== null && (

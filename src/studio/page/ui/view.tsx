@@ -106,7 +106,10 @@ function follow(shown: Stage): () => void {
 
 function startStage(canvas: HTMLCanvasElement): Stage {
   return new Stage(canvas, {
-    pose: (part, live) => changePose(part, live),
+    pose: (part, live) => {
+      changePose(part, live);
+      if (tool.value === 'face') tool.value = 'none'; // one click is what it is for
+    },
     click: (hit) => {
       if (!hit && layer.value !== null) layer.value = null;
     },
