@@ -342,7 +342,7 @@ export const t = {
       ['S', 'its size'],
       ['A', 'add artwork'],
       ['Tab', 'sheet or object, when the view has the focus'],
-      ['Z', 'zoom to fit'],
+      ['Z', 'zoom to fit, both views'],
       ['1 to 4', 'the steps'],
       ['Space', 'play the dip'],
       ['Shift', 'while turning or moving: in steps'],
