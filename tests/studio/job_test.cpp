@@ -532,14 +532,11 @@ TEST_F(JobTest, AModelAndAPictureBecomeAJob) {
 TEST_F(JobTest, ABadFileIsCalledByItsNameAlone) {
   const std::string job = client->post("/api/jobs").json()["job"];
   ASSERT_EQ(client->put(at(job, "/files/part.stl"), "no model").status, 201);
+  ASSERT_EQ(client->post(at(job, "/adopt"), R"({"files": ["part.stl"]})").status, 200);
   Events events(*client, at(job, "/events?client=c1"));
-  const Reply adopted = client->post(at(job, "/adopt"), R"({"files": ["part.stl"]})");
-  std::string text = adopted.status == 200 ? "" : adopted.json()["error"]["text"];
-  if (text.empty()) {
-    const auto problem = events.next("problem");
-    ASSERT_TRUE(problem);
-    text = problem->data["text"];
-  }
+  const auto problem = events.next("problem");
+  ASSERT_TRUE(problem);
+  const std::string text = problem->data["text"];
   EXPECT_TRUE(text.starts_with("part.stl: ")) << text;
   EXPECT_EQ(text.find(folder.path().string()), std::string::npos) << text;
 }
