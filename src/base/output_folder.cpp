@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -210,6 +211,7 @@ OutputFolder::~OutputFolder() {
 
 void OutputFolder::announce(const std::vector<std::string>& names,
                             const std::vector<fs::path>& inputs) {
+  inputs_ = inputs;
   std::error_code ignored;
   std::vector<std::string> foreign;
   bool ours = false;
@@ -257,6 +259,26 @@ fs::path OutputFolder::path(const std::string& name) {
   return staging_ / name;
 }
 
+// Of a folder's files some say that they are hydrodip's; then all of these names there are.
+void OutputFolder::remove_superseded() const {
+  std::error_code ignored;
+  std::set<fs::path> ours;
+  for (const std::string& name : superseded_)
+    if (names_hydrodip(folder_ / name)) ours.insert((folder_ / name).parent_path());
+  for (const std::string& name : superseded_) {
+    const fs::path file = folder_ / name;
+    const bool is_read = std::any_of(inputs_.begin(), inputs_.end(), [&](const fs::path& input) {
+      std::error_code none;
+      return fs::equivalent(file, input, none);
+    });
+    if (is_read || !ours.contains(file.parent_path()) || !fs::is_regular_file(file, ignored) ||
+        std::find(names_.begin(), names_.end(), name) != names_.end())
+      continue;
+    fs::remove(file, ignored);
+  }
+  for (const fs::path& folder : ours) fs::remove(folder, ignored);  // if empty
+}
+
 void OutputFolder::commit() {
   std::error_code error;
   for (const std::string& name : names_) {
@@ -275,6 +297,7 @@ void OutputFolder::commit() {
       refuse_file(folder_ / name, error.message());
     }
   }
+  remove_superseded();
   names_.clear();
   created_.clear();
   fs::remove_all(staging_, error);

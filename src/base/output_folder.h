@@ -29,6 +29,10 @@ class OutputFolder {
   // and, if earlier results are kept, if one of the files is there at all.
   void announce(const std::vector<std::string>& names,
                 const std::vector<std::filesystem::path>& inputs);
+  // Names, which this result does not have, of what an earlier one may have left: beside the new
+  // files they would be taken for a part of it, so that commit() removes them. Not what hydrodip
+  // did not write, nor what the job reads.
+  void supersede(const std::vector<std::string>& names) { superseded_ = names; }
   // Whether commit() has put new files in the place of earlier ones.
   bool replaced_earlier() const { return replaced_earlier_; }
   // A line that says so, or nothing.
@@ -52,7 +56,10 @@ class OutputFolder {
   std::filesystem::path staging_;
   int lock_ = -1;  // on the staging folder, while this process lives
   std::vector<std::filesystem::path> created_;
-  std::vector<std::string> names_;
+  void remove_superseded() const;
+
+  std::vector<std::string> names_, superseded_;
+  std::vector<std::filesystem::path> inputs_;
   bool replaced_earlier_ = false;
 };
 

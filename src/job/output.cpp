@@ -270,4 +270,22 @@ JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previe
   return result;
 }
 
+std::vector<std::string> sheets_of_other_prints(std::size_t dips) {
+  constexpr std::size_t kMostDips = 24;
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& folder) {
+    for (const char* name :
+         {"print.pdf", "print.png", "print.tif", "film.ply", "preview.glb", "run-sheet.pdf"})
+      names.push_back(folder + name);
+  };
+  if (dips > 0) add("");
+  for (std::size_t k = dips; k < kMostDips; ++k) {
+    const std::string folder = fmt::format("dip-{}/", k + 1);
+    add(folder);
+    names.push_back(folder + "report.json");
+  }
+  if (dips == 0) names.emplace_back("dips.png");
+  return names;
+}
+
 }  // namespace hydrodip

@@ -30,4 +30,8 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
 // cancelled.
 JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previews& previews);
 
+// What prints of another number of dips put into the same folder, for OutputFolder::supersede():
+// nobody shall print a sheet of an earlier job. 0: a single dip, in no folder of its own.
+std::vector<std::string> sheets_of_other_prints(std::size_t dips);
+
 }  // namespace hydrodip

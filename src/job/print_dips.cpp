@@ -111,6 +111,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   input_files.reserve(inputs.size());
   for (const ReportInput& input : inputs) input_files.emplace_back(input.path);
   folder.announce(file_names(all), input_files);
+  folder.supersede(sheets_of_other_prints(all.dips.size()));
 
   const SharedSurface shared = divide(all, printer, times, context);
   const Finish finish = make_dips(all, shared, printer, times, context);

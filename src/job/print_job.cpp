@@ -66,6 +66,7 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   const JobConfig& config = job.config;
   const std::vector<ReportInput> inputs = describe_inputs(config, job.prepared, job.printer);
   announce_outputs(folder, "print", config, inputs);
+  folder.supersede(sheets_of_other_prints(0));
 
   const DesignedJob made = designed(job, times, context);
   const DippedObject& dipped = made.designed.dipped;

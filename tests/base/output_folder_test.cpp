@@ -7,6 +7,7 @@
 #include <iterator>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "temporary_folder.h"
@@ -74,6 +75,34 @@ TEST_F(OutputFolderTest, WithoutCommitExistingFoldersAndFilesStay) {
   }
   EXPECT_EQ(read(root_ / "a" / "keep.txt"), "mine");
   EXPECT_EQ(entries(root_ / "a"), 1);
+}
+
+// A print of two dips where one of three lay: its third sheet would be dipped with the others.
+TEST_F(OutputFolderTest, WhatAnEarlierResultHadAndThisOneHasNotGoes) {
+  const fs::path out = root_ / "out";
+  for (const char* folder : {"dip-3", "dip-4", "dip-5", "dip-6"})
+    fs::create_directories(out / folder);
+  write(out / "dip-3/print.pdf", "by hydrodip");
+  write(out / "dip-3/print.tif", "says nothing");
+  write(out / "dip-4/print.pdf", "by hydrodip");
+  write(out / "dip-4/notes.txt", "a person's own, about hydrodip");
+  write(out / "dip-5/print.pdf", "by somebody else");
+  write(out / "dip-6/print.pdf", "by hydrodip, and the job reads it");
+  OutputFolder folder(out);
+  folder.announce({"dip-1/print.pdf"}, {out / "dip-6/print.pdf"});
+  std::vector<std::string> names = {"dip-1/print.pdf"};
+  for (const char* dip : {"dip-3/", "dip-4/", "dip-5/", "dip-6/"})
+    for (const char* name : {"print.pdf", "print.tif"}) names.push_back(std::string(dip) + name);
+  folder.supersede(names);
+  write(folder.path("dip-1/print.pdf"), "by hydrodip, new");
+  EXPECT_TRUE(fs::exists(out / "dip-3/print.pdf"));
+  folder.commit();
+  EXPECT_EQ(read(out / "dip-1/print.pdf"), "by hydrodip, new");
+  EXPECT_FALSE(fs::exists(out / "dip-3"));
+  EXPECT_FALSE(fs::exists(out / "dip-4/print.pdf"));
+  EXPECT_TRUE(fs::exists(out / "dip-4/notes.txt"));
+  EXPECT_TRUE(fs::exists(out / "dip-5/print.pdf"));
+  EXPECT_TRUE(fs::exists(out / "dip-6/print.pdf"));
 }
 
 TEST_F(OutputFolderTest, CommitReplacesEarlierFilesAndLeavesOthersAlone) {
