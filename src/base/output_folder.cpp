@@ -218,12 +218,11 @@ void OutputFolder::announce(const std::vector<std::string>& names,
   for (const std::string& name : names) {
     const fs::path file = folder_ / name;
     if (!fs::exists(file, ignored)) continue;
-    for (const fs::path& input : inputs)
-      if (fs::equivalent(file, input, ignored))
-        throw InputError(fmt::format(
-            "{}: the job reads this file, and its result {} would overwrite it; move it "
-            "elsewhere, or write to another folder.",
-            input.string(), name));
+    if (const fs::path* input = input_at(file))
+      throw InputError(
+          fmt::format("{}: the job reads this file, and its result {} would overwrite it; move it "
+                      "elsewhere, or write to another folder.",
+                      input->string(), name));
     require_free_name(file);
     if (earlier_ == EarlierResult::kKept)
       throw InputError(
@@ -259,6 +258,14 @@ fs::path OutputFolder::path(const std::string& name) {
   return staging_ / name;
 }
 
+const fs::path* OutputFolder::input_at(const fs::path& file) const {
+  std::error_code ignored;
+  const auto at = std::find_if(inputs_.begin(), inputs_.end(), [&](const fs::path& input) {
+    return fs::equivalent(file, input, ignored);
+  });
+  return at == inputs_.end() ? nullptr : &*at;
+}
+
 // Of a folder's files some say that they are hydrodip's; then all of these names there are.
 void OutputFolder::remove_superseded() const {
   std::error_code ignored;
@@ -267,14 +274,10 @@ void OutputFolder::remove_superseded() const {
     if (names_hydrodip(folder_ / name)) ours.insert((folder_ / name).parent_path());
   for (const std::string& name : superseded_) {
     const fs::path file = folder_ / name;
-    const bool is_read = std::any_of(inputs_.begin(), inputs_.end(), [&](const fs::path& input) {
-      std::error_code none;
-      return fs::equivalent(file, input, none);
-    });
-    if (is_read || !ours.contains(file.parent_path()) || !fs::is_regular_file(file, ignored) ||
-        std::find(names_.begin(), names_.end(), name) != names_.end())
-      continue;
-    fs::remove(file, ignored);
+    const bool is_new = std::find(names_.begin(), names_.end(), name) != names_.end();
+    if (!is_new && ours.contains(file.parent_path()) && fs::is_regular_file(file, ignored) &&
+        input_at(file) == nullptr)
+      fs::remove(file, ignored);
   }
   for (const fs::path& folder : ours) fs::remove(folder, ignored);  // if empty
 }

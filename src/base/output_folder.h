@@ -51,13 +51,15 @@ class OutputFolder {
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
+  // The job's input that has that file, whatever it is called; nullptr: none has.
+  const std::filesystem::path* input_at(const std::filesystem::path& file) const;
+  void remove_superseded() const;
+
   std::filesystem::path folder_;
   EarlierResult earlier_;
   std::filesystem::path staging_;
   int lock_ = -1;  // on the staging folder, while this process lives
   std::vector<std::filesystem::path> created_;
-  void remove_superseded() const;
-
   std::vector<std::string> names_, superseded_;
   std::vector<std::filesystem::path> inputs_;
   bool replaced_earlier_ = false;
