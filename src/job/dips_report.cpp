@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "job/output.h"
 #include "job/ways.h"
 
 namespace hydrodip {
@@ -102,9 +103,7 @@ std::vector<ReportOutput> outputs_of(const MadeDips& all) {
 std::vector<std::string> file_names(const MadeDips& all) {
   std::vector<std::string> names;
   for (const MadeDip& dip : all.dips)
-    for (const char* name :
-         {"print.pdf", "print.png", "print.tif", "film.ply", "preview.glb", "report.json"})
-      names.push_back(dip.folder + "/" + name);
+    for (const std::string& name : files_of_dip()) names.push_back(dip.folder + "/" + name);
   if (all.config.pictures) names.insert(names.end(), {"preview.png", "dips.png"});
   names.insert(names.end(), {"report.html", "report.json"});
   return names;

@@ -24,6 +24,7 @@
 #include "report/findings.h"
 #include "report/report.h"
 #include "session/appearance_of.h"
+#include "settings/dip_tables.h"
 
 namespace hydrodip {
 namespace {
@@ -270,21 +271,20 @@ JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previe
   return result;
 }
 
+std::vector<std::string> files_of_dip() {
+  return {"print.pdf", "print.png", "print.tif", "film.ply", "preview.glb", "report.json"};
+}
+
 std::vector<std::string> sheets_of_other_prints(std::size_t dips) {
-  constexpr std::size_t kMostDips = 24;
   std::vector<std::string> names;
   const auto add = [&](const std::string& folder) {
-    for (const char* name :
-         {"print.pdf", "print.png", "print.tif", "film.ply", "preview.glb", "run-sheet.pdf"})
-      names.push_back(folder + name);
+    for (const std::string& name : files_of_dip())
+      if (!folder.empty() || name != "report.json") names.push_back(folder + name);
+    names.push_back(folder + "run-sheet.pdf");
   };
-  if (dips > 0) add("");
-  for (std::size_t k = dips; k < kMostDips; ++k) {
-    const std::string folder = fmt::format("dip-{}/", k + 1);
-    add(folder);
-    names.push_back(folder + "report.json");
-  }
+  if (dips > 0) add("");  // whose report is replaced
   if (dips == 0) names.emplace_back("dips.png");
+  for (std::size_t k = dips; k < kMostDips; ++k) add(fmt::format("dip-{}/", k + 1));
   return names;
 }
 

@@ -30,6 +30,9 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
 // cancelled.
 JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previews& previews);
 
+// What a job of several dips writes into the folder of each.
+std::vector<std::string> files_of_dip();
+
 // What prints of another number of dips put into the same folder, for OutputFolder::supersede():
 // nobody shall print a sheet of an earlier job. 0: a single dip, in no folder of its own.
 std::vector<std::string> sheets_of_other_prints(std::size_t dips);

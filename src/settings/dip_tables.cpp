@@ -12,7 +12,6 @@ namespace hydrodip {
 namespace {
 
 constexpr const char* kStart = "dip[";
-constexpr int kMostDips = 24;
 
 struct DipKey {
   int number = 0;  // from 1

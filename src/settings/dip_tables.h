@@ -7,6 +7,9 @@
 
 namespace hydrodip {
 
+// Of one job.
+inline constexpr int kMostDips = 24;
+
 // The names of a table's values.
 const std::vector<std::string>& dip_keys();
 

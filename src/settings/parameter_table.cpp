@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "settings/dip_tables.h"
 #include "settings/params.h"
 #include "settings/path_file.h"
 
@@ -542,8 +543,8 @@ std::vector<Parameter> stage_records() {
 std::vector<Parameter> plan_records() {
   return {
       integer(
-          "plan.dips", "", 1, 24, [](C& c) -> int& { return c.plan.dips; }, "how many dips to plan",
-          "as many as the job names"),
+          "plan.dips", "", 1, kMostDips, [](C& c) -> int& { return c.plan.dips; },
+          "how many dips to plan", "as many as the job names"),
       number(
           "plan.overlap_mm", "mm", 0, 50, [](C& c) -> double& { return c.plan.overlap_mm; },
           "how wide the inks of neighbouring dips fade into each other"),

@@ -15,6 +15,7 @@
 #include "report/plain_words.h"
 #include "samples/samples.h"
 #include "settings/artwork_tables.h"
+#include "settings/dip_tables.h"
 #include "settings/params.h"
 #include "settings/profiles.h"
 #include "settings/settings.h"
@@ -541,7 +542,7 @@ HttpAnswer Api::command(HttpRequest& request, const Parts& parts, OpenJob& job) 
     change.base = value_in(body, "base", -1L);
     change.document = value_in(body, "document", Json());
     change.live = value_in(body, "live", false);
-    change.dip = std::size_t(std::clamp(value_in(body, "dip", 0L), 0L, 23L));
+    change.dip = std::size_t(std::clamp(value_in(body, "dip", 0L), 0L, kMostDips - 1L));
     try {
       return json_answer(job.put(change));
     } catch (const ApiError& error) {

@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "job/profile_jobs.h"
 #include "report/plain_words.h"
+#include "settings/dip_tables.h"
 #include "settings/job_file.h"
 #include "settings/settings.h"
 #include "studio/api_error.h"
@@ -25,7 +26,7 @@ constexpr std::array<const char*, 5> kTextureWords = {"texture", "albedo", "diff
                                                       "color"};
 constexpr std::array<const char*, 7> kOfProfiles = {"film.", "material.", "ink.",   "print.",
                                                     "bath.", "process.",  "report."};
-constexpr std::size_t kMeshesKept = 8, kResultsKept = 6, kMostDips = 24, kMostTabs = 12;
+constexpr std::size_t kMeshesKept = 8, kResultsKept = 6, kMostTabs = 12;
 
 ApiError input_error(const std::string& sentence, const JobFiles& files) {
   return {422, "bad-file", in_plain_words(without_folder(sentence, files.uploads()))};
@@ -356,7 +357,7 @@ Json OpenJob::save(const std::string& name) {
   }
   saved_revision_ = revision_;
   autosave();
-  const Json saved = {{"saved_revision", saved_revision_}, {"where", shown_path(where_)}};
+  Json saved = {{"saved_revision", saved_revision_}, {"where", shown_path(where_)}};
   tell("saved", saved);
   return saved;
 }
@@ -434,7 +435,7 @@ std::filesystem::path OpenJob::pack() const {
   const std::filesystem::path toml = folder / (name + ".toml");
   write_whole(toml, job_file(config, folder));
   files.insert(files.begin(), {name + ".toml", toml});
-  const std::filesystem::path archive = folder / (name + ".zip");
+  std::filesystem::path archive = folder / (name + ".zip");
   pack_zip(archive, files);
   return archive;
 }
@@ -731,8 +732,8 @@ void OpenJob::keep_newest_results() {
   std::set<std::size_t> seen;
   std::size_t kept = 0;
   for (auto shown = results_.begin(); shown != results_.end();) {
-    const bool newest =
-        seen.insert(shown->event["dip"].get<std::size_t>()).second && seen.size() <= kMostDips;
+    const bool newest = seen.insert(shown->event["dip"].get<std::size_t>()).second &&
+                        seen.size() <= std::size_t(kMostDips);
     if (newest || kept < kResultsKept) {
       ++kept;
       ++shown;
@@ -805,8 +806,9 @@ std::string OpenJob::start_task(const Json& request) {
     throw ApiError(422, "no-model", "There is no model yet: drop one here, or open a sample.");
   if (kind == "plan") {
     task.config.plan.dips = request.value("dips", 2);
-    if (task.config.plan.dips < 1 || task.config.plan.dips > 24)
-      throw ApiError(422, "bad-value", "A job has 1 to 24 dips.", "plan.dips");
+    if (task.config.plan.dips < 1 || task.config.plan.dips > kMostDips)
+      throw ApiError(422, "bad-value", fmt::format("A job has 1 to {} dips.", kMostDips),
+                     "plan.dips");
   }
   if (kind == "orient") {
     // Looked for anew, whatever is said now; the depth too.
