@@ -108,32 +108,38 @@ Image part_of(const Image& whole, const HoldPlace& at) {
   return part;
 }
 
+// Parts of one picture, each as a file of its own.
+std::vector<std::string> cut(const Image& whole, const std::vector<HoldPlace>& places,
+                             const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const HoldPlace& place : places) {
+    names.push_back(fmt::format("way-{}.png", names.size() + 1));
+    save_png(folder / names.back(), part_of(whole, place));
+  }
+  return names;
+}
+
 // Of each way to hold the object what its film covers, seen from below: what shows its difference
 // when it is small.
 std::vector<std::string> cut_holds(const std::filesystem::path& page,
                                    const std::filesystem::path& folder, std::size_t ways) {
   const Image whole = load_image(page);
-  std::vector<std::string> names;
-  for (std::size_t way = 0; way < ways; ++way) {
-    names.push_back(fmt::format("way-{}.png", way + 1));
-    save_png(folder / names.back(), part_of(whole, hold_from_below(whole.width_px, int(way))));
-  }
-  return names;
+  std::vector<HoldPlace> places;
+  places.reserve(ways);
+  for (std::size_t way = 0; way < ways; ++way)
+    places.push_back(hold_from_below(whole.width_px, int(way)));
+  return cut(whole, places, folder);
 }
 
-// Rows of one picture, each as a file of its own.
 std::vector<std::string> cut_rows(const std::filesystem::path& picture,
                                   const std::filesystem::path& folder, std::size_t rows) {
   const Image whole = load_image(picture);
-  std::vector<std::string> names;
   const int height = whole.height_px / int(std::max<std::size_t>(1, rows));
-  for (std::size_t row = 0; row < rows; ++row) {
-    Image part(whole.width_px, height);
-    std::copy_n(whole.pixel(0, int(row) * height), part.rgba.size(), part.rgba.begin());
-    names.push_back(fmt::format("way-{}.png", row + 1));
-    save_png(folder / names.back(), part);
-  }
-  return names;
+  std::vector<HoldPlace> places;
+  places.reserve(rows);
+  for (std::size_t row = 0; row < rows; ++row)
+    places.push_back({0, int(row) * height, whole.width_px, height});
+  return cut(whole, places, folder);
 }
 
 Json orient_result(const TaskRequest& request, const RunContext& context) {
@@ -287,7 +293,7 @@ std::string Tasks::start(TaskRequest request) {
   for (const auto& task : tasks_)
     if (task->state == "running" && task->request.kind == request.kind)
       throw ApiError(409, "busy", "That is being done already; cancel it first.");
-  const std::string name = fmt::format("t{}", ++number_);
+  std::string name = fmt::format("t{}", ++number_);
   request.address += "/" + name;
   tasks_.push_back(std::make_unique<Task>(name, std::move(request)));
   Task& task = *tasks_.back();
