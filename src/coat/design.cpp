@@ -130,7 +130,7 @@ FirstDip dip_with_first_ink(const DesignTask& task, const RunContext& context) {
                    std::make_shared<const FilmMesh>(make_film_mesh(task.options.film)),
                    task.first ? task.first->dipped.air : air_of(task, context), unheard, context);
   rounds.next();
-  const FirstDip without{rounds.dipped(), {}};
+  FirstDip without{rounds.dipped(), {}};
   if (!ink_matters(task.options) || task.options.rounds_max == 1 ||
       rounds.next() == Outcome::kFailed)
     return without;
