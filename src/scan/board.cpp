@@ -30,7 +30,7 @@ GridPlace Board::square_at(const Vec2& u) const {
 Board black_board(double square_mm) { return {"black", square_mm, false, 2, {255, 0, 0, 255}}; }
 
 Board tint_board(double square_mm) {
-  // As good as the best of those in docs/calibration.md at every ratio: along a row, two of three
+  // One of the good ones in docs/calibration.md: along a row, two of three
   // gaps between dark squares have 1.6 % of ink and one has none, so that it takes more of the
   // stretch, the more the stiffer ink is. Where all gaps are alike, they share the stretch alike,
   // whatever the ratio.

@@ -25,6 +25,13 @@ class SphereTrial : public testing::Test {
   }
 
   TrialTask task() const { return {sphere_, targets_, film_, dip_, BathOptions{}}; }
+  // As a job dips it.
+  DippedObject dipped_to(double depth_mm) const {
+    Timings timings;
+    return dip_object(PosedObject(sphere_, {}),
+                      std::make_shared<const FilmMesh>(make_film_mesh(film_)),
+                      Trajectory::straight_down(depth_mm), dip_, timings, context_);
+  }
 
   std::shared_ptr<const Object> sphere_ = std::make_shared<const Object>(make_sample("sphere"));
   Targets targets_ = spread_targets(*sphere_, 4000);
@@ -76,10 +83,7 @@ TEST_F(SphereTrial, SaysTheSameOfADipThatWasMade) {
   given.depth_mm = 12;
   const auto trial = try_pose(given, {}, 0, context_);
   ASSERT_TRUE(trial);
-  Timings timings;
-  const DippedObject dipped =
-      dip_object(PosedObject(sphere_, {}), std::make_shared<const FilmMesh>(make_film_mesh(film_)),
-                 Trajectory::straight_down(12), dip_, timings, context_);
+  const DippedObject dipped = dipped_to(12);
   const Trial judged = judge_dip(given, {}, dipped);
   EXPECT_EQ(judged.worth, trial->worth);
   EXPECT_NEAR(judged.figures.score, trial->figures.score, 1e-9);
@@ -92,10 +96,7 @@ TEST_F(SphereTrial, CountsWhatIsTornAsTheJobDoes) {
   given.depth_mm = 16;
   const auto trial = try_pose(given, {}, 0, context_);
   ASSERT_TRUE(trial);
-  Timings timings;
-  const DippedObject dipped =
-      dip_object(PosedObject(sphere_, {}), std::make_shared<const FilmMesh>(make_film_mesh(film_)),
-                 Trajectory::straight_down(16), dip_, timings, context_);
+  const DippedObject dipped = dipped_to(16);
   ASSERT_GT(dipped.coverage.torn_share(), 0.05);
   EXPECT_NEAR(judge_dip(given, {}, dipped).figures.torn_share, dipped.coverage.torn_share(), 1e-9);
   EXPECT_NEAR(trial->figures.torn_share, dipped.coverage.torn_share(), 1e-9);
