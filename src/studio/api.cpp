@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -137,15 +138,17 @@ HttpAnswer page_answer(const std::string& type, const std::string& name,
 
 std::string read_text(HttpRequest& request, std::uintmax_t most) {
   std::string text;
-  const ApiError too_large(413, "too-large", "That is more than the studio takes.");
-  if (request.body_bytes.value_or(0) > most) throw too_large;
+  const auto too_large = [] {
+    return ApiError(413, "too-large", "That is more than the studio takes.");
+  };
+  if (request.body_bytes.value_or(0) > most) throw too_large();
   bool fits = true;
   const bool whole = request.read_body([&](const char* data, std::size_t size) {
     fits = text.size() + size <= most;
     if (fits) text.append(data, size);
     return fits;
   });
-  if (!fits) throw too_large;
+  if (!fits) throw too_large();
   if (!whole) throw ApiError(400, "bad-request", "The request did not come whole.");
   return text;
 }
@@ -198,7 +201,7 @@ std::string joined(const std::vector<std::string>& parts, std::size_t from) {
 std::filesystem::path file_in(const std::filesystem::path& folder, const std::string& name) {
   require_plain_name(name);
   std::error_code error;
-  const auto file = std::filesystem::canonical(folder / name, error);
+  auto file = std::filesystem::canonical(folder / name, error);
   const auto root = std::filesystem::canonical(folder, error);
   if (folder.empty() || error ||
       std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first != root.end())
@@ -207,7 +210,7 @@ std::filesystem::path file_in(const std::filesystem::path& folder, const std::st
 }
 
 std::filesystem::path known_profile(const std::filesystem::path& folder, const std::string& name) {
-  const std::filesystem::path file = profile_path(folder, name);
+  std::filesystem::path file = profile_path(folder, name);
   std::error_code ignored;
   if (folder.empty() || !std::filesystem::is_regular_file(file, ignored))
     throw ApiError(404, "not-found", "There is no such preset any more.");
@@ -483,7 +486,10 @@ HttpAnswer Api::read_job(const HttpRequest&, const Parts& parts, OpenJob& job) {
   if (what == "meshes" && parts.size() == 5)
     return bundle_answer(job, parts[4], job.mesh(parts[4]));
   if (what == "meshes" && parts.size() == 7 && parts[5] == "textures") {
-    const auto texture = job.texture(parts[4], std::size_t(std::atoi(parts[6].c_str())));
+    std::size_t k = 0;
+    const char* const end = parts[6].data() + parts[6].size();
+    const auto [rest, error] = std::from_chars(parts[6].data(), end, k);
+    const auto texture = error == std::errc() && rest == end ? job.texture(parts[4], k) : nullptr;
     if (!texture) throw not_found();
     const ShownPicture& picture = texture->picture();
     return bytes_answer({texture, &picture.bytes}, picture.type);
@@ -576,10 +582,12 @@ HttpAnswer Api::command(HttpRequest& request, const Parts& parts, OpenJob& job) 
 
 HttpAnswer Api::upload(HttpRequest& request, const std::string& name, OpenJob& job) {
   const OpenJob::Upload upload = job.begin_upload(name);
-  const ApiError too_large(413, "too-large",
-                           fmt::format("A file may have {} MB, and all files of a job {} MB.",
-                                       kMostFileBytes >> 20U, kMostJobBytes >> 20U));
-  if (request.body_bytes.value_or(0) > upload.most_bytes) throw too_large;
+  const auto too_large = [] {
+    return ApiError(413, "too-large",
+                    fmt::format("A file may have {} MB, and all files of a job {} MB.",
+                                kMostFileBytes >> 20U, kMostJobBytes >> 20U));
+  };
+  if (request.body_bytes.value_or(0) > upload.most_bytes) throw too_large();
   struct Unfinished {
     std::filesystem::path file;
     ~Unfinished() {
@@ -599,7 +607,7 @@ HttpAnswer Api::upload(HttpRequest& request, const std::string& name, OpenJob& j
       kept = fits && std::fwrite(data, 1, size, out.get()) == size;
       return kept;
     });
-    if (!fits) throw too_large;
+    if (!fits) throw too_large();
     kept = kept && std::fflush(out.get()) == 0;
     if (!kept) throw ApiError(500, "failed", "The file cannot be kept; free some space.");
     if (!whole) throw ApiError(400, "bad-request", "The file did not come whole.");

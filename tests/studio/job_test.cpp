@@ -532,9 +532,13 @@ TEST_F(JobTest, AModelAndAPictureBecomeAJob) {
 TEST_F(JobTest, ABadFileIsCalledByItsNameAlone) {
   const std::string job = client->post("/api/jobs").json()["job"];
   ASSERT_EQ(client->put(at(job, "/files/part.stl"), "no model").status, 201);
-  ASSERT_EQ(client->post(at(job, "/adopt"), R"({"files": ["part.stl"]})").status, 200);
+  const Reply adopted = client->post(at(job, "/adopt"), R"({"files": ["part.stl"]})");
+  ASSERT_EQ(adopted.status, 200) << adopted.body;
+  const long revision = adopted.json()["revision"];
   Events events(*client, at(job, "/events?client=c1"));
-  const auto problem = events.next("problem");
+  // The new job's own problem, that it has no model yet, may be told first.
+  const auto problem =
+      events.next("problem", [&](const json& e) { return e["revision"] == revision; });
   ASSERT_TRUE(problem);
   const std::string text = problem->data["text"];
   EXPECT_TRUE(text.starts_with("part.stl: ")) << text;
