@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_scope.h"
+#include "base/unicode.h"
 #include "image/files.h"
 #include "model_io/model_file.h"
 #include "model_io/model_folder.h"

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/unicode.h"
 #include "model_io/model_file.h"
 #include "model_io/mtl.h"
 #include "model_io/text.h"

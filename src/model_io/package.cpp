@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "base/error.h"
+#include "base/unicode.h"
 #include "model_io/text.h"
 
 namespace hydrodip {

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/small_file.h"
+#include "base/unicode.h"
 #include "model_io/load.h"
 #include "model_io/text.h"
 #include "scan/dark_squares.h"

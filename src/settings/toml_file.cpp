@@ -31,7 +31,7 @@ constexpr void check(bool holds) {
 #include "base/error.h"
 #include "base/file.h"
 #include "base/small_file.h"
-#include "model_io/text.h"
+#include "base/unicode.h"
 #include "settings/artwork_tables.h"
 #include "settings/settings.h"
 
