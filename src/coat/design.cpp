@@ -48,7 +48,7 @@ class Settling {
     result_.rounds = rounds.rounds();
     result_.settled = outcome == Outcome::kSettled;
     warn(outcome);
-    if (went_in_longer_steps() && outcome != Outcome::kFailed) {
+    if (rounds.went_in_longer_steps() && outcome != Outcome::kFailed) {
       if (!rounds.last()) warn(Outcome::kFailed);
       result_.rounds = rounds.rounds();
     }
@@ -58,10 +58,6 @@ class Settling {
 
  private:
   const DesignOptions& options() const { return task_.options; }
-
-  bool went_in_longer_steps() const {
-    return options().rounds_step_mm > options().dip.step_mm && result_.rounds.size() > 1;
-  }
 
   Outcome settle(InkRounds& rounds) {
     if (!ink_matters(options()) || options().rounds_max == 1) {
@@ -131,9 +127,7 @@ FirstDip dip_with_first_ink(const DesignTask& task, const RunContext& context) {
                    task.first ? task.first->dipped.air : air_of(task, context), unheard, context);
   rounds.next();
   FirstDip without{rounds.dipped(), {}};
-  if (!ink_matters(task.options) || task.options.rounds_max == 1 ||
-      rounds.next() == Outcome::kFailed)
-    return without;
+  if (!ink_matters(task.options) || task.options.rounds_max == 1 || !rounds.lay()) return without;
   return {rounds.dipped(), rounds.dipped_modulus()};
 }
 

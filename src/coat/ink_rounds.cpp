@@ -86,9 +86,13 @@ InkRounds::InkRounds(const DesignTask& task, const DesignOptions& options,
       dip_options_(options.dip),
       mixer_(kMixed) {}
 
-Outcome InkRounds::next() {
+bool InkRounds::lay() {
   if (number() > 0) stiffen();
-  if (!dip()) return Outcome::kFailed;
+  return dip();
+}
+
+Outcome InkRounds::next() {
+  if (!lay()) return Outcome::kFailed;
   ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
   judge();
   return outcome();

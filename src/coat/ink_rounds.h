@@ -29,9 +29,14 @@ class InkRounds {
             std::shared_ptr<const TrappedAir> air, Timings& timings, const RunContext& context);
 
   Outcome next();
-  // One more, of a loop whose rounds went in longer steps: in the dip's own. False if it cannot be
-  // computed: then the last round stays.
+  // One more dip, of film with the ink that was printed last, on which nothing is printed: no round
+  // comes after it. False if it cannot be computed: then the last dip stays.
+  bool lay();
+  // One more round, in the dip's own steps. False if it cannot be computed: then the last round
+  // stays.
   bool last();
+  // Whether the last round's steps were longer than the dip's own.
+  bool went_in_longer_steps() const { return dip_options_.step_mm > options_.dip.step_mm; }
 
   const std::vector<InkRound>& rounds() const { return rounds_; }
   // As dipped last.
