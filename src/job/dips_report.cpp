@@ -8,15 +8,37 @@
 #include "job/ways.h"
 
 namespace hydrodip {
+namespace {
 
-Coverage coverage_together(const MadeDips& all) {
-  Coverage sum;
+// A place is covered by dips whose films lie there and bring so much of its ink: film on which
+// another dip's ink was meant to be is blank there.
+constexpr float kMuchOfTheInk = 0.5F;
+
+// Per dip: which part of the surface is covered by it and those before, but not without it.
+std::vector<double> gained_by(const MadeDips& all, const SharedSurface& shared) {
   const Targets& targets = all.nodes->targets();
+  std::vector<double> gained(all.dips.size(), 0);
+  for (std::size_t i = 0; i < targets.list.size(); ++i) {
+    const Target& node = targets.list[i];
+    const std::vector<float> shares = shared.shares_at(node.position, node.normal);
+    float brought = 0;
+    for (std::size_t k = 0; k < gained.size(); ++k) {
+      if (all.worth[k][i] > 0) brought += shares[k];
+      if (brought < kMuchOfTheInk) continue;
+      gained[k] += node.area / targets.area;
+      break;
+    }
+  }
+  return gained;
+}
+
+}  // namespace
+
+Coverage coverage_together(const MadeDips& all, const SharedSurface& shared) {
+  Coverage sum;
   const double scale = all.prepared.posed.scale();
-  sum.object_mm2 = sum.downward_mm2 = scale * scale * targets.area;
-  for (std::size_t i = 0; i < targets.list.size(); ++i)
-    if (std::any_of(all.worth.begin(), all.worth.end(), [&](const auto& w) { return w[i] > 0; }))
-      sum.covered_mm2 += scale * scale * targets.list[i].area;
+  sum.object_mm2 = sum.downward_mm2 = scale * scale * all.nodes->targets().area;
+  for (const double gained : gained_by(all, shared)) sum.covered_mm2 += gained * sum.object_mm2;
   sum.covered_downward_mm2 = sum.covered_mm2;
   double stretch = 0, area_ratio = 0;
   for (const MadeDip& dip : all.dips) {
@@ -37,19 +59,11 @@ Coverage coverage_together(const MadeDips& all) {
 
 std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& shared) {
   std::vector<ReportDip> list;
-  const Targets& targets = all.nodes->targets();
-  const std::vector<double> parts = shared.shares_of_surface();
-  std::vector<std::uint8_t> covered(targets.list.size(), 0);
+  const std::vector<double> parts = shared.shares_of_surface(), gained = gained_by(all, shared);
   double so_far = 0;
   for (std::size_t k = 0; k < all.dips.size(); ++k) {
     const MadeDip& dip = all.dips[k];
-    double gained = 0;
-    for (std::size_t i = 0; i < covered.size(); ++i) {
-      if (covered[i] || !(all.worth[k][i] > 0)) continue;
-      covered[i] = 1;
-      gained += targets.list[i].area / targets.area;
-    }
-    so_far += gained;
+    so_far += gained[k];
     const Vec3& rotate = dip.trial.pose.rotate_deg;
     list.push_back({side_name(dip.trial.pose.down),
                     {rotate.x(), rotate.y(), rotate.z()},
@@ -57,7 +71,7 @@ std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& sha
                     describe_hold(dip.trial.pose, way_up(all.config)),
                     dip.folder,
                     parts[k],
-                    gained,
+                    gained[k],
                     so_far,
                     dip.made.dipped.coverage.torn_share()});
   }
@@ -67,7 +81,7 @@ std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& sha
 Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishCheck& check,
                  const JobRecord& record) {
   Report report = make_report(record);
-  report.coverage = coverage_together(all);
+  report.coverage = coverage_together(all, shared);
   report.angles.reset();
   report.figures.clear();
   report.rounds.clear();

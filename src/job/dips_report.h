@@ -12,8 +12,9 @@
 
 namespace hydrodip {
 
-// Of all films together: the surface under any of them, all film that meets the object.
-Coverage coverage_together(const MadeDips& all);
+// Of all films together: the surface under those that bring its ink, all film that meets the
+// object.
+Coverage coverage_together(const MadeDips& all, const SharedSurface& shared);
 
 // Which part each does, and what is covered after it.
 std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& shared);

@@ -99,7 +99,7 @@ struct ReportDip {
   std::string hold;          // in words
   std::string folder;        // of its sheet: "dip-1"
   double part_share = 0;     // printed by this dip
-  double gained_share = 0;   // under its film and no earlier one's
+  double gained_share = 0;   // covered by it and none before
   double covered_share = 0;  // under film after this dip
   double torn_share = 0;     // of its film that meets the object
 };
