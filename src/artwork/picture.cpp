@@ -143,7 +143,7 @@ std::shared_ptr<const Image> PictureSource::image(const Vec2& size_mm, double pi
 }
 
 std::shared_ptr<const Image> PictureSource::averaged(const Vec2& size_px) {
-  const std::shared_ptr<const Image> image = std::exchange(image_, nullptr);
+  std::shared_ptr<const Image> image = std::exchange(image_, nullptr);
   if (image->width_px <= kFinest * size_px.x() && image->height_px <= kFinest * size_px.y())
     return image;
   return std::make_shared<const Image>(

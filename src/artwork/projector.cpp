@@ -277,7 +277,7 @@ Vec3 likely_axis(const TriangleMesh& mesh, const ModelFrame& frame) {
 Vec3 viewer_of(const PlacementTask& task, const ModelFrame& frame, const Vec3& centre,
                const Vec3& axis) {
   if (task.layer.at_mm) {
-    const Vec3 told = frame.point(*task.layer.at_mm) - centre;
+    Vec3 told = frame.point(*task.layer.at_mm) - centre;
     if ((told - told.dot(axis) * axis).norm() > 1e-6) return told;
   }
   for (const Vec3& side : {Vec3(-Vec3::UnitZ()), Vec3(-frame.turn.col(1)), Vec3(frame.turn.col(0))})
@@ -368,8 +368,9 @@ SurfaceHit nearest_to(const PlacementTask& task, const Vec3& at) {
 
 Vec3 seen_from(const PlacementTask& task, const SurfaceHit& hit) {
   const Surface& surface = task.posed.surface();
-  const Vec3 normal = surface.normal(hit), point = surface.position(hit);
+  Vec3 normal = surface.normal(hit);
   if (task.closed) return normal;
+  const Vec3 point = surface.position(hit);
   constexpr double kStart_mm = 1e-2, kSlant = 1.2;  // 67 degrees
   constexpr int kAround = 8;
   const double far_mm = 2 * task.posed.mesh().bounds().size().norm();

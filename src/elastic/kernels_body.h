@@ -10,6 +10,7 @@
 #define KERNELS_INDEPENDENT _Pragma("GCC ivdep")
 #endif
 
+// NOLINTBEGIN(misc-definitions-in-headers)
 namespace hydrodip::kernels {
 namespace {
 
@@ -599,3 +600,4 @@ const Table KERNELS_VARIANT = {
     overstretched, turned_over, changed,       carry,        energy,          gradient};
 
 }  // namespace hydrodip::kernels
+// NOLINTEND(misc-definitions-in-headers)

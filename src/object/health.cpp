@@ -299,6 +299,7 @@ class HoleFiller {
   void fill(std::vector<std::size_t> loop) {
     std::reverse(loop.begin(), loop.end());
     std::vector<Vec3> corners;
+    corners.reserve(loop.size());
     for (const std::size_t at : loop)
       corners.push_back(object_.positions[std::size_t(rims_[at].from)]);
     for (const auto& cut : triangulate(corners)) {

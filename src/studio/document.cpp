@@ -46,7 +46,7 @@ class Reader {
     if (key == "artwork" || key == "dips") return take_list(key, value);
     if (!value.is_object()) refuse(key, fmt::format("{} is no group of a job's values.", key));
     for (const auto& [inner, own] : value.items()) {
-      const std::string name = key + "." + inner;
+      const std::string name = fmt::format("{}.{}", key, inner);
       if (is_foreign(name)) refuse(name, name + " belongs to the machine, not to a job.");
       if (!own.is_null()) apply(name, own);
     }
@@ -232,7 +232,7 @@ std::string name_of_job(const Json& document) {
   const auto text = [](const Json& value) {
     return value.is_string() ? value.get<std::string>() : std::string();
   };
-  const std::string given = text(document.value("name", Json()));
+  std::string given = text(document.value("name", Json()));
   if (!given.empty()) return given;
   const Json object = document.value("object", Json::object());
   const std::string model = object.is_object() ? text(object.value("file", Json())) : "";

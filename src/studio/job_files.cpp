@@ -88,7 +88,7 @@ void require_plain_name(const std::string& name) {
 std::filesystem::path JobFiles::find(const std::string& name) const {
   require_plain_name(name);
   std::error_code ignored;
-  const auto uploaded = uploads_ / name;
+  auto uploaded = uploads_ / name;
   if (is_inside(uploaded, uploads_) && std::filesystem::is_regular_file(uploaded, ignored))
     return uploaded;
   if (const auto known = granted_.find(name); known != granted_.end()) return known->second;
@@ -122,7 +122,7 @@ std::string JobFiles::grant(const std::filesystem::path& file) {
     if (known == whole) return name;
   std::string wanted = whole.filename().string();
   if (!is_plain_name(wanted)) wanted = "file" + whole.extension().string();
-  const std::string name = name_for_upload(wanted);
+  std::string name = name_for_upload(wanted);
   granted_[name] = whole;
   return name;
 }

@@ -49,7 +49,7 @@ std::filesystem::path studio_folder() {
   std::filesystem::path base =
       data && *data == '/' ? std::filesystem::path(data) : home_folder() / ".local/share";
   if (!base.is_absolute()) base = std::filesystem::temp_directory_path();
-  const std::filesystem::path folder = base / "hydrodip/studio";
+  std::filesystem::path folder = base / "hydrodip/studio";
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
@@ -72,7 +72,7 @@ void write_whole(const std::filesystem::path& file, const std::string& text) {
 }
 
 std::string JobStore::create() const {
-  const std::string job = random_hex(8);
+  std::string job = random_hex(8);
   std::error_code error;
   std::filesystem::create_directories(home(job) / "files", error);
   if (error)
@@ -115,6 +115,7 @@ std::vector<std::string> JobStore::jobs() const {
   }
   std::sort(found.rbegin(), found.rend());
   std::vector<std::string> names;
+  names.reserve(found.size());
   for (auto& [changed, name] : found) names.push_back(std::move(name));
   return names;
 }
