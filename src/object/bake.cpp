@@ -14,9 +14,17 @@ namespace {
 // Of a triangle's square: its corners are the centres of texels, so that bilinear sampling inside
 // the triangle never leaves it.
 constexpr int kLeastSide_px = 2;
+// Around the triangle its colours go on for such a part of the square: smaller copies of a texture
+// (mipmaps) and JPEG mix texels, and its neighbours there are not its neighbours on the surface. As
+// drawn eight pixels wide or more it stays free of them.
+constexpr int kMarginOfSide = 16, kLeastWithMargin_px = 8;
 
 struct Square {
   int x = 0, y = 0, side = kLeastSide_px;
+
+  int margin() const { return side < kLeastWithMargin_px ? 0 : std::max(1, side / kMarginOfSide); }
+  // From one of the triangle's corners to the next.
+  int leg() const { return side - 1 - 2 * margin(); }
 };
 
 double area_of(const TriangleMesh& mesh, const Triangle& t) {
@@ -67,9 +75,10 @@ std::vector<Square> laid_out(const std::vector<int>& sides) {
   return squares;
 }
 
-// Of the texels beyond the triangle's long side: the nearest point of it.
+// Of the texels beyond the triangle's sides: about the nearest point of it.
 SurfacePoint point_at(std::size_t triangle, const Square& square, int x, int y) {
-  double u = double(x) / (square.side - 1), v = double(y) / (square.side - 1);
+  double u = double(std::max(0, x - square.margin())) / square.leg();
+  double v = double(std::max(0, y - square.margin())) / square.leg();
   if (const double beyond = u + v - 1; beyond > 0) {
     u = std::clamp(u - beyond / 2, 0.0, 1.0);
     v = 1 - u;
@@ -95,8 +104,8 @@ CornerUv corners_of(const Square& square, int side_px) {
     return Eigen::Vector2f(float((square.x + x + 0.5) / side_px),
                            float(1 - (square.y + y + 0.5) / side_px));
   };
-  const int last = square.side - 1;
-  return {at(0, 0), at(last, 0), at(0, last)};
+  const int first = square.margin(), last = first + square.leg();
+  return {at(first, first), at(last, first), at(first, last)};
 }
 
 // What squares of the least size would hold.

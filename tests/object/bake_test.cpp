@@ -5,6 +5,8 @@
 #include <cmath>
 #include <memory>
 
+#include "image/resize.h"
+
 namespace hydrodip {
 namespace {
 
@@ -52,6 +54,34 @@ TEST(Bake, ShowsThePaintEverywhere) {
       EXPECT_NEAR(shown.r, wanted.r, 0.01) << t;
       EXPECT_NEAR(shown.g, wanted.g, 0.01) << t;
       EXPECT_NEAR(shown.b, wanted.b, 0.005) << t;
+    }
+}
+
+// A colour for each triangle.
+class MosaicPaint : public Paint {
+ public:
+  MosaicPaint() : Paint({1, 1, 1, 1}) {}
+  LinearColor color_at(const SurfacePoint& point) const override {
+    return point.triangle % 2 == 0 ? LinearColor{1, 0, 0, 1} : LinearColor{0, 1, 1, 1};
+  }
+  bool says_anything() const override { return true; }
+};
+
+// As viewers do that draw a large texture small.
+TEST(Bake, ASmallerCopyOfTheTextureKeepsTrianglesApart) {
+  const TriangleMesh mesh = square(5);
+  const MosaicPaint paint;
+  Object object = painted_object(mesh, paint, 1024);
+  const Image& whole = *object.textures.at(0);
+  object.textures[0] =
+      std::make_shared<const Image>(resize(whole, whole.width_px / 4, whole.height_px / 4));
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const auto& [u, v] : {std::pair(0.0, 0.0), {1.0, 0.0}, {0.0, 1.0}, {0.5, 0.5}}) {
+      const SurfacePoint point{int(t), u, v};
+      const LinearColor wanted = paint.color_at(point);
+      const LinearColor shown = color_at(object, point, {0, 0, 0, 1});
+      EXPECT_NEAR(shown.r, wanted.r, 0.01) << t;
+      EXPECT_NEAR(shown.g, wanted.g, 0.01) << t;
     }
 }
 
