@@ -79,6 +79,14 @@ std::vector<std::size_t> all_indices(std::size_t count) {
   return list;
 }
 
+std::vector<SimulationRequest> requests_at(const FitPoint& point,
+                                           const std::vector<std::size_t>& subjects) {
+  std::vector<SimulationRequest> requests;
+  requests.reserve(subjects.size());
+  for (const std::size_t s : subjects) requests.push_back({s, from_fit(point)});
+  return requests;
+}
+
 // Of what is known.
 double root_mean_square(const Eigen::VectorXd& values) {
   double sum = 0, count = 0;
@@ -264,9 +272,8 @@ Answer Search::answer(const std::string& name, const std::vector<std::size_t>& s
 std::vector<InkMisfit> Search::misfits_by_ink(const FilmFit& fit,
                                               const std::vector<std::size_t>& subjects,
                                               const RunContext& context) {
-  std::vector<SimulationRequest> requests;
-  for (const std::size_t s : subjects) requests.push_back({s, from_fit(fit.center)});
-  const std::vector<SimulationResult> dips = film_.get(requests, "refining", context);
+  const std::vector<SimulationResult> dips =
+      film_.get(requests_at(fit.center, subjects), "refining", context);
   std::map<std::uint8_t, std::vector<double>> by_ink;
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < subjects.size(); ++i) {
@@ -338,8 +345,7 @@ StiffnessTable Search::stiffness_of_inks(const FilmFit& fit,
 Eigen::VectorXd Search::change_at(const FitPoint& point, Simulations& film, Simulations& finer,
                                   const std::vector<std::size_t>& subjects,
                                   const RunContext& context) {
-  std::vector<SimulationRequest> requests;
-  for (const std::size_t s : subjects) requests.push_back({s, from_fit(point)});
+  const std::vector<SimulationRequest> requests = requests_at(point, subjects);
   const std::vector<SimulationResult> here = film.get(requests, "correcting", context);
   const std::vector<SimulationResult> there = finer.get(requests, "correcting", context);
   std::vector<double> change;

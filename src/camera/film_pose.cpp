@@ -49,6 +49,7 @@ std::vector<Vec2> points_of(const std::vector<Pair>& pairs,
                             const Eigen::Matrix<double, View::kValues, 1>& view,
                             const FilmPlace& place) {
   std::vector<Vec2> points;
+  points.reserve(pairs.size());
   for (const Pair& pair : pairs)
     points.push_back(from_place(place, View::on_water(view, pair.seen.corner_px)));
   return points;
@@ -77,6 +78,7 @@ std::vector<Pair> belonging_together(const std::vector<Pair>& pairs,
       if (fitting.size() > best.size()) best = fitting;
     }
   std::vector<Pair> result;
+  result.reserve(best.size());
   for (const std::size_t k : best) result.push_back(pairs[k]);
   return result;
 }

@@ -100,6 +100,7 @@ Eigen::VectorXd off_px(const Bundle& bundle, const Lens& lens, const std::vector
                        const std::vector<Pose>& strips) {
   const auto rotations = [](const std::vector<Pose>& poses) {
     std::vector<Mat3> result;
+    result.reserve(poses.size());
     for (const Pose& pose : poses) result.push_back(pose.rotation());
     return result;
   };

@@ -9,7 +9,8 @@ namespace hydrodip {
 // 255 times a share, to the nearest whole number; clamps.
 inline std::uint8_t to_byte(float share) {
   const float scaled = 255.0F * std::clamp(share, 0.0F, 1.0F);
-  return static_cast<std::uint8_t>(double(scaled) + 0.5);  // std::lround, without the call
+  // As std::lround, without the call: it is never negative.
+  return static_cast<std::uint8_t>(double(scaled) + 0.5);  // NOLINT(bugprone-incorrect-roundings)
 }
 
 }  // namespace hydrodip

@@ -57,6 +57,7 @@ Image draw_holds(const JobConfig& config, const PreparedObject& prepared,
                  const std::vector<Trial>& best, const RunContext& context) {
   const Paint& paint = *prepared.paint;
   std::vector<PosedObject> posed;
+  posed.reserve(best.size());
   for (const Trial& trial : best) posed.emplace_back(prepared.posed.shared_object(), trial.pose);
   std::vector<FilmMap> maps;
   for (std::size_t i = 0; i < best.size(); ++i)

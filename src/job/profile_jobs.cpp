@@ -28,7 +28,7 @@ std::string dump(const Json& json) {
 }
 
 fs::path known_profile(const fs::path& folder, const std::string& name) {
-  const fs::path file = profile_path(folder, name);
+  fs::path file = profile_path(folder, name);
   std::error_code ignored;
   if (fs::exists(file, ignored)) return file;
   const std::vector<std::string> names = profile_names(folder);
@@ -51,6 +51,7 @@ std::string summary(const std::vector<std::string>& names) {
       ++known->second;
   }
   std::vector<std::string> parts;
+  parts.reserve(tables.size());
   for (const auto& [table, count] : tables)
     parts.push_back(count == 1 ? table : fmt::format("{} ({} values)", table, count));
   return parts.empty() ? "sets nothing" : fmt::format("{}", fmt::join(parts, ", "));

@@ -71,7 +71,7 @@ fs::path find_profile(const std::string& name_or_file, const fs::path& folder) {
   const bool is_path = name_or_file.find('/') != std::string::npos ||
                        fs::path(name_or_file).extension() == kExtension;
   if (is_path || !is_plain(name_or_file)) return name_or_file;
-  const fs::path own = profile_path(folder, name_or_file);
+  fs::path own = profile_path(folder, name_or_file);
   if (fs::exists(own, ignored)) return own;
   if (fs::is_regular_file(name_or_file, ignored)) return name_or_file;
   const std::vector<std::string> names = profile_names(folder);

@@ -37,6 +37,7 @@ std::vector<std::int32_t> torn_on_object(const DippedFilm& film) {
 std::vector<Triangle> corners_of(const std::vector<std::int32_t>& triangles,
                                  const DippedFilm& film) {
   std::vector<Triangle> corners;
+  corners.reserve(triangles.size());
   for (const std::int32_t t : triangles) corners.push_back(film.mesh().triangles[std::size_t(t)]);
   return corners;
 }
