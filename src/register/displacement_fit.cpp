@@ -36,6 +36,7 @@ std::vector<Place> averaged(const std::vector<CorrectionSample>& samples, double
     ++cell.count;
   }
   std::vector<Place> places;
+  places.reserve(cells.size());
   for (auto& [key, cell] : cells)
     places.push_back({cell.at / cell.count, cell.move / cell.count, cell.count});
   return places;

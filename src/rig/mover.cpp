@@ -75,7 +75,7 @@ StageState Mover::state() { return stage_.state(); }
 
 // A stage that has forgotten where it is counts from somewhere else.
 StageState Mover::look() {
-  const StageState state = stage_.state();
+  StageState state = stage_.state();
   if (state.position_known) last_position_mm_ = state.position_mm;
   return state;
 }

@@ -146,7 +146,7 @@ JobResult rig_find(const StageOptions& stage, Bench& bench, const RunContext& co
     } catch (const StageError&) {
       found = "no answer as a stage of this kind (stage.driver, stage.baud, stage.address)";
     }
-    text += port + "  " + found + "\n";
+    text += fmt::format("{}  {}\n", port, found);
   }
   if (list.empty()) text = "no serial port (/dev/ttyUSB*, /dev/ttyACM*) on this computer\n";
   return words(text);

@@ -47,6 +47,44 @@ TEST(PrepareObject, TakesAModelInMemoryAsItsFile) {
   EXPECT_EQ(given.health.volume_mm3, read.health.volume_mm3);
 }
 
+// A cube whose file says nothing of units.
+PosedObject cube(double side_mm) {
+  auto object = std::make_shared<Object>(make_sample("box"));
+  const double scale = side_mm / object->bounds().size().maxCoeff();
+  for (Vec3& p : object->positions) p *= scale;
+  return {object, {}};
+}
+
+TEST(Size, IsAskedForWhereItIsLikelyMeantOtherwise) {
+  for (const double asked_mm : {4.9, 1001.0})
+    EXPECT_THROW(require_size(cube(asked_mm), {}, "part.stl"), InputError) << asked_mm;
+  for (const double taken_mm : {5.1, 999.0})
+    EXPECT_NO_THROW(require_size(cube(taken_mm), {}, "part.stl")) << taken_mm;
+  ObjectOptions said;
+  said.load.units = "mm";
+  EXPECT_NO_THROW(require_size(cube(1.7), said, "part.stl"));
+  said = {};
+  said.pose.size_mm = 1.7;
+  EXPECT_NO_THROW(require_size(cube(1.7), said, "part.stl"));
+}
+
+TEST(Memory, IsEnoughAtTheResolutionThatIsProposed) {
+  DesignOptions options;
+  options.film.width_mm = options.film.height_mm = 100000;
+  options.dpi = 2400;
+  try {
+    require_memory(options);
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    options.dpi = std::stod(text.substr(text.find("--dpi to ") + 9));
+    EXPECT_GE(options.dpi, 1) << text;
+  }
+  EXPECT_NO_THROW(require_memory(options));
+  options.dpi += 1;
+  EXPECT_THROW(require_memory(options), InputError);
+}
+
 TEST(Appearance, IsAskedForWithTheWayToMend) {
   Object object;
   object.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
