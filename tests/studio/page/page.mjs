@@ -709,6 +709,8 @@ test('a closed tab: the job is among the recent ones, as it was', async () => {
   await dome.close();
   dome = await session.page({ context, address: program.address });
   await dome.waitForSelector('.recent button');
+  const seen = dome.locator('.recent li', { hasText: 'dome with a logo' }).first().locator('img');
+  await until('its picture is there', () => seen.evaluate((img) => img.complete && img.naturalWidth === 320));
   await picture(dome, 'recent');
   await dome.locator('.recent b', { hasText: 'dome with a logo' }).first().click();
   await newResult(dome, '');
