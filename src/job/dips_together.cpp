@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/error.h"
 #include "base/run_scope.h"
 #include "ink/discoloration.h"
 #include "job/dips_pictures.h"
@@ -21,10 +20,7 @@ DipsTogether put_together(const JobConfig& config, const PreparedObject& prepare
                           const RunContext& context) {
   const RunScope scope(context);
   require_no_correction(config);
-  if (prepared.paint->depends_on_film())
-    throw InputError(
-        "Pattern film belongs to one dip: lay the pattern on the object, or take the other dips "
-        "away.");
+  require_no_pattern(*prepared.paint);
   const Targets targets = job_targets(config, prepared, context);
   const DipPlan plan = plan_dips(config, prepared, targets, false, context);
   MadeDips all = hang_up(config, prepared, plan, context);

@@ -139,6 +139,13 @@ void require_no_correction(const JobConfig& config) {
         "[[dip]] table of its dip");
 }
 
+void require_no_pattern(const Paint& paint) {
+  if (paint.depends_on_film())
+    throw InputError(
+        "artwork that is laid on the film (projection film) belongs to one dip: lay it on the "
+        "object by another projection, or make it in a single dip");
+}
+
 MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,
                  const RunContext& context) {
   MadeDips all{config, prepared, {}, make_nodes(prepared, config.plan.overlap_mm), {}};

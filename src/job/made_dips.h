@@ -40,6 +40,8 @@ struct MadeDips {
 
 // A correction is of one dip. Throws InputError where several would share one.
 void require_no_correction(const JobConfig& config);
+// Artwork that is laid on the film is of one dip as well. Throws InputError likewise.
+void require_no_pattern(const Paint& paint);
 
 // The planned dips, hung up. Throws InputError where one does not fit.
 MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,

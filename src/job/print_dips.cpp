@@ -95,10 +95,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   });
   require_size(prepared.posed, config.object, config.model);
   require_appearance(prepared, config.model);
-  if (prepared.paint->depends_on_film())
-    throw InputError(
-        "artwork that is laid on the film (projection film) belongs to one dip: give it another "
-        "projection, or plan a single dip");
+  require_no_pattern(*prepared.paint);
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
 
