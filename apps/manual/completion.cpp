@@ -86,6 +86,7 @@ std::vector<std::string> groups_of(const std::vector<CommandText>& commands) {
 
 std::vector<std::string> only_words(const std::vector<Word>& words) {
   std::vector<std::string> names;
+  names.reserve(words.size());
   for (const Word& word : words) names.push_back(word.word);
   return names;
 }
@@ -175,10 +176,12 @@ std::string zsh_command(const CommandText& command) {
     const std::string rest = "[" + zsh_text(option.help) + "]" + zsh_action(option.value);
     const bool valued = option.value.kind != ValueKind::kNone;
     const bool again = option.value.kind == ValueKind::kParameter;
-    const std::string star = again ? "*" : "";
-    text += " \\\n        " + quoted(star + option.name + (valued ? "=" : "") + rest);
-    if (!option.short_name.empty())
-      text += " \\\n        " + quoted(star + option.short_name + (valued ? "+" : "") + rest);
+    const auto add = [&](const std::string& name, const char* join) {
+      text += " \\\n        ";
+      text += quoted(fmt::format("{}{}{}{}", again ? "*" : "", name, valued ? join : "", rest));
+    };
+    add(option.name, "=");
+    if (!option.short_name.empty()) add(option.short_name, "+");
   }
   for (std::size_t i = 0; i < command.arguments.size(); ++i) {
     const ArgumentText& argument = command.arguments[i];

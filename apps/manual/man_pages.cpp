@@ -119,6 +119,7 @@ std::string general_page(const std::vector<CommandText>& commands, const std::st
   for (const Remark& variable : environment_variables())
     text += item(bold(variable.what), variable.means + ".");
   std::vector<std::string> pages;
+  pages.reserve(commands.size() + 1);
   for (const CommandText& command : commands) pages.push_back(command.page() + "(1)");
   pages.push_back("hydrodip-parameters(5)");
   return text + see_also(pages);

@@ -172,7 +172,7 @@ py::tuple run_command(const std::string& name, const ConfigHandle& handle,
 }  // namespace
 
 void bind_jobs(py::module_& m) {
-  py::class_<ConfigHandle>(m, "Config");
+  py::class_<ConfigHandle>(m, "Config");  // NOLINT(bugprone-unused-raii): the module keeps it
   m.def("configure", &configure);
   m.def("parameters", &parameter_list);
   m.def("simulate", &simulate);
