@@ -35,6 +35,7 @@ Cells::Cells(const TriangleMesh& mesh, const Box3& part, std::size_t most_cells)
   stride_ = {1, std::size_t(n_[0]), std::size_t(n_[0]) * std::size_t(n_[1])};
   for (auto& axis : blocked_) axis.assign(count(), 0);
   std::vector<std::function<void()>> axes;
+  axes.reserve(3);
   for (int axis = 0; axis < 3; ++axis)
     axes.emplace_back([this, &mesh, axis] { block(mesh, axis); });
   parallel_do(axes);
@@ -81,10 +82,10 @@ void Cells::block(const TriangleMesh& mesh, int axis) {
 }
 
 Vec3 Cells::center(std::size_t cell) const {
-  const auto x = double(cell % stride_[1]);
-  const auto y = double(cell % stride_[2] / stride_[1]);
-  const auto z = double(cell / stride_[2]);
-  return first_ + pitch_ * Vec3(x, y, z);
+  const std::size_t x = cell % stride_[1];
+  const std::size_t y = cell % stride_[2] / stride_[1];
+  const std::size_t z = cell / stride_[2];
+  return first_ + pitch_ * Vec3(double(x), double(y), double(z));
 }
 
 std::size_t Cells::cell_of(const Vec3& point) const {

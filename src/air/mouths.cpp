@@ -91,6 +91,7 @@ std::optional<double> closing(const TriangleMesh& object, const Travel& travel,
     const Plane plane = water_at(travel.at(travelled_mm));
     const std::vector<Loop> loops = section(object, plane, max_gap_mm);
     std::vector<std::size_t> around;
+    around.reserve(points.size());
     for (const Vec3& p : points) around.push_back(enclosing(loops, plane.flat(p)));
     return around;
   };
@@ -136,6 +137,7 @@ std::size_t add_lids(const TriangleMesh& object, const Plane& plane,
       if (hole >= 0 && closed.count(hole) == 0) open.insert(hole);
     }
     std::vector<Loop> holes;
+    holes.reserve(open.size());
     for (const int hole : open) holes.push_back(loops[std::size_t(hole)]);
     add_polygon(joined(loops[std::size_t(outer)], std::move(holes)), plane, lids);
   }
