@@ -80,6 +80,7 @@ void check_field(const std::string& name, const std::string& value) {
     return;
   }
   std::vector<std::string> names;
+  names.reserve(std::size(kTexts) + std::size(kNumbers));
   for (const TextField& field : kTexts) names.emplace_back(field.name);
   if (std::ranges::find(names, name) != names.end()) return;
   for (const NumberField& field : kNumbers) names.emplace_back(field.name);

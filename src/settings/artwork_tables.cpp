@@ -15,7 +15,6 @@
 namespace hydrodip {
 namespace {
 
-constexpr std::size_t kMostLayers = 64;
 constexpr double kLongest_mm = 1e5;
 
 using Numbers = std::vector<double>;

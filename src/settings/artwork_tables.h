@@ -9,6 +9,8 @@
 
 namespace hydrodip {
 
+inline constexpr std::size_t kMostLayers = 64;
+
 // Applies a setting whose name begins with "artwork[NUMBER]." (a layer that is made if it is the
 // next one) or "art." (the topmost layer). False: it is none of these. Throws InputError naming
 // setting, value, what it has to be, and origin.

@@ -397,7 +397,9 @@ HttpAnswer Api::hello() const {
                       {"limits",
                        {{"file_bytes", kMostFileBytes},
                         {"job_bytes", kMostJobBytes},
-                        {"document_bytes", std::uintmax_t(1) << 20U}}},
+                        {"document_bytes", std::uintmax_t(1) << 20U},
+                        {"layers", kMostLayers},
+                        {"dips", kMostDips}}},
                       {"model_types", model_endings()},
                       {"picture_types", picture_endings()}});
 }

@@ -83,7 +83,7 @@ class SweepFile {
   std::string choice(const char* key, const std::vector<std::string>& choices) const {
     const Json& sweep = table("sweep");
     if (!sweep.contains(key)) return choices.front();
-    const std::string value = sweep[key].is_string() ? sweep[key].get<std::string>() : "";
+    std::string value = sweep[key].is_string() ? sweep[key].get<std::string>() : "";
     if (std::ranges::find(choices, value) != choices.end()) return value;
     std::string list;
     for (const std::string& c : choices) list += (list.empty() ? "" : ", ") + c;
@@ -210,6 +210,7 @@ std::vector<Axis> read_axes(const SweepFile& file) {
   std::vector<std::string> order;
   flatten(file.table("vary"), "", values, order);
   std::vector<Axis> axes;
+  axes.reserve(order.size());
   for (const std::string& name : order) axes.push_back(read_axis(file, name, values[name]));
   return axes;
 }
@@ -325,7 +326,7 @@ std::vector<std::string> varied_names(const std::vector<SweepRun>& runs) {
   for (const std::string& name : names)
     for (const SweepRun& run : runs)
       if (std::ranges::none_of(run.values, [&](const auto& v) { return v.first == name; }))
-        seen[name].insert("\0default");
+        seen[name].insert("");
   std::erase_if(names, [&](const std::string& name) { return seen[name].size() < 2; });
   if (seen[kModel].size() > 1) names.insert(names.begin(), kModel);
   return names;

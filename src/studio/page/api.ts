@@ -37,7 +37,7 @@ export interface Hello {
   parameters: Parameter[];
   profiles: string[];
   recent: Recent[];
-  limits: { file_bytes: number; job_bytes: number; document_bytes: number };
+  limits: { file_bytes: number; job_bytes: number; document_bytes: number; layers: number; dips: number };
   model_types: string[];
   picture_types: string[];
 }

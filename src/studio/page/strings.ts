@@ -118,6 +118,7 @@ export const t = {
   },
 
   artwork: {
+    most: (n: number) => `A job has at most ${n} layers: take one away first.`,
     none: 'Drop a picture on the object, or add one here. Without any, the model’s own colours count.',
     picture: 'Picture',
     text: 'Text',
@@ -161,6 +162,7 @@ export const t = {
   dips: {
     one: 'One dip. What it leaves bare can get a second one, turned over.',
     several: 'Each dip has a sheet of its own.',
+    most: (n: number) => `A job has at most ${n} dips.`,
     add: 'Add a dip',
     dip: (n: number) => `Dip ${n}`,
     lock: 'Keep this dip as it is',

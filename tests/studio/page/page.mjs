@@ -598,6 +598,24 @@ test('a pattern of the film is slid on the sheet', async () => {
   await kept(dome);
 });
 
+test('no more layers and dips than a job may have', async () => {
+  const full = await session.page();
+  const dip = { down: '-z', rotate_deg: [0, 0, 0], depth_mm: 4 };
+  await openQuick(full, 'box', { artwork: Array(64).fill({ text: 'A', size_mm: 4 }), dips: Array(24).fill(dip) });
+  await full.keyboard.press('2');
+  for (const button of ['[data-name="add-text"]', '[name="add-picture"]', '[name="add-pattern"]']) {
+    await full.waitForSelector(button, { state: 'attached' });
+    assert.ok(await full.locator(button).isDisabled(), button);
+  }
+  await blur(full);
+  await full.keyboard.press('Delete');
+  await until('there is room again', () => full.locator('[data-name="add-text"]').isEnabled());
+  await full.keyboard.press('3');
+  await full.waitForSelector('[data-name="add-dip"]');
+  assert.ok(await full.locator('[data-name="add-dip"]').isDisabled());
+  await full.close();
+});
+
 test('a broken picture is a sentence, and nothing is lost', async () => {
   const first = await documentOf(dome);
   await dome.setInputFiles('[name="add-picture"]', join(work, 'broken.png'));

@@ -242,11 +242,23 @@ export function SegmentsField<T extends string>(props: SegmentsProps<T>) {
   );
 }
 
-export function Files({ label, icon, kind, accept, many, name, onFiles }: { label: string; icon?: IconName; kind?: 'main' | 'plain'; accept?: string; many?: boolean; name?: string; onFiles: (files: File[]) => void }) {
+interface FilesProps {
+  label: string;
+  icon?: IconName;
+  kind?: 'main' | 'plain';
+  accept?: string;
+  many?: boolean;
+  name?: string;
+  disabled?: boolean;
+  title?: string;
+  onFiles: (files: File[]) => void;
+}
+
+export function Files({ label, icon, kind, accept, many, name, disabled, title, onFiles }: FilesProps) {
   const id = useId();
-  const off = readOnly.value;
+  const off = disabled || readOnly.value;
   return (
-    <span class="files">
+    <span class="files" title={title}>
       <input
         id={id}
         class="hidden"

@@ -280,6 +280,8 @@ function ArtworkStep() {
   const open = job.value!;
   const layers = layersOf(open.document.value);
   const pictures = extensions(hello.value!.picture_types);
+  const most = hello.value!.limits.layers;
+  const full = layers.length >= most ? { disabled: true, title: t.artwork.most(most) } : {};
   const add = (next: Layer): void => {
     change((document) => withNewLayer(document, next), t.undo.layerAdd);
     layer.value = layers.length;
@@ -293,9 +295,9 @@ function ArtworkStep() {
     <>
       <Group>
         <div class="row wrap">
-          <Files name="add-picture" label={t.artwork.picture} icon="picture" accept={pictures} many onFiles={(files) => void addFiles(files)} />
-          <Button name="add-text" label={t.artwork.text} icon="text" changes onClick={() => add(textThatFits())} />
-          <Files name="add-pattern" label={t.artwork.pattern} icon="pattern" accept={pictures} onFiles={(files) => void addPattern(files)} />
+          <Files name="add-picture" label={t.artwork.picture} icon="picture" accept={pictures} many {...full} onFiles={(files) => void addFiles(files)} />
+          <Button name="add-text" label={t.artwork.text} icon="text" changes {...full} onClick={() => add(textThatFits())} />
+          <Files name="add-pattern" label={t.artwork.pattern} icon="pattern" accept={pictures} {...full} onFiles={(files) => void addPattern(files)} />
         </div>
         {layers.length === 0 && <p class="soft">{t.artwork.none}</p>}
       </Group>
@@ -429,6 +431,8 @@ function DipsStep() {
   const dips = document.dips ?? [];
   const plan = taskOf('plan');
   const found = plan?.kind === 'plan' && plan.state === 'done' ? plan.result : null;
+  const most = hello.value!.limits.dips;
+  const full = dips.length >= most ? { disabled: true, title: t.dips.most(most) } : {};
   return (
     <>
       <Group>
@@ -439,7 +443,7 @@ function DipsStep() {
           </ol>
         )}
         <div class="row wrap">
-          <Button name="add-dip" label={t.dips.add} icon="plus" changes onClick={() => {
+          <Button name="add-dip" label={t.dips.add} icon="plus" changes {...full} onClick={() => {
             change(withAnotherDip, t.undo.dipAdd);
             open.show(dipCount(open.document.value) - 1);
           }} />
