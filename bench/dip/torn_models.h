@@ -1,6 +1,8 @@
 // Models on which film tears: flaps, holes, thin parts, ears and fins.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <utility>
@@ -134,7 +136,10 @@ inline std::vector<Named> torn_models(const std::filesystem::path& folder) {
                                                         {"suzanne", "shapes/suzanne.obj"},
                                                         {"teapot", "shapes/teapot.obj"},
                                                         {"beetle", "shapes/beetle.obj"}}) {
-    if (!std::filesystem::exists(folder / file)) continue;
+    if (!std::filesystem::exists(folder / file)) {
+      fmt::print(stderr, "{} is left out: there is no {}\n", name, (folder / file).string());
+      continue;
+    }
     RunContext context;
     const Object object = load_object(folder / file, {}, context).object;
     // Their y is up.
