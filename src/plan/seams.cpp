@@ -252,16 +252,6 @@ std::vector<std::int32_t> SharedSurface::seam_nodes() const {
   return found;
 }
 
-double SharedSurface::covered_share() const {
-  double covered = 0;
-  const Targets& targets = data_->nodes->targets();
-  for (std::size_t i = 0; i < targets.list.size(); ++i)
-    if (std::any_of(data_->worth.begin(), data_->worth.end(),
-                    [&](const auto& worth) { return worth[i] > 0; }))
-      covered += targets.list[i].area;
-  return targets.area > 0 ? covered / targets.area : 0;
-}
-
 std::vector<double> SharedSurface::shares_of_surface() const {
   std::vector<double> shares(dips(), 0);
   const Targets& targets = data_->nodes->targets();

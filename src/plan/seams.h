@@ -44,8 +44,7 @@ class SharedSurface {
   std::vector<std::int32_t> seam_nodes() const;
   // About how long all seams are.
   double seam_mm() const { return data_->seam_mm; }
-  // Of the surface: where some film lies, and where each dip does the most.
-  double covered_share() const;
+  // Per dip: of the surface, where it does the most.
   std::vector<double> shares_of_surface() const;
 
  private:

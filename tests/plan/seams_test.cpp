@@ -78,7 +78,8 @@ TEST_F(Plate, SharesAddUpAndComeFromFilmThatIsThere) {
         EXPECT_EQ(shares[1], 0);
       }
     }
-  EXPECT_NEAR(shared.covered_share(), 1, 1e-9);
+  const std::vector<double> parts = shared.shares_of_surface();
+  EXPECT_NEAR(std::accumulate(parts.begin(), parts.end(), 0.0), 1, 1e-9);
 }
 
 TEST_F(Plate, TheSeamGoesWhereNoInkIs) {
