@@ -607,6 +607,7 @@ test('no more layers and dips than a job may have', async () => {
     await full.waitForSelector(button, { state: 'attached' });
     assert.ok(await full.locator(button).isDisabled(), button);
   }
+  await full.locator('[data-layer]').first().click();
   await blur(full);
   await full.keyboard.press('Delete');
   await until('there is room again', () => full.locator('[data-name="add-text"]').isEnabled());
