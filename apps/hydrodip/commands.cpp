@@ -27,6 +27,11 @@ std::filesystem::path output_folder(const Request& request, const std::string& c
   return std::filesystem::path(request.model).stem().string() + "-" + command;
 }
 
+void require_one_dip(const Request& request, const JobConfig& config, const std::string& why) {
+  if (!config.dips.empty())
+    throw InputError(request.model + ": this job has [[dip]] tables: " + why);
+}
+
 // One for each of several dips, beside its sheet.
 void add_run_sheets(JobResult& result, const RunContext& context) {
   for (const std::string& dip : result.dips) {
@@ -147,6 +152,7 @@ void declare_simulate(CLI::App& app, Request& request) {
 JobResult run_simulate(const Request& request, const RunContext& context) {
   require_model(request.model, "simulate");
   JobConfig config = configure(request);
+  require_one_dip(request, config, "simulate makes one dip; 'hydrodip print' makes them all");
   config.output = output_folder(request, "simulate");
   return simulate_job(config, context);
 }
@@ -177,6 +183,8 @@ void declare_orient(CLI::App& app, Request& request) {
 JobResult run_orient(const Request& request, const RunContext& context) {
   require_model(request.model, "orient");
   JobConfig config = configure(request);
+  require_one_dip(request, config,
+                  "orient looks for ways to make one dip; 'hydrodip plan' looks for theirs");
   config.output = output_folder(request, "orient");
   return orient_job(config, context);
 }
@@ -198,7 +206,11 @@ JobResult run_plan(const Request& request, const RunContext& context) {
     throw InputError("say how many dips to plan, as in 'hydrodip plan " + request.model +
                      " --dips 4'");
   config.output = output_folder(request, "plan");
-  return plan_job(config, context);
+  // A look in haste makes no sheets in haste: --quality is for this run, not for the plan's prints.
+  Request without = request;
+  without.sources.quality.clear();
+  const JobConfig to_print = configure(without);
+  return plan_job(config, context, &to_print);
 }
 
 void declare_view(CLI::App& app, Request& request) {

@@ -57,6 +57,12 @@ class Planning {
         sought_(as_sought(task_)) {}
 
   DipPlan run() {
+    if (config_.plan.dips > 0 && config_.plan.dips < int(config_.dips.size()))
+      throw InputError(
+          fmt::format("plan.dips (--dips): the job has {} [[dip]] tables, so it cannot be {}: take "
+                      "tables away, "
+                      "or ask for as many or more",
+                      config_.dips.size(), config_.plan.dips));
     std::vector<Trial> chosen = given();
     const int wanted = std::max(config_.plan.dips, int(config_.dips.size()));
     if (int(chosen.size()) < wanted) chosen = search(std::move(chosen), wanted);

@@ -88,8 +88,8 @@ Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishC
   report.dips = report_dips(all, shared);
   report.verdict = several_dips_verdict(*report.coverage, all.dips.size());
   report.colors = check.colors();
-  report.seams = ReportSeams{shared.seam_mm(), all.config.plan.overlap_mm, check.seam_error(),
-                             FinishCheck::kOff_mm, check.seam_error_off()};
+  report.seams = ReportSeams{check.films_meet() ? shared.seam_mm() : 0, all.config.plan.overlap_mm,
+                             check.seam_error(), FinishCheck::kOff_mm, check.seam_error_off()};
   report.outputs = outputs_of(all);
   return report;
 }

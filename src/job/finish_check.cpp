@@ -97,6 +97,8 @@ FinishCheck::FinishCheck(const Finish& finish, const SharedSurface& shared,
     if (!std::binary_search(seam.begin(), seam.end(), std::int32_t(i)))
       others.push_back(std::int32_t(i));
   }
+  films_meet_ = std::any_of(seam.begin(), seam.end(),
+                            [&](std::int32_t i) { return error_[std::size_t(i)] >= 0; });
   seam_ = mean_of(seam, error_);
   other_ = mean_of(others, error_);
   context.progress(stage, 0.4);

@@ -18,6 +18,8 @@ class FinishCheck {
 
   FinishCheck(const Finish& finish, const SharedSurface& shared, const RunContext& context);
 
+  // Whether film lies anywhere where several dips have a part in the ink.
+  bool films_meet() const { return films_meet_; }
   // Means over the nodes in whose ink several dips have a part, and over all others.
   double seam_error() const { return seam_; }
   double other_error() const { return other_; }
@@ -32,6 +34,7 @@ class FinishCheck {
  private:
   const SurfaceNodes& nodes_;
   std::vector<float> error_;  // per node; negative: no film
+  bool films_meet_ = false;
   double seam_ = 0, other_ = 0, seam_off_ = 0;
   ReportColors colors_;
 };

@@ -82,8 +82,10 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
 JobResult orient_job(const JobConfig& config, const RunContext& context);
 
 // Several dips, chosen together: writes plan.toml, a job to print, plan.json and plan.png. Dips
-// that the configuration locks stay as they are.
-JobResult plan_job(const JobConfig& config, const RunContext& context);
+// that the configuration locks stay as they are. `to_print`: what plan.toml says besides, where
+// sheets are to be made otherwise than the plan was (null: as it was).
+JobResult plan_job(const JobConfig& config, const RunContext& context,
+                   const JobConfig* to_print = nullptr);
 
 // Opens a job's report.html (`where`: it, or its folder) in the default browser; where there is
 // none, the result says its path. Throws InputError if there is no report.

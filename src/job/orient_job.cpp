@@ -15,11 +15,13 @@ using json = nlohmann::ordered_json;
 
 constexpr LinearColor kTorn{0.55F, 0.02F, 0.02F, 1};
 
-std::string command_for(const JobConfig& config, const Trial& trial) {
-  return command_text(config, "print") + " " + trial_options(trial);
+// What to do with a way to hold it: print, or where there is nothing to print, look.
+std::string command_for(const JobConfig& config, const Paint& paint, const Trial& trial) {
+  return command_text(config, paint.says_anything() ? "print" : "simulate") + " " +
+         trial_options(trial);
 }
 
-json pose_json(const JobConfig& config, const Trial& trial) {
+json pose_json(const JobConfig& config, const Paint& paint, const Trial& trial) {
   const Vec3& rotate = trial.pose.rotate_deg;
   const TrialFigures& f = trial.figures;
   return {{"rotate_deg", {rotate.x(), rotate.y(), rotate.z()}},
@@ -31,16 +33,17 @@ json pose_json(const JobConfig& config, const Trial& trial) {
           {"air_mm2", f.air_mm2},
           {"score", f.score},
           {"text", describe_trial(trial, way_up(config))},
-          {"command", command_for(config, trial)}};
+          {"command", command_for(config, paint, trial)}};
 }
 
-std::string machine_readable(const JobConfig& config, const SearchResult& found) {
+std::string machine_readable(const JobConfig& config, const Paint& paint,
+                             const SearchResult& found) {
   json all = {{"schema_version", 1},
               {"command", "orient"},
               {"model", config.model.string()},
               {"trial_dips", found.trials.size()},
               {"poses", json::array()}};
-  for (const Trial& trial : found.best) all["poses"].push_back(pose_json(config, trial));
+  for (const Trial& trial : found.best) all["poses"].push_back(pose_json(config, paint, trial));
   return all.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
@@ -78,12 +81,12 @@ Image draw_holds(const JobConfig& config, const PreparedObject& prepared,
   return render_holds(pictures, config.preview_width_px, context);
 }
 
-std::string in_words(const JobConfig& config, const SearchResult& found) {
+std::string in_words(const JobConfig& config, const Paint& paint, const SearchResult& found) {
   std::string text = fmt::format("{} ways to hold it were tried; the best:\n", found.trials.size());
   for (std::size_t i = 0; i < found.best.size(); ++i)
     text +=
         fmt::format("{}. {}\n   {}\n   {}\n", i + 1, describe_trial(found.best[i], way_up(config)),
-                    figures_text(found.best[i]), command_for(config, found.best[i]));
+                    figures_text(found.best[i]), command_for(config, paint, found.best[i]));
   return text;
 }
 
@@ -95,7 +98,8 @@ JobResult orient_job(const JobConfig& given, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   SearchOutput output(config, "orient", {}, context);
   const SearchResult found = find_holds(config, output.prepared(), output.targets(), context);
-  return output.finish(machine_readable(config, found), in_words(config, found),
+  const Paint& paint = *output.prepared().paint;
+  return output.finish(machine_readable(config, paint, found), in_words(config, paint, found),
                        [&] { return draw_holds(config, output.prepared(), found.best, context); });
 }
 

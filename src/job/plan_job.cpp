@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/run_scope.h"
+#include "job/command_text.h"
 #include "job/dip_plan.h"
 #include "job/search_output.h"
 #include "render/hold_pictures.h"
@@ -94,19 +95,19 @@ Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPla
 
 }  // namespace
 
-JobResult plan_job(const JobConfig& config, const RunContext& context) {
+JobResult plan_job(const JobConfig& config, const RunContext& context, const JobConfig* to_print) {
   const RunScope scope(context.with_threads(config.threads));
   SearchOutput output(config, "plan", {"plan.toml"}, context);
   const DipPlan plan = plan_dips(config, output.prepared(), output.targets(), true, context);
-  JobConfig planned = config;
+  JobConfig planned = to_print != nullptr ? *to_print : config;
   planned.dips = entries_of(plan, config.dips);
   planned.plan.dips = 0;
   planned.plan.find_pose = planned.plan.find_depth = false;
   write_file(output.path("plan.toml"), job_file(planned, output.folder()));
   JobResult result = output.finish(machine_readable(config, plan), in_words(config, plan),
                                    [&] { return draw(config, output.prepared(), plan, context); });
-  result.text +=
-      fmt::format("print them all: hydrodip print {}\n", (output.folder() / "plan.toml").string());
+  result.text += fmt::format("print them all: hydrodip print {}\n",
+                             shell_word((output.folder() / "plan.toml").string()));
   return result;
 }
 

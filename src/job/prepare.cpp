@@ -73,7 +73,7 @@ void require_size(const PosedObject& posed, const ObjectOptions& options,
   const double largest_mm = posed.mesh().bounds().size().maxCoeff();
   if (largest_mm >= kTiny_mm && largest_mm <= kHuge_mm) return;
   throw InputError(fmt::format(
-      "{}: is it really {:.3g} mm large? Say its --units (mm, cm, m or in), or the --size that its "
+      "{}: is it really {:.4g} mm large? Say its --units (mm, cm, m or in), or the --size that its "
       "largest extent shall have in mm",
       model.string(), largest_mm));
 }

@@ -28,6 +28,8 @@ std::shared_ptr<const Paint> importance_paint(const std::filesystem::path& file,
   return model_paint(object);
 }
 
+bool lays_film(const Trial& trial) { return trial.depth_mm > 0 && trial.figures.covered_share > 0; }
+
 std::string percent(double share) {
   return share > 0 && share < 0.1 ? fmt::format("{:.1f} %", 100 * share)
                                   : fmt::format("{:.0f} %", 100 * share);
@@ -67,11 +69,21 @@ SearchResult find_holds(const JobConfig& config, const PreparedObject& prepared,
   TrialTask task = job_trials(config, prepared, targets);
   task.keep_film = true;
   std::string best_yet;
-  return search_holds(task, config.object.pose, {}, context, [&](const Trial& best) {
+  SearchResult found = search_holds(task, config.object.pose, {}, context, [&](const Trial& best) {
+    if (!lays_film(best)) return;
     const std::string words = describe_trial(best, way_up(config));
     if (words != best_yet) context.progress("best so far: " + words, 0);
     best_yet = words;
   });
+  std::erase_if(found.best, [](const Trial& trial) { return !lays_film(trial); });
+  if (found.best.empty())
+    throw InputError(fmt::format(
+        "{}: no way to hold it was found in which whole film comes to lie on it{}",
+        config.model.string(),
+        prepared.health.volume_mm3 < 0
+            ? ": its faces look inwards; turn their normals round in the program that made it"
+            : "; use a smaller object, or film that bears more (material.tear_stretch)"));
+  return found;
 }
 
 ModelSide way_up(const JobConfig& config) {
@@ -137,7 +149,7 @@ std::string better_way(const JobConfig& config, const PreparedObject& prepared,
   const Trial made = judge_dip(task, config.object.pose, dipped);
   try {
     const Trial best = search_holds(task, config.object.pose, quick_search(), context).best.front();
-    if (best.figures.score < made.figures.score + kWorthSaying) return "";
+    if (!lays_film(best) || best.figures.score < made.figures.score + kWorthSaying) return "";
     return fmt::format("{} ({})", describe_trial(best, way_up(config)), trial_options(best));
   } catch (const InputError&) {
     return "";  // it fits in no other way

@@ -125,7 +125,7 @@ std::vector<Finding> customer_points(const Report& report) {
     list.push_back({"pale", Concern::kCare, "Paler places", "",
                     "Where the film stretches most, colours come out a little paler.", ""});
   if (report.colors) list.push_back(colors_point(report));
-  if (report.seams)
+  if (report.seams && report.seams->length_mm > 0)
     list.push_back({"seams",
                     report.seams->error_mean > kPlainDifference ? Concern::kCare : Concern::kNone,
                     "Seams", "", "Where coats meet, a line may show from near by.", ""});

@@ -10,20 +10,22 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kNearlyAll = 0.9;        // of what faces down; film ends a cell short of borders
-constexpr double kWholePicture = 0.98;    // of what shall be printed
-constexpr double kMuchTorn = 0.1;         // of the film that meets the object
-constexpr double kMuchAir = 0.02;         // of the object's surface
-constexpr double kSomeEscapes = 0.05;     // of a pocket
-constexpr double kFewWrinkles = 0.01;     // of the film on the object
-constexpr double kNearLimit = 0.9;        // of the tear stretch
-constexpr double kPale = 1.3;             // area ratio from which paling shows
-constexpr double kMuchSteep = 0.1;        // of what faces down
-constexpr double kPlainDifference = 5;    // CIEDE2000: plain to see
-constexpr double kMuchOutOfGamut = 0.02;  // of the covered surface
-constexpr double kUsualMiss_mm = 1;       // how far off a dip usually lands
-constexpr double kFarOff_mm = 3;          // from there on a picture is not on the object
-constexpr double kLittleDoubt = 0.01;     // of the surface under whole film
+constexpr double kNearlyAll = 0.9;         // of what faces down; film ends a cell short of borders
+constexpr double kWholePicture = 0.98;     // of what shall be printed
+constexpr double kMuchTorn = 0.1;          // of the film that meets the object
+constexpr double kMuchAir = 0.02;          // of the object's surface
+constexpr double kSomeEscapes = 0.05;      // of a pocket
+constexpr double kFewWrinkles = 0.01;      // of the film on the object
+constexpr double kNearLimit = 0.9;         // of the tear stretch
+constexpr double kPale = 1.3;              // area ratio from which paling shows
+constexpr double kMuchSteep = 0.1;         // of what faces down
+constexpr double kPlainDifference = 5;     // CIEDE2000: plain to see
+constexpr double kMostlyTorn = 0.75;       // the same, of all of several dips
+constexpr double kHardlyAnything = 0.002;  // of the surface: a dip not worth its sheet
+constexpr double kMuchOutOfGamut = 0.02;   // of the covered surface
+constexpr double kUsualMiss_mm = 1;        // how far off a dip usually lands
+constexpr double kFarOff_mm = 3;           // from there on a picture is not on the object
+constexpr double kLittleDoubt = 0.01;      // of the surface under whole film
 
 std::string percent(double share) {
   const double value = 100 * share;
@@ -111,17 +113,33 @@ Finding tears(const Coverage& c, const std::optional<ReportWanted>& wanted) {
 
 bool is_of_several(const Report& report) { return !report.dips.empty() || report.dip_of > 1; }
 
-// No dip inks what it tears, and another one brings what belongs there: what stays bare is the
-// coverage's matter.
-Finding tears_of_several(const Coverage& c) {
+// No dip inks what it tears, and another one may bring what belongs there: what stays bare is the
+// coverage's matter, unless of all films together little is left.
+Finding tears_of_several(const Report& report) {
+  const Coverage& c = *report.coverage;
   if (!(c.torn_mm2 > 0)) return tears(c, std::nullopt);
+  const bool mostly = !report.dips.empty() && c.torn_share() > kMostlyTorn;
   return {"tears",
-          Concern::kCare,
+          mostly ? Concern::kStop : Concern::kCare,
           "Tears",
           percent(c.torn_share()),
-          "of the film that meets the object tears. Nothing is printed on it; another dip brings "
-          "what belongs there.",
-          "Take torn film off the water and the object before it dries."};
+          "of the film that meets the object tears. Nothing is printed on it; what no other dip "
+          "brings there stays bare.",
+          mostly ? "Turn steep sides down or dip less deep: 'hydrodip plan' looks for ways."
+                 : "Take torn film off the water and the object before it dries."};
+}
+
+// A sheet, a bath and an afternoon for nothing.
+void add_idle_dips(const std::vector<ReportDip>& dips, std::vector<Finding>& list) {
+  std::string numbers;
+  for (std::size_t k = 0; k < dips.size(); ++k)
+    if (dips[k].gained_share < kHardlyAnything)
+      numbers += fmt::format("{}{}", numbers.empty() ? "" : ", ", k + 1);
+  if (numbers.empty()) return;
+  list.push_back(
+      {"idle_dips", Concern::kStop, "Dips for nothing", numbers,
+       "add hardly anything to what the others bring: their sheets are all but blank.",
+       "Take them away, or hold the object another way: 'hydrodip plan' looks for ways."});
 }
 
 // Pressed together, or lifted out of the water on the way: only where there is any worth naming.
@@ -399,9 +417,10 @@ std::vector<Finding> findings(const Report& report) {
     list.push_back(several ? coverage_of_dips(c, report.dips.size()) : coverage(c, report.wanted));
     if (!report.better_way.empty())
       list.push_back({"better_way", Concern::kNone, "Better", "", report.better_way + ".", ""});
-    if (report.seams) list.push_back(seams(*report.seams));
+    add_idle_dips(report.dips, list);
+    if (report.seams && report.seams->length_mm > 0) list.push_back(seams(*report.seams));
     if (c.film_on_object_mm2 > 0) {
-      list.push_back(is_of_several(report) ? tears_of_several(c) : tears(c, report.wanted));
+      list.push_back(is_of_several(report) ? tears_of_several(report) : tears(c, report.wanted));
       add_doubtful(c, list);
       list.push_back(stretch(c, report.tear_stretch));
       add_slack_film(c, list);

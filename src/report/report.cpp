@@ -82,10 +82,12 @@ std::string short_verdict(const Report& report) {
 }
 
 std::string several_dips_verdict(const Coverage& coverage, std::size_t dips) {
-  return fmt::format("{} dips cover {} of the object; {}", dips, percent(coverage.covered_share()),
-                     coverage.torn_mm2 > 0 ? fmt::format("{} of the film that meets it tears.",
-                                                         percent(coverage.torn_share()))
-                                           : "nothing tears.");
+  return fmt::format(
+      "{} {} of the object; {}", dips == 1 ? "1 dip covers" : fmt::format("{} dips cover", dips),
+      percent(coverage.covered_share()),
+      coverage.torn_mm2 > 0
+          ? fmt::format("{} of the film that meets it tears.", percent(coverage.torn_share()))
+          : "nothing tears.");
 }
 
 std::string unknown_verdict(const ReportEquilibrium& equilibrium) {

@@ -106,7 +106,7 @@ struct ReportDip {
 
 // Where several dips meet.
 struct ReportSeams {
-  double length_mm = 0;
+  double length_mm = 0;  // 0: no two films meet
   double overlap_mm = 0;
   double error_mean = 0;      // CIEDE2000 there
   double off_mm = 0;          // if every later dip lands that far off:

@@ -123,11 +123,29 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
         std::make_shared<const FilmCorrection>(read_correction(config.correction).field);
 }
 
+namespace {
+
+// A table says for its dip what these say for the only one; of the two one would be passed over.
+void require_dips_alone_say(const JobConfig& config, const SettingSources& sources) {
+  if (config.dips.empty()) return;
+  for (const auto* settings : {&sources.options, &sources.sets})
+    for (const Setting& s : *settings)
+      if (s.name == "object.rotate_deg" || s.name == "object.down" || s.name == "dip.depth_mm" ||
+          s.name == "path")
+        throw InputError(fmt::format(
+            "{}: this job's [[dip]] tables say how it is held and how deep it goes; change it "
+            "there, or take the tables away",
+            s.origin == "--set" ? "--set " + s.name : s.origin));
+}
+
+}  // namespace
+
 JobConfig configured(const std::string& model, SettingSources sources) {
   JobConfig config;
   const bool is_job = std::filesystem::path(model).extension() == ".toml";
   if (is_job) sources.configs.insert(sources.configs.begin(), model);
   apply_sources(config, sources);
+  require_dips_alone_say(config, sources);
   if (!is_job) config.model = model;
   if (is_job && config.model.empty())
     throw InputError(fmt::format(

@@ -36,6 +36,13 @@ cmp auto/print.png out/print.png || fail 'auto is not the first of orient'
 "$hydrodip" plan colored.ply $small --dips 2 -o plan --json > plan.json || fail "plan: $?"
 grep -q '"gained_share"' plan.json || fail 'plan --json'
 [ "$(grep -c '^\[\[dip\]\]' plan/plan.toml)" -le 2 ] || fail 'plan.toml has too many dips'
+# A look in haste makes no sheets in haste, and what it ends with can be typed.
+# shellcheck disable=SC2086
+"$hydrodip" plan colored.ply $small --dips 1 --quality draft -o 'a plan' --quiet > said.txt || fail "draft plan: $?"
+! grep -q 'rounds_max\|pictures' 'a plan/plan.toml' || fail 'plan.toml prints drafts'
+command=$(sed -n 's/^print them all: hydrodip //p' said.txt)
+eval "\"$hydrodip\" $command --dpi 72 --set print.samples=1 --set ink.rounds_max=1 -o dips1 --quiet > /dev/null" ||
+  fail "its command: $command"
 "$hydrodip" print plan/plan.toml --dpi 72 --set print.samples=1 -o dips --quiet > dips.txt ||
   fail "print of a plan: $?"
 for file in dip-1/print.pdf dip-1/print.tif dip-1/report.json dip-1/run-sheet.pdf report.html report.json \
@@ -73,6 +80,14 @@ refused 'name one of them, as dips/dip-1' rig sheet dips
 printf '[object]\nfile = "colored.ply"\n[[dip]]\ncorrection = "dips/dip-1/correction.json"\n' > bad.toml
 refused 'of one pose' print bad.toml
 refused 'how many dips' plan colored.ply
+# What would be passed over is refused.
+printf '[object]\nfile = "colored.ply"\n[[dip]]\nrotate_deg = [0, 0, 0]\n[[dip]]\n' > two.toml
+refused '^error: --rotate: .*tables' print two.toml --rotate 10,0,0
+refused '^error: --depth: .*tables' plan two.toml --dips 2 --depth 3
+refused '^error: --set object.down: .*tables' print two.toml --set object.down=+y
+refused '2 .*tables' plan two.toml --dips 1
+refused "'hydrodip plan'" orient two.toml
+refused "'hydrodip print'" simulate two.toml
 printf '[object]\nfile = "colored.ply"\n[[dip]]\nrotate_deg = [0, 0]\n' > bad.toml
 refused 'bad.toml:4' print bad.toml
 printf '[object]\nfile = "colored.ply"\n[[dip]]\nrotat_deg = [0, 0, 0]\n' > bad.toml

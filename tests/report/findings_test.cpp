@@ -144,6 +144,34 @@ TEST(Findings, BesideTearsCoverageIsOfTheWholeObject) {
   EXPECT_EQ(short_verdict(report).find("100 %"), std::string::npos);
 }
 
+// A sheet that brings nothing, and film of which most is lost, are no dips to make; torn film alone
+// is none of their business, as another dip may bring what belongs there.
+TEST(Findings, OfSeveralDipsNoneIsMadeForNothing) {
+  Report report = good_report();
+  report.coverage->film_on_object_mm2 = 1000;
+  report.coverage->torn_mm2 = 1500;  // 60 % of what meets the object
+  report.dips.resize(2);
+  report.dips[0].gained_share = 0.3;
+  report.dips[1].gained_share = 0.1;
+  EXPECT_EQ(concern_of(findings(report)), Concern::kCare);
+  report.dips[1].gained_share = 0;
+  EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
+  EXPECT_EQ(find(findings(report), "idle_dips")->figure, "2");
+  report.dips[1].gained_share = 0.1;
+  report.coverage->torn_mm2 = 4000;  // 80 %
+  EXPECT_EQ(find(findings(report), "tears")->concern, Concern::kStop);
+}
+
+// Two films that do not meet have no seam whose colours could be off.
+TEST(Findings, WithoutASeamNothingIsSaidOfIt) {
+  Report report = good_report();
+  report.dips.resize(2);
+  report.seams = ReportSeams{};
+  EXPECT_EQ(find(findings(report), "seams"), nullptr);
+  report.seams->length_mm = 12;
+  EXPECT_NE(find(findings(report), "seams"), nullptr);
+}
+
 TEST(Findings, StretchBeyondTheLimitIsSaidToBeThat) {
   Report report = good_report();
   report.tear_stretch = 1.4;
