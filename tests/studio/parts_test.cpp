@@ -58,6 +58,7 @@ TEST(PlainWords, HaveNoOptionsInThem) {
   EXPECT_EQ(in_plain_words("shrink it with --size 71 or less, turn it with --rotate, or take a "
                            "larger --film"),
             "shrink it to 71 mm or less, turn it, or take a larger sheet of film");
+  EXPECT_EQ(in_plain_words("Take them away: 'hydrodip plan' looks for ways."), "Take them away.");
   EXPECT_EQ(in_plain_words("12 mm (x) and 3 % (CIEDE2000)"), "12 mm (x) and 3 % (CIEDE2000)");
 }
 
