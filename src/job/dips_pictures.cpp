@@ -18,6 +18,30 @@
 namespace hydrodip {
 namespace {
 
+constexpr LinearColor kBareSurface{0.35F, 0.35F, 0.35F, 1};
+
+// Okabe and Ito's, as people call them, and paler ones after them.
+struct DipColor {
+  std::array<int, 3> srgb;
+  const char* name;
+};
+constexpr std::array<DipColor, 7> kDipColors = {{{{0, 114, 178}, "blue"},
+                                                 {{230, 159, 0}, "orange"},
+                                                 {{0, 158, 115}, "green"},
+                                                 {{204, 121, 167}, "pink"},
+                                                 {{86, 180, 233}, "sky blue"},
+                                                 {{213, 94, 0}, "red"},
+                                                 {{240, 228, 66}, "yellow"}}};
+
+// "Dip 1 blue, 2 orange. "; more dips than colours have no names.
+std::string legend(std::size_t dips) {
+  if (dips > kDipColors.size()) return "";
+  std::string text = "Dip";
+  for (std::size_t k = 0; k < dips; ++k)
+    text += fmt::format("{} {} {}", k > 0 ? "," : "", k + 1, kDipColors[k].name);
+  return text + ". ";
+}
+
 LinearColor error_color(double difference) {
   const auto t = float(std::clamp(difference / 10, 0.0, 1.0));
   return {0.6F + 0.1F * t, 0.6F * (1 - t), 0.6F * (1 - t) * (1 - t), 1};
@@ -38,7 +62,7 @@ class LookPaint : public Paint {
 
 LinearColor part_at(const SurfacePoint& point, const MadeDips& all, const SharedSurface& shared,
                     const Finish& finish) {
-  if (!finish.has_film_at(point)) return {0.35F, 0.35F, 0.35F, 1};
+  if (!finish.has_film_at(point)) return kBareSurface;
   const TriangleMesh& model = all.prepared.posed.object();
   const std::vector<float> shares =
       shared.shares_at(position_at(model, point), face_normal(model, point.triangle));
@@ -78,11 +102,9 @@ class FinishPictures {
     pairs[1].shown.predicted = [&](const SurfacePoint& p, const Vec3&, const Vec3&) {
       return error_at(p);
     };
-    pairs[1].titles = {"which dip does what; grey: none", "colour error: grey 0, red 10 and more"};
-    pairs[1].caption = fmt::format(
-        "{:.0f} mm of seams, {:g} mm wide; colour error (CIEDE2000) over them {:.1f}, elsewhere "
-        "{:.1f}",
-        shared_.seam_mm(), all_.config.plan.overlap_mm, check_.seam_error(), check_.other_error());
+    pairs[1].titles = {"which dip does what; grey: none",
+                       "colour error: light 0, red 10; dark: no film"};
+    pairs[1].caption = legend(all_.dips.size()) + about_seams();
     const std::vector<Image> pages =
         render_previews(posed_.mesh(), posed_.surface(), *all_.dips.front().made.dipped.film, pairs,
                         options, context);
@@ -90,7 +112,15 @@ class FinishPictures {
   }
 
  private:
+  std::string about_seams() const {
+    if (!check_.films_meet())
+      return fmt::format("No two films meet; colour error {:.1f}", check_.other_error());
+    return fmt::format("{:.0f} mm of seams; colour error {:.1f} there, {:.1f} elsewhere",
+                       shared_.seam_mm(), check_.seam_error(), check_.other_error());
+  }
+
   LinearColor error_at(const SurfacePoint& point) const {
+    if (!finish_.has_film_at(point)) return kBareSurface;
     const TriangleMesh& model = all_.prepared.posed.object();
     return error_color(
         check_.error_near(position_at(model, point), face_normal(model, point.triangle)));
@@ -132,17 +162,9 @@ class FinishPictures {
 
 }  // namespace
 
-// Okabe and Ito's colours, and paler ones after them.
 LinearColor dip_color(std::size_t dip) {
-  constexpr std::array<std::array<int, 3>, 7> kColors = {{{0, 114, 178},
-                                                          {230, 159, 0},
-                                                          {0, 158, 115},
-                                                          {204, 121, 167},
-                                                          {86, 180, 233},
-                                                          {213, 94, 0},
-                                                          {240, 228, 66}}};
-  const auto& c = kColors[dip % kColors.size()];
-  const float pale = dip < kColors.size() ? 0.0F : 0.5F;
+  const auto& c = kDipColors[dip % kDipColors.size()].srgb;
+  const float pale = dip < kDipColors.size() ? 0.0F : 0.5F;
   const auto channel = [&](int v) {
     const float linear = srgb8_to_linear(std::uint8_t(v));
     return linear + pale * (1 - linear);
