@@ -98,8 +98,9 @@ async function printAndCompare() {
   await press('Control+p');
   await until('a print', async () => (await lastPrint())?.task !== before);
   await until('its end', async () => (await lastPrint()).state !== 'running', 900);
-  const { task, state } = await lastPrint();
+  const { task, state, error } = await lastPrint();
   const printed = state === 'done';
+  if (!printed) console.log(`a print ended as ${state}: ${JSON.stringify(error ?? null)}`);
   if (printed) await page.waitForSelector(`.panel.print [data-file][href*="/tasks/${task}/"]`, { timeout: 30000 });
   if (printed) assert.deepEqual((await differencesByHand(page, hydrodip, work)).different, []);
   await press('Escape');
