@@ -20,7 +20,8 @@ constexpr const char* kParts[] = {"coverage", "stretch", "wrinkled_mm2", "lifted
 void flatten(const Json& value, const std::string& name, std::map<std::string, double>& figures,
              std::vector<std::string>& order) {
   if (value.is_object()) {
-    for (const auto& [key, inner] : value.items()) flatten(inner, fmt::format("{}.{}", name, key), figures, order);
+    for (const auto& [key, inner] : value.items())
+      flatten(inner, fmt::format("{}.{}", name, key), figures, order);
   } else if (value.is_number() || value.is_boolean()) {
     figures[name] = value.is_boolean() ? double(value.get<bool>()) : value.get<double>();
     order.push_back(name);
