@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 #include "base/output_folder.h"
+#include "job/ways.h"
+#include "plan/hold.h"
 #include "rig/pictures.h"
 #include "rig/rig.h"
 #include "sheet/page_writer.h"
@@ -116,13 +118,8 @@ class RunSheet {
     const Vec3& size = job_.object_size_mm;
     const PoseOptions& pose = job_.config.object.pose;
     std::string words = fmt::format(
-        "{:.1f} mm wide (x), {:.1f} mm deep (y), {:.1f} mm high (z); the model's {} side enters "
-        "the "
-        "water first",
-        size.x(), size.y(), size.z(), side_name(pose.down));
-    if (pose.rotate_deg.norm() > 0)
-      words += fmt::format(", turned by {:g}, {:g}, {:g} degrees about x, y, z",
-                           pose.rotate_deg.x(), pose.rotate_deg.y(), pose.rotate_deg.z());
+        "The object is {} ({}): {:.1f} mm wide (x), {:.1f} mm deep (y), {:.1f} mm high (z)",
+        describe_hold(pose, way_up(job_.config)), hold_options(pose), size.x(), size.y(), size.z());
     page_.paragraph(page_.left(), page_.width(),
                     words + (moves_aside(job_)
                                  ? ". Shown as it first meets the water; from there along the way "
