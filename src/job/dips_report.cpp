@@ -32,13 +32,13 @@ std::vector<double> gained_by(const MadeDips& all, const SharedSurface& shared) 
   return gained;
 }
 
-}  // namespace
-
-Coverage coverage_together(const MadeDips& all, const SharedSurface& shared) {
+// Of all films together: the surface under those that bring its ink, all film that meets the
+// object.
+Coverage coverage_together(const MadeDips& all, const std::vector<double>& gained) {
   Coverage sum;
   const double scale = all.prepared.posed.scale();
   sum.object_mm2 = sum.downward_mm2 = scale * scale * all.nodes->targets().area;
-  for (const double gained : gained_by(all, shared)) sum.covered_mm2 += gained * sum.object_mm2;
+  for (const double share : gained) sum.covered_mm2 += share * sum.object_mm2;
   sum.covered_downward_mm2 = sum.covered_mm2;
   double stretch = 0, area_ratio = 0;
   for (const MadeDip& dip : all.dips) {
@@ -57,9 +57,11 @@ Coverage coverage_together(const MadeDips& all, const SharedSurface& shared) {
   return sum;
 }
 
-std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& shared) {
+// Which part each does, and what is covered after it.
+std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& shared,
+                                   const std::vector<double>& gained) {
   std::vector<ReportDip> list;
-  const std::vector<double> parts = shared.shares_of_surface(), gained = gained_by(all, shared);
+  const std::vector<double> parts = shared.shares_of_surface();
   double so_far = 0;
   for (std::size_t k = 0; k < all.dips.size(); ++k) {
     const MadeDip& dip = all.dips[k];
@@ -78,14 +80,17 @@ std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& sha
   return list;
 }
 
+}  // namespace
+
 Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishCheck& check,
                  const JobRecord& record) {
   Report report = make_report(record);
-  report.coverage = coverage_together(all, shared);
+  const std::vector<double> gained = gained_by(all, shared);
+  report.coverage = coverage_together(all, gained);
   report.angles.reset();
   report.figures.clear();
   report.rounds.clear();
-  report.dips = report_dips(all, shared);
+  report.dips = report_dips(all, shared, gained);
   report.verdict = several_dips_verdict(*report.coverage, all.dips.size());
   report.colors = check.colors();
   report.seams = ReportSeams{check.films_meet() ? shared.seam_mm() : 0, all.config.plan.overlap_mm,

@@ -12,13 +12,6 @@
 
 namespace hydrodip {
 
-// Of all films together: the surface under those that bring its ink, all film that meets the
-// object.
-Coverage coverage_together(const MadeDips& all, const SharedSurface& shared);
-
-// Which part each does, and what is covered after it.
-std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& shared);
-
 // On all dips together; `record` is of the first.
 Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishCheck& check,
                  const JobRecord& record);
