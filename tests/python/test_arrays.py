@@ -76,6 +76,9 @@ class Meshes(InFolder):
             np.testing.assert_allclose(np.ptp(again.vertices, axis=0), np.ptp(vertices, axis=0), rtol=1e-6)
         from_meshio = hydrodip.simulate(meshio.read("cone.ply"), **QUICK)
         from_file = hydrodip.simulate("cone.ply", **QUICK)
+        for result, same in ((from_meshio, mesh), (from_file, hydrodip.Mesh.load("cone.ply"))):
+            positions = hydrodip.simulate(same, **QUICK).film.positions
+            np.testing.assert_array_equal(result.film.positions, positions)
         # Loaded files have their vertices in another order, and which of two faces holds film at their common edge
         # is a matter of rounding.
         np.testing.assert_allclose(from_meshio.film.positions, from_file.film.positions, atol=0.01)
