@@ -26,6 +26,7 @@ namespace {
 
 struct ConfigHandle {
   JobConfig config;
+  JobConfig to_print;  // what a plan is printed with: `quality` is for the search alone
 };
 
 // One parameter as Python says it: name, value, the value as written, where it came from.
@@ -59,11 +60,16 @@ ConfigHandle configure(const std::string& model, const ModelHandle* given,
   const std::vector<Setting> named = settings_from(options);
   sources.options.insert(sources.options.end(), named.begin(), named.end());
   sources.sets = settings_from(sets);
-  JobConfig config = configured(model, std::move(sources));
-  if (given) config.object.given = given->loaded;
-  if (law) config.design.dip.material.law = law->law;
-  config.output = output;
-  return {std::move(config)};
+  SettingSources without_quality = sources;
+  without_quality.quality.clear();
+  ConfigHandle handle{configured(model, std::move(sources)),
+                      configured(model, std::move(without_quality))};
+  for (JobConfig* config : {&handle.config, &handle.to_print}) {
+    if (given) config->object.given = given->loaded;
+    if (law) config->design.dip.material.law = law->law;
+    config->output = output;
+  }
+  return handle;
 }
 
 // What each parameter is, for keyword arguments, stubs and documentation.
@@ -123,37 +129,37 @@ struct CommandRequest {
   CalibrationRequest calibration;
 };
 
-using Command = JobResult (*)(const JobConfig&, const CommandRequest&, const RunContext&);
+using Command = JobResult (*)(const ConfigHandle&, const CommandRequest&, const RunContext&);
 
 const std::map<std::string, Command>& commands() {
   static const std::map<std::string, Command> all = {
       {"print",
-       [](const JobConfig& c, const CommandRequest& r, const RunContext& x) {
-         if (r.film_image.empty()) return print_job(c, x);
-         JobConfig config = c;
+       [](const ConfigHandle& h, const CommandRequest& r, const RunContext& x) {
+         if (r.film_image.empty()) return print_job(h.config, x);
+         JobConfig config = h.config;
          config.film_image = r.film_image;
          return print_film_image_job(config, x);
        }},
       {"simulate",
-       [](const JobConfig& c, const CommandRequest& r, const RunContext& x) {
-         JobConfig config = c;
+       [](const ConfigHandle& h, const CommandRequest& r, const RunContext& x) {
+         JobConfig config = h.config;
          config.film_image = r.film_image;
          return simulate_job(config, x);
        }},
-      {"orient", [](const JobConfig& c, const CommandRequest&,
-                    const RunContext& x) { return orient_job(c, x); }},
-      {"plan", [](const JobConfig& c, const CommandRequest&,
-                  const RunContext& x) { return plan_job(c, x); }},
-      {"measure", [](const JobConfig& c, const CommandRequest& r,
-                     const RunContext& x) { return measure_job(c, r.calibration, x); }},
+      {"orient", [](const ConfigHandle& h, const CommandRequest&,
+                    const RunContext& x) { return orient_job(h.config, x); }},
+      {"plan", [](const ConfigHandle& h, const CommandRequest&,
+                  const RunContext& x) { return plan_job(h.config, x, &h.to_print); }},
+      {"measure", [](const ConfigHandle& h, const CommandRequest& r,
+                     const RunContext& x) { return measure_job(h.config, r.calibration, x); }},
       {"calibrate",
-       [](const JobConfig& c, const CommandRequest& r, const RunContext& x) {
-         if (c.design.dip.material.law)
+       [](const ConfigHandle& h, const CommandRequest& r, const RunContext& x) {
+         if (h.config.design.dip.material.law)
            throw InputError("calibrate() fits the paper's material; leave out material=");
-         return calibrate_job(c, r.calibration, x);
+         return calibrate_job(h.config, r.calibration, x);
        }},
-      {"synth", [](const JobConfig& c, const CommandRequest& r,
-                   const RunContext& x) { return synth_job(c, r.calibration, x); }},
+      {"synth", [](const ConfigHandle& h, const CommandRequest& r,
+                   const RunContext& x) { return synth_job(h.config, r.calibration, x); }},
   };
   return all;
 }
@@ -164,7 +170,7 @@ py::tuple run_command(const std::string& name, const ConfigHandle& handle,
   const Command command = commands().at(name);
   const auto result = run_for<JobResult>(progress, [&](const RunContext& context) {
     const RunScope scope(context.with_threads(handle.config.threads));
-    return command(handle.config, {film_image, request}, context);
+    return command(handle, {film_image, request}, context);
   });
   return py::make_tuple(result.folder, result.files, result.text, result.json, result.do_not_dip);
 }

@@ -26,7 +26,7 @@ constexpr double kSharpStretch = 1.3, kBlurredStretch = 2;
 // Deeper only for at least that much of the score.
 constexpr double kWorthDeeper = 0.0005;
 // Depths are given to a tenth.
-constexpr double kDepthStep_mm = 0.1;
+constexpr double kDepthsPerMm = 10;
 
 // Air that is shut in costs its area: film over it bursts, and its edge is a line of drops.
 constexpr double kAirPrice = 0.5;
@@ -127,7 +127,7 @@ double best_depth(const std::vector<Event>& events, double reached_mm) {
       best_at = events[i].at_mm;
     }
   }
-  const double rounded = std::ceil(best_at / kDepthStep_mm - 1e-6) * kDepthStep_mm;
+  const double rounded = std::ceil(best_at * kDepthsPerMm - 1e-6) / kDepthsPerMm;
   return std::min(rounded, reached_mm);
 }
 
@@ -228,14 +228,15 @@ std::optional<Trial> try_way(const TrialTask& task, const PosedObject& posed,
   const Vec3 size = mesh.bounds().size();
   double most_mm = std::min(size.norm(), task.bath.depth_mm);
   if (depth_most_mm > 0) most_mm = std::min(most_mm, depth_most_mm);
-  const auto rounded = [](double mm) { return std::max(1.0, std::round(mm)) * kDepthStep_mm; };
-  for (int part = 1; part <= kWayDepths; ++part)
-    dip_to(rounded(most_mm * part / kWayDepths / kDepthStep_mm));
+  const auto rounded = [](double mm) {
+    return std::max(1.0, std::round(mm * kDepthsPerMm)) / kDepthsPerMm;
+  };
+  for (int part = 1; part <= kWayDepths; ++part) dip_to(rounded(most_mm * part / kWayDepths));
   for (const double nearer : {0.5, 0.25}) {
     if (!best) return best;
     const double at = best->depth_mm;
     for (const double side : {-1.0, 1.0})
-      dip_to(rounded(std::min(most_mm, at + side * nearer * most_mm / kWayDepths) / kDepthStep_mm));
+      dip_to(rounded(std::min(most_mm, at + side * nearer * most_mm / kWayDepths)));
   }
   return best;
 }

@@ -1,5 +1,6 @@
 #include "plan/trial.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,6 +49,16 @@ TEST_F(SphereTrial, FindsTheDepthAtWhichFilmTears) {
   EXPECT_NEAR(trial->depth_mm, 13.645, 1);
   EXPECT_NEAR(trial->figures.covered_share, 0.2274, 0.015);
   EXPECT_EQ(trial->figures.torn_share, 0);
+}
+
+TEST_F(SphereTrial, TellsDepthsInTenths) {
+  dip_.step_mm = 0.3;
+  for (const double limit : {1.25, 1.3, 1.35, 1.4}) {
+    dip_.material.tear_stretch = limit;
+    const auto trial = try_pose(task(), {}, 0, context_);
+    ASSERT_TRUE(trial);
+    EXPECT_EQ(trial->depth_mm, std::stod(fmt::format("{:.1f}", trial->depth_mm)));
+  }
 }
 
 TEST_F(SphereTrial, IsWorthLessAsTheFilmIsStretched) {

@@ -95,6 +95,12 @@ class SameAsTheCommandLine(InFolder):
         self.assertEqual([d.covered_share for d in found.dips], [d["covered_share"] for d in said["dips"]])
         self.assertEqual([list(d.rotate_deg) for d in found.dips], [t["rotate_deg"] for t in tables])
 
+    def test_a_plan_in_haste_makes_no_sheets_in_haste(self):
+        hydrodip.plan("sphere.obj", size=40, film="120x120", dips=1, quality="draft", output="p")
+        plan = read("p", "plan.toml").decode()
+        self.assertIn("[[dip]]", plan)
+        self.assertNotRegex(plan, "rounds_max|pictures|elements|step_mm")
+
     def test_scans(self):
         quick = dict(film="110x110", film_elements=1000, dip_step_mm=1.0)
         made = hydrodip.synth(["sphere"], output="scans", **quick)
