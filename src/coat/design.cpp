@@ -77,8 +77,12 @@ class Settling {
     else if (outcome != Outcome::kSettled && result_.rounds.size() > 1)
       context_.warn(fmt::format(
           "after {} rounds the ink still moves the film by {:.2g} mm on average (settled: {:g} "
-          "mm); raise ink.rounds_max, or film.elements if it does not help",
-          result_.rounds.size(), result_.last_change_mm(), options().settled_mm));
+          "mm); {}",
+          result_.rounds.size(), result_.last_change_mm(), options().settled_mm,
+          int(result_.rounds.size()) >= options().rounds_max
+              ? "raise ink.rounds_max, or film.elements if it does not help"
+              : "more rounds would not bring it down: turn steep sides down, dip less deep, or "
+                "raise film.elements"));
   }
 
   void finish(const InkRounds& rounds) {

@@ -29,6 +29,9 @@ enum class DipMethod {
   kProjection,  // baseline: straight up, no elasticity
 };
 
+// No film bears a larger principal stretch, whatever it is said to bear.
+inline constexpr double kMostStretch = 2;
+
 struct FilmMaterial {
   double z_stretch = 0.65;    // vertical scale of the film's rest shape (contact angle)
   double poisson = 0;         // below 0.5

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 
+#include "coat/dipped_object.h"
 #include "job/output.h"
 #include "job/ways.h"
+#include "report/findings.h"
 
 namespace hydrodip {
 namespace {
@@ -13,6 +15,32 @@ namespace {
 // A place is covered by dips whose films lie there and bring so much of its ink: film on which
 // another dip's ink was meant to be is blank there.
 constexpr float kMuchOfTheInk = 0.5F;
+
+// Whether film of a dip lies there of which nobody knows whether it holds, or where.
+bool lies_in_doubt(const MadeDip& dip, const Target& node) {
+  const PosedObject& posed = dip.posed;
+  const Mat3 turn = posed.matrix().topLeftCorner<3, 3>() / posed.scale();
+  const auto hold = dip.made.dipped.map->hold_at(
+      (posed.matrix() * node.position.homogeneous()).head<3>(), turn * node.normal);
+  const DoubtfulStretch doubtful = doubtful_stretch(dip.config.design.dip.material);
+  return hold && doubtful.to > 0 && (hold->stretch > doubtful.from || hold->moved_mm > kMoved_mm);
+}
+
+// Why a dip is not to be made, whatever the others bring.
+std::optional<ReportObstacle> obstacle_of(const MadeDip& dip, std::size_t of) {
+  Report report;
+  report.dip_number = dip.number;
+  report.dip_of = int(of);
+  report.coverage = dip.made.dipped.coverage;
+  report.air = dip.made.dipped.air;
+  report.equilibrium = equilibrium_of(dip.made.dipped.statistics, &dip.made.ink);
+  report.tear_stretch = dip.config.design.dip.material.tear_stretch;
+  // Of tears and bare surface all together decide.
+  for (const Finding& finding : findings(report))
+    if (finding.concern == Concern::kStop && finding.key != "tears" && finding.key != "coverage")
+      return ReportObstacle{finding.title + ": " + finding.figure, finding.text, finding.advice};
+  return std::nullopt;
+}
 
 // Per dip: which part of the surface is covered by it and those before, but not without it.
 std::vector<double> gained_by(const MadeDips& all, const SharedSurface& shared) {
@@ -32,19 +60,38 @@ std::vector<double> gained_by(const MadeDips& all, const SharedSurface& shared) 
   return gained;
 }
 
+// Where so much of the ink comes with film that may tear after all, or lie elsewhere.
+double doubtful_share(const MadeDips& all, const SharedSurface& shared) {
+  const Targets& targets = all.nodes->targets();
+  double doubtful_mm2 = 0;
+  for (const Target& node : targets.list) {
+    const std::vector<float> shares = shared.shares_at(node.position, node.normal);
+    float brought = 0;
+    for (std::size_t k = 0; k < all.dips.size(); ++k)
+      if (shares[k] > 0 && lies_in_doubt(all.dips[k], node)) brought += shares[k];
+    if (brought >= kMuchOfTheInk) doubtful_mm2 += node.area;
+  }
+  return doubtful_mm2 / targets.area;
+}
+
 // Of all films together: the surface under those that bring its ink, all film that meets the
-// object.
-Coverage coverage_together(const MadeDips& all, const std::vector<double>& gained) {
+// object, whatever wrinkles or was lifted.
+Coverage coverage_together(const MadeDips& all, const SharedSurface& shared,
+                           const std::vector<double>& gained) {
   Coverage sum;
   const double scale = all.prepared.posed.scale();
   sum.object_mm2 = sum.downward_mm2 = scale * scale * all.nodes->targets().area;
   for (const double share : gained) sum.covered_mm2 += share * sum.object_mm2;
   sum.covered_downward_mm2 = sum.covered_mm2;
+  sum.doubtful_mm2 = doubtful_share(all, shared) * sum.object_mm2;
   double stretch = 0, area_ratio = 0;
   for (const MadeDip& dip : all.dips) {
     const Coverage& c = dip.made.dipped.coverage;
     sum.film_on_object_mm2 += c.film_on_object_mm2;
     sum.torn_mm2 += c.torn_mm2;
+    sum.wrinkled_mm2 += c.wrinkled_mm2;
+    sum.lifted_mm2 += c.lifted_mm2;
+    if (c.lifted_mm2 > 0) sum.lifted_at = c.lifted_at;
     sum.stretch_max = std::max(sum.stretch_max, c.stretch_max);
     sum.area_ratio_max = std::max(sum.area_ratio_max, c.area_ratio_max);
     stretch += c.stretch_mean * c.film_on_object_mm2;
@@ -75,7 +122,8 @@ std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& sha
                     parts[k],
                     gained[k],
                     so_far,
-                    dip.made.dipped.coverage.torn_share()});
+                    dip.made.dipped.coverage.torn_share(),
+                    obstacle_of(dip, all.dips.size())});
   }
   return list;
 }
@@ -86,12 +134,11 @@ Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishC
                  const JobRecord& record) {
   Report report = make_report(record);
   const std::vector<double> gained = gained_by(all, shared);
-  report.coverage = coverage_together(all, gained);
+  report.coverage = coverage_together(all, shared, gained);
   report.angles.reset();
   report.figures.clear();
   report.rounds.clear();
   report.dips = report_dips(all, shared, gained);
-  report.verdict = several_dips_verdict(*report.coverage, all.dips.size());
   report.colors = check.colors();
   report.seams = ReportSeams{check.films_meet() ? shared.seam_mm() : 0, all.config.plan.overlap_mm,
                              check.seam_error(), FinishCheck::kOff_mm, check.seam_error_off()};

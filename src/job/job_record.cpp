@@ -201,16 +201,12 @@ Report make_report(const JobRecord& record) {
   report.rounds = rounds(record);
   report.coverage = record.dipped().coverage;
   report.wanted = record.wanted;
-  report.verdict =
-      report.equilibrium.unconverged_steps > 0 && report.coverage->film_on_object_mm2 > 0
-          ? unknown_verdict(report.equilibrium)
-      : report.wanted ? plain_verdict(*report.coverage, *report.wanted)
-                      : plain_verdict(*report.coverage);
   report.air = record.dipped().air;
   report.way_in = way_in(record.config, record.dipped().posed.mesh());
   report.angles = record.dipped().angles;
   report.mesh = record.prepared.health;
   report.tear_stretch = record.config.design.dip.material.tear_stretch;
+  report.finished_image = !record.config.film_image.empty();
   if (record.command == "print") report.bleed_mm = record.config.design.inverse.bleed_mm;
   report.figures = figures(record.dipped());
   for (std::size_t n = 0; n < record.prepared.artwork.size(); ++n)
@@ -229,7 +225,7 @@ JobResult describe_result(const Report& report, const std::filesystem::path& fol
   result.folder = folder;
   const Concern concern = concern_of(findings(report));
   result.do_not_dip = concern == Concern::kStop;
-  result.text = headline(concern) + ". " + report.verdict + "\n";
+  result.text = headline(concern) + ". " + verdict_of(report) + "\n";
   if (!report.better_way.empty()) result.text += "Better: " + report.better_way + "\n";
   result.text += fmt::format("wrote to {}:\n", folder.string());
   for (const ReportOutput& output : report.outputs) {

@@ -126,7 +126,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   if (config.pictures) {
     DipsPictures drawn = times.measure("preview", [&] {
       return draw_dips(all, shared, finish, check,
-                       headline(concern_of(findings(report))) + ": " + report.verdict, context);
+                       headline(concern_of(findings(report))) + ": " + verdict_of(report), context);
     });
     write_bytes(folder.path("preview.png"), drawn.preview_png);
     write_bytes(folder.path("dips.png"), drawn.dips_png);

@@ -29,13 +29,16 @@ void require_ink(const Designed& designed, const JobConfig& config) {
   const auto& laid = designed.ink.ink.inking.inks.cmyk;
   if (std::any_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value != 0; })) return;
   const Coverage& coverage = designed.dipped.coverage;
-  throw InputError(fmt::format(
-      "{}: the sheet would be blank. {}", config.model.string(),
-      coverage.film_on_object_mm2 > 0
-          ? "What the film reaches of the model is white, transparent or of the object's own "
-            "colour; check its texture and colours, which side enters the water (--down), and "
-            "--depth."
-          : plain_verdict(coverage)));
+  std::string why =
+      "What the film reaches of the model is white, transparent or of the object's own colour; "
+      "check its texture and colours, which side enters the water (--down), and --depth.";
+  if (coverage.torn_mm2 > 0)
+    why =
+        "Either the film tears wherever there is something to print (turn flatter sides down with "
+        "--rotate or --down), or what it reaches of the model is white, transparent or of the "
+        "object's own colour (check its texture and colours).";
+  if (!(coverage.film_on_object_mm2 > 0)) why = no_film_verdict(coverage);
+  throw InputError(fmt::format("{}: the sheet would be blank. {}", config.model.string(), why));
 }
 
 }  // namespace

@@ -150,7 +150,8 @@ std::string better_way(const JobConfig& config, const PreparedObject& prepared,
   try {
     const Trial best = search_holds(task, config.object.pose, quick_search(), context).best.front();
     if (!lays_film(best) || best.figures.score < made.figures.score + kWorthSaying) return "";
-    return fmt::format("{} ({})", describe_trial(best, way_up(config)), trial_options(best));
+    return fmt::format("{}, as blank film ({})", describe_trial(best, way_up(config)),
+                       trial_options(best));
   } catch (const InputError&) {
     return "";  // it fits in no other way
   }

@@ -20,9 +20,8 @@ namespace {
 constexpr double kEasyShare = 0.88;
 constexpr double kLeastWorth = 0.6;
 constexpr double kWrinkledWorth = 0.5;
-constexpr double kDoubtfulShare = 0.95;
 // Film that never tears: from where on print blurs, and where it is worth least.
-constexpr double kSharpStretch = 1.3, kBlurredStretch = 2;
+constexpr double kSharpStretch = 1.3, kBlurredStretch = kMostStretch;
 // Deeper only for at least that much of the score.
 constexpr double kWorthDeeper = 0.0005;
 // Depths are given to a tenth.
@@ -35,7 +34,13 @@ constexpr int kWayDepths = 6;
 
 constexpr double kNever = DipWatch::kNever;
 
+// Of film that never tears as well, as no film bears more than that.
+double most_stretch(const FilmMaterial& material) {
+  return material.tear_stretch > 0 ? material.tear_stretch : kMostStretch;
+}
+
 double worth_of(double stretch, double limit) {
+  if (!(limit > 0) && stretch > kMostStretch) return 0;
   const double easy = limit > 0 ? kEasyShare * limit : kSharpStretch;
   const double least = limit > 0 ? limit : kBlurredStretch;
   const double t = std::clamp((stretch - easy) / (least - easy), 0.0, 1.0);
@@ -131,6 +136,15 @@ double best_depth(const std::vector<Event>& events, double reached_mm) {
   return std::min(rounded, reached_mm);
 }
 
+// The depth at which film comes to lie that no film could be; kNever: there is none.
+double overstretched_from(const TrialTask& task, const DipWatch& watch) {
+  double first_mm = kNever;
+  for (std::size_t t = 0; t < watch.landed_at().size(); ++t)
+    if (!(task.dip.material.tear_stretch > 0) && watch.stretch()[t] > kMostStretch)
+      first_mm = std::min(first_mm, watch.landed_at()[t]);
+  return first_mm;
+}
+
 // At the best depth above that one, unless it is given.
 Trial judged(const TrialTask& task, const PoseOptions& pose, const MadeDip& dip,
              std::optional<double> depth_mm, double deepest_mm) {
@@ -140,6 +154,9 @@ Trial judged(const TrialTask& task, const PoseOptions& pose, const MadeDip& dip,
   const double object_mm2 = scale * scale * targets.area;
   const std::vector<Event> events = events_of(task, dip, landing, object_mm2);
   Trial trial{.pose = pose};
+  const double first_mm = overstretched_from(task, dip.watch);
+  if (first_mm <= deepest_mm)
+    deepest_mm = std::max(0.0, std::ceil(first_mm * kDepthsPerMm - 1) / kDepthsPerMm);
   trial.depth_mm = depth_mm ? *depth_mm : best_depth(events, deepest_mm);
   TrialFigures& figures = trial.figures;
   for (const Event& event : events)
@@ -151,7 +168,7 @@ Trial judged(const TrialTask& task, const PoseOptions& pose, const MadeDip& dip,
     trial.worth.push_back(lies ? landing.worth(i) : 0.0F);
     if (!lies) continue;
     figures.covered_share += target.area / targets.area;
-    if (limit > 0 && double(landing.stretch(i)) > kDoubtfulShare * limit)
+    if (limit > 0 && double(landing.stretch(i)) > doubtful_stretch(task.dip.material).from)
       figures.doubtful_share += target.area / targets.area;
   }
   const DipWatch& watch = dip.watch;
@@ -252,7 +269,7 @@ class StraightTrial {
         posed_(posed),
         depth_mm_(depth_mm),
         film_(std::make_shared<const FilmMesh>(make_film_mesh(task.film))),
-        watch_(film_, task.dip.material.tear_stretch, 1 / std::max(task.torn_price, 1e-6)) {}
+        watch_(film_, most_stretch(task.dip.material), 1 / std::max(task.torn_price, 1e-6)) {}
 
   Trial run(double deepest_mm, const RunContext& context) {
     const Trajectory way = Trajectory::straight_down(deepest_mm);

@@ -283,6 +283,9 @@ double stretch_scale_end(const DippedFilm& film, double tear_stretch) {
   return std::ceil(10 * most - 1e-9) / 10;
 }
 
+// How plain stripes are at least where nothing is printed.
+constexpr double kLeastOfUnprinted = 0.5;
+
 Appearance map_appearance(const MapScene& scene, const Camera& camera, double hatch_mm) {
   const Vec3 diagonal = (camera.right - camera.up) * std::sqrt(0.5);
   Appearance appearance;
@@ -299,7 +302,8 @@ Appearance map_appearance(const MapScene& scene, const Camera& camera, double ha
     const LinearColor& stripe =
         on_dark_stripe(position.dot(diagonal), hatch_mm) ? kTornDark : kTornLight;
     const bool known = scene.doubtful.to > 0 && !hold->let_go;
-    const double lost = known ? scene.doubtful.of(hold->stretch, hold->moved_mm) : !hold->whole;
+    double lost = known ? scene.doubtful.of(hold->stretch, hold->moved_mm) : !hold->whole;
+    if (!hold->whole) lost = std::max(lost, kLeastOfUnprinted);
     return mixed(stretch_color(hold->stretch, scene.largest_stretch), stripe, float(lost));
   };
   return appearance;

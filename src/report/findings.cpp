@@ -1,5 +1,7 @@
 #include "report/findings.h"
 
+#include "dip/dip.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -91,7 +93,7 @@ bool much_is_lost(const Coverage& c, const std::optional<ReportWanted>& wanted) 
   return c.torn_share() > kMuchTorn && (!wanted || wanted->missed_share() > kMuchTorn);
 }
 
-Finding tears(const Coverage& c, const std::optional<ReportWanted>& wanted) {
+Finding tears(const Coverage& c, const std::optional<ReportWanted>& wanted, bool finished_image) {
   if (!(c.torn_mm2 > 0))
     return {"tears", Concern::kNone, "Tears", "none", "The film holds everywhere.", ""};
   if (wanted && wanted->missed_share() < 1 - kWholePicture)
@@ -106,18 +108,20 @@ Finding tears(const Coverage& c, const std::optional<ReportWanted>& wanted) {
           much ? Concern::kStop : Concern::kCare,
           "Tears",
           percent(c.torn_share()),
-          "of the film that meets the object tears; nothing is printed there.",
+          finished_image ? "of the film that meets the object tears; what the image has there is "
+                           "lost."
+                         : "of the film that meets the object tears; nothing is printed there.",
           "Turn steep sides down (--rotate, --down), dip less deep (--depth) and the rest in "
           "another turn, or use a film that bears more. The overlay \"tears\" shows where."};
 }
 
-bool is_of_several(const Report& report) { return !report.dips.empty() || report.dip_of > 1; }
+bool is_of_several(const Report& report) { return report.dips.size() > 1 || report.dip_of > 1; }
 
 // No dip inks what it tears, and another one may bring what belongs there: what stays bare is the
 // coverage's matter, unless of all films together little is left.
 Finding tears_of_several(const Report& report) {
   const Coverage& c = *report.coverage;
-  if (!(c.torn_mm2 > 0)) return tears(c, std::nullopt);
+  if (!(c.torn_mm2 > 0)) return tears(c, std::nullopt, false);
   const bool mostly = !report.dips.empty() && c.torn_share() > kMostlyTorn;
   return {"tears",
           mostly ? Concern::kStop : Concern::kCare,
@@ -140,6 +144,14 @@ void add_idle_dips(const std::vector<ReportDip>& dips, std::vector<Finding>& lis
       {"idle_dips", Concern::kStop, "Dips for nothing", numbers,
        "add hardly anything to what the others bring: their sheets are all but blank.",
        "Take them away, or hold the object another way: 'hydrodip plan' looks for ways."});
+}
+
+// What is in the way of one of them is in the way of all.
+void add_obstacles(const std::vector<ReportDip>& dips, std::vector<Finding>& list) {
+  for (std::size_t k = 0; k < dips.size(); ++k)
+    if (const auto& obstacle = dips[k].obstacle)
+      list.push_back({"dip", Concern::kStop, fmt::format("Dip {}", k + 1), obstacle->what,
+                      obstacle->text, obstacle->advice});
 }
 
 // Pressed together, or lifted out of the water on the way: only where there is any worth naming.
@@ -380,7 +392,8 @@ Finding coverage_of_dips(const Coverage& c, std::size_t dips) {
                   nearly_all ? Concern::kNone : Concern::kCare,
                   "Coverage",
                   percent(c.covered_share()),
-                  fmt::format("of the object is under film after {} dips.", dips),
+                  fmt::format("of the object is under film after {}.",
+                              dips == 1 ? "1 dip" : fmt::format("{} dips", dips)),
                   ""};
   if (!nearly_all)
     finding.advice =
@@ -418,9 +431,11 @@ std::vector<Finding> findings(const Report& report) {
     if (!report.better_way.empty())
       list.push_back({"better_way", Concern::kNone, "Better", "", report.better_way + ".", ""});
     add_idle_dips(report.dips, list);
+    add_obstacles(report.dips, list);
     if (report.seams && report.seams->length_mm > 0) list.push_back(seams(*report.seams));
     if (c.film_on_object_mm2 > 0) {
-      list.push_back(is_of_several(report) ? tears_of_several(report) : tears(c, report.wanted));
+      list.push_back(is_of_several(report) ? tears_of_several(report)
+                                           : tears(c, report.wanted, report.finished_image));
       add_doubtful(c, list);
       list.push_back(stretch(c, report.tear_stretch));
       add_slack_film(c, list);
@@ -437,6 +452,14 @@ std::vector<Finding> findings(const Report& report) {
     if (!sentence.empty()) list.push_back(warning(sentence));
   }
   return list;
+}
+
+const Finding* first_obstacle(const std::vector<Finding>& findings) {
+  for (const Finding& finding : findings)
+    if (finding.concern == Concern::kStop && finding.key != "tears" && finding.key != "stretch" &&
+        finding.key != "coverage")
+      return &finding;
+  return nullptr;
 }
 
 Concern concern_of(const std::vector<Finding>& findings) {

@@ -23,6 +23,10 @@ struct Finding {
 // far as the report knows about them.
 std::vector<Finding> findings(const Report& report);
 
+// Of them, the first that is a reason not to dip besides what becomes of the film (tears, stretch,
+// coverage); null: there is none.
+const Finding* first_obstacle(const std::vector<Finding>& findings);
+
 // The gravest of all; kStop when the dip should not be done like this.
 Concern concern_of(const std::vector<Finding>& findings);
 

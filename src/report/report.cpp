@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "base/file.h"
+#include "dip/dip.h"
+#include "report/findings.h"
 
 namespace hydrodip {
 namespace {
@@ -16,6 +18,8 @@ std::string percent(double share) {
   return value < 10 ? fmt::format("{:.1f} %", value) : fmt::format("{:.0f} %", value);
 }
 
+bool has_wanted(const Report& report) { return report.wanted && report.wanted->covered_mm2 > 0; }
+
 }  // namespace
 
 ReportInput describe_input(const std::string& role, const std::filesystem::path& path) {
@@ -23,72 +27,36 @@ ReportInput describe_input(const std::string& role, const std::filesystem::path&
   return {role, path.string(), sha256_hex(bytes), bytes.size()};
 }
 
-std::string plain_verdict(const Coverage& coverage) {
-  if (!(coverage.film_on_object_mm2 > 0)) {
-    return coverage.torn_mm2 > 0
-               ? "No film stays on the object: all that meets it tears; turn a flatter side down "
-                 "with --rotate or --down."
-               : "No film lies on the object: check --down and --depth.";
-  }
-  if (coverage.torn_mm2 > 0)
-    return fmt::format(
-        "Where it holds, the film covers {} of the object; it tears: {} of what meets the object "
-        "is "
-        "lost. To keep it, turn steep sides down (--rotate, --down) or dip less (--depth) and the "
-        "rest in another turn.",
-        percent(coverage.covered_share()), percent(coverage.torn_share()));
-  const std::string start = fmt::format(
-      "The film covers {} of the surface that faces down ({} of all) and stretches up to "
-      "{:.2f} times",
-      percent(coverage.covered_downward_share()), percent(coverage.covered_share()),
-      coverage.stretch_max);
-  if (coverage.stretch_max > kMostStretch)
-    return start +
-           fmt::format("; no film bears more than {:g}: do not dip it like this.", kMostStretch);
-  if (coverage.covered_downward_share() < kNearlyAll)
-    return start + "; it does not tear. What stays bare needs another dip, turned.";
-  return start + "; it does not tear: dip it like this.";
-}
-
-std::string plain_verdict(const Coverage& coverage, const ReportWanted& wanted) {
-  if (!(wanted.covered_mm2 > 0)) return plain_verdict(coverage);
-  std::string text =
-      fmt::format("The film covers {} of what shall be printed", percent(wanted.covered_share()));
-  if (coverage.torn_mm2 > 0)
-    return text + fmt::format(
-                      "; {} of the film that meets the object tears, and nothing is "
-                      "printed on it.",
-                      percent(coverage.torn_share()));
-  return text +
-         fmt::format(", stretches up to {:.2f} times and does not tear.", coverage.stretch_max);
+std::string no_film_verdict(const Coverage& coverage) {
+  return coverage.torn_mm2 > 0
+             ? "No film stays on the object: all that meets it tears; turn a flatter side down "
+               "with --rotate or --down."
+             : "No film lies on the object: check --down and --depth.";
 }
 
 std::string short_verdict(const Report& report) {
   const Coverage& coverage = *report.coverage;
-  if (report.wanted && report.wanted->covered_mm2 > 0)
-    return fmt::format(
-        "{:.0f} % of what shall be printed covered, {:.1f} % of the film that meets "
-        "the object torn",
-        100 * report.wanted->covered_share(), 100 * coverage.torn_share());
-  if (!(coverage.film_on_object_mm2 > 0))
+  if (!has_wanted(report) && !(coverage.film_on_object_mm2 > 0))
     return coverage.torn_mm2 > 0 ? "all film that meets the object tears"
                                  : "no film lies on the object";
-  if (coverage.torn_mm2 > 0)
-    return fmt::format("{:.0f} % of the object covered, {:.1f} % of the film that meets it torn",
-                       100 * coverage.covered_share(), 100 * coverage.torn_share());
-  return fmt::format(
-      "{:.0f} % of the downward side covered, stretched up to {:.2f} times, no tears",
-      100 * coverage.covered_downward_share(), coverage.stretch_max);
+  if (!has_wanted(report) && !(coverage.torn_mm2 > 0))
+    return fmt::format(
+        "{:.0f} % of the downward side covered, stretched up to {:.2f} times, no tears",
+        100 * coverage.covered_downward_share(), coverage.stretch_max);
+  std::string text =
+      has_wanted(report)
+          ? fmt::format(
+                "{:.0f} % of what shall be printed covered, {:.1f} % of the film that "
+                "meets the object torn",
+                100 * report.wanted->covered_share(), 100 * coverage.torn_share())
+          : fmt::format("{:.0f} % of the object covered, {:.1f} % of the film that meets it torn",
+                        100 * coverage.covered_share(), 100 * coverage.torn_share());
+  if (coverage.stretch_max > kMostStretch)
+    text += fmt::format(", the rest stretched up to {:.2f} times", coverage.stretch_max);
+  return text;
 }
 
-std::string several_dips_verdict(const Coverage& coverage, std::size_t dips) {
-  return fmt::format(
-      "{} {} of the object; {}", dips == 1 ? "1 dip covers" : fmt::format("{} dips cover", dips),
-      percent(coverage.covered_share()),
-      coverage.torn_mm2 > 0
-          ? fmt::format("{} of the film that meets it tears.", percent(coverage.torn_share()))
-          : "nothing tears.");
-}
+namespace {
 
 std::string unknown_verdict(const ReportEquilibrium& equilibrium) {
   return fmt::format(
@@ -97,12 +65,86 @@ std::string unknown_verdict(const ReportEquilibrium& equilibrium) {
       equilibrium.unconverged_steps, equilibrium.steps);
 }
 
+// What gets film.
+std::string covered_part(const Report& report) {
+  const Coverage& c = *report.coverage;
+  if (has_wanted(report))
+    return fmt::format("The film covers {} of what shall be printed",
+                       percent(report.wanted->covered_share()));
+  if (c.torn_mm2 > 0)
+    return fmt::format("Where it holds, the film covers {} of the object",
+                       percent(c.covered_share()));
+  return fmt::format("The film covers {} of the surface that faces down ({} of all)",
+                     percent(c.covered_downward_share()), percent(c.covered_share()));
+}
+
+// What becomes of the film.
+std::string lost_part(const Report& report) {
+  const Coverage& c = *report.coverage;
+  const std::string lost = percent(c.torn_share());
+  if (c.stretch_max > kMostStretch)
+    return fmt::format(
+        "; it would be stretched {:.2f} times, and no film bears more than {:g}: do "
+        "not dip it like this.",
+        c.stretch_max, kMostStretch);
+  if (!(c.torn_mm2 > 0)) return fmt::format(" and stretches up to {:.2f} times", c.stretch_max);
+  if (!(report.tear_stretch > 0))
+    return fmt::format("; {} of what meets the object folds over and is lost.", lost);
+  if (has_wanted(report))
+    return fmt::format(
+        "; {} of the film that meets the object tears, and {}.", lost,
+        report.finished_image ? "what the image has there is lost" : "nothing is printed on it");
+  return fmt::format(
+      "; it tears: {} of what meets the object is lost. To keep it, turn steep sides down "
+      "(--rotate, --down) or dip less (--depth) and the rest in another turn.",
+      lost);
+}
+
+// Whether the film is said to tear, or to be stretched too far: why not to dip it.
+bool tells_of_loss(const Report& report) {
+  return report.coverage->torn_mm2 > 0 || report.coverage->stretch_max > kMostStretch;
+}
+
+// Why not to dip it, besides what becomes of the film; empty: nothing else.
+std::string obstacle(const std::vector<Finding>& list) {
+  const Finding* first = first_obstacle(list);
+  return first ? fmt::format(" {}: {} {}", first->title, first->figure, first->text) : "";
+}
+
+std::string whole_film_part(const Report& report, Concern concern) {
+  if (report.coverage->covered_downward_share() < kNearlyAll && !has_wanted(report))
+    return "; it does not tear. What stays bare needs another dip, turned.";
+  return concern == Concern::kNone ? "; it does not tear: dip it like this."
+                                   : "; it does not tear.";
+}
+
+std::string plain_verdict(const Report& report) {
+  const Coverage& c = *report.coverage;
+  if (!(c.film_on_object_mm2 > 0)) return no_film_verdict(c);
+  if (report.equilibrium.unconverged_steps > 0) return unknown_verdict(report.equilibrium);
+  const std::vector<Finding> list = findings(report);
+  std::string text = covered_part(report) + lost_part(report);
+  if (!tells_of_loss(report)) text += whole_film_part(report, concern_of(list));
+  return text + obstacle(list);
+}
+
+std::string several_dips_verdict(const Report& report) {
+  const Coverage& c = *report.coverage;
+  const std::size_t dips = report.dips.size();
+  return fmt::format("{} {} of the object; {}",
+                     dips == 1 ? "1 dip covers" : fmt::format("{} dips cover", dips),
+                     percent(c.covered_share()),
+                     c.torn_mm2 > 0 ? fmt::format("{} of the film that meets it tears.",
+                                                  percent(c.torn_share()))
+                                    : "nothing tears.") +
+         obstacle(findings(report));
+}
+
+}  // namespace
+
 std::string verdict_of(const Report& report) {
   if (!report.verdict.empty() || !report.coverage) return report.verdict;
-  if (!report.dips.empty()) return several_dips_verdict(*report.coverage, report.dips.size());
-  if (report.equilibrium.unconverged_steps > 0 && report.coverage->film_on_object_mm2 > 0)
-    return unknown_verdict(report.equilibrium);
-  return plain_verdict(*report.coverage);
+  return report.dips.empty() ? plain_verdict(report) : several_dips_verdict(report);
 }
 
 void write_report_json(const std::filesystem::path& path, const Report& report) {

@@ -91,6 +91,11 @@ struct ReportWanted {
   double missed_share() const { return Coverage::share(reached_mm2 - covered_mm2, reached_mm2); }
 };
 
+// Why a dip is not to be made, whatever others bring: what, in words, and how to mend it.
+struct ReportObstacle {
+  std::string what, text, advice;  // "Trapped air: 242 mm2", "of the surface stays dry..."
+};
+
 // One of several dips, in the order in which they are made. Shares of the object's whole surface.
 struct ReportDip {
   std::string down;  // "-z"
@@ -102,6 +107,7 @@ struct ReportDip {
   double gained_share = 0;   // covered by it and none before
   double covered_share = 0;  // under film after this dip
   double torn_share = 0;     // of its film that meets the object
+  std::optional<ReportObstacle> obstacle;
 };
 
 // Where several dips meet.
@@ -127,7 +133,7 @@ struct Report {
   std::vector<std::string> command_line;  // may be empty
   std::string title;                      // the job's name; empty: the first input's file name
   bool for_customer = false;              // whose page it is; see report_html()
-  std::string verdict;                    // one sentence; empty: plain_verdict() is used
+  std::string verdict;                    // empty: what the figures say
 
   std::vector<ReportInput> inputs;
   std::vector<ReportParameter> parameters;
@@ -149,30 +155,21 @@ struct Report {
   std::string better_way;   // how else to dip it; empty: unknown, or there is none
   double tear_stretch = 0;  // the film's limit; 0: it never tears
   double bleed_mm = 0;
+  bool finished_image = false;  // is printed as it is, wherever film holds or not
   std::vector<ReportFigure> figures;
   std::vector<std::string> warnings;
   std::vector<ReportOutput> outputs;
   std::uint64_t peak_memory_bytes = 0;  // 0: unknown
 };
 
-// No film bears a larger principal stretch, whatever it is said to bear.
-inline constexpr double kMostStretch = 2;
-
-// The result in one plain sentence: how much is covered, how far the film stretches, whether it
-// tears.
-std::string plain_verdict(const Coverage& coverage);
-// The same where steps found no equilibrium.
-std::string unknown_verdict(const ReportEquilibrium& equilibrium);
-// The same where only a part of the object shall be printed.
-std::string plain_verdict(const Coverage& coverage, const ReportWanted& wanted);
+// Where no film stays on the object: why, and how to mend it.
+std::string no_film_verdict(const Coverage& coverage);
 
 // Some words of it, for a caption or a band. Of a report that has its coverage.
 std::string short_verdict(const Report& report);
 
-// The same for several dips together.
-std::string several_dips_verdict(const Coverage& coverage, std::size_t dips);
-
-// The report's own verdict, or else the plain one.
+// The report's own verdict, or else a plain sentence or two: how much is covered, how far the film
+// stretches, whether it tears, and, if it is not to be dipped like this, why not.
 std::string verdict_of(const Report& report);
 
 // JSON in UTF-8, keys always in the same order, areas in mm2 and lengths in mm; what is not a

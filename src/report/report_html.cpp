@@ -89,8 +89,9 @@ std::string maps(const ReportPictures& pictures) {
          "the surface is steeper than the limit, and the film stretches much or tears: turn the "
          "object so that little of what matters lies there.</p>\n"
          "<p>Right: how far the film is stretched, from violet (hardly) to yellow (nearly torn). "
-         "Red and white stripes: there the film tears, and nothing is printed; grey stays "
-         "bare.</p>\n" +
+         "Red and white stripes: there the film may tear, the plainer the likelier; where it is "
+         "not "
+         "promised to hold, nothing is printed. Grey stays bare.</p>\n" +
          html_picture(pictures.maps_png,
                       "Dipping angle and film stretch on the object, from two sides") +
          "</section>\n";

@@ -111,8 +111,8 @@ void add_film(Coverage& sum, const DippedFilm& film, const DippingDirection& dir
     for (const std::int32_t v : triangle) {
       stretch += flat / 3 * film.stretch[std::size_t(v)];
       area_ratio += flat / 3 * film.area_ratio[std::size_t(v)];
-      if (!(film.excess_of(v) > 0))
-        sum.stretch_max = std::max(sum.stretch_max, film.stretch[std::size_t(v)]);
+      if (film.excess_of(v) > 0) continue;
+      sum.stretch_max = std::max(sum.stretch_max, film.stretch[std::size_t(v)]);
       sum.area_ratio_max = std::max(sum.area_ratio_max, film.area_ratio[std::size_t(v)]);
     }
   }

@@ -84,8 +84,12 @@ TEST(Findings, WhatNoFilmBearsIsAStop) {
   EXPECT_NE(concern_of(findings(report)), Concern::kStop);
   report.coverage->stretch_max = 25.96;
   EXPECT_EQ(concern(report, "stretch"), Concern::kStop);
-  EXPECT_EQ(plain_verdict(*report.coverage).find("dip it like this."),
-            plain_verdict(*report.coverage).find("do not ") + 7);
+  EXPECT_EQ(verdict_of(report).find("dip it like this."), verdict_of(report).find("do not ") + 7);
+  // Nor is that left out where film is lost as well, or only a picture is wanted.
+  report.coverage->torn_mm2 = 1;
+  EXPECT_NE(verdict_of(report).find("25.96"), std::string::npos);
+  report.wanted = ReportWanted{100, 100, 100};
+  EXPECT_NE(verdict_of(report).find("25.96"), std::string::npos);
 }
 
 TEST(Findings, WhatWasNotComputedIsAStop) {
@@ -140,7 +144,7 @@ TEST(Findings, BesideTearsCoverageIsOfTheWholeObject) {
   const std::vector<Finding> list = findings(report);
   const Coverage& c = *report.coverage;
   EXPECT_EQ(std::stod(find(list, "coverage")->figure), std::round(100 * c.covered_share()));
-  EXPECT_EQ(plain_verdict(c).find("100 %"), std::string::npos);
+  EXPECT_EQ(verdict_of(report).find("100 %"), std::string::npos);
   EXPECT_EQ(short_verdict(report).find("100 %"), std::string::npos);
 }
 
@@ -160,6 +164,61 @@ TEST(Findings, OfSeveralDipsNoneIsMadeForNothing) {
   report.dips[1].gained_share = 0.1;
   report.coverage->torn_mm2 = 4000;  // 80 %
   EXPECT_EQ(find(findings(report), "tears")->concern, Concern::kStop);
+}
+
+// Whatever stops a dip is in its sentence, and then it does not end with "dip it like this".
+TEST(Findings, TheSentenceNamesWhatIsInTheWay) {
+  Report report = good_report();
+  EXPECT_NE(verdict_of(report).find("dip it like this."), std::string::npos);
+  TrappedAir air;
+  air.pockets.resize(1);
+  air.pockets[0].area_mm2 = 608;
+  report.air = std::make_shared<const TrappedAir>(air);
+  EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
+  EXPECT_EQ(verdict_of(report).find("dip it like this."), std::string::npos);
+  EXPECT_NE(verdict_of(report).find("608 mm2"), std::string::npos);
+  report.coverage->torn_mm2 = 20;
+  EXPECT_NE(verdict_of(report).find("608 mm2"), std::string::npos);
+}
+
+// Film that is said never to tear is not said to tear; what is lost folds over.
+TEST(Findings, FilmThatNeverTearsFolds) {
+  Report report = good_report();
+  report.tear_stretch = 0;
+  report.coverage->torn_mm2 = 20;
+  EXPECT_EQ(verdict_of(report).find("tears"), std::string::npos);
+  EXPECT_NE(verdict_of(report).find("folds"), std::string::npos);
+}
+
+// All together are no better than one that is not to be made.
+TEST(Findings, AnObstacleOfOneDipIsOneOfAll) {
+  Report report = good_report();
+  report.dips.resize(2);
+  for (ReportDip& dip : report.dips) dip.gained_share = 0.3;
+  ASSERT_NE(concern_of(findings(report)), Concern::kStop);
+  report.dips[1].obstacle = ReportObstacle{"Trapped air: 242 mm2", "stays dry", "Drill a vent."};
+  EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
+  EXPECT_NE(verdict_of(report).find("Dip 2: Trapped air: 242 mm2"), std::string::npos);
+}
+
+// One [[dip]] is a dip like any other.
+TEST(Findings, ASingleDipInATableIsJudgedAsOne) {
+  Report report = good_report();
+  report.coverage->torn_mm2 = 200;
+  ASSERT_EQ(concern(report, "tears"), Concern::kStop);
+  report.dips.resize(1);
+  report.dips[0].gained_share = 0.3;
+  EXPECT_EQ(concern(report, "tears"), Concern::kStop);
+  EXPECT_EQ(find(findings(report), "coverage")->text, "of the object is under film after 1 dip.");
+}
+
+// What is printed as it is, is printed on film that tears as well.
+TEST(Findings, NothingIsLeftOutOfAFinishedImage) {
+  Report report = good_report();
+  report.coverage->torn_mm2 = 200;
+  EXPECT_NE(find(findings(report), "tears")->text.find("nothing is printed"), std::string::npos);
+  report.finished_image = true;
+  EXPECT_EQ(find(findings(report), "tears")->text.find("nothing is printed"), std::string::npos);
 }
 
 // Two films that do not meet have no seam whose colours could be off.
