@@ -17,7 +17,7 @@ namespace {
 // Then a dip changes smoothly with its ink.
 constexpr int kFreeRounds = 2;
 // And then the next ink can be guessed from so many rounds and the last one.
-constexpr int kMixed = 2;
+constexpr int kMixed = 4;
 // All four inks at once make film so many times as stiff as one alone.
 constexpr double kMostInks = 4;
 // From there on two rounds have to bring the change below this share.
@@ -175,6 +175,11 @@ void InkRounds::stiffen() {
     dip_options_.tears_at_mm = dipped_->film->torn_at_mm;
     dip_options_.moved_mm = dipped_->film->moved_mm;
     outline_.keep(*dipped_->film);
+  } else if (number() > kFreeRounds) {
+    // What lets go besides, in any round, does in all that follow: no film comes and goes.
+    std::vector<double>& told = dip_options_.tears_at_mm;
+    for (std::size_t t = 0; t < told.size(); ++t)
+      told[t] = std::min(told[t], dipped_->film->torn_at_mm[t]);
   }
   std::vector<double> modulus = timings_.measure("stiffness", [&] { return this->modulus(); });
   dip_options_.modulus = dip_options_.modulus.empty() ? modulus : mixed(modulus);

@@ -63,11 +63,12 @@ Settled settled(Object object, const DesignOptions& options) {
   return {std::move(made.dipped), std::move(made.ink)};
 }
 
-// Film that has torn takes no part in the measure, so that the rest all but settles.
+// Film that has torn takes no part in the measure, and what tears in one round tears in all that
+// follow, so that the rest all but settles: a hundredth of what a hand misses by.
 TEST(InkRoundsSlow, ComeToRestOnFilmThatTears) {
   const Settled torn = settled(beast_on_four_legs(), quick(7900));
   EXPECT_GT(torn.dipped.coverage.torn_mm2, 0);
-  EXPECT_LT(torn.result.last_change_mm(), 10 * kSettled_mm);
+  EXPECT_LT(torn.result.last_change_mm(), 30 * kSettled_mm);
 }
 
 TEST(InkRoundsSlow, SettleWhereATearLineCrossesThePicture) {
