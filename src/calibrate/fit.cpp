@@ -25,6 +25,10 @@ constexpr double kAtBound = 1e-3;
 // Stencils of the ratio: half size over 1 / sqrt(ratio), and least; nodes of the lattice rise by
 // this factor.
 constexpr double kShareOfRatio = 0.3, kLeastRatioStep = 0.01, kLatticeFactor = 1.3;
+// An answer is polished at a point of a lattice a fifth as wide as the stencil: the model
+// holds that far, and fits of like scans share their simulations.
+constexpr double kPolishingShare = 0.2;
+constexpr int kPolishings = 2;
 // 97.5 % quantile of the normal distribution.
 constexpr double kQuantile = 1.96;
 
@@ -141,6 +145,8 @@ std::vector<Eigen::Index> known_rows(const Misfits& misfits) {
   return rows;
 }
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
 double root_mean_square(const Eigen::VectorXd& values) {
   return values.size() > 0 ? std::sqrt(values.squaredNorm() / double(values.size())) : 0;
 }
@@ -159,6 +165,96 @@ Stencil stencil_at(const FitPoint& point, const FitOptions& options,
     if (!free[std::size_t(k)]) stencil.center[k] = point[k];
   return stencil;
 }
+
+// ---- one round ----
+
+// A stencil's simulations, and what becomes of them.
+class Round {
+ public:
+  Round(const FitPoint& from, const FitOptions& options, const std::array<bool, 3>& free,
+        const MisfitsAt& misfits_at)
+      : stencil_(stencil_at(from, options, free)),
+        misfits_(misfits_at(stencil_.points())),
+        rows_(known_rows(misfits_)),
+        low_(in_stencils(options.low).cwiseMax(-Eigen::Vector3d::Constant(kTrust))),
+        high_(in_stencils(options.high).cwiseMin(Eigen::Vector3d::Constant(kTrust))) {
+    low_ = low_.cwiseMin(high_);
+    for (int k = 0; k < 3; ++k)
+      if (!free[std::size_t(k)]) low_[k] = high_[k] = 0;
+    make_model();
+  }
+
+  void solve() {
+    model_for_answer_ = compressed(model_);
+    answer_ = minimize(model_for_answer_, low_, high_);
+  }
+
+  // The nearest point of the fine lattice; what is fixed, or at a bound, stays.
+  FitPoint polishing_point(const FilmFit& fit) const {
+    FitPoint near = fit.point;
+    for (int k = 0; k < 3; ++k) {
+      const double distance = kPolishingShare * stencil_.step[k];
+      if (fit.free[std::size_t(k)] && !fit.at_bound[std::size_t(k)])
+        near[k] =
+            stencil_.center[k] + distance * std::round((near[k] - stencil_.center[k]) / distance);
+    }
+    return near;
+  }
+
+  // Lets the model say at a point what the misfits there are.
+  void put_right(const FitPoint& point, const Misfits& there) {
+    for (Eigen::Index i : rows_)
+      if (!there.value.row(i).allFinite()) misfits_.value.row(i).setConstant(kNaN);
+    rows_ = known_rows(misfits_);
+    make_model();
+    model_.value += without(there.value(rows_, 0), open_) - model_.at(in_stencils(point));
+  }
+
+  const Eigen::Vector3d& answer() const { return answer_; }  // in stencils
+
+  void tell(FilmFit& fit, const FitOptions& options) const {
+    fit.center = stencil_.center;
+    fit.step = stencil_.step;
+    fit.open = std::size_t(open_.cols());
+    fit.model = model_for_answer_;
+    fit.point = stencil_.at(answer_);
+    for (int k = 0; k < 3; ++k)
+      fit.at_bound[std::size_t(k)] =
+          fit.free[std::size_t(k)] &&
+          (fit.point[k] <= options.low[k] + 1e-9 || fit.point[k] >= options.high[k] - 1e-9);
+    fit.residual = Eigen::VectorXd::Constant(misfits_.value.rows(), kNaN);
+    fit.jacobian = Eigen::MatrixX3d::Zero(misfits_.value.rows(), 3);
+    const Eigen::VectorXd residual = model_.at(answer_);
+    const Eigen::MatrixX3d slope =
+        model_.slope_at(answer_) * stencil_.step.cwiseInverse().asDiagonal();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      fit.residual[rows_[i]] = residual[Eigen::Index(i)];
+      fit.jacobian.row(rows_[i]) = slope.row(Eigen::Index(i));
+    }
+    fit.rms_mm = root_mean_square(residual);
+  }
+
+ private:
+  Eigen::Vector3d in_stencils(const FitPoint& point) const {
+    return (point - stencil_.center).cwiseQuotient(stencil_.step);
+  }
+
+  void make_model() {
+    if (rows_.size() < 12)
+      throw InputError(
+          "the scans have too few corners on the film that the simulation lays down; check the "
+          "objects' depths");
+    open_ = orthonormal(misfits_.open(rows_, Eigen::all));
+    model_ = stencil_.model(without(misfits_.value(rows_, Eigen::all), open_));
+  }
+
+  Stencil stencil_;
+  Misfits misfits_;
+  std::vector<Eigen::Index> rows_;
+  Eigen::MatrixXd open_;
+  QuadraticModel model_, model_for_answer_;  // the latter compressed
+  Eigen::Vector3d low_, high_, answer_ = Eigen::Vector3d::Zero();
+};
 
 // ---- how well it is known ----
 
@@ -261,49 +357,23 @@ FilmFit fit_parameters(const FitPoint& start, const MisfitsAt& misfits_at,
   FitPoint from = start;
   while (true) {
     ++fit.rounds;
-    const Stencil stencil = stencil_at(from, options, fit.free);
-    const Misfits misfits = misfits_at(stencil.points());
-    const std::vector<Eigen::Index> rows = known_rows(misfits);
-    if (rows.size() < 12)
-      throw InputError(
-          "the scans have too few corners on the film that the simulation lays down; check the "
-          "objects' depths");
-    const Eigen::MatrixXd open = orthonormal(misfits.open(rows, Eigen::all));
-    const QuadraticModel model = stencil.model(without(misfits.value(rows, Eigen::all), open));
-    const auto in_stencils = [&](const FitPoint& point) -> Eigen::Vector3d {
-      return (point - stencil.center).cwiseQuotient(stencil.step);
-    };
-    const Eigen::Vector3d trust = Eigen::Vector3d::Constant(kTrust);
-    Eigen::Vector3d low = in_stencils(options.low).cwiseMax(-trust);
-    Eigen::Vector3d high = in_stencils(options.high).cwiseMin(trust);
-    low = low.cwiseMin(high);
-    for (int k = 0; k < 3; ++k)
-      if (!fit.free[std::size_t(k)]) low[k] = high[k] = 0;
-    fit.model = compressed(model);
-    const Eigen::Vector3d d = minimize(fit.model, low, high);
-
-    fit.center = stencil.center;
-    fit.step = stencil.step;
-    fit.open = std::size_t(open.cols());
-    fit.point = stencil.at(d);
-    for (int k = 0; k < 3; ++k)
-      fit.at_bound[std::size_t(k)] =
-          fit.free[std::size_t(k)] &&
-          (fit.point[k] <= options.low[k] + 1e-9 || fit.point[k] >= options.high[k] - 1e-9);
-    fit.residual =
-        Eigen::VectorXd::Constant(misfits.value.rows(), std::numeric_limits<double>::quiet_NaN());
-    fit.jacobian = Eigen::MatrixX3d::Zero(misfits.value.rows(), 3);
-    const Eigen::VectorXd residual = model.at(d);
-    const Eigen::MatrixX3d slope = model.slope_at(d) * stencil.step.cwiseInverse().asDiagonal();
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      fit.residual[rows[i]] = residual[Eigen::Index(i)];
-      fit.jacobian.row(rows[i]) = slope.row(Eigen::Index(i));
-    }
-    fit.rms_mm = root_mean_square(residual);
-    const Stencil next = stencil_at(fit.point, options, fit.free);
-    fit.settled = d.cwiseAbs().maxCoeff() <= kSettled || next.center == stencil.center;
-    if (fit.settled || fit.rounds >= options.rounds_max) return fit;
+    Round round(from, options, fit.free, misfits_at);
+    round.solve();
+    round.tell(fit, options);
+    const FitPoint next = stencil_at(fit.point, options, fit.free).center;
+    fit.settled = round.answer().cwiseAbs().maxCoeff() <= kSettled || next == fit.center;
     from = fit.point;
+    if (!fit.settled && fit.rounds < options.rounds_max) continue;
+    for (FitPoint last = fit.center; options.polished && fit.polishings < kPolishings;) {
+      const FitPoint at = round.polishing_point(fit);
+      if (at == last) break;
+      ++fit.polishings;
+      round.put_right(at, misfits_at({at}));
+      round.solve();
+      round.tell(fit, options);
+      last = at;
+    }
+    return fit;
   }
 }
 

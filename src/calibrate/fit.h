@@ -32,6 +32,10 @@ struct FitOptions {
   FitPoint low, high;  // where the answer is looked for; equal: fixed
   FitPoint step;       // widest half size of the stencil
   int rounds_max = 12;
+  // Whether the answer is put right by the misfits at its own place, which is asked once or twice
+  // more: a quadratic model of a wide stencil, and what was found at its centre, are a little off
+  // there.
+  bool polished = false;
 };
 
 // Quadratic in every row: r(d) = r0 + J d + (1/2) sum d_i d_j H_ij, d in stencils.
@@ -58,6 +62,7 @@ struct FilmFit {
   // squares.
   QuadraticModel model;
   FitPoint center = FitPoint::Zero(), step = FitPoint::Zero();
+  int polishings = 0;
 };
 
 // The centre of the stencil that is used at a point: one of a lattice, so that fits that end near

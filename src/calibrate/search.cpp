@@ -249,6 +249,7 @@ Answer Search::answer(const std::string& name, const std::vector<std::size_t>& s
   result.name = name;
   FitOptions options = fit_options();
   options.rounds_max = rounds;
+  options.polished = options_.correct && rounds > kRoundsAlone;
   Correction lacking;
   result.fit = fit_parameters(
       start,

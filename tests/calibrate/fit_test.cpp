@@ -53,6 +53,24 @@ TEST(FitTest, FindsTheTruthFromAfar) {
   EXPECT_LE(calls, 10 * fit.rounds);
 }
 
+// A correction that is found at the first point alone, as on finer film, and that is another one
+// elsewhere: the answer is what it would be if it were known everywhere.
+TEST(FitTest, APolishedAnswerIsCorrectedAtItsOwnPlace) {
+  const FitPoint truth(0.662, 0.19, 0.13);
+  const Eigen::MatrixXd turn = 0.4 * Eigen::MatrixXd::Random(kLengths, 3);
+  const MisfitsAt misfits = [&](const std::vector<FitPoint>& points) {
+    Misfits found = scan_with(truth, Eigen::VectorXd::Zero(kLengths))(points);
+    found.value.colwise() += turn * (points.front() - truth);
+    return found;
+  };
+  FitOptions options = wide();
+  const double rough = (fit_parameters({0.6, 0.2, 0.2}, misfits, options).point - truth).norm();
+  options.polished = true;
+  const FilmFit fit = fit_parameters({0.6, 0.2, 0.2}, misfits, options);
+  EXPECT_GT(rough, 1e-3);
+  EXPECT_LT((fit.point - truth).norm(), 0.35 * rough);
+}
+
 TEST(FitTest, StaysWithinTheRangeAndSaysSo) {
   const FitPoint truth(0.65, 0.18, -0.05);
   const FilmFit fit =
