@@ -392,7 +392,7 @@ void set_ends(Certainty& result, const FitPoint& low, const FitPoint& high) {
 
 }  // namespace
 
-Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm) {
+Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm, const FitPoint& astray) {
   std::vector<Eigen::Index> rows, free;
   for (Eigen::Index i = 0; i < fit.residual.size(); ++i)
     if (std::isfinite(fit.residual[i])) rows.push_back(i);
@@ -425,13 +425,13 @@ Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm) {
     low[k] = fit.center[k] + fit.step[k] * profile_end(model, box, int(k), -1, guess, allowed);
     high[k] = fit.center[k] + fit.step[k] * profile_end(model, box, int(k), 1, guess, allowed);
   }
-  if (doubt_mm.size() > 0) {
-    const Eigen::VectorXd moved = solver.solve(j.transpose() * doubt_mm(rows));
-    for (std::size_t a = 0; a < free.size(); ++a) {
-      const Eigen::Index k = free[a];
-      low[k] = fit.point[k] - std::hypot(fit.point[k] - low[k], moved[Eigen::Index(a)]);
-      high[k] = fit.point[k] + std::hypot(high[k] - fit.point[k], moved[Eigen::Index(a)]);
-    }
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(Eigen::Index(free.size()));
+  if (doubt_mm.size() > 0) moved = solver.solve(j.transpose() * doubt_mm(rows));
+  for (std::size_t a = 0; a < free.size(); ++a) {
+    const Eigen::Index k = free[a];
+    const double doubt = std::hypot(moved[Eigen::Index(a)], astray[k]);
+    low[k] = fit.point[k] - std::hypot(fit.point[k] - low[k], doubt);
+    high[k] = fit.point[k] + std::hypot(high[k] - fit.point[k], doubt);
   }
   set_ends(result, low, high);
   return result;

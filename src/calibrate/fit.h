@@ -88,7 +88,9 @@ struct Certainty {
 // The intervals come from the profile of the likelihood: one parameter held, the others at their
 // best, as far as the sum of squares allows. `doubt_mm`: by how much each row may be wrong in
 // simulation, all together; what that does to the answer widens the intervals. Empty: nothing.
-Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm = {});
+// `astray`: by how much the answer may be off besides; widens them likewise.
+Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm = {},
+                    const FitPoint& astray = FitPoint::Zero());
 
 // Two parameters' joint region: by how many of its standard deviations the sum of squares at
 // (a, b), the third parameter at its best, is off: up to 2.45 is the 95 % region.

@@ -22,6 +22,9 @@ constexpr double kLeastShare = 0.8;
 // Widest stencil of the refinement, and the distance of its lattice's nodes.
 const FitPoint kWidestStep(0.03, 0.1, 0.06);
 // Rounds of a refinement; a scan alone is read off the last stencil of all, which costs nothing.
+// By how much answers are led astray beyond what finer film says, as seen on scans from films of
+// nine times the triangles (docs/calibration.md): z_stretch, share of 1 / sqrt(ratio), poisson.
+constexpr double kAstray[3] = {0.0025, 0.065, 0.02};
 constexpr int kRounds = 8, kRoundsAlone = 1;
 
 DesignOptions grid_design(const DesignOptions& design, const SearchOptions& options) {
@@ -263,7 +266,10 @@ Answer Search::answer(const std::string& name, const std::vector<std::size_t>& s
       },
       options);
   result.parameters = from_fit(result.fit.point);
-  result.certainty = certainty(result.fit, lacking.doubt);
+  result.certainty = certainty(
+      result.fit, lacking.doubt,
+      options_.correct ? FitPoint(kAstray[0], kAstray[1] * result.fit.point[1], kAstray[2])
+                       : FitPoint::Zero());
   result.correction_mm = root_mean_square(lacking.all);
   result.by_ink = misfits_by_ink(result.fit, subjects, context);
   return result;

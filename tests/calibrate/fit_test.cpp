@@ -225,6 +225,20 @@ TEST(CertaintyTest, DoubtsWidenTheIntervalsByWhatTheyDoToTheAnswer) {
   EXPECT_NEAR(sure.high.poisson, 0.23, 1e-6);
 }
 
+// As do errors that no row tells of; independent ones add by their squares.
+TEST(CertaintyTest, WhatIsKnownToLeadAstrayWidensTheIntervals) {
+  const Eigen::MatrixX3d jacobian = Eigen::MatrixX3d::Random(40, 3);
+  const FilmFit fit = straight_fit({0.6, 0.2, 0.2}, jacobian, Eigen::VectorXd::Zero(40));
+  const Certainty alone = certainty(fit, {}, {0.004, 0.02, 0.04});
+  EXPECT_NEAR(alone.low.z_stretch, 0.596, 1e-6);
+  EXPECT_NEAR(alone.high.stiffness_ratio, 1 / (0.18 * 0.18), 1e-3);
+  EXPECT_NEAR(alone.high.poisson, 0.24, 1e-6);
+  const Certainty both =
+      certainty(fit, jacobian * Eigen::Vector3d(0.003, 0, 0.03), {0.004, 0.02, 0.04});
+  EXPECT_NEAR(both.low.z_stretch, 0.595, 1e-6);
+  EXPECT_NEAR(both.high.poisson, 0.25, 1e-6);
+}
+
 TEST(FitPointTest, ComesBack) {
   const FilmParameters p = from_fit(to_fit({0.65, 600, 0.2}));
   EXPECT_NEAR(p.stiffness_ratio, 600, 1e-9);
