@@ -23,7 +23,8 @@ bool lies_in_doubt(const MadeDip& dip, const Target& node) {
   const auto hold = dip.made.dipped.map->hold_at(
       (posed.matrix() * node.position.homogeneous()).head<3>(), turn * node.normal);
   const DoubtfulStretch doubtful = doubtful_stretch(dip.config.design.dip.material);
-  return hold && doubtful.to > 0 && (hold->stretch > doubtful.from || hold->moved_mm > kMoved_mm);
+  return hold && !hold->let_go && hold->stretch < doubtful.to &&
+         (hold->stretch > doubtful.from || hold->moved_mm > kMoved_mm);
 }
 
 // Why a dip is not to be made, whatever the others bring.
