@@ -119,7 +119,7 @@ void warn_if_tight(const std::vector<RoomFit>& list, const RunContext& context) 
     context.warn(fmt::format(
         "Only {} of free film is left beside the object where it is {} {}: the film there will "
         "stretch strongly; a larger --film helps.",
-        mm(-0.5 * fit.excess_mm()), mm(fit.needed_mm), fit.what));
+        mm(std::max(0.0, -0.5 * fit.excess_mm())), mm(fit.needed_mm), fit.what));
   }
 }
 

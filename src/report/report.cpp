@@ -143,7 +143,7 @@ std::string several_dips_verdict(const Report& report) {
 }  // namespace
 
 std::string verdict_of(const Report& report) {
-  if (!report.verdict.empty() || !report.coverage) return report.verdict;
+  if (!report.coverage) return "";
   return report.dips.empty() ? plain_verdict(report) : several_dips_verdict(report);
 }
 

@@ -133,7 +133,6 @@ struct Report {
   std::vector<std::string> command_line;  // may be empty
   std::string title;                      // the job's name; empty: the first input's file name
   bool for_customer = false;              // whose page it is; see report_html()
-  std::string verdict;                    // empty: what the figures say
 
   std::vector<ReportInput> inputs;
   std::vector<ReportParameter> parameters;
@@ -168,7 +167,7 @@ std::string no_film_verdict(const Coverage& coverage);
 // Some words of it, for a caption or a band. Of a report that has its coverage.
 std::string short_verdict(const Report& report);
 
-// The report's own verdict, or else a plain sentence or two: how much is covered, how far the film
+// A plain sentence or two: how much is covered, how far the film
 // stretches, whether it tears, and, if it is not to be dipped like this, why not.
 std::string verdict_of(const Report& report);
 
