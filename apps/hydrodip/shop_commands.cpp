@@ -14,6 +14,8 @@
 namespace hydrodip {
 namespace {
 
+constexpr const char* kSweepGroup = "Sweep";
+
 void declare_name(CLI::App& app, Request& request) {
   app.add_option("NAME", request.name, "of the profile")->type_name("");
 }
@@ -40,6 +42,7 @@ JobResult run_profile_show(const Request& request, const RunContext&) {
 void declare_profile_save(CLI::App& app, Request& request) {
   declare_name(app, request);
   app.add_option("--unset", request.unset, "a parameter that the profile is no longer to set")
+      ->group("Configuration")
       ->type_name("NAME")
       ->allow_extra_args(false);
   declare_no_clobber(app, request);
@@ -117,6 +120,7 @@ void declare_history(CLI::App& app, Request& request) {
   add("--notes", "notes", "TEXT", "whatever is worth keeping");
   app.add_option("--settings", history.settings_run,
                  "prints the report.json that this dip was made by")
+      ->group(kRun)
       ->type_name("RUN");
   declare_reporting(app, request);
   declare_configuration(app, request);
@@ -158,11 +162,13 @@ void declare_sweep_plan(CLI::App& app, Request& request) {
       ->type_name("DIR");
   app.add_option("--tasks", request.sweep.tasks,
                  "tasks of the scripts' arrays (default: so many that each lasts some minutes)")
+      ->group(kSweepGroup)
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
   app.add_flag_callback(
-      "--no-trial", [&request] { request.sweep.trial = false; },
-      "do not try the first run, which shows that it works and how long one takes");
+         "--no-trial", [&request] { request.sweep.trial = false; },
+         "do not try the first run, which shows that it works and how long one takes")
+      ->group(kSweepGroup);
   declare_reporting(app, request);
 }
 
@@ -178,11 +184,15 @@ JobResult run_sweep_plan(const Request& request, const RunContext& context) {
 void declare_sweep_run(CLI::App& app, Request& request) {
   declare_sweep_folder(app, request);
   app.add_option("--shard", request.shard, "the I-th of N equal parts of the runs")
+      ->group(kSweepGroup)
       ->type_name("I/N");
-  app.add_option("--task", request.sweep_work.id, "one run alone, by its id")->type_name("ID");
-  app.add_flag("--again", request.sweep_work.again, "also do runs that failed once more");
+  app.add_option("--task", request.sweep_work.id, "one run alone, by its id")
+      ->group(kSweepGroup)
+      ->type_name("ID");
+  app.add_flag("--again", request.sweep_work.again, "also do runs that failed once more")
+      ->group(kSweepGroup);
   declare_reporting(app, request);
-  declare_configuration(app, request);
+  declare_threads(app, request);
 }
 
 // The place in an array of Slurm's. Empty: not in one.
