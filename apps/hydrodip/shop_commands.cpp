@@ -1,7 +1,10 @@
 #include "shop_commands.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
@@ -75,6 +78,19 @@ JobResult run_profile_import(const Request& request, const RunContext&) {
   return import_profile(profile_folder(), request.file, request.name);
 }
 
+// "28.5" or "28.5,28". A decimal comma would make two of one, and no bath cools so much in a dip.
+void take_water(RunFields& fields, const std::string& text) {
+  constexpr double kMostChange_c = 10;
+  const std::vector<double> c = numbers_of("--water", text, 1, 2);
+  if (c.size() > 1 && std::abs(c[1] - c[0]) > kMostChange_c)
+    throw InputError(fmt::format(
+        "--water {}: that would be {:g} C before and {:g} C after the dip; write a temperature "
+        "with a point, as in 28.5",
+        text, c[0], c[1]));
+  fields["water_before_c"] = fmt::format("{}", c[0]);
+  if (c.size() > 1) fields["water_after_c"] = fmt::format("{}", c[1]);
+}
+
 void declare_history(CLI::App& app, Request& request) {
   constexpr const char* kRun = "A dip";
   HistoryRequest& history = request.history;
@@ -95,12 +111,7 @@ void declare_history(CLI::App& app, Request& request) {
   add("--batch", "batch", "NAME", "its batch; alone: shows only this batch");
   add("--label", "label", "NAME", "its label");
   app.add_option_function<std::string>(
-         "--water",
-         [&history](const std::string& text) {
-           const std::size_t comma = text.find(',');
-           history.fields["water_before_c"] = text.substr(0, comma);
-           if (comma != std::string::npos) history.fields["water_after_c"] = text.substr(comma + 1);
-         },
+         "--water", [&history](const std::string& text) { take_water(history.fields, text); },
          "temperature of the water before, and after")
       ->group(kRun)
       ->type_name("C[,C]");
