@@ -36,6 +36,10 @@ refused 'already' profile import friend.toml
 refused 'did you mean' profile show shpo
 refused 'did you mean' print colored.ply --profile shpo
 refused 'name' profile save ../evil --film a3
+refused "without .toml: 'shop'" profile save shop.toml --film a3
+refused 'there is no file nope.icc' profile save shop --printer-profile nope.icc
+refused 'text of one line' profile save shop --set "cost.currency=EUR
+or so"
 refused 'film.margin_mm' profile save shop --set film.margin_mm=lots
 cmp -s shop.txt config/hydrodip/profiles/shop.toml || fail 'a refused value changed the profile'
 
