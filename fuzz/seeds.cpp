@@ -84,7 +84,7 @@ int main(int count, char** arguments) {
   record(
       9,
       R"({"hydrodip_sweep":2,"command":"simulate","quality":"draft","job":"","keep":"all","varied":["a"],
-"inputs":{"a.obj":"00"},"model_files":{"a.obj":["a.obj","a.mtl"]},"scripts":{"slurm.sh":"00"},
+"inputs":{"a.obj":"00"},"model_files":{"a.obj":["a.obj","a.mtl"]},
 "runs":[{"id":"0123456789abcdef","model":"a","values":{"a":"1"}}]})");
   record(1, R"({"id":"0123456789abcdef","seconds":1,"report":{"concern":"none"}})");
   write(to / "scan/b", bytes_of("\x31v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 1 2 3 4\n"));

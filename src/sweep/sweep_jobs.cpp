@@ -38,17 +38,14 @@ std::string duration(double seconds) {
 constexpr const char* kParallel = "parallel.sh";
 constexpr const char* kScripts[] = {kParallel, "slurm.sh"};
 
-// Those that are not any more as the earlier plan wrote them.
+// Those that somebody has changed.
 std::vector<std::string> edited_scripts(const fs::path& folder) {
   std::vector<std::string> edited;
   std::error_code ignored;
-  if (!fs::exists(folder / "sweep.json", ignored)) return edited;
-  try {
-    for (const auto& [script, hash] : read_manifest(folder).scripts)
-      if (fs::exists(folder / script, ignored) && sha256_hex(read_file(folder / script)) != hash)
-        edited.push_back(script);
-  } catch (const InputError&) {
-    // Of another version: it is not known.
+  for (const char* script : kScripts) {
+    if (!fs::is_regular_file(folder / script, ignored)) continue;
+    const std::vector<std::uint8_t> bytes = read_file(folder / script);
+    if (!is_as_made({bytes.begin(), bytes.end()})) edited.emplace_back(script);
   }
   return edited;
 }
@@ -98,7 +95,7 @@ double seconds_of_one(const SweepPlanRequest& request, const SweepPlan& plan,
 
 JobResult sweep_plan_job(const SweepPlanRequest& request, const RunContext& context) {
   OutputFolder output(request.folder);
-  SweepPlan plan = read_sweep(request.file, request.folder, context);
+  const SweepPlan plan = read_sweep(request.file, request.folder, context);
   const std::vector<std::string> edited = edited_scripts(request.folder);
   std::vector<std::string> files = {"sweep.json"};
   for (const char* script : kScripts)
@@ -108,13 +105,11 @@ JobResult sweep_plan_job(const SweepPlanRequest& request, const RunContext& cont
   const double seconds = seconds_of_one(request, plan, context, trouble);
   const int tasks = tasks_of(request, plan, seconds);
   for (const char* script : kScripts) {
-    const std::string text =
-        script == kParallel
-            ? parallel_script(tasks)
-            : slurm_script(tasks, fs::weakly_canonical(fs::absolute(request.folder)));
-    plan.scripts[script] = sha256_hex({text.begin(), text.end()});
     if (std::ranges::find(files, script) == files.end()) continue;
-    write_file(output.path(script), text);
+    write_file(output.path(script),
+               script == kParallel
+                   ? parallel_script(tasks)
+                   : slurm_script(tasks, fs::weakly_canonical(fs::absolute(request.folder))));
     make_runnable(output.path(script));
   }
   write_file(output.path("sweep.json"), manifest_json(plan));

@@ -489,7 +489,6 @@ std::string manifest_json(const SweepPlan& plan) {
                      {"varied", plan.varied},
                      {"inputs", plan.inputs},
                      {"model_files", plan.model_files},
-                     {"scripts", plan.scripts},
                      {"runs", runs}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -515,7 +514,6 @@ SweepPlan read_manifest(const fs::path& folder) {
     plan.varied = json.at("varied").get<std::vector<std::string>>();
     plan.inputs = json.at("inputs").get<decltype(plan.inputs)>();
     plan.model_files = json.at("model_files").get<decltype(plan.model_files)>();
-    plan.scripts = json.at("scripts").get<decltype(plan.scripts)>();
     for (const Json& entry : json.at("runs")) {
       SweepRun run;
       run.id = entry.at("id").get<std::string>();

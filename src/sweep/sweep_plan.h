@@ -34,7 +34,6 @@ struct SweepPlan {
   std::map<std::string, std::string> inputs;
   // What a model's file names: itself and the files beside it that it refers to.
   std::map<std::string, std::vector<std::string>> model_files;
-  std::map<std::string, std::string> scripts;  // as they were written last, with their SHA-256
 };
 
 // Reads a sweep's file:
