@@ -83,9 +83,10 @@ int main(int count, char** arguments) {
          "\"done\"}\n");
   record(
       9,
-      R"({"hydrodip_sweep":1,"command":"simulate","quality":"draft","job":"","keep":"all","varied":["a"],
+      R"({"hydrodip_sweep":2,"command":"simulate","quality":"draft","job":"","keep":"all","varied":["a"],
+"inputs":{"a.obj":"00"},"model_files":{"a.obj":["a.obj","a.mtl"]},
 "runs":[{"id":"0123456789abcdef","model":"a","values":{"a":"1"}}]})");
-  record(1, R"({"seconds":1,"report":{"concern":"none"}})");
+  record(1, R"({"id":"0123456789abcdef","seconds":1,"report":{"concern":"none"}})");
   write(to / "scan/b", bytes_of("\x31v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 1 2 3 4\n"));
   write(to / "store/a", bytes_of("{\"subject\":\"a-1\",\"z_stretch\":0.5,\"ink_stiffness_ratio\":9,"
                                  "\"poisson\":0,\"film_mm\":[[1,2],null]}\n"));

@@ -57,12 +57,11 @@ class HelpFormatter : public CLI::Formatter {
   }
 
   std::string options_of(const CLI::App* app, const std::string& group) const {
-    if (group == "Options") return "";  // only --help itself
-    std::string text = "\n" + group + ":\n";
+    std::string text;
     for (const CLI::Option* option : app->get_options())
-      if (option->nonpositional() && option->get_group() == group)
+      if (option->nonpositional() && option->get_group() == group && option != app->get_help_ptr())
         text += make_option(option, false);
-    return text;
+    return text.empty() ? "" : "\n" + group + ":\n" + text;
   }
 };
 

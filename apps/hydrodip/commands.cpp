@@ -60,11 +60,24 @@ void declare_print(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
+// A finished sheet leaves nothing to lay on the model.
+void require_no_artwork_option(const Request& request) {
+  for (const Setting& option : request.sources.options)
+    if (option.name.starts_with("art."))
+      throw InputError(fmt::format(
+          "{} puts a picture on the model, and --film-image is the finished sheet, which "
+          "is printed as it is: give one of the two",
+          option.origin));
+}
+
 JobResult run_print(const Request& request, const RunContext& context) {
   require_model(request.model, "print");
   JobConfig config = configure(request);
   config.output = output_folder(request, "print");
-  if (!config.film_image.empty()) return print_film_image_job(config, context);
+  if (!config.film_image.empty()) {
+    require_no_artwork_option(request);
+    return print_film_image_job(config, context);
+  }
   JobResult result = print_job(config, context);
   add_run_sheets(result, context);
   return result;

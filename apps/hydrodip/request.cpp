@@ -259,9 +259,13 @@ void declare_resolution(CLI::App& app, Request& request) {
                        "resolution of the film image, 36 to 1200 (default: 300)");
 }
 
-void declare_configuration(CLI::App& app, Request& request) {
+void declare_threads(CLI::App& app, Request& request) {
   add_parameter_option(app, request, "--threads", "run.threads", "N", kConfigGroup,
                        "processor threads (default: all)");
+}
+
+void declare_configuration(CLI::App& app, Request& request) {
+  declare_threads(app, request);
   const auto paths = [](std::vector<std::filesystem::path>& list) {
     return
         [&list](const std::vector<std::string>& names) { list.assign(names.begin(), names.end()); };

@@ -71,7 +71,9 @@ void declare_strict(CLI::App& app, Request& request);        // --strict
 void declare_dips(CLI::App& app, Request& request);          // --dips
 void declare_ink(CLI::App& app, Request& request);
 void declare_resolution(CLI::App& app, Request& request);
-void declare_configuration(CLI::App& app, Request& request);
+void declare_threads(CLI::App& app, Request& request);  // --threads
+void declare_configuration(CLI::App& app,
+                           Request& request);  // the same, --profile, --config, --set
 void declare_film_image(CLI::App& app, Request& request);
 void declare_pattern(CLI::App& app, Request& request);
 void declare_nest(CLI::App& app, Request& request);

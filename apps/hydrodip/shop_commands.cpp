@@ -1,7 +1,10 @@
 #include "shop_commands.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
@@ -13,6 +16,8 @@
 
 namespace hydrodip {
 namespace {
+
+constexpr const char* kSweepGroup = "Sweep";
 
 void declare_name(CLI::App& app, Request& request) {
   app.add_option("NAME", request.name, "of the profile")->type_name("");
@@ -40,6 +45,7 @@ JobResult run_profile_show(const Request& request, const RunContext&) {
 void declare_profile_save(CLI::App& app, Request& request) {
   declare_name(app, request);
   app.add_option("--unset", request.unset, "a parameter that the profile is no longer to set")
+      ->group("Configuration")
       ->type_name("NAME")
       ->allow_extra_args(false);
   declare_no_clobber(app, request);
@@ -72,6 +78,19 @@ JobResult run_profile_import(const Request& request, const RunContext&) {
   return import_profile(profile_folder(), request.file, request.name);
 }
 
+// "28.5" or "28.5,28". A decimal comma would make two of one, and no bath cools so much in a dip.
+void take_water(RunFields& fields, const std::string& text) {
+  constexpr double kMostChange_c = 10;
+  const std::vector<double> c = numbers_of("--water", text, 1, 2);
+  if (c.size() > 1 && std::abs(c[1] - c[0]) > kMostChange_c)
+    throw InputError(fmt::format(
+        "--water {}: that would be {:g} C before and {:g} C after the dip; write a temperature "
+        "with a point, as in 28.5",
+        text, c[0], c[1]));
+  fields["water_before_c"] = fmt::format("{}", c[0]);
+  if (c.size() > 1) fields["water_after_c"] = fmt::format("{}", c[1]);
+}
+
 void declare_history(CLI::App& app, Request& request) {
   constexpr const char* kRun = "A dip";
   HistoryRequest& history = request.history;
@@ -92,12 +111,7 @@ void declare_history(CLI::App& app, Request& request) {
   add("--batch", "batch", "NAME", "its batch; alone: shows only this batch");
   add("--label", "label", "NAME", "its label");
   app.add_option_function<std::string>(
-         "--water",
-         [&history](const std::string& text) {
-           const std::size_t comma = text.find(',');
-           history.fields["water_before_c"] = text.substr(0, comma);
-           if (comma != std::string::npos) history.fields["water_after_c"] = text.substr(comma + 1);
-         },
+         "--water", [&history](const std::string& text) { take_water(history.fields, text); },
          "temperature of the water before, and after")
       ->group(kRun)
       ->type_name("C[,C]");
@@ -117,6 +131,7 @@ void declare_history(CLI::App& app, Request& request) {
   add("--notes", "notes", "TEXT", "whatever is worth keeping");
   app.add_option("--settings", history.settings_run,
                  "prints the report.json that this dip was made by")
+      ->group(kRun)
       ->type_name("RUN");
   declare_reporting(app, request);
   declare_configuration(app, request);
@@ -158,11 +173,13 @@ void declare_sweep_plan(CLI::App& app, Request& request) {
       ->type_name("DIR");
   app.add_option("--tasks", request.sweep.tasks,
                  "tasks of the scripts' arrays (default: so many that each lasts some minutes)")
+      ->group(kSweepGroup)
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
   app.add_flag_callback(
-      "--no-trial", [&request] { request.sweep.trial = false; },
-      "do not try the first run, which shows that it works and how long one takes");
+         "--no-trial", [&request] { request.sweep.trial = false; },
+         "do not try the first run, which shows that it works and how long one takes")
+      ->group(kSweepGroup);
   declare_reporting(app, request);
 }
 
@@ -178,11 +195,15 @@ JobResult run_sweep_plan(const Request& request, const RunContext& context) {
 void declare_sweep_run(CLI::App& app, Request& request) {
   declare_sweep_folder(app, request);
   app.add_option("--shard", request.shard, "the I-th of N equal parts of the runs")
+      ->group(kSweepGroup)
       ->type_name("I/N");
-  app.add_option("--task", request.sweep_work.id, "one run alone, by its id")->type_name("ID");
-  app.add_flag("--again", request.sweep_work.again, "also do runs that failed once more");
+  app.add_option("--task", request.sweep_work.id, "one run alone, by its id")
+      ->group(kSweepGroup)
+      ->type_name("ID");
+  app.add_flag("--again", request.sweep_work.again, "also do runs that failed once more")
+      ->group(kSweepGroup);
   declare_reporting(app, request);
-  declare_configuration(app, request);
+  declare_threads(app, request);
 }
 
 // The place in an array of Slurm's. Empty: not in one.

@@ -11,11 +11,16 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <utility>
 
 #include "base/error.h"
+#include "base/json_nesting.h"
 #include "base/obstacle.h"
 
 namespace hydrodip {
@@ -37,6 +42,13 @@ constexpr const char* kEarlierFolder = "..earlier";
 [[noreturn]] void refuse_file(const fs::path& file, const std::string& why) {
   throw InputError(fmt::format("{}: cannot be written ({}); free the name, or write elsewhere.",
                                file.string(), why));
+}
+
+[[noreturn]] void refuse_to_replace(const fs::path& file) {
+  throw InputError(
+      fmt::format("{}: there is such a file already, and no_clobber keeps it; write to another "
+                  "folder, or leave out --no-clobber (output.no_clobber).",
+                  file.string()));
 }
 
 void require_free_name(const fs::path& file) {
@@ -130,6 +142,52 @@ bool names_hydrodip(const fs::path& file) {
   return !error && (part_speaks(0) || part_speaks(std::max<std::streamoff>(size - kPart, 0)));
 }
 
+// Names that an earlier result's report in the folder says it wrote there. Nothing: there is none
+// that says so.
+std::optional<std::set<std::string>> names_in_report(const fs::path& folder) {
+  constexpr std::uintmax_t kLargest = 64 << 20;
+  const fs::path report = folder / "report.json";
+  std::error_code error;
+  if (!fs::is_regular_file(report, error) || fs::file_size(report, error) > kLargest) return {};
+  std::ifstream stream(report, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  const auto json = parsed_json<nlohmann::json>(bytes);
+  if (!json.is_object() || !json.contains("command") || !json.contains("outputs") ||
+      !json["outputs"].is_array())
+    return {};
+  std::set<std::string> names;
+  for (const auto& output : json["outputs"])
+    if (output.is_object() && output.contains("name") && output["name"].is_string())
+      names.insert(output["name"].get<std::string>());
+  return names;
+}
+
+// What is known of who wrote the files of a folder, and of the folders in it.
+class Authorship {
+ public:
+  explicit Authorship(const fs::path& folder) : folder_(folder) {}
+
+  // Whether hydrodip wrote the file: it says so itself, as pictures and tables do not; or, of
+  // `names` that make up a job with its report, the report that is there says so; or another of
+  // `names` beside it speaks of hydrodip.
+  bool is_ours(const std::string& name, const std::vector<std::string>& names) {
+    if (names_hydrodip(folder_ / name)) return true;
+    const fs::path within = fs::path(name).parent_path();
+    const auto [known, is_new] = reported_.try_emplace(within.string());
+    const bool is_job =
+        std::find(names.begin(), names.end(), (within / "report.json").string()) != names.end();
+    if (is_new && is_job) known->second = names_in_report(folder_ / within);
+    if (known->second) return known->second->contains(fs::path(name).filename().string());
+    return std::any_of(names.begin(), names.end(), [&](const std::string& other) {
+      return fs::path(other).parent_path() == within && names_hydrodip(folder_ / other);
+    });
+  }
+
+ private:
+  fs::path folder_;
+  std::map<std::string, std::optional<std::set<std::string>>> reported_;
+};
+
 // Puts finished files under their final names one by one; undo() brings everything back.
 class Replacement {
  public:
@@ -213,8 +271,7 @@ void OutputFolder::announce(const std::vector<std::string>& names,
                             const std::vector<fs::path>& inputs) {
   inputs_ = inputs;
   std::error_code ignored;
-  std::vector<std::string> foreign;
-  bool ours = false;
+  Authorship authorship(folder_);
   for (const std::string& name : names) {
     const fs::path file = folder_ / name;
     if (!fs::exists(file, ignored)) continue;
@@ -224,22 +281,13 @@ void OutputFolder::announce(const std::vector<std::string>& names,
                       "elsewhere, or write to another folder.",
                       input->string(), name));
     require_free_name(file);
-    if (earlier_ == EarlierResult::kKept)
+    if (earlier_ == EarlierResult::kKept) refuse_to_replace(file);
+    if (!authorship.is_ours(name, names))
       throw InputError(
-          fmt::format("{}: there is a result already, and no_clobber keeps it; write to another "
-                      "folder, or leave out --no-clobber (output.no_clobber).",
+          fmt::format("{}: this file was not written by hydrodip, and would be replaced; move it "
+                      "away, or write to another folder.",
                       file.string()));
-    if (names_hydrodip(file)) {
-      ours = true;
-    } else {
-      foreign.push_back(name);
-    }
   }
-  if (!foreign.empty() && !ours)
-    throw InputError(
-        fmt::format("{}: this file was not written by hydrodip, and would be replaced; move it "
-                    "away, or write to another folder.",
-                    (folder_ / foreign.front()).string()));
 }
 
 fs::path OutputFolder::path(const std::string& name) {
@@ -266,20 +314,13 @@ const fs::path* OutputFolder::input_at(const fs::path& file) const {
   return at == inputs_.end() ? nullptr : &*at;
 }
 
-// Of a folder's files some say that they are hydrodip's; then all of these names there are.
 void OutputFolder::remove_superseded() const {
   std::error_code ignored;
-  std::set<fs::path> ours;
-  for (const std::string& name : superseded_)
-    if (names_hydrodip(folder_ / name)) ours.insert((folder_ / name).parent_path());
   for (const std::string& name : superseded_) {
-    const fs::path file = folder_ / name;
-    const bool is_new = std::find(names_.begin(), names_.end(), name) != names_.end();
-    if (!is_new && ours.contains(file.parent_path()) && fs::is_regular_file(file, ignored) &&
-        input_at(file) == nullptr)
-      fs::remove(file, ignored);
+    fs::remove(folder_ / name, ignored);
+    if (const fs::path within = fs::path(name).parent_path(); !within.empty())
+      fs::remove(folder_ / within, ignored);  // if empty
   }
-  for (const fs::path& folder : ours) fs::remove(folder, ignored);  // if empty
 }
 
 void OutputFolder::commit() {
@@ -289,7 +330,19 @@ void OutputFolder::commit() {
       refuse_file(folder_ / name, "it was not finished");
     }
     require_free_name(folder_ / name);
+    // Another job may have come first.
+    if (earlier_ == EarlierResult::kKept && fs::exists(folder_ / name, error))
+      refuse_to_replace(folder_ / name);
   }
+  // The earlier report, which is about to go, knows what was written.
+  Authorship authorship(folder_);
+  std::vector<std::string> all = names_;
+  all.insert(all.end(), superseded_.begin(), superseded_.end());
+  std::erase_if(superseded_, [&](const std::string& name) {
+    const bool is_new = std::find(names_.begin(), names_.end(), name) != names_.end();
+    return is_new || !fs::is_regular_file(folder_ / name, error) ||
+           input_at(folder_ / name) != nullptr || !authorship.is_ours(name, all);
+  });
   Replacement replacement(staging_, folder_);
   for (const std::string& name : names_) {
     std::error_code ignored;

@@ -110,17 +110,38 @@ struct History::Database {
     if (sqlite3_open(file.string().c_str(), &handle) != SQLITE_OK) fail();
     sqlite3_busy_timeout(handle, kPatience_ms);
     execute(kSchema);
+    const auto version = query("SELECT schema_version FROM hydrodip");
+    if (version.empty() || version.front().front() != "1")
+      throw InputError(fmt::format("{}: made by a newer hydrodip; use that one", file.string()));
   }
   ~Database() { sqlite3_close(handle); }
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
   [[noreturn]] void fail() const {
-    const std::string why = sqlite3_errmsg(handle);
-    throw InputError(fmt::format(
-        "{}: the history cannot be read or written ({}); move the file away, and it is made anew "
-        "from the runs' logs",
-        file.string(), why));
+    throw InputError(fmt::format("{}: the history cannot be read or written ({}); {}",
+                                 file.string(), sqlite3_errmsg(handle),
+                                 way_out(sqlite3_errcode(handle))));
+  }
+
+  static const char* way_out(int code) {
+    switch (code & 0xff) {
+      case SQLITE_BUSY:
+      case SQLITE_LOCKED:
+        return "another program is at it: try again when it has ended";
+      case SQLITE_READONLY:
+      case SQLITE_CANTOPEN:
+      case SQLITE_PERM:
+      case SQLITE_AUTH:
+        return "it is kept in the job's folder, which has to be writable, and so has the file";
+      case SQLITE_FULL:
+      case SQLITE_IOERR:
+        return "free space on its disk";
+      default:
+        return "move the file away, and the dips are read from the runs' logs again; what people "
+               "told later (outcomes, notes, corrections, dips without the guide) and the reports "
+               "of earlier prints are in that file alone";
+    }
   }
 
   void execute(const char* sql) const {
@@ -180,8 +201,12 @@ History::History(const fs::path& job_folder)
   std::error_code error;
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end;
        entry.increment(error))
-    if (entry->path().filename().string().starts_with("rig-") && entry->is_directory())
-      if (const auto run = read_run_log(entry->path())) logged.push_back(*run);
+    if (entry->path().filename().string().starts_with("rig-") && entry->is_directory()) {
+      if (const auto run = read_run_log(entry->path()))
+        logged.push_back(*run);
+      else if (!is_begun_log(entry->path()))
+        unread_.push_back(entry->path().filename().string());
+    }
   std::vector<std::uint8_t> report;
   if (fs::exists(folder_ / "report.json", error)) report = read_file(folder_ / "report.json");
   database_->transact([&] {
@@ -190,6 +215,11 @@ History::History(const fs::path& job_folder)
       database_->query("INSERT OR IGNORE INTO reports VALUES (?, ?)",
                        {sha256_hex(report), std::string(report.begin(), report.end())});
   });
+  // What an earlier look took in is there.
+  std::erase_if(unread_, [&](const std::string& run) {
+    return !database_->query("SELECT id FROM runs WHERE id = ?", {run}).empty();
+  });
+  std::ranges::sort(unread_);
 }
 
 History::~History() = default;

@@ -34,12 +34,14 @@ using RunFields = std::map<std::string, std::string>;
 class History {
  public:
   // Opens or makes JOB/history.sqlite and takes in what the logs of JOB/rig-N say. Throws
-  // InputError if the file is none of ours or cannot be written.
+  // InputError if the file is none of ours, of a newer version, or cannot be written.
   explicit History(const std::filesystem::path& job_folder);
   ~History();
   History(const History&) = delete;
   History& operator=(const History&) = delete;
 
+  // Folders of runs that are not among these, as their logs are empty or damaged: "rig-3".
+  const std::vector<std::string>& unread() const { return unread_; }
   // In order of time.
   std::vector<DipRun> runs() const;
   // A dip that was made without `rig guide`. Returns its id. Throws InputError for unknown fields,
@@ -55,6 +57,7 @@ class History {
  private:
   struct Database;
   std::filesystem::path folder_;
+  std::vector<std::string> unread_;
   std::unique_ptr<Database> database_;
 };
 

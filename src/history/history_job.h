@@ -19,14 +19,15 @@ struct HistoryRequest {
   std::string settings_run;  // whose report.json is wanted instead; empty: none
 };
 
-// What one dip uses, by the job's sheet and what was weighed, and what that costs.
+// What one dip uses, by the sheet that it was dipped with and what was weighed, and what that costs
+// at the job's prices.
 struct DipUse {
   double film_m2 = 0;
-  double ink_ml = 0;  // 0 too if the report does not say how much is laid
+  std::optional<double> ink_ml = 0;  // nothing if its print does not say how much is laid
   double activator_g = 0;
-  double cost = 0;
+  double cost = 0;  // without ink that is not known
 };
-DipUse use_of(const DipRun& run, const RigJob& job);
+DipUse use_of(const DipRun& run, const SheetUse& sheet, const CostOptions& cost);
 
 // Every dip with its readings; what was used; what a good piece costs, with those that failed
 // charged to it. Changes what the request says first.

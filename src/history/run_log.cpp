@@ -65,4 +65,13 @@ std::optional<DipRun> read_run_log(const std::filesystem::path& run_folder) {
   return run;
 }
 
+bool is_begun_log(const std::filesystem::path& run_folder) {
+  std::ifstream log(run_folder / "log.jsonl");
+  for (std::string line; std::getline(log, line);) {
+    const Json entry = parsed_json<Json>(line);
+    if (entry.is_object() && text(entry, "event") == "start") return true;
+  }
+  return false;
+}
+
 }  // namespace hydrodip

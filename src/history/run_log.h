@@ -12,4 +12,7 @@ namespace hydrodip {
 // (the computer went off while it was written) is left out.
 std::optional<DipRun> read_run_log(const std::filesystem::path& run_folder);
 
+// Whether the log says what the run is about; an empty or damaged one does not.
+bool is_begun_log(const std::filesystem::path& run_folder);
+
 }  // namespace hydrodip

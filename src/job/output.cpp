@@ -43,25 +43,6 @@ ReportColors colors_of(const FilmLayer& error) {
   return {summary.mean, summary.most_of};
 }
 
-ReportInk ink_amounts(const InkImage& inks, double limit) {
-  ReportInk amounts;
-  amounts.density_limit = limit;
-  float most = 0;
-  std::array<std::uint64_t, 4> sum{};
-  CheckEvery check(1 << 16);
-  for (std::size_t i = 0; i < inks.cmyk.size(); i += 4) {
-    check();
-    const std::uint8_t* laid = inks.cmyk.data() + i;
-    if (is_blank(laid)) continue;
-    most = std::max(most, from_bytes(laid).density());
-    for (std::size_t k = 0; k < 4; ++k) sum[k] += laid[k];
-  }
-  amounts.density_max = double(most);
-  const double full = 255.0 * std::max(1.0, 0.25 * double(inks.cmyk.size()));
-  for (std::size_t k = 0; k < 4; ++k) amounts.mean[k] = double(sum[k]) / full;
-  return amounts;
-}
-
 // With what is known of colours and inks.
 Report full_report(const JobRecord& record, const Previews& previews) {
   Report report = make_report(record);
@@ -210,6 +191,25 @@ void write_glb(const std::filesystem::path& path, const JobRecord& record, const
 
 }  // namespace
 
+ReportInk ink_amounts(const InkImage& inks, double limit) {
+  ReportInk amounts;
+  amounts.density_limit = limit;
+  float most = 0;
+  std::array<std::uint64_t, 4> sum{};
+  CheckEvery check(1 << 16);
+  for (std::size_t i = 0; i < inks.cmyk.size(); i += 4) {
+    check();
+    const std::uint8_t* laid = inks.cmyk.data() + i;
+    if (is_blank(laid)) continue;
+    most = std::max(most, from_bytes(laid).density());
+    for (std::size_t k = 0; k < 4; ++k) sum[k] += laid[k];
+  }
+  amounts.density_max = double(most);
+  const double full = 255.0 * std::max(1.0, 0.25 * double(inks.cmyk.size()));
+  for (std::size_t k = 0; k < 4; ++k) amounts.mean[k] = double(sum[k]) / full;
+  return amounts;
+}
+
 Previews write_previews(OutputFolder& folder, const JobRecord& record,
                         const std::string& caption_start) {
   const DippedObject& dipped = record.dipped();
@@ -275,6 +275,10 @@ std::vector<std::string> files_of_dip() {
   return {"print.pdf", "print.png", "print.tif", "film.ply", "preview.glb", "report.json"};
 }
 
+std::vector<std::string> pictures_of_jobs() {
+  return {"preview.png", "maps.png", "gamut.png", "dips.png"};
+}
+
 std::vector<std::string> sheets_of_other_prints(std::size_t dips) {
   std::vector<std::string> names;
   const auto add = [&](const std::string& folder) {
@@ -283,7 +287,7 @@ std::vector<std::string> sheets_of_other_prints(std::size_t dips) {
     names.push_back(folder + "run-sheet.pdf");
   };
   if (dips > 0) add("");  // whose report is replaced
-  if (dips == 0) names.emplace_back("dips.png");
+  for (const std::string& picture : pictures_of_jobs()) names.push_back(picture);
   for (std::size_t k = dips; k < kMostDips; ++k) add(fmt::format("dip-{}/", k + 1));
   return names;
 }

@@ -30,11 +30,18 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
 // cancelled.
 JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previews& previews);
 
+// What a sheet lays of each ink, of a limit to their sum.
+ReportInk ink_amounts(const InkImage& inks, double limit);
+
 // What a job of several dips writes into the folder of each.
 std::vector<std::string> files_of_dip();
 
+// Pictures that some jobs have and others, as drafts, have not.
+std::vector<std::string> pictures_of_jobs();
+
 // What prints of another number of dips put into the same folder, for OutputFolder::supersede():
-// nobody shall print a sheet of an earlier job. 0: a single dip, in no folder of its own.
+// nobody shall print a sheet of an earlier job, or take its pictures for those of this one. 0: a
+// single dip, in no folder of its own.
 std::vector<std::string> sheets_of_other_prints(std::size_t dips);
 
 }  // namespace hydrodip

@@ -19,6 +19,7 @@
 #include "job/dips_report.h"
 #include "job/job_record.h"
 #include "job/logo.h"
+#include "job/output.h"
 #include "job/sheet_of.h"
 #include "object/bake.h"
 #include "report/findings.h"
@@ -61,6 +62,7 @@ void write_dip(OutputFolder& folder, const MadeDip& dip, const MadeDips& all,
                          context, &dip.made.ink, printer.model->name()};
   Report report = make_report(record);
   report.warnings.clear();
+  report.ink = ink_amounts(dip.made.ink.ink.inking.inks, dip.config.design.inking.limit);
   report.dip_number = dip.number;
   report.dip_of = int(all.dips.size());
   write_report_json(folder.path(inside + "report.json"), report);

@@ -71,6 +71,28 @@ JobResult written(const fs::path& file, const std::string& what, const std::stri
   return result;
 }
 
+// --profile takes "shop.toml" for a file.
+void require_bare_name(const std::string& name) {
+  if (fs::path(name).extension() == ".toml")
+    throw InputError(fmt::format("a profile goes by a name without .toml: '{}'",
+                                 fs::path(name).stem().string()));
+}
+
+// What is set now and is not there; a file that goes later is the job's to say.
+void require_files(const ProfileEdit& edit) {
+  JobConfig config;
+  apply_sources(config, edit.add);
+  for (const auto* settings : {&edit.add.options, &edit.add.sets})
+    for (const Setting& setting : *settings) {
+      const Parameter& parameter = find_parameter(setting.name, setting.origin);
+      if (parameter.type != ParameterType::kPath) continue;
+      const fs::path file = std::get<std::string>(parameter.get(config));
+      std::error_code ignored;
+      if (!file.empty() && !fs::exists(file, ignored))
+        throw InputError(fmt::format("{}: there is no file {}", setting.origin, file.string()));
+    }
+}
+
 }  // namespace
 
 JobResult list_profiles(const fs::path& folder) {
@@ -110,15 +132,18 @@ JobResult show_profile(const fs::path& folder, const std::string& name) {
 }
 
 JobResult save_profile(const fs::path& folder, const std::string& name, const ProfileEdit& edit) {
+  require_bare_name(name);
   const fs::path file = profile_path(folder, name);
   std::error_code ignored;
   const bool exists = fs::exists(file, ignored);
   if (!exists && !edit.remove.empty()) known_profile(folder, name);  // says so
   const std::string text = edited_profile(exists ? file : fs::path(), edit);
+  require_files(edit);
   return written(file, exists ? "changed" : "made", text);
 }
 
 JobResult import_profile(const fs::path& folder, const fs::path& file, const std::string& name) {
+  require_bare_name(name);
   const fs::path to = profile_path(folder, name.empty() ? file.stem().string() : name);
   std::error_code ignored;
   if (fs::exists(to, ignored))

@@ -4,6 +4,7 @@
 
 #include "base/output_folder.h"
 #include "base/run_scope.h"
+#include "job/command_text.h"
 #include "job/jobs.h"
 #include "samples/samples.h"
 
@@ -27,7 +28,7 @@ JobResult sample_job(const std::string& name, const std::filesystem::path& folde
   result.text = output.told_replaced();
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (folder / file).string());
-  result.text += fmt::format("try: hydrodip print {}\n", (folder / model).string());
+  result.text += fmt::format("try: hydrodip print {}\n", shell_word((folder / model).string()));
   result.json =
       nlohmann::ordered_json{
           {"command", "sample"}, {"folder", folder.string()}, {"files", result.files}}

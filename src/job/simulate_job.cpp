@@ -16,6 +16,7 @@
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
+#include "job/print_dips.h"
 #include "job/sheet_of.h"
 #include "job/wanted.h"
 #include "job/ways.h"
@@ -196,6 +197,7 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
   const JobConfig& config = job.config;
   const std::vector<ReportInput> inputs = describe_inputs(config, job.prepared, job.printer);
   announce_outputs(folder, command, config, inputs);
+  folder.supersede(command == "print" ? sheets_of_other_prints(0) : pictures_of_jobs());
   const PrintedFilm printed = times.measure("film image", [&] {
     PrintedFilm film_image = printed_film(config, *job.printer.model);
     if (command == "print") clear_margin(film_image, config.design.film, context);
@@ -237,6 +239,10 @@ JobResult simulate_job(const JobConfig& config, const RunContext& context) {
 }
 
 JobResult print_film_image_job(const JobConfig& config, const RunContext& context) {
+  if (asks_for_several_dips(config))
+    throw InputError(
+        "--film-image is the finished sheet of one dip, and this job has several: leave it out, or "
+        "--dips and the job's [[dip]] tables");
   return forward_job("print", config, context);
 }
 

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
+
 namespace hydrodip {
 namespace {
 
@@ -20,6 +22,16 @@ void note_end(RunRecord& record, const std::string& outcome, const std::string& 
   record.note("end", fields);
 }
 
+// Of a run that did not come to its end. Why it did not is said, not that this cannot be written.
+void leave_end(RunRecord& record, const std::string& outcome, const std::string& message,
+               const RunEnd& end) {
+  try {
+    note_end(record, outcome, message, end);
+    record.finish(end.trace);
+  } catch (const InputError&) {
+  }
+}
+
 }  // namespace
 
 JobResult finish_run(RunRecord& record, const std::function<void()>& run,
@@ -27,15 +39,13 @@ JobResult finish_run(RunRecord& record, const std::function<void()>& run,
   try {
     run();
   } catch (const Cancelled& cancelled) {
-    note_end(record, "cancelled", cancelled.what(), end());
-    record.finish(end().trace);
+    leave_end(record, "cancelled", cancelled.what(), end());
     const std::string what = cancelled.what();
     throw Cancelled(fmt::format("{}; the log is in {}",
                                 what == Cancelled().what() ? "stopped by you" : what,
                                 record.folder().string()));
   } catch (const std::exception& error) {
-    note_end(record, "failed", error.what(), end());
-    record.finish(end().trace);
+    leave_end(record, "failed", error.what(), end());
     throw;
   }
   note_end(record, "done", "", end());

@@ -175,12 +175,19 @@ class Guide {
     const Activator wanted = activator_for(job_.config);
     person_.say(fmt::format("\nACTIVATOR. {:.1f} +- {:.1f} g, evenly. Mask on.", wanted.mass_g,
                             wanted.tolerance_g));
-    const double before_g = ask_number("Gun before, g: ", kHeaviest_g);
+    double before_g = ask_number("Gun before, g: ", kHeaviest_g);
     double used_g = 0;
     for (;;) {
       person_.ask("Spray. Enter when done: ");
       sprayed_s_ = bench_.clock.now_s();
-      const double after_g = ask_number("Gun after, g: ", kHeaviest_g);
+      double after_g = ask_number("Gun after, g: ", kHeaviest_g);
+      while (after_g > before_g) {
+        const std::string answer = person_.ask(fmt::format(
+            "That is heavier than before, {:g} g. Enter to weigh again, or before to mend that: ",
+            before_g));
+        if (answer == "before") before_g = ask_number("Gun before, g: ", kHeaviest_g);
+        after_g = ask_number("Gun after, g: ", kHeaviest_g);
+      }
       used_g = before_g - after_g;
       const double off_g = used_g - wanted.mass_g;
       record_.note("activator", {{"before_g", before_g},

@@ -112,6 +112,16 @@ double ink_coverage(const Json& report) {
   return sum;
 }
 
+// Today's settings change nothing of what was printed.
+SheetUse sheet_use_of(const Json& report) {
+  JobConfig printed;
+  apply_settings(printed, settings_of(report["parameters"], "report.json"));
+  SheetUse use{1e-6 * film_area_mm2(printed.design.film), ink_coverage(report)};
+  if (report.contains("dip_of_several") && report["dip_of_several"].is_object())
+    use.first_of_piece = count_of(report["dip_of_several"], "number") == 1;
+  return use;
+}
+
 double letter_area_mm2() {
   for (const FilmFormat& format : film_formats())
     if (format.name == "letter") return format.width_mm * format.height_mm;
@@ -158,6 +168,17 @@ double tape_mm(const JobConfig& config) {
   return tape_mm(film.width_mm, film.height_mm, film.margin_mm, config.print.camera_marks);
 }
 
+std::optional<SheetUse> sheet_use(const std::string& report) {
+  const Json json = parsed_json<Json>(report);
+  if (!json.is_object() || !json.contains("parameters") || !json["parameters"].is_object())
+    return {};
+  try {
+    return sheet_use_of(json);
+  } catch (const InputError&) {  // of a version with other ranges
+    return {};
+  }
+}
+
 bool moves_aside(const RigJob& job) {
   constexpr double kStill = 1e-9;
   return std::ranges::any_of(job.way_in, [&](const WayPoint& point) {
@@ -195,7 +216,7 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
   job.way_in = way_in(report, folder / "report.json");
   find_model(report, job);
   job.report_sha256 = read.sha256;
-  job.ink_coverage = ink_coverage(report);
+  job.sheet = sheet_use_of(report);
   const Json& figures = report["figures"];
   if (!figures["depth_mm"].is_number() || !(figures["depth_mm"].get<double>() > 0))
     throw InputError(

@@ -13,6 +13,14 @@
 
 namespace hydrodip {
 
+// What one dip takes by its print.
+struct SheetUse {
+  double film_m2 = 0;  // its whole sheet
+  double ink_coverage =
+      0;  // what full coverage of each ink would take, as a part of it; 0: unknown
+  bool first_of_piece = true;  // false: of several dips, not the first of its piece
+};
+
 struct RigJob {
   std::filesystem::path folder;
   std::string title;
@@ -24,8 +32,7 @@ struct RigJob {
   std::vector<std::string> warnings;
   std::string alarm;  // "Do not dip it like this: ..."; empty: nothing forbids it
   std::string report_sha256;
-  // Of report.json: what full coverage of each ink would take, as a part of it. 0: it is not known.
-  double ink_coverage = 0;
+  SheetUse sheet;            // as printed
   std::string batch, label;  // of the piece that is dipped; may be empty
   int earlier_dips = 0;      // of several dips: those that are done before
   int next_dip = 0;          // of several dips: the one that follows; 0: none
@@ -33,6 +40,9 @@ struct RigJob {
 
 // Reads FOLDER/report.json of a print or simulate job. Throws InputError if it is none.
 RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& sources);
+
+// The same of a report.json's text. Nothing if it is none of a dip.
+std::optional<SheetUse> sheet_use(const std::string& report);
 
 // Whether the object shifts or turns while it comes down, so that lowering it is not enough.
 bool moves_aside(const RigJob& job);

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -69,7 +71,14 @@ void RunRecord::note(const std::string& event, const LogFields& fields) {
   for (const auto& [name, value] : fields)
     std::visit([&, key = name](const auto& v) { line[key] = v; }, value);
   lines_.push_back(dump(line));
+  errno = 0;
+  log_.clear();
   log_ << lines_.back() << '\n' << std::flush;
+  if (!log_)
+    throw InputError(fmt::format(
+        "{}: '{}' cannot be written ({}); free space, and begin again: a dip without its log is "
+        "not in the history",
+        (folder_ / "log.jsonl").string(), event, std::generic_category().message(errno)));
 }
 
 std::vector<std::string> RunRecord::finish(const Trace& trace) {

@@ -76,7 +76,7 @@ std::string expectation(const Parameter& p) {
     case ParameterType::kChoice:
       return "one of " + quoted_list(p.choices);
     case ParameterType::kText:
-      return "text";
+      return "text of one line";
     case ParameterType::kPath:
       return "a file name";
     case ParameterType::kColor:
@@ -145,6 +145,8 @@ std::string checked_text(const Parameter& p, const Setting& setting) {
   const std::string* text = std::get_if<std::string>(&setting.value);
   if (!text) refuse(p, setting);
   if (text->find('\0') != std::string::npos) refuse(p, setting);
+  if (p.type == ParameterType::kText && text->find_first_of("\n\r") != std::string::npos)
+    refuse(p, setting);
   if (p.type == ParameterType::kChoice &&
       std::find(p.choices.begin(), p.choices.end(), *text) == p.choices.end())
     refuse(p, setting);

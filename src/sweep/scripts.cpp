@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/file.h"
 #include "job/command_text.h"
 
 namespace hydrodip {
@@ -15,7 +16,19 @@ constexpr double kShortest_s = 10;  // worth a task of its own
 constexpr int kFew = 8;             // tasks to share at least, if they are worth it
 constexpr int kMost = 1000;         // Slurm's MaxArraySize is 1001 unless it is configured
 
+// Its last line tells whether the lines before it are still as they were written.
+constexpr const char* kSeal = "# as it was made: ";
+
+std::string hash_of(const std::string& text) { return sha256_hex({text.begin(), text.end()}); }
+
+std::string sealed(const std::string& script) { return script + kSeal + hash_of(script) + "\n"; }
+
 }  // namespace
+
+bool is_as_made(const std::string& script) {
+  const std::size_t seal = script.rfind(kSeal);
+  return seal != std::string::npos && script == sealed(script.substr(0, seal));
+}
 
 int tasks_for(std::size_t runs, double seconds) {
   const double whole_s = double(runs) * (seconds > 0 ? seconds : 1);
@@ -25,7 +38,7 @@ int tasks_for(std::size_t runs, double seconds) {
 }
 
 std::string parallel_script(int tasks) {
-  return fmt::format(
+  return sealed(fmt::format(
       R"sh(#!/bin/sh
 # Made by hydrodip sweep plan. Does the sweep's runs with GNU parallel: as many at once as there are
 # cores here. On other machines, which have to see this folder under the same name:
@@ -36,11 +49,11 @@ cd "$(dirname -- "$0")"
 seq {0} | parallel -q --workdir "$PWD" \
   "${{HYDRODIP:-hydrodip}}" sweep run . --shard {{}}/{0} --threads 1 --quiet
 )sh",
-      tasks);
+      tasks));
 }
 
 std::string slurm_script(int tasks, const std::filesystem::path& folder) {
-  return fmt::format(
+  return sealed(fmt::format(
       R"sh(#!/bin/sh
 # Made by hydrodip sweep plan. Does the sweep's runs as an array of jobs: sbatch slurm.sh
 # Submitted again, it goes on where it was.
@@ -54,7 +67,7 @@ set -eu
 cd {1}
 exec "${{HYDRODIP:-hydrodip}}" sweep run . --threads "${{SLURM_CPUS_PER_TASK:-1}}" --quiet
 )sh",
-      tasks, shell_word(folder.string()));
+      tasks, shell_word(folder.string())));
 }
 
 }  // namespace hydrodip

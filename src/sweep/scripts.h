@@ -15,4 +15,7 @@ std::string parallel_script(int tasks);
 // Slurm's array of jobs.
 std::string slurm_script(int tasks, const std::filesystem::path& folder);
 
+// Whether nobody has changed the script since one of these made it.
+bool is_as_made(const std::string& script);
+
 }  // namespace hydrodip

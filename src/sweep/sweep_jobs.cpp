@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/output_folder.h"
+#include "job/command_text.h"
 #include "sweep/scripts.h"
 #include "sweep/sweep_table.h"
 
@@ -34,13 +35,55 @@ std::string duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
+constexpr const char* kParallel = "parallel.sh";
+constexpr const char* kScripts[] = {kParallel, "slurm.sh"};
+
+// Those that somebody has changed.
+std::vector<std::string> edited_scripts(const fs::path& folder) {
+  std::vector<std::string> edited;
+  std::error_code ignored;
+  for (const char* script : kScripts) {
+    if (!fs::is_regular_file(folder / script, ignored)) continue;
+    const std::vector<std::uint8_t> bytes = read_file(folder / script);
+    if (!is_as_made({bytes.begin(), bytes.end()})) edited.emplace_back(script);
+  }
+  return edited;
+}
+
+// No more than there are runs.
+int tasks_of(const SweepPlanRequest& request, const SweepPlan& plan, double seconds) {
+  return request.tasks > 0 ? int(std::min(std::size_t(request.tasks), plan.runs.size()))
+                           : tasks_for(plan.runs.size(), seconds);
+}
+
+std::string count_of(std::size_t count, const std::string& what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+// 0.12, 1.2, 12, 120
+std::string two_digits(double value) {
+  return value < 10 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
+}
+
+// The first run. Returns what was wrong, if it was not done.
+std::string run_trial(const fs::path& folder, const SweepPlan& plan, const RunContext& context) {
+  try {
+    return run_sweep(folder, plan, {{}, plan.runs.front().id, false}, context).what_changed;
+  } catch (const Cancelled&) {
+    std::error_code ignored;
+    for (const char* part : {"claims", "runs", "work"})
+      fs::remove(folder / part, ignored);  // empty
+    throw Cancelled("cancelled; the sweep was not planned");
+  }
+}
+
 // Of the first run that has an outcome; it is done if none has. 0: it failed, or is not wanted.
 double seconds_of_one(const SweepPlanRequest& request, const SweepPlan& plan,
                       const RunContext& context, std::string& trouble) {
   const std::string& id = plan.runs.front().id;
   if (request.trial) {
     context.progress("trying the first run", 0);
-    run_sweep(request.folder, plan, {{}, id, false}, context.quiet());
+    trouble = run_trial(request.folder, plan, context.quiet());
   }
   const auto outcome = read_outcome(request.folder, id);
   if (!outcome) return 0;
@@ -52,37 +95,53 @@ double seconds_of_one(const SweepPlanRequest& request, const SweepPlan& plan,
 
 JobResult sweep_plan_job(const SweepPlanRequest& request, const RunContext& context) {
   OutputFolder output(request.folder);
-  const SweepPlan plan = read_sweep(request.file, request.folder);
-  const std::vector<std::string> files = {"sweep.json", "parallel.sh", "slurm.sh"};
+  const SweepPlan plan = read_sweep(request.file, request.folder, context);
+  const std::vector<std::string> edited = edited_scripts(request.folder);
+  std::vector<std::string> files = {"sweep.json"};
+  for (const char* script : kScripts)
+    if (std::ranges::find(edited, script) == edited.end()) files.emplace_back(script);
   output.announce(files, {request.file});
   std::string trouble;
   const double seconds = seconds_of_one(request, plan, context, trouble);
-  const int tasks = request.tasks > 0 ? request.tasks : tasks_for(plan.runs.size(), seconds);
+  const int tasks = tasks_of(request, plan, seconds);
+  for (const char* script : kScripts) {
+    if (std::ranges::find(files, script) == files.end()) continue;
+    write_file(output.path(script),
+               script == kParallel
+                   ? parallel_script(tasks)
+                   : slurm_script(tasks, fs::weakly_canonical(fs::absolute(request.folder))));
+    make_runnable(output.path(script));
+  }
   write_file(output.path("sweep.json"), manifest_json(plan));
-  write_file(output.path("parallel.sh"), parallel_script(tasks));
-  write_file(output.path("slurm.sh"),
-             slurm_script(tasks, fs::weakly_canonical(fs::absolute(request.folder))));
-  make_runnable(output.path("parallel.sh"));
-  make_runnable(output.path("slurm.sh"));
   output.commit();
 
   JobResult result;
   result.folder = request.folder;
   result.files = files;
-  const std::string folder = request.folder.string();
-  result.text = fmt::format("{} runs", plan.runs.size());
+  const std::string folder = shell_word(request.folder.string());
+  result.text = count_of(plan.runs.size(), "run");
   if (seconds > 0)
-    result.text += fmt::format(", about {:.2g} s each: {} on one core", seconds,
+    result.text += fmt::format(", about {} s each: {} on one core", two_digits(seconds),
                                duration(seconds * double(plan.runs.size())));
+  if (plan.same > 0)
+    result.text += fmt::format(
+        "\n{} more would be the same as one of these, as all that they read "
+        "is the same, and {} left out",
+        plan.same, plan.same == 1 ? "is" : "are");
   result.text += fmt::format(
       "\nhere:          hydrodip sweep run {0}\nGNU parallel:  {0}/parallel.sh\nSlurm:         "
       "sbatch "
-      "{0}/slurm.sh   ({1} tasks)\nand then:      hydrodip sweep collect {0}\n",
-      folder, tasks);
+      "{0}/slurm.sh   ({1})\nand then:      hydrodip sweep collect {0}\n",
+      folder, count_of(std::size_t(tasks), "task"));
+  for (const std::string& script : edited)
+    result.text += fmt::format(
+        "kept {}, which was edited: remove it, and the next 'sweep plan' writes a new one\n",
+        script);
   result.text += output.told_replaced();
   if (!trouble.empty()) result.text += "the first run failed: " + trouble + "\n";
-  result.json = dump({{"folder", folder},
+  result.json = dump({{"folder", request.folder.string()},
                       {"runs", plan.runs.size()},
+                      {"same", plan.same},
                       {"seconds_each", seconds > 0 ? Json(seconds) : Json()},
                       {"tasks", tasks}});
   return result;
@@ -91,13 +150,18 @@ JobResult sweep_plan_job(const SweepPlanRequest& request, const RunContext& cont
 JobResult sweep_run_job(const fs::path& folder, const SweepWork& work, const RunContext& context) {
   const SweepPlan plan = read_manifest(folder);
   const SweepDone done = run_sweep(folder, plan, work, context);
+  if (done.changed > 0)
+    throw InputError(fmt::format("{} ({}: {} done, {} failed, {} not done for that)",
+                                 done.what_changed, folder.string(), done.done + done.before,
+                                 done.failed, done.changed));
   JobResult result;
   result.folder = folder;
   result.text = fmt::format("{} done, {} failed", done.done, done.failed);
   if (done.before > 0) result.text += fmt::format(", {} were done before", done.before);
   if (done.elsewhere > 0)
-    result.text += fmt::format(", {} are being done elsewhere", done.elsewhere);
-  result.text += fmt::format("\n'hydrodip sweep collect {}' puts them together\n", folder.string());
+    result.text += fmt::format(", {} were taken by another 'sweep run'", done.elsewhere);
+  result.text += fmt::format("\n'hydrodip sweep collect {}' puts them together\n",
+                             shell_word(folder.string()));
   result.json = dump({{"done", done.done},
                       {"failed", done.failed},
                       {"before", done.before},
@@ -112,6 +176,8 @@ JobResult sweep_collect_job(const fs::path& folder, const RunContext& context) {
   JobResult result;
   result.folder = folder;
   result.files = {"table.csv", "table.json"};
+  output.announce({"table.csv", "table.json", "response.svg"}, {});
+  output.supersede({"response.svg"});
   write_file(output.path("table.csv"), table_csv(table, plan));
   write_file(output.path("table.json"), table_json(table, plan));
   const std::string response = response_svg(table, plan);
@@ -126,7 +192,7 @@ JobResult sweep_collect_job(const fs::path& folder, const RunContext& context) {
     return std::ranges::count(table.rows, state, &SweepRow::state);
   };
   result.text =
-      fmt::format("{} runs: {} done, {} failed, {} missing\n", table.rows.size(),
+      fmt::format("{}: {} done, {} failed, {} missing\n", count_of(table.rows.size(), "run"),
                   count(RunState::kDone), count(RunState::kFailed), count(RunState::kMissing));
   constexpr std::size_t kShown = 10;
   std::size_t shown = 0;

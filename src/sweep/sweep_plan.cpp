@@ -14,6 +14,7 @@
 #include "base/json_nesting.h"
 #include "base/nearest_name.h"
 #include "settings/params.h"
+#include "sweep/sweep_inputs.h"
 
 namespace hydrodip {
 namespace {
@@ -44,9 +45,10 @@ std::string name_of(SweepCommand wanted) {
   return "";
 }
 
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;
 constexpr std::size_t kMostRuns = 1000000, kIdDigits = 16;
 constexpr const char* kModel = "model";
+constexpr const char* kModelFile = "object.file";
 
 // The file's tables, with words for what is wrong in them.
 class SweepFile {
@@ -63,6 +65,7 @@ class SweepFile {
   }
 
   bool has(const std::string& name) const { return json_.contains(name); }
+  bool says(const char* key) const { return table("sweep").contains(key); }
 
   const Json& table(const std::string& name) const {
     static const Json empty = Json::object();
@@ -110,19 +113,22 @@ class SweepFile {
     std::error_code error;
     if (!fs::is_regular_file(path, error))
       refuse(fmt::format("{}: there is no file {}", where, path.string()));
-    const fs::path relative = fs::relative(path, folder, error);
-    return error || relative.empty() ? fs::absolute(path).string() : relative.string();
+    return from_folder(path, folder);
   }
 
-  // As --set takes it.
-  std::string text(const Json& value, const std::string& name) const {
-    if (value.is_string()) return value.get<std::string>();
+  // As --set takes it, but for files, which are named as file_at() does.
+  std::string text(const Json& value, const std::string& name, const fs::path& folder) const {
+    if (value.is_string()) {
+      const auto given = value.get<std::string>();
+      return names_file(name, given) ? file_at(value, name, folder) : given;
+    }
+    if (value.is_null()) refuse(fmt::format("{}: inf and nan are no values of a parameter", name));
     if (value.is_number_integer()) return fmt::format("{}", value.get<std::int64_t>());
     if (value.is_number()) return fmt::format("{}", value.get<double>());
     if (value.is_array() && !value.empty() &&
         std::ranges::all_of(value, [](const Json& v) { return v.is_number(); })) {
       std::string list;
-      for (const Json& v : value) list += (list.empty() ? "" : ",") + text(v, name);
+      for (const Json& v : value) list += (list.empty() ? "" : ",") + text(v, name, folder);
       return list;
     }
     refuse(fmt::format("{}: {} is no value of a parameter", name, value.dump()));
@@ -172,12 +178,26 @@ struct Axis {
   }
 };
 
-Axis read_axis(const SweepFile& file, const std::string& name, const Json& value) {
+// 0: it does not say.
+int range_count(const SweepFile& file, const std::string& name, const Json& range) {
+  if (!range.contains("count")) return 0;
+  const Json& count = range["count"];
+  if (!count.is_number_integer() || count.get<std::int64_t>() < 2 ||
+      count.get<std::int64_t>() > std::int64_t(kMostRuns))
+    file.refuse(
+        fmt::format("vary.{}: count must be a whole number from 2 to {}, as a sweep has at "
+                    "most so many runs, not {}",
+                    name, kMostRuns, count.dump()));
+  return int(count.get<std::int64_t>());
+}
+
+Axis read_axis(const SweepFile& file, const std::string& name, const Json& value,
+               const fs::path& folder) {
   const Parameter& parameter = find_parameter(name, "[vary]");
   Axis axis;
   axis.name = name;
   if (value.is_array() && !value.empty()) {
-    for (const Json& item : value) axis.list.push_back(file.text(item, name));
+    for (const Json& item : value) axis.list.push_back(file.text(item, name, folder));
     return axis;
   }
   if (!value.is_object())
@@ -194,9 +214,13 @@ Axis read_axis(const SweepFile& file, const std::string& name, const Json& value
   };
   axis.from = bound("from");
   axis.to = bound("to");
-  axis.count =
-      value.contains("count") && value["count"].is_number_integer() ? value["count"].get<int>() : 0;
-  axis.log = value.value("log", false);
+  axis.count = range_count(file, name, value);
+  if (value.contains("log")) {
+    if (!value["log"].is_boolean())
+      file.refuse(
+          fmt::format("vary.{}: log must be true or false, not {}", name, value["log"].dump()));
+    axis.log = value["log"].get<bool>();
+  }
   axis.whole = parameter.type == ParameterType::kInteger;
   if (parameter.type != ParameterType::kNumber && !axis.whole)
     file.refuse(fmt::format("vary.{}: only a number has a range; list its values", name));
@@ -205,13 +229,13 @@ Axis read_axis(const SweepFile& file, const std::string& name, const Json& value
   return axis;
 }
 
-std::vector<Axis> read_axes(const SweepFile& file) {
+std::vector<Axis> read_axes(const SweepFile& file, const fs::path& folder) {
   std::map<std::string, Json> values;
   std::vector<std::string> order;
   flatten(file.table("vary"), "", values, order);
   std::vector<Axis> axes;
   axes.reserve(order.size());
-  for (const std::string& name : order) axes.push_back(read_axis(file, name, values[name]));
+  for (const std::string& name : order) axes.push_back(read_axis(file, name, values[name], folder));
   return axes;
 }
 
@@ -221,13 +245,12 @@ void require_few_enough(const SweepFile& file, double runs) {
 }
 
 // Every combination; the last axis changes fastest.
-std::vector<Values> grid(const SweepFile& file, std::vector<Axis> axes) {
+std::vector<Values> grid(const SweepFile& file, std::vector<Axis> axes, const RunContext& context) {
   double runs = 1;
   for (Axis& axis : axes) {
     if (axis.is_range()) {
       if (axis.count < 2)
         file.refuse(fmt::format("vary.{}: say how many values, as in count = 5", axis.name));
-      require_few_enough(file, axis.count);
       for (int i = 0; i < axis.count; ++i)
         axis.list.push_back(axis.at(double(i) / double(axis.count - 1)));
       axis.list.erase(std::unique(axis.list.begin(), axis.list.end()), axis.list.end());
@@ -240,6 +263,7 @@ std::vector<Values> grid(const SweepFile& file, std::vector<Axis> axes) {
     std::vector<Values> longer;
     for (const Values& values : all)
       for (const std::string& value : axis.list) {
+        context.check_cancelled();
         longer.push_back(values);
         longer.back().emplace_back(axis.name, value);
       }
@@ -287,7 +311,7 @@ Listed listed(const SweepFile& file, const fs::path& folder) {
       if (name == kModel)
         list.models.back() = file.file_at(values[name], "run.model", folder);
       else
-        list.values.back().emplace_back(name, file.text(values[name], name));
+        list.values.back().emplace_back(name, file.text(values[name], name, folder));
     }
   }
   return list;
@@ -303,12 +327,13 @@ std::vector<std::string> models_of(const SweepFile& file, const fs::path& folder
   return models;
 }
 
-Values held_values(const SweepFile& file) {
+Values held_values(const SweepFile& file, const fs::path& folder) {
   std::map<std::string, Json> values;
   std::vector<std::string> order;
   flatten(file.table("set"), "", values, order);
   Values held;
-  for (const std::string& name : order) held.emplace_back(name, file.text(values[name], name));
+  for (const std::string& name : order)
+    held.emplace_back(name, file.text(values[name], name, folder));
   return held;
 }
 
@@ -332,31 +357,46 @@ std::vector<std::string> varied_names(const std::vector<SweepRun>& runs) {
   return names;
 }
 
-std::string hash_of(const fs::path& file) { return sha256_hex(read_file(file)); }
+// What the method would pass over has no place in the file.
+void require_heard(const SweepFile& file, const std::string& method) {
+  if (method == "list" && file.has("vary"))
+    file.refuse(
+        "[[run]] tables name each run, [vary] makes runs of its own: keep one of the two, and put "
+        "what holds for all under [set]");
+  if (method != "list" && file.has("run"))
+    file.refuse(fmt::format(
+        "[[run]] tables are for method = \"list\", not \"{}\": leave out the one or the other",
+        method));
+  for (const char* key : {"runs", "seed"})
+    if (method != "latin" && file.says(key))
+      file.refuse(fmt::format("sweep.{}: is for method = \"latin\", and this sweep's is \"{}\"",
+                              key, method));
+}
 
-// Of all that a run depends on, but for pictures beside its model.
-std::string id_of(const SweepPlan& plan, const SweepRun& run, const fs::path& folder,
-                  std::map<std::string, std::string>& hashes) {
-  const auto hash = [&](const std::string& file) -> std::string {
-    if (file.empty()) return "";
-    auto& known = hashes[file];
-    if (known.empty()) known = hash_of(folder / file);
-    return known;
-  };
-  Json content = {{"command", name_of(plan.command)},
-                  {"quality", plan.quality},
-                  {"job", hash(plan.job)},
-                  {"model", hash(run.model)}};
-  std::map<std::string, std::string> sorted;
-  for (const auto& [name, value] : run.values) sorted[name] = value;  // the last one counts
-  content["values"] = sorted;
-  const std::string text = content.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return sha256_hex({text.begin(), text.end()}).substr(0, kIdDigits);
+// A latin hypercube's ranges have as many values as there are runs.
+std::vector<Axis> read_latin_axes(const SweepFile& file, const fs::path& folder) {
+  std::vector<Axis> axes = read_axes(file, folder);
+  for (const Axis& axis : axes)
+    if (axis.count > 0)
+      file.refuse(fmt::format(
+          "vary.{}: with method = \"latin\", runs under [sweep] says how many; leave out count",
+          axis.name));
+  return axes;
+}
+
+// Files are named as from the sweep's folder.
+std::string as_from_here(const std::string& name, const std::string& value,
+                         const fs::path& folder) {
+  return names_file(name, value) ? (folder / value).string() : value;
+}
+
+bool sets(const SweepRun& run, const std::string& name) {
+  return std::ranges::any_of(run.values, [&](const auto& value) { return value.first == name; });
 }
 
 }  // namespace
 
-SweepPlan read_sweep(const fs::path& file, const fs::path& folder) {
+SweepPlan read_sweep(const fs::path& file, const fs::path& folder, const RunContext& context) {
   const SweepFile sweep(file);
   SweepPlan plan;
   plan.command = command_of(sweep.choice("command", command_names()));
@@ -364,36 +404,38 @@ SweepPlan read_sweep(const fs::path& file, const fs::path& folder) {
   plan.keep_files = sweep.choice("keep", {"report", "all"}) == "all";
   const std::string method =
       sweep.choice("method", {sweep.has("run") ? "list" : "grid", "grid", "list", "latin"});
-  if (sweep.table("sweep").contains("job"))
-    plan.job = sweep.file_at(sweep.table("sweep")["job"], "sweep.job", folder);
+  require_heard(sweep, method);
+  if (sweep.says("job")) plan.job = sweep.file_at(sweep.table("sweep")["job"], "sweep.job", folder);
 
   Listed runs;
   if (method == "list")
     runs = listed(sweep, folder);
   else if (method == "latin")
-    runs.values = latin(read_axes(sweep), sweep.whole("runs", 100, 1, kMostRuns),
+    runs.values = latin(read_latin_axes(sweep, folder), sweep.whole("runs", 100, 1, kMostRuns),
                         sweep.whole("seed", 1, 0, ~std::uint64_t{0} >> 1));
   else
-    runs.values = grid(sweep, read_axes(sweep));
+    runs.values = grid(sweep, read_axes(sweep, folder), context);
   if (runs.values.empty()) sweep.refuse("there are no runs in it: write [[run]] tables");
   runs.models.resize(runs.values.size());
 
   std::vector<std::string> models = models_of(sweep, folder);
   if (models.empty()) models.emplace_back();
   require_few_enough(sweep, double(models.size()) * double(runs.values.size()));
-  const Values held = held_values(sweep);
-  std::map<std::string, std::string> hashes;
+  const Values held = held_values(sweep, folder);
+  FileHashes hashes;
   std::set<std::string> ids;
   for (const std::string& model : models)
     for (std::size_t i = 0; i < runs.values.size(); ++i) {
+      context.check_cancelled();
       SweepRun run;
       run.model = runs.models[i].empty() ? model : runs.models[i];
       run.values = held;
       run.values.insert(run.values.end(), runs.values[i].begin(), runs.values[i].end());
-      run.id = id_of(plan, run, folder, hashes);
-      if (!ids.insert(run.id).second) continue;            // the same again
-      static_cast<void>(sweep_config(plan, run, folder));  // says what is wrong
-      plan.runs.push_back(std::move(run));
+      note_inputs(plan, run, folder, hashes, context);  // says what is wrong
+      if (ids.insert(run.id).second)
+        plan.runs.push_back(std::move(run));
+      else
+        ++plan.same;
     }
   plan.varied = varied_names(plan.runs);
   return plan;
@@ -408,6 +450,11 @@ std::string value_of(const SweepRun& run, const std::string& name) {
 }
 
 JobConfig sweep_config(const SweepPlan& plan, const SweepRun& run, const fs::path& folder) {
+  if (!run.model.empty() && sets(run, kModelFile))
+    throw InputError(fmt::format(
+        "{} and models under [sweep] (or model in a [[run]]) both name the model of a run: leave "
+        "out one of them",
+        kModelFile));
   JobConfig config;
   SettingSources sources;
   if (!plan.quality.empty()) sources.quality = quality_settings(plan.quality);
@@ -417,7 +464,8 @@ JobConfig sweep_config(const SweepPlan& plan, const SweepRun& run, const fs::pat
   if (!plan.keep_files)
     sources.options.push_back({"preview.pictures", std::string("off"), false, "'off'", "sweep"});
   for (const auto& [name, value] : run.values)
-    sources.sets.push_back({name, value, false, "'" + value + "'", "the sweep"});
+    sources.sets.push_back(
+        {name, as_from_here(name, value, folder), false, "'" + value + "'", "the sweep"});
   apply_sources(config, sources);
   if (!run.model.empty()) config.model = folder / run.model;
   if (config.model.empty())
@@ -439,6 +487,8 @@ std::string manifest_json(const SweepPlan& plan) {
                      {"job", plan.job},
                      {"keep", plan.keep_files ? "all" : "report"},
                      {"varied", plan.varied},
+                     {"inputs", plan.inputs},
+                     {"model_files", plan.model_files},
                      {"runs", runs}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -462,6 +512,8 @@ SweepPlan read_manifest(const fs::path& folder) {
     plan.job = json.at("job").get<std::string>();
     plan.keep_files = json.at("keep") == "all";
     plan.varied = json.at("varied").get<std::vector<std::string>>();
+    plan.inputs = json.at("inputs").get<decltype(plan.inputs)>();
+    plan.model_files = json.at("model_files").get<decltype(plan.model_files)>();
     for (const Json& entry : json.at("runs")) {
       SweepRun run;
       run.id = entry.at("id").get<std::string>();

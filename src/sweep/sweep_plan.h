@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/context.h"
 #include "settings/settings.h"
 
 namespace hydrodip {
@@ -14,9 +16,10 @@ namespace hydrodip {
 enum class SweepCommand { kSimulate, kPrint, kOrient };
 
 struct SweepRun {
-  std::string id;     // 16 hexadecimal digits: a hash of command, inputs and values
+  std::string id;     // 16 hexadecimal digits: a hash of command, values and all files it reads
   std::string model;  // relative to the sweep's folder, or absolute; empty: the job's own
-  std::vector<std::pair<std::string, std::string>> values;  // parameter, value as for --set
+  // Parameter, value as for --set; files as `model`.
+  std::vector<std::pair<std::string, std::string>> values;
 };
 
 struct SweepPlan {
@@ -26,6 +29,11 @@ struct SweepPlan {
   bool keep_files = false;          // all that a run writes, not its report alone
   std::vector<std::string> varied;  // names of what differs between the runs, "model" among them
   std::vector<SweepRun> runs;       // no two with the same id
+  std::size_t same = 0;             // runs that were left out, as they are the same as others
+  // Files that runs read, as `SweepRun::model`, with their SHA-256; "": there was none.
+  std::map<std::string, std::string> inputs;
+  // What a model's file names: itself and the files beside it that it refers to.
+  std::map<std::string, std::vector<std::string>> model_files;
 };
 
 // Reads a sweep's file:
@@ -53,13 +61,15 @@ struct SweepPlan {
 //   "dip.depth_mm" = 7
 //
 // File names are relative to the sweep's file; in the plan they are relative to `folder`. Every
-// run's values are checked as a job's are. Throws InputError with file and place.
-SweepPlan read_sweep(const std::filesystem::path& file, const std::filesystem::path& folder);
+// run's values are checked as a job's are. Throws InputError with file and place, Cancelled.
+SweepPlan read_sweep(const std::filesystem::path& file, const std::filesystem::path& folder,
+                     const RunContext& context);
 
 // What the run has for a varied parameter, or "model". Empty: nothing, so the default.
 std::string value_of(const SweepRun& run, const std::string& name);
 
-// The configuration of one run; `folder` as above. Throws InputError if a file is gone.
+// The configuration of one run; `folder` as above. Throws InputError if a file is gone, or two
+// things name the model.
 JobConfig sweep_config(const SweepPlan& plan, const SweepRun& run,
                        const std::filesystem::path& folder);
 

@@ -6,14 +6,19 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <functional>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_nesting.h"
 #include "job/jobs.h"
+#include "settings/params.h"
+#include "sweep/sweep_inputs.h"
 
 namespace hydrodip {
 namespace {
@@ -52,14 +57,13 @@ class Claim {
   bool held_ = false;
 };
 
-bool has_failed(const fs::path& folder, const std::string& id) {
+bool is_pending(const fs::path& folder, const SweepPlan& plan, const std::string& id, bool again) {
   const auto outcome = read_outcome(folder, id);
-  return outcome && !outcome->error.empty();
-}
-
-bool is_pending(const fs::path& folder, const std::string& id, bool again) {
+  if (!outcome) return true;
+  if (!outcome->error.empty()) return again;
+  // It was done when its files were not wanted.
   std::error_code ignored;
-  return !fs::exists(outcome_file(folder, id), ignored) || (again && has_failed(folder, id));
+  return plan.keep_files && !fs::exists(folder / "files" / id, ignored);
 }
 
 JobResult run_job(SweepCommand command, const JobConfig& config, const RunContext& context) {
@@ -87,8 +91,13 @@ std::string report_of(const SweepPlan& plan, const SweepRun& run, const fs::path
   };
   try {
     const JobResult result = run_job(plan.command, config, context);
+    require_as_planned(plan, result.json, folder);
     remove();
     return result.json;
+  } catch (const ChangedInput&) {
+    std::error_code ignored;
+    fs::remove_all(files, ignored);
+    throw;
   } catch (...) {
     remove();
     throw;
@@ -99,14 +108,17 @@ std::string report_of(const SweepPlan& plan, const SweepRun& run, const fs::path
 Json independent_of_place(const std::string& text, const fs::path& folder) {
   Json report = Json::parse(text);
   report.erase("folder");
-  const auto from_folder = [&](Json& path) {
+  const auto from_folder = [&](Json& path) {  // as it is written there
     const fs::path relative = fs::path(path.get<std::string>()).lexically_relative(folder);
     if (!relative.empty()) path = relative.string();
   };
   if (report.contains("inputs"))
     for (Json& input : report["inputs"]) from_folder(input.at("path"));
   if (report.contains("parameters"))
-    from_folder(report["parameters"].at("object.file").at("value"));
+    for (const auto& [name, parameter] : report["parameters"].items())
+      if (Json& value = parameter.at("value");
+          value.is_string() && names_file(name, value.get<std::string>()))
+        from_folder(value);
   return report;
 }
 
@@ -127,7 +139,15 @@ void write_outcome(const fs::path& folder, const SweepRun& run, const SweepOutco
                                  outcome_file(folder, run.id).string(), error.message()));
 }
 
-// Whether it went well. What is wrong with a run is its outcome; only Cancelled leaves.
+// Of no run is it the fault.
+bool is_out_of_space(const std::string& sentence) {
+  for (const int error : {ENOSPC, EDQUOT})
+    if (sentence.find(std::generic_category().message(error)) != std::string::npos) return true;
+  return false;
+}
+
+// Whether it went well. What is wrong with a run is its outcome; Cancelled leaves, and what
+// is not the run's fault: ChangedInput, and InputError if there is no room for results.
 bool do_run(const SweepPlan& plan, const SweepRun& run, const fs::path& folder,
             const RunContext& context) {
   const auto start = std::chrono::steady_clock::now();
@@ -135,7 +155,13 @@ bool do_run(const SweepPlan& plan, const SweepRun& run, const fs::path& folder,
   int exit_code = 0;
   try {
     outcome.report = report_of(plan, run, folder, context);
+  } catch (const ChangedInput&) {
+    throw;
   } catch (const InputError& error) {
+    if (is_out_of_space(error.what()))
+      throw InputError(fmt::format(
+          "{} The runs that are done are kept; free space, and 'hydrodip sweep run' does the rest",
+          error.what()));
     outcome.error = error.what();
     exit_code = 2;
   } catch (const DipError& error) {
@@ -167,13 +193,11 @@ std::optional<SweepOutcome> read_outcome(const fs::path& folder, const std::stri
   const std::vector<std::uint8_t> bytes = read_file(file);
   const Json json = parsed_json<Json>(bytes);
   const bool usable =
-      json.is_object() && json.contains("seconds") && json["seconds"].is_number() &&
+      json.is_object() && json.contains("id") && json["id"] == id && json.contains("seconds") &&
+      json["seconds"].is_number() &&
       (json.contains("report") ? json["report"].is_object()
                                : json.contains("error") && json["error"].is_string());
-  if (!usable)
-    throw InputError(fmt::format(
-        "{}: this is no run's outcome; remove it, and 'hydrodip sweep run' does the run again",
-        file.string()));
+  if (!usable) return {};
   SweepOutcome outcome;
   outcome.seconds = json["seconds"].get<double>();
   if (json.contains("report"))
@@ -189,24 +213,41 @@ SweepDone run_sweep(const fs::path& folder, const SweepPlan& plan, const SweepWo
   fs::create_directories(folder / "claims", error);
   fs::create_directories(folder / "runs", error);
   fs::create_directories(folder / "work", error);
-  std::atomic<int> done = 0, failed = 0, before = 0, elsewhere = 0;
+  std::atomic<int> done = 0, failed = 0, before = 0, elsewhere = 0, changed = 0;
+  std::mutex mutex;
+  std::string what_changed;
+  FileHashes hashes;
   std::vector<std::function<void()>> tasks;
-  for (const SweepRun* run : chosen(plan, work)) {
-    if (!is_pending(folder, run->id, work.again)) {
-      ++before;
-      continue;
-    }
+  for (const SweepRun* run : chosen(plan, work))
     tasks.emplace_back([&, run] {
+      if (!is_pending(folder, plan, run->id, work.again)) {
+        ++before;
+        return;
+      }
       const Claim claim(folder, run->id);
-      if (!claim.held() || !is_pending(folder, run->id, work.again)) {
+      if (!claim.held() || !is_pending(folder, plan, run->id, work.again)) {
         ++elsewhere;
         return;
       }
-      ++(do_run(plan, *run, folder, context.quiet().with_threads(1)) ? done : failed);
+      try {
+        require_unchanged(plan, *run, folder, hashes);
+        ++(do_run(plan, *run, folder, context.quiet().with_threads(1)) ? done : failed);
+      } catch (const ChangedInput& why) {
+        const std::lock_guard lock(mutex);
+        if (what_changed.empty()) what_changed = why.what();
+        ++changed;
+      }
     });
+  if (tasks.empty()) return {};
+  try {
+    context.side_by_side("running the sweep", tasks);
+  } catch (const Cancelled&) {
+    throw Cancelled(fmt::format(
+        "cancelled; {} of the sweep's runs were done and are kept, the others not: 'hydrodip sweep "
+        "run' does the rest",
+        done.load() + failed.load()));
   }
-  if (!tasks.empty()) context.side_by_side("running the sweep", tasks);
-  return {done, failed, before, elsewhere};
+  return {done, failed, before, elsewhere, changed, what_changed};
 }
 
 }  // namespace hydrodip

@@ -18,6 +18,7 @@ struct SweepOutcome {
   double seconds = 0;
   std::string report;  // report.json's text; empty if it failed
 };
+// Nothing, too, if the file is damaged or another run's: the run has to be done again.
 std::optional<SweepOutcome> read_outcome(const std::filesystem::path& folder,
                                          const std::string& id);
 
@@ -31,11 +32,13 @@ struct SweepDone {
   int done = 0, failed = 0;  // now
   int before = 0;            // had an outcome already
   int elsewhere = 0;         // another process was at them
+  int changed = 0;           // not done: files that they read are not those that were planned
+  std::string what_changed;  // a sentence about the first of these
 };
 
 // Does the runs that have no outcome yet, each on one thread, side by side on the context's. No run
 // is done twice, whoever else is at it: a lock on FOLDER/claims/ID tells, and goes with its
-// process. Throws InputError if the folder cannot be written to, Cancelled.
+// process. Throws InputError if the folder cannot be written to or its disk is full, Cancelled.
 SweepDone run_sweep(const std::filesystem::path& folder, const SweepPlan& plan,
                     const SweepWork& work, const RunContext& context);
 

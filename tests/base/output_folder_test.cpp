@@ -105,6 +105,53 @@ TEST_F(OutputFolderTest, WhatAnEarlierResultHadAndThisOneHasNotGoes) {
   EXPECT_TRUE(fs::exists(out / "dip-6/print.pdf"));
 }
 
+// A draft has no pictures: one that lies beside its report is a person's, and one that its report
+// names is its own.
+TEST_F(OutputFolderTest, TheEarlierReportTellsWhoWroteWhat) {
+  const auto report = [&](const std::string& outputs) {
+    write(root_ / "report.json", "{\n  \"command\": \"print\", \"outputs\": [" + outputs +
+                                     "{\"name\": \"report.json\"}]}");
+  };
+  report("");
+  write(root_ / "preview.png", "mine");
+  const auto why = [&] {
+    OutputFolder folder(root_);
+    try {
+      folder.announce({"preview.png", "report.json"}, {});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(why().find("preview.png: this file was not written by hydrodip"), std::string::npos);
+  report("{\"name\": \"preview.png\"},");
+  EXPECT_EQ(why(), "");
+}
+
+TEST_F(OutputFolderTest, PicturesOfAnEarlierResultGoAndOnesOfPeopleStay) {
+  write(root_ / "report.json",
+        "{\"command\": \"print\", \"by\": \"hydrodip\", \"outputs\": [{\"name\": \"maps.png\"}]}");
+  write(root_ / "maps.png", "of an earlier job");
+  write(root_ / "gamut.png", "mine");
+  OutputFolder folder(root_);
+  folder.announce({"report.json"}, {});
+  folder.supersede({"maps.png", "gamut.png"});
+  write(folder.path("report.json"), "{\"command\": \"print\", \"outputs\": []}");
+  folder.commit();
+  EXPECT_FALSE(fs::exists(root_ / "maps.png"));
+  EXPECT_EQ(read(root_ / "gamut.png"), "mine");
+}
+
+// Two jobs into one folder, neither of which may replace anything: the second finds the first's.
+TEST_F(OutputFolderTest, WhatCameMeanwhileIsKeptToo) {
+  OutputFolder folder(root_, EarlierResult::kKept);
+  folder.announce({"one.txt"}, {});
+  write(folder.path("one.txt"), "new");
+  write(root_ / "one.txt", "faster");
+  EXPECT_THROW(folder.commit(), InputError);
+  EXPECT_EQ(read(root_ / "one.txt"), "faster");
+}
+
 TEST_F(OutputFolderTest, CommitReplacesEarlierFilesAndLeavesOthersAlone) {
   write(root_ / "one.txt", "old");
   write(root_ / "other.txt", "other");

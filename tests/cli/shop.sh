@@ -36,6 +36,10 @@ refused 'already' profile import friend.toml
 refused 'did you mean' profile show shpo
 refused 'did you mean' print colored.ply --profile shpo
 refused 'name' profile save ../evil --film a3
+refused "without .toml: 'shop'" profile save shop.toml --film a3
+refused 'there is no file nope.icc' profile save shop --printer-profile nope.icc
+refused 'text of one line' profile save shop --set "cost.currency=EUR
+or so"
 refused 'film.margin_mm' profile save shop --set film.margin_mm=lots
 cmp -s shop.txt config/hydrodip/profiles/shop.toml || fail 'a refused value changed the profile'
 
@@ -89,6 +93,27 @@ assert sorted(rows) == [("rig-1", "good"), ("rig-2", "good"), ("rig-3", "failed"
 refused 'rig-' history job --run rig-99 --outcome good
 refused 'good' history job --run rig-1 --outcome splendid
 refused '--run' history job --outcome good
+refused '28 C before and 5 C after' history job --add --water 28,5
+refused '1 or 2 numbers' history job --add --water 28,27,26
+refused '1 or 2 numbers' history job --add --water 28.5C
+refused 'there are: B7' history job --batch NOPE
+# Another program at the file, and a file of the future.
+python3 - <<'PY' &
+import sqlite3, time
+database = sqlite3.connect("job/history.sqlite", isolation_level=None)
+database.execute("BEGIN EXCLUSIVE")
+open("locked", "w")
+time.sleep(9)
+PY
+locker=$!
+while [ ! -e locked ]; do sleep 0.1; done
+refused 'another program is at it' history job
+wait $locker
+cp -r job future
+python3 -c 'import sqlite3; d = sqlite3.connect("future/history.sqlite"); d.execute("UPDATE hydrodip SET schema_version = 99"); d.commit()'
+refused 'newer hydrodip' history future
+printf 'no database, but longer than its header is, which has a hundred bytes and begins with a magic word of sixteen' > future/history.sqlite
+refused 'told later' history future
 refused 'report.json' history nowhere
 
 # Labels on the run sheet.
@@ -131,4 +156,26 @@ convert -size 284x227 xc:red -units PixelsPerInch -density 72 full.png
 grep -q 'taped' full/report.json || fail 'a full sheet is not warned about'
 convert full/print.png -alpha extract -crop 20x20+0+0 -format '%[fx:maxima]' info: | grep -q '^0$' ||
   fail 'the margin is printed'
+refused 'finished sheet of one dip' print colored.ply --film-image full.png --dips 2 -o given2
+refused '^error: --art ' print colored.ply --film-image full.png --art full.png -o given2
+
+# A draft into the folder of a full print: no pictures of the earlier one stay beside it.
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $quick -o stale --quiet > /dev/null || fail 'print into stale'
+[ -e stale/gamut.png ] || fail 'no gamut.png to go'
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $quick --set preview.pictures=off -o stale --quiet > /dev/null || fail 'a draft there'
+ls stale | grep -q 'preview.png\|maps.png\|gamut.png' && fail "pictures of another job: $(ls stale)"
+cp full.png stale/preview.png
+# shellcheck disable=SC2086
+refused 'preview.png: this file was not written by hydrodip' print colored.ply $quick -o stale
+
+# The ink of each of two dips is known, and the piece is paid for once.
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $quick --dips 2 -o two --quiet > /dev/null || fail 'print --dips 2'
+piece() {
+  "$hydrodip" history "two/dip-$1" --add --outcome good --set cost.ink_per_ml=1 --set cost.per_piece=100 --json |
+    python3 -c 'import json, sys; t = json.load(sys.stdin)["totals"]; assert t["ink_ml"] > 0; print(int(t["cost"] // 100))'
+}
+[ "$(piece 1) $(piece 2)" = '1 0' ] || fail "the cost of two dips: $(piece 1) $(piece 2)"
 finish

@@ -80,6 +80,42 @@ refused() {
   [ "$code" -eq 2 ] || fail "$*: exit code $code instead of 2"
   grep -q -- "$pattern" said.txt || fail "$*: does not say '$pattern': $(cat said.txt)"
 }
+# Files are named from the sweep's own file, wherever a run is started.
+mkdir -p "o'er there" && cp colored.ply "o'er there/part.ply"
+printf '[sweep]\nquality = "draft"\n[set]\n"film.elements" = 800\n"dip.step_mm" = 1\n[vary]\n"object.file" = ["part.ply"]\n' \
+  > "o'er there/files.toml"
+"$hydrodip" sweep plan "o'er there/files.toml" -o "o'er there/s" --no-trial --tasks 100000 > said.txt ||
+  fail 'a sweep elsewhere'
+grep -q '^1 run$' said.txt || fail "one run: $(cat said.txt)"
+grep -q '(1 task)' said.txt || fail "more tasks than runs: $(cat said.txt)"
+eval "$(sed -n "s/^here: *hydrodip/\"\$hydrodip\"/p" said.txt) --quiet" > ran.txt || fail 'the command that is shown'
+grep -q '^1 done, 0 failed' ran.txt || fail "elsewhere: $(cat ran.txt)"
+rm -r "o'er there/s/runs" && (cd "o'er there/s" && "$hydrodip" sweep run . --quiet) | grep -q '^1 done, 0 failed' ||
+  fail 'from within'
+# What is wrong with a run is its result, not the sweep's.
+printf '[sweep]\nquality = "draft"\nmodels = ["colored.ply"]\n[vary]\n"film.margin_mm" = [10, 200]\n' > half.toml
+"$hydrodip" sweep plan half.toml -o half --no-trial > /dev/null || fail 'half: plan'
+"$hydrodip" sweep run half --quiet > said.txt || fail 'half: run'
+grep -q '^1 done, 1 failed' said.txt || fail "half: $(cat said.txt)"
+
+# A full disk is no run's result. (Where a file system of one's own may be mounted.)
+if unshare -rm true 2> /dev/null; then
+  mkdir disk
+  hydrodip=$hydrodip unshare -rm sh -c '
+    mount -t tmpfs -o size=120k tmpfs disk && "$hydrodip" sweep plan sweep.toml -o disk/s --no-trial > /dev/null &&
+      dd if=/dev/zero of=disk/full bs=1k 2> /dev/null
+    "$hydrodip" sweep run disk/s --quiet > said.txt 2>&1
+    echo $? > code.txt
+    ls disk/s/runs | wc -l > runs.txt
+    rm disk/full
+    mount -o remount,size=64m disk
+    "$hydrodip" sweep run disk/s --quiet > rest.txt 2>&1'
+  [ "$(cat code.txt)" -eq 2 ] || fail "a full disk: exit code $(cat code.txt): $(cat said.txt)"
+  grep -q 'No space left.*kept' said.txt || fail "a full disk: $(cat said.txt)"
+  grep -q '0 failed' rest.txt || fail "after a full disk: $(cat rest.txt)"
+fi
+
+refused '--set' sweep run s --set dip.depth_mm=3
 refused 'sweep plan' sweep run nowhere
 refused 'sweep' sweep
 refused 'no run' sweep run s --task 0123

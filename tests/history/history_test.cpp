@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "base/error.h"
 #include "base/file.h"
 #include "contains.h"
@@ -20,12 +22,12 @@ struct FixedClock : Clock {
   std::string utc() override { return "2026-02-03T04:05:06Z"; }
 };
 
-std::string guided_log(const std::string& started, const std::string& label,
-                       const std::string& end) {
+std::string guided_log(const std::string& started, const std::string& label, const std::string& end,
+                       const std::string& report_sha256 = "abc") {
   return "{\"time\":\"" + started +
          "\",\"elapsed_s\":0.0,\"event\":\"start\",\"job\":\"mask\",\"depth_mm\":12.0,"
-         "\"report_sha256\":\"abc\",\"batch\":\"B1\",\"label\":\"" +
-         label +
+         "\"report_sha256\":\"" +
+         report_sha256 + "\",\"batch\":\"B1\",\"label\":\"" + label +
          "\"}\n"
          "{\"time\":\"t\",\"event\":\"water\",\"when\":\"before\",\"celsius\":28.5}\n"
          "{\"time\":\"t\",\"event\":\"soaked\",\"seconds\":70.0}\n"
@@ -117,9 +119,7 @@ TEST(History, KeepsTheReportThatARunWasMadeBy) {
 
 RigJob priced_job() {
   RigJob job;
-  job.config.design.film.width_mm = 200;
-  job.config.design.film.height_mm = 300;  // 0.06 m2
-  job.ink_coverage = 0.5;
+  job.sheet = {0.06, 0.5};
   job.config.cost.film_per_m2 = 20;    // 1.2 a sheet
   job.config.cost.ink_ml_per_m2 = 10;  // 0.3 ml
   job.config.cost.ink_per_ml = 0.5;    // 0.15
@@ -132,9 +132,10 @@ TEST(Cost, IsWhatFilmInkActivatorAndPieceCost) {
   DipRun run;
   run.outcome = "good";
   run.activator_g = 3;
-  const DipUse use = use_of(run, priced_job());
+  const RigJob job = priced_job();
+  const DipUse use = use_of(run, job.sheet, job.config.cost);
   EXPECT_NEAR(use.film_m2, 0.06, 1e-12);
-  EXPECT_NEAR(use.ink_ml, 0.3, 1e-12);
+  EXPECT_NEAR(*use.ink_ml, 0.3, 1e-12);
   EXPECT_NEAR(use.cost, 1.2 + 0.15 + 0.3 + 2, 1e-12);
 }
 
@@ -142,9 +143,108 @@ TEST(Cost, IsWhatFilmInkActivatorAndPieceCost) {
 TEST(Cost, OfARunThatNeverBeganIsNothing) {
   DipRun run;
   run.outcome = "cancelled";
-  EXPECT_EQ(use_of(run, priced_job()).cost, 0);
+  const RigJob job = priced_job();
+  EXPECT_EQ(use_of(run, job.sheet, job.config.cost).cost, 0);
   run.soak_s = 60;
-  EXPECT_GT(use_of(run, priced_job()).cost, 0);
+  EXPECT_GT(use_of(run, job.sheet, job.config.cost).cost, 0);
+}
+
+// Of several dips each takes a sheet, and together they make one piece.
+TEST(Cost, OfThePieceIsCountedWithItsFirstDip) {
+  DipRun run;
+  run.outcome = "good";
+  RigJob job = priced_job();
+  const double first = use_of(run, job.sheet, job.config.cost).cost;
+  job.sheet.first_of_piece = false;
+  EXPECT_NEAR(use_of(run, job.sheet, job.config.cost).cost, first - 2, 1e-12);
+}
+
+std::string report_of(double width_mm, double cyan, int dip) {
+  return "{\"command\":\"print\",\"parameters\":{\"film.width_mm\":{\"value\":" +
+         std::to_string(width_mm) +
+         "},\"film.height_mm\":{\"value\":300}},\"ink\":{\"mean\":{\"cyan\":" +
+         std::to_string(cyan) + "}},\"dip_of_several\":{\"number\":" + std::to_string(dip) +
+         ",\"of\":2},\"figures\":{\"depth_mm\":9}}";
+}
+
+TEST(Cost, TakesFilmAndInkFromThePrint) {
+  const auto use = sheet_use(report_of(200, 0.25, 2));
+  ASSERT_TRUE(use);
+  EXPECT_NEAR(use->film_m2, 0.06, 1e-12);
+  EXPECT_NEAR(use->ink_coverage, 0.25, 1e-9);
+  EXPECT_FALSE(use->first_of_piece);
+  EXPECT_TRUE(sheet_use(report_of(200, 0.25, 1))->first_of_piece);
+  EXPECT_FALSE(sheet_use("[1]"));
+  EXPECT_FALSE(sheet_use(""));
+}
+
+// The job was printed anew, on a smaller sheet, after the first dip.
+TEST(HistoryJob, ChargesEachDipByItsOwnPrint) {
+  const TemporaryFolder folder;
+  const auto print = [&](double width_mm) {
+    const std::string report = report_of(width_mm, 0.5, 1);
+    write_file(folder / "report.json", report);
+    return sha256_hex({report.begin(), report.end()});
+  };
+  FixedClock clock;
+  write_run(folder, "rig-1", guided_log("2026-01-01T10:00:00Z", "1", kDone, print(200)));
+  const auto look = [&] {
+    RigJob job = load_rig_job(folder.path(), {});
+    job.config.cost = priced_job().config.cost;
+    return history_job(job, {}, clock);
+  };
+  const double alone = nlohmann::json::parse(look().json)["totals"]["cost"];
+  EXPECT_NEAR(alone, 1.2 + 0.15 + 0.325 + 2, 1e-9);
+  write_run(folder, "rig-2", guided_log("2026-01-02T10:00:00Z", "2", kDone, print(100)));
+  const auto json = nlohmann::json::parse(look().json);
+  EXPECT_NEAR(json["runs"][0]["cost"], alone, 1e-9);
+  EXPECT_NEAR(json["runs"][1]["cost"], 0.6 + 0.075 + 0.325 + 2, 1e-9);
+  EXPECT_NEAR(json["totals"]["film_m2"], 0.09, 1e-9);
+  // Of a print that nobody looked at while it was there, no more is known than today's.
+  write_run(folder, "rig-3", guided_log("2026-01-03T10:00:00Z", "3", kDone, "gone"));
+  EXPECT_TRUE(contains(look().text, "today's stands for them: rig-3")) << look().text;
+}
+
+TEST(HistoryJob, SaysWhichInkIsNotInTheCost) {
+  const TemporaryFolder folder;
+  RigJob job = priced_job();
+  job.folder = folder.path();
+  job.sheet.ink_coverage = 0;
+  FixedClock clock;
+  HistoryRequest request;
+  request.add = true;
+  EXPECT_TRUE(contains(history_job(job, request, clock).text, "without the ink of 1 dip"));
+}
+
+TEST(HistoryJob, SaysWhichRunsItCannotRead) {
+  const TemporaryFolder folder;
+  RigJob job = priced_job();
+  job.folder = folder.path();
+  FixedClock clock;
+  write_run(folder, "rig-1", "");
+  write_run(folder, "rig-2", "{\"time\":\"t\",\"eve");
+  write_run(folder, "rig-3", "{\"event\":\"start\",\"action\":\"home\"}\n");
+  write_run(folder, "rig-4", guided_log("2026-01-01T10:00:00Z", "1", kDone));
+  EXPECT_EQ(History(folder.path()).unread(), (std::vector<std::string>{"rig-1", "rig-2"}));
+  EXPECT_TRUE(
+      contains(history_job(job, {}, clock).text, "rig-2: its log.jsonl is empty or damaged"));
+  // One that was taken in before is there.
+  write_run(folder, "rig-4", "");
+  EXPECT_EQ(History(folder.path()).unread(), (std::vector<std::string>{"rig-1", "rig-2"}));
+}
+
+TEST(HistoryJob, ABatchThatThereIsNotAndNotesOfSeveralLines) {
+  const TemporaryFolder folder;
+  RigJob job = priced_job();
+  job.folder = folder.path();
+  FixedClock clock;
+  HistoryRequest request;
+  request.add = true;
+  request.fields = {{"batch", "B7"}, {"notes", "slid\nand tore"}};
+  EXPECT_TRUE(contains(history_job(job, request, clock).text, "slid and tore"));
+  HistoryRequest other;
+  other.batch_only = "B8";
+  EXPECT_TRUE(contains(refusal([&] { history_job(job, other, clock); }), "there are: B7"));
 }
 
 TEST(HistoryJob, ChargesFailedPiecesToTheGoodOnes) {

@@ -44,5 +44,20 @@ if command -v man >/dev/null; then
   done < /tmp/names.$$
   rm -f /tmp/names.$$
 fi
+# And every option of every command, which the pages are made from, stands in its --help.
+for page in "$man"/man1/hydrodip-*.1; do
+  command=$(sed -n 's/^\.B hydrodip //p' "$page" | head -n 1 | tr -d '\\')
+  # shellcheck disable=SC2086
+  help=$("$hydrodip" $command --help)
+  options=$(sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' "$page" | sed 's/\\f[A-Z]//g; s/\\//g' |
+    grep -oE '^(\.B )?(-[a-z], )?--[a-z-]+' | grep -oE -- '--[a-z-]+' | sort -u)
+  [ -n "$options" ] || fail "no options in $page"
+  for option in $options; do
+    case $help in
+      *[\ ,]"$option"*) ;;
+      *) [ "$option" = --help ] || fail "hydrodip $command --help hides $option" ;;
+    esac
+  done
+done
 [ "$failures" -eq 0 ] || exit 1
 echo 'all passed'

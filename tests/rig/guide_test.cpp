@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
+
 #include "base/error.h"
+#include "contains.h"
 #include "guided.h"
 #include "rig/run_record.h"
 
@@ -287,6 +291,41 @@ TEST_F(GuideTest, AFaultInMidDipIsInTheLogAsItWas) {
   EXPECT_NEAR(end["stage_position_mm"].get<double>(), guided.emulator->position_mm(), 0.0006);
   EXPECT_NE(end["message"].get<std::string>().find("stalled"), std::string::npos);
   EXPECT_TRUE(fs::exists(folder_ / "rig-1" / "trace.csv"));
+}
+
+// The disk is full from the second question on: nobody shall dip what is not kept.
+TEST_F(GuideTest, StopsAtTheFirstLineThatCannotBeLogged) {
+  GuidedBench guided;
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  guided.person.on_ask = [&](const std::string& question) {
+    if (!question.starts_with("Temperature")) return;
+    rlimit full = before;
+    full.rlim_cur = 1;
+    setrlimit(RLIMIT_FSIZE, &full);
+  };
+  std::string why;
+  try {
+    rig_guide(job(""), guided.bench, guided.context);
+  } catch (const InputError& error) {
+    why = error.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_TRUE(contains(why, "log.jsonl: 'water' cannot be written")) << why;
+  EXPECT_EQ(guided.person.times_asked("Enter the moment it lies"), 0);
+}
+
+TEST_F(GuideTest, AGunThatIsHeavierAfterwardsIsWeighedAgain) {
+  GuidedBench guided;
+  guided.person.guns_after = {"815", "809"};
+  rig_guide(job(""), guided.bench, guided.context);
+  EXPECT_EQ(guided.person.times_asked("heavier than before"), 1);
+  const std::vector<Json> lines = log();
+  const Json* activator = find(lines, "activator");
+  ASSERT_NE(activator, nullptr);
+  EXPECT_NEAR((*activator)["used_g"], 3.4, 1e-9);
 }
 
 TEST_F(GuideTest, ABrokenRunIsTakenUpWithoutRepeatingWhatIsStillThere) {

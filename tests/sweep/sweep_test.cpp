@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "contains.h"
+#include "image/files.h"
 #include "job/jobs.h"
 #include "refusal.h"
 #include "sweep/scripts.h"
@@ -32,7 +33,7 @@ class SweepTest : public ::testing::Test {
 
   SweepPlan plan(const std::string& toml) {
     write_file(folder_ / "sweep.toml", toml);
-    return read_sweep(folder_ / "sweep.toml", sweep());
+    return read_sweep(folder_ / "sweep.toml", sweep(), context_);
   }
   std::string why(const std::string& toml) {
     return refusal([&] { plan(toml); });
@@ -113,6 +114,206 @@ TEST_F(SweepTest, AnIdIsWhatTheRunIsMadeOf) {
   for (const std::string& id : ids(plan(head_ + vary))) EXPECT_FALSE(ids(first).contains(id));
 }
 
+// A square with a picture on it, beside the other model.
+class SweepInputsTest : public SweepTest {
+ protected:
+  void SetUp() override {
+    SweepTest::SetUp();
+    for (const char* folder : {"red", "blue"}) {
+      fs::create_directories(folder_ / folder);
+      write_file(folder_ / folder / "box.obj",
+                 std::string("mtllib box.mtl\nv 0 0 0\nv 20 -20 14\nv 20 20 14\nv -20 0 14\n"
+                             "vt 0 0\nvt 1 0\nvt 0 1\nusemtl m\n"
+                             "f 1/1 3/2 2/3\nf 1/1 4/2 3/3\nf 1/1 2/2 4/3\nf 2/1 3/2 4/3\n"));
+      write_file(folder_ / folder / "box.mtl", std::string("newmtl m\nmap_Kd box.png\n"));
+      paint(folder, folder == std::string("red") ? 200 : 20);
+    }
+  }
+
+  void paint(const std::string& folder, std::uint8_t red) {
+    Image picture(2, 2);
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+      picture.rgba[i] = red;
+      picture.rgba[i + 3] = 255;
+    }
+    const std::vector<std::uint8_t> png = encode_png(picture);
+    write_file(folder_ / folder / "box.png", png.data(), png.size());
+  }
+
+  const std::string values_ =
+      "[set]\n\"film.elements\" = 300\n\"dip.step_mm\" = 3\n\"dip.depth_mm\" = 9\n"
+      "\"dip.air_cells\" = 0\n";
+  const std::string boxes_ =
+      "[sweep]\nmodels = [\"red/box.obj\", \"blue/box.obj\"]\nquality = \"draft\"\n" + values_;
+};
+
+// The model's bytes are the same; what belongs to it is not.
+TEST_F(SweepInputsTest, AnotherPictureIsAnotherRunAndTheSameIsSaid) {
+  EXPECT_EQ(plan(boxes_).runs.size(), 2U);
+  EXPECT_EQ(plan(boxes_).same, 0U);
+  paint("blue", 200);
+  const SweepPlan twins = plan(boxes_);
+  EXPECT_EQ(twins.runs.size(), 1U);
+  EXPECT_EQ(twins.same, 1U);
+}
+
+TEST_F(SweepInputsTest, WhatAValueNamesIsPartOfTheRun) {
+  const std::string toml = "[sweep]\nmodels = [\"red/box.obj\"]\nquality = \"draft\"\n" + values_ +
+                           "\"object.texture\" = \"blue/box.png\"\n";
+  const auto first = ids(plan(toml));
+  EXPECT_EQ(ids(plan(toml)), first);
+  paint("blue", 99);
+  EXPECT_NE(ids(plan(toml)), first);
+  // And so is what the job names, its ways included.
+  write_file(folder_ / "way.csv",
+             std::string("lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_z_deg\n"
+                         "0,0,0,0,0,0\n9,0,0,0,0,0\n"));
+  write_file(folder_ / "job.toml", std::string("path = \"way.csv\"\n"));
+  const std::string job = "[sweep]\nmodels = [\"red/box.obj\"]\njob = \"job.toml\"\n";
+  const auto before = ids(plan(job));
+  write_file(folder_ / "way.csv",
+             std::string("lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_z_deg\n"
+                         "0,0,0,0,0,0\n9,1,0,0,0,0\n"));
+  EXPECT_NE(ids(plan(job)), before);
+}
+
+// Wherever the program is started: `sweep run` may be, on another machine, in the sweep's folder.
+TEST_F(SweepInputsTest, FileNamesAreTakenFromTheSweepsFile) {
+  const SweepPlan made =
+      plan("[sweep]\nmodels = [\"red/box.obj\"]\nquality = \"draft\"\n" + values_ +
+           "[vary]\n\"object.texture\" = [\"red/box.png\", \"blue/box.png\"]\n");
+  ASSERT_EQ(made.runs.size(), 2U);
+  EXPECT_EQ(fs::weakly_canonical(sweep() / value_of(made.runs[1], "object.texture")),
+            fs::weakly_canonical(folder_ / "blue/box.png"));
+  EXPECT_EQ(run_sweep(sweep(), made, {}, context_).done, 2);
+  EXPECT_TRUE(contains(why("[sweep]\nmodels = [\"red/box.obj\"]\n[set]\n\"object.texture\" = "
+                           "\"green/box.png\"\n"),
+                       "there is no file"));
+}
+
+// No result of other bytes under an id that was planned for these.
+TEST_F(SweepInputsTest, WhatChangedSinceItWasPlannedIsNotDone) {
+  const SweepPlan made = plan(boxes_);
+  paint("blue", 77);
+  const SweepDone done = run_sweep(sweep(), made, {}, context_);
+  EXPECT_EQ(done.done, 1);
+  EXPECT_EQ(done.changed, 1);
+  EXPECT_TRUE(contains(done.what_changed, "box.png has changed since the sweep was planned"))
+      << done.what_changed;
+  EXPECT_FALSE(read_outcome(sweep(), made.runs[1].id));
+  // Planned anew, the other is not done again.
+  const SweepDone anew = run_sweep(sweep(), plan(boxes_), {}, context_);
+  EXPECT_EQ(anew.before, 1);
+  EXPECT_EQ(anew.done, 1);
+  // Nor of other values.
+  SweepPlan edited = plan(boxes_);
+  edited.runs[0].values.emplace_back("dip.depth_mm", "5");
+  fs::remove_all(sweep() / "runs");
+  EXPECT_EQ(run_sweep(sweep(), edited, {}, context_).changed, 1);
+}
+
+// A picture that was missing when the sweep was planned.
+TEST_F(SweepInputsTest, WhatAppearedSinceIsAChangeToo) {
+  fs::rename(folder_ / "blue/box.png", folder_ / "away.png");
+  const SweepPlan made = plan(boxes_);
+  fs::rename(folder_ / "away.png", folder_ / "blue/box.png");
+  const SweepDone done = run_sweep(sweep(), made, {}, context_);
+  EXPECT_EQ(done.done, 1);
+  EXPECT_EQ(done.changed, 1);
+}
+
+TEST_F(SweepInputsTest, FilesThatAreWantedLaterAreMadeThen) {
+  const SweepPlan made = plan(head_);
+  EXPECT_EQ(run_sweep(sweep(), made, {}, context_).done, 1);
+  std::string all = head_;
+  const SweepPlan kept = plan(all.replace(all.find("quality"), 0, "keep = \"all\"\n"));
+  EXPECT_EQ(ids(kept), ids(made));
+  EXPECT_EQ(run_sweep(sweep(), kept, {}, context_).done, 1);
+  EXPECT_TRUE(fs::exists(sweep() / "files" / made.runs[0].id / "film.ply"));
+  EXPECT_EQ(run_sweep(sweep(), kept, {}, context_).before, 1);
+}
+
+// 0.50 and 0.5 are one value, however they are written.
+TEST_F(SweepTest, AValueIsTheSameHoweverItIsWritten) {
+  const SweepPlan made =
+      plan(head_ + "[vary]\n\"material.z_stretch\" = [0.5, \"0.50\", \"+.5\"]\n");
+  EXPECT_EQ(made.runs.size(), 1U);
+  EXPECT_EQ(made.same, 2U);
+}
+
+TEST_F(SweepTest, RefusesWhatItWouldPassOver) {
+  const std::string one = "[sweep]\nmodels = [\"tetrahedron.obj\"]\n";
+  EXPECT_TRUE(contains(why(one + "[vary]\n\"object.file\" = [\"tetrahedron.obj\"]\n"),
+                       "both name the model"));
+  EXPECT_TRUE(contains(why(one + "[[run]]\n\"dip.depth_mm\" = 3\n[vary]\n\"dip.step_mm\" = [1]\n"),
+                       "[vary]"));
+  EXPECT_TRUE(contains(why(one + "method = \"grid\"\n[[run]]\n\"dip.depth_mm\" = 3\n"), "[[run]]"));
+  EXPECT_TRUE(contains(why(one + "runs = 7\n[vary]\n\"dip.step_mm\" = [1]\n"), "sweep.runs"));
+  EXPECT_TRUE(contains(why(one + "seed = 7\n[vary]\n\"dip.step_mm\" = [1]\n"), "sweep.seed"));
+  const auto range = [&](const std::string& method, const std::string& rest) {
+    return why(one + method + "[vary]\n\"material.z_stretch\" = { from = 0.3, to = 0.9" + rest +
+               " }\n");
+  };
+  EXPECT_TRUE(contains(range("method = \"latin\"\n", ", count = 5"), "leave out count"));
+  EXPECT_TRUE(contains(range("", ", count = 4294967298"), "4294967298"));
+  EXPECT_TRUE(contains(range("", ", count = 1"), "from 2"));
+  EXPECT_TRUE(contains(range("", ", count = 3, log = \"yes\""), "true or false"));
+  EXPECT_TRUE(contains(why(one + "[vary]\n\"dip.step_mm\" = [nan]\n"), "nan"));
+}
+
+TEST_F(SweepTest, PlanningCanBeCancelled) {
+  write_file(folder_ / "sweep.toml",
+             head_ + "[vary]\n\"material.z_stretch\" = { from = 0.3, to = 0.9, count = 100 }\n");
+  const RunContext context;
+  context.cancel_at_check(50);
+  EXPECT_THROW(read_sweep(folder_ / "sweep.toml", sweep(), context), Cancelled);
+}
+
+// A power cut in mid-write, or another run's result under this name.
+TEST_F(SweepTest, ADamagedOutcomeIsDoneAgain) {
+  const SweepPlan made = plan(head_ + "[vary]\n\"material.z_stretch\" = [0.4, 0.5, 0.6]\n");
+  run_sweep(sweep(), made, {}, context_);
+  const auto file = [&](std::size_t run) {
+    return sweep() / "runs" / (made.runs[run].id + ".json");
+  };
+  write_file(file(0), std::string("{\"id\":"));
+  fs::copy_file(file(2), file(1), fs::copy_options::overwrite_existing);
+  const SweepTable table = make_table(sweep(), made);
+  EXPECT_EQ(table.rows[0].state, RunState::kMissing);
+  EXPECT_EQ(table.rows[1].state, RunState::kMissing);
+  EXPECT_EQ(table.rows[2].state, RunState::kDone);
+  const SweepDone done = run_sweep(sweep(), made, {{}, "", true}, context_);
+  EXPECT_EQ(done.done, 2);
+  EXPECT_EQ(done.before, 1);
+}
+
+// What people have changed in a script, or put beside the results, stays theirs.
+TEST_F(SweepTest, KeepsWhatPeopleWrote) {
+  write_file(folder_ / "sweep.toml", head_ + "[vary]\n\"material.z_stretch\" = [0.4, 0.5]\n");
+  const SweepPlanRequest request{folder_ / "sweep.toml", sweep(), false, 1};
+  sweep_plan_job(request, context_);
+  std::ofstream(sweep() / "slurm.sh", std::ios::app) << "# my partition\n";
+  write_file(sweep() / "parallel.sh", std::string("# hydrodip, mine\n"));
+  for (int time = 0; time < 2; ++time) {
+    const JobResult again = sweep_plan_job(request, context_);
+    EXPECT_TRUE(contains(again.text, "kept slurm.sh")) << again.text;
+    const std::vector<std::uint8_t> kept = read_file(sweep() / "slurm.sh");
+    EXPECT_TRUE(contains(std::string(kept.begin(), kept.end()), "my partition"));
+    EXPECT_EQ(fs::file_size(sweep() / "parallel.sh"), 17U);
+  }
+  write_file(sweep() / "table.csv", std::string("mine\n"));
+  EXPECT_TRUE(contains(refusal([&] { sweep_collect_job(sweep(), context_); }), "table.csv"));
+  fs::remove(sweep() / "table.csv");
+  run_sweep(sweep(), read_manifest(sweep()), {}, context_);
+  sweep_collect_job(sweep(), context_);
+  EXPECT_TRUE(fs::exists(sweep() / "response.svg"));
+  // Without a varied number there is nothing to plot, and an earlier plot is of another sweep.
+  write_file(folder_ / "sweep.toml", head_);
+  sweep_plan_job(request, context_);
+  sweep_collect_job(sweep(), context_);
+  EXPECT_FALSE(fs::exists(sweep() / "response.svg"));
+}
+
 TEST_F(SweepTest, SaysWhatIsWrongInItsFile) {
   EXPECT_TRUE(contains(why(head_ + "[vary]\n\"material.zstretch\" = [1]\n"), "z_stretch"));
   EXPECT_TRUE(contains(why(head_ + "[vary]\n\"material.z_stretch\" = [7]\n"), "0 to 5"));
@@ -137,7 +338,7 @@ TEST_F(SweepTest, TheManifestIsThePlan) {
   write_file(sweep() / "sweep.json", manifest_json(made));
   const SweepPlan read = read_manifest(sweep());
   EXPECT_EQ(manifest_json(read), manifest_json(made));
-  write_file(sweep() / "sweep.json", std::string("{\"hydrodip_sweep\": 1}"));
+  write_file(sweep() / "sweep.json", std::string("{\"hydrodip_sweep\": 2}"));
   EXPECT_NE(refusal([&] { read_manifest(sweep()); }), "");
   std::string escaping = manifest_json(made);
   escaping.replace(escaping.find(made.runs[0].id), 16, "../../../../etc/");
