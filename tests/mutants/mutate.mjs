@@ -53,6 +53,20 @@ function pattern(source) {
   return new RegExp(tokens.map((t) => t.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("\\s*"), "g");
 }
 
+function isStatement(piece) { return /[;}]\s*$/.test(piece); }
+
+// Begins with no keyword, and has no comma outside brackets.
+function isExpression(piece) {
+  if (/^\s*(if|for|while|return|else)\b/.test(piece)) return false;
+  let depth = 0;
+  for (const c of piece.replace(/"(?:[^"\\]|\\.)*"/g, "")) {
+    if ("([{".includes(c)) ++depth;
+    if (")]}".includes(c)) --depth;
+    if (c === "," && depth === 0) return false;
+  }
+  return true;
+}
+
 // Where in a source a mutant's piece is; nothing if it is not found, or not once.
 function placeOf(source, mutant) {
   const [first, middle, last] = mutant.before.includes("@@") ? mutant.before.split("@@") : ["", mutant.before, ""];
@@ -61,6 +75,7 @@ function placeOf(source, mutant) {
   let from = found[0].index;
   if (first.trim()) from += pattern(first).exec(source.slice(from))[0].length;
   from += /^\s*/.exec(source.slice(from))[0].length;
+  if (!isStatement(middle) && !isExpression(middle)) return null;
   const rest = pattern(middle).exec(source.slice(from));
   return rest && rest.index === 0 ? { from, to: from + rest[0].length, mutant } : null;
 }
@@ -75,10 +90,9 @@ function edited(source, from, to, edits) {
     const { from: begin, to: end } = outer[n];
     const inside = edits.filter((e) => e.from >= begin && e.to <= end && e.to - e.from < end - begin);
     let piece = edited(source, begin, end, inside);
-    const isStatement = /[;}]$/.test(piece);
     for (; n < outer.length && outer[n].from === begin && outer[n].to === end; ++n) {
       const { number, after } = outer[n].mutant;
-      piece = isStatement ? `if (hydrodip_mutant == ${number}) { ${after} } else { ${piece} }`
+      piece = isStatement(piece) ? `if (hydrodip_mutant == ${number}) { ${after} } else { ${piece} }`
                           : `(hydrodip_mutant == ${number} ? (${after}) : (${piece}))`;
     }
     text += changeable(source, at, begin) + piece;
