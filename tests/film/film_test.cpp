@@ -128,6 +128,55 @@ TEST(Film, RefusesAMarginThatLeavesNothing) {
   EXPECT_THROW(make_film_mesh({.width_mm = 20, .height_mm = 50, .margin_mm = 10}), InputError);
 }
 
+// Folded over itself, film lies with its underside up: what is there is the film around it.
+TEST(Film, LocatingPassesFilmThatIsTurnedOver) {
+  const FilmMesh mesh = make_film_mesh({.elements = 300});
+  std::vector<Vec2> u = mesh.u;
+  const auto folded = std::size_t(locate_flat(mesh, {10, 10}).triangle);
+  const auto moved = std::size_t(mesh.triangles[folded][0]);
+  u[moved] += Vec2(1.7, 0.4) * mesh.cell_mm;
+  const auto area = [&](std::size_t t) {
+    const Triangle& v = mesh.triangles[t];
+    const Vec2& a = u[std::size_t(v[0])];
+    return cross2(u[std::size_t(v[1])] - a, u[std::size_t(v[2])] - a);
+  };
+  const std::vector<std::uint8_t> usable(mesh.triangles.size(), 1);
+  int turned = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (area(t) > 0) continue;
+    ++turned;
+    Vec2 centre = Vec2::Zero();
+    for (const std::int32_t v : mesh.triangles[t]) centre += u[std::size_t(v)] / 3;
+    for (const std::int32_t start : mesh.triangles[t]) {
+      const FilmLocation at = locate(mesh, u, usable, start, centre, std::int32_t(t));
+      EXPECT_TRUE(!at.inside || area(std::size_t(at.triangle)) > 0) << t;
+    }
+  }
+  EXPECT_GT(turned, 0);
+}
+
+// Each corner has to be attached, and the film whole.
+TEST(DippedFilm, LiesOnTheObjectWithAllItsCorners) {
+  DippedFilm film;
+  film.shared_mesh = std::make_shared<const FilmMesh>(make_film_mesh({.elements = 300}));
+  const FilmMesh& mesh = film.mesh();
+  const std::size_t t = 40;
+  for (const bool told : {false, true})
+    for (int attached = 0; attached < 8; ++attached) {
+      film.state.assign(mesh.u.size(), VertexState::kUnattached);
+      film.torn.assign(told ? mesh.triangles.size() : 0, 0);
+      for (std::size_t k = 0; k < 3; ++k)
+        if (attached & 1 << k)
+          film.state[std::size_t(mesh.triangles[t][k])] = VertexState::kAttached;
+      EXPECT_EQ(film.lies_on_object(t), attached == 7);
+    }
+  film.torn[t] = 1;
+  EXPECT_FALSE(film.lies_on_object(t));
+  EXPECT_EQ(film.whole_part(t).share, 0);
+  film.torn[t] = 0;
+  EXPECT_NEAR(film.whole_part(t).share, 1, 1e-12);
+}
+
 // A line through the film, straight in film coordinates, along which it is torn.
 DippedFilm torn_beyond(double x_mm, double slope) {
   DippedFilm film;

@@ -37,6 +37,43 @@ TEST(Resize, TransparentPixelsHaveNoColor) {
   EXPECT_EQ(one.pixel(0, 0)[3], 128);
 }
 
+// Four times as much of the blue one as of the red one, and half of the area is covered.
+TEST(Resize, ColoursCountByWhatTheyCover) {
+  Image image(2, 1);
+  set(image, 0, 0, 255, 0, 0, 51);
+  set(image, 1, 0, 0, 0, 255, 204);
+  const Image one = resize(image, 1, 1);
+  EXPECT_EQ(one.pixel(0, 0)[0], linear_to_srgb8(0.2f));
+  EXPECT_EQ(one.pixel(0, 0)[2], linear_to_srgb8(0.8f));
+  EXPECT_NEAR(one.pixel(0, 0)[3], 127.5, 0.5);
+}
+
+// Of three pixels to two, each gets one and a half.
+TEST(Resize, PartsOfAPixelCountByTheirSize) {
+  Image wide(3, 1), high(1, 3);
+  for (int i = 0; i < 3; ++i) {
+    const auto white = std::uint8_t(i == 0 ? 255 : 0);
+    set(wide, i, 0, white, white, white, 255);
+    set(high, 0, i, white, white, white, 255);
+  }
+  const Image across = resize(wide, 2, 1), down = resize(high, 1, 2);
+  EXPECT_EQ(across.pixel(0, 0)[0], linear_to_srgb8(2 / 3.0f));
+  EXPECT_EQ(across.pixel(1, 0)[0], 0);
+  EXPECT_EQ(down.rgba, across.rgba);
+}
+
+// Whichever row of those that are averaged it is in.
+TEST(Resize, NothingThatShowsIsLeftOut) {
+  for (int shown = 0; shown < 4; ++shown) {
+    Image image(24, 4);
+    for (int y = 0; y < 4; ++y) set(image, 6 * y, y, 90, 90, 90, 255);
+    const Image row = resize(image, 24, 1);
+    const std::uint8_t* p = row.pixel(6 * shown, 0);
+    EXPECT_EQ(p[0], 90) << shown;
+    EXPECT_EQ(p[3], 64) << shown;
+  }
+}
+
 TEST(Resize, AConstantStaysConstantAtAnySize) {
   Image image(7, 5);
   for (int i = 0; i < 35; ++i) set(image, i % 7, i / 7, 12, 99, 240, 255);

@@ -112,6 +112,28 @@ TEST(Findings, WhatLandsMoreThanThreeMillimetresOffIsAStop) {
   EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
 }
 
+// Each of the two is a care of its own.
+TEST(Findings, FilmNearItsLimitAndPaleFilmAreNamed) {
+  const auto advice = [](const Report& report) {
+    const std::vector<Finding> list = findings(report);
+    return find(list, "stretch")->advice;
+  };
+  Report report = good_report();
+  report.coverage->stretch_max = 0.89 * report.tear_stretch;
+  EXPECT_EQ(concern(report, "stretch"), Concern::kNone);
+  EXPECT_EQ(advice(report), "");
+  report.coverage->stretch_max = 0.91 * report.tear_stretch;
+  EXPECT_EQ(concern(report, "stretch"), Concern::kCare);
+  EXPECT_NE(advice(report).find("activator"), std::string::npos);
+  report = good_report();
+  report.coverage->area_ratio_max = 1.29;
+  EXPECT_EQ(concern(report, "stretch"), Concern::kNone);
+  report.coverage->area_ratio_max = 1.31;
+  EXPECT_EQ(concern(report, "stretch"), Concern::kCare);
+  EXPECT_NE(advice(report).find("paler"), std::string::npos);
+  EXPECT_EQ(advice(report).find("activator"), std::string::npos);
+}
+
 TEST(Findings, DoubtfulFilmIsNamed) {
   Report report = good_report();
   EXPECT_EQ(find(findings(report), "doubtful"), nullptr);
