@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <random>
@@ -57,6 +58,22 @@ TEST(Corotated, RestTriangleReproducesLinearMaps) {
   const RestTriangle in_space =
       rest_triangle(Vec3(0, 0, 0), Vec3(3, 0, 4), Vec3(0, 2, 0));  // right angle, legs 5 and 2
   EXPECT_NEAR(in_space.area, 5, 1e-12);
+}
+
+// A triangle keeps its shape wherever it lies in space: inner products of its gradients.
+TEST(Corotated, RestTriangleInSpaceIsTheOneInThePlane) {
+  const Vec2 a(1, 2), b(4, 2.5), acute(2, 6), obtuse(-3, 3);
+  for (const Vec2& c : {acute, obtuse}) {
+    const RestTriangle flat = rest_triangle(a, b, c);
+    const Eigen::Matrix3d shape = flat.gradient * flat.gradient.transpose();
+    for (const double angle : {0.0, 0.9, 2.5}) {
+      const Eigen::AngleAxisd turn(angle, Vec3(2, -1, 2) / 3);
+      const auto at = [&](const Vec2& p) { return Vec3(turn * Vec3(p.x(), p.y(), 5)); };
+      const RestTriangle in_space = rest_triangle(at(a), at(b), at(c));
+      EXPECT_NEAR(in_space.area, flat.area, 1e-12);
+      EXPECT_LT((in_space.gradient * in_space.gradient.transpose() - shape).norm(), 1e-12);
+    }
+  }
 }
 
 TEST(FilmEnergy, GradientAndHessianMatchFiniteDifferences) {
@@ -262,6 +279,23 @@ TEST(Relaxation, MendsStepsThatAreTooShortOrTooLong) {
     EXPECT_TRUE(result.converged) << factor;
     EXPECT_LE(result.iterations, 8) << factor;
     EXPECT_LT(film.error(u), 1e-6) << factor;
+  }
+}
+
+// Whatever the solver says: steps so long that they turn film over, or only lead far up the other
+// side, end lower than they began.
+TEST(Relaxation, NeverRaisesTheEnergy) {
+  const StretchedFilm film;
+  const FilmEnergy energy = film.energy(0.2);
+  const auto energy_at = [&](const VertexVector& u) {
+    return energy.value(energy.grid().field(u));
+  };
+  for (const double factor : {3.0, 20.0, 30.0, 45.0, 70.0, 100.0}) {
+    VertexVector u = film.start;
+    Misjudging solver(factor);
+    Relaxation(energy, solver).run(film.is_free, {.tolerance_mm = 1e-10, .max_iterations = 1}, u);
+    EXPECT_LT(energy_at(u), energy_at(film.start)) << factor;
+    EXPECT_FALSE(energy.any_inverted(energy.grid().field(u))) << factor;
   }
 }
 

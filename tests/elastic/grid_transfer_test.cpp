@@ -178,6 +178,15 @@ TEST(Multigrid, IsRefreshedWhereItsFinestGridChanges) {
     told.update(false);
     EXPECT_TRUE(told.touched().empty());
     EXPECT_LT(left_after(told, 8), 0.02);
+    // Nor is it another than one that is told of all nodes.
+    Multigrid told_all(65, 49);
+    set_block(told_all, stiffness, false);
+    told_all.update(true);
+    set_block(told_all, 1, false);
+    for (int j = 0; j < 49; ++j)
+      for (int i = 0; i < 65; ++i) told_all.touch(i, j);
+    told_all.update(false);
+    EXPECT_EQ(left_after(told, 8), left_after(told_all, 8)) << stiffness;
     set_block(told, stiffness, true);
     told.update(false);
     EXPECT_EQ(left_after(told, 8), left_after(anew, 8)) << stiffness;

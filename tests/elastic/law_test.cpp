@@ -132,6 +132,29 @@ TEST(MaterialLaw, TableIsExactForCubicsAndSmoothBeyond) {
   EXPECT_TRUE(std::isfinite(law->at(-1, -2).energy));
 }
 
+// However the film is computed, what is turned over is counted.
+TEST(MaterialLaw, FilmThatIsTurnedOverIsCounted) {
+  const RandomFilm film(9);
+  VertexVector folded = film.u;
+  for (const std::size_t v : {30UL, 50UL}) folded[v] += Vec2(1.6, 0.3) * film.mesh.cell_mm;
+  std::int64_t turned = 0;
+  for (std::size_t t = 0; t < film.rest.size(); ++t) {
+    const Triangle& v = film.mesh.triangles[t];
+    turned += deformation_gradient(film.rest[t], folded[std::size_t(v[0])],
+                                   folded[std::size_t(v[1])], folded[std::size_t(v[2])])
+                  .determinant() <= 0;
+  }
+  ASSERT_GT(turned, 1);
+  for (const auto& law : {std::shared_ptr<const MaterialLaw>(), make_corotated_law(0.3)}) {
+    const FilmEnergy energy = film.energy(0.3, law);
+    GridField force(energy.grid().layout());
+    GridArray<double> mask(energy.grid().layout().entries());
+    energy.grid().to_mask(film.is_free, mask);
+    EXPECT_EQ(energy.gradient(energy.grid().field(film.u), mask, force), 0);
+    EXPECT_EQ(energy.gradient(energy.grid().field(folded), mask, force), turned);
+  }
+}
+
 TEST(MaterialLaw, WhatIsNoLawIsRefused) {
   EXPECT_THROW(check_law(WrongLaw()), InputError);
   const auto refused = [](const LawEnergy& energy) {
