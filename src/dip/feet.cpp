@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "dip/line_search.h"
 
 namespace hydrodip {
 
@@ -11,47 +12,6 @@ namespace {
 
 // Share of the contact line that may go faster: a scan has flat spots everywhere.
 constexpr double kFasterShare = 0.1;
-// A foot that jumps further than this in one step, in cells, has lost its contact line (the object
-// is submerged there, or a shelf begins) and goes on straight up.
-constexpr double kMaxJump = 2.5;
-
-// Finds places on the contact line.
-struct LineSearch {
-  const Waterline& line;
-  double cell_mm;
-
-  // The contact line next to `near`. `outside` is a unit vector known to point away from the object
-  // more or less; where faces are turned the wrong way, it decides.
-  Waterline::Point line_near(const Vec2& near, const Vec2& outside) const {
-    const auto found = line.closest(near, kMaxJump * cell_mm);
-    if (!found) return {near, outside, kWall};
-    Waterline::Point point = *found;
-    if (point.outward.dot(outside) < -0.7) {
-      point.outward = -point.outward;
-      point.steepness = -point.steepness;
-    }
-    return point;
-  }
-
-  // Where the edge from a vertex that attaches now leaves the object; next to the vertex where it
-  // does not (on walls and overhangs), but never on the far side of it.
-  Waterline::Point first_on_line(const Vec2& from, const Vec2& to) const {
-    if (const auto leaving = line.exit(from, to)) return *leaving;
-    const Vec2 outside = (to - from).normalized();
-    const Waterline::Point near = line_near(from, outside);
-    const bool behind = (near.position - from).dot(outside) < -0.1 * cell_mm;
-    return behind ? line_near(to, outside) : near;
-  }
-
-  // Towards the floating vertex, so that the foot stays by the edge whose strain it uses; straight
-  // up where the water does not gain on it that way: on walls and overhangs, or just before
-  // contact.
-  Waterline::Point next_on_line(const Vec2& from, const Vec2& floating, const Vec2& outward) const {
-    if (const auto ahead = line.exit(from, floating))
-      if ((ahead->position - from).norm() < kMaxJump * cell_mm) return *ahead;
-    return line_near(from, outward);
-  }
-};
 
 // How the object turns in the water plane from one moment to another.
 Mat2 spin_between(const Moment& from, const Moment& to) {

@@ -64,6 +64,19 @@ TEST(Measure, TearsWhatIsStretchedBeyondTheLimit) {
   EXPECT_EQ(torn(0), 0);  // never tears
 }
 
+// What the first dip decided is not decided anew by a hair; film that never lets go never does.
+TEST(Measure, FilmThatIsToldWhenToTearBearsMoreThanOther) {
+  DipOptions options;
+  const double limit = let_go_limit(options);
+  ASSERT_GT(limit, options.material.tear_stretch - 1e-12);
+  options.tears_at_mm = {1e300};
+  EXPECT_GT(let_go_limit(options), 1.1 * limit);
+  options.material.tear_stretch = 0;
+  EXPECT_EQ(let_go_limit(options), 0);
+  options.tears_at_mm.clear();
+  EXPECT_EQ(let_go_limit(options), 0);
+}
+
 TEST(Measure, KnowsWhatIsPressedTogether) {
   const FilmMesh film = film_mesh();
   const auto wrinkled = [&](double factor) {

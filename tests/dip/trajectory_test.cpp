@@ -103,6 +103,32 @@ TEST(Trajectory, ALeaningObjectTouchesFirstAndGoesAsDeepAsAsked) {
     }
 }
 
+// What a leaning object covers of the film on its way has its middle in the film's, and an object
+// that is asked to go deeper than it is high ends with its top at the water.
+TEST(Trajectory, ALeaningObjectIsCentredAndGoesNoDeeperThanItsTop) {
+  const shapes::Shape box = shapes::box(Vec3(-6, -4, 0), Vec3(10, 4, 30));
+  for (const double toward : {0.0, 70.0})
+    for (const double roll : {0.0, 35.0}) {
+      const Trajectory path = make_trajectory(
+          {.depth_mm = 99, .tilt_deg = 20, .tilt_toward_deg = toward, .roll_deg = roll},
+          box.positions);
+      Box2 covered;
+      double top = -1e300, low = 1e300;
+      const std::size_t pieces = path.keyframes().size() - 1;
+      for (std::size_t n = 0; n <= pieces; ++n)
+        for (const Vec3& p : box.positions) {
+          const Vec3 at = path.bath_from_object(double(n) / double(pieces)) * p;
+          covered.add(at.head<2>());
+          if (n < pieces) continue;
+          top = std::max(top, at.z());
+          low = std::min(low, at.z());
+        }
+      EXPECT_LT((covered.min + covered.max).norm(), 1e-9);
+      EXPECT_NEAR(top, 0, 1e-9);
+      EXPECT_LT(low, -20);
+    }
+}
+
 TEST(Trajectory, APathLeavesNothingElseToSay) {
   const shapes::Shape box = shapes::box(Vec3(-1, -1, 0), Vec3(1, 1, 5));
   const std::vector<Keyframe> path = {{}, {.lower_mm = 3, .turn_x_deg = 5}};

@@ -47,6 +47,20 @@ TEST(Waterline, ExitLooksOutwardsOnly) {
   EXPECT_LT((through->position - Vec2(10, 1)).norm(), 1e-12);
 }
 
+// Of several ways out the first counts, from whichever side it comes.
+TEST(Waterline, ExitIsTheFirstOfSeveral) {
+  shapes::Shape row = shapes::box(Vec3(-30, -5, 0), Vec3(-20, 5, 6));
+  row.append(shapes::box(Vec3(-4, -5, 0), Vec3(4, 5, 6)));
+  row.append(shapes::box(Vec3(20, -5, 0), Vec3(30, 5, 6)));
+  Waterline line(row.positions, row.triangles, 2);
+  line.move_to(Moment::at_depth(3));
+  for (const double side : {-1.0, 1.0}) {
+    const auto out = line.exit(side * Vec2(-25, 0.3), side * Vec2(40, 1));
+    ASSERT_TRUE(out);
+    EXPECT_NEAR(out->position.x(), side * -20, 1e-12);
+  }
+}
+
 TEST(Waterline, OfAConeIsACircleWithItsSlope) {
   for (const double tan_theta : {0.3, 1.0, 4.0}) {
     const shapes::Shape cone = shapes::cone(20, tan_theta, 40, 720);
