@@ -239,6 +239,35 @@ TEST(CertaintyTest, WhatIsKnownToLeadAstrayWidensTheIntervals) {
   EXPECT_NEAR(both.high.poisson, 0.25, 1e-6);
 }
 
+// A quadratic's difference over any distance, however long, is its slope in the middle.
+TEST(QuadraticModelTest, SlopeIsThatOfItsValues) {
+  QuadraticModel model;
+  model.value = Eigen::VectorXd::Random(7);
+  model.slope = Eigen::MatrixX3d::Random(7, 3);
+  model.bend = Eigen::MatrixXd::Random(7, 6);
+  for (int n = 0; n < 20; ++n) {
+    const Eigen::Vector3d middle = Eigen::Vector3d::Random(), half = Eigen::Vector3d::Random();
+    const Eigen::VectorXd difference = model.at(middle + half) - model.at(middle - half);
+    EXPECT_LT((difference - 2 * model.slope_at(middle) * half).norm(), 1e-12);
+  }
+}
+
+// An answer a hair inside of a bound is the bound: nobody can tell them apart.
+TEST(FitTest, AnAnswerAHairFromABoundLiesAtIt) {
+  const Eigen::MatrixX3d jacobian = Eigen::MatrixX3d::Random(40, 3);
+  const Eigen::VectorXd exact = Eigen::VectorXd::Zero(40);
+  const double stencil = wide().step[2];
+  for (const double bound : {0.0, 0.48}) {
+    const double inward = bound > 0 ? -stencil : stencil;
+    const FilmFit at = straight_fit({0.65, 0.3, bound + 5e-4 * inward}, jacobian, exact);
+    EXPECT_NEAR(at.point[2], bound, 1e-12);
+    EXPECT_TRUE(at.at_bound[2]);
+    const FilmFit off = straight_fit({0.65, 0.3, bound + 5e-3 * inward}, jacobian, exact);
+    EXPECT_NEAR(off.point[2], bound + 5e-3 * inward, 1e-7);
+    EXPECT_FALSE(off.at_bound[2]);
+  }
+}
+
 TEST(FitPointTest, ComesBack) {
   const FilmParameters p = from_fit(to_fit({0.65, 600, 0.2}));
   EXPECT_NEAR(p.stiffness_ratio, 600, 1e-9);

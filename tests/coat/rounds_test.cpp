@@ -91,6 +91,30 @@ TEST(InkRound, WithTheFirstInkIsTheSecond) {
   }
 }
 
+// What let go in the second round is not whole in any that follows, however the ink changes how
+// film stretches.
+TEST(InkRound, TearsFilmWhereTheSecondDid) {
+  DesignOptions options = coarse();
+  options.dip.material.safe_stretch = 1.05;
+  options.dip.material.tear_stretch = 1.08;
+  options.dip.material.lost_stretch = 1.12;
+  options.trajectory.depth_mm = 15;
+  options.rounds_max = 2;
+  const Designed second = designed("sphere", options);
+  options.rounds_max = 4;
+  options.settled_mm = 0;
+  const Designed fourth = designed("sphere", options);
+  ASSERT_EQ(fourth.ink.rounds.size(), 4U);
+  for (std::size_t n = 0; n < 4; ++n) EXPECT_EQ(fourth.ink.rounds[n].tears_kept, n >= 2) << n;
+  int let_go = 0;
+  for (std::size_t t = 0; t < second.dipped.film->torn_at_mm.size(); ++t) {
+    if (!std::isfinite(second.dipped.film->torn_at_mm[t])) continue;
+    ++let_go;
+    EXPECT_TRUE(fourth.dipped.film->torn[t]) << t;
+  }
+  EXPECT_GT(let_go, 20);
+}
+
 // Rounds in longer steps only look for the ink; the film is the dip's own.
 TEST(InkRound, InLongerStepsLeadsToTheSameFilm) {
   DesignOptions options = coarse();

@@ -290,6 +290,20 @@ TEST(SampleFilmImage, IsBilinearAndTransparentOutside) {
   EXPECT_EQ(sample_film_image(image, raster, Vec2(500, 0)).a, 0);
 }
 
+// Between a thin red and a thick blue, colour counts by what it covers.
+TEST(SampleFilmImage, ThinColoursCountForLess) {
+  const SheetRaster raster = small_sheet(25.4);
+  Image image(60, 60);
+  fill_pixel(image, 30, 29, 255, 0, 0);
+  fill_pixel(image, 31, 29, 0, 0, 255);
+  image.pixel(30, 29)[3] = 51;
+  image.pixel(31, 29)[3] = 204;
+  const LinearColor color = sample_film_image(image, raster, Vec2(1.0, 0.5));
+  EXPECT_NEAR(color.r, 0.2, 1e-6);
+  EXPECT_NEAR(color.b, 0.8, 1e-6);
+  EXPECT_NEAR(color.a, 0.5, 1e-6);
+}
+
 TEST(PredictedColor, IsInkOverTheBareObject) {
   const auto dipped = textured_slab(plain_texture(0, 0, 0));
   const SheetRaster raster = small_sheet(25.4);

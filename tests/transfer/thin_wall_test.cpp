@@ -25,6 +25,22 @@ TEST(ThinWall, FilmOnOneSideLeavesTheOtherBare) {
     }
 }
 
+// In a slot, film lies on the side that it is nearer to, whichever way its normal points.
+TEST(ThinWall, FilmInASlotLandsOnTheNearerSide) {
+  const Vec3 reach(kHalfSide_mm, kHalfSide_mm, 0);
+  shapes::Shape fork = shapes::box(-reach, reach + Vec3(0, 0, 8));
+  fork.append(shapes::box(-reach - Vec3(0, 0, 9), reach - Vec3(0, 0, 1)));
+  DippedFilm film = fixtures::film_on_slab(2000);
+  for (Vec3& at : film.position) at.z() -= 0.3;
+  const auto dipped = fixtures::mapped(fixtures::plain_object(fork), std::move(film));
+  ASSERT_GT(dipped->film.mesh().cell_mm, 1);
+  for (double x = -18; x <= 18; x += 4) {
+    const auto on = dipped->map->to_object(Vec2(x, 0.5 * x));
+    ASSERT_TRUE(on);
+    EXPECT_LT((position_at(dipped->object, *on) - Vec3(x, 0.5 * x, 0)).norm(), 1e-9);
+  }
+}
+
 TEST(ThinWall, FilmThatToreIsFoundOnItsOwnSideOnly) {
   DippedFilm film = fixtures::film_on_slab(2000);
   film.torn.assign(film.torn.size(), 1);
