@@ -56,6 +56,14 @@ TEST(PathSolutions, OfATwistedSphere) {
   EXPECT_NEAR(v[2], -0.2958, 1e-4);
 }
 
+// On coarse film, too, and in long steps: the way of a step is that of its middle.
+TEST(Path, RolledCylinderIsMetInLongSteps) {
+  const PathError error = rolled_cylinder_error({}, 3000, 0.2);
+  EXPECT_LE(error.largest_mm, 0.004);
+  EXPECT_GT(error.reach_mm, 35);
+  EXPECT_GT(error.vertices, 800);
+}
+
 TEST(PathSlow, RolledCylinderMeetsTheBarByDefault) {
   const PathError error = rolled_cylinder_error({}, 40000);
   EXPECT_LE(error.largest_mm, kBar_mm);
