@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cmath>
 
 namespace hydrodip {
 namespace {
@@ -30,6 +31,21 @@ int evaluations_until_fixed(int memory, int at_most) {
 TEST(FixedPoint, EndsALinearIterationThatWouldSwingForever) {
   EXPECT_GT(evaluations_until_fixed(0, 50), 50);
   EXPECT_LE(evaluations_until_fixed(2, 50), 4);
+}
+
+// Whatever came before the last two evaluations, the present one goes on from those.
+TEST(FixedPoint, ForgetsWhatIsOlderThanItsMemory) {
+  const auto point = [](double n) -> Eigen::VectorXd {
+    return Eigen::Vector4d(std::sin(n), std::cos(3 * n), std::sin(5 * n), std::cos(7 * n));
+  };
+  FixedPoint one(2), other(2);
+  one.next(point(100), point(101));
+  other.next(point(200), point(201));
+  for (int n = 0; n < 6; ++n) {
+    const Eigen::VectorXd a = one.next(point(n), point(n + 0.5));
+    const Eigen::VectorXd b = other.next(point(n), point(n + 0.5));
+    EXPECT_EQ((a - b).norm() < 1e-12, n >= 2) << n;
+  }
 }
 
 TEST(FixedPoint, StaysWhereItHasArrived) {
