@@ -134,7 +134,7 @@ std::string FileHashes::of(const fs::path& file) {
       return known->second.hash;
   }
   try {
-    const std::string hash = sha256_hex(read_file(file));
+    std::string hash = sha256_hex(read_file(file));
     const std::lock_guard lock(mutex_);
     known_[file.string()] = {written, size, hash};
     return hash;
