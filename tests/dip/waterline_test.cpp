@@ -161,6 +161,7 @@ TEST(Waterline, RulesOutOnlyWaysThatDoNotTouch) {
 
 std::vector<Vec3> turned(const std::vector<Vec3>& positions, const Moment& moment) {
   std::vector<Vec3> result;
+  result.reserve(positions.size());
   for (const Vec3& p : positions) result.push_back(moment.to_sinking(p));
   return result;
 }
