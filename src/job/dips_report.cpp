@@ -43,48 +43,41 @@ std::optional<ReportObstacle> obstacle_of(const MadeDip& dip, std::size_t of) {
   return std::nullopt;
 }
 
-// Per dip: which part of the surface is covered by it and those before, but not without it.
-std::vector<double> gained_by(const MadeDips& all, const SharedSurface& shared) {
+// What becomes of the surface.
+struct Brought {
+  std::vector<double> gained;  // per dip: the part covered by it and those before, not without it
+  double doubtful_share = 0;   // where so much of the ink comes with film that may tear, or move
+};
+
+Brought brought_by(const MadeDips& all, const SharedSurface& shared) {
   const Targets& targets = all.nodes->targets();
-  std::vector<double> gained(all.dips.size(), 0);
+  Brought result{std::vector<double>(all.dips.size(), 0), 0};
+  double doubtful_mm2 = 0;
   for (std::size_t i = 0; i < targets.list.size(); ++i) {
     const Target& node = targets.list[i];
     const std::vector<float> shares = shared.shares_at(node.position, node.normal);
-    float brought = 0;
-    for (std::size_t k = 0; k < gained.size(); ++k) {
+    float brought = 0, in_doubt = 0;
+    for (std::size_t k = 0; k < all.dips.size(); ++k) {
+      const bool was_covered = brought >= kMuchOfTheInk;
       if (all.worth[k][i] > 0) brought += shares[k];
-      if (brought < kMuchOfTheInk) continue;
-      gained[k] += node.area / targets.area;
-      break;
+      if (!was_covered && brought >= kMuchOfTheInk) result.gained[k] += node.area / targets.area;
+      if (shares[k] > 0 && lies_in_doubt(all.dips[k], node)) in_doubt += shares[k];
     }
+    if (in_doubt >= kMuchOfTheInk) doubtful_mm2 += node.area;
   }
-  return gained;
-}
-
-// Where so much of the ink comes with film that may tear after all, or lie elsewhere.
-double doubtful_share(const MadeDips& all, const SharedSurface& shared) {
-  const Targets& targets = all.nodes->targets();
-  double doubtful_mm2 = 0;
-  for (const Target& node : targets.list) {
-    const std::vector<float> shares = shared.shares_at(node.position, node.normal);
-    float brought = 0;
-    for (std::size_t k = 0; k < all.dips.size(); ++k)
-      if (shares[k] > 0 && lies_in_doubt(all.dips[k], node)) brought += shares[k];
-    if (brought >= kMuchOfTheInk) doubtful_mm2 += node.area;
-  }
-  return doubtful_mm2 / targets.area;
+  result.doubtful_share = doubtful_mm2 / targets.area;
+  return result;
 }
 
 // Of all films together: the surface under those that bring its ink, all film that meets the
 // object, whatever wrinkles or was lifted.
-Coverage coverage_together(const MadeDips& all, const SharedSurface& shared,
-                           const std::vector<double>& gained) {
+Coverage coverage_together(const MadeDips& all, const Brought& brought) {
   Coverage sum;
   const double scale = all.prepared.posed.scale();
   sum.object_mm2 = sum.downward_mm2 = scale * scale * all.nodes->targets().area;
-  for (const double share : gained) sum.covered_mm2 += share * sum.object_mm2;
+  for (const double share : brought.gained) sum.covered_mm2 += share * sum.object_mm2;
   sum.covered_downward_mm2 = sum.covered_mm2;
-  sum.doubtful_mm2 = doubtful_share(all, shared) * sum.object_mm2;
+  sum.doubtful_mm2 = brought.doubtful_share * sum.object_mm2;
   double stretch = 0, area_ratio = 0;
   for (const MadeDip& dip : all.dips) {
     const Coverage& c = dip.made.dipped.coverage;
@@ -134,12 +127,12 @@ std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& sha
 Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishCheck& check,
                  const JobRecord& record) {
   Report report = make_report(record);
-  const std::vector<double> gained = gained_by(all, shared);
-  report.coverage = coverage_together(all, shared, gained);
+  const Brought brought = brought_by(all, shared);
+  report.coverage = coverage_together(all, brought);
   report.angles.reset();
   report.figures.clear();
   report.rounds.clear();
-  report.dips = report_dips(all, shared, gained);
+  report.dips = report_dips(all, shared, brought.gained);
   report.colors = check.colors();
   report.seams = ReportSeams{check.films_meet() ? shared.seam_mm() : 0, all.config.plan.overlap_mm,
                              check.seam_error(), FinishCheck::kOff_mm, check.seam_error_off()};
