@@ -66,7 +66,10 @@ void Feet::climb(const FloatingSheet& sheet, const Waterline& line, const Moment
       foot.outward = end.outward;
       foot.steepness = end.steepness;
     }
-    place_ghost(foot, foot.element.next(ratio));
+    const double way = foot.way.norm(), left = (sheet.plan(foot.floating) - foot.place).norm();
+    foot.ghost_gradient.follow(foot.element.next(ratio), foot.last_way.norm(), way,
+                               way > 0 ? way / (way + left) : 0);
+    place_ghost(foot);
   });
 }
 
@@ -141,6 +144,7 @@ void Feet::create(const Touch& touch, const FloatingSheet& sheet, const Waterlin
     const Waterline::Point end = search.first_on_line(from, sheet.slid(w));
     const Mat2 F = sheet.gradient_at_edge(v, w, Mat2::Identity(), *this);
     foot.element = foot.line = {F, F};
+    foot.ghost_gradient.now = F;
     foot.way = unrolled(touched, normal.head<2>().stableNormalized(),
                         steepness_along(normal, end.outward), end, to.level_mm, z_stretch());
     foot.laid = F * foot.way;
@@ -148,6 +152,7 @@ void Feet::create(const Touch& touch, const FloatingSheet& sheet, const Waterlin
     foot.place = end.position;
     foot.outward = end.outward;
     foot.steepness = end.steepness;
+    place_ghost(foot);
     created.push_back(foot);
   }
 }
@@ -157,7 +162,6 @@ void Feet::replace(const std::vector<Foot>& created, const FloatingSheet& sheet)
     return !sheet.floats(foot.floating) || !sheet.is_usable_edge(foot.attached, foot.floating);
   });
   feet_.insert(feet_.end(), created.begin(), created.end());
-  for_feet([](Foot& foot) { place_ghost(foot, foot.element.now); });
   index(sheet);
 }
 

@@ -11,6 +11,10 @@ namespace {
 // Cosines of turns of the waterline: from a bend on, up to a corner.
 constexpr double kBend = 0.9, kCorner = 0.5;
 
+// Share of its way from which on a foot has nearly arrived; what its ghost's gradient lags behind
+// by then, at most, as a share of the way; how much more late changes count than early ones.
+constexpr double kNearlyArrived = 0.8, kLag = 0.1, kLateChanges = 2;
+
 // Length from (0, 0) to (run, rise) with the vertical scaled: along two straight pieces with the
 // given slopes if they meet on the way (a crease lies between), else along the chord.
 double scaled_length(double run, double rise, double first_slope, double last_slope,
@@ -29,6 +33,20 @@ double scaled_length(double run, double rise, double first_slope, double last_sl
 }
 
 }  // namespace
+
+void GhostGradient::follow(const Mat2& expected, double last_mm, double way_mm, double share) {
+  const double arrived = std::max(0.0, (share - kNearlyArrived) / (1 - kNearlyArrived));
+  const double lag_mm = kLag * way_mm * arrived;
+  if (!(last_mm > 0)) {
+    if (!(lag_mm > 0)) now = expected;
+    return;
+  }
+  const Mat2 before = now;
+  const Mat2 straight_on = now + last_mm * change_per_mm;
+  now = straight_on + last_mm / (last_mm + lag_mm) * (expected - straight_on);
+  const double weight = std::min(1.0, kLateChanges * last_mm / way_mm);
+  change_per_mm += weight * ((now - before) / last_mm - change_per_mm);
+}
 
 bool usable_gradient(const Mat2& F) {
   return F.allFinite() && F.determinant() > 1e-3 && F.squaredNorm() < 1e4;
@@ -58,7 +76,8 @@ double steepness_along(const Vec3& normal, const Vec2& direction) {
   return std::abs(normal.z()) * kWall > std::abs(n) ? -n / normal.z() : kWall;
 }
 
-void place_ghost(Foot& foot, const Mat2& F) {
+void place_ghost(Foot& foot) {
+  const Mat2& F = foot.ghost_gradient.now;
   Vec2 back = foot.way;
   if (usable_gradient(F)) {
     const Vec2 strained = F.inverse() * foot.laid;

@@ -16,6 +16,20 @@ struct Gradient {
   }
 };
 
+// The gradient that a ghost is placed with: as the film ahead of the foot is expected to be. That
+// depends on where the ghost is, the more the further the foot has come, at the end one to one, and
+// round an edge of the object by more: there, errors would grow from step to step.
+struct GhostGradient {
+  Mat2 now = Mat2::Identity();
+  Mat2 change_per_mm = Mat2::Zero();  // on average along the way, the later the more
+
+  // The foot went last_mm of way_mm so far, which is `share` of its way to the floating vertex. At
+  // first what is expected is taken as it is. Where the foot has nearly arrived it is followed
+  // over a tenth of the way, whatever the step, from where the change so far leads: what changes
+  // evenly is not late.
+  void follow(const Mat2& expected, double last_mm, double way_mm, double share);
+};
+
 // Of the edge from an attached vertex to a floating one (docs/model.md, section 4).
 struct Foot {
   std::int32_t attached = -1, floating = -1;
@@ -29,6 +43,7 @@ struct Foot {
   Gradient line;             // the same on the contact line itself
   Vec2 last_way = Vec2::Zero();     // way of the present step
   Vec2 laid_before = Vec2::Zero();  // laid at its start
+  GhostGradient ghost_gradient;
   Vec2 ghost = Vec2::Zero();
 };
 
@@ -45,7 +60,7 @@ Vec2 unrolled(const Vec3& from, const Vec2& first_outward, double first_slope,
 double steepness_along(const Vec3& normal, const Vec2& direction);
 
 // Sets foot.ghost: where the attached vertex would be if the film laid behind the foot were flat
-// and strained by F like the floating film ahead of it.
-void place_ghost(Foot& foot, const Mat2& F);
+// and strained by its ghost's gradient.
+void place_ghost(Foot& foot);
 
 }  // namespace hydrodip

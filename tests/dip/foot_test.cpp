@@ -84,17 +84,59 @@ TEST(Ghost, LiesAsFarBackAsTheFilmThatWasLaid) {
   Foot foot;
   foot.place = Vec2(7, 1);
   foot.way = foot.laid = Vec2(2, 0.5);
-  place_ghost(foot, Mat2::Identity());
+  place_ghost(foot);
   EXPECT_LT((foot.ghost - Vec2(5, 0.5)).norm(), 1e-12);
   foot.laid = Vec2(2.2, 0.5);
-  place_ghost(foot, Mat2::Identity());
+  place_ghost(foot);
   EXPECT_LT((foot.ghost - Vec2(4.8, 0.5)).norm(), 1e-12);
   foot.laid = foot.way;
-  place_ghost(foot, 1.25 * Mat2::Identity());  // du/dX: film that is squeezed to 0.8
+  foot.ghost_gradient.now = 1.25 * Mat2::Identity();  // du/dX: film that is squeezed to 0.8
+  place_ghost(foot);
   EXPECT_LT((foot.ghost - (Vec2(7, 1) - 0.8 * foot.way)).norm(), 1e-12);
   foot.laid = Vec2(40, 0);
-  place_ghost(foot, Mat2::Identity());
+  foot.ghost_gradient.now = Mat2::Identity();
+  place_ghost(foot);
   EXPECT_NEAR((Vec2(7, 1) - foot.ghost - foot.way).norm(), 0.5 * foot.way.norm(), 1e-12);
+}
+
+// What changes evenly along the way is followed without a lag, however long the steps.
+TEST(GhostGradient, FollowsWhatChangesEvenly) {
+  for (const double step_mm : {0.02, 0.1, 0.5}) {
+    GhostGradient ghost;
+    for (double way_mm = step_mm; way_mm < 2; way_mm += step_mm) {
+      const Mat2 expected = (1 + 0.2 * way_mm) * Mat2::Identity();
+      // Before the first step nothing is known of any change.
+      if (way_mm == step_mm) ghost.now = expected - 0.2 * step_mm * Mat2::Identity();
+      ghost.follow(expected, step_mm, way_mm, way_mm / 2);
+      EXPECT_LT((ghost.now - expected).norm(), 1e-9) << way_mm << " mm in steps of " << step_mm;
+    }
+  }
+}
+
+// Film whose gradient answers to an error of the ghost's with the foot's share of its way and a
+// quarter more, over the last fifth: what the error becomes is a matter of the way, not of steps.
+TEST(GhostGradient, KeepsAnErrorThatFeedsItselfInBounds) {
+  for (const int steps : {20, 200, 2000}) {
+    constexpr double kWay_mm = 2, kFeedback = 1.25, kError = 1e-3;
+    const double step_mm = 0.2 * kWay_mm / steps;
+    GhostGradient ghost;
+    ghost.now = kError * Mat2::Identity();
+    for (int step = 1; step <= steps; ++step) {
+      const double way_mm = 0.8 * kWay_mm + step * step_mm;
+      const double share = way_mm / kWay_mm;
+      ghost.follow(kFeedback * share * ghost.now, step_mm, way_mm, share);
+    }
+    EXPECT_LT(ghost.now(0, 0), 3 * kError) << steps << " steps";
+  }
+}
+
+TEST(GhostGradient, WaitsWhileTheFootStands) {
+  GhostGradient ghost;
+  ghost.follow(2 * Mat2::Identity(), 0.1, 1, 0.5);
+  ghost.follow(3 * Mat2::Identity(), 0, 1, 0.5);
+  EXPECT_EQ(ghost.now, 3 * Mat2::Identity());  // far from where it goes: as expected
+  ghost.follow(4 * Mat2::Identity(), 0, 1, 0.95);
+  EXPECT_EQ(ghost.now, 3 * Mat2::Identity());
 }
 
 TEST(Gradient, IsExtrapolatedByThePresentStep) {

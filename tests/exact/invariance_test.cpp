@@ -177,6 +177,33 @@ TEST(KnownDips, FlatBottomTakesTheFilmAsItIs) {
   }
 }
 
+// Over sharp edges, too: film on one mesh settles as the steps get shorter.
+TEST(InvarianceSlow, FilmOverEdgesDoesNotDependOnTheStep) {
+  const Shape shape = shapes::pyramid(35, 0.8);
+  const FilmMesh film = square_film(5000);
+  const auto dipped = [&](double step_mm) {
+    return dip_shape(shape, film, untearing(step_mm, 24)).position;
+  };
+  std::vector<Vec3> before = dipped(0.2);
+  for (const double step_mm : {0.1, 0.05, 0.025}) {
+    const std::vector<Vec3> now = dipped(step_mm);
+    double sum = 0, largest = 0;
+    int count = 0;
+    for (std::size_t v = 0; v < now.size(); ++v) {
+      // In one of the two dips it still floats, perhaps.
+      if (std::max(now[v].z(), before[v].z()) > 23.5) continue;
+      const double moved_mm = (now[v] - before[v]).norm();
+      sum += moved_mm * moved_mm;
+      largest = std::max(largest, moved_mm);
+      ++count;
+    }
+    EXPECT_GT(count, 200);
+    EXPECT_LT(std::sqrt(sum / count), 0.01) << step_mm;
+    EXPECT_LT(largest, 0.03) << step_mm;
+    before = now;
+  }
+}
+
 // The rim is taped to the bath: it rises with nothing.
 TEST(KnownDips, RimStaysWhereItIsTaped) {
   const FilmMesh film = square_film(1000);

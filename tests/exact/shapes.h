@@ -87,6 +87,17 @@ inline Shape wedge(double half_width, double half_length, double tan_theta) {
   return shape;
 }
 
+// Four planes that meet in a tip at the origin and rise to the sides of a square.
+inline Shape pyramid(double half_width, double tan_theta) {
+  Shape shape;
+  const double z = half_width * tan_theta;
+  const auto tip = shape.add(0, 0, 0);
+  const auto a = shape.add(-half_width, -half_width, z), b = shape.add(half_width, -half_width, z),
+             c = shape.add(half_width, half_width, z), d = shape.add(-half_width, half_width, z);
+  shape.triangles = {{tip, b, a}, {tip, c, b}, {tip, d, c}, {tip, a, d}};
+  return shape;
+}
+
 // The lower part of a circular cylinder along y, up to `angle` from straight down on both sides.
 inline Shape trough(double radius, double half_length, double angle, int facets) {
   Shape shape;
