@@ -40,7 +40,6 @@ void Feet::climb(const FloatingSheet& sheet, const Waterline& line, const Moment
   const double travel = to.travelled_mm - from.travelled_mm;
   const double ratio = last_travel_ > 0 ? travel / last_travel_ : 1.0;
   last_travel_ = travel;
-  now_ = to;
   const Moment between = set_.travel.at(0.5 * (from.travelled_mm + to.travelled_mm));
   const Mat2 spin = spin_between(from, to);
   const LineSearch search{line, film_.cell_mm};
@@ -59,7 +58,7 @@ void Feet::climb(const FloatingSheet& sheet, const Waterline& line, const Moment
       foot.last_way = unrolled(between.to_sinking(foot.point), foot.outward, foot.steepness,
                                {point_between.head<2>(), end.outward, end.steepness},
                                point_between.z(), z_stretch());
-      foot.laid += 0.5 * (foot.line.now + foot.line.next(ratio)) * foot.last_way;
+      foot.laid += 0.5 * (foot.element.now + foot.element.next(ratio)) * foot.last_way;
       foot.way += foot.last_way;
       foot.point = point;
       foot.place = end.position;
@@ -80,32 +79,10 @@ void Feet::correct(const FloatingSheet& sheet) {
         sheet.gradient_at_edge(foot.attached, foot.floating, foot.element.now, *this);
   });
   for_feet([&](Foot& foot) {
-    const Mat2& floating = element[number(foot)];
-    const Mat2 line = gradient_on_line(foot, floating, sheet);
-    foot.laid = foot.laid_before + 0.5 * (foot.line.now + line) * foot.last_way;
-    foot.line.advance(line);
-    foot.element.advance(floating);
+    const Mat2& now = element[number(foot)];
+    foot.laid = foot.laid_before + 0.5 * (foot.element.now + now) * foot.last_way;
+    foot.element.advance(now);
   });
-}
-
-// Around a vertex that is attached alone, the contact line is a circle smaller than the triangles
-// around it, and the floating film strains as around a hole: u = A r + B / r. Of that, triangles
-// know the mean slope from the circle (radius c) out to the floating vertex (r), and the foot
-// knows u / c; the slope at the circle follows.
-Mat2 Feet::gradient_on_line(const Foot& foot, const Mat2& element,
-                            const FloatingSheet& sheet) const {
-  if (!sheet.stands_alone(foot.attached)) return element;
-  const Vec2 centre = now_.to_sinking(state_.position[std::size_t(foot.attached)]).head<2>();
-  const Vec2 out = foot.place - centre;
-  const double c = out.norm();
-  const double r = (sheet.slid(foot.floating) - centre).norm();
-  if (!(c > 0) || !(r > c)) return element;
-  const Vec2 n = out / c;
-  const double half_q = 0.5 * (1 - c / r);
-  const double around = n.dot(foot.laid) / c;
-  const double mean = n.dot(element * n);
-  const double slope = (mean - half_q * around) / (1 - half_q);
-  return element + (slope - mean) * n * n.transpose();
 }
 
 std::vector<Foot> Feet::created_for(const std::vector<Touch>& touches, const FloatingSheet& sheet,
@@ -143,7 +120,7 @@ void Feet::create(const Touch& touch, const FloatingSheet& sheet, const Waterlin
     const Vec2 from = touched.head<2>();
     const Waterline::Point end = search.first_on_line(from, sheet.slid(w));
     const Mat2 F = sheet.gradient_at_edge(v, w, Mat2::Identity(), *this);
-    foot.element = foot.line = {F, F};
+    foot.element = {F, F};
     foot.ghost_gradient.now = F;
     foot.way = unrolled(touched, normal.head<2>().stableNormalized(),
                         steepness_along(normal, end.outward), end, to.level_mm, z_stretch());

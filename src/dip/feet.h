@@ -66,7 +66,6 @@ class Feet {
   std::size_t number(const Foot& foot) const { return std::size_t(&foot - feet_.data()); }
   double z_stretch() const { return set_.options.material.z_stretch; }
 
-  Mat2 gradient_on_line(const Foot& foot, const Mat2& element, const FloatingSheet& sheet) const;
   void create(const Touch& touch, const FloatingSheet& sheet, const Waterline& line,
               const Moment& to, std::vector<Foot>& created) const;
   void index(const FloatingSheet& sheet);
@@ -75,7 +74,6 @@ class Feet {
   const FilmMesh& film_;
   const DipState& state_;
   double last_travel_ = 0;
-  Moment now_;  // of the feet's places
   std::vector<Foot> feet_;
   // Per triangle corner, if its vertex is attached: the feet of its edges to floating corners.
   std::vector<std::array<std::int32_t, 2>> feet_of_corner_;

@@ -236,12 +236,4 @@ Mat2 FloatingSheet::gradient_at_edge(std::int32_t a, std::int32_t b, const Mat2&
   return count > 0 ? Mat2(sum / count) : otherwise;
 }
 
-bool FloatingSheet::stands_alone(std::int32_t v) const {
-  for (auto n = film_.incident_begin[std::size_t(v)]; n < film_.incident_begin[std::size_t(v) + 1];
-       ++n)
-    for (std::int32_t w : film_.triangles[std::size_t(film_.incident[std::size_t(n)])])
-      if (w != v && !floats(w)) return false;
-  return true;
-}
-
 }  // namespace hydrodip

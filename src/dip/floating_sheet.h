@@ -72,8 +72,6 @@ class FloatingSheet {
     for_triangles_at_edge(a, b, [&](std::size_t t) { usable |= is_usable(t); });
     return usable;
   }
-  // Whether no vertex around it is attached or clamped.
-  bool stands_alone(std::int32_t v) const;
   template <typename Visit>
   void for_triangles_at_edge(std::int32_t a, std::int32_t b, const Visit& visit) const {
     for (auto n = film_.incident_begin[std::size_t(a)];

@@ -40,7 +40,6 @@ struct Foot {
   Vec2 laid = Vec2::Zero();  // film between the attached vertex and the point, in film coordinates
   Vec2 way = Vec2::Zero();   // the same on the object, unrolled into the water plane
   Gradient element;          // du/dX of the floating triangles on both sides of the edge
-  Gradient line;             // the same on the contact line itself
   Vec2 last_way = Vec2::Zero();     // way of the present step
   Vec2 laid_before = Vec2::Zero();  // laid at its start
   GhostGradient ghost_gradient;
