@@ -416,8 +416,10 @@ std::optional<std::size_t> ahead(const std::vector<DarkSquare>& squares, std::si
     const Vec3 off = squares[i].middle() - squares[from].middle();
     const double forward = along.dot(off);
     if (forward < kNearest * half || std::abs(across.dot(off)) > kMostAside * forward) continue;
-    if (off.norm() < nearest) {
-      nearest = off.norm();
+    // Along the surface, which bends in the middle: straight over a tip it seems near.
+    const double bend = std::sqrt(0.5 * (1 + squares[i].normal.dot(squares[from].normal)));
+    if (off.norm() < nearest * bend) {
+      nearest = off.norm() / bend;
       best = i;
     }
   }

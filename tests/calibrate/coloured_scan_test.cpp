@@ -52,6 +52,31 @@ TEST_F(ColouredScanSlow, CornersOfAPyramidAreWhereTheDipLaidThem) {
   EXPECT_LT(found.rms_mm, 0.07);
 }
 
+// Of a pyramid's squares, those over the tip and beside it were not found: straight across, the
+// next ones are no further than neighbours may be, but over the tip they are.
+TEST(DarkSquares, AreNoNeighboursAcrossATip) {
+  const auto on_face = [](double side, double along_mm) {
+    const Vec3 up = Vec3(side, 0, 0.8).normalized(), aside(0, side, 0);
+    const Vec3 middle = along_mm * up;
+    DarkSquare square;
+    square.normal = aside.cross(up);
+    const Vec3 a = 2.5 * aside, b = 2.9 * up;
+    square.corner = {middle - a - b, middle + a - b, middle + a + b, middle - a + b};
+    return square;
+  };
+  std::vector<DarkSquare> squares;
+  for (const double side : {1.0, -1.0})
+    for (const double along_mm : {11.9, 24.0}) squares.push_back(on_face(side, along_mm));
+  ASSERT_LT(squares[0].normal.z(), 0);
+  ASSERT_LT((squares[0].middle() - squares[2].middle()).norm(), 6.5 * 2.9);
+  const CornerGrid grid = grid_of_dark_squares(squares);
+  ASSERT_EQ(grid.patch.size(), 16u);
+  for (std::size_t c = 0; c < 8; ++c) {
+    EXPECT_EQ(grid.patch[c], grid.patch[0]);
+    EXPECT_NE(grid.patch[c], grid.patch[c + 8]);
+  }
+}
+
 // Through its files, as every scan; and its places on the board are found.
 TEST_F(ColouredScanSlow, ASphereIsReadFromItsFilesAndLaidOnTheSphere) {
   const scans::Truth truth("sphere", {0.65, 30, 0.1}, context_);
