@@ -348,8 +348,7 @@ std::string as_given(const Vec3& p) {
 }
 
 ModelFrame::ModelFrame(const PosedObject& posed)
-    : turn(posed.matrix().topLeftCorner<3, 3>() / posed.scale()),
-      offset(posed.matrix().topRightCorner<3, 1>()) {}
+    : turn(posed.turn()), offset(posed.matrix().topRightCorner<3, 1>()) {}
 
 SurfaceHit nearest_to(const PlacementTask& task, const Vec3& at) {
   const ModelFrame frame(task.posed);

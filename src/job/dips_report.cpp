@@ -19,9 +19,8 @@ constexpr float kMuchOfTheInk = 0.5F;
 // Whether film of a dip lies there of which nobody knows whether it holds, or where.
 bool lies_in_doubt(const MadeDip& dip, const Target& node) {
   const PosedObject& posed = dip.posed;
-  const Mat3 turn = posed.matrix().topLeftCorner<3, 3>() / posed.scale();
   const auto hold = dip.made.dipped.map->hold_at(
-      (posed.matrix() * node.position.homogeneous()).head<3>(), turn * node.normal);
+      (posed.matrix() * node.position.homogeneous()).head<3>(), posed.turn() * node.normal);
   const DoubtfulStretch doubtful = doubtful_stretch(dip.config.design.dip.material);
   return hold && !hold->let_go && hold->stretch < doubtful.to &&
          (hold->stretch > doubtful.from || hold->moved_mm > kMoved_mm);

@@ -66,7 +66,7 @@ class Landing {
         stretch_(worth_) {
     const double limit = task.dip.material.tear_stretch;
     const PosedObject& posed = dip.posed;
-    const Mat3 turn = posed.matrix().topLeftCorner<3, 3>() / posed.scale();
+    const Mat3 turn = posed.turn();
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const Target& target = task.targets.list[i];
       const Vec3 position = (posed.matrix() * target.position.homogeneous()).head<3>();

@@ -11,14 +11,14 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kNearlyAll = 0.98;       // of what shall be printed, or of the object
+constexpr double kAsGoodAsAll = 0.98;     // of what shall be printed, or of the object
 constexpr double kLittleDoubt = 0.01;     // of the surface under whole film
 constexpr double kPale = 1.3;             // area ratio from which paling shows
 constexpr double kPlainDifference = 5;    // CIEDE2000: plain to see
 constexpr double kMuchOutOfGamut = 0.02;  // of the covered surface
 constexpr double kUsualMiss_mm = 1;
 
-std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
+std::string whole_percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
 double picture_share(const Report& report) {
   return report.wanted && report.wanted->covered_mm2 > 0 ? report.wanted->covered_share()
@@ -29,12 +29,12 @@ bool is_of_a_part(const Report& report) { return report.wanted && report.wanted-
 
 Finding coverage_point(const Report& report) {
   const double share = picture_share(report);
-  Finding point{"coverage", share >= kNearlyAll ? Concern::kNone : Concern::kCare,
-                "Coverage", percent(share),
+  Finding point{"coverage", share >= kAsGoodAsAll ? Concern::kNone : Concern::kCare,
+                "Coverage", whole_percent(share),
                 "",         ""};
   if (is_of_a_part(report))
     point.text = "of your picture comes out.";
-  else if (share >= kNearlyAll)
+  else if (share >= kAsGoodAsAll)
     point.text = "of the object gets colour.";
   else
     point.text = "of the object gets colour. The rest, sides and back, stays as the bare object.";
@@ -58,7 +58,7 @@ Finding colors_point(const Report& report) {
   if (beyond > kMuchOutOfGamut)
     point.text += fmt::format(
         " {} of the picture has colours that these inks cannot give; the nearest ones are printed.",
-        percent(beyond));
+        whole_percent(beyond));
   return point;
 }
 
@@ -96,7 +96,7 @@ std::string customer_headline(Concern concern) {
 }
 
 std::string customer_verdict(const Report& report) {
-  const std::string share = percent(picture_share(report));
+  const std::string share = whole_percent(picture_share(report));
   if (is_of_a_part(report)) return fmt::format("{} of your picture comes out.", share);
   if (!(report.coverage->covered_mm2 > 0)) return "No colour would stay on the object.";
   if (report.dips.size() > 1)
@@ -116,7 +116,7 @@ std::vector<Finding> customer_points(const Report& report) {
                     "shows.",
                     ""});
   if (c.doubtful_mm2 > kLittleDoubt * c.covered_mm2)
-    list.push_back({"doubtful", Concern::kCare, "Doubtful", percent(c.doubtful_share()),
+    list.push_back({"doubtful", Concern::kCare, "Doubtful", whole_percent(c.doubtful_share()),
                     "of the object may come out bare or a little displaced.", ""});
   if (report.air && report.air->area_mm2() > 0)
     list.push_back({"air", Concern::kCare, "Hollows", "",

@@ -1,7 +1,5 @@
 #include "report/findings.h"
 
-#include "dip/dip.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,10 +7,12 @@
 #include <optional>
 #include <variant>
 
+#include "dip/dip.h"
+#include "report/shares.h"
+
 namespace hydrodip {
 namespace {
 
-constexpr double kNearlyAll = 0.9;         // of what faces down; film ends a cell short of borders
 constexpr double kWholePicture = 0.98;     // of what shall be printed
 constexpr double kMuchTorn = 0.1;          // of the film that meets the object
 constexpr double kMuchAir = 0.02;          // of the object's surface
@@ -28,12 +28,6 @@ constexpr double kMuchOutOfGamut = 0.02;   // of the covered surface
 constexpr double kUsualMiss_mm = 1;        // how far off a dip usually lands
 constexpr double kFarOff_mm = 3;           // from there on a picture is not on the object
 constexpr double kLittleDoubt = 0.01;      // of the surface under whole film
-
-std::string percent(double share) {
-  const double value = 100 * share;
-  if (value > 0 && value < 0.1) return "under 0.1 %";
-  return value < 10 ? fmt::format("{:.1f} %", value) : fmt::format("{:.0f} %", value);
-}
 
 Finding no_film(const Coverage& c) {
   Finding finding{"coverage", Concern::kStop, "Coverage", "0 %", "", ""};

@@ -5,18 +5,10 @@
 #include "base/file.h"
 #include "dip/dip.h"
 #include "report/findings.h"
+#include "report/shares.h"
 
 namespace hydrodip {
 namespace {
-
-// Of the surface that faces down; film ends a cell or so short of every border.
-constexpr double kNearlyAll = 0.9;
-
-std::string percent(double share) {
-  const double value = 100 * share;
-  if (value > 0 && value < 0.1) return "under 0.1 %";
-  return value < 10 ? fmt::format("{:.1f} %", value) : fmt::format("{:.0f} %", value);
-}
 
 bool has_wanted(const Report& report) { return report.wanted && report.wanted->covered_mm2 > 0; }
 
