@@ -181,7 +181,9 @@ class Round {
     low_ = low_.cwiseMin(high_);
     for (int k = 0; k < 3; ++k)
       if (!free[std::size_t(k)]) low_[k] = high_[k] = 0;
+    weight_ = Eigen::VectorXd::Ones(misfits_.value.rows());
     make_model();
+    if (misfits_.uncertain.size() > 0) weigh();
   }
 
   void solve() {
@@ -207,7 +209,7 @@ class Round {
       if (!there.value.row(i).allFinite()) misfits_.value.row(i).setConstant(kNaN);
     rows_ = known_rows(misfits_);
     make_model();
-    model_.value += without(there.value(rows_, 0), open_) - model_.at(in_stencils(point));
+    model_.value += seen(there.value(rows_, 0)) - model_.at(in_stencils(point));
   }
 
   const Eigen::Vector3d& answer() const { return answer_; }  // in stencils
@@ -224,9 +226,11 @@ class Round {
           (fit.point[k] <= options.low[k] + 1e-9 || fit.point[k] >= options.high[k] - 1e-9);
     fit.residual = Eigen::VectorXd::Constant(misfits_.value.rows(), kNaN);
     fit.jacobian = Eigen::MatrixX3d::Zero(misfits_.value.rows(), 3);
-    const Eigen::VectorXd residual = model_.at(answer_);
-    const Eigen::MatrixX3d slope =
-        model_.slope_at(answer_) * stencil_.step.cwiseInverse().asDiagonal();
+    fit.weight = weight_;
+    const Eigen::VectorXd unweighted = weight_(rows_).cwiseInverse();
+    const Eigen::VectorXd residual = unweighted.cwiseProduct(model_.at(answer_));
+    const Eigen::MatrixX3d slope = unweighted.asDiagonal() * model_.slope_at(answer_) *
+                                   stencil_.step.cwiseInverse().asDiagonal();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       fit.residual[rows_[i]] = residual[Eigen::Index(i)];
       fit.jacobian.row(rows_[i]) = slope.row(Eigen::Index(i));
@@ -244,13 +248,27 @@ class Round {
       throw InputError(
           "the scans have too few corners on the film that the simulation lays down; check the "
           "objects' depths");
-    open_ = orthonormal(misfits_.open(rows_, Eigen::all));
-    model_ = stencil_.model(without(misfits_.value(rows_, Eigen::all), open_));
+    open_ = orthonormal(weight_(rows_).asDiagonal() * misfits_.open(rows_, Eigen::all));
+    model_ = stencil_.model(seen(misfits_.value(rows_, Eigen::all)));
+  }
+
+  // Weighted, and without what nobody has measured.
+  Eigen::MatrixXd seen(const Eigen::MatrixXd& values) const {
+    return without(weight_(rows_).asDiagonal() * values, open_);
+  }
+
+  void weigh() {
+    solve();
+    const double noise = root_mean_square(model_.at(answer_));
+    for (Eigen::Index i : rows_)
+      if (misfits_.uncertain[i] > 0) weight_[i] = noise / std::hypot(noise, misfits_.uncertain[i]);
+    make_model();
   }
 
   Stencil stencil_;
   Misfits misfits_;
   std::vector<Eigen::Index> rows_;
+  Eigen::VectorXd weight_;
   Eigen::MatrixXd open_;
   QuadraticModel model_, model_for_answer_;  // the latter compressed
   Eigen::Vector3d low_, high_, answer_ = Eigen::Vector3d::Zero();
@@ -377,6 +395,16 @@ FilmFit fit_parameters(const FitPoint& start, const MisfitsAt& misfits_at,
   }
 }
 
+Eigen::VectorXd weights_of(const FilmFit& fit, const std::vector<Eigen::Index>& rows) {
+  if (fit.weight.size() == 0) return Eigen::VectorXd::Ones(Eigen::Index(rows.size()));
+  return fit.weight(rows);
+}
+
+double freedom_of(const Eigen::VectorXd& weights, double fitted) {
+  if (weights.size() == 0) return 0;
+  return weights.squaredNorm() * (1 - fitted / double(weights.size()));
+}
+
 namespace {
 
 // A film is no stiffer without ink, and its Poisson's ratio is a material's.
@@ -398,10 +426,11 @@ Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm, const F
     if (std::isfinite(fit.residual[i])) rows.push_back(i);
   for (int k = 0; k < 3; ++k)
     if (fit.free[std::size_t(k)]) free.push_back(k);
-  const Eigen::MatrixXd j = fit.jacobian(rows, free);
+  const Eigen::VectorXd weight = weights_of(fit, rows);
+  const Eigen::MatrixXd j = weight.asDiagonal() * fit.jacobian(rows, free);
   Certainty result;
-  const double left = double(rows.size()) - double(fit.open) - double(free.size());
-  const double squares = fit.residual(rows).squaredNorm();
+  const double left = freedom_of(weight, double(fit.open) + double(free.size()));
+  const double squares = weight.cwiseProduct(fit.residual(rows)).squaredNorm();
   result.noise_mm = left > 0 ? std::sqrt(squares / left) : 0;
   if (free.empty()) {  // all of them are known
     set_ends(result, fit.point, fit.point);
@@ -426,7 +455,8 @@ Certainty certainty(const FilmFit& fit, const Eigen::VectorXd& doubt_mm, const F
     high[k] = fit.center[k] + fit.step[k] * profile_end(model, box, int(k), 1, guess, allowed);
   }
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(Eigen::Index(free.size()));
-  if (doubt_mm.size() > 0) moved = solver.solve(j.transpose() * doubt_mm(rows));
+  if (doubt_mm.size() > 0)
+    moved = solver.solve(j.transpose() * weight.cwiseProduct(doubt_mm(rows)));
   for (std::size_t a = 0; a < free.size(); ++a) {
     const Eigen::Index k = free[a];
     const double doubt = std::hypot(moved[Eigen::Index(a)], astray[k]);

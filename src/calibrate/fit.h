@@ -25,6 +25,9 @@ struct Misfits {
   // Motions of the rows that nobody has measured (misfit.h), at the first point: any amount of
   // them is as good as none. May have no columns.
   Eigen::MatrixXd open;
+  // How wrong the simulation itself may be in every row, mm, so that rows which it does not know
+  // weigh less. Empty: all alike.
+  Eigen::VectorXd uncertain = {};
 };
 using MisfitsAt = std::function<Misfits(const std::vector<FitPoint>& points)>;
 
@@ -54,12 +57,13 @@ struct FilmFit {
   std::array<bool, 3> at_bound{};  // the answer lies at the edge of where it was looked for
   Eigen::VectorXd residual;        // mm, at the answer, without open motions; NaN where not known
   Eigen::MatrixX3d jacobian;       // of the residual, by FitPoint
+  Eigen::VectorXd weight;          // of the residual's rows, at most 1; empty: all 1
   std::size_t open = 0;            // how many open motions there were
   int rounds = 0;
   bool settled = false;
   double rms_mm = 0;
-  // What the answer was read off: the known rows around a centre, or fewer with the same sums of
-  // squares.
+  // What the answer was read off: the known rows around a centre, times their weights, or fewer
+  // with the same sums of squares.
   QuadraticModel model;
   FitPoint center = FitPoint::Zero(), step = FitPoint::Zero();
   int polishings = 0;
@@ -74,8 +78,14 @@ FitPoint stencil_step(const FitPoint& center, const FitPoint& widest);
 
 // Least squares by Levenberg and Marquardt on a quadratic model of every row, made from simulations
 // on a stencil of the lattice, until the answer lies in its own stencil. With noise that is alike
-// and independent in all rows that is the most likely answer.
+// and independent in all rows that is the most likely answer. Rows weigh as if what the simulation
+// may lack were noise besides, judging the scan's own by what a fit without weights leaves.
 FilmFit fit_parameters(const FitPoint& start, const MisfitsAt& misfits, const FitOptions& options);
+
+// Weights of some of a fit's rows.
+Eigen::VectorXd weights_of(const FilmFit& fit, const std::vector<Eigen::Index>& rows);
+// How many measurements rows are worth: the sum of their squared weights, less what is fitted.
+double freedom_of(const Eigen::VectorXd& weights, double fitted);
 
 // How well the scans determine an answer.
 struct Certainty {

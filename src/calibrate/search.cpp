@@ -90,6 +90,16 @@ std::vector<SimulationRequest> requests_at(const FitPoint& point,
   return requests;
 }
 
+// What a corner's three rows may be wrong by after a correction, as noise: its doubt, which corners
+// along an object's edge have in common, so that many of them say no more than one.
+Eigen::VectorXd uncertainty(const Correction& correction) {
+  constexpr double kAlike = 5;  // square root of how many
+  Eigen::VectorXd result(correction.doubt.size());
+  for (Eigen::Index i = 0; i < result.size(); i += 3)
+    result.segment<3>(i).setConstant(kAlike * correction.doubt.segment<3>(i).norm());
+  return result;
+}
+
 // Of what is known.
 double root_mean_square(const Eigen::VectorXd& values) {
   double sum = 0, count = 0;
@@ -237,9 +247,12 @@ FitPoint Search::rough_answer(const std::vector<std::size_t>& subjects, const Fi
                Misfits misfits =
                    misfits_at(grid_film_, subjects, points, "refining", film_off_mm, context);
                // Coarse films take hard ink for soft: without this they lead far astray.
-               if (options_.correct)
-                 misfits.value.colwise() +=
+               if (options_.correct) {
+                 const Eigen::VectorXd change =
                      change_at(points.front(), grid_film_, film_, subjects, context);
+                 misfits.value.colwise() += change;
+                 misfits.uncertain = uncertainty(correction(change));
+               }
                return misfits;
              },
              options)
@@ -262,6 +275,7 @@ Answer Search::answer(const std::string& name, const std::vector<std::size_t>& s
         if (!options_.correct) return misfits;
         lacking = correction(change_at(points.front(), film_, finer_film_, subjects, context));
         misfits.value.colwise() += lacking.all;
+        misfits.uncertain = uncertainty(lacking);
         return misfits;
       },
       options);
@@ -341,8 +355,11 @@ StiffnessTable Search::stiffness_of_inks(const FilmFit& fit,
     if (std::isfinite(fit.residual[row]) && by_ink.row(row).allFinite() &&
         (here.open.cols() == 0 || here.open.row(row).allFinite()))
       rows.push_back(row);
+  const Eigen::VectorXd weight = weights_of(fit, rows);
   const Eigen::MatrixXd left =
-      without(by_ink(rows, Eigen::all), orthonormal(here.open(rows, Eigen::all)));
+      weight.cwiseInverse().asDiagonal() *
+      without(weight.asDiagonal() * by_ink(rows, Eigen::all),
+              orthonormal(weight.asDiagonal() * here.open(rows, Eigen::all)));
   by_ink.setConstant(kNaN);
   for (std::size_t i = 0; i < rows.size(); ++i) by_ink.row(rows[i]) = left.row(Eigen::Index(i));
   return stiffness_table(fit, densities, by_ink);

@@ -50,11 +50,13 @@ StiffnessTable stiffness_table(const FilmFit& fit, const std::vector<double>& de
   for (const int k : {0, 2})
     if (fit.free[std::size_t(k)]) others.push_back(k);
   const auto inks = Eigen::Index(densities.size()), free = Eigen::Index(others.size());
-  const double left = double(rows.size()) - double(fit.open) - double(inks + free);
+  const Eigen::VectorXd weight = weights_of(fit, rows);
+  const double left = freedom_of(weight, double(fit.open) + double(inks + free));
   if (left <= 0 || inks == 0) return table;
   Eigen::MatrixXd slope(Eigen::Index(rows.size()), free + inks);
   slope << fit.jacobian(rows, others), by_ink(rows, Eigen::all);
-  const Eigen::VectorXd residual = fit.residual(rows);
+  slope = weight.asDiagonal() * slope;
+  const Eigen::VectorXd residual = weight.cwiseProduct(fit.residual(rows));
   const Eigen::VectorXd change = MinimumNorm(slope).solve(-residual);
   const double squares = (residual + slope * change).squaredNorm();
   const double variance = squares / left;

@@ -102,6 +102,28 @@ TEST(FitTest, UnknownLengthsAreLeftOut) {
   EXPECT_TRUE(std::isnan(fit.residual[0]));
 }
 
+// Rows that the simulation gets wrong by as much as it says do not lead astray, and what is left of
+// them is told in millimetres all the same.
+TEST(FitTest, WhatTheSimulationDoesNotKnowWeighsLess) {
+  const FitPoint truth(0.65, 0.18, 0.1);
+  Eigen::VectorXd wrong = Eigen::VectorXd::Zero(kLengths), uncertain = wrong;
+  for (int i = 0; i < kLengths; i += 4) wrong[i] = 0.06, uncertain[i] = 10;
+  const Eigen::MatrixXd open = Eigen::MatrixXd::Random(kLengths, 3);
+  const MisfitsAt plain = scan_with(truth, wrong, nullptr, open);
+  const auto weighed = [&](const std::vector<FitPoint>& points) {
+    Misfits found = plain(points);
+    found.uncertain = uncertain;
+    return found;
+  };
+  const double astray = (fit_parameters({0.6, 0.2, 0.2}, plain, wide()).point - truth).norm();
+  const FilmFit fit = fit_parameters({0.6, 0.2, 0.2}, weighed, wide());
+  EXPECT_GT(astray, 0.01);
+  EXPECT_LT((fit.point - truth).norm(), 2e-3);
+  EXPECT_LT(fit.weight[0], 0.01);
+  EXPECT_EQ(fit.weight[1], 1);
+  for (int i = 0; i < kLengths; i += 4) EXPECT_NEAR(fit.residual[i], 0.06, 0.005) << i;
+}
+
 // However much of what nobody has measured is in a scan, the answer and its noise stay.
 TEST(FitTest, OpenMotionsDoNotMatter) {
   const FitPoint truth(0.65, 0.18, 0.1);
@@ -156,6 +178,36 @@ TEST(CertaintyTest, IntervalsCoverTheTruthAsOftenAsTheySay) {
   EXPECT_NEAR(noise_mm, 0.01, 0.0005);
   const double leeway = 4 * std::sqrt(0.95 * 0.05 * kSeeds);
   for (const int count : covered) EXPECT_NEAR(count, 0.95 * kSeeds, leeway);
+}
+
+// Simulations that are off by as much as they say, each row by itself, leave the intervals right:
+// they hold the truth at least as often as they say, and the noise is the scan's or more.
+TEST(CertaintyTest, IntervalsCoverTheTruthWhereSimulationsAreUncertain) {
+  const FitPoint truth(0.65, 0.25, 0.2);
+  constexpr int kSeeds = 200;
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal(0, 1);
+  Eigen::VectorXd uncertain = Eigen::VectorXd::Zero(kLengths);
+  for (int i = 0; i < kLengths; i += 2) uncertain[i] = 0.03;
+  std::array<int, 3> covered{};
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    Eigen::VectorXd off(kLengths);
+    for (int i = 0; i < kLengths; ++i) off[i] = std::hypot(0.01, uncertain[i]) * normal(random);
+    const auto misfits = [&](const std::vector<FitPoint>& points) {
+      Misfits found = scan_with(truth, off)(points);
+      found.uncertain = uncertain;
+      return found;
+    };
+    const Certainty found = certainty(fit_parameters(truth, misfits, wide()));
+    EXPECT_GT(found.noise_mm, 0.008);
+    const FilmParameters t = from_fit(truth);
+    covered[0] += found.low.z_stretch <= t.z_stretch && t.z_stretch <= found.high.z_stretch;
+    covered[1] += found.low.stiffness_ratio <= t.stiffness_ratio &&
+                  t.stiffness_ratio <= found.high.stiffness_ratio;
+    covered[2] += found.low.poisson <= t.poisson && t.poisson <= found.high.poisson;
+  }
+  const double leeway = 4 * std::sqrt(0.95 * 0.05 * kSeeds);
+  for (const int count : covered) EXPECT_GT(count, 0.95 * kSeeds - leeway);
 }
 
 // A fit whose rows are straight in the parameters.
