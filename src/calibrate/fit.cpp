@@ -183,7 +183,7 @@ class Round {
       if (!free[std::size_t(k)]) low_[k] = high_[k] = 0;
     weight_ = Eigen::VectorXd::Ones(misfits_.value.rows());
     make_model();
-    if (misfits_.uncertain.size() > 0) weigh();
+    if (misfits_.uncertain_mm.size() > 0) weigh();
   }
 
   void solve() {
@@ -259,9 +259,10 @@ class Round {
 
   void weigh() {
     solve();
-    const double noise = root_mean_square(model_.at(answer_));
+    const double noise_mm = root_mean_square(model_.at(answer_));
+    if (!(noise_mm > 0)) return;  // all rows agree already
     for (Eigen::Index i : rows_)
-      if (misfits_.uncertain[i] > 0) weight_[i] = noise / std::hypot(noise, misfits_.uncertain[i]);
+      weight_[i] = noise_mm / std::hypot(noise_mm, misfits_.uncertain_mm[i]);
     make_model();
   }
 

@@ -25,9 +25,9 @@ struct Misfits {
   // Motions of the rows that nobody has measured (misfit.h), at the first point: any amount of
   // them is as good as none. May have no columns.
   Eigen::MatrixXd open;
-  // How wrong the simulation itself may be in every row, mm, so that rows which it does not know
+  // How wrong the simulation itself may be in every row, so that rows which it does not know
   // weigh less. Empty: all alike.
-  Eigen::VectorXd uncertain = {};
+  Eigen::VectorXd uncertain_mm = {};
 };
 using MisfitsAt = std::function<Misfits(const std::vector<FitPoint>& points)>;
 

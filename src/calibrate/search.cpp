@@ -21,10 +21,10 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastShare = 0.8;
 // Widest stencil of the refinement, and the distance of its lattice's nodes.
 const FitPoint kWidestStep(0.03, 0.1, 0.06);
-// Rounds of a refinement; a scan alone is read off the last stencil of all, which costs nothing.
 // By how much answers are led astray beyond what finer film says, as seen on scans from films of
 // nine times the triangles (docs/calibration.md): z_stretch, share of 1 / sqrt(ratio), poisson.
 constexpr double kAstray[3] = {0.0025, 0.065, 0.035};
+// Rounds of a refinement; a scan alone is read off the last stencil of all, which costs nothing.
 constexpr int kRounds = 8, kRoundsAlone = 1;
 
 DesignOptions grid_design(const DesignOptions& design, const SearchOptions& options) {
@@ -251,7 +251,7 @@ FitPoint Search::rough_answer(const std::vector<std::size_t>& subjects, const Fi
                  const Eigen::VectorXd change =
                      change_at(points.front(), grid_film_, film_, subjects, context);
                  misfits.value.colwise() += change;
-                 misfits.uncertain = uncertainty(correction(change));
+                 misfits.uncertain_mm = uncertainty(correction(change));
                }
                return misfits;
              },
@@ -275,7 +275,7 @@ Answer Search::answer(const std::string& name, const std::vector<std::size_t>& s
         if (!options_.correct) return misfits;
         lacking = correction(change_at(points.front(), film_, finer_film_, subjects, context));
         misfits.value.colwise() += lacking.all;
-        misfits.uncertain = uncertainty(lacking);
+        misfits.uncertain_mm = uncertainty(lacking);
         return misfits;
       },
       options);

@@ -112,7 +112,7 @@ TEST(FitTest, WhatTheSimulationDoesNotKnowWeighsLess) {
   const MisfitsAt plain = scan_with(truth, wrong, nullptr, open);
   const auto weighed = [&](const std::vector<FitPoint>& points) {
     Misfits found = plain(points);
-    found.uncertain = uncertain;
+    found.uncertain_mm = uncertain;
     return found;
   };
   const double astray = (fit_parameters({0.6, 0.2, 0.2}, plain, wide()).point - truth).norm();
@@ -154,6 +154,14 @@ TEST(FitTest, StencilsLieOnALattice) {
   }
 }
 
+void count_covered(const Certainty& found, const FitPoint& truth, std::array<int, 3>& covered) {
+  const FilmParameters t = from_fit(truth);
+  covered[0] += found.low.z_stretch <= t.z_stretch && t.z_stretch <= found.high.z_stretch;
+  covered[1] += found.low.stiffness_ratio <= t.stiffness_ratio &&
+                t.stiffness_ratio <= found.high.stiffness_ratio;
+  covered[2] += found.low.poisson <= t.poisson && t.poisson <= found.high.poisson;
+}
+
 // 95 % intervals hold the truth 95 times in 100; binomial, 4 standard deviations of leeway.
 TEST(CertaintyTest, IntervalsCoverTheTruthAsOftenAsTheySay) {
   const FitPoint truth(0.65, 0.25, 0.2);
@@ -169,11 +177,7 @@ TEST(CertaintyTest, IntervalsCoverTheTruthAsOftenAsTheySay) {
     const FilmFit fit = fit_parameters(truth, scan_with(truth, noise, nullptr, open), wide());
     const Certainty found = certainty(fit);
     noise_mm += found.noise_mm / kSeeds;
-    const FilmParameters t = from_fit(truth);
-    covered[0] += found.low.z_stretch <= t.z_stretch && t.z_stretch <= found.high.z_stretch;
-    covered[1] += found.low.stiffness_ratio <= t.stiffness_ratio &&
-                  t.stiffness_ratio <= found.high.stiffness_ratio;
-    covered[2] += found.low.poisson <= t.poisson && t.poisson <= found.high.poisson;
+    count_covered(found, truth, covered);
   }
   EXPECT_NEAR(noise_mm, 0.01, 0.0005);
   const double leeway = 4 * std::sqrt(0.95 * 0.05 * kSeeds);
@@ -195,16 +199,12 @@ TEST(CertaintyTest, IntervalsCoverTheTruthWhereSimulationsAreUncertain) {
     for (int i = 0; i < kLengths; ++i) off[i] = std::hypot(0.01, uncertain[i]) * normal(random);
     const auto misfits = [&](const std::vector<FitPoint>& points) {
       Misfits found = scan_with(truth, off)(points);
-      found.uncertain = uncertain;
+      found.uncertain_mm = uncertain;
       return found;
     };
     const Certainty found = certainty(fit_parameters(truth, misfits, wide()));
     EXPECT_GT(found.noise_mm, 0.008);
-    const FilmParameters t = from_fit(truth);
-    covered[0] += found.low.z_stretch <= t.z_stretch && t.z_stretch <= found.high.z_stretch;
-    covered[1] += found.low.stiffness_ratio <= t.stiffness_ratio &&
-                  t.stiffness_ratio <= found.high.stiffness_ratio;
-    covered[2] += found.low.poisson <= t.poisson && t.poisson <= found.high.poisson;
+    count_covered(found, truth, covered);
   }
   const double leeway = 4 * std::sqrt(0.95 * 0.05 * kSeeds);
   for (const int count : covered) EXPECT_GT(count, 0.95 * kSeeds - leeway);
