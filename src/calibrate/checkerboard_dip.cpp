@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/parse_double.h"
 #include "calibrate/board_lines.h"
+#include "calibrate/rounded_pyramid.h"
 #include "ink/stiffness.h"
 #include "job/prepare.h"
 #include "samples/samples.h"
@@ -37,7 +38,7 @@ FilmParameters film_parameters(const DesignOptions& design) {
 
 const std::vector<KitShape>& kit_shapes() {
   static const std::vector<KitShape> shapes = {{"sphere-90", "sphere", 1.5, 17},
-                                               {"pyramid-90", "pyramid", 1.5, 32},
+                                               {"pyramid-90", "pyramid", 1.5, 32, 6},
                                                {"ellipsoid-135", "ellipsoid", 1.5, 15.5}};
   return shapes;
 }
@@ -65,7 +66,9 @@ const KitShape* find_shape(const std::string& name) {
 TriangleMesh mesh_of(const KitShape& shape) {
   TriangleMesh mesh = make_sample(shape.sample);
   for (Vec3& p : mesh.positions) p *= shape.scale;
-  return mesh;
+  if (shape.edge_radius_mm == 0) return mesh;
+  const Vec3 size = mesh.bounds().size();
+  return rounded_pyramid(size.x(), size.z(), shape.edge_radius_mm).closed();
 }
 
 CalibrationObject calibration_object(const std::string& text, const JobConfig& config,

@@ -34,10 +34,12 @@ struct KitShape {
   const char* name;
   const char* sample;
   double scale;
-  double depth_mm;  // where its slope gets to what films bear
+  double depth_mm;            // where its slope gets to what films bear
+  double edge_radius_mm = 0;  // 0: as sharp as the sample
 };
 // Those that the kit prints: as large as a sheet of paper bears. What moves corners about grows
-// with a shape, a scan's noise does not.
+// with a shape, a scan's noise does not. No edge is sharp: no printer makes one, and there films of
+// triangles err by more than what they are to tell.
 const std::vector<KitShape>& kit_shapes();
 // The samples as they are: the paper's figures are made with them.
 const std::vector<KitShape>& sample_shapes();

@@ -8,17 +8,18 @@
 #include <vector>
 
 #include "base/error.h"
+#include "calibrate/rounded_pyramid.h"
 #include "calibrate/tear_limit.h"
 #include "samples/samples.h"
 
 namespace hydrodip {
 namespace {
 
-constexpr int kAround = 256;     // corners of an outline; a square's corners are among them
+constexpr int kAround = 256;     // corners of a round outline
 constexpr int kRings = 96;       // from the lowest point to the equator
 constexpr double kBody_mm = 18;  // straight, above the shape
 
-// An outline, in the directions of kAround rays from the axis.
+// Counterclockwise from above, about the axis.
 using Outline = std::vector<Vec2>;
 using MakePoint = std::function<Vec2(const Vec2& direction)>;
 
@@ -31,43 +32,51 @@ Outline outline(const MakePoint& point) {
   return result;
 }
 
-// Stacks outlines into a closed surface, from its lowest point up, down into the hole and to the
-// hole's bottom.
+// Stacks outlines of as many corners each into a closed surface, from its lowest point, or from a
+// side's rim, up, down into the hole and to the hole's bottom.
 class Stack {
  public:
   explicit Stack(const Vec3& tip) { object_.positions.push_back(tip); }
+  Stack(const TriangleMesh& side, std::vector<std::int32_t> rim) : last_(std::move(rim)) {
+    object_.positions = side.positions;
+    object_.triangles = side.triangles;
+  }
 
   void add(const Outline& ring, double z) {
-    const auto first = std::int32_t(object_.positions.size());
-    for (const Vec2& p : ring) object_.positions.push_back({p.x(), p.y(), z});
-    for (std::int32_t i = 0; i < kAround; ++i) {
-      const std::int32_t next = (i + 1) % kAround;
-      if (last_ < 0) {
-        object_.triangles.push_back({0, first + next, first + i});
+    std::vector<std::int32_t> corners;
+    for (const Vec2& p : ring) {
+      corners.push_back(std::int32_t(object_.positions.size()));
+      object_.positions.push_back({p.x(), p.y(), z});
+    }
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const std::size_t next = (i + 1) % corners.size();
+      if (last_.empty()) {
+        object_.triangles.push_back({0, corners[next], corners[i]});
       } else {
-        object_.triangles.push_back({last_ + i, last_ + next, first + next});
-        object_.triangles.push_back({last_ + i, first + next, first + i});
+        object_.triangles.push_back({last_[i], last_[next], corners[next]});
+        object_.triangles.push_back({last_[i], corners[next], corners[i]});
       }
     }
-    last_ = first;
+    last_ = std::move(corners);
   }
 
   Object close(const Vec3& end) {
     const auto center = std::int32_t(object_.positions.size());
     object_.positions.push_back(end);
-    for (std::int32_t i = 0; i < kAround; ++i)
-      object_.triangles.push_back({last_ + i, last_ + (i + 1) % kAround, center});
+    for (std::size_t i = 0; i < last_.size(); ++i)
+      object_.triangles.push_back({last_[i], last_[(i + 1) % last_.size()], center});
     return object_;
   }
 
  private:
   Object object_;
-  std::int32_t last_ = -1;
+  std::vector<std::int32_t> last_;
 };
 
 Object with_mount(Stack stack, const Outline& widest, double height_mm) {
   const double top = height_mm + kBody_mm;
-  const Outline hole = outline([](const Vec2& d) -> Vec2 { return 0.5 * kMountHole_mm * d; });
+  Outline hole;
+  for (const Vec2& p : widest) hole.push_back(0.5 * kMountHole_mm * p.normalized());
   stack.add(widest, top);
   stack.add(hole, top);
   stack.add(hole, top - kMountHoleDepth_mm);
@@ -87,12 +96,12 @@ Object round_shape(const Vec3& semi_axes_mm) {
   return with_mount(std::move(stack), ellipse(1), semi_axes_mm.z());
 }
 
-Object pyramid_shape(double base_mm, double height_mm) {
-  const Outline square =
-      outline([&](const Vec2& d) -> Vec2 { return 0.5 * base_mm / d.cwiseAbs().maxCoeff() * d; });
-  Stack stack(Vec3::Zero());
-  stack.add(square, height_mm);
-  return with_mount(std::move(stack), square, height_mm);
+Object pyramid_shape(double width_mm, double height_mm, double edge_radius_mm) {
+  const RoundedPyramid pyramid = rounded_pyramid(width_mm, height_mm, edge_radius_mm);
+  Outline rim;
+  for (const std::int32_t i : pyramid.rim)
+    rim.push_back(pyramid.side.positions[std::size_t(i)].head<2>());
+  return with_mount(Stack(pyramid.side, pyramid.rim), rim, pyramid.side.bounds().max.z());
 }
 
 // Outlines of the dome from its lowest point up: smooth, with a groove at every ring.
@@ -136,11 +145,10 @@ void stand_on_mount(Object& object) {
 }  // namespace
 
 Object kit_shape(const KitShape& shape) {
-  // The simulated mesh's own size, so that a printed shape and its simulation cannot drift apart.
-  const Box3 box = mesh_of(shape).bounds();
-  Object object = std::string(shape.sample) == "pyramid"
-                      ? pyramid_shape(box.size().x(), box.size().z())
-                      : round_shape(0.5 * box.size());
+  // The sample's own size, so that a printed shape and its simulation cannot drift apart.
+  const Vec3 size = shape.scale * make_sample(shape.sample).bounds().size();
+  Object object = shape.edge_radius_mm > 0 ? pyramid_shape(size.x(), size.z(), shape.edge_radius_mm)
+                                           : round_shape(0.5 * size);
   stand_on_mount(object);
   return object;
 }

@@ -10,7 +10,7 @@ namespace hydrodip {
 
 // The side of a known shape that dips, made longer upwards by a straight body with a flat end, in
 // the middle of which is a blind hole for a screw. As printed: z up, standing on the flat end at z
-// = 0.
+// = 0. Precondition: one of kit_shapes().
 Object kit_shape(const KitShape& shape);
 
 // The dome of tear_limit.h with its grooves, every fifth of them wide, as printed.

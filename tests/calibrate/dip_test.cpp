@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "calibrate/kit_shapes.h"
+#include "calibrate/rounded_pyramid.h"
 #include "object/health.h"
 #include "samples/samples.h"
 #include "scans.h"
@@ -148,6 +149,47 @@ TEST_P(KitShapeTest, IsOneClosedBodyWhoseDippedSideIsTheSamples) {
 
 INSTANTIATE_TEST_SUITE_P(All, KitShapeTest,
                          testing::Values("sphere-90", "pyramid-90", "ellipsoid-135"));
+
+// Dykstra's projections onto a cone's four half-spaces.
+double distance_to_cone(const Vec3& point, const Vec3& apex, const std::vector<Vec3>& normals) {
+  Vec3 at = point - apex;
+  std::vector<Vec3> kept(normals.size(), Vec3::Zero());
+  for (int round = 0; round < 500; ++round)
+    for (std::size_t k = 0; k < normals.size(); ++k) {
+      const Vec3 from = at + kept[k];
+      at = from - std::max(0.0, normals[k].dot(from)) * normals[k];
+      kept[k] = from - at;
+    }
+  return (point - apex - at).norm();
+}
+
+TEST(RoundedPyramidTest, IsWhatABallRollingInsideTheSharpOneTouches) {
+  constexpr double kWidth = 90, kHeight = 36, kRadius = 6;
+  const RoundedPyramid pyramid = rounded_pyramid(kWidth, kHeight, kRadius);
+  std::vector<Vec3> normals;
+  for (const auto& [x, y] : {std::pair(1, 0), std::pair(0, 1), std::pair(-1, 0), std::pair(0, -1)})
+    normals.push_back(Vec3(2 * kHeight / kWidth * x, 2 * kHeight / kWidth * y, -1).normalized());
+  const Surface surface(pyramid.closed().positions, pyramid.closed().triangles);
+  int touched = 0;
+  for (double x = -44; x <= 44; x += 2.3)
+    for (double y = -44; y <= 44; y += 1.9) {
+      const auto hit = surface.first_hit({x, y, -1}, Vec3::UnitZ(), 0, 100);
+      ASSERT_TRUE(hit);
+      const Vec3 p = surface.position(*hit);
+      EXPECT_NEAR(distance_to_cone(p, {0, 0, kRadius}, normals), kRadius, 0.003) << x << " " << y;
+      ++touched;
+    }
+  EXPECT_GT(touched, 1000);
+  // Its faces and its width are those of the sharp one.
+  const Box3 box = pyramid.closed().bounds();
+  EXPECT_NEAR(box.size().x(), kWidth, 1e-9);
+  EXPECT_NEAR(box.size().y(), kWidth, 1e-9);
+  const auto face = surface.first_hit({30, 3, -1}, Vec3::UnitZ(), 0, 100);
+  const auto further = surface.first_hit({40, -5, -1}, Vec3::UnitZ(), 0, 100);
+  ASSERT_TRUE(face && further);
+  EXPECT_NEAR(surface.position(*further).z() - surface.position(*face).z(),
+              10 * 2 * kHeight / kWidth, 1e-6);
+}
 
 }  // namespace
 }  // namespace hydrodip
