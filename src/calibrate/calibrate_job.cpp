@@ -291,6 +291,15 @@ void warn_of_edges(const Calibration& calibration, const RunContext& context) {
     context.warn("The refinement did not settle; the scans hardly determine the parameters.");
 }
 
+void warn_of_coarse_film(const FilmOptions& film, const RunContext& context) {
+  const int tried = FilmOptions().elements;
+  if (film.elements < tried)
+    context.warn(fmt::format(
+        "Film of {} triangles is coarser than what the intervals were tried on; they may miss the "
+        "truth. Leave film.elements at {} or more.",
+        film.elements, tried));
+}
+
 // What the readings of the dome say, with the film's parameters as they were found.
 std::optional<TearLimit> read_tear_limit(const JobConfig& config, const CalibrationRequest& request,
                                          const FilmParameters& film, const RunContext& context) {
@@ -395,6 +404,7 @@ JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& reques
                    "joint-regions.png"},
                   files_of(subjects, config));
   const Calibration calibration = search.run(context);
+  warn_of_coarse_film(config.design.film, context);
   warn_of_edges(calibration, context);
   warn_of_misfits(calibration, subjects, context);
   const std::optional<TearLimit> tear =

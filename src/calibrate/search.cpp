@@ -23,7 +23,7 @@ constexpr double kLeastShare = 0.8;
 const FitPoint kWidestStep(0.03, 0.1, 0.06);
 // By how much answers are led astray beyond what finer film says, as seen on scans from films of
 // nine times the triangles (docs/calibration.md): z_stretch, share of 1 / sqrt(ratio), poisson.
-constexpr double kAstray[3] = {0.0025, 0.065, 0.035};
+constexpr double kAstray[3] = {0.0015, 0.03, 0.025};
 // Rounds of a refinement; a scan alone is read off the last stencil of all, which costs nothing.
 constexpr int kRounds = 8, kRoundsAlone = 1;
 

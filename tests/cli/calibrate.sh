@@ -63,6 +63,7 @@ refuse 'killed.zip' measure killed.zip $film
 "$hydrodip" calibrate scans/sphere-scan.obj $film $grid -o whole --quiet > whole.txt ||
   fail "calibrate"
 grep -q 'computed, not scanned' whole.txt || fail "does not say that the scan is synthetic"
+grep -q 'triangles is coarser than what the intervals' whole.txt || fail "coarse film without a word"
 tries=0
 while [ "$tries" -lt 40 ]; do
   tries=$((tries + 1))
