@@ -31,6 +31,14 @@ void apply_dependent_defaults(JobConfig& config, const std::vector<Setting>& giv
   if (config.design.dip.scheme == DipScheme::kPaper && !graded) config.design.film.grading = 1;
 }
 
+void require_order(const FilmMaterial& material) {
+  if (material.safe_stretch > material.lost_stretch)
+    throw InputError(fmt::format(
+        "material.safe_stretch ({:g}), up to which film surely holds, must not be above "
+        "material.lost_stretch ({:g}), from which on none does",
+        material.safe_stretch, material.lost_stretch));
+}
+
 }  // namespace
 
 Setting parse_set(const std::string& text) {
@@ -118,6 +126,7 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
   add(sources.options);
   add(sources.sets);
   apply_dependent_defaults(config, all);
+  require_order(config.design.dip.material);
   if (!config.correction.empty())
     config.design.film.correction =
         std::make_shared<const FilmCorrection>(read_correction(config.correction).field);

@@ -272,6 +272,20 @@ TEST_F(Settings, ThePapersSchemeHasARegularGridUnlessAskedOtherwise) {
             FilmOptions{}.grading);
 }
 
+TEST_F(Settings, FilmDoesNotSurelyHoldWhereNoFilmDoes) {
+  const auto apply = [](const std::vector<Setting>& sets) {
+    SettingSources sources;
+    sources.sets = sets;
+    JobConfig config;
+    apply_sources(config, sources);
+  };
+  EXPECT_NO_THROW(apply({parse_set("material.safe_stretch=1.6")}));
+  EXPECT_NO_THROW(
+      apply({parse_set("material.safe_stretch=1.8"), parse_set("material.lost_stretch=1.9")}));
+  EXPECT_THROW(apply({parse_set("material.safe_stretch=1.7")}), InputError);
+  EXPECT_THROW(apply({parse_set("material.lost_stretch=1.2")}), InputError);
+}
+
 TEST_F(Settings, MethodsHaveNames) {
   EXPECT_EQ(from_toml("").design.dip.method, DipMethod::kFull);
   EXPECT_EQ(from_toml("dip.method = 'single-step'").design.dip.method, DipMethod::kSingleStep);
