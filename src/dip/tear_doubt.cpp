@@ -1,7 +1,9 @@
 #include "dip/tear_doubt.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace hydrodip {
@@ -44,19 +46,26 @@ std::vector<double> moved_by_tears(const DippedFilm& dipped, const std::vector<V
   other.step_mm = longer_step_mm(options.step_mm);
   other.asks_what_moves = false;
   other.moved_mm.clear();
-  const auto in_longer_steps = [&] {
-    return dip(dipped.shared_mesh, positions, triangles, surface, trajectory, other,
-               context.quiet())
-        .film;
+  const auto in_longer_steps = [&](const DipOptions& how, const RunContext& own) {
+    return dip(dipped.shared_mesh, positions, triangles, surface, trajectory, how, own).film;
   };
+  const RunContext own = context.quiet();
   // Steps that differ move film as well.
-  const DippedFilm middle = other.step_mm > options.step_mm ? in_longer_steps() : dipped;
-  std::vector<double> moved(dipped.position.size(), 0);
+  const DippedFilm middle = other.step_mm > options.step_mm ? in_longer_steps(other, own) : dipped;
   const FilmMaterial& material = options.material;
-  for (const double at : {std::min(material.safe_stretch, material.tear_stretch),
-                          std::max(material.lost_stretch, material.tear_stretch)}) {
-    other.material.safe_stretch = other.material.tear_stretch = other.material.lost_stretch = at;
-    const DippedFilm film = in_longer_steps();
+  const std::array<double, 2> limits = {std::min(material.safe_stretch, material.tear_stretch),
+                                        std::max(material.lost_stretch, material.tear_stretch)};
+  std::array<DippedFilm, 2> fallen;
+  std::vector<std::function<void()>> tasks;
+  for (std::size_t i = 0; i < 2; ++i)
+    tasks.emplace_back([&, i] {
+      DipOptions how = other;
+      how.material.safe_stretch = how.material.tear_stretch = how.material.lost_stretch = limits[i];
+      fallen[i] = in_longer_steps(how, own.quiet().with_threads(std::max(1, own.threads() / 2)));
+    });
+  own.side_by_side("asking what moves", tasks);
+  std::vector<double> moved(dipped.position.size(), 0);
+  for (const DippedFilm& film : fallen) {
     const std::vector<std::uint8_t> left = left_over(film);
     for (std::size_t v = 0; v < moved.size(); ++v) {
       const double way = (film.position[v] - middle.position[v]).norm();

@@ -226,7 +226,10 @@ JobResult describe_result(const Report& report, const std::filesystem::path& fol
   const Concern concern = concern_of(findings(report));
   result.do_not_dip = concern == Concern::kStop;
   result.text = headline(concern) + ". " + verdict_of(report) + "\n";
-  if (!report.better_way.empty()) result.text += "Better: " + report.better_way + "\n";
+  if (!report.better_way.empty())
+    result.text += "Better: " + report.better_way + "\n";
+  else if (result.do_not_dip)
+    result.text += "hydrodip orient looks for better ways to hold it.\n";
   result.text += fmt::format("wrote to {}:\n", folder.string());
   for (const ReportOutput& output : report.outputs) {
     result.files.push_back(output.name);

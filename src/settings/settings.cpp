@@ -97,6 +97,7 @@ std::vector<Setting> quality_settings(const std::string& quality) {
                      {"dip.step_mm", fmt::format("{:.1f}", kDraftStep_mm)},
                      {"dip.air_cells", fmt::format("{}", kDraftAirCells)},
                      {"ink.rounds_max", "1"},
+                     {"plan.suggest", "off"},
                      {"preview.texture_px", "512"},
                      {"preview.pictures", "off"}});
   if (quality == "normal") return {};

@@ -120,5 +120,9 @@ grep -q '^Better: ' strict.txt || fail 'no better way is quoted'
 # shellcheck disable=SC2086
 "$hydrodip" $strict --set plan.suggest=off -o lax --quiet > lax.txt || fail 'without --strict'
 ! grep -q '^Better' lax.txt || fail 'a better way is looked for all the same'
+grep -q 'hydrodip orient looks for' lax.txt || fail 'who is not told a better way is not told who knows one'
+# shellcheck disable=SC2086
+"$hydrodip" $strict --quality draft -o draft --quiet > draft.txt || fail 'a draft'
+! grep -q '^Better' draft.txt || fail 'a draft looks for a better way'
 
 finish
