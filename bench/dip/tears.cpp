@@ -180,7 +180,8 @@ std::string compare_meshes(const Named& model) {
                                                          : later;
     list.list.push_back(apart);
   }
-  const double all = double(before.list.size() + later.list.size() + doubtful.list.size()) / 100;
+  const std::size_t common = before.list.size() + later.list.size() + doubtful.list.size();
+  const double all = double(std::max<std::size_t>(1, common)) / 100;
   return fmt::format("| {} | {:.1f} | {} | {} | {} | {:.0f}, {:.0f}, {:.0f} | {:.0f}, {:.0f} |",
                      model.name, first_tear, before.text(0.02), later.text(kMoved_mm),
                      doubtful.text(kMoved_mm), double(before.list.size()) / all,
