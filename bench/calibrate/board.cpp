@@ -103,13 +103,18 @@ void show_lines(Study& study, std::istream& lines) {
 }  // namespace hydrodip
 
 int main(int argc, char** argv) {
-  hydrodip::Study study(argc > 1 ? std::max(1000, atoi(argv[1])) : 10000);
-  fmt::print(
-      "| board | 0.65, 3, 0.1 | 0.65, 30, 0.1 | 0.8, 150, 0.2 | 0.65, 600, 0 | "
-      "0.65, 3000, 0 | corners |\n|---|---|---|---|---|---|---|\n");
+  using namespace hydrodip;
+  Study study(argc > 1 ? std::max(1000, atoi(argv[1])) : 10000);
+  std::string films, line;
+  for (const FilmParameters& truth : kTruths) {
+    films +=
+        fmt::format(" {:g}, {:g}, {:g} |", truth.z_stretch, truth.stiffness_ratio, truth.poisson);
+    line += "---|";
+  }
+  fmt::print("| board |{} corners |\n|---|{}---|\n", films, line);
   if (argc > 2)
-    hydrodip::show_lines(study, std::cin);
+    show_lines(study, std::cin);
   else
-    hydrodip::show_boards(study);
+    show_boards(study);
   return 0;
 }
