@@ -126,7 +126,7 @@ class ContactLineScheme : public Scheme {
       for (auto n = film_.incident_begin[std::size_t(touch.vertex)];
            n < film_.incident_begin[std::size_t(touch.vertex) + 1]; ++n)
         sheet_.update_load(std::size_t(film_.incident[std::size_t(n)]));
-    tears_.update_loads(sheet_);
+    tears_.end_step(sheet_);
     feet_.replace(created, sheet_);
   }
 

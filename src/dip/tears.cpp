@@ -1,5 +1,7 @@
 #include "dip/tears.h"
 
+#include <limits>
+
 #include "dip/measure.h"
 
 namespace hydrodip {
@@ -13,11 +15,10 @@ void Tears::release(const std::vector<std::int32_t>& blocked, double travelled_m
     for (std::int32_t t : blocked) let_go(t, travelled_mm);
     for (std::int32_t t : sheet.overstretched(limit)) let_go(t, travelled_mm);
     drop_scraps(travelled_mm, sheet);
-    for (std::size_t t : torn_now_) {
-      sheet.update_load(t);
-      sheet.unload(t);
+    for (; unloaded_ < torn_now_.size(); ++unloaded_) {
+      sheet.update_load(torn_now_[unloaded_]);
+      sheet.unload(torn_now_[unloaded_]);
     }
-    torn_now_.clear();
     is_free = sheet.free_vertices();
     return;
   }
@@ -33,7 +34,7 @@ void Tears::release_overstretched(double travelled_mm, const FloatingSheet& shee
     for (std::int32_t t : sheet.overstretched(limit)) let_go(t, travelled_mm);
   for (std::size_t t = 0; t < told.size(); ++t)
     if (sheet.is_usable(t) && travelled_mm >= told[t]) let_go(std::int32_t(t), travelled_mm);
-  if (!torn_now_.empty()) drop_scraps(travelled_mm, sheet);
+  if (torn_now_.size() > unloaded_) drop_scraps(travelled_mm, sheet);
 }
 
 void Tears::let_go(std::int32_t t, double travelled_mm) {
@@ -83,9 +84,17 @@ void Tears::drop_scraps(double travelled_mm, const FloatingSheet& sheet) {
   }
 }
 
-void Tears::update_loads(FloatingSheet& sheet) {
-  for (std::size_t t : torn_now_) sheet.update_load(t);
+void Tears::end_step(FloatingSheet& sheet) {
+  for (const std::size_t t : torn_now_) {
+    const Triangle& v = film_.triangles[t];
+    if (sheet.attached(v[0]) && sheet.attached(v[1]) && sheet.attached(v[2])) {
+      state_.torn[t] = 0;
+      state_.torn_at_mm[t] = std::numeric_limits<double>::infinity();
+    }
+    sheet.update_load(t);
+  }
   torn_now_.clear();
+  unloaded_ = 0;
 }
 
 }  // namespace hydrodip

@@ -21,8 +21,10 @@ class Tears {
                std::vector<std::uint8_t>& is_free);
   // What is stretched too far in the relaxed film, or was told to let go by now.
   void release_overstretched(double travelled_mm, const FloatingSheet& sheet);
-  // Updates the loads of what let go since it was called last.
-  void update_loads(FloatingSheet& sheet);
+  // Once vertices have attached: updates the loads of what let go in this step. What has come to
+  // lie on the object with all its corners has not torn: between two places where the object
+  // touches, the little film that still floats is only said to be stretched.
+  void end_step(FloatingSheet& sheet);
 
  private:
   void let_go(std::int32_t t, double travelled_mm);
@@ -34,7 +36,8 @@ class Tears {
   const DipSetting set_;
   const FilmMesh& film_;
   DipState& state_;
-  std::vector<std::size_t> torn_now_;  // since update_loads()
+  std::vector<std::size_t> torn_now_;  // in this step
+  std::size_t unloaded_ = 0;           // of these, whose loads are up to date
 };
 
 }  // namespace hydrodip

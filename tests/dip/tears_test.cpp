@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "dip/dip.h"
@@ -28,6 +29,43 @@ DipOptions options_with(double step_mm) {
 std::size_t let_go(const DippedFilm& film) {
   return std::size_t(std::count_if(film.torn_at_mm.begin(), film.torn_at_mm.end(),
                                    [](double at) { return std::isfinite(at); }));
+}
+
+// From below: flat but for low waves.
+shapes::Shape waves(double wave_mm, double height_mm) {
+  constexpr int kCells = 60;
+  constexpr double kHalf_mm = 15;
+  shapes::Shape shape;
+  for (int j = 0; j <= kCells; ++j)
+    for (int i = 0; i <= kCells; ++i) {
+      const double x = kHalf_mm * (2.0 * i / kCells - 1), y = kHalf_mm * (2.0 * j / kCells - 1);
+      const double wave = std::cos(2 * std::numbers::pi * x / wave_mm) *
+                          std::cos(2 * std::numbers::pi * y / wave_mm);
+      shape.positions.push_back({x, y, 0.002 * (x * x + y * y) + 0.5 * height_mm * (1 - wave)});
+    }
+  for (int j = 0; j < kCells; ++j)
+    for (int i = 0; i < kCells; ++i) {
+      const std::int32_t a = j * (kCells + 1) + i, b = a + kCells + 1;
+      shape.triangles.push_back({a, b + 1, a + 1});
+      shape.triangles.push_back({a, b, b + 1});
+    }
+  return shape;
+}
+
+// Between two places where the object has touched, a vertex that floats on is pinched.
+TEST(Tears, WhatIsLaidOnSomethingBluntDoesNotLetGo) {
+  struct Case {
+    double wave_mm, height_mm, step_mm;
+  };
+  for (const Case& c : {Case{5, 0.1, 0.6}, Case{8, 0.1, 0.1}, Case{4, 0.3, 0.6}, Case{6, 0.3, 0.3},
+                        Case{8, 0.3, 0.3}, Case{10, 0.3, 0.1}}) {
+    const DippedFilm film =
+        dipped(waves(c.wave_mm, c.height_mm), options_with(c.step_mm), 0.6).film;
+    std::size_t laid = 0;
+    for (std::size_t t = 0; t < film.torn.size(); ++t) laid += film.lies_on_object(t);
+    EXPECT_GT(laid, 50U);
+    EXPECT_EQ(let_go(film), 0U) << c.wave_mm << " " << c.height_mm << " " << c.step_mm;
+  }
 }
 
 // Over the sphere's equator film is torn off all around.
