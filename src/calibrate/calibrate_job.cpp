@@ -371,22 +371,9 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
   return result;
 }
 
-}  // namespace
-
-JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& request,
-                        const RunContext& context) {
-  const RunScope scope(context.with_threads(given.threads));
-  const SearchOptions options = search_options(request);
-  const Shard shard = parse_shard(request.shard);
-  const ScanSetup setup = scan_setup(given, request);
-  const JobConfig& config = setup.config;
-  const Board& board = setup.settings.board;
-  if (config.design.dip.method != DipMethod::kFull)
-    throw InputError("calibrate: only --method full has parameters to calibrate");
-  check_tear_readings(config, request, context);
-  const std::vector<Subject> subjects =
-      load_subjects(request.scans, setup.settings, config, context);
-
+JobResult calibrated(const JobConfig& config, const CalibrationRequest& request, const Board& board,
+                     const SearchOptions& options, const Shard& shard,
+                     const std::vector<Subject>& subjects, const RunContext& context) {
   make_folder(config.output);
   SimulationStore store(config.output / kStoreName, store_files(request.merged));
   std::vector<std::string> fingerprints;
@@ -433,6 +420,30 @@ JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& reques
     result.text += fmt::format("wrote {}\n", (config.output / file).string());
   result.json = json;
   return result;
+}
+
+}  // namespace
+
+JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& request,
+                        const RunContext& context) {
+  const RunScope scope(context.with_threads(given.threads));
+  const SearchOptions options = search_options(request);
+  const Shard shard = parse_shard(request.shard);
+  const ScanSetup setup = scan_setup(given, request);
+  const JobConfig& config = setup.config;
+  const Board& board = setup.settings.board;
+  if (config.design.dip.method != DipMethod::kFull)
+    throw InputError("calibrate: only --method full has parameters to calibrate");
+  check_tear_readings(config, request, context);
+  const std::vector<Subject> subjects =
+      load_subjects(request.scans, setup.settings, config, context);
+
+  try {
+    return calibrated(config, request, board, options, shard, subjects, context);
+  } catch (const Cancelled&) {
+    throw Cancelled(
+        "cancelled; what was simulated is kept, and the same command goes on from there");
+  }
 }
 
 }  // namespace hydrodip

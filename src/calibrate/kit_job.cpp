@@ -72,6 +72,9 @@ std::string scans_of(const std::vector<std::string>& objects) {
   return text;
 }
 
+// What the dome's and the fit's sections take.
+constexpr double kLastSections_mm = 72;
+
 void write_instructions(const std::filesystem::path& path, const JobConfig& config,
                         const std::vector<std::string>& objects, const Board& board,
                         const RunContext& context) {
@@ -146,6 +149,7 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
             "column,row,x,y,z, a line per corner. Save as OBJ, PLY or CSV; its pose does not "
             "matter.");
 
+  if (page.y < kLastSections_mm) page.new_page();
   page.heading("How far the film holds");
   page.task(
       fmt::format("Print tear-film.pdf, and dip it like the others with the dome ({:g} mm, "

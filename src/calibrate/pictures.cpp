@@ -291,7 +291,7 @@ Image draw_joint_regions(const Answer& answer, const std::string& caption) {
                           kHeader + 30 + kSurfacePanel + kFooter);
   draw_centered(page,
                 pairs.empty() ? "Fewer than two parameters were looked for"
-                              : "Where two parameters can be together: dark 50 %, pale 95 %",
+                              : "Where two parameters can be together: dark 50 %, blue 95 %",
                 0.5 * page.width_px, 40, style(22, kTitleInk));
   int left = kMargin;
   for (const auto& [x, y] : pairs) {

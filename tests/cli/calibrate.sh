@@ -18,6 +18,10 @@ refuse() {
 }
 
 "$hydrodip" calibrate kit -o kit --film letter --quiet > /dev/null || fail "kit"
+# All of it is on paper: what runs off a page is not among the words of the page.
+pdftotext kit/instructions.pdf - | tr '\n' ' ' > instructions.txt
+grep -q 'calibrate sphere-90=FILE' instructions.txt || fail "the instructions lack how to fit"
+grep -q -- '--profile my-film/profile.toml' instructions.txt || fail "the instructions lack their end"
 [ "$(find kit -type f | wc -l)" -eq 7 ] || fail "the kit has not seven files: $(ls kit)"
 pdfinfo kit/checkerboard.pdf | grep -q '612 x 792 pts (letter)' || fail "the film is not letter"
 for shape in sphere-90 pyramid-90 ellipsoid-135 dome; do
@@ -79,6 +83,8 @@ while [ "$tries" -lt 40 ]; do
 done
 [ "$code" -eq 0 ] || fail "killed $tries times, it never ended: $code $(cat killed.txt)"
 [ "$tries" -gt 1 ] || fail "it was never killed"
+timeout --foreground -s INT 4 "$hydrodip" calibrate scans/sphere-scan.obj -o cancelled --quiet > cancelled.txt 2>&1
+grep -q 'cancelled; what was simulated is kept' cancelled.txt || fail "cancelled: $(cat cancelled.txt)"
 for file in profile.toml error-surface.csv error-surface.png; do
   cmp -s "whole/$file" "killed/$file" || fail "$file differs after $tries kills"
 done
