@@ -437,7 +437,6 @@ JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& reques
   check_tear_readings(config, request, context);
   const std::vector<Subject> subjects =
       load_subjects(request.scans, setup.settings, config, context);
-
   try {
     return calibrated(config, request, board, options, shard, subjects, context);
   } catch (const Cancelled&) {
