@@ -51,8 +51,7 @@ void Feet::climb(const FloatingSheet& sheet, const Waterline& line, const Moment
       foot.last_way = Vec2::Zero();
       foot.place = start.head<2>();
     } else {
-      const Waterline::Point end =
-          search.next_on_line(start.head<2>(), sheet.plan(foot.floating), foot.outward);
+      const Waterline::Point end = next_of(foot, start, sheet.plan(foot.floating), search, to);
       const Vec3 point = to.to_object(Vec3(end.position.x(), end.position.y(), to.level_mm));
       const Vec3 point_between = between.to_sinking(point);
       foot.last_way = unrolled(between.to_sinking(foot.point), foot.outward, foot.steepness,
@@ -70,6 +69,32 @@ void Feet::climb(const FloatingSheet& sheet, const Waterline& line, const Moment
                                way > 0 ? way / (way + left) : 0);
     place_ghost(foot);
   });
+}
+
+// Where a foot goes that starts from there.
+Waterline::Point Feet::next_of(const Foot& foot, const Vec3& start, const Vec2& floating,
+                               const LineSearch& search, const Moment& to) const {
+  const Vec2 from = start.head<2>();
+  if (const auto ahead = search.ahead(from, floating)) return *ahead;
+  const double left = (floating - from).norm();
+  if (left > 0 && comes_to(floating, foot.outward, from, search, to))
+    return {floating, (floating - from) / left, (to.level_mm - start.z()) / left};
+  return search.line_near(from, foot.outward);
+}
+
+// Whether the line that a foot was on has come to its floating vertex, if there is none before it:
+// the object is reached there in this step, and the line next to the foot is another one. What was
+// dry between two places of something blunt is gone.
+bool Feet::comes_to(const Vec2& floating, const Vec2& outward, const Vec2& from,
+                    const LineSearch& search, const Moment& to) const {
+  const auto afloat = [&](const Moment& at) {
+    return at.to_object(Vec3(floating.x(), floating.y(), at.level_mm));
+  };
+  const Vec3 before = afloat(state_.moment), now = afloat(to);
+  const auto contact = first_contact(set_.surface, before, now);
+  if (!contact) return false;
+  const bool inside_out = contact->normal.dot(now - before) > 0;
+  return search.is_lost(from, inside_out ? Vec2(-outward) : outward);
 }
 
 void Feet::correct(const FloatingSheet& sheet) {

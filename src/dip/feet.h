@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "dip/floating_sheet.h"
 #include "dip/foot.h"
+#include "dip/line_search.h"
 
 namespace hydrodip {
 
@@ -66,6 +67,10 @@ class Feet {
   std::size_t number(const Foot& foot) const { return std::size_t(&foot - feet_.data()); }
   double z_stretch() const { return set_.options.material.z_stretch; }
 
+  Waterline::Point next_of(const Foot& foot, const Vec3& start, const Vec2& floating,
+                           const LineSearch& search, const Moment& to) const;
+  bool comes_to(const Vec2& floating, const Vec2& outward, const Vec2& from,
+                const LineSearch& search, const Moment& to) const;
   void create(const Touch& touch, const FloatingSheet& sheet, const Waterline& line,
               const Moment& to, std::vector<Foot>& created) const;
   void index(const FloatingSheet& sheet);

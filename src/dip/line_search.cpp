@@ -2,6 +2,13 @@
 
 namespace hydrodip {
 
+namespace {
+
+// Cosine of how far a line turns in one step, at a corner.
+constexpr double kSameLine = 0.5;
+
+}  // namespace
+
 Waterline::Point LineSearch::line_near(const Vec2& near, const Vec2& outside) const {
   const auto found = line.closest(near, kMaxJump * cell_mm);
   if (!found) return {near, outside, kWall};
@@ -15,17 +22,24 @@ Waterline::Point LineSearch::line_near(const Vec2& near, const Vec2& outside) co
 
 Waterline::Point LineSearch::first_on_line(const Vec2& from, const Vec2& to) const {
   if (const auto leaving = line.exit(from, to)) return *leaving;
+  const double length = (to - from).norm();
   const Vec2 outside = (to - from).normalized();
-  const Waterline::Point near = line_near(from, outside);
+  Waterline::Point near = line_near(from, outside);
   const bool behind = (near.position - from).dot(outside) < -0.1 * cell_mm;
-  return behind ? line_near(to, outside) : near;
+  if (!behind) return near;
+  if (!line.closest(to, length)) return {from, outside, kWall};
+  return line_near(to, outside);
 }
 
-Waterline::Point LineSearch::next_on_line(const Vec2& from, const Vec2& floating,
-                                          const Vec2& outward) const {
-  if (const auto ahead = line.exit(from, floating))
-    if ((ahead->position - from).norm() < kMaxJump * cell_mm) return *ahead;
-  return line_near(from, outward);
+std::optional<Waterline::Point> LineSearch::ahead(const Vec2& from, const Vec2& floating) const {
+  auto found = line.exit(from, floating);
+  if (found && (found->position - from).norm() < kMaxJump * cell_mm) return found;
+  return std::nullopt;
+}
+
+bool LineSearch::is_lost(const Vec2& from, const Vec2& outward) const {
+  const auto near = line.closest(from, kMaxJump * cell_mm);
+  return !near || near->outward.dot(outward) < kSameLine;
 }
 
 }  // namespace hydrodip

@@ -1,6 +1,8 @@
 // Where feet go on the contact line.
 #pragma once
 
+#include <optional>
+
 #include "dip/waterline.h"
 
 namespace hydrodip {
@@ -16,14 +18,19 @@ struct LineSearch {
   Waterline::Point line_near(const Vec2& near, const Vec2& outside) const;
 
   // Where the edge from a vertex that attaches now leaves the object; next to the vertex where it
-  // does not (on walls and overhangs), but never on the far side of it.
+  // does not (on walls and overhangs), but never on the far side of it, nor at
+  // `to`.
   Waterline::Point first_on_line(const Vec2& from, const Vec2& to) const;
 
-  // Towards the floating vertex, so that the foot stays by the edge whose strain it uses; straight
-  // up where the water does not gain on it that way: on walls and overhangs, or just before
-  // contact. A foot that jumps further than kMaxJump cells in one step has lost its contact line
-  // (the object is submerged there, or a shelf begins) and goes on straight up, too.
-  Waterline::Point next_on_line(const Vec2& from, const Vec2& floating, const Vec2& outward) const;
+  // Where a foot goes next: towards the floating vertex, so that it stays by the edge whose strain
+  // it uses. Nothing where the water does not gain on it that way (on walls and overhangs, or just
+  // before contact) or where it would jump further than kMaxJump cells: then it has lost its
+  // contact line (the object is submerged there, or a shelf begins). Where it does not go that way
+  // it goes straight up, to the line next to it.
+  std::optional<Waterline::Point> ahead(const Vec2& from, const Vec2& floating) const;
+  // Whether that is another line than the foot was on: there is none, or it faces elsewhere.
+  // outward: as the object's faces have it.
+  bool is_lost(const Vec2& from, const Vec2& outward) const;
 
   static constexpr double kMaxJump = 2.5;
 };

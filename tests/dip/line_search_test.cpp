@@ -32,12 +32,15 @@ shapes::Shape inside_out(shapes::Shape shape) {
 
 TEST(LineSearch, AFootGoesAheadOnASlopeAndStraightUpAWall) {
   const Cut cone(shapes::cone(20, 1), 5), box(shapes::box({-10, -10, 0}, {10, 10, 6}));
-  const Waterline::Point ahead = cone.search().next_on_line(Vec2(4.5, 0), Vec2(7, 2), Vec2(1, 0));
-  EXPECT_NEAR(ahead.position.norm(), 5, 1e-3);
-  EXPECT_NEAR(cross2(ahead.position - Vec2(4.5, 0), Vec2(2.5, 2)), 0, 1e-9);
-  EXPECT_NEAR(ahead.steepness, 1, 1e-3);
+  const auto ahead = cone.search().ahead(Vec2(4.5, 0), Vec2(7, 2));
+  ASSERT_TRUE(ahead);
+  EXPECT_NEAR(ahead->position.norm(), 5, 1e-3);
+  EXPECT_NEAR(cross2(ahead->position - Vec2(4.5, 0), Vec2(2.5, 2)), 0, 1e-9);
+  EXPECT_NEAR(ahead->steepness, 1, 1e-3);
   // The water has no way to gain on it: where it stood it stays.
-  const Waterline::Point up = box.search().next_on_line(Vec2(10, 1), Vec2(12, 3), Vec2(1, 0));
+  const Waterline::Point up = box.search()
+                                  .ahead(Vec2(10, 1), Vec2(12, 3))
+                                  .value_or(box.search().line_near(Vec2(10, 1), Vec2(1, 0)));
   EXPECT_LT((up.position - Vec2(10, 1)).norm(), 1e-9);
   EXPECT_GT(up.steepness, 1e5);
 }
@@ -47,7 +50,9 @@ TEST(LineSearch, AFootNeverLeapsFarAhead) {
   const Cut plate(shapes::box({-30, -30, 0}, {30, 30, 6}));
   for (const double from : {-28.0, 0.0, 20.0, 24.0, 26.0, 29.0}) {
     const Vec2 start(from, 1);
-    const Waterline::Point next = plate.search().next_on_line(start, Vec2(40, 1), Vec2(1, 0));
+    const Waterline::Point next = plate.search()
+                                      .ahead(start, Vec2(40, 1))
+                                      .value_or(plate.search().line_near(start, Vec2(1, 0)));
     EXPECT_LT((next.position - start).norm(), LineSearch::kMaxJump * kCell_mm) << from;
     // Far from any line it goes straight up where it is.
     if (std::abs(from) < 24) {
@@ -58,6 +63,16 @@ TEST(LineSearch, AFootNeverLeapsFarAhead) {
       EXPECT_NEAR(next.position.x(), from > 25 ? 30 : from, 1e-9);
     }
   }
+}
+
+TEST(LineSearch, ALineThatFacesElsewhereIsAnother) {
+  const Cut cone(shapes::cone(20, 1), 5);
+  const Vec2 out(1, 0), aside(0, 1);
+  EXPECT_FALSE(cone.search().is_lost(Vec2(4.5, 0), out));
+  EXPECT_TRUE(cone.search().is_lost(Vec2(4.5, 0), aside));
+  EXPECT_TRUE(cone.search().is_lost(Vec2(4.5, 0), -out));
+  // None is near.
+  EXPECT_TRUE(cone.search().is_lost(Vec2(12, 0), out));
 }
 
 // A foot knows where outside is: where it came from, or where its floating vertex is.
@@ -90,6 +105,8 @@ TEST(LineSearch, AFootBeginsWhereItsEdgeLeavesOrBesideItsVertex) {
   EXPECT_NEAR(first(8, 12), 10, 1e-12);
   EXPECT_NEAR(first(10.05, 12), 10, 1e-9);
   EXPECT_NEAR(first(11.5, 13.5), 14, 1e-9);
+  // The lines are at 10 and 14: no foot begins at the vertex that goes on floating.
+  EXPECT_NEAR(first(11.5, 12.1), 11.5, 1e-12);
 }
 
 }  // namespace
