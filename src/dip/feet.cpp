@@ -13,6 +13,9 @@ namespace {
 // Share of the contact line that may go faster: a scan has flat spots everywhere.
 constexpr double kFasterShare = 0.1;
 
+// Cosine of how far a line turns in one step, at a corner.
+constexpr double kSameLine = 0.5;
+
 // How the object turns in the water plane from one moment to another.
 Mat2 spin_between(const Moment& from, const Moment& to) {
   const Mat3 turn = to.turn * from.turn.transpose();
@@ -71,30 +74,27 @@ void Feet::climb(const FloatingSheet& sheet, const Waterline& line, const Moment
   });
 }
 
-// Where a foot goes that starts from there.
+// Where a foot goes that starts from there. With no line before its floating vertex, the line next
+// to it may be another one, which faces elsewhere. Then the vertex is reached in this step, as what
+// was dry between two places of something blunt is gone; or the object is submerged there.
 Waterline::Point Feet::next_of(const Foot& foot, const Vec3& start, const Vec2& floating,
                                const LineSearch& search, const Moment& to) const {
   const Vec2 from = start.head<2>();
   if (const auto ahead = search.ahead(from, floating)) return *ahead;
+  const double facing = (foot.inside_out ? -1 : 1) * search.facing(from, foot.outward);
   const double left = (floating - from).norm();
-  if (left > 0 && comes_to(floating, foot.outward, from, search, to))
+  if (facing < kSameLine && left > 0 && is_reached(floating, to))
     return {floating, (floating - from) / left, (to.level_mm - start.z()) / left};
+  if (facing < -kSameLine) return {from, foot.outward, kWall};
   return search.line_near(from, foot.outward);
 }
 
-// Whether the line that a foot was on has come to its floating vertex, if there is none before it:
-// the object is reached there in this step, and the line next to the foot is another one. What was
-// dry between two places of something blunt is gone.
-bool Feet::comes_to(const Vec2& floating, const Vec2& outward, const Vec2& from,
-                    const LineSearch& search, const Moment& to) const {
+// Whether the water meets the object there in this step.
+bool Feet::is_reached(const Vec2& place, const Moment& to) const {
   const auto afloat = [&](const Moment& at) {
-    return at.to_object(Vec3(floating.x(), floating.y(), at.level_mm));
+    return at.to_object(Vec3(place.x(), place.y(), at.level_mm));
   };
-  const Vec3 before = afloat(state_.moment), now = afloat(to);
-  const auto contact = first_contact(set_.surface, before, now);
-  if (!contact) return false;
-  const bool inside_out = contact->normal.dot(now - before) > 0;
-  return search.is_lost(from, inside_out ? Vec2(-outward) : outward);
+  return first_contact(set_.surface, afloat(state_.moment), afloat(to)).has_value();
 }
 
 void Feet::correct(const FloatingSheet& sheet) {
@@ -129,6 +129,8 @@ void Feet::create(const Touch& touch, const FloatingSheet& sheet, const Waterlin
   const std::int32_t v = touch.vertex;
   const Vec3 touched = to.to_sinking(touch.contact.position);
   const Vec3 normal = to.direction_to_sinking(touch.contact.normal);
+  Vec3 way;  // on which it touched
+  way << sheet.slid(v) - sheet.plan(v), to.level_mm - state_.moment.level_mm;
   std::vector<std::int32_t> around;
   for (auto n = film_.incident_begin[std::size_t(v)]; n < film_.incident_begin[std::size_t(v) + 1];
        ++n)
@@ -142,6 +144,7 @@ void Feet::create(const Touch& touch, const FloatingSheet& sheet, const Waterlin
     Foot foot;
     foot.attached = v;
     foot.floating = w;
+    foot.inside_out = way.dot(normal) > 0;
     const Vec2 from = touched.head<2>();
     const Waterline::Point end = search.first_on_line(from, sheet.slid(w));
     const Mat2 F = sheet.gradient_at_edge(v, w, Mat2::Identity(), *this);

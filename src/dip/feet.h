@@ -69,8 +69,7 @@ class Feet {
 
   Waterline::Point next_of(const Foot& foot, const Vec3& start, const Vec2& floating,
                            const LineSearch& search, const Moment& to) const;
-  bool comes_to(const Vec2& floating, const Vec2& outward, const Vec2& from,
-                const LineSearch& search, const Moment& to) const;
+  bool is_reached(const Vec2& place, const Moment& to) const;
   void create(const Touch& touch, const FloatingSheet& sheet, const Waterline& line,
               const Moment& to, std::vector<Foot>& created) const;
   void index(const FloatingSheet& sheet);

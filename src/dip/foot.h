@@ -33,6 +33,7 @@ struct GhostGradient {
 // Of the edge from an attached vertex to a floating one (docs/model.md, section 4).
 struct Foot {
   std::int32_t attached = -1, floating = -1;
+  bool inside_out = false;      // the object's faces are turned the wrong way
   Vec3 point = Vec3::Zero();    // on the contact line, between the two; posed-object frame
   Vec2 place = Vec2::Zero();    // the same, seen from above, now
   Vec2 outward = Vec2::Zero();  // from the object, unit, normal to the contact line

@@ -2,13 +2,6 @@
 
 namespace hydrodip {
 
-namespace {
-
-// Cosine of how far a line turns in one step, at a corner.
-constexpr double kSameLine = 0.5;
-
-}  // namespace
-
 Waterline::Point LineSearch::line_near(const Vec2& near, const Vec2& outside) const {
   const auto found = line.closest(near, kMaxJump * cell_mm);
   if (!found) return {near, outside, kWall};
@@ -37,9 +30,9 @@ std::optional<Waterline::Point> LineSearch::ahead(const Vec2& from, const Vec2& 
   return std::nullopt;
 }
 
-bool LineSearch::is_lost(const Vec2& from, const Vec2& outward) const {
+double LineSearch::facing(const Vec2& from, const Vec2& outward) const {
   const auto near = line.closest(from, kMaxJump * cell_mm);
-  return !near || near->outward.dot(outward) < kSameLine;
+  return near ? near->outward.dot(outward) : 0;
 }
 
 }  // namespace hydrodip

@@ -28,9 +28,9 @@ struct LineSearch {
   // contact line (the object is submerged there, or a shelf begins). Where it does not go that way
   // it goes straight up, to the line next to it.
   std::optional<Waterline::Point> ahead(const Vec2& from, const Vec2& floating) const;
-  // Whether that is another line than the foot was on: there is none, or it faces elsewhere.
-  // outward: as the object's faces have it.
-  bool is_lost(const Vec2& from, const Vec2& outward) const;
+  // Cosine between a direction and that in which the line next to `from` faces, as the object's
+  // faces have it; 0 if none is near.
+  double facing(const Vec2& from, const Vec2& outward) const;
 
   static constexpr double kMaxJump = 2.5;
 };

@@ -6,6 +6,8 @@
 #include <functional>
 #include <limits>
 
+#include "base/error.h"
+
 namespace hydrodip {
 
 namespace {
@@ -16,6 +18,8 @@ constexpr double kLonger = 6;
 constexpr double kLongestStep_mm = 1;
 // Film that one of them has lost lies nowhere.
 constexpr double kNowhere_mm = 10;
+// A dip whose film is not found at rest in a larger share of its steps tells nothing.
+constexpr double kFailedSteps = 0.02;
 
 // Per vertex: whether any film there is left.
 std::vector<std::uint8_t> left_over(const DippedFilm& film) {
@@ -26,27 +30,15 @@ std::vector<std::uint8_t> left_over(const DippedFilm& film) {
   return left;
 }
 
-}  // namespace
-
-double longer_step_mm(double step_mm) {
-  return std::min(kLonger * step_mm, std::max(step_mm, kLongestStep_mm));
-}
-
-double first_let_go_mm(const DippedFilm& dipped) {
-  double first = std::numeric_limits<double>::infinity();
-  for (const double at : dipped.torn_at_mm) first = std::min(first, at);
-  return first;
-}
-
-std::vector<double> moved_by_tears(const DippedFilm& dipped, const std::vector<Vec3>& positions,
-                                   const std::vector<Triangle>& triangles, const Surface& surface,
-                                   const Trajectory& trajectory, const DipOptions& options,
-                                   const RunContext& context) {
+// How far the film of a dip lies elsewhere if torn film falls otherwise. DipError: nobody can tell.
+std::vector<double> moved_in_others(const DippedFilm& dipped, const std::vector<Vec3>& positions,
+                                    const std::vector<Triangle>& triangles, const Surface& surface,
+                                    const Trajectory& trajectory, const DipOptions& options,
+                                    const RunContext& context) {
   DipOptions other = options;
   other.step_mm = longer_step_mm(options.step_mm);
   other.asks_what_moves = false;
-  // Film that these do not find at rest lies elsewhere for them, and is doubtful.
-  other.failed_share_max = 1;
+  other.failed_share_max = kFailedSteps;
   other.moved_mm.clear();
   const auto in_longer_steps = [&](const DipOptions& how, const RunContext& own) {
     return dip(dipped.shared_mesh, positions, triangles, surface, trajectory, how, own).film;
@@ -73,6 +65,31 @@ std::vector<double> moved_by_tears(const DippedFilm& dipped, const std::vector<V
       const double way = (film.position[v] - middle.position[v]).norm();
       moved[v] = std::max(moved[v], left[v] ? std::min(way, kNowhere_mm) : kNowhere_mm);
     }
+  }
+  return moved;
+}
+
+}  // namespace
+
+double longer_step_mm(double step_mm) {
+  return std::min(kLonger * step_mm, std::max(step_mm, kLongestStep_mm));
+}
+
+double first_let_go_mm(const DippedFilm& dipped) {
+  double first = std::numeric_limits<double>::infinity();
+  for (const double at : dipped.torn_at_mm) first = std::min(first, at);
+  return first;
+}
+
+std::vector<double> moved_by_tears(const DippedFilm& dipped, const std::vector<Vec3>& positions,
+                                   const std::vector<Triangle>& triangles, const Surface& surface,
+                                   const Trajectory& trajectory, const DipOptions& options,
+                                   const RunContext& context) {
+  std::vector<double> moved;
+  try {
+    moved = moved_in_others(dipped, positions, triangles, surface, trajectory, options, context);
+  } catch (const DipError&) {
+    moved.assign(dipped.position.size(), kNowhere_mm);
   }
   if (trajectory.is_straight_down()) {
     const double first_mm = first_let_go_mm(dipped);

@@ -65,14 +65,15 @@ TEST(LineSearch, AFootNeverLeapsFarAhead) {
   }
 }
 
-TEST(LineSearch, ALineThatFacesElsewhereIsAnother) {
-  const Cut cone(shapes::cone(20, 1), 5);
-  const Vec2 out(1, 0), aside(0, 1);
-  EXPECT_FALSE(cone.search().is_lost(Vec2(4.5, 0), out));
-  EXPECT_TRUE(cone.search().is_lost(Vec2(4.5, 0), aside));
-  EXPECT_TRUE(cone.search().is_lost(Vec2(4.5, 0), -out));
+TEST(LineSearch, ALineFacesAsTheFacesDo) {
+  const Cut right(shapes::cone(20, 1), 5), wrong(inside_out(shapes::cone(20, 1)), 5);
+  const Vec2 beside(4.5, 0);
+  EXPECT_NEAR(right.search().facing(beside, Vec2(1, 0)), 1, 1e-3);
+  EXPECT_NEAR(right.search().facing(beside, Vec2(0, 1)), 0, 0.05);
+  EXPECT_NEAR(right.search().facing(beside, Vec2(-1, 0)), -1, 1e-3);
+  EXPECT_NEAR(wrong.search().facing(beside, Vec2(1, 0)), -1, 1e-3);
   // None is near.
-  EXPECT_TRUE(cone.search().is_lost(Vec2(12, 0), out));
+  EXPECT_EQ(right.search().facing(Vec2(12, 0), Vec2(1, 0)), 0);
 }
 
 // A foot knows where outside is: where it came from, or where its floating vertex is.
