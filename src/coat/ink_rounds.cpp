@@ -22,9 +22,6 @@ constexpr int kMixed = 4;
 constexpr double kMostInks = 4;
 // From there on two rounds have to bring the change below this share.
 constexpr double kLeastProgress = 0.5;
-// Film torn to flaps or stretched too far may have no equilibrium that can be found once ink
-// stiffens it. A dip that fails in more than this share of its steps is to be planned anew.
-constexpr double kFailedSteps = 0.02;
 // While ink and film settle, the film image need only be as fine as stiffness can tell: several
 // pixels to a millimetre.
 constexpr double kRoundsDpi = 150;
@@ -128,7 +125,7 @@ bool InkRounds::dip() {
     dip_options_.modulus = task_.first->modulus;
     return true;
   }
-  dip_options_.failed_share_max = dip_options_.modulus.empty() ? 1 : kFailedSteps;
+  dip_options_.failed_share_max = dip_options_.modulus.empty() ? 1 : kMostFailedSteps;
   try {
     dipped_ = dip_object(task_.posed, film_, trajectory_, dip_options_, timings_, context_, {},
                          {.options = {}, .found = air_});

@@ -49,6 +49,10 @@ struct FilmMaterial {
   std::shared_ptr<const MaterialLaw> law = {};
 };
 
+// Film torn to flaps or stretched too far may have no equilibrium that can be found, the less so
+// once ink stiffens it. A dip that fails in more than this share of its steps tells nothing.
+inline constexpr double kMostFailedSteps = 0.02;
+
 struct DipOptions {
   double step_mm = 0.1;
   DipMethod method = DipMethod::kFull;

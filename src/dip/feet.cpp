@@ -81,12 +81,14 @@ Waterline::Point Feet::next_of(const Foot& foot, const Vec3& start, const Vec2& 
                                const LineSearch& search, const Moment& to) const {
   const Vec2 from = start.head<2>();
   if (const auto ahead = search.ahead(from, floating)) return *ahead;
-  const double facing = (foot.inside_out ? -1 : 1) * search.facing(from, foot.outward);
+  const auto near = search.near(from);
+  const double sign = foot.inside_out ? -1 : 1;
+  const double facing = near ? sign * near->outward.dot(foot.outward) : 0;
   const double left = (floating - from).norm();
   if (facing < kSameLine && left > 0 && is_reached(floating, to))
     return {floating, (floating - from) / left, (to.level_mm - start.z()) / left};
-  if (facing < -kSameLine) return {from, foot.outward, kWall};
-  return search.line_near(from, foot.outward);
+  if (!near || facing < -kSameLine) return {from, foot.outward, kWall};
+  return LineSearch::outwards(*near, foot.outward);
 }
 
 // Whether the water meets the object there in this step.

@@ -18,8 +18,6 @@ constexpr double kLonger = 6;
 constexpr double kLongestStep_mm = 1;
 // Film that one of them has lost lies nowhere.
 constexpr double kNowhere_mm = 10;
-// A dip whose film is not found at rest in a larger share of its steps tells nothing.
-constexpr double kFailedSteps = 0.02;
 
 // Per vertex: whether any film there is left.
 std::vector<std::uint8_t> left_over(const DippedFilm& film) {
@@ -38,7 +36,7 @@ std::vector<double> moved_in_others(const DippedFilm& dipped, const std::vector<
   DipOptions other = options;
   other.step_mm = longer_step_mm(options.step_mm);
   other.asks_what_moves = false;
-  other.failed_share_max = kFailedSteps;
+  other.failed_share_max = kMostFailedSteps;
   other.moved_mm.clear();
   const auto in_longer_steps = [&](const DipOptions& how, const RunContext& own) {
     return dip(dipped.shared_mesh, positions, triangles, surface, trajectory, how, own).film;

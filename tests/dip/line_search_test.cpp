@@ -30,6 +30,12 @@ shapes::Shape inside_out(shapes::Shape shape) {
   return shape;
 }
 
+// Where a foot goes from there.
+Waterline::Point next(const LineSearch& search, const Vec2& from, const Vec2& floating,
+                      const Vec2& outward) {
+  return search.ahead(from, floating).value_or(search.line_near(from, outward));
+}
+
 TEST(LineSearch, AFootGoesAheadOnASlopeAndStraightUpAWall) {
   const Cut cone(shapes::cone(20, 1), 5), box(shapes::box({-10, -10, 0}, {10, 10, 6}));
   const auto ahead = cone.search().ahead(Vec2(4.5, 0), Vec2(7, 2));
@@ -38,9 +44,7 @@ TEST(LineSearch, AFootGoesAheadOnASlopeAndStraightUpAWall) {
   EXPECT_NEAR(cross2(ahead->position - Vec2(4.5, 0), Vec2(2.5, 2)), 0, 1e-9);
   EXPECT_NEAR(ahead->steepness, 1, 1e-3);
   // The water has no way to gain on it: where it stood it stays.
-  const Waterline::Point up = box.search()
-                                  .ahead(Vec2(10, 1), Vec2(12, 3))
-                                  .value_or(box.search().line_near(Vec2(10, 1), Vec2(1, 0)));
+  const Waterline::Point up = next(box.search(), Vec2(10, 1), Vec2(12, 3), Vec2(1, 0));
   EXPECT_LT((up.position - Vec2(10, 1)).norm(), 1e-9);
   EXPECT_GT(up.steepness, 1e5);
 }
@@ -50,17 +54,15 @@ TEST(LineSearch, AFootNeverLeapsFarAhead) {
   const Cut plate(shapes::box({-30, -30, 0}, {30, 30, 6}));
   for (const double from : {-28.0, 0.0, 20.0, 24.0, 26.0, 29.0}) {
     const Vec2 start(from, 1);
-    const Waterline::Point next = plate.search()
-                                      .ahead(start, Vec2(40, 1))
-                                      .value_or(plate.search().line_near(start, Vec2(1, 0)));
-    EXPECT_LT((next.position - start).norm(), LineSearch::kMaxJump * kCell_mm) << from;
+    const Waterline::Point end = next(plate.search(), start, Vec2(40, 1), Vec2(1, 0));
+    EXPECT_LT((end.position - start).norm(), LineSearch::kMaxJump * kCell_mm) << from;
     // Far from any line it goes straight up where it is.
     if (std::abs(from) < 24) {
-      EXPECT_LT((next.position - start).norm(), 1e-12) << from;
-      EXPECT_EQ(next.steepness, kWall);
-      EXPECT_EQ(next.outward, Vec2(1, 0));
+      EXPECT_LT((end.position - start).norm(), 1e-12) << from;
+      EXPECT_EQ(end.steepness, kWall);
+      EXPECT_EQ(end.outward, Vec2(1, 0));
     } else if (from > 0) {
-      EXPECT_NEAR(next.position.x(), from > 25 ? 30 : from, 1e-9);
+      EXPECT_NEAR(end.position.x(), from > 25 ? 30 : from, 1e-9);
     }
   }
 }
@@ -68,12 +70,14 @@ TEST(LineSearch, AFootNeverLeapsFarAhead) {
 TEST(LineSearch, ALineFacesAsTheFacesDo) {
   const Cut right(shapes::cone(20, 1), 5), wrong(inside_out(shapes::cone(20, 1)), 5);
   const Vec2 beside(4.5, 0);
-  EXPECT_NEAR(right.search().facing(beside, Vec2(1, 0)), 1, 1e-3);
-  EXPECT_NEAR(right.search().facing(beside, Vec2(0, 1)), 0, 0.05);
-  EXPECT_NEAR(right.search().facing(beside, Vec2(-1, 0)), -1, 1e-3);
-  EXPECT_NEAR(wrong.search().facing(beside, Vec2(1, 0)), -1, 1e-3);
-  // None is near.
-  EXPECT_EQ(right.search().facing(Vec2(12, 0), Vec2(1, 0)), 0);
+  const auto of_right = right.search().near(beside), of_wrong = wrong.search().near(beside);
+  ASSERT_TRUE(of_right);
+  ASSERT_TRUE(of_wrong);
+  EXPECT_NEAR(of_right->outward.dot(Vec2(1, 0)), 1, 1e-3);
+  EXPECT_NEAR(of_right->outward.dot(Vec2(0, 1)), 0, 0.05);
+  EXPECT_NEAR(of_right->outward.dot(Vec2(-1, 0)), -1, 1e-3);
+  EXPECT_NEAR(of_wrong->outward.dot(Vec2(1, 0)), -1, 1e-3);
+  EXPECT_FALSE(right.search().near(Vec2(12, 0)));
 }
 
 // A foot knows where outside is: where it came from, or where its floating vertex is.
