@@ -5,9 +5,12 @@
 // it (its ghost). docs/model.md derives it.
 
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 #include "base/parallel.h"
 #include "dip/feet.h"
+#include "dip/flat_levels.h"
 #include "dip/floating_sheet.h"
 #include "dip/scheme.h"
 #include "dip/tears.h"
@@ -32,24 +35,33 @@ class ContactLineScheme : public Scheme {
         waterline_(setting.positions, setting.triangles, setting.film.cell_mm),
         sheet_(setting, state),
         feet_(setting, state),
-        tears_(setting, state) {}
+        tears_(setting, state) {
+    if (setting.travel.trajectory().is_straight_down())
+      jumps_at_mm_ = flat_levels(setting.positions, setting.triangles,
+                                 setting.film.cell_mm * setting.film.cell_mm);
+  }
 
   void write_positions() override {
     parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
         if (state_.state[v] == VertexState::kUnattached)
-          state_.position[v] = afloat(sheet_.plan(std::int32_t(v)), state_.moment);
+          state_.position[v] = state_.moment.afloat(sheet_.plan(std::int32_t(v)));
     });
   }
 
   // In parts where the object rises so gently at the contact line that this one runs fast: where
-  // the water first touches something blunt.
+  // the water first touches something blunt. Where it jumps, a part ends, if need be a little
+  // before the moment, and the next step makes up for it.
   void advance(const Moment& to) override {
-    while (state_.moment.travelled_mm < to.travelled_mm) {
+    const bool last = !(to.travelled_mm < set_.travel.length_mm());
+    const double short_mm = last ? 0 : kSmallestPart * set_.options.step_mm;
+    while (to.travelled_mm - state_.moment.travelled_mm > short_mm) {
       const double part_mm = std::max(part_, kSmallestPart) * set_.options.step_mm;
       // No sliver of a step at the end.
-      const bool last = to.travelled_mm - state_.moment.travelled_mm < 1.5 * part_mm;
-      take_step(last ? to : set_.travel.at(state_.moment.travelled_mm + part_mm));
+      const bool ends = to.travelled_mm - state_.moment.travelled_mm < 1.5 * part_mm;
+      const double end_mm = ends ? to.travelled_mm : state_.moment.travelled_mm + part_mm;
+      const auto jump_mm = next_jump(end_mm);
+      take_step(jump_mm ? set_.travel.at(*jump_mm) : ends ? to : set_.travel.at(end_mm));
       part_ = std::clamp(kLineAdvance * feet_.gentlest_rise(), kSmallestPart, 1.0);
     }
   }
@@ -62,8 +74,21 @@ class ContactLineScheme : public Scheme {
     state_.moment = to;
   }
 
+  // The first jump of the contact line on the way on, unless it is so near that a part of a step
+  // would be too short.
+  std::optional<double> next_jump(double end_mm) const {
+    const double shortest_mm = kSmallestPart * set_.options.step_mm;
+    const auto jump = std::lower_bound(jumps_at_mm_.begin(), jumps_at_mm_.end(),
+                                       state_.moment.travelled_mm + shortest_mm);
+    if (jump == jumps_at_mm_.end() || !(*jump < end_mm)) return std::nullopt;
+    const double left_mm = set_.travel.length_mm() - *jump;
+    return left_mm < shortest_mm ? std::nullopt : std::optional(*jump);
+  }
+
   void lower(const Moment& to) {
-    waterline_.move_to(to);
+    Moment reached = to;
+    reached.level_mm -= kReached_mm;
+    waterline_.move_to(reached);
     feet_.climb(sheet_, waterline_, to);
     sheet_.set_rest(feet_);
   }
@@ -103,8 +128,7 @@ class ContactLineScheme : public Scheme {
         if (!sheet_.free_vertices()[v]) continue;
         const Vec2 start = sheet_.plan(vertex), end_of_way = sheet_.slid(vertex);
         if (!waterline_.may_touch(start, end_of_way)) continue;
-        const auto contact =
-            first_contact(set_.surface, afloat(start, state_.moment), afloat(end_of_way, to));
+        const auto contact = first_touch(set_.surface, start, state_.moment, end_of_way, to);
         if (contact) found[begin / kVerticesPerTask].push_back({vertex, *contact});
       }
     });
@@ -130,11 +154,6 @@ class ContactLineScheme : public Scheme {
     feet_.replace(created, sheet_);
   }
 
-  // A floating point, seen from above at a moment, in the posed-object frame.
-  static Vec3 afloat(const Vec2& plan, const Moment& at) {
-    return at.to_object(Vec3(plan.x(), plan.y(), at.level_mm));
-  }
-
   const DipSetting set_;
   const FilmMesh& film_;
   DipState& state_;
@@ -142,7 +161,8 @@ class ContactLineScheme : public Scheme {
   FloatingSheet sheet_;
   Feet feet_;
   Tears tears_;
-  double part_ = 0;  // of a step, to go at once next
+  double part_ = 0;                  // of a step, to go at once next
+  std::vector<double> jumps_at_mm_;  // travelled where the contact line jumps, ascending
 };
 
 }  // namespace

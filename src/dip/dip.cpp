@@ -23,6 +23,9 @@ namespace {
 // between two steps or through single precision.
 constexpr double kContactSlack_mm = 1e-3;
 
+// A face that rises by less than this is flat.
+constexpr double kFlat = 0.02;
+
 // A path is cut into so many parts to see whether the object comes to the rim.
 constexpr int kRimParts = 64;
 
@@ -186,6 +189,15 @@ std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, c
   const auto hit = surface.first_hit(from, way, -slack, 1 + slack);
   if (!hit) return std::nullopt;
   return Contact{surface.position(*hit), surface.normal(*hit)};
+}
+
+std::optional<Contact> first_touch(const Surface& surface, const Vec2& start, const Moment& from,
+                                   const Vec2& end, const Moment& to) {
+  const auto contact = first_contact(surface, from.afloat(start), to.afloat(end));
+  if (!contact || to.height(contact->position) < -kReached_mm) return contact;
+  const Vec3 normal = to.direction_to_sinking(contact->normal);
+  const bool level = normal.head<2>().norm() < kFlat * std::abs(normal.z());
+  return level ? std::nullopt : contact;
 }
 
 DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,

@@ -89,7 +89,8 @@ struct DipResult {
   DipStatistics statistics;
 };
 
-// Sees the film after each of `steps` steps, and before the first one as step 0.
+// Sees the film after each of `steps` steps, and before the first one as step 0. A step may end up
+// to an eighth early, where a flat face comes to the water.
 using DipObserver =
     std::function<void(int step, int steps, const Moment& moment, const std::vector<Vec3>& position,
                        const std::vector<VertexState>& state)>;

@@ -55,7 +55,7 @@ void Feet::climb(const FloatingSheet& sheet, const Waterline& line, const Moment
       foot.place = start.head<2>();
     } else {
       const Waterline::Point end = next_of(foot, start, sheet.plan(foot.floating), search, to);
-      const Vec3 point = to.to_object(Vec3(end.position.x(), end.position.y(), to.level_mm));
+      const Vec3 point = to.afloat(end.position);
       const Vec3 point_between = between.to_sinking(point);
       foot.last_way = unrolled(between.to_sinking(foot.point), foot.outward, foot.steepness,
                                {point_between.head<2>(), end.outward, end.steepness},
@@ -93,10 +93,7 @@ Waterline::Point Feet::next_of(const Foot& foot, const Vec3& start, const Vec2& 
 
 // Whether the water meets the object there in this step.
 bool Feet::is_reached(const Vec2& place, const Moment& to) const {
-  const auto afloat = [&](const Moment& at) {
-    return at.to_object(Vec3(place.x(), place.y(), at.level_mm));
-  };
-  return first_contact(set_.surface, afloat(state_.moment), afloat(to)).has_value();
+  return first_touch(set_.surface, place, state_.moment, place, to).has_value();
 }
 
 void Feet::correct(const FloatingSheet& sheet) {
@@ -155,7 +152,7 @@ void Feet::create(const Touch& touch, const FloatingSheet& sheet, const Waterlin
     foot.way = unrolled(touched, normal.head<2>().stableNormalized(),
                         steepness_along(normal, end.outward), end, to.level_mm, z_stretch());
     foot.laid = F * foot.way;
-    foot.point = to.to_object(Vec3(end.position.x(), end.position.y(), to.level_mm));
+    foot.point = to.afloat(end.position);
     foot.place = end.position;
     foot.outward = end.outward;
     foot.steepness = end.steepness;

@@ -148,7 +148,7 @@ void FloatingSheet::slide(const Feet& feet) {
           found_.data());
     for (std::size_t v = begin; v < end; ++v) {
       const std::size_t at = energy_.grid().place(v);
-      if (state_.state[v] != VertexState::kUnattached) {
+      if (!is_free_[v]) {
         slid_.set(at, plan_.at(at));
       } else if (!found_[at] || !is_plain_[std::size_t(slid_in_[v])]) {
         const Vec2 from = plan_.at(at), to = look_up(v, feet).value_or(from);

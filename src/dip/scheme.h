@@ -64,4 +64,15 @@ struct Contact {
 };
 std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, const Vec3& to);
 
+// What the water has reached by a moment lies further than this below its level, for contact and
+// waterline alike: flat faces often lie at exactly the level of a step, and one that counts as
+// touched while no waterline goes around it, or the other way round, lays film astray. So near
+// below a level none lies by chance.
+inline constexpr double kReached_mm = 1.37e-5;
+
+// Where a floating point, seen from above, first touches the object between two moments, unless it
+// is something flat that the water has not reached by the second: then it does so right afterwards.
+std::optional<Contact> first_touch(const Surface& surface, const Vec2& start, const Moment& from,
+                                   const Vec2& end, const Moment& to);
+
 }  // namespace hydrodip

@@ -27,6 +27,8 @@ struct Moment {
   Vec3 to_object(const Vec3& sinking) const {
     return moved ? Vec3(turn.transpose() * (sinking - shift)) : sinking;
   }
+  // A floating point, seen from above, on the object.
+  Vec3 afloat(const Vec2& plan) const { return to_object(Vec3(plan.x(), plan.y(), level_mm)); }
   Vec3 direction_to_sinking(const Vec3& direction) const {
     return moved ? Vec3(turn * direction) : direction;
   }
