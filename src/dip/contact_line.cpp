@@ -138,6 +138,7 @@ class ContactLineScheme : public Scheme {
   }
 
   void attach(const std::vector<Touch>& touches, const Moment& to) {
+    if (to.moved && state_.up.empty()) state_.up.assign(film_.u.size(), Vec3::UnitZ());
     const std::vector<Foot> created = feet_.created_for(touches, sheet_, waterline_, to);
     sheet_.settle();
     for (const Touch& touch : touches) {
@@ -145,6 +146,7 @@ class ContactLineScheme : public Scheme {
       state_.state[v] = VertexState::kAttached;
       state_.position[v] = touch.contact.position;
       sheet_.attach_at(touch.vertex, to.to_sinking(touch.contact.position).head<2>());
+      if (to.moved) state_.up[v] = to.turn.row(2);
     }
     for (const Touch& touch : touches)
       for (auto n = film_.incident_begin[std::size_t(touch.vertex)];

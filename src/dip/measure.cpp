@@ -162,6 +162,8 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
   result.lifted = state.lifted;
   result.wrinkled.assign(film.triangles.size(), 0);
   result.depth_mm = state.moment.level_mm;
+  result.up = state.up;
+  if (options.method == DipMethod::kFull) result.z_stretch = options.material.z_stretch;
   if (state.moment.moved) hold_rim(state.moment, result);
 
   const std::size_t vertices = film.u.size();

@@ -33,6 +33,7 @@ struct DipState {
   std::vector<std::uint8_t>
       lifted;                      // per vertex: attached, and out of the water again at some time
   std::vector<double> torn_at_mm;  // per triangle: travelled when it tore; infinity: not yet
+  std::vector<Vec3> up;            // per vertex: upwards when it attached; empty: along z, all
   DipStatistics statistics;
 };
 

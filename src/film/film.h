@@ -110,6 +110,10 @@ struct DippedFilm {
   // Attached, and lifted out of the water again while the object went on; per vertex.
   std::vector<std::uint8_t> lifted;
   double depth_mm = 0;  // of the object's deepest point, in the end
+  // What a height of the object counted for as film was laid on it (FilmMaterial::z_stretch), and
+  // per vertex which way was up then; empty: along z.
+  double z_stretch = 1;
+  std::vector<Vec3> up;
 
   const FilmMesh& mesh() const { return *shared_mesh; }
   // A triangle whose corners are all attached and that is not torn, or not all of it: film that

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/small_file.h"
+#include "dip/dip.h"
 #include "job/prepare.h"
 #include "settings/correction_file.h"
 
@@ -70,8 +71,9 @@ void mark_torn(DippedFilm& film, double tear_stretch) {
 }
 
 DippedFilm read_film(const std::filesystem::path& file, const FilmOptions& options,
-                     double tear_stretch) {
+                     const FilmMaterial& material) {
   DippedFilm film;
+  film.z_stretch = material.z_stretch;
   film.shared_mesh = std::make_shared<const FilmMesh>(make_film_mesh(options));
   const FilmMesh& mesh = film.mesh();
   constexpr std::size_t kHeader = 4096, kPerVertex = 64, kPerTriangle = 32;  // and more than that
@@ -91,7 +93,7 @@ DippedFilm read_film(const std::filesystem::path& file, const FilmOptions& optio
     film.area_ratio.push_back(cursor.number());
     film.stretch.push_back(cursor.number());
   }
-  mark_torn(film, tear_stretch);
+  mark_torn(film, material.tear_stretch);
   return film;
 }
 
@@ -119,7 +121,7 @@ PrintedFilm read_printed_film(const RigJob& job, const RunContext& context) {
   object.load.texture.clear();
   const PreparedObject prepared = prepare_object(job.config.model, object, context.quiet());
   auto dipped = std::make_shared<const DippedFilm>(
-      read_film(job.folder / "film.ply", film, job.config.design.dip.material.tear_stretch));
+      read_film(job.folder / "film.ply", film, job.config.design.dip.material));
   auto map =
       std::make_shared<const FilmMap>(prepared.posed.mesh(), prepared.posed.surface(), *dipped);
   return {prepared.posed, std::move(dipped), std::move(map), film.correction};

@@ -2,7 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "base/parallel.h"
 #include "film/locate.h"
@@ -42,6 +44,31 @@ std::vector<Triangle> corners_of(const std::vector<std::int32_t>& triangles,
   return corners;
 }
 
+// Film whose corners lie on faces that turn by more than this lies over an edge.
+const double kOverEdge = std::cos(30 * std::numbers::pi / 180);
+// Film that heights of the object count for next to nothing is as if they counted for this.
+constexpr double kLeastHeight = 0.1;
+
+// Film laid over an edge of the object is evenly strained if the faces are rolled off into one
+// plane with heights scaled (docs/model.md, section 4). So the flat triangle between its corners
+// belongs to the faces along the mean of their normals, each counted once, in the object so scaled.
+// A direction between the corners' normals, as on something round, crowds it at the edge. Zero
+// where the corners lie on one face, or round.
+Vec3 direction_over_edge(std::array<Vec3, 3> normal, const Vec3& up, double z_stretch) {
+  const auto turns = [&](std::size_t i, std::size_t j) {
+    return normal[i].dot(normal[j]) < kOverEdge;
+  };
+  const std::array<bool, 3> turn = {turns(1, 2), turns(2, 0), turns(0, 1)};  // opposite a corner
+  if (turn[0] + turn[1] + turn[2] < 2) return Vec3::Zero();
+  const double stretch = 1 / std::max(z_stretch, kLeastHeight) - 1;
+  const auto stretched = [&](const Vec3& v) { return Vec3(v + stretch * up.dot(v) * up); };
+  for (Vec3& n : normal) n = stretched(n).stableNormalized();
+  Vec3 sum = normal[0] + normal[1] + normal[2];
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!turn[k]) sum = (sum - normal[k]).stableNormalized() + normal[k];
+  return sum.norm() > 0.1 ? stretched(sum).normalized() : Vec3::Zero();
+}
+
 // Barycentric coordinates of target in a flat film triangle.
 bool weights_in(const FilmMesh& mesh, std::int32_t triangle, const Vec2& target, Vec3& weight) {
   const Triangle& t = mesh.triangles[std::size_t(triangle)];
@@ -66,6 +93,9 @@ struct FilmMap::Impl {
   Surface film_surface;
   Surface torn_surface;      // torn film, where it met the object
   std::vector<Vec3> normal;  // per film vertex: the object's, outward; zero where not attached
+  // Per film triangle: its number among those that are laid over an edge of the object, or -1.
+  std::vector<std::int32_t> over_edge;
+  std::vector<Vec3> edge_direction;  // of those
   CoveredRim rim;
   double reach_mm;  // how far apart film and object may be: chords against curved surface
 
@@ -90,6 +120,19 @@ struct FilmMap::Impl {
         if (hit) normal[v] = surface.normal(*hit);
       }
     });
+    over_edge.assign(film.mesh().triangles.size(), -1);
+    for (const std::int32_t t : film_triangle) find_edge(std::size_t(t));
+  }
+
+  void find_edge(std::size_t t) {
+    const Triangle& v = film.mesh().triangles[t];
+    const Vec3 up = film.up.empty() ? Vec3::UnitZ() : film.up[std::size_t(v[0])];
+    const Vec3 direction = direction_over_edge(
+        {normal[std::size_t(v[0])], normal[std::size_t(v[1])], normal[std::size_t(v[2])]}, up,
+        film.z_stretch);
+    if (direction.isZero()) return;
+    over_edge[t] = std::int32_t(edge_direction.size());
+    edge_direction.push_back(direction);
   }
 
   bool locate_on_object(const Vec2& u, Cursor& cursor, Vec3& weight) const {
@@ -110,6 +153,8 @@ struct FilmMap::Impl {
       laid.point += weight[Eigen::Index(k)] * film.position[std::size_t(t[k])];
       laid.direction += weight[Eigen::Index(k)] * normal[std::size_t(t[k])];
     }
+    if (const std::int32_t edge = over_edge[std::size_t(triangle)]; edge >= 0)
+      laid.direction = edge_direction[std::size_t(edge)];
     return laid;
   }
 
@@ -169,8 +214,13 @@ struct FilmMap::Impl {
   };
   // The film that lies at a point of the object, whole or not.
   std::optional<FilmPoint> lying_film_at(const Vec3& position, const Vec3& normal) const {
-    const auto hit = lying_at(film_surface, position, normal);
+    auto hit = lying_at(film_surface, position, normal);
     if (!hit) return std::nullopt;
+    // Over an edge film is looked up as to_object() does.
+    const std::int32_t edge = over_edge[std::size_t(film_triangle[std::size_t(hit->triangle)])];
+    if (edge >= 0)
+      if (const auto along = lying_at(film_surface, position, edge_direction[std::size_t(edge)]))
+        hit = along;
     return FilmPoint{std::size_t(film_triangle[std::size_t(hit->triangle)]),
                      Vec3(1 - hit->u - hit->v, hit->u, hit->v)};
   }

@@ -25,6 +25,45 @@ TEST(FilmMap, IsTheIdentityOnAFlatBottom) {
     }
 }
 
+// Heights of the slab's walls count for this much film.
+constexpr double kHeight = 0.65;
+
+// The film on the slab goes on up the walls that it has at x = +-20.
+DippedFilm film_over_edges(int elements) {
+  DippedFilm film = fixtures::film_on_slab(elements);
+  film.z_stretch = kHeight;
+  for (std::size_t v = 0; v < film.position.size(); ++v) {
+    const Vec2& u = film.mesh().u[v];
+    const double beyond = std::abs(u.x()) - fixtures::kHalfSide_mm;
+    if (beyond <= 0 || beyond > 4 || std::abs(u.y()) > fixtures::kHalfSide_mm) continue;
+    film.position[v] = Vec3(std::copysign(fixtures::kHalfSide_mm, u.x()), u.y(), beyond / kHeight);
+    film.state[v] = VertexState::kAttached;
+  }
+  return film;
+}
+
+// On meshes whose lines lie beside the edge.
+TEST(FilmMap, FilmOverAnEdgeIsRolledOffBothFaces) {
+  for (const int elements : {1800, 5000, 7300}) {
+    const auto dipped = fixtures::mapped(fixtures::slab(), film_over_edges(elements));
+    for (double x = 18.51; x < 22; x += 0.137)
+      for (double y = -17.97; y < 18; y += 3.19) {
+        const Vec2 u(y < 0 ? -x : x, y);
+        const double beyond = x - fixtures::kHalfSide_mm;
+        const bool on_wall = beyond > 0;
+        const Vec3 exact(std::copysign(std::min(x, fixtures::kHalfSide_mm), u.x()), y,
+                         std::max(0.0, beyond) / kHeight);
+        const Vec3 normal = on_wall ? Vec3(std::copysign(1.0, u.x()), 0, 0) : Vec3(0, 0, -1);
+        const auto there = dipped->map->to_object(u);
+        ASSERT_TRUE(there) << u.transpose();
+        EXPECT_LT((position_at(dipped->object, *there) - exact).norm(), 1e-9) << u.transpose();
+        const auto back = dipped->map->to_film(exact, normal);
+        ASSERT_TRUE(back) << u.transpose();
+        EXPECT_LT((*back - u).norm(), 1e-9) << u.transpose();
+      }
+  }
+}
+
 TEST(FilmMap, KnowsWhereNothingLies) {
   const auto dipped = fixtures::mapped(fixtures::slab(), fixtures::film_on_slab(5000));
   EXPECT_FALSE(dipped->map->to_object(Vec2(21.1, 0)));
