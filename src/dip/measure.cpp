@@ -3,9 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "dip/principal_stretch.h"
+#include "film/over_edge.h"
 
 namespace hydrodip {
 
@@ -39,25 +41,40 @@ struct TriangleMeasure {
   std::array<double, 3> flat_share;  // of flat_area, Voronoi
 };
 
-TriangleMeasure measure_triangle(const FilmMesh& film, const DipState& state, std::size_t t) {
+// Its area and stretches on the object: over an edge of it, those of its parts on both faces, which
+// are no shorter than the chord between them.
+void measure_on_object(const std::array<Vec2, 3>& flat, const std::array<Vec3, 3>& placed,
+                       const std::optional<std::array<FacePart, 2>>& parts, TriangleMeasure& m) {
+  const auto add = [&](double share, const std::array<Vec3, 3>& corner) {
+    m.area += share * 0.5 * (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm();
+    const PrincipalStretches stretches = principal_stretches(flat, corner);
+    m.stretch += share * stretches.largest;
+    m.least_stretch += share * stretches.least;
+  };
+  if (!parts) return add(1, placed);
+  for (const FacePart& part : *parts) add(part.share, part.corner);
+  m.stretch = std::max(m.stretch, principal_stretches(flat, placed).largest);
+}
+
+TriangleMeasure measure_triangle(const FilmMesh& film, const DippedFilm& dipped, std::size_t t) {
   const Triangle& v = film.triangles[t];
-  std::array<double, 3> flat{}, now{};
+  std::array<Vec2, 3> flat;
+  std::array<Vec3, 3> placed, normal;
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto a = std::size_t(v[(k + 1) % 3]), b = std::size_t(v[(k + 2) % 3]);
-    flat[k] = (film.u[a] - film.u[b]).squaredNorm();
-    now[k] = (state.position[a] - state.position[b]).squaredNorm();
+    flat[k] = film.u[std::size_t(v[k])];
+    placed[k] = dipped.position[std::size_t(v[k])];
+    normal[k] = dipped.normal[std::size_t(v[k])];
   }
-  const auto at = [&](std::size_t k) -> const Vec3& { return state.position[std::size_t(v[k])]; };
+  std::array<double, 3> squared_edge;
+  for (std::size_t k = 0; k < 3; ++k)
+    squared_edge[k] = (flat[(k + 1) % 3] - flat[(k + 2) % 3]).squaredNorm();
   TriangleMeasure m{};
-  m.flat_area = 0.5 * cross2(film.u[std::size_t(v[1])] - film.u[std::size_t(v[0])],
-                             film.u[std::size_t(v[2])] - film.u[std::size_t(v[0])]);
-  m.area = 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
-  const PrincipalStretches stretches = principal_stretches(
-      {film.u[std::size_t(v[0])], film.u[std::size_t(v[1])], film.u[std::size_t(v[2])]},
-      {at(0), at(1), at(2)});
-  m.stretch = stretches.largest;
-  m.least_stretch = stretches.least;
-  m.flat_share = voronoi_shares(flat, m.flat_area);
+  m.flat_area = 0.5 * cross2(flat[1] - flat[0], flat[2] - flat[0]);
+  m.flat_share = voronoi_shares(squared_edge, m.flat_area);
+  const Vec3 up = dipped.up.empty() ? Vec3::UnitZ() : dipped.up[std::size_t(v[0])];
+  const auto direction = direction_over_edge(normal, up, dipped.z_stretch);
+  measure_on_object(flat, placed,
+                    direction ? parts_over_edge(placed, normal, *direction) : std::nullopt, m);
   return m;
 }
 
@@ -165,6 +182,9 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
   result.up = state.up;
   if (options.method == DipMethod::kFull) result.z_stretch = options.material.z_stretch;
   if (state.moment.moved) hold_rim(state.moment, result);
+  std::vector<std::uint8_t> attached;
+  for (const VertexState at : state.state) attached.push_back(at == VertexState::kAttached);
+  result.normal = normals_near(surface, state.position, attached);
 
   const std::size_t vertices = film.u.size();
   // Vertices on the object are measured on the film that lies there; others on all around them.
@@ -173,7 +193,7 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
   std::vector<TriangleMeasure> measures;
   measures.reserve(film.triangles.size());
   for (std::size_t t = 0; t < film.triangles.size(); ++t) {
-    measures.push_back(measure_triangle(film, state, t));
+    measures.push_back(measure_triangle(film, result, t));
     const Triangle& v = film.triangles[t];
     const bool on_object = std::all_of(v.begin(), v.end(), [&](std::int32_t i) {
       return state.state[std::size_t(i)] == VertexState::kAttached;

@@ -114,6 +114,9 @@ struct DippedFilm {
   // per vertex which way was up then; empty: along z.
   double z_stretch = 1;
   std::vector<Vec3> up;
+  // Per vertex: the object's outward unit normal where it is attached, else zero. Empty: nobody has
+  // looked.
+  std::vector<Vec3> normal;
 
   const FilmMesh& mesh() const { return *shared_mesh; }
   // A triangle whose corners are all attached and that is not torn, or not all of it: film that

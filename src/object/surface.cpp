@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/run_scope.h"
 #include "base/thread_supply.h"
 
@@ -255,6 +256,20 @@ Vec3 Surface::normal(const SurfaceHit& hit) const {
   return (impl_->corner(hit.triangle, 1) - a)
       .cross(impl_->corner(hit.triangle, 2) - a)
       .normalized();
+}
+
+std::vector<Vec3> normals_near(const Surface& surface, const std::vector<Vec3>& points,
+                               const std::vector<std::uint8_t>& wanted) {
+  constexpr double kNear_mm = 1;
+  std::vector<Vec3> normals(points.size(), Vec3::Zero());
+  parallel_for(normals.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      if (!wanted[v]) continue;
+      if (const auto nearest = surface.closest_point(points[v], kNear_mm))
+        normals[v] = surface.normal(*nearest);
+    }
+  });
+  return normals;
 }
 
 }  // namespace hydrodip

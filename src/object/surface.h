@@ -1,6 +1,7 @@
 // Geometric queries on a triangle surface: the only place that knows Embree.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -46,5 +47,10 @@ class Surface {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// Per point: the surface's unit normal where it is nearest; zero if it is further away than a
+// millimetre, or the point is not wanted.
+std::vector<Vec3> normals_near(const Surface& surface, const std::vector<Vec3>& points,
+                               const std::vector<std::uint8_t>& wanted);
 
 }  // namespace hydrodip

@@ -2,12 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 
 #include "base/parallel.h"
 #include "film/locate.h"
+#include "film/over_edge.h"
 #include "transfer/covered_rim.h"
 
 namespace hydrodip {
@@ -21,6 +20,12 @@ std::vector<Triangle> triangles_on_object(const DippedFilm& film) {
   for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t)
     if (film.lies_on_object(t)) lying.push_back(film.mesh().triangles[t]);
   return lying;
+}
+
+std::vector<std::uint8_t> attached_of(const DippedFilm& film) {
+  std::vector<std::uint8_t> attached;
+  for (const VertexState state : film.state) attached.push_back(state == VertexState::kAttached);
+  return attached;
 }
 
 // What would lie on the object had it not torn.
@@ -42,31 +47,6 @@ std::vector<Triangle> corners_of(const std::vector<std::int32_t>& triangles,
   corners.reserve(triangles.size());
   for (const std::int32_t t : triangles) corners.push_back(film.mesh().triangles[std::size_t(t)]);
   return corners;
-}
-
-// Film whose corners lie on faces that turn by more than this lies over an edge.
-const double kOverEdge = std::cos(30 * std::numbers::pi / 180);
-// Film that heights of the object count for next to nothing is as if they counted for this.
-constexpr double kLeastHeight = 0.1;
-
-// Film laid over an edge of the object is evenly strained if the faces are rolled off into one
-// plane with heights scaled (docs/model.md, section 4). So the flat triangle between its corners
-// belongs to the faces along the mean of their normals, each counted once, in the object so scaled.
-// A direction between the corners' normals, as on something round, crowds it at the edge. Zero
-// where the corners lie on one face, or round.
-Vec3 direction_over_edge(std::array<Vec3, 3> normal, const Vec3& up, double z_stretch) {
-  const auto turns = [&](std::size_t i, std::size_t j) {
-    return normal[i].dot(normal[j]) < kOverEdge;
-  };
-  const std::array<bool, 3> turn = {turns(1, 2), turns(2, 0), turns(0, 1)};  // opposite a corner
-  if (turn[0] + turn[1] + turn[2] < 2) return Vec3::Zero();
-  const double stretch = 1 / std::max(z_stretch, kLeastHeight) - 1;
-  const auto stretched = [&](const Vec3& v) { return Vec3(v + stretch * up.dot(v) * up); };
-  for (Vec3& n : normal) n = stretched(n).stableNormalized();
-  Vec3 sum = normal[0] + normal[1] + normal[2];
-  for (std::size_t k = 0; k < 3; ++k)
-    if (!turn[k]) sum = (sum - normal[k]).stableNormalized() + normal[k];
-  return sum.norm() > 0.1 ? stretched(sum).normalized() : Vec3::Zero();
 }
 
 // Barycentric coordinates of target in a flat film triangle.
@@ -92,7 +72,7 @@ struct FilmMap::Impl {
   std::vector<std::int32_t> torn_triangle;  // of torn_surface
   Surface film_surface;
   Surface torn_surface;      // torn film, where it met the object
-  std::vector<Vec3> normal;  // per film vertex: the object's, outward; zero where not attached
+  std::vector<Vec3> normal;  // as DippedFilm::normal
   // Per film triangle: its number among those that are laid over an edge of the object, or -1.
   std::vector<std::int32_t> over_edge;
   std::vector<Vec3> edge_direction;  // of those
@@ -106,20 +86,13 @@ struct FilmMap::Impl {
         torn_triangle(torn_on_object(f)),
         film_surface(f.position, triangles_on_object(f)),
         torn_surface(f.position, corners_of(torn_triangle, f)),
-        normal(f.position.size(), Vec3::Zero()),
+        normal(f.normal.empty() ? normals_near(s, f.position, attached_of(f)) : f.normal),
         rim(f),
         reach_mm(f.mesh().cell_mm) {
     for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
       lies.push_back(film.lies_on_object(t));
       if (lies.back()) film_triangle.push_back(static_cast<std::int32_t>(t));
     }
-    parallel_for(normal.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        if (film.state[v] != VertexState::kAttached) continue;
-        const auto hit = surface.closest_point(film.position[v], 1.0);
-        if (hit) normal[v] = surface.normal(*hit);
-      }
-    });
     over_edge.assign(film.mesh().triangles.size(), -1);
     for (const std::int32_t t : film_triangle) find_edge(std::size_t(t));
   }
@@ -127,12 +100,12 @@ struct FilmMap::Impl {
   void find_edge(std::size_t t) {
     const Triangle& v = film.mesh().triangles[t];
     const Vec3 up = film.up.empty() ? Vec3::UnitZ() : film.up[std::size_t(v[0])];
-    const Vec3 direction = direction_over_edge(
+    const auto direction = direction_over_edge(
         {normal[std::size_t(v[0])], normal[std::size_t(v[1])], normal[std::size_t(v[2])]}, up,
         film.z_stretch);
-    if (direction.isZero()) return;
+    if (!direction) return;
     over_edge[t] = std::int32_t(edge_direction.size());
-    edge_direction.push_back(direction);
+    edge_direction.push_back(*direction);
   }
 
   bool locate_on_object(const Vec2& u, Cursor& cursor, Vec3& weight) const {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "exact/shapes.h"
 
@@ -50,6 +51,39 @@ TEST(Measure, KnowsUniformStretchExactly) {
         EXPECT_NEAR(result.area_ratio[v], factors.prod(), 1e-12);
       }
     }
+}
+
+// Film over the edge between a bottom, on which it is as it was, and a wall, on which it is
+// stretched upwards: between the two, not pressed together as the chords across the edge are.
+TEST(Measure, FilmOverAnEdgeIsAsOnItsFaces) {
+  const FilmMesh film = film_mesh();
+  constexpr double kHalf = 10.3, kHeight = 0.65;
+  DipState state = laid_flat(film, Mat2::Identity());
+  for (Vec3& p : state.position)
+    if (const double beyond = std::abs(p.x()) - kHalf; beyond > 0)
+      p = Vec3(std::copysign(kHalf, p.x()), p.y(), beyond / kHeight);
+  const shapes::Shape slab = shapes::box(Vec3(-kHalf, -99, 0), Vec3(kHalf, 99, 50));
+  const Surface surface(slab.positions, slab.triangles);
+  DipOptions options;
+  options.material.tear_stretch = 0;
+  options.material.z_stretch = kHeight;
+  const DippedFilm result =
+      measured(std::make_shared<const FilmMesh>(film), state, options, surface);
+  EXPECT_EQ(std::count(result.wrinkled.begin(), result.wrinkled.end(), 1), 0);
+  int beside = 0;
+  for (std::size_t v = 0; v < film.u.size(); ++v) {
+    for (const double measure : {result.area_ratio[v], result.stretch[v]}) {
+      EXPECT_GT(measure, 1 - 1e-9) << film.u[v].transpose();
+      EXPECT_LT(measure, 1 / kHeight + 1e-9) << film.u[v].transpose();
+    }
+    const double beyond = std::abs(film.u[v].x()) - kHalf;
+    if (std::abs(beyond) > 2 * film.cell_mm) {
+      EXPECT_NEAR(result.area_ratio[v], beyond < 0 ? 1 : 1 / kHeight, 1e-9);
+    } else {
+      ++beside;
+    }
+  }
+  EXPECT_GT(beside, 20);
 }
 
 TEST(Measure, TearsWhatIsStretchedBeyondTheLimit) {

@@ -1,0 +1,32 @@
+// Film that lies over an edge of the object: flat between corners on two or three of its faces.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "base/math.h"
+
+namespace hydrodip {
+
+// Such film is evenly strained if the faces are rolled off into one plane with heights scaled
+// (docs/model.md, section 4). So its flat triangle belongs to the faces along the mean of their
+// normals, each counted once, in the object so scaled; a direction between the corners' normals, as
+// on something round, would crowd it at the edge. `normal`: the object's at each corner, unit,
+// outward, or zero; z_stretch: what heights count for. Nothing where the corners lie on one face,
+// or round.
+std::optional<Vec3> direction_over_edge(const std::array<Vec3, 3>& normal, const Vec3& up,
+                                        double z_stretch);
+
+// What of the triangle lies on one of two faces.
+struct FacePart {
+  double share = 0;            // of the film
+  std::array<Vec3, 3> corner;  // of the triangle if all of it lay in that face's plane
+};
+
+// The two faces' parts, along that direction. Nothing if the corners lie on three faces, or not
+// around an edge.
+std::optional<std::array<FacePart, 2>> parts_over_edge(const std::array<Vec3, 3>& position,
+                                                       const std::array<Vec3, 3>& normal,
+                                                       const Vec3& direction);
+
+}  // namespace hydrodip
