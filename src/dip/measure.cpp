@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "dip/principal_stretch.h"
@@ -41,19 +40,18 @@ struct TriangleMeasure {
   std::array<double, 3> flat_share;  // of flat_area, Voronoi
 };
 
-// Its area and stretches on the object: over an edge of it, those of its parts on both faces, which
-// are no shorter than the chord between them.
-void measure_on_object(const std::array<Vec2, 3>& flat, const std::array<Vec3, 3>& placed,
-                       const std::optional<std::array<FacePart, 2>>& parts, TriangleMeasure& m) {
-  const auto add = [&](double share, const std::array<Vec3, 3>& corner) {
-    m.area += share * 0.5 * (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm();
-    const PrincipalStretches stretches = principal_stretches(flat, corner);
-    m.stretch += share * stretches.largest;
-    m.least_stretch += share * stretches.least;
-  };
-  if (!parts) return add(1, placed);
-  for (const FacePart& part : *parts) add(part.share, part.corner);
-  m.stretch = std::max(m.stretch, principal_stretches(flat, placed).largest);
+// Over an edge of the object a triangle's area, and how far it is pressed together, are those of
+// its parts on both faces, not of the chord between them, which is too short. How far it is
+// stretched is left to the film beside it: what its parts are depends on where the edge runs
+// through it, and tears would follow that.
+void measure_parts(const std::array<Vec2, 3>& flat, const std::array<FacePart, 2>& parts,
+                   TriangleMeasure& m) {
+  m.area = m.least_stretch = 0;
+  for (const FacePart& part : parts) {
+    const auto& [a, b, c] = part.corner;
+    m.area += part.share * 0.5 * (b - a).cross(c - a).norm();
+    m.least_stretch += part.share * principal_stretches(flat, part.corner).least;
+  }
 }
 
 TriangleMeasure measure_triangle(const FilmMesh& film, const DippedFilm& dipped, std::size_t t) {
@@ -71,10 +69,14 @@ TriangleMeasure measure_triangle(const FilmMesh& film, const DippedFilm& dipped,
   TriangleMeasure m{};
   m.flat_area = 0.5 * cross2(flat[1] - flat[0], flat[2] - flat[0]);
   m.flat_share = voronoi_shares(squared_edge, m.flat_area);
+  m.area = 0.5 * (placed[1] - placed[0]).cross(placed[2] - placed[0]).norm();
+  const PrincipalStretches stretches = principal_stretches(flat, placed);
+  m.stretch = stretches.largest;
+  m.least_stretch = stretches.least;
   const Vec3 up = dipped.up.empty() ? Vec3::UnitZ() : dipped.up[std::size_t(v[0])];
-  const auto direction = direction_over_edge(normal, up, dipped.z_stretch);
-  measure_on_object(flat, placed,
-                    direction ? parts_over_edge(placed, normal, *direction) : std::nullopt, m);
+  if (const auto direction = direction_over_edge(normal, up, dipped.z_stretch))
+    if (const auto parts = parts_over_edge(placed, normal, *direction))
+      measure_parts(flat, *parts, m);
   return m;
 }
 

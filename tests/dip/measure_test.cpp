@@ -72,10 +72,8 @@ TEST(Measure, FilmOverAnEdgeIsAsOnItsFaces) {
   EXPECT_EQ(std::count(result.wrinkled.begin(), result.wrinkled.end(), 1), 0);
   int beside = 0;
   for (std::size_t v = 0; v < film.u.size(); ++v) {
-    for (const double measure : {result.area_ratio[v], result.stretch[v]}) {
-      EXPECT_GT(measure, 1 - 1e-9) << film.u[v].transpose();
-      EXPECT_LT(measure, 1 / kHeight + 1e-9) << film.u[v].transpose();
-    }
+    EXPECT_GT(result.area_ratio[v], 1 - 1e-9) << film.u[v].transpose();
+    EXPECT_LT(result.area_ratio[v], 1 / kHeight + 1e-9) << film.u[v].transpose();
     const double beyond = std::abs(film.u[v].x()) - kHalf;
     if (std::abs(beyond) > 2 * film.cell_mm) {
       EXPECT_NEAR(result.area_ratio[v], beyond < 0 ? 1 : 1 / kHeight, 1e-9);
