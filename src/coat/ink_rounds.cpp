@@ -20,7 +20,9 @@ constexpr int kFreeRounds = 2;
 constexpr int kMixed = 4;
 // All four inks at once make film so many times as stiff as one alone.
 constexpr double kMostInks = 4;
-// From there on two rounds have to bring the change below this share.
+// From there on so many rounds have to bring the change below this share: an acceleration that has
+// just begun may take two that do not.
+constexpr int kPatience = 3;
 constexpr double kLeastProgress = 0.5;
 // While ink and film settle, the film image need only be as fine as stiffness can tell: several
 // pixels to a millimetre.
@@ -157,7 +159,8 @@ Outcome InkRounds::outcome() const {
   if (before_ && change(0) < options_.settled_mm) return Outcome::kSettled;
   if (number() >= options_.rounds_max) return Outcome::kUnsettled;
   // What does not settle costs a dip each round.
-  const bool stands = number() > kFreeRounds + 2 && change(0) > kLeastProgress * change(2);
+  const bool stands =
+      number() > kFreeRounds + kPatience && change(0) > kLeastProgress * change(kPatience);
   return stands ? Outcome::kUnsettled : Outcome::kGoesOn;
 }
 
