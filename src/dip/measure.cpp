@@ -54,7 +54,8 @@ void measure_parts(const std::array<Vec2, 3>& flat, const std::array<FacePart, 2
   }
 }
 
-TriangleMeasure measure_triangle(const FilmMesh& film, const DippedFilm& dipped, std::size_t t) {
+TriangleMeasure measure_triangle(const FilmMesh& film, const DippedFilm& dipped,
+                                 const Surface& surface, std::size_t t) {
   const Triangle& v = film.triangles[t];
   std::array<Vec2, 3> flat;
   std::array<Vec3, 3> placed, normal;
@@ -74,7 +75,11 @@ TriangleMeasure measure_triangle(const FilmMesh& film, const DippedFilm& dipped,
   m.stretch = stretches.largest;
   m.least_stretch = stretches.least;
   const Vec3 up = dipped.up.empty() ? Vec3::UnitZ() : dipped.up[std::size_t(v[0])];
-  if (const auto direction = direction_over_edge(normal, up, dipped.z_stretch))
+  const auto is_near_object = [&](const Vec3& point, double within_mm) {
+    return surface.closest_point(point, within_mm).has_value();
+  };
+  if (const auto direction =
+          direction_over_edge(placed, normal, up, dipped.z_stretch, is_near_object))
     if (const auto parts = parts_over_edge(placed, normal, *direction))
       measure_parts(flat, *parts, m);
   return m;
@@ -195,7 +200,7 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
   std::vector<TriangleMeasure> measures;
   measures.reserve(film.triangles.size());
   for (std::size_t t = 0; t < film.triangles.size(); ++t) {
-    measures.push_back(measure_triangle(film, result, t));
+    measures.push_back(measure_triangle(film, result, surface, t));
     const Triangle& v = film.triangles[t];
     const bool on_object = std::all_of(v.begin(), v.end(), [&](std::int32_t i) {
       return state.state[std::size_t(i)] == VertexState::kAttached;

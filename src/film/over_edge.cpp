@@ -1,6 +1,7 @@
 #include "film/over_edge.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,6 +15,9 @@ const double kOverEdge = std::cos(30 * std::numbers::pi / 180);
 constexpr double kLeastHeight = 0.1;
 // Sine of the least angle between a face and the direction along which film belongs to it.
 constexpr double kGrazing = 0.1;
+// Sine of the angle up to which two corners are on one face, and how far from where the faces would
+// meet the object's edge may be, in sides of the triangle.
+constexpr double kOneFace = 0.1, kSharp = 0.1;
 
 // False if either is not known.
 bool turns(const Vec3& a, const Vec3& b) {
@@ -29,14 +33,51 @@ std::optional<std::size_t> single_corner(const std::array<Vec3, 3>& normal) {
   return std::nullopt;
 }
 
+double longest_side(const std::array<Vec3, 3>& position) {
+  return std::max({(position[1] - position[0]).norm(), (position[2] - position[1]).norm(),
+                   (position[0] - position[2]).norm()});
+}
+
+// Where the planes of the corners' faces meet, as near as can be to the triangle.
+Vec3 meeting_point(const std::array<Vec3, 3>& position, const std::array<Vec3, 3>& normal,
+                   const std::optional<std::size_t>& single) {
+  const Eigen::Index planes = single ? 2 : 3;
+  Eigen::MatrixX3d normals(planes, 3);
+  Eigen::VectorXd heights(planes);
+  for (Eigen::Index plane = 0; plane < planes; ++plane) {
+    const std::size_t corner = (single.value_or(0) + std::size_t(plane)) % 3;
+    normals.row(plane) = normal[corner].transpose();
+    heights[plane] = normal[corner].dot(position[corner]);
+  }
+  const Vec3 middle = (position[0] + position[1] + position[2]) / 3;
+  const Eigen::MatrixXd across = normals * normals.transpose();
+  return middle + normals.transpose() * across.fullPivLu().solve(heights - normals * middle);
+}
+
+// Whether the faces that the corners lie on meet on the object.
+bool meets_on_object(const std::array<Vec3, 3>& position, const std::array<Vec3, 3>& normal,
+                     const std::optional<std::size_t>& single, const NearObject& is_near_object) {
+  if (single) {
+    const std::size_t next = (*single + 1) % 3, last = (*single + 2) % 3;
+    const Vec3 side = position[last] - position[next];
+    const double off = std::max(std::abs(normal[next].dot(side)), std::abs(normal[last].dot(side)));
+    if (off > kOneFace * side.norm()) return false;
+  }
+  const double size = longest_side(position);
+  const Vec3 edge = meeting_point(position, normal, single);
+  return (edge - position[0]).norm() < 2 * size && is_near_object(edge, kSharp * size);
+}
+
 }  // namespace
 
-std::optional<Vec3> direction_over_edge(const std::array<Vec3, 3>& normal, const Vec3& up,
-                                        double z_stretch) {
+std::optional<Vec3> direction_over_edge(const std::array<Vec3, 3>& position,
+                                        const std::array<Vec3, 3>& normal, const Vec3& up,
+                                        double z_stretch, const NearObject& is_near_object) {
   const auto single = single_corner(normal);
   const bool three_faces =
       turns(normal[0], normal[1]) && turns(normal[1], normal[2]) && turns(normal[2], normal[0]);
   if (!single && !three_faces) return std::nullopt;
+  if (!meets_on_object(position, normal, single, is_near_object)) return std::nullopt;
   const double stretch = 1 / std::max(z_stretch, kLeastHeight) - 1;
   const auto stretched = [&](const Vec3& v) { return Vec3(v + stretch * up.dot(v) * up); };
   std::array<Vec3, 3> scaled;

@@ -2,20 +2,25 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 
 #include "base/math.h"
 
 namespace hydrodip {
 
+// Whether a point is no further than so many mm from the object's surface.
+using NearObject = std::function<bool(const Vec3& point, double within_mm)>;
+
 // Such film is evenly strained if the faces are rolled off into one plane with heights scaled
 // (docs/model.md, section 4). So its flat triangle belongs to the faces along the mean of their
 // normals, each counted once, in the object so scaled; a direction between the corners' normals, as
 // on something round, would crowd it at the edge. `normal`: the object's at each corner, unit,
-// outward, or zero; z_stretch: what heights count for. Nothing where the corners lie on one face,
-// or round.
-std::optional<Vec3> direction_over_edge(const std::array<Vec3, 3>& normal, const Vec3& up,
-                                        double z_stretch);
+// outward, or zero; z_stretch: what heights count for. Nothing where the corners lie on one face or
+// round, or on faces that do not meet on the object: rough scans and terraces turn everywhere.
+std::optional<Vec3> direction_over_edge(const std::array<Vec3, 3>& position,
+                                        const std::array<Vec3, 3>& normal, const Vec3& up,
+                                        double z_stretch, const NearObject& is_near_object);
 
 // What of the triangle lies on one of two faces.
 struct FacePart {

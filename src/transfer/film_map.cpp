@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -100,9 +101,15 @@ struct FilmMap::Impl {
   void find_edge(std::size_t t) {
     const Triangle& v = film.mesh().triangles[t];
     const Vec3 up = film.up.empty() ? Vec3::UnitZ() : film.up[std::size_t(v[0])];
-    const auto direction = direction_over_edge(
-        {normal[std::size_t(v[0])], normal[std::size_t(v[1])], normal[std::size_t(v[2])]}, up,
-        film.z_stretch);
+    std::array<Vec3, 3> placed, normals;
+    for (std::size_t k = 0; k < 3; ++k) {
+      placed[k] = film.position[std::size_t(v[k])];
+      normals[k] = normal[std::size_t(v[k])];
+    }
+    const auto is_near_object = [&](const Vec3& point, double within_mm) {
+      return surface.closest_point(point, within_mm).has_value();
+    };
+    const auto direction = direction_over_edge(placed, normals, up, film.z_stretch, is_near_object);
     if (!direction) return;
     over_edge[t] = std::int32_t(edge_direction.size());
     edge_direction.push_back(*direction);

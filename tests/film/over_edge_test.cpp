@@ -57,7 +57,11 @@ TEST(OverEdge, FilmGoesOnAsFarBehindItAsItCameBefore) {
       normal[k] = edge.normal(film[k].x());
     }
     if (normal[0].dot(normal[1]) > 0.85) continue;
-    const auto direction = direction_over_edge(normal, kUp, edge.z_stretch);
+    // Asked for a point of the edge.
+    const auto is_on_edge = [&](const Vec3& point, double) {
+      return point.cross(edge.on_object(edge.along).normalized()).norm() < 1e-9;
+    };
+    const auto direction = direction_over_edge(placed, normal, kUp, edge.z_stretch, is_on_edge);
     ASSERT_TRUE(direction);
     const auto parts = parts_over_edge(placed, normal, *direction);
     ASSERT_TRUE(parts);
@@ -75,23 +79,44 @@ TEST(OverEdge, FilmGoesOnAsFarBehindItAsItCameBefore) {
   EXPECT_GT(looked_at, 200);
 }
 
+const Vec3 kDown(0, 0, -1), kSide(1, 0, 0);
+// Two corners below, one on a wall at x = 1 above.
+const std::array<Vec3, 3> kBelowAndBeside = {Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(0, 2, 0)};
+
+bool is_over_edge(const std::array<Vec3, 3>& normal, double z_stretch = 0.65,
+                  const std::array<Vec3, 3>& position = kBelowAndBeside, bool is_near = true) {
+  return direction_over_edge(position, normal, kUp, z_stretch,
+                             [&](const Vec3&, double) { return is_near; })
+      .has_value();
+}
+
 TEST(OverEdge, IsNotWhereFacesAreOneOrRoundOrUnknown) {
-  const Vec3 down(0, 0, -1), side(1, 0, 0);
   const Vec3 tilted = Vec3(0.2, 0, -1).normalized();
-  EXPECT_FALSE(direction_over_edge({down, down, down}, kUp, 0.65));
-  EXPECT_FALSE(direction_over_edge({down, tilted, down}, kUp, 0.65));
-  EXPECT_FALSE(direction_over_edge({down, side, Vec3::Zero()}, kUp, 0.65));
-  EXPECT_FALSE(direction_over_edge({down, Vec3(-down), down}, kUp, 0.65));  // a thin wall's sides
-  EXPECT_TRUE(direction_over_edge({down, side, down}, kUp, 0.65));
-  EXPECT_TRUE(direction_over_edge({down, side, down}, kUp, 0));
+  EXPECT_FALSE(is_over_edge({kDown, kDown, kDown}));
+  EXPECT_FALSE(is_over_edge({kDown, tilted, kDown}));
+  EXPECT_FALSE(is_over_edge({kDown, kSide, Vec3::Zero()}));
+  EXPECT_FALSE(is_over_edge({kDown, Vec3(-kDown), kDown}));  // a thin wall's sides
+  EXPECT_TRUE(is_over_edge({kDown, kSide, kDown}));
+  EXPECT_TRUE(is_over_edge({kDown, kSide, kDown}, 0));
+}
+
+TEST(OverEdge, IsNotWhereTheFacesDoNotMeetOnTheObject) {
+  EXPECT_FALSE(is_over_edge({kDown, kSide, kDown}, 0.65, kBelowAndBeside, false));
+  // Terraces: the corners below are on two of them.
+  EXPECT_FALSE(
+      is_over_edge({kDown, kSide, kDown}, 0.65, {Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(0, 2, 0.5)}));
 }
 
 TEST(OverEdge, AtACornerEachFaceCountsOnce) {
   const std::array<Vec3, 3> faces = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, -1)};
-  const auto direction = direction_over_edge(faces, kUp, 1);
+  const std::array<Vec3, 3> corners = {Vec3(3, 2, 5), Vec3(2, 3, 5), Vec3(2, 2, 4)};
+  const auto is_corner = [](const Vec3& point, double) {
+    return (point - Vec3(3, 3, 4)).norm() < 1e-9;
+  };
+  const auto direction = direction_over_edge(corners, faces, kUp, 1, is_corner);
   ASSERT_TRUE(direction);
   EXPECT_LT((*direction - Vec3(1, 1, -1).normalized()).norm(), 1e-12);
-  EXPECT_FALSE(parts_over_edge({Vec3(1, 1, 1), Vec3(0, 1, 0), Vec3(0, 0, 1)}, faces, *direction));
+  EXPECT_FALSE(parts_over_edge(corners, faces, *direction));
 }
 
 }  // namespace
