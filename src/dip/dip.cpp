@@ -76,7 +76,7 @@ bool meets(const Surface& surface, const Travel& travel, const Vec2& place) {
     return surface.is_hit(Vec3(place.x(), place.y(), -1), Vec3(0, 0, 1), 0, travel.length_mm() + 1);
   const auto seen = [&](int part) {
     const Moment moment = travel.at(travel.length_mm() * part / kRimParts);
-    return moment.to_object(Vec3(place.x(), place.y(), moment.level_mm));
+    return moment.afloat(place);
   };
   for (int part = 1; part <= kRimParts; ++part)
     if (first_contact(surface, seen(part - 1), seen(part))) return true;
@@ -193,11 +193,11 @@ std::optional<Contact> first_contact(const Surface& surface, const Vec3& from, c
 
 std::optional<Contact> first_touch(const Surface& surface, const Vec2& start, const Moment& from,
                                    const Vec2& end, const Moment& to) {
-  const auto contact = first_contact(surface, from.afloat(start), to.afloat(end));
+  auto contact = first_contact(surface, from.afloat(start), to.afloat(end));
   if (!contact || to.height(contact->position) < -kReached_mm) return contact;
   const Vec3 normal = to.direction_to_sinking(contact->normal);
-  const bool level = normal.head<2>().norm() < kFlat * std::abs(normal.z());
-  return level ? std::nullopt : contact;
+  if (normal.head<2>().norm() < kFlat * std::abs(normal.z())) contact.reset();
+  return contact;
 }
 
 DipResult dip(const SharedFilmMesh& mesh, const std::vector<Vec3>& positions,

@@ -36,8 +36,7 @@ void DipHistory::record(int step, int steps, const Moment& moment,
   frame.position.reserve(position.size());
   for (std::size_t v = 0; v < position.size(); ++v) {
     Vec3 p = position[v];
-    if (state[v] == VertexState::kClamped)
-      p = moment.to_object(Vec3(p.x(), p.y(), moment.level_mm));
+    if (state[v] == VertexState::kClamped) p = moment.afloat(p.head<2>());
     frame.position.push_back({float(p.x()), float(p.y()), float(p.z())});
   }
   kept_.push_back(std::move(frame));

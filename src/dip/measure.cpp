@@ -57,30 +57,26 @@ void measure_parts(const std::array<Vec2, 3>& flat, const std::array<FacePart, 2
 TriangleMeasure measure_triangle(const FilmMesh& film, const DippedFilm& dipped,
                                  const Surface& surface, std::size_t t) {
   const Triangle& v = film.triangles[t];
-  std::array<Vec2, 3> flat;
-  std::array<Vec3, 3> placed, normal;
-  for (std::size_t k = 0; k < 3; ++k) {
-    flat[k] = film.u[std::size_t(v[k])];
-    placed[k] = dipped.position[std::size_t(v[k])];
-    normal[k] = dipped.normal[std::size_t(v[k])];
-  }
+  const std::array<Vec2, 3> flat = {film.u[std::size_t(v[0])], film.u[std::size_t(v[1])],
+                                    film.u[std::size_t(v[2])]};
+  const TriangleOnObject on = triangle_on_object(dipped, dipped.normal, t);
+  const auto& [a, b, c] = on.position;
   std::array<double, 3> squared_edge;
   for (std::size_t k = 0; k < 3; ++k)
     squared_edge[k] = (flat[(k + 1) % 3] - flat[(k + 2) % 3]).squaredNorm();
   TriangleMeasure m{};
   m.flat_area = 0.5 * cross2(flat[1] - flat[0], flat[2] - flat[0]);
   m.flat_share = voronoi_shares(squared_edge, m.flat_area);
-  m.area = 0.5 * (placed[1] - placed[0]).cross(placed[2] - placed[0]).norm();
-  const PrincipalStretches stretches = principal_stretches(flat, placed);
+  m.area = 0.5 * (b - a).cross(c - a).norm();
+  const PrincipalStretches stretches = principal_stretches(flat, on.position);
   m.stretch = stretches.largest;
   m.least_stretch = stretches.least;
-  const Vec3 up = dipped.up.empty() ? Vec3::UnitZ() : dipped.up[std::size_t(v[0])];
   const auto is_near_object = [&](const Vec3& point, double within_mm) {
     return surface.closest_point(point, within_mm).has_value();
   };
   if (const auto direction =
-          direction_over_edge(placed, normal, up, dipped.z_stretch, is_near_object))
-    if (const auto parts = parts_over_edge(placed, normal, *direction))
+          direction_over_edge(on.position, on.normal, on.up, dipped.z_stretch, is_near_object))
+    if (const auto parts = parts_over_edge(on.position, on.normal, *direction))
       measure_parts(flat, *parts, m);
   return m;
 }
@@ -99,8 +95,7 @@ bool folded(const FilmMesh& film, const DipState& state, const Surface& surface,
 void hold_rim(const Moment& moment, DippedFilm& film) {
   for (std::size_t v = 0; v < film.state.size(); ++v)
     if (film.state[v] == VertexState::kClamped)
-      film.position[v] =
-          moment.to_object(Vec3(film.position[v].x(), film.position[v].y(), moment.level_mm));
+      film.position[v] = moment.afloat(film.position[v].head<2>());
 }
 
 // Film that was told when to let go bears so much more, so that nothing is decided by a hair.

@@ -88,6 +88,18 @@ std::optional<Vec3> direction_over_edge(const std::array<Vec3, 3>& position,
   return stretched(sum).normalized();
 }
 
+TriangleOnObject triangle_on_object(const DippedFilm& film, const std::vector<Vec3>& normal,
+                                    std::size_t triangle) {
+  const Triangle& v = film.mesh().triangles[triangle];
+  TriangleOnObject on;
+  for (std::size_t k = 0; k < 3; ++k) {
+    on.position[k] = film.position[std::size_t(v[k])];
+    on.normal[k] = normal[std::size_t(v[k])];
+  }
+  on.up = film.up.empty() ? Vec3::UnitZ() : film.up[std::size_t(v[0])];
+  return on;
+}
+
 std::optional<std::array<FacePart, 2>> parts_over_edge(const std::array<Vec3, 3>& position,
                                                        const std::array<Vec3, 3>& normal,
                                                        const Vec3& direction) {

@@ -4,8 +4,10 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "base/math.h"
+#include "film/film.h"
 
 namespace hydrodip {
 
@@ -21,6 +23,16 @@ using NearObject = std::function<bool(const Vec3& point, double within_mm)>;
 std::optional<Vec3> direction_over_edge(const std::array<Vec3, 3>& position,
                                         const std::array<Vec3, 3>& normal, const Vec3& up,
                                         double z_stretch, const NearObject& is_near_object);
+
+// A film triangle as the two functions here take it.
+struct TriangleOnObject {
+  std::array<Vec3, 3> position, normal;
+  Vec3 up;
+};
+
+// `normal`: as DippedFilm::normal, which need not be filled.
+TriangleOnObject triangle_on_object(const DippedFilm& film, const std::vector<Vec3>& normal,
+                                    std::size_t triangle);
 
 // What of the triangle lies on one of two faces.
 struct FacePart {

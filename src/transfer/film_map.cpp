@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -99,17 +98,12 @@ struct FilmMap::Impl {
   }
 
   void find_edge(std::size_t t) {
-    const Triangle& v = film.mesh().triangles[t];
-    const Vec3 up = film.up.empty() ? Vec3::UnitZ() : film.up[std::size_t(v[0])];
-    std::array<Vec3, 3> placed, normals;
-    for (std::size_t k = 0; k < 3; ++k) {
-      placed[k] = film.position[std::size_t(v[k])];
-      normals[k] = normal[std::size_t(v[k])];
-    }
+    const TriangleOnObject on = triangle_on_object(film, normal, t);
     const auto is_near_object = [&](const Vec3& point, double within_mm) {
       return surface.closest_point(point, within_mm).has_value();
     };
-    const auto direction = direction_over_edge(placed, normals, up, film.z_stretch, is_near_object);
+    const auto direction =
+        direction_over_edge(on.position, on.normal, on.up, film.z_stretch, is_near_object);
     if (!direction) return;
     over_edge[t] = std::int32_t(edge_direction.size());
     edge_direction.push_back(*direction);
@@ -193,8 +187,8 @@ struct FilmMap::Impl {
     Vec3 weight;
   };
   // The film that lies at a point of the object, whole or not.
-  std::optional<FilmPoint> lying_film_at(const Vec3& position, const Vec3& normal) const {
-    auto hit = lying_at(film_surface, position, normal);
+  std::optional<FilmPoint> lying_film_at(const Vec3& position, const Vec3& direction) const {
+    auto hit = lying_at(film_surface, position, direction);
     if (!hit) return std::nullopt;
     // Over an edge film is looked up as to_object() does.
     const std::int32_t edge = over_edge[std::size_t(film_triangle[std::size_t(hit->triangle)])];
