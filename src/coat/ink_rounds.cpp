@@ -100,6 +100,7 @@ Outcome InkRounds::next() {
 bool InkRounds::last() {
   stiffen();
   dip_options_.step_mm = options_.dip.step_mm;
+  dip_options_.steps_at_mm.clear();
   if (!dip()) return false;
   ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
   judge();
@@ -174,6 +175,8 @@ void InkRounds::stiffen() {
   if (number() == kFreeRounds) {
     dip_options_.tears_at_mm = dipped_->film->torn_at_mm;
     dip_options_.moved_mm = dipped_->film->moved_mm;
+    // So that rounds differ by their ink alone.
+    if (!went_in_longer_steps()) dip_options_.steps_at_mm = dipped_->statistics.steps_at_mm;
     outline_.keep(*dipped_->film);
   } else if (number() > kFreeRounds) {
     // What lets go besides, in any round, does in all that follow: no film comes and goes.

@@ -4,14 +4,12 @@
 // equilibrium of the floating film, the attached end of the edge stands where flat film would have
 // it (its ghost). docs/model.md derives it.
 
-#include <algorithm>
-#include <optional>
 #include <vector>
 
 #include "base/parallel.h"
 #include "dip/feet.h"
-#include "dip/flat_levels.h"
 #include "dip/floating_sheet.h"
+#include "dip/pace.h"
 #include "dip/scheme.h"
 #include "dip/tears.h"
 #include "dip/waterline.h"
@@ -20,9 +18,6 @@ namespace hydrodip {
 
 namespace {
 
-// How far the contact line should go in one part of a step, in steps, and the smallest part.
-constexpr double kLineAdvance = 4;
-constexpr double kSmallestPart = 1.0 / 8;
 // So often in a step film that blocks the rest is released.
 constexpr int kMostReleases = 30;
 
@@ -35,11 +30,8 @@ class ContactLineScheme : public Scheme {
         waterline_(setting.positions, setting.triangles, setting.film.cell_mm),
         sheet_(setting, state),
         feet_(setting, state),
-        tears_(setting, state) {
-    if (setting.travel.trajectory().is_straight_down())
-      jumps_at_mm_ = flat_levels(setting.positions, setting.triangles,
-                                 setting.film.cell_mm * setting.film.cell_mm);
-  }
+        tears_(setting, state),
+        pace_(setting) {}
 
   void write_positions() override {
     parallel_for(film_.u.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
@@ -49,20 +41,14 @@ class ContactLineScheme : public Scheme {
     });
   }
 
-  // In parts where the object rises so gently at the contact line that this one runs fast: where
-  // the water first touches something blunt. Where it jumps, a part ends, if need be a little
-  // before the moment, and the next step makes up for it.
   void advance(const Moment& to) override {
-    const bool last = !(to.travelled_mm < set_.travel.length_mm());
-    const double short_mm = last ? 0 : kSmallestPart * set_.options.step_mm;
-    while (to.travelled_mm - state_.moment.travelled_mm > short_mm) {
-      const double part_mm = std::max(part_, kSmallestPart) * set_.options.step_mm;
-      // No sliver of a step at the end.
-      const bool ends = to.travelled_mm - state_.moment.travelled_mm < 1.5 * part_mm;
-      const double end_mm = ends ? to.travelled_mm : state_.moment.travelled_mm + part_mm;
-      const auto jump_mm = next_jump(end_mm);
-      take_step(jump_mm ? set_.travel.at(*jump_mm) : ends ? to : set_.travel.at(end_mm));
-      part_ = std::clamp(kLineAdvance * feet_.gentlest_rise(), kSmallestPart, 1.0);
+    for (;;) {
+      const double from_mm = state_.moment.travelled_mm;
+      const auto end_mm = pace_.next_end_mm(from_mm, to.travelled_mm);
+      if (!end_mm) return;
+      take_step(*end_mm == to.travelled_mm ? to : set_.travel.at(*end_mm));
+      state_.statistics.steps_at_mm.push_back(*end_mm);
+      pace_.see(feet_, tears_.any(), from_mm, *end_mm);
     }
   }
 
@@ -72,17 +58,6 @@ class ContactLineScheme : public Scheme {
     relax(to);
     attach(collide(to), to);
     state_.moment = to;
-  }
-
-  // The first jump of the contact line on the way on, unless it is so near that a part of a step
-  // would be too short.
-  std::optional<double> next_jump(double end_mm) const {
-    const double shortest_mm = kSmallestPart * set_.options.step_mm;
-    const auto jump = std::lower_bound(jumps_at_mm_.begin(), jumps_at_mm_.end(),
-                                       state_.moment.travelled_mm + shortest_mm);
-    if (jump == jumps_at_mm_.end() || !(*jump < end_mm)) return std::nullopt;
-    const double left_mm = set_.travel.length_mm() - *jump;
-    return left_mm < shortest_mm ? std::nullopt : std::optional(*jump);
   }
 
   void lower(const Moment& to) {
@@ -163,8 +138,7 @@ class ContactLineScheme : public Scheme {
   FloatingSheet sheet_;
   Feet feet_;
   Tears tears_;
-  double part_ = 0;                  // of a step, to go at once next
-  std::vector<double> jumps_at_mm_;  // travelled where the contact line jumps, ascending
+  Pace pace_;
 };
 
 }  // namespace

@@ -35,6 +35,12 @@ constexpr double kLifted_mm = 0.1;
 // Half a pixel at 600 dpi.
 constexpr double kVisible_mm = 0.02;
 
+// How much longer than dip.step_mm steps may grow, and up to which length.
+constexpr double kLonger = 4;
+constexpr double kLongest_mm = 0.4;
+// So often one looks at least, as long as there are so many steps.
+constexpr int kLeastLooks = 40;
+
 void check(const DipOptions& options, const FilmMesh& film) {
   const auto refuse = [](const std::string& what) { throw InputError(what); };
   if (!(options.step_mm > 0)) refuse("dip.step_mm must be above 0");
@@ -46,6 +52,8 @@ void check(const DipOptions& options, const FilmMesh& film) {
     refuse("the stiffness field does not fit the film's mesh");
   if (!options.moved_mm.empty() && options.moved_mm.size() != film.u.size())
     refuse("how far the film moves was found on another mesh");
+  if (!std::is_sorted(options.steps_at_mm.begin(), options.steps_at_mm.end()))
+    refuse("the given steps do not follow each other");
   if (!options.tears_at_mm.empty() && options.tears_at_mm.size() != film.triangles.size())
     refuse("the given tears do not fit the film's mesh");
 }
@@ -134,9 +142,15 @@ bool may_move(const DippedFilm& film, const DipOptions& options) {
          options.scheme == DipScheme::kContactLine && std::isfinite(first_let_go_mm(film));
 }
 
-int number_of_steps(double length_mm, const DipOptions& options) {
+// How often somebody looks, evenly over the way.
+int number_of_looks(const Travel& travel, const DipOptions& options) {
   if (options.method != DipMethod::kFull) return 1;
-  return std::max(1, static_cast<int>(std::ceil(length_mm / options.step_mm - 1e-9)));
+  const auto every = [&](double step_mm) {
+    return std::max(1, static_cast<int>(std::ceil(travel.length_mm() / step_mm - 1e-9)));
+  };
+  const int steps = every(options.step_mm);
+  if (!travel.trajectory().is_straight_down()) return steps;
+  return std::max(every(longest_step_mm(options)), std::min(steps, kLeastLooks));
 }
 
 // Of film that floated as `wet`: what a millimetre of the printed sheet became.
@@ -163,6 +177,13 @@ DipResult dip_floating(const SharedFilmMesh& mesh, const std::vector<Vec3>& posi
                        const RunContext& context, const DipObserver& observe);
 
 }  // namespace
+
+double longest_step_mm(const DipOptions& options) {
+  if (options.even_steps || options.scheme != DipScheme::kContactLine ||
+      options.method != DipMethod::kFull)
+    return options.step_mm;
+  return std::max(options.step_mm, std::min(kLonger * options.step_mm, kLongest_mm));
+}
 
 void relax_film(Relaxation& relaxation, const std::vector<std::uint8_t>& is_free, VertexVector& u,
                 DipStatistics& statistics, const RelaxationOptions& options) {
@@ -230,29 +251,29 @@ DipResult dip_floating(const SharedFilmMesh& mesh, const std::vector<Vec3>& posi
   const auto scheme = make_scheme(setting, state);
   const AwakeThreads awake;  // a step is some hundred short loops
 
-  const int steps = number_of_steps(travel.length_mm(), options);
-  if (observe) observe(0, steps, state.moment, state.position, state.state);
-  for (int step = 1; step <= steps; ++step) {
-    context.progress("dipping", double(step - 1) / steps);
-    const DipStatistics before = state.statistics;
-    scheme->advance(travel.at(travel.length_mm() * step / steps));
+  DipStatistics& statistics = state.statistics;
+  const int looks = number_of_looks(travel, options);
+  if (observe) observe(0, looks, state.moment, state.position, state.state);
+  for (int look = 1; look <= looks; ++look) {
+    context.progress("dipping", double(look - 1) / looks);
+    const auto [unconverged, failed] =
+        std::pair(statistics.unconverged_steps, statistics.failed_steps);
+    scheme->advance(travel.at(travel.length_mm() * look / looks));
     if (state.moment.moved) mark_lifted(state);
-    // In however many parts.
-    state.statistics.unconverged_steps =
-        std::min(state.statistics.unconverged_steps, before.unconverged_steps + 1);
-    state.statistics.failed_steps =
-        std::min(state.statistics.failed_steps, before.failed_steps + 1);
-    check_solved(state.statistics, steps, options);
-    if (!observe && step < steps) continue;
+    // In however many steps.
+    statistics.unconverged_steps = std::min(statistics.unconverged_steps, unconverged + 1);
+    statistics.failed_steps = std::min(statistics.failed_steps, failed + 1);
+    check_solved(statistics, looks, options);
+    if (!observe && look < looks) continue;
     scheme->write_positions();
-    if (observe) observe(step, steps, state.moment, state.position, state.state);
+    if (observe) observe(look, looks, state.moment, state.position, state.state);
   }
   context.progress("dipping", 1);
-  state.statistics.steps = steps;
-  if (state.statistics.unconverged_steps > 0)
+  statistics.steps = statistics.steps_at_mm.empty() ? looks : int(statistics.steps_at_mm.size());
+  if (statistics.unconverged_steps > 0)
     context.warn(fmt::format("in {} of {} steps the film's equilibrium was found only to {:.2g} mm",
-                             state.statistics.unconverged_steps, steps,
-                             state.statistics.largest_residual_mm));
+                             statistics.unconverged_steps, statistics.steps,
+                             statistics.largest_residual_mm));
   DippedFilm dipped = measured(mesh, state, options, surface);
   if (state.moment.moved) dipped.depth_mm = deepest(state.moment, positions);
   if (!options.moved_mm.empty())

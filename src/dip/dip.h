@@ -55,6 +55,12 @@ inline constexpr double kMostFailedSteps = 0.02;
 
 struct DipOptions {
   double step_mm = 0.1;
+  // Whether all steps are that long, but for parts where the contact line runs fast. If not, those
+  // of a dip straight down grow, up to longest_step_mm(), where that costs no accuracy.
+  bool even_steps = false;
+  // Where the steps end that another dip on the same way has made (DipStatistics); empty: this one
+  // finds out. Two dips in the same steps can be compared closer than they are accurate.
+  std::vector<double> steps_at_mm = {};
   DipMethod method = DipMethod::kFull;
   DipScheme scheme = DipScheme::kContactLine;  // of kFull
   FilmMaterial material;
@@ -75,13 +81,17 @@ struct DipOptions {
   double failed_share_max = 1;
 };
 
+// Those of a dip with such options.
+double longest_step_mm(const DipOptions& options);
+
 // How the computation went; sums over all steps.
 struct DipStatistics {
   int steps = 0;
-  long iterations = 0;             // of all relaxations
-  long unconverged_steps = 0;      // steps that ended at the iteration bound
-  long failed_steps = 0;           // of these, still so far from equilibrium that print shows it
-  double largest_residual_mm = 0;  // largest last update over all steps
+  std::vector<double> steps_at_mm;  // where they ended
+  long iterations = 0;              // of all relaxations
+  long unconverged_steps = 0;       // steps that ended at the iteration bound
+  long failed_steps = 0;            // of these, still so far from equilibrium that print shows it
+  double largest_residual_mm = 0;   // largest last update over all steps
 };
 
 struct DipResult {
@@ -89,8 +99,9 @@ struct DipResult {
   DipStatistics statistics;
 };
 
-// Sees the film after each of `steps` steps, and before the first one as step 0. A step may end up
-// to an eighth early, where a flat face comes to the water.
+// Sees the film at `steps` moments spread over the way, and before it as step 0: after each step
+// if all are equally long, else about every longest_step_mm(). A step may end up to an eighth
+// early, where a flat face comes to the water.
 using DipObserver =
     std::function<void(int step, int steps, const Moment& moment, const std::vector<Vec3>& position,
                        const std::vector<VertexState>& state)>;

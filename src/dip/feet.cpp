@@ -10,8 +10,9 @@ namespace hydrodip {
 
 namespace {
 
-// Share of the contact line that may go faster: a scan has flat spots everywhere.
-constexpr double kFasterShare = 0.1;
+// Share of the contact line that may go faster, or where strain may change otherwise: a scan has
+// flat spots everywhere.
+constexpr double kFewFeet = 0.1;
 
 // Cosine of how far a line turns in one step, at a corner.
 constexpr double kSameLine = 0.5;
@@ -31,9 +32,17 @@ double Feet::gentlest_rise() const {
   std::vector<double> rises;
   for (const Foot& foot : feet_) rises.push_back(std::abs(foot.steepness));
   if (rises.empty()) return kWall;
-  const auto gentle = rises.begin() + std::ptrdiff_t(kFasterShare * double(rises.size()));
+  const auto gentle = rises.begin() + std::ptrdiff_t(kFewFeet * double(rises.size()));
   std::nth_element(rises.begin(), gentle, rises.end());
   return *gentle;
+}
+
+double Feet::unforeseen_mm() const {
+  if (unforeseen_mm_.empty()) return 0;
+  std::vector<double> ways = unforeseen_mm_;
+  const auto far = ways.end() - 1 - std::ptrdiff_t(kFewFeet * double(ways.size()));
+  std::nth_element(ways.begin(), far, ways.end());
+  return *far;
 }
 
 // The way is unrolled as the object is in the middle of it: between two moments it turns a little.
@@ -50,6 +59,8 @@ void Feet::climb(const FloatingSheet& sheet, const Waterline& line, const Moment
     if (to.moved) foot.way = spin * foot.way;
     const Vec3 start = to.to_sinking(foot.point);
     foot.laid_before = foot.laid;
+    foot.ghost_before = foot.ghost;
+    foot.expected = foot.element.next(ratio);
     if (start.z() > to.level_mm) {
       foot.last_way = Vec2::Zero();
       foot.place = start.head<2>();
@@ -60,7 +71,7 @@ void Feet::climb(const FloatingSheet& sheet, const Waterline& line, const Moment
       foot.last_way = unrolled(between.to_sinking(foot.point), foot.outward, foot.steepness,
                                {point_between.head<2>(), end.outward, end.steepness},
                                point_between.z(), z_stretch());
-      foot.laid += 0.5 * (foot.element.now + foot.element.next(ratio)) * foot.last_way;
+      foot.laid += 0.5 * (foot.element.now + foot.expected) * foot.last_way;
       foot.way += foot.last_way;
       foot.point = point;
       foot.place = end.position;
@@ -68,7 +79,7 @@ void Feet::climb(const FloatingSheet& sheet, const Waterline& line, const Moment
       foot.steepness = end.steepness;
     }
     const double way = foot.way.norm(), left = (sheet.plan(foot.floating) - foot.place).norm();
-    foot.ghost_gradient.follow(foot.element.next(ratio), foot.last_way.norm(), way,
+    foot.ghost_gradient.follow(foot.expected, foot.last_way.norm(), way,
                                way > 0 ? way / (way + left) : 0);
     place_ghost(foot);
   });
@@ -102,8 +113,10 @@ void Feet::correct(const FloatingSheet& sheet) {
     element[number(foot)] =
         sheet.gradient_at_edge(foot.attached, foot.floating, foot.element.now, *this);
   });
+  unforeseen_mm_.resize(feet_.size());
   for_feet([&](Foot& foot) {
     const Mat2& now = element[number(foot)];
+    unforeseen_mm_[number(foot)] = 0.5 * ((now - foot.expected) * foot.last_way).norm();
     foot.laid = foot.laid_before + 0.5 * (foot.element.now + now) * foot.last_way;
     foot.element.advance(now);
   });
@@ -147,7 +160,9 @@ void Feet::create(const Touch& touch, const FloatingSheet& sheet, const Waterlin
     const Vec2 from = touched.head<2>();
     const Waterline::Point end = search.first_on_line(from, sheet.slid(w));
     const Mat2 F = sheet.gradient_at_edge(v, w, Mat2::Identity(), *this);
-    foot.element = {F, F};
+    // What the film did before there was a foot tells as much of what it will do as afterwards:
+    // without, each foot's first step lays film at a strain that is out of date.
+    foot.element = {F, sheet.gradient_at_edge(v, w, F, *this, When::kBefore)};
     foot.ghost_gradient.now = F;
     foot.way = unrolled(touched, normal.head<2>().stableNormalized(),
                         steepness_along(normal, end.outward), end, to.level_mm, z_stretch());

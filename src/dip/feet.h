@@ -41,19 +41,23 @@ class Feet {
   // Once all have attached: feet whose edges float no more go.
   void replace(const std::vector<Foot>& created, const FloatingSheet& sheet);
 
-  // Where a corner of a triangle is for the film that floats, if its vertex is attached and has
-  // edges there to floating ones.
-  std::optional<Vec2> ghost(std::size_t t, std::size_t k) const {
+  // Where a corner of a triangle is for the film that floats, at the start or end of the step, if
+  // its vertex is attached and has edges there to floating ones.
+  std::optional<Vec2> ghost(std::size_t t, std::size_t k, When when = When::kAfter) const {
     const auto& feet = feet_of_corner_[3 * t + k];
     if (feet[0] < 0) return std::nullopt;
-    const Vec2& first = feet_[std::size_t(feet[0])].ghost;
-    return feet[1] < 0 ? first : Vec2(0.5 * (first + feet_[std::size_t(feet[1])].ghost));
+    const auto ghost = when == When::kBefore ? &Foot::ghost_before : &Foot::ghost;
+    const Vec2& first = feet_[std::size_t(feet[0])].*ghost;
+    return feet[1] < 0 ? first : Vec2(0.5 * (first + feet_[std::size_t(feet[1])].*ghost));
   }
   // With attached and floating corners, ascending.
   const std::vector<std::size_t>& line_triangles() const { return line_triangles_; }
   // Of the object at the contact line, over outward run, the gentlest few left aside; of walls if
   // there is no line.
   double gentlest_rise() const;
+  // How far film laid in the last step would lie elsewhere at the strain that was expected of it,
+  // the worst few feet left aside; mm. What strain does besides changing evenly.
+  double unforeseen_mm() const;
 
  private:
   // Calls work(foot) for each, side by side.
@@ -79,6 +83,7 @@ class Feet {
   const DipState& state_;
   double last_travel_ = 0;
   std::vector<Foot> feet_;
+  std::vector<double> unforeseen_mm_;  // per foot that climbed in the last step
   // Per triangle corner, if its vertex is attached: the feet of its edges to floating corners.
   std::vector<std::array<std::int32_t, 2>> feet_of_corner_;
   std::vector<std::size_t> indexed_corners_;

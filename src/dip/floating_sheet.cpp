@@ -62,10 +62,10 @@ FloatingSheet::FloatingSheet(const DipSetting& setting, DipState& state)
   for (auto& corner : slid_in_corner_) corner.assign(plan_.entries(), 0);
 }
 
-Vec2 FloatingSheet::corner(std::size_t t, std::size_t k, const Feet& feet) const {
+Vec2 FloatingSheet::corner(std::size_t t, std::size_t k, const Feet& feet, When when) const {
   const std::int32_t v = film_.triangles[t][k];
   if (!attached(v)) return plan(v);
-  const auto ghost = feet.ghost(t, k);
+  const auto ghost = feet.ghost(t, k, when);
   return ghost ? *ghost : plan(v);
 }
 
@@ -208,12 +208,12 @@ bool FloatingSheet::any_fold() {
   return false;
 }
 
-// The gradient du/dX of a triangle with its floating corners where they slid to.
-Mat2 FloatingSheet::gradient_after(std::size_t t, const Feet& feet) const {
+// The gradient du/dX of a triangle with its floating corners where they slide from or to.
+Mat2 FloatingSheet::gradient(std::size_t t, const Feet& feet, When when) const {
   std::array<Vec2, 3> x;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::int32_t v = film_.triangles[t][k];
-    x[k] = floats(v) ? slid(v) : corner(t, k, feet);
+    x[k] = !floats(v) ? corner(t, k, feet, when) : when == When::kBefore ? plan(v) : slid(v);
   }
   const RestTriangle rest = rest_triangle(x[0], x[1], x[2]);
   const Triangle& v = film_.triangles[t];
@@ -223,12 +223,12 @@ Mat2 FloatingSheet::gradient_after(std::size_t t, const Feet& feet) const {
 }
 
 Mat2 FloatingSheet::gradient_at_edge(std::int32_t a, std::int32_t b, const Mat2& otherwise,
-                                     const Feet& feet) const {
+                                     const Feet& feet, When when) const {
   Mat2 sum = Mat2::Zero();
   int count = 0;
   for_triangles_at_edge(a, b, [&](std::size_t t) {
     if (!usable_[t]) return;
-    const Mat2 F = gradient_after(t, feet);
+    const Mat2 F = gradient(t, feet, when);
     if (!usable_gradient(F)) return;
     sum += F;
     ++count;

@@ -16,6 +16,9 @@ namespace hydrodip {
 
 class Feet;
 
+// In a step.
+enum class When { kBefore, kAfter };
+
 class FloatingSheet {
  public:
   FloatingSheet(const DipSetting& setting, DipState& state);
@@ -62,10 +65,10 @@ class FloatingSheet {
   void settle() { plan_.swap(slid_); }
   void attach_at(std::int32_t v, const Vec2& plan) { plan_.set(place(v), plan); }
 
-  // The gradient du/dX beside an edge after sliding, mean over both sides; `otherwise` if neither
-  // can say.
-  Mat2 gradient_at_edge(std::int32_t a, std::int32_t b, const Mat2& otherwise,
-                        const Feet& feet) const;
+  // The gradient du/dX beside an edge before or after sliding, mean over both sides; `otherwise` if
+  // neither can say.
+  Mat2 gradient_at_edge(std::int32_t a, std::int32_t b, const Mat2& otherwise, const Feet& feet,
+                        When when = When::kAfter) const;
   // Whether film on either side of an edge carries load.
   bool is_usable_edge(std::int32_t a, std::int32_t b) const {
     bool usable = false;
@@ -84,7 +87,7 @@ class FloatingSheet {
 
  private:
   std::size_t place(std::int32_t v) const { return energy_.grid().place(std::size_t(v)); }
-  Vec2 corner(std::size_t t, std::size_t k, const Feet& feet) const;
+  Vec2 corner(std::size_t t, std::size_t k, const Feet& feet, When when = When::kAfter) const;
   bool carries_load(std::size_t t) const;
   RestTriangle rest_of(std::size_t t, const Feet& feet) const;
   double tolerance_mm() const;
@@ -92,7 +95,7 @@ class FloatingSheet {
   void hold_back_folds();
   bool folds(std::size_t t) const;
   bool any_fold();
-  Mat2 gradient_after(std::size_t t, const Feet& feet) const;
+  Mat2 gradient(std::size_t t, const Feet& feet, When when) const;
 
   const DipOptions& options_;
   const FilmMesh& film_;

@@ -41,10 +41,11 @@ struct Foot {
   Vec2 laid = Vec2::Zero();  // film between the attached vertex and the point, in film coordinates
   Vec2 way = Vec2::Zero();   // the same on the object, unrolled into the water plane
   Gradient element;          // du/dX of the floating triangles on both sides of the edge
-  Vec2 last_way = Vec2::Zero();     // way of the present step
-  Vec2 laid_before = Vec2::Zero();  // laid at its start
+  Vec2 last_way = Vec2::Zero();      // way of the present step
+  Vec2 laid_before = Vec2::Zero();   // laid at its start
+  Mat2 expected = Mat2::Identity();  // du/dX at the step's end, extrapolated
   GhostGradient ghost_gradient;
-  Vec2 ghost = Vec2::Zero();
+  Vec2 ghost = Vec2::Zero(), ghost_before = Vec2::Zero();  // now, and at the step's start
 };
 
 // Whether a gradient can be inverted and means something.

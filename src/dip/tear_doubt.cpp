@@ -14,7 +14,7 @@ namespace {
 
 // Steps are that many times longer, up to a length: what moves hardly depends on them. The film is
 // the same: on coarser film tears are as wide as its triangles, and move what they would not.
-constexpr double kLonger = 6;
+constexpr double kLonger = 10;
 constexpr double kLongestStep_mm = 1;
 // Film that one of them has lost lies nowhere.
 constexpr double kNowhere_mm = 10;

@@ -91,6 +91,7 @@ void Tears::end_step(FloatingSheet& sheet) {
       state_.torn[t] = 0;
       state_.torn_at_mm[t] = std::numeric_limits<double>::infinity();
     }
+    any_ = any_ || state_.torn[t];
     sheet.update_load(t);
   }
   torn_now_.clear();

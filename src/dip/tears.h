@@ -25,6 +25,8 @@ class Tears {
   // lie on the object with all its corners has not torn: between two places where the object
   // touches, the little film that still floats is only said to be stretched.
   void end_step(FloatingSheet& sheet);
+  // Whether any film has let go for good.
+  bool any() const { return any_; }
 
  private:
   void let_go(std::int32_t t, double travelled_mm);
@@ -38,6 +40,7 @@ class Tears {
   DipState& state_;
   std::vector<std::size_t> torn_now_;  // in this step
   std::size_t unloaded_ = 0;           // of these, whose loads are up to date
+  bool any_ = false;
 };
 
 }  // namespace hydrodip

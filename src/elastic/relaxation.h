@@ -12,7 +12,7 @@
 namespace hydrodip {
 
 struct RelaxationOptions {
-  double tolerance_mm = 1.5e-5;  // stop once no vertex would move further in the next iteration
+  double tolerance_mm = 1.3e-5;  // stop once no vertex would move further in the next iteration
   // Where the first iteration would move a vertex by w, that tolerance is at least this times w^2,
   // as long as that is no more than loosest_mm.
   double tolerance_per_way2 = 0;  // 1/mm

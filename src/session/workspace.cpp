@@ -67,7 +67,7 @@ void add(ContentKey& key, const DipOptions& dip) {
     throw InputError(
         "a workspace takes no film with a material law of its own; use the steps of "
         "hydrodip/hydrodip.h");
-  key.add(dip.step_mm).add(dip.method).add(dip.scheme);
+  key.add(dip.step_mm).add(dip.even_steps).add(dip.method).add(dip.scheme);
   key.add(dip.material.z_stretch).add(dip.material.poisson).add(dip.material.tear_stretch);
   key.add(dip.material.wrinkle_stretch);
   key.add(dip.material.safe_stretch).add(dip.material.lost_stretch).add(dip.quick_look);

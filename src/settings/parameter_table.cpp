@@ -263,6 +263,12 @@ std::vector<Parameter> dip_records() {
       number(
           "dip.step_mm", "mm", 0.001, 10, [](C& c) -> double& { return c.design.dip.step_mm; },
           "how far the object is lowered in one step of the simulation"),
+      choice<bool>(
+          "dip.steps", {{"as-needed", false}, {"even", true}},
+          [](C& c) -> bool& { return c.design.dip.even_steps; },
+          "as-needed: straight down, steps grow to four times dip.step_mm, but no more than 0.4 "
+          "mm, "
+          "where that costs no accuracy; even: all are dip.step_mm long"),
       integer(
           "dip.air_cells", "", 0, 100000000, [](C& c) -> int& { return c.design.air.cells; },
           "cubes into which the space around the object is cut to look for trapped air; 0: none is "

@@ -124,10 +124,14 @@ TEST(InkRound, InLongerStepsLeadsToTheSameFilm) {
   options.rounds_step_mm = 1;
   const Designed longer = designed("sphere", options);
   ASSERT_GT(longer.ink.rounds.size(), 3U);
-  EXPECT_EQ(longer.ink.rounds.front().dip.steps, 30);
-  EXPECT_EQ(longer.ink.rounds[1].dip.steps, 30);  // of which it is seen what tears
-  EXPECT_EQ(longer.ink.rounds[2].dip.steps, 6);
-  EXPECT_EQ(longer.ink.rounds.back().dip.steps, 30);
+  // In the beginning, where the water gains fast, all steps are short.
+  const int short_steps = own.ink.rounds.front().dip.steps;
+  EXPECT_GE(short_steps, 6 / 0.4);
+  EXPECT_EQ(longer.ink.rounds.front().dip.steps, short_steps);
+  // Of the second it is seen what tears.
+  EXPECT_NEAR(longer.ink.rounds[1].dip.steps, short_steps, 2);
+  EXPECT_LT(longer.ink.rounds[2].dip.steps, short_steps / 2);
+  EXPECT_NEAR(longer.ink.rounds.back().dip.steps, short_steps, 2);
   for (std::size_t v = 0; v < own.dipped.film->position.size(); ++v)
     EXPECT_LT((own.dipped.film->position[v] - longer.dipped.film->position[v]).norm(), 0.05);
 }

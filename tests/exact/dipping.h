@@ -34,6 +34,7 @@ inline StraightDip untearing(double step_mm, double depth_mm) {
   StraightDip options;
   options.depth_mm = depth_mm;
   options.step_mm = step_mm;
+  options.even_steps = true;
   options.material.tear_stretch = 0;
   return options;
 }

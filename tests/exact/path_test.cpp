@@ -107,6 +107,7 @@ FilmMesh square_film() {
 DippedFilm dipped_along(const shapes::Shape& shape, const Trajectory& trajectory) {
   DipOptions options;
   options.step_mm = 0.2;
+  options.even_steps = true;
   options.material.tear_stretch = 0;
   return dip_along(shape, square_film(), trajectory, options).film;
 }

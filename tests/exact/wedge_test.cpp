@@ -88,9 +88,9 @@ TEST(WedgeSlow, MeetsTheClosedFormAtAnySlope) {
 
 TEST(WedgeSlow, ErrorFallsWithTheSquareOfTheStep) {
   const FilmMesh film = strip(6000, 4);
-  const double coarse = wedge_error(45, film, 0.4).root_mean_square_mm;
-  const double middle = wedge_error(45, film, 0.2).root_mean_square_mm;
-  const double fine = wedge_error(45, film, 0.1).root_mean_square_mm;
+  const double coarse = wedge_error(45, film, 1.6).root_mean_square_mm;
+  const double middle = wedge_error(45, film, 0.8).root_mean_square_mm;
+  const double fine = wedge_error(45, film, 0.4).root_mean_square_mm;
   EXPECT_GT(std::log2(coarse / fine) / 2, 1.7) << coarse << " " << middle << " " << fine;
   EXPECT_LT(fine, middle);
   EXPECT_LT(middle, coarse);
