@@ -37,6 +37,7 @@ Run dip_sphere(int elements, int steps, DipOptions options, double checker_mm = 
       make_film_mesh({.width_mm = 215.9, .height_mm = 279.4, .elements = elements});
   const Surface surface(sphere.positions, sphere.triangles);
   options.step_mm = 0.1;
+  options.even_steps = true;
   options.material.tear_stretch = 0;
   if (checker_mm > 0)
     for (const Triangle& t : film.triangles) {

@@ -130,11 +130,27 @@ std::unique_ptr<Scheme> make_scheme(const DipSetting& setting, DipState& state) 
                                                      : make_contact_line_scheme(setting, state);
 }
 
-void check_solved(const DipStatistics& statistics, int steps, const DipOptions& options) {
-  if (double(statistics.failed_steps) <= options.failed_share_max * steps) return;
-  throw DipError(fmt::format("the film's equilibrium was not found in {} of {} steps",
-                             statistics.failed_steps, steps));
-}
+// On how much of the way the film was not found, up to now.
+class FailedWay {
+ public:
+  FailedWay(double length_mm, const DipOptions& options)
+      : most_mm_(options.failed_share_max * length_mm) {}
+
+  // After `steps` more, of which so many failed, in way_mm.
+  void add(long failed, std::size_t steps, double way_mm) {
+    failed_ += failed;
+    steps_ += steps;
+    failed_mm_ += way_mm * double(failed) / double(std::max<std::size_t>(1, steps));
+    if (failed_mm_ <= most_mm_) return;
+    throw DipError(
+        fmt::format("the film's equilibrium was not found in {} of {} steps", failed_, steps_));
+  }
+
+ private:
+  double most_mm_, failed_mm_ = 0;
+  long failed_ = 0;
+  std::size_t steps_ = 0;
+};
 
 // Whether film tears, in a scheme in which that makes a difference.
 bool may_move(const DippedFilm& film, const DipOptions& options) {
@@ -253,17 +269,17 @@ DipResult dip_floating(const SharedFilmMesh& mesh, const std::vector<Vec3>& posi
 
   DipStatistics& statistics = state.statistics;
   const int looks = number_of_looks(travel, options);
+  FailedWay failed_way(travel.length_mm(), options);
   if (observe) observe(0, looks, state.moment, state.position, state.state);
   for (int look = 1; look <= looks; ++look) {
     context.progress("dipping", double(look - 1) / looks);
-    const auto [unconverged, failed] =
-        std::pair(statistics.unconverged_steps, statistics.failed_steps);
+    const double from_mm = state.moment.travelled_mm;
+    const long failed = statistics.failed_steps;
+    const std::size_t steps = statistics.steps_at_mm.size();
     scheme->advance(travel.at(travel.length_mm() * look / looks));
     if (state.moment.moved) mark_lifted(state);
-    // In however many steps.
-    statistics.unconverged_steps = std::min(statistics.unconverged_steps, unconverged + 1);
-    statistics.failed_steps = std::min(statistics.failed_steps, failed + 1);
-    check_solved(statistics, looks, options);
+    failed_way.add(statistics.failed_steps - failed, statistics.steps_at_mm.size() - steps,
+                   state.moment.travelled_mm - from_mm);
     if (!observe && look < looks) continue;
     scheme->write_positions();
     if (observe) observe(look, looks, state.moment, state.position, state.state);

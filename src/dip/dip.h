@@ -50,7 +50,7 @@ struct FilmMaterial {
 };
 
 // Film torn to flaps or stretched too far may have no equilibrium that can be found, the less so
-// once ink stiffens it. A dip that fails in more than this share of its steps tells nothing.
+// once ink stiffens it. A dip that fails on more than this share of its way tells nothing.
 inline constexpr double kMostFailedSteps = 0.02;
 
 struct DipOptions {
@@ -77,7 +77,7 @@ struct DipOptions {
   bool quick_look = false;
   // DippedFilm::moved_mm that another dip found; then that is not asked again.
   std::vector<double> moved_mm = {};
-  // Where more steps than this share fail, dip() gives up.
+  // Where steps fail on more of the way than this share, dip() gives up.
   double failed_share_max = 1;
 };
 

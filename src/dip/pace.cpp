@@ -57,7 +57,7 @@ std::optional<double> Pace::next_end_mm(double at_mm, double to_mm) const {
   if (!(to_mm - at_mm > (last ? 0 : shortest_mm))) return std::nullopt;
   if (!told_mm_.empty()) {
     const auto end = std::upper_bound(told_mm_.begin(), told_mm_.end(), at_mm);
-    return end == told_mm_.end() ? length_mm_ : *end;
+    return end == told_mm_.end() ? length_mm_ : std::min(*end, length_mm_);
   }
   const double part_mm = longest_now_mm(at_mm);
   const double whole_mm = longest_mm_ > step_mm_ ? length_mm_ : to_mm;
