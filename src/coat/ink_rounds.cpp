@@ -100,7 +100,6 @@ Outcome InkRounds::next() {
 bool InkRounds::last() {
   stiffen();
   dip_options_.step_mm = options_.dip.step_mm;
-  dip_options_.steps_at_mm.clear();
   if (!dip()) return false;
   ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
   judge();
@@ -128,7 +127,7 @@ bool InkRounds::dip() {
     dip_options_.modulus = task_.first->modulus;
     return true;
   }
-  dip_options_.failed_share_max = dip_options_.modulus.empty() ? 1 : kMostFailedSteps;
+  dip_options_.failed_share_max = dip_options_.modulus.empty() ? 1 : kMostFailedShare;
   try {
     dipped_ = dip_object(task_.posed, film_, trajectory_, dip_options_, timings_, context_, {},
                          {.options = {}, .found = air_});

@@ -130,27 +130,11 @@ std::unique_ptr<Scheme> make_scheme(const DipSetting& setting, DipState& state) 
                                                      : make_contact_line_scheme(setting, state);
 }
 
-// On how much of the way the film was not found, up to now.
-class FailedWay {
- public:
-  FailedWay(double length_mm, const DipOptions& options)
-      : most_mm_(options.failed_share_max * length_mm) {}
-
-  // After `steps` more, of which so many failed, in way_mm.
-  void add(long failed, std::size_t steps, double way_mm) {
-    failed_ += failed;
-    steps_ += steps;
-    failed_mm_ += way_mm * double(failed) / double(std::max<std::size_t>(1, steps));
-    if (failed_mm_ <= most_mm_) return;
-    throw DipError(
-        fmt::format("the film's equilibrium was not found in {} of {} steps", failed_, steps_));
-  }
-
- private:
-  double most_mm_, failed_mm_ = 0;
-  long failed_ = 0;
-  std::size_t steps_ = 0;
-};
+void check_solved(double failed_mm, double length_mm, const DipOptions& options) {
+  if (failed_mm <= options.failed_share_max * length_mm) return;
+  throw DipError(fmt::format("the film's equilibrium was not found on {:.3g} mm of a way of {:.4g}",
+                             failed_mm, length_mm));
+}
 
 // Whether film tears, in a scheme in which that makes a difference.
 bool may_move(const DippedFilm& film, const DipOptions& options) {
@@ -164,9 +148,8 @@ int number_of_looks(const Travel& travel, const DipOptions& options) {
   const auto every = [&](double step_mm) {
     return std::max(1, static_cast<int>(std::ceil(travel.length_mm() / step_mm - 1e-9)));
   };
-  const int steps = every(options.step_mm);
-  if (!travel.trajectory().is_straight_down()) return steps;
-  return std::max(every(longest_step_mm(options)), std::min(steps, kLeastLooks));
+  return std::max(every(longest_step_mm(options, travel.trajectory())),
+                  std::min(every(options.step_mm), kLeastLooks));
 }
 
 // Of film that floated as `wet`: what a millimetre of the printed sheet became.
@@ -194,9 +177,9 @@ DipResult dip_floating(const SharedFilmMesh& mesh, const std::vector<Vec3>& posi
 
 }  // namespace
 
-double longest_step_mm(const DipOptions& options) {
+double longest_step_mm(const DipOptions& options, const Trajectory& trajectory) {
   if (options.even_steps || options.scheme != DipScheme::kContactLine ||
-      options.method != DipMethod::kFull)
+      options.method != DipMethod::kFull || !trajectory.is_straight_down())
     return options.step_mm;
   return std::max(options.step_mm, std::min(kLonger * options.step_mm, kLongest_mm));
 }
@@ -269,7 +252,7 @@ DipResult dip_floating(const SharedFilmMesh& mesh, const std::vector<Vec3>& posi
 
   DipStatistics& statistics = state.statistics;
   const int looks = number_of_looks(travel, options);
-  FailedWay failed_way(travel.length_mm(), options);
+  double failed_mm = 0;  // on so much of the way the film was not found
   if (observe) observe(0, looks, state.moment, state.position, state.state);
   for (int look = 1; look <= looks; ++look) {
     context.progress("dipping", double(look - 1) / looks);
@@ -278,8 +261,11 @@ DipResult dip_floating(const SharedFilmMesh& mesh, const std::vector<Vec3>& posi
     const std::size_t steps = statistics.steps_at_mm.size();
     scheme->advance(travel.at(travel.length_mm() * look / looks));
     if (state.moment.moved) mark_lifted(state);
-    failed_way.add(statistics.failed_steps - failed, statistics.steps_at_mm.size() - steps,
-                   state.moment.travelled_mm - from_mm);
+    // Some schemes count no steps: theirs are the looks.
+    const auto made = std::max<std::size_t>(1, statistics.steps_at_mm.size() - steps);
+    failed_mm += (state.moment.travelled_mm - from_mm) * double(statistics.failed_steps - failed) /
+                 double(made);
+    check_solved(failed_mm, travel.length_mm(), options);
     if (!observe && look < looks) continue;
     scheme->write_positions();
     if (observe) observe(look, looks, state.moment, state.position, state.state);

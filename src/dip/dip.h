@@ -51,7 +51,7 @@ struct FilmMaterial {
 
 // Film torn to flaps or stretched too far may have no equilibrium that can be found, the less so
 // once ink stiffens it. A dip that fails on more than this share of its way tells nothing.
-inline constexpr double kMostFailedSteps = 0.02;
+inline constexpr double kMostFailedShare = 0.02;
 
 struct DipOptions {
   double step_mm = 0.1;
@@ -81,8 +81,8 @@ struct DipOptions {
   double failed_share_max = 1;
 };
 
-// Those of a dip with such options.
-double longest_step_mm(const DipOptions& options);
+// Those of a dip with such options on that way: options.step_mm where steps do not grow.
+double longest_step_mm(const DipOptions& options, const Trajectory& trajectory);
 
 // How the computation went; sums over all steps.
 struct DipStatistics {

@@ -21,10 +21,9 @@ constexpr double kFaster = 4;
 // are multiples of, in steps: two dips that differ by little go in the same ones.
 constexpr double kShrinks = 0.5, kGrows = 1.5, kMultiple = 1.0 / 8;
 
-// Film laid in a step of 0.1 mm may lie so much elsewhere than even strain would have it. That
-// grows with the third power of the step (the rule is of second order); over a whole dip with the
-// second.
-// Tears move film by far more.
+// Times the third power of dip.step_mm: how much elsewhere than even strain would have it film may
+// lie that was laid in one step. The rule is of second order, so that this grows with the third
+// power of a step's length, and over a whole dip with the second. Tears move film by far more.
 constexpr double kUnforeseen_per_step3 = 0.4, kTornUnforeseen_per_step3 = 4;  // 1/mm2
 
 // Where the water has just come to a new place, film changes as fast as that place grows: steps
@@ -41,40 +40,38 @@ double in_multiples(double length_mm, double step_mm) {
 Pace::Pace(const DipSetting& setting)
     : step_mm_(setting.options.step_mm),
       length_mm_(setting.travel.length_mm()),
-      longest_mm_(setting.options.step_mm),
+      longest_mm_(longest_step_mm(setting.options, setting.travel.trajectory())),
       told_mm_(setting.options.steps_at_mm) {
-  if (!setting.travel.trajectory().is_straight_down()) return;
-  longest_mm_ = longest_step_mm(setting.options);
+  if (!told_mm_.empty() || !setting.travel.trajectory().is_straight_down()) return;
   const double cell_mm = setting.film.cell_mm;
   jumps_mm_ = flat_levels(setting.positions, setting.triangles, cell_mm * cell_mm);
-  if (longest_mm_ > step_mm_ && told_mm_.empty())
-    touches_mm_ = lowest_places(setting.positions, setting.triangles);
+  if (grows()) lowest_mm_ = lowest_places(setting.positions, setting.triangles);
 }
+
+double Pace::shortest_mm() const { return kShortest * step_mm_; }
 
 std::optional<double> Pace::next_end_mm(double at_mm, double to_mm) const {
   const bool last = !(to_mm < length_mm_);
-  const double shortest_mm = kShortest * step_mm_;
-  if (!(to_mm - at_mm > (last ? 0 : shortest_mm))) return std::nullopt;
+  if (!(to_mm - at_mm > (last ? 0 : shortest_mm()))) return std::nullopt;
   if (!told_mm_.empty()) {
     const auto end = std::upper_bound(told_mm_.begin(), told_mm_.end(), at_mm);
     return end == told_mm_.end() ? length_mm_ : std::min(*end, length_mm_);
   }
   const double part_mm = longest_now_mm(at_mm);
-  const double whole_mm = longest_mm_ > step_mm_ ? length_mm_ : to_mm;
+  const double whole_mm = grows() ? length_mm_ : to_mm;
   // No sliver of a step at the end.
   const bool ends = whole_mm - at_mm < part_mm + 0.5 * std::min(part_mm, step_mm_);
   const double end_mm = ends ? whole_mm : at_mm + part_mm;
-  const auto jump_mm = next_jump_mm(at_mm, end_mm);
-  return jump_mm ? *jump_mm : end_mm;
+  return next_jump_mm(at_mm, end_mm).value_or(end_mm);
 }
 
 double Pace::longest_now_mm(double at_mm) const {
-  double length_mm = std::max(pace_mm_, kShortest * step_mm_);
+  double length_mm = std::max(pace_mm_, shortest_mm());
   if (length_mm <= step_mm_) return length_mm;
-  const auto next = std::upper_bound(touches_mm_.begin(), touches_mm_.end(), at_mm + step_mm_);
-  if (next != touches_mm_.end()) length_mm = std::min(length_mm, *next - at_mm);
-  const auto after = std::upper_bound(touches_mm_.begin(), touches_mm_.end(), at_mm);
-  if (after != touches_mm_.begin())
+  const auto next = std::upper_bound(lowest_mm_.begin(), lowest_mm_.end(), at_mm + step_mm_);
+  if (next != lowest_mm_.end()) length_mm = std::min(length_mm, *next - at_mm);
+  const auto after = std::upper_bound(lowest_mm_.begin(), lowest_mm_.end(), at_mm);
+  if (after != lowest_mm_.begin())
     length_mm = std::min(length_mm, in_multiples(kOfNewPlace * (at_mm - *(after - 1)), step_mm_));
   return std::max(length_mm, step_mm_);
 }
@@ -82,11 +79,10 @@ double Pace::longest_now_mm(double at_mm) const {
 // The first jump of the contact line on the way on, unless it is so near that a step would be too
 // short.
 std::optional<double> Pace::next_jump_mm(double at_mm, double end_mm) const {
-  const double shortest_mm = kShortest * step_mm_;
-  const auto jump = std::lower_bound(jumps_mm_.begin(), jumps_mm_.end(), at_mm + shortest_mm);
+  const auto jump = std::lower_bound(jumps_mm_.begin(), jumps_mm_.end(), at_mm + shortest_mm());
   if (jump == jumps_mm_.end() || !(*jump < end_mm)) return std::nullopt;
   const double left_mm = length_mm_ - *jump;
-  return left_mm < shortest_mm ? std::nullopt : std::optional(*jump);
+  return left_mm < shortest_mm() ? std::nullopt : std::optional(*jump);
 }
 
 void Pace::see(const Feet& feet, bool torn, double from_mm, double at_mm) {

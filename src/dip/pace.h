@@ -21,14 +21,16 @@ class Pace {
   void see(const Feet& feet, bool torn, double from_mm, double at_mm);
 
  private:
+  bool grows() const { return longest_mm_ > step_mm_; }
+  double shortest_mm() const;
   double longest_now_mm(double at_mm) const;
   std::optional<double> next_jump_mm(double at_mm, double end_mm) const;
 
   double step_mm_, length_mm_, longest_mm_;
-  std::vector<double> told_mm_;     // where steps end; empty: not told
-  std::vector<double> jumps_mm_;    // where the contact line jumps, ascending
-  std::vector<double> touches_mm_;  // where the water comes to a place before all around, ascending
-  double pace_mm_ = 0;              // as long as what was seen allows
+  std::vector<double> told_mm_;    // where steps end; empty: not told
+  std::vector<double> jumps_mm_;   // where the contact line jumps, ascending
+  std::vector<double> lowest_mm_;  // where the water comes to a lowest place, ascending
+  double pace_mm_ = 0;             // as long as what was seen allows
 };
 
 }  // namespace hydrodip

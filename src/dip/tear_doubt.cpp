@@ -36,7 +36,7 @@ std::vector<double> moved_in_others(const DippedFilm& dipped, const std::vector<
   DipOptions other = options;
   other.step_mm = longer_step_mm(options.step_mm);
   other.asks_what_moves = false;
-  other.failed_share_max = kMostFailedSteps;
+  other.failed_share_max = kMostFailedShare;
   other.moved_mm.clear();
   const auto in_longer_steps = [&](const DipOptions& how, const RunContext& own) {
     return dip(dipped.shared_mesh, positions, triangles, surface, trajectory, how, own).film;

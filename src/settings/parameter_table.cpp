@@ -266,9 +266,8 @@ std::vector<Parameter> dip_records() {
       choice<bool>(
           "dip.steps", {{"as-needed", false}, {"even", true}},
           [](C& c) -> bool& { return c.design.dip.even_steps; },
-          "as-needed: straight down, steps grow to four times dip.step_mm, but no more than 0.4 "
-          "mm, "
-          "where that costs no accuracy; even: all are dip.step_mm long"),
+          "as-needed: straight down, steps grow to four times dip.step_mm, but to no more than "
+          "0.4 mm, where that costs no accuracy; even: all are dip.step_mm long"),
       integer(
           "dip.air_cells", "", 0, 100000000, [](C& c) -> int& { return c.design.air.cells; },
           "cubes into which the space around the object is cut to look for trapped air; 0: none is "

@@ -72,17 +72,17 @@ TEST(Pace, ADipInTheStepsOfAnotherIsThatDip) {
   EXPECT_EQ(again.film.position, first.film.position);
 }
 
-// Half way up the sphere's bowl stands a needle whose tip the water meets last of all.
+// Beside the bowl, higher up than its bottom, a cone whose tip the water meets on its own.
 TEST(Pace, AStepEndsWhereTheWaterComesToSomethingNew) {
   shapes::Shape both = shapes::sphere_bowl(30, 25);
-  shapes::Shape needle = shapes::cone(3, 1);
-  for (Vec3& p : needle.positions) p += Vec3(40, 0, 9.87);
-  both.append(needle);
+  shapes::Shape cone = shapes::cone(3, 1);
+  for (Vec3& p : cone.positions) p += Vec3(40, 0, 9.87);
+  both.append(cone);
   const DipResult made = dip_of(both, exact::disc_film(4000), growing(0.1));
   const std::vector<double>& ends_mm = made.statistics.steps_at_mm;
   const auto after = std::upper_bound(ends_mm.begin(), ends_mm.end(), 9.87 + 1e-9);
   ASSERT_NE(after, ends_mm.end());
-  // Nothing of the needle is met by a longer step.
+  // Nothing of the cone's tip is met by a longer step.
   EXPECT_LE(*after - *(after - 1), 0.1 + 1e-9);
   EXPECT_LE(*after - 9.87, 0.1 + 1e-9);
   const auto next = after + 1;
