@@ -49,14 +49,45 @@ std::vector<Triangle> corners_of(const std::vector<std::int32_t>& triangles,
   return corners;
 }
 
+// A triangle of the object with its plane, for lines along the normal of film.
+class ObjectPlane {
+ public:
+  ObjectPlane(const TriangleMesh& object, int triangle) : triangle_(triangle) {
+    const Triangle& t = object.triangles[std::size_t(triangle)];
+    corner_ = object.positions[std::size_t(t[0])];
+    e1_ = object.positions[std::size_t(t[1])] - corner_;
+    e2_ = object.positions[std::size_t(t[2])] - corner_;
+    least_determinant_ = 1e-6 * std::sqrt(e1_.squaredNorm() * e2_.squaredNorm());
+  }
+
+  // Nothing if the line all but lies in it, or meets it beyond reach.
+  std::optional<FilmMap::Projection> meet(const Vec3& point, const Vec3& direction,
+                                          double reach_mm) const {
+    const Vec3 p = direction.cross(e2_);
+    const double determinant = e1_.dot(p);
+    if (!(std::abs(determinant) > least_determinant_)) return std::nullopt;
+    const double scale = 1 / determinant;
+    const Vec3 s = point - corner_, q = s.cross(e1_);
+    const double distance_mm = std::abs(e2_.dot(q) * scale);
+    if (!(distance_mm <= reach_mm)) return std::nullopt;
+    return FilmMap::Projection{{triangle_, s.dot(p) * scale, direction.dot(q) * scale},
+                               distance_mm};
+  }
+
+ private:
+  int triangle_;
+  Vec3 corner_, e1_, e2_;
+  double least_determinant_;
+};
+
 // Barycentric coordinates of target in a flat film triangle.
 bool weights_in(const FilmMesh& mesh, std::int32_t triangle, const Vec2& target, Vec3& weight) {
   const Triangle& t = mesh.triangles[std::size_t(triangle)];
   const Vec2& a = mesh.u[std::size_t(t[0])];
   const Vec2 ab = mesh.u[std::size_t(t[1])] - a, ac = mesh.u[std::size_t(t[2])] - a;
-  const double twice = cross2(ab, ac);
-  weight[1] = cross2(target - a, ac) / twice;
-  weight[2] = cross2(ab, target - a) / twice;
+  const double per_twice = 1 / cross2(ab, ac);
+  weight[1] = cross2(target - a, ac) * per_twice;
+  weight[2] = cross2(ab, target - a) * per_twice;
   weight[0] = 1 - weight[1] - weight[2];
   return weight.minCoeff() >= kInside;
 }
@@ -135,27 +166,10 @@ struct FilmMap::Impl {
   // The line through the film point along the normal, against one triangle of the object.
   std::optional<SurfacePoint> project_onto(int triangle, const Vec3& point,
                                            const Vec3& direction) const {
-    const auto on = project_onto_plane(triangle, point, direction);
+    const auto on = ObjectPlane(object, triangle).meet(point, direction, reach_mm);
     if (!on || on->point.u < 0 || on->point.v < 0 || on->point.u + on->point.v > 1)
       return std::nullopt;
     return on->point;
-  }
-
-  // And against its plane.
-  std::optional<Projection> project_onto_plane(int triangle, const Vec3& point,
-                                               const Vec3& direction) const {
-    const Triangle& t = object.triangles[std::size_t(triangle)];
-    const Vec3& a = object.positions[std::size_t(t[0])];
-    const Vec3 e1 = object.positions[std::size_t(t[1])] - a;
-    const Vec3 e2 = object.positions[std::size_t(t[2])] - a;
-    const Vec3 p = direction.cross(e2);
-    const double determinant = e1.dot(p);
-    if (!(std::abs(determinant) > 1e-6 * e1.norm() * e2.norm())) return std::nullopt;
-    const Vec3 s = point - a, q = s.cross(e1);
-    const double u = s.dot(p) / determinant, v = direction.dot(q) / determinant;
-    const double distance = std::abs(e2.dot(q) / determinant);
-    if (!(distance <= reach_mm)) return std::nullopt;
-    return Projection{{triangle, u, v}, distance};
   }
 
   std::optional<SurfaceHit> project(const Vec3& point, const Vec3& direction) const {
@@ -231,9 +245,15 @@ FilmMap::FilmMap(FilmMap&&) noexcept = default;
 FilmMap& FilmMap::operator=(FilmMap&&) noexcept = default;
 
 std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u, Cursor& cursor) const {
+  Laid laid;
+  return to_object(u, cursor, laid);
+}
+
+std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u, Cursor& cursor, Laid& laid) const {
   Vec3 weight;
   if (!impl_->locate_on_object(u, cursor, weight)) return std::nullopt;
-  auto [weights, point, direction] = impl_->laid_at(cursor.film_triangle, weight);
+  laid = impl_->laid_at(cursor.film_triangle, weight);
+  auto& [weights, point, direction] = laid;
   const double length = direction.norm();
   if (length > 1e-6) {
     direction /= length;
@@ -260,8 +280,15 @@ FilmMap::Laid FilmMap::laid(const Vec2& u, std::int32_t film_triangle) const {
   return laid;
 }
 
-std::optional<FilmMap::Projection> FilmMap::onto(int object_triangle, const Laid& laid) const {
-  return impl_->project_onto_plane(object_triangle, laid.point, laid.direction);
+bool FilmMap::onto(int object_triangle, const std::array<Laid, 4>& laid,
+                   std::array<Projection, 4>& landing) const {
+  const ObjectPlane plane(impl_->object, object_triangle);
+  for (std::size_t k = 0; k < laid.size(); ++k) {
+    const auto on = plane.meet(laid[k].point, laid[k].direction, impl_->reach_mm);
+    if (!on) return false;
+    landing[k] = *on;
+  }
+  return true;
 }
 
 std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u) const {

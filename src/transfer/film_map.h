@@ -1,6 +1,7 @@
 // Film point <-> object point: the map that the dip left behind (paper section 3.3, per point).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -35,12 +36,15 @@ class FilmMap {
     Vec3 point, direction;  // where its plane lies there, and the object's normal
   };
   Laid laid(const Vec2& u, std::int32_t film_triangle) const;
-  // Where that lands in the plane of a triangle of the object; nothing if it is too far.
+  // And to_object, with what it was made of; untouched if no film lies there.
+  std::optional<SurfacePoint> to_object(const Vec2& u, Cursor& cursor, Laid& laid) const;
+  // Where four of them land in the plane of a triangle of the object; false if one is too far.
   struct Projection {
     SurfacePoint point;
     double distance_mm = 0;  // along the normal
   };
-  std::optional<Projection> onto(int object_triangle, const Laid& laid) const;
+  bool onto(int object_triangle, const std::array<Laid, 4>& laid,
+            std::array<Projection, 4>& landing) const;
 
   // Film coordinate (mm) that lands at a point of the object; nothing if it stays bare.
   std::optional<Vec2> to_film(const Vec3& position, const Vec3& normal) const;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "base/parallel.h"
 #include "image/blank_image.h"
 #include "image/to_byte.h"
+#include "transfer/shared_pixel.h"
 #include "transfer/texture_mean.h"
 
 namespace hydrodip {
@@ -86,145 +86,50 @@ struct Samples {
   }
 };
 
-// A function over a pixel by its values in the upper left, upper right, lower left and lower right
-// corner; 0 <= x, y <= 1 from the upper left one.
-template <class Value, class Of>
-double between(const std::array<Value, 4>& p, double x, double y, const Of& of) {
-  return (1 - y) * ((1 - x) * of(p[0]) + x * of(p[1])) + y * ((1 - x) * of(p[2]) + x * of(p[3]));
-}
-
-// Where the corners of a tile's pixels land, each looked up once when it is first asked for.
+// Where the corners of a tile's pixels land, for pixels row by row: each is looked up once when it
+// is first asked for.
 class Corners {
  public:
-  struct Corner {
-    std::int32_t film_triangle = kUnasked;  // kNone: no film lies there
-    SurfacePoint point;
-  };
-  static constexpr std::int32_t kUnasked = -2, kNone = -1;
-
   Corners(const FilmMap& map, const FilmGrid& grid, const Tile& tile)
-      : map_(map), grid_(grid), tile_(tile), corners_(kStride * kStride) {}
+      : map_(map), grid_(grid), tile_(tile) {}
 
-  // Of a pixel: upper left, upper right, lower left, lower right; nothing if one of them lands
-  // nowhere.
-  std::optional<std::array<Corner, 4>> of_pixel(int x, int y) {
-    std::array<Corner, 4> corners;
+  // Of a pixel; nothing if one of them lands nowhere.
+  std::optional<PixelCorners> of_pixel(int x, int y) {
+    PixelCorners corners;
     for (int k = 0; k < 4; ++k) {
-      corners[std::size_t(k)] = at(x + k % 2, y + k / 2);
-      if (corners[std::size_t(k)].film_triangle == kNone) return std::nullopt;
+      const Entry& entry = at(x + k % 2, y + k / 2);
+      if (!entry.lands) return std::nullopt;
+      corners[std::size_t(k)] = &entry.corner;
     }
     return corners;
   }
   FilmMap::Cursor& cursor() { return cursor_; }
 
  private:
-  static constexpr std::size_t kStride = kTile_px + 1;
+  struct Entry {
+    int y = -1;  // whose it is; of no row yet
+    bool lands = false;
+    PixelCorner corner;
+  };
 
-  const Corner& at(int x, int y) {
-    Corner& corner = corners_[std::size_t(y - tile_.y0) * kStride + std::size_t(x - tile_.x0)];
-    if (corner.film_triangle != kUnasked) return corner;
-    const auto point = map_.to_object(grid_.at(x, y), cursor_);
-    corner.film_triangle = point ? cursor_.film_triangle : kNone;
+  const Entry& at(int x, int y) {
+    Entry& entry = rows_[std::size_t(y % 2)][std::size_t(x - tile_.x0)];
+    if (entry.y == y) return entry;
+    entry.y = y;
+    PixelCorner& corner = entry.corner;
+    corner.film_mm = grid_.at(x, y);
+    const auto point = map_.to_object(corner.film_mm, cursor_, corner.laid);
+    entry.lands = point.has_value();
     if (point) corner.point = *point;
-    return corner;
+    corner.film_triangle = cursor_.film_triangle;
+    return entry;
   }
 
   const FilmMap& map_;
   const FilmGrid& grid_;
   const Tile tile_;
   FilmMap::Cursor cursor_;
-  std::vector<Corner> corners_;
-};
-
-// How many pairs of a film's and an object's triangle there are at the corners.
-std::size_t pairs_at(const std::array<Corners::Corner, 4>& corners) {
-  std::size_t pairs = 0;
-  for (std::size_t k = 0; k < 4; ++k)
-    pairs += std::none_of(corners.begin(), corners.begin() + k, [&](const auto& before) {
-      return before.film_triangle == corners[k].film_triangle &&
-             before.point.triangle == corners[k].point.triangle;
-    });
-  return pairs;
-}
-
-// Where samples of a pixel land that several triangles share: each pair of a film's and an object's
-// triangle among those of its corners, over the whole pixel.
-class SharedPixel {
- public:
-  SharedPixel(const FilmMap& map, const FilmGrid& grid, int x, int y,
-              const std::array<Corners::Corner, 4>& corners)
-      : map_(map),
-        place_{grid.at(x, y), grid.at(x + 1, y), grid.at(x, y + 1), grid.at(x + 1, y + 1)} {
-    for (const auto& film : corners)
-      for (const auto& object : corners) add(film.film_triangle, object.point.triangle);
-  }
-
-  // At (x, y) from the upper left corner, of the pixel's side; nothing if none of them has it. In a
-  // valley of the object two may have it: then the nearer one.
-  std::optional<SurfacePoint> at(double x, double y) const {
-    constexpr double kInside = -1e-9;
-    std::optional<SurfacePoint> nearest;
-    double nearest_mm = std::numeric_limits<double>::infinity();
-    for (std::size_t n = 0; n < count_; ++n) {
-      const Pair& pair = pairs_[n];
-      const auto mix = [&](const auto& of) { return between(pair.landing, x, y, of); };
-      const double u = mix([](const FilmMap::Projection& p) { return p.point.u; });
-      const double v = mix([](const FilmMap::Projection& p) { return p.point.v; });
-      if (u < 0 || v < 0 || u + v > 1) continue;
-      const auto weight = [&](Eigen::Index k) {
-        return between(films_[pair.film].laid, x, y,
-                       [k](const FilmMap::Laid& laid) { return laid.weight[k]; });
-      };
-      if (weight(0) < kInside || weight(1) < kInside || weight(2) < kInside) continue;
-      const double distance_mm = mix([](const FilmMap::Projection& p) { return p.distance_mm; });
-      if (distance_mm >= nearest_mm) continue;
-      nearest_mm = distance_mm;
-      nearest = SurfacePoint{pair.object_triangle, u, v};
-    }
-    return nearest;
-  }
-
- private:
-  struct Film {
-    std::int32_t triangle;
-    std::array<FilmMap::Laid, 4> laid;  // at the pixel's corners
-  };
-  struct Pair {
-    std::size_t film;
-    int object_triangle;
-    std::array<FilmMap::Projection, 4> landing;
-  };
-
-  std::size_t film_of(std::int32_t triangle) {
-    for (std::size_t n = 0; n < films_count_; ++n)
-      if (films_[n].triangle == triangle) return n;
-    Film& film = films_[films_count_];
-    film.triangle = triangle;
-    for (std::size_t k = 0; k < 4; ++k) film.laid[k] = map_.laid(place_[k], triangle);
-    return films_count_++;
-  }
-
-  void add(std::int32_t film_triangle, int object_triangle) {
-    const std::size_t film = film_of(film_triangle);
-    for (std::size_t n = 0; n < count_; ++n)
-      if (pairs_[n].film == film && pairs_[n].object_triangle == object_triangle) return;
-    Pair& pair = pairs_[count_];
-    pair.film = film;
-    pair.object_triangle = object_triangle;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const auto landing = map_.onto(object_triangle, films_[film].laid[k]);
-      if (!landing) return;
-      pair.landing[k] = *landing;
-    }
-    ++count_;
-  }
-
-  const FilmMap& map_;
-  std::array<Vec2, 4> place_;  // of the pixel's corners
-  std::array<Film, 4> films_;
-  std::size_t films_count_ = 0;
-  std::array<Pair, 16> pairs_;
-  std::size_t count_ = 0;
+  std::array<std::array<Entry, kTile_px + 1>, 2> rows_;  // two are in use at a time
 };
 
 // Darker than that no ink is, so that a part of it can be told.
@@ -259,15 +164,16 @@ class Printed {
     return part_of_ink(color, paint_.base(), share);
   }
 
-  // The mean over a pixel whose samples land on a grid of points.
+  // The mean over those of a pixel's samples that land on a grid's points.
   LinearColor mean(const SurfaceGrid& grid, const Samples& samples) const {
     if (textured_ != nullptr)
       if (const auto color = mean_texture_color(*textured_, grid, paint_.base())) return *color;
-    const float weight = 1.0F / static_cast<float>(grid.per_axis * grid.per_axis);
+    const float weight = 1.0F / static_cast<float>(grid.count());
     ColorSum sum;
     for (int row = 0; row < grid.per_axis; ++row)
       for (int column = 0; column < grid.per_axis; ++column)
-        sum.add(at(grid.at(column, row), samples.at(column, row)), weight);
+        if (grid.counts(column, row))
+          sum.add(at(grid.at(column, row), samples.at(column, row)), weight);
     return sum.color();
   }
 
@@ -277,23 +183,6 @@ class Printed {
   bool depends_on_film_;
   const Object* textured_;  // the paint, if it is nothing else; or null
 };
-
-// Where the samples of a pixel land if film and object are one triangle each at its corners.
-SurfaceGrid grid_in(const std::array<Corners::Corner, 4>& corners, int per_axis) {
-  const double step = 1.0 / per_axis, first = 0.5 * step;
-  const auto mix = [&](double SurfacePoint::*part, double x, double y) {
-    return between(corners, x, y, [part](const auto& corner) { return corner.point.*part; });
-  };
-  SurfaceGrid grid;
-  grid.per_axis = per_axis;
-  grid.first = {corners[0].point.triangle, mix(&SurfacePoint::u, first, first),
-                mix(&SurfacePoint::v, first, first)};
-  grid.u_across = mix(&SurfacePoint::u, first + step, first) - grid.first.u;
-  grid.v_across = mix(&SurfacePoint::v, first + step, first) - grid.first.v;
-  grid.u_down = mix(&SurfacePoint::u, first, first + step) - grid.first.u;
-  grid.v_down = mix(&SurfacePoint::v, first, first + step) - grid.first.v;
-  return grid;
-}
 
 // One pixel of the film image.
 LinearColor pixel_color(const Printed& printed, const FilmMap& map, const FilmGrid& grid,
@@ -309,12 +198,15 @@ LinearColor pixel_color(const Printed& printed, const FilmMap& map, const FilmGr
         point = map.to_object(*near, cursor);
     return point ? printed.at(*point, centre) : LinearColor{0, 0, 0, 0};
   }
-  std::optional<SharedPixel> shared;
+  const float weight = 1.0f / static_cast<float>(n * n);
+  ColorSum sum;
+  std::uint64_t unknown = ~std::uint64_t(0);  // the samples that are still to be looked up
   if (const auto corners = tile.of_pixel(x, y)) {
-    const std::size_t pairs = pairs_at(*corners);
-    if (pairs == 1) return printed.mean(grid_in(*corners, n), samples);
-    // Where each corner has another, there are likely more of them between.
-    if (pairs < 4) shared.emplace(map, grid, x, y, *corners);
+    if (on_one_pair(*corners)) return printed.mean(grid_between(*corners, n), samples);
+    const SharedPixel shared(map, *corners, n);
+    for (const SurfaceGrid& part : shared.grids())
+      if (part.count() > 0) sum.add(printed.mean(part, samples), weight * float(part.count()));
+    unknown = shared.unknown();
   } else {
     // One look for all samples: out of reach, or in the midst of the bleed, which shows little.
     const double radius = 0.71 * grid.pixel_mm();
@@ -325,13 +217,11 @@ LinearColor pixel_color(const Printed& printed, const FilmMap& map, const FilmGr
     if (distance > radius && distance + radius < options.bleed_mm)
       if (const auto point = map.to_object(*nearest, cursor)) return printed.at(*point, centre);
   }
-  const float weight = 1.0f / static_cast<float>(n * n);
-  ColorSum sum;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
+      if ((unknown >> (j * n + i) & 1U) == 0) continue;
       const Vec2 u = samples.at(i, j);
-      auto point = shared ? shared->at((i + 0.5) / n, (j + 0.5) / n) : std::nullopt;
-      if (!point) point = map.to_object(u, cursor);
+      auto point = map.to_object(u, cursor);
       if (!point && options.bleed_mm > 0)
         if (const auto near = map.nearest_covered(u, options.bleed_mm, cursor))
           point = map.to_object(*near, cursor);

@@ -34,7 +34,7 @@ SheetRaster raster_of(const FilmOptions& film, double dpi);
 
 struct InverseOptions {
   double bleed_mm = 1;       // extended colour around the touched region
-  int samples_per_axis = 3;  // supersampling: squared per pixel
+  int samples_per_axis = 3;  // supersampling: squared per pixel; 1 to 8
   bool quick_look = false;   // a pixel has the colour of its middle
 };
 

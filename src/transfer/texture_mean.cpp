@@ -62,6 +62,7 @@ std::optional<LinearColor> mean_of_texels(const Image& image, const Material& ma
   std::array<std::array<float, kMostTexels>, kMostTexels> share{};
   for (int row = 0; row <= last; ++row)
     for (int column = 0; column <= last; ++column) {
+      if (!grid.counts(column, row)) continue;
       const float at_x = x.at(column, row) - float(columns->first);
       const float at_y = y.at(column, row) - float(rows->first);
       const int i = std::min(int(at_x), columns->count - 2);
@@ -75,7 +76,7 @@ std::optional<LinearColor> mean_of_texels(const Image& image, const Material& ma
     }
 
   const std::array<float, 256>& decode = srgb8_table();
-  const float weight = 1.0F / (255.0F * float(grid.per_axis * grid.per_axis));
+  const float weight = 1.0F / (255.0F * float(grid.count()));
   LinearColor sum{0, 0, 0, 0};
   for (int j = 0; j < rows->count; ++j) {
     // v runs up, rows run down.
