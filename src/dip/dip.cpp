@@ -259,7 +259,9 @@ DipResult dip_floating(const SharedFilmMesh& mesh, const std::vector<Vec3>& posi
     const double from_mm = state.moment.travelled_mm;
     const long failed = statistics.failed_steps;
     const std::size_t steps = statistics.steps_at_mm.size();
-    scheme->advance(travel.at(travel.length_mm() * look / looks));
+    // Rounding may not make the way longer than it is.
+    scheme->advance(
+        travel.at(look < looks ? travel.length_mm() * look / looks : travel.length_mm()));
     if (state.moment.moved) mark_lifted(state);
     // Some schemes count no steps: theirs are the looks.
     const auto made = std::max<std::size_t>(1, statistics.steps_at_mm.size() - steps);

@@ -51,6 +51,26 @@ TEST(Pace, StepsGrowWithinTheirBounds) {
   EXPECT_LT(double(all.size()), 0.5 * made.film.depth_mm / 0.1);
 }
 
+// The way is looked at in equal parts, whose sum rounding makes longer or shorter than the way.
+TEST(Pace, EveryWayEnds) {
+  const shapes::Shape shape = shapes::cone(10, 1);
+  const Surface surface(shape.positions, shape.triangles);
+  const FilmMesh film = exact::disc_film(500);
+  RunContext context;
+  int longer = 0;
+  for (int hundredths = 40; hundredths <= 100; ++hundredths) {
+    TrajectoryOptions way;
+    way.depth_mm = hundredths / 100.0;
+    const DipResult made = dip(film, shape.positions, shape.triangles, surface,
+                               make_trajectory(way, shape.positions), growing(0.1), context);
+    EXPECT_NEAR(made.statistics.steps_at_mm.back(), hundredths / 100.0, 1e-12);
+    EXPECT_LT(made.statistics.steps, 100);
+    for (int parts = 1; parts <= 10; ++parts)
+      longer += made.film.depth_mm * parts / parts > made.film.depth_mm;
+  }
+  EXPECT_GT(longer, 0);
+}
+
 // But for the first, as the contact line runs fast under a tip.
 TEST(Pace, EvenStepsAreAllAsLong) {
   DipOptions options = growing(0.25);
