@@ -52,7 +52,7 @@ double Pace::shortest_mm() const { return kShortest * step_mm_; }
 
 std::optional<double> Pace::next_end_mm(double at_mm, double to_mm) const {
   const bool last = !(to_mm < length_mm_);
-  if (!(std::min(to_mm, length_mm_) - at_mm > (last ? 0 : shortest_mm()))) return std::nullopt;
+  if (!(to_mm - at_mm > (last ? 0 : shortest_mm()))) return std::nullopt;
   if (!told_mm_.empty()) {
     const auto end = std::upper_bound(told_mm_.begin(), told_mm_.end(), at_mm);
     return end == told_mm_.end() ? length_mm_ : std::min(*end, length_mm_);

@@ -14,8 +14,9 @@ class Pace {
  public:
   explicit Pace(const DipSetting& setting);
 
-  // Where the next step ends, on the way from at_mm to to_mm; nothing if the way is as good as
-  // gone: what is left of it is gone in the next. Steps that grow may end beyond to_mm.
+  // Where the next step ends, on the way from at_mm to to_mm, which lies not beyond the whole way's
+  // end; nothing if the way is as good as gone: what is left of it is gone in the next. Steps that
+  // grow may end beyond to_mm.
   std::optional<double> next_end_mm(double at_mm, double to_mm) const;
   // To be called after each step, which began at from_mm; `torn`: whether film has ever torn.
   void see(const Feet& feet, bool torn, double from_mm, double at_mm);
