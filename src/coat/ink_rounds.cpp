@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory.h"
 
 namespace hydrodip {
 namespace {
@@ -94,7 +95,9 @@ Outcome InkRounds::next() {
   if (!lay()) return Outcome::kFailed;
   ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
   judge();
-  return outcome();
+  const Outcome outcome = this->outcome();
+  if (outcome != Outcome::kGoesOn) forget_steps();
+  return outcome;
 }
 
 bool InkRounds::last() {
@@ -104,6 +107,12 @@ bool InkRounds::last() {
   ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
   judge();
   return true;
+}
+
+// No round is likely to come that begins from them, and printing takes memory.
+void InkRounds::forget_steps() {
+  dip_options_.relaxed_steps.reset();
+  give_back_freed_memory();
 }
 
 // That the ink of the last round gives to the film.
@@ -183,6 +192,8 @@ void InkRounds::stiffen() {
     for (std::size_t t = 0; t < told.size(); ++t)
       told[t] = std::min(told[t], dipped_->film->torn_at_mm[t]);
   }
+  // From here on rounds differ by little.
+  if (number() + 1 == kFreeRounds) dip_options_.relaxed_steps = std::make_shared<RelaxedSteps>();
   std::vector<double> modulus = timings_.measure("stiffness", [&] { return this->modulus(); });
   dip_options_.modulus = dip_options_.modulus.empty() ? modulus : mixed(modulus);
 }

@@ -77,6 +77,7 @@ class ContactLineScheme : public Scheme {
 
   void find_equilibrium(const Moment& to) {
     std::vector<std::uint8_t> is_free = sheet_.free_vertices();
+    sheet_.foresee(to.travelled_mm);
     sheet_.put_back(is_free);
     for (int round = 0;; ++round) {
       const RelaxationResult result = sheet_.relax(is_free);

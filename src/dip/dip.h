@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "dip/foresight.h"
 #include "dip/travel.h"
 #include "elastic/linear_solver.h"
 #include "elastic/material_law.h"
@@ -61,6 +62,9 @@ struct DipOptions {
   // Where the steps end that another dip on the same way has made (DipStatistics); empty: this one
   // finds out. Two dips in the same steps can be compared closer than they are accurate.
   std::vector<double> steps_at_mm = {};
+  // What another dip like this one kept of its steps, to begin from, and what this one keeps for
+  // the next: for dips one after another. Null: every step begins from the one before.
+  std::shared_ptr<RelaxedSteps> relaxed_steps = {};
   DipMethod method = DipMethod::kFull;
   DipScheme scheme = DipScheme::kContactLine;  // of kFull
   FilmMaterial material;

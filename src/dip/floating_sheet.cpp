@@ -47,6 +47,7 @@ FloatingSheet::FloatingSheet(const DipSetting& setting, DipState& state)
       film_at_(energy_.grid().field(setting.film.u)),
       plan_(film_at_),
       slid_(film_at_),
+      foresight_(energy_.grid().layout(), film_at_, setting.options.relaxed_steps.get()),
       slid_in_(setting.film.u.size(), -1),
       found_(plan_.entries(), 0),
       is_plain_(setting.film.triangles.size(), 0),
@@ -117,7 +118,10 @@ RelaxationResult FloatingSheet::relax(const std::vector<std::uint8_t>& is_free) 
   return relaxation_.run(is_free, options);
 }
 
-void FloatingSheet::keep_relaxed() { energy_.grid().to_vertices(relaxation_.field(), relaxed_); }
+void FloatingSheet::keep_relaxed() {
+  energy_.grid().to_vertices(relaxation_.field(), relaxed_);
+  foresight_.keep(relaxation_.field());
+}
 
 // The error of long steps grows with their square; what is far below it need not be computed.
 double FloatingSheet::tolerance_mm() const {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "dip/foresight.h"
 #include "dip/scheme.h"
 #include "elastic/film_energy.h"
 #include "elastic/relaxation.h"
@@ -48,8 +49,10 @@ class FloatingSheet {
 
   // Flat where it floats; with ghosts for corners at the contact line.
   void set_rest(const Feet& feet);
-  // From where the film lay after the last step: it slides on as it did then. Vertices that are not
-  // free have their own film coordinates.
+  // To be called before the film relaxes in the step that ends there.
+  void foresee(double end_mm) { foresight_.foresee(end_mm, relaxation_.field()); }
+  // From where the film is foreseen, or lay after the last step: it slides on as it did then.
+  // Vertices that are not free have their own film coordinates.
   RelaxationResult relax(const std::vector<std::uint8_t>& is_free);
   void put_back(const std::vector<std::uint8_t>& is_free);
   // To be called once relaxed for good.
@@ -109,6 +112,7 @@ class FloatingSheet {
   std::vector<std::uint8_t> is_free_;
   // Over the film's grid: film coordinates, and vertices seen from above, now and after relaxing.
   GridField film_at_, plan_, slid_;
+  Foresight foresight_;
   VertexVector relaxed_;  // per vertex: film coordinates after relaxing
   // Per vertex: the triangle that it was last found in. Over the grid: that one's corners, and
   // whether the vertex still was inside.

@@ -38,6 +38,7 @@ std::vector<double> moved_in_others(const DippedFilm& dipped, const std::vector<
   other.asks_what_moves = false;
   other.failed_share_max = kMostFailedShare;
   other.moved_mm.clear();
+  other.relaxed_steps.reset();
   const auto in_longer_steps = [&](const DipOptions& how, const RunContext& own) {
     return dip(dipped.shared_mesh, positions, triangles, surface, trajectory, how, own).film;
   };
