@@ -5,6 +5,7 @@ add_executable(hydrodip_manual ${manual_sources})
 if(HYDRODIP_UNITY)
   hydrodip_unity(hydrodip_manual ${manual_sources})
 endif()
+target_compile_options(hydrodip_manual PRIVATE -O1) # runs once, for a moment
 target_link_libraries(hydrodip_manual PRIVATE hydrodip_command_line CLI11::CLI11
                                               nlohmann_json::nlohmann_json)
 
