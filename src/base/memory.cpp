@@ -1,6 +1,5 @@
 #include "base/memory.h"
 
-#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -21,12 +20,6 @@ double memory_limit_bytes() {
   if (std::ifstream("/sys/fs/cgroup/memory.max") >> container && container > 0)
     least = std::min(least, container);
   return least;
-}
-
-void give_back_freed_memory() {
-#ifdef __GLIBC__
-  malloc_trim(0);
-#endif
 }
 
 }  // namespace hydrodip

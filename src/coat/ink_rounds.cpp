@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/memory.h"
 
 namespace hydrodip {
 namespace {
@@ -96,7 +95,8 @@ Outcome InkRounds::next() {
   ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
   judge();
   const Outcome outcome = this->outcome();
-  if (outcome != Outcome::kGoesOn) forget_steps();
+  // No round begins from them, and printing takes memory.
+  if (outcome != Outcome::kGoesOn) dip_options_.relaxed_steps.reset();
   return outcome;
 }
 
@@ -107,12 +107,6 @@ bool InkRounds::last() {
   ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
   judge();
   return true;
-}
-
-// No round is likely to come that begins from them, and printing takes memory.
-void InkRounds::forget_steps() {
-  dip_options_.relaxed_steps.reset();
-  give_back_freed_memory();
 }
 
 // That the ink of the last round gives to the film.

@@ -54,7 +54,6 @@ class InkRounds {
   std::vector<double> modulus() const;
   bool dip();
   void judge();
-  void forget_steps();
   Outcome outcome() const;
   void stiffen();
   std::vector<double> mixed(const std::vector<double>& modulus);

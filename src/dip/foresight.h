@@ -11,11 +11,10 @@
 namespace hydrodip {
 
 // Of one dip: how far from flat its film relaxed in every step, in film coordinates.
-struct RelaxedStep {
-  double end_mm;
-  GridVector way;
+struct RelaxedSteps {
+  std::vector<double> ends_mm;
+  std::vector<float> ways;  // of each step: x all over the grid, then y
 };
-using RelaxedSteps = std::vector<RelaxedStep>;
 
 class Foresight {
  public:
@@ -31,9 +30,14 @@ class Foresight {
   void keep(const GridField& film);
 
  private:
-  const GridLayout& layout_;
+  bool is_known() const { return steps_ && now_ < steps_->ends_mm.size(); }
+  // Of the step at hand: x, followed by y.
+  float* way() const { return steps_->ways.data() + now_ * per_step_; }
+  void forget_from_now_on();
+
   const GridField& flat_;
   RelaxedSteps* steps_;
+  const std::size_t entries_, per_step_;
   std::size_t now_ = 0;  // the step at hand
   double end_mm_ = 0;    // of it
   GridField further_;    // than the dip before, in the last step

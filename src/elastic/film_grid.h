@@ -140,7 +140,6 @@ class GridVector {
   GridVector() = default;
   explicit GridVector(const GridLayout& layout) : x_(layout.entries()), y_(layout.entries()) {}
 
-  std::size_t entries() const { return x_.entries(); }
   float* x() { return x_.data(); }
   float* y() { return y_.data(); }
   const float* x() const { return x_.data(); }

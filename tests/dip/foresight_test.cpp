@@ -54,7 +54,7 @@ TEST(Foresight, FindsTheSameFilmInFewerIterations) {
   DipOptions options = foreseeing(kept);
   options.modulus = patches(film, 3);
   const DipResult before = dip_of_sphere(film, options);
-  ASSERT_EQ(kept->size(), before.statistics.steps_at_mm.size());
+  ASSERT_EQ(kept->ends_mm.size(), before.statistics.steps_at_mm.size());
 
   DipOptions other = foreseeing(nullptr);
   other.modulus = patches(film, 3.1);
@@ -79,7 +79,7 @@ TEST(Foresight, IsOfTheSameStepsOnly) {
   const DipResult other = dip_of_sphere(film, options);
   EXPECT_EQ(farthest_apart(other.film, alone.film), 0);
   EXPECT_EQ(other.statistics.iterations, alone.statistics.iterations);
-  EXPECT_EQ(kept->size(), other.statistics.steps_at_mm.size());
+  EXPECT_EQ(kept->ends_mm.size(), other.statistics.steps_at_mm.size());
 }
 
 TEST(Foresight, GoesOnByAsMuchAsTheFilmWasFurtherOn) {
@@ -112,7 +112,7 @@ TEST(Foresight, GoesOnByAsMuchAsTheFilmWasFurtherOn) {
   second.keep(moved_by(0.5));
   second.foresee(2.9, field);  // another way from here on
   EXPECT_EQ(field.at(grid.place(5)), moved_by(0.5 + 0.125).at(grid.place(5)));
-  EXPECT_EQ(kept.size(), 2u);
+  EXPECT_EQ(kept.ends_mm.size(), 2u);
 }
 
 }  // namespace
