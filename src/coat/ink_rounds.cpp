@@ -91,10 +91,15 @@ bool InkRounds::lay() {
 }
 
 Outcome InkRounds::next() {
-  if (!lay()) return Outcome::kFailed;
-  ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
-  judge();
-  const Outcome outcome = this->outcome();
+  // From the first dip on whose steps all others go in, rounds differ by little.
+  if (number() + 1 == kFreeRounds && options_.rounds_max > kFreeRounds)
+    dip_options_.relaxed_steps = std::make_shared<RelaxedSteps>();
+  Outcome outcome = Outcome::kFailed;
+  if (lay()) {
+    ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
+    judge();
+    outcome = this->outcome();
+  }
   // No round begins from them, and printing takes memory.
   if (outcome != Outcome::kGoesOn) dip_options_.relaxed_steps.reset();
   return outcome;
@@ -186,8 +191,6 @@ void InkRounds::stiffen() {
     for (std::size_t t = 0; t < told.size(); ++t)
       told[t] = std::min(told[t], dipped_->film->torn_at_mm[t]);
   }
-  // From here on rounds differ by little.
-  if (number() + 1 == kFreeRounds) dip_options_.relaxed_steps = std::make_shared<RelaxedSteps>();
   std::vector<double> modulus = timings_.measure("stiffness", [&] { return this->modulus(); });
   dip_options_.modulus = dip_options_.modulus.empty() ? modulus : mixed(modulus);
 }
