@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <system_error>
@@ -55,7 +56,7 @@ std::string out_of_memory() {
   return fmt::format(
       "not enough memory: the job may have {:.0f} MB; a lower print.dpi or film.elements needs "
       "less",
-      memory_limit_bytes() / 1e6);
+      std::min(memory_limit_bytes(), address_limit_bytes()) / 1e6);
 }
 
 int run_safely(const std::vector<std::string>& arguments) {

@@ -85,8 +85,8 @@ class Settling {
                 "raise film.elements"));
   }
 
-  void finish(const InkRounds& rounds) {
-    result_.ink = timings_.measure("invert", [&] { return rounds.print(options().dpi, true); });
+  void finish(InkRounds& rounds) {
+    result_.ink = timings_.measure("invert", [&] { return rounds.print_last(options().dpi); });
     look_at(result_, task_);
   }
 

@@ -96,8 +96,7 @@ Outcome InkRounds::next() {
     dip_options_.relaxed_steps = std::make_shared<RelaxedSteps>();
   Outcome outcome = Outcome::kFailed;
   if (lay()) {
-    ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
-    judge();
+    print_round();
     outcome = this->outcome();
   }
   // No round begins from them, and printing takes memory.
@@ -109,8 +108,7 @@ bool InkRounds::last() {
   stiffen();
   dip_options_.step_mm = options_.dip.step_mm;
   if (!dip()) return false;
-  ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
-  judge();
+  print_round();
   return true;
 }
 
@@ -144,6 +142,17 @@ bool InkRounds::dip() {
     return false;
   }
   return true;
+}
+
+void InkRounds::print_round() {
+  ink_ = {};
+  ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
+  judge();
+}
+
+FilmInk InkRounds::print_last(double dpi) {
+  ink_ = {};
+  return print(dpi, true);
 }
 
 void InkRounds::judge() {

@@ -44,15 +44,18 @@ class InkRounds {
   // Of the film that was dipped last; empty: no ink.
   const std::vector<double>& dipped_modulus() const { return dip_options_.modulus; }
 
-  // What to print at `dpi` on the film as it was dipped last; `all`: wherever it lies on the
-  // object.
-  FilmInk print(double dpi, bool all) const;
+  // What to print at `dpi` on the film as it was dipped last, wherever it lies on the object. Ends
+  // the rounds: their own ink gives its memory back first.
+  FilmInk print_last(double dpi);
 
  private:
   int number() const { return int(rounds_.size()); }
   double change(int rounds_ago) const;
   std::vector<double> modulus() const;
   bool dip();
+  // As print_last; without `all` only within the outline that is kept.
+  FilmInk print(double dpi, bool all) const;
+  void print_round();
   void judge();
   Outcome outcome() const;
   void stiffen();

@@ -64,7 +64,8 @@ int at_once(const MadeDips& all, const RunContext& context) {
 bool may_be_side_by_side(const MadeDips& all, const RunContext& context) {
   const DesignOptions& options = all.config.design;
   return options.film.elements <= kSmallFilm &&
-         at_once(all, context) * sheet_memory_bytes(options) <= 0.5 * memory_limit_bytes();
+         at_once(all, context) * sheet_memory_bytes(options, inkable_mm2(all.prepared, options)) <=
+             0.5 * memory_limit_bytes();
 }
 
 std::vector<float> worth_at_nodes(const MadeDips& all, const MadeDip& dip, const DippedFilm& film) {

@@ -14,7 +14,10 @@ ReadyJob make_ready(const JobConfig& given, bool to_print, Timings& times,
                           config.design.inverse.samples_per_axis);
   });
   require_size(prepared.posed, config.object, config.model);
-  if (to_print) require_appearance(prepared, config.model);
+  if (to_print) {
+    require_appearance(prepared, config.model);
+    require_memory(config.design, inkable_mm2(prepared, config.design));
+  }
   if (config.plan.find_pose || config.plan.find_depth)
     times.measure("find", [&] { find_what_is_asked(config, prepared, context); });
   const TriangleMesh& mesh = prepared.posed.mesh();

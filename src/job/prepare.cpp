@@ -16,6 +16,8 @@ constexpr double kTiny_mm = 5, kHuge_mm = 1000;
 
 // The film image as wanted, stretched, inked and seen, and what is written of it.
 constexpr double kBytesPerPixel = 32;
+// How long film's rim is over the side of a square as large: ragged film of several pieces.
+constexpr double kRimOverSide = 16;
 
 void warn_if_tiny(const TriangleMesh& mesh, const RunContext& context) {
   const double largest_mm = mesh.bounds().size().maxCoeff();
@@ -26,6 +28,17 @@ void warn_if_tiny(const TriangleMesh& mesh, const RunContext& context) {
   context.warn(fmt::format(
       "The object's largest extent is {} mm: if that is not meant, say its --units or --size.",
       length));
+}
+
+void require_room(const DesignOptions& options, double inked_mm2, double limit_bytes) {
+  const double needed = sheet_memory_bytes(options, inked_mm2);
+  if (needed <= limit_bytes) return;
+  const double px_per_mm = options.dpi / kMmPerInch;
+  throw InputError(fmt::format(
+      "the sheet of {:.0f} x {:.0f} px may need about {:.1f} GB of memory, but there are {:.1f} "
+      "GB; lower --dpi to {:.0f} or less",
+      options.film.width_mm * px_per_mm, options.film.height_mm * px_per_mm, needed / 1e9,
+      limit_bytes / 1e9, std::floor(options.dpi * std::sqrt(limit_bytes / needed))));
 }
 
 }  // namespace
@@ -78,21 +91,26 @@ void require_size(const PosedObject& posed, const ObjectOptions& options,
       model.string(), largest_mm));
 }
 
-double sheet_memory_bytes(const DesignOptions& options) {
-  const double px_per_mm = options.dpi / kMmPerInch;
-  return kBytesPerPixel * options.film.width_mm * px_per_mm * options.film.height_mm * px_per_mm;
+double inkable_mm2(const PreparedObject& prepared, const DesignOptions& options) {
+  const double sheet_mm2 = options.film.width_mm * options.film.height_mm;
+  if (prepared.paint->depends_on_film()) return sheet_mm2;
+  const double object_mm2 = prepared.health.area_mm2;
+  const double rim_mm = kRimOverSide * std::sqrt(object_mm2);
+  return std::min(sheet_mm2, object_mm2 + rim_mm * options.inverse.bleed_mm);
 }
 
-void require_memory(const DesignOptions& options) {
-  const double width_px = options.film.width_mm / kMmPerInch * options.dpi;
-  const double height_px = options.film.height_mm / kMmPerInch * options.dpi;
-  const double needed = sheet_memory_bytes(options), limit = memory_limit_bytes();
-  if (needed <= limit) return;
-  throw InputError(fmt::format(
-      "the sheet of {:.0f} x {:.0f} px needs about {:.1f} GB of memory, but there are {:.1f} GB; "
-      "lower --dpi to {:.0f} or less",
-      width_px, height_px, needed / 1e9, limit / 1e9,
-      std::floor(options.dpi * std::sqrt(limit / needed))));
+double sheet_memory_bytes(const DesignOptions& options, double inked_mm2) {
+  const double px_per_mm = options.dpi / kMmPerInch;
+  return kBytesPerPixel * inked_mm2 * px_per_mm * px_per_mm;
+}
+
+void require_address_space(const DesignOptions& options) {
+  const double sheet_mm2 = options.film.width_mm * options.film.height_mm;
+  require_room(options, sheet_mm2, address_limit_bytes());
+}
+
+void require_memory(const DesignOptions& options, double inked_mm2) {
+  require_room(options, inked_mm2, memory_limit_bytes());
 }
 
 void require_appearance(const Object& object, const std::vector<std::string>& picture_problems,

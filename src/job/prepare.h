@@ -44,9 +44,15 @@ void require_appearance(const Object& object, const std::vector<std::string>& pi
 // The same for an object that may have artwork, which is an appearance.
 void require_appearance(const PreparedObject& prepared, const std::filesystem::path& model);
 
+// At most so much of a sheet is inked: film on the object is no larger than what it lies on, and
+// the bleed goes round it. Artwork that is laid on the film may go anywhere.
+double inkable_mm2(const PreparedObject& prepared, const DesignOptions& options);
+// What a sheet takes while it is designed and written, about: blank film takes none.
+double sheet_memory_bytes(const DesignOptions& options, double inked_mm2);
+// Throws InputError if the pictures of the whole sheet, blank or not, are beyond the process's own
+// limits. Needs no object.
+void require_address_space(const DesignOptions& options);
 // Throws InputError if the sheet's pictures cannot fit the memory that there is.
-void require_memory(const DesignOptions& options);
-// What a sheet takes while it is designed and written, about.
-double sheet_memory_bytes(const DesignOptions& options);
+void require_memory(const DesignOptions& options, double inked_mm2);
 
 }  // namespace hydrodip

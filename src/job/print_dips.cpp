@@ -87,7 +87,7 @@ bool asks_for_several_dips(const JobConfig& config) {
 
 JobResult print_dips(const JobConfig& config, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
-  require_memory(config.design);
+  require_address_space(config.design);
   require_no_correction(config);
   OutputFolder folder(config.output, config.earlier_result);
   Timings times;
@@ -98,6 +98,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   require_size(prepared.posed, config.object, config.model);
   require_appearance(prepared, config.model);
   require_no_pattern(*prepared.paint);
+  require_memory(config.design, inkable_mm2(prepared, config.design));
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
 

@@ -73,16 +73,38 @@ TEST(Memory, IsEnoughAtTheResolutionThatIsProposed) {
   options.film.width_mm = options.film.height_mm = 100000;
   options.dpi = 2400;
   try {
-    require_memory(options);
+    require_memory(options, 1e10);
     FAIL();
   } catch (const InputError& error) {
     const std::string text = error.what();
     options.dpi = std::stod(text.substr(text.find("--dpi to ") + 9));
     EXPECT_GE(options.dpi, 1) << text;
   }
-  EXPECT_NO_THROW(require_memory(options));
+  EXPECT_NO_THROW(require_memory(options, 1e10));
   options.dpi += 1;
-  EXPECT_THROW(require_memory(options), InputError);
+  EXPECT_THROW(require_memory(options, 1e10), InputError);
+}
+
+TEST(Memory, BlankSheetNeedsNone) {
+  DesignOptions options;
+  options.film.width_mm = options.film.height_mm = 100000;
+  options.dpi = 2400;
+  const auto cube = std::make_shared<const Object>(make_sample("box"));
+  PreparedObject prepared{.posed = PosedObject(cube, {}),
+                          .paint = model_paint(cube, {1, 1, 1, 1}),
+                          .health = {},
+                          .units = {},
+                          .files = {},
+                          .artwork = {},
+                          .picture_problems = {}};
+  prepared.health.area_mm2 = 6 * 20 * 20;
+  const double inkable = inkable_mm2(prepared, options);
+  EXPECT_GE(inkable, 6 * (20 + 2 * options.inverse.bleed_mm) * (20 + 2 * options.inverse.bleed_mm))
+      << "six pieces with a bleed of their own";
+  EXPECT_LT(inkable, 2 * 6 * 20 * 20);
+  EXPECT_NO_THROW(require_memory(options, inkable));
+  options.film.width_mm = options.film.height_mm = 30;
+  EXPECT_EQ(inkable_mm2(prepared, options), 30 * 30) << "no more than there is";
 }
 
 TEST(Appearance, IsAskedForWithTheWayToMend) {
