@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/parallel.h"
+#include "base/run_scope.h"
 
 namespace hydrodip {
 
@@ -111,6 +113,7 @@ void cut_disc(Grid& grid, double radius, const FilmMesh& mesh) {
 }
 
 Grid make_grid(const FilmOptions& options, const Vec2& free, double cells, FilmMesh& mesh) {
+  check_cancelled();
   choose_grid(options, free, cells, mesh);
   Grid grid = rectangle_grid(mesh);
   if (options.shape == FilmShape::kDisc) cut_disc(grid, free.x() / 2, mesh);
@@ -154,7 +157,7 @@ void list_incident_triangles(FilmMesh& mesh) {
 
 void find_neighbors(FilmMesh& mesh) {
   mesh.neighbor.assign(mesh.triangles.size(), {-1, -1, -1});
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+  const auto find_of = [&](std::size_t t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t a = mesh.triangles[t][(k + 1) % 3], b = mesh.triangles[t][(k + 2) % 3];
       for (std::int32_t n = mesh.incident_begin[std::size_t(a)];
@@ -165,6 +168,10 @@ void find_neighbors(FilmMesh& mesh) {
           mesh.neighbor[t][k] = other;
       }
     }
+  };
+  parallel_for(mesh.triangles.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) find_of(t);
+  });
 }
 
 // The grid as it lies so far is the film model's.
@@ -184,8 +191,11 @@ void tell_printed_from_wet(const FilmOptions& options, FilmMesh& mesh) {
   }
 }
 
+// Fine film takes its time: each part looks whether it is still wanted.
 void finish(const FilmOptions& options, Grid& grid, FilmMesh& mesh) {
+  check_cancelled();
   number_vertices(grid, mesh);
+  check_cancelled();
   mesh.options = options;
   if (mesh.triangles.size() < 8)
     throw InputError("the film needs at least 8 triangles; set film.elements higher");
