@@ -212,9 +212,11 @@ void Canvas::fill(const Path& path, const Paint& paint) {
   Pixels pixels{};
   const std::vector<float> coverage = coverage_of_fill(path, pixels);
   std::size_t i = 0;
-  for (int y = pixels.y0; y < pixels.y1; ++y)
+  for (int y = pixels.y0; y < pixels.y1; ++y) {
+    check_cancelled();
     for (int x = pixels.x0; x < pixels.x1; ++x, ++i)
       if (coverage[i] > 0) blend(x, y, coverage[i], paint(to_mm(x, y)));
+  }
 }
 
 void Canvas::fill(const Path& path, const LinearColor& color) {
@@ -318,7 +320,9 @@ void Canvas::clip(const Path& path) {
 
 Image Canvas::image() const {
   Image image(width_px_, height_px_);
+  CheckEvery check(1 << 14);
   for (std::size_t i = 0; 3 * i < rgb_.size(); ++i) {
+    check();
     for (std::size_t c = 0; c < 3; ++c) image.rgba[4 * i + c] = linear_to_srgb8(rgb_[3 * i + c]);
     image.rgba[4 * i + 3] = 255;
   }
