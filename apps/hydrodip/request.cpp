@@ -385,7 +385,7 @@ void declare_studio(CLI::App& app, Request& request) {
   app.add_option("--port", studio.port, "default: 4714, or the next that is free")
       ->group(kStudioGroup)
       ->type_name("PORT")
-      ->check(CLI::Range(1, 65535));
+      ->check(CLI::Range(1, 65535).description(""));
   app.add_option("--listen", studio.address,
                  "address to serve from, for other machines; needs a password (default: this "
                  "machine alone)")

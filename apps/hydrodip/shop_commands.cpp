@@ -172,10 +172,10 @@ void declare_sweep_plan(CLI::App& app, Request& request) {
       ->group("Output")
       ->type_name("DIR");
   app.add_option("--tasks", request.sweep.tasks,
-                 "tasks of the scripts' arrays (default: so many that each lasts some minutes)")
+                 "tasks of the scripts' arrays (default: so many that each lasts two minutes)")
       ->group(kSweepGroup)
       ->type_name("N")
-      ->check(CLI::Range(1, 100000));
+      ->check(CLI::Range(1, 100000).description(""));
   app.add_flag_callback(
          "--no-trial", [&request] { request.sweep.trial = false; },
          "do not try the first run, which shows that it works and how long one takes")

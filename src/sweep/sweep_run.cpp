@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -56,6 +57,14 @@ class Claim {
   int descriptor_ = -1;
   bool held_ = false;
 };
+
+// However they came about: in this call, another, or when the sweep was planned.
+std::size_t count_done(const fs::path& folder, const std::vector<const SweepRun*>& runs) {
+  return std::size_t(std::count_if(runs.begin(), runs.end(), [&](const SweepRun* run) {
+    std::error_code none;
+    return fs::exists(outcome_file(folder, run->id), none);
+  }));
+}
 
 bool is_pending(const fs::path& folder, const SweepPlan& plan, const std::string& id, bool again) {
   const auto outcome = read_outcome(folder, id);
@@ -218,7 +227,8 @@ SweepDone run_sweep(const fs::path& folder, const SweepPlan& plan, const SweepWo
   std::string what_changed;
   FileHashes hashes;
   std::vector<std::function<void()>> tasks;
-  for (const SweepRun* run : chosen(plan, work))
+  const std::vector<const SweepRun*> runs = chosen(plan, work);
+  for (const SweepRun* run : runs)
     tasks.emplace_back([&, run] {
       if (!is_pending(folder, plan, run->id, work.again)) {
         ++before;
@@ -243,9 +253,9 @@ SweepDone run_sweep(const fs::path& folder, const SweepPlan& plan, const SweepWo
     context.side_by_side("running the sweep", tasks);
   } catch (const Cancelled&) {
     throw Cancelled(fmt::format(
-        "cancelled; {} of the sweep's runs were done and are kept, the others not: 'hydrodip sweep "
-        "run' does the rest",
-        done.load() + failed.load()));
+        "cancelled; {} of {} runs are done and kept, the others not: 'hydrodip sweep run' does the "
+        "rest",
+        count_done(folder, runs), runs.size()));
   }
   return {done, failed, before, elsewhere, changed, what_changed};
 }

@@ -1,6 +1,9 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
@@ -439,7 +442,9 @@ TEST_F(SweepTest, CancelledItLeavesNothingHalf) {
     context.cancel_at_check(checks);
     try {
       run_sweep(sweep(), made, {}, context.with_threads(1));
-    } catch (const Cancelled&) {
+    } catch (const Cancelled& why) {
+      const auto files = std::distance(fs::directory_iterator(sweep() / "runs"), {});
+      EXPECT_TRUE(contains(why.what(), fmt::format(" {} of 9 runs are done", files))) << why.what();
     }
     EXPECT_TRUE(fs::is_empty(sweep() / "work"));
     for (const auto& entry : fs::directory_iterator(sweep() / "runs"))
