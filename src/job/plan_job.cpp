@@ -87,10 +87,24 @@ Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPla
         {plan.dips[k].blank.posed.mesh(), plan.dips[k].blank.posed.surface(), look, dip.depth_mm,
          fmt::format("dip {}: {}, {:.4g} mm deep", k + 1, describe_hold(dip.pose, way_up(config)),
                      dip.depth_mm),
-         fmt::format("adds {:.1f} %, {:.1f} % are covered after it; blue: done before",
-                     100 * gained(plan, k), 100 * plan.covered_after[k])});
+         fmt::format("adds {:.1f} %, {:.1f} % are covered after it{}{}", 100 * gained(plan, k),
+                     100 * plan.covered_after[k], paint.says_anything() ? "" : "; teal: this dip",
+                     k > 0 ? "; grey blue: done before" : "")});
   }
   return render_holds(pictures, config.preview_width_px, context);
+}
+
+// A plan needs no picture, its print does.
+std::string printing(const SearchOutput& output) {
+  const std::string file = shell_word((output.folder() / "plan.toml").string());
+  const PreparedObject& prepared = output.prepared();
+  if (prepared.paint->says_anything())
+    return fmt::format("print them all: hydrodip print {}\n", file);
+  const bool has_uvs = !prepared.posed.object().uvs.empty();
+  return fmt::format(
+      "print them all, with the picture that goes on the model: hydrodip print {} {}\n"
+      "with it here as well, dips are chosen by what it shows\n",
+      file, has_uvs ? "--texture IMG" : "--art IMG");
 }
 
 }  // namespace
@@ -106,8 +120,7 @@ JobResult plan_job(const JobConfig& config, const RunContext& context, const Job
   write_file(output.path("plan.toml"), job_file(planned, output.folder()));
   JobResult result = output.finish(machine_readable(config, plan), in_words(config, plan),
                                    [&] { return draw(config, output.prepared(), plan, context); });
-  result.text += fmt::format("print them all: hydrodip print {}\n",
-                             shell_word((output.folder() / "plan.toml").string()));
+  result.text += printing(output);
   return result;
 }
 

@@ -43,6 +43,11 @@ grep -q '"gained_share"' plan.json || fail 'plan --json'
 command=$(sed -n 's/^print them all: hydrodip //p' said.txt)
 eval "\"$hydrodip\" $command --dpi 72 --set print.samples=1 --set ink.rounds_max=1 -o dips1 --quiet > /dev/null" ||
   fail "its command: $command"
+# A model without a picture can be planned; what it ends with says where the picture goes.
+write_tetrahedron plain.obj
+# shellcheck disable=SC2086
+"$hydrodip" plan plain.obj $small --dips 1 --quality draft -o plain --quiet > said.txt || fail "plain: $?"
+grep -q '^print them all, with the picture .*: hydrodip print plain/plan.toml --art IMG$' said.txt || fail 'no word of the picture'
 "$hydrodip" print plan/plan.toml --dpi 72 --set print.samples=1 -o dips --quiet > dips.txt ||
   fail "print of a plan: $?"
 for file in dip-1/print.pdf dip-1/print.tif dip-1/report.json dip-1/run-sheet.pdf report.html report.json \
