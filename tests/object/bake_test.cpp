@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -55,6 +56,50 @@ TEST(Bake, ShowsThePaintEverywhere) {
       EXPECT_NEAR(shown.g, wanted.g, 0.01) << t;
       EXPECT_NEAR(shown.b, wanted.b, 0.005) << t;
     }
+}
+
+// A disc of triangles round its middle, each 95 times as long as wide, as CAD programs give a
+// flat end. A stripe crosses them half-way.
+TEST(Bake, LongThinTrianglesHaveTexelsAlongTheirLength) {
+  TriangleMesh mesh;
+  mesh.positions.emplace_back(0, 0, 0);
+  constexpr int kCount = 600;
+  for (int i = 0; i < kCount; ++i) {
+    const double angle = 2 * M_PI * i / kCount;
+    mesh.positions.emplace_back(std::cos(angle), std::sin(angle), 0);
+  }
+  for (int i = 0; i < kCount; ++i) {
+    const std::int32_t a = 1 + i, b = 1 + (i + 1) % kCount;
+    mesh.triangles.push_back(i % 3 == 0   ? Triangle{0, a, b}
+                             : i % 3 == 1 ? Triangle{a, b, 0}
+                                          : Triangle{b, 0, a});
+  }
+  class StripePaint : public GradientPaint {
+   public:
+    using GradientPaint::GradientPaint;
+    LinearColor color_at(const SurfacePoint& point) const override {
+      const bool on = std::abs(GradientPaint::color_at(point).r - 0.5F) < 0.1F;
+      return on ? LinearColor{1, 1, 1, 1} : LinearColor{0, 0, 0, 1};
+    }
+  };
+  const StripePaint paint(mesh);
+  const Object object = painted_object(mesh, paint, 512);
+  ASSERT_FALSE(object.textures.empty());
+  int wrong = 0, all = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int i = 0; i < 100; ++i) {
+      // Along the middle of the triangle, from the disc's middle to its rim.
+      const double out = (i + 0.5) / 100;
+      std::array<double, 3> weight{};
+      for (std::size_t k = 0; k < 3; ++k)
+        weight[k] = mesh.triangles[t][k] == 0 ? 1 - out : 0.5 * out;
+      const SurfacePoint point{int(t), weight[1], weight[2]};
+      const LinearColor wanted = paint.color_at(point);
+      wrong += std::abs(color_at(object, point, {0, 0, 0, 1}).r - wanted.r) > 0.5F;
+      ++all;
+    }
+  // Seen: 0.2 %, and 1.3 % on squares of the triangles' area.
+  EXPECT_LT(wrong, all / 200) << wrong << " of " << all;
 }
 
 // A colour for each triangle.
