@@ -5,79 +5,158 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/run_scope.h"
+#include "object/flat_pieces.h"
 
 namespace hydrodip {
 namespace {
 
-// Of a triangle's patch: its corners are the centres of texels, so that bilinear sampling inside
-// the triangle never leaves it.
 constexpr int kLeastSide_px = 2, kMostSide_px = 4096;
-// Around the triangle its colours go on for such a part of the patch: smaller copies of a texture
-// (mipmaps) and JPEG mix texels, and its neighbours there are not its neighbours on the surface. As
-// drawn eight pixels wide or more it stays free of them.
+// Around a patch its colours go on for such a part of it: smaller copies of a texture (mipmaps) and
+// JPEG mix texels, and its neighbours there are not its neighbours on the surface. As drawn eight
+// pixels wide or more it stays free of them.
 constexpr int kMarginOfSide = 16, kLeastWithMargin_px = 8;
+// So far from it the nearest point of a piece is looked for.
+constexpr int kNearest_px = 4;
+constexpr std::size_t kMostLookedAt = 16;
+// In finer meshes triangles are about as small as texels, flat or not.
+constexpr std::size_t kMostForPieces = 200000;
 
 int margin_of(int side_px) {
   return side_px < kLeastWithMargin_px ? 0 : std::max(1, side_px / kMarginOfSide);
 }
 
-// Where a triangle lies in the texture: its longest side along x, its shortest along y, so that
-// long thin ones have texels along their length.
-struct Patch {
-  int x = 0, y = 0, width = kLeastSide_px, height = kLeastSide_px;
-  // Of the triangle's corners: that of the longest and the shortest side, the longest side's other
-  // and the shortest side's.
-  std::array<std::size_t, 3> corner = {0, 1, 2};
+// The plane of a triangle, with its longest side along x.
+class Plane {
+ public:
+  Plane(const TriangleMesh& mesh, std::size_t triangle) {
+    const Triangle& t = mesh.triangles[triangle];
+    const auto corner = [&](std::size_t k) { return mesh.positions[std::size_t(t[k % 3])]; };
+    std::size_t longest = 0;
+    double length = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const double other = (corner(k + 1) - corner(k)).norm(); other > length) {
+        longest = k;
+        length = other;
+      }
+    origin_ = corner(longest);
+    if (!(length > 0)) return;
+    along_ = (corner(longest + 1) - origin_) / length;
+    const Vec3 to_third = corner(longest + 2) - origin_;
+    across_ = to_third - to_third.dot(along_) * along_;
+    across_.stableNormalize();
+  }
+  Vec2 operator()(const Vec3& point) const {
+    return {(point - origin_).dot(along_), (point - origin_).dot(across_)};
+  }
 
-  // From one of the triangle's corners to the next.
-  int leg_x() const { return width - 1 - 2 * margin_of(width); }
-  int leg_y() const { return height - 1 - 2 * margin_of(height); }
+ private:
+  Vec3 origin_ = Vec3::Zero(), along_ = Vec3::Zero(), across_ = Vec3::Zero();
 };
 
-double area_of(const TriangleMesh& mesh, const Triangle& t) {
-  const Vec3& a = mesh.positions[std::size_t(t[0])];
-  return 0.5 * (mesh.positions[std::size_t(t[1])] - a)
-                   .cross(mesh.positions[std::size_t(t[2])] - a)
-                   .norm();
+// A flat piece of the surface and its place in the texture. What bounds it runs through the centres
+// of texels, so that bilinear sampling inside never leaves it.
+struct Patch {
+  std::size_t first = 0, count = 0;  // of Patches::triangles; the plane is the first one's
+  Vec2 along = Vec2::UnitX();        // of the plane: the longer of the rectangle's sides
+  Vec2 low_mm = Vec2::Zero(), size_mm = Vec2::Zero();
+  int x = 0, y = 0, width = kLeastSide_px, height = kLeastSide_px;
+
+  Vec2 turned(const Vec2& in_plane_mm) const {
+    return {in_plane_mm.dot(along), cross2(along, in_plane_mm)};
+  }
+  // From the texture's corner; whole numbers are texels' centres.
+  Vec2 texel(const Vec2& in_plane_mm) const {
+    const Vec2 share = (turned(in_plane_mm) - low_mm).cwiseQuotient(size_mm.cwiseMax(1e-30));
+    const auto place = [](double share, int side_px) {
+      const int margin = margin_of(side_px);
+      return margin + share * (side_px - 1 - 2 * margin);
+    };
+    return {x + place(share.x(), width), y + place(share.y(), height)};
+  }
+};
+
+struct Patches {
+  std::vector<std::size_t> triangles;  // one patch's behind another's
+  std::vector<Patch> list;
+};
+
+// The smallest rectangle along a side of one of the first triangles.
+void bound(const TriangleMesh& mesh, const std::vector<std::size_t>& triangles, Patch& patch) {
+  const Plane plane(mesh, triangles[patch.first]);
+  std::vector<std::array<Vec2, 3>> flat(patch.count);
+  for (std::size_t i = 0; i < patch.count; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      flat[i][k] =
+          plane(mesh.positions[std::size_t(mesh.triangles[triangles[patch.first + i]][k])]);
+  double least_mm2 = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < std::min(patch.count, kMostLookedAt); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      Patch tried = patch;
+      tried.along = flat[i][(k + 1) % 3] - flat[i][k];
+      if (!(tried.along.norm() > 0)) continue;
+      tried.along.normalize();
+      const auto box_of = [&] {
+        Box2 box;
+        for (const auto& corners : flat)
+          for (const Vec2& corner : corners) box.add(tried.turned(corner));
+        return box;
+      };
+      Box2 box = box_of();
+      if ((box.max - box.min).prod() >= least_mm2) continue;
+      if (box.max.y() - box.min.y() > box.max.x() - box.min.x()) {
+        tried.along = Vec2(-tried.along.y(), tried.along.x());
+        box = box_of();
+      }
+      least_mm2 = (box.max - box.min).prod();
+      tried.low_mm = box.min;
+      tried.size_mm = box.max - box.min;
+      patch = tried;
+    }
 }
 
-// A power of two, about as many texels to a millimetre as the density says.
-int side_for(double length_mm, double texels_per_mm) {
-  int side = kLeastSide_px;
-  while (2 * side <= texels_per_mm * length_mm + 1 && side < kMostSide_px) side *= 2;
-  return side;
-}
-
-Patch patch_for(const TriangleMesh& mesh, const Triangle& t, double texels_per_mm) {
-  std::array<double, 3> length_mm{};  // of the side that faces each corner
-  for (std::size_t k = 0; k < 3; ++k)
-    length_mm[k] =
-        (mesh.positions[std::size_t(t[(k + 1) % 3])] - mesh.positions[std::size_t(t[(k + 2) % 3])])
-            .norm();
-  const auto facing = [&](auto which) {
-    return std::size_t(which(length_mm.begin(), length_mm.end()) - length_mm.begin());
-  };
-  Patch patch;
-  const std::size_t by_longest = facing([](auto a, auto b) { return std::max_element(a, b); });
-  std::size_t by_shortest = facing([](auto a, auto b) { return std::min_element(a, b); });
-  if (by_shortest == by_longest) by_shortest = (by_longest + 1) % 3;  // all are as long
-  patch.corner = {3 - by_longest - by_shortest, by_shortest, by_longest};
-  patch.width = side_for(length_mm[by_longest], texels_per_mm);
-  patch.height = side_for(length_mm[by_shortest], texels_per_mm);
-  return patch;
-}
-
-std::vector<Patch> patches_for(const TriangleMesh& mesh, double texels_per_mm) {
-  std::vector<Patch> patches(mesh.triangles.size());
-  parallel_for(patches.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t)
-      patches[t] = patch_for(mesh, mesh.triangles[t], texels_per_mm);
+Patches patches_of(const TriangleMesh& mesh) {
+  Patches patches;
+  if (mesh.triangles.size() <= kMostForPieces) {
+    for (const std::vector<std::size_t>& piece : flat_pieces(mesh)) {
+      Patch patch;
+      patch.first = patches.triangles.size();
+      patch.count = piece.size();
+      patches.list.push_back(patch);
+      patches.triangles.insert(patches.triangles.end(), piece.begin(), piece.end());
+    }
+  } else {
+    patches.triangles.resize(mesh.triangles.size());
+    std::iota(patches.triangles.begin(), patches.triangles.end(), std::size_t(0));
+    patches.list.resize(mesh.triangles.size());
+    for (std::size_t t = 0; t < patches.list.size(); ++t) {
+      patches.list[t].first = t;
+      patches.list[t].count = 1;
+    }
+  }
+  parallel_for(patches.list.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) bound(mesh, patches.triangles, patches.list[n]);
   });
   return patches;
+}
+
+// Powers of two, about as many texels to a millimetre as the density says.
+void size_patches(std::vector<Patch>& patches, double texels_per_mm) {
+  const auto side_for = [&](double length_mm) {
+    int side = kLeastSide_px;
+    while (2 * side <= texels_per_mm * length_mm + 1 && side < kMostSide_px) side *= 2;
+    return side;
+  };
+  for (Patch& patch : patches) {
+    patch.width = side_for(patch.size_mm.maxCoeff());
+    patch.height = side_for(patch.size_mm.minCoeff());
+  }
 }
 
 // The even bits of a number, drawn together: one coordinate of a place on the Z-order curve.
@@ -93,64 +172,158 @@ int every_second_bit(std::uint64_t place) {
 std::uint64_t lay_out(std::vector<Patch>& patches) {
   std::vector<std::size_t> order(patches.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
-  const auto size = [&](std::size_t t) { return std::pair(patches[t].width, patches[t].height); };
+  const auto size = [&](std::size_t n) { return std::pair(patches[n].width, patches[n].height); };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
   std::uint64_t place = 0;  // behind the last square
   int left = 0;             // patches that fit into it
   for (std::size_t i = 0; i < order.size(); ++i) {
     Patch& patch = patches[order[i]];
+    const std::uint64_t square_px = std::uint64_t(patch.width) * std::uint64_t(patch.width);
     if (left == 0 || size(order[i]) != size(order[i - 1])) {
       left = patch.width / patch.height;
-      place += std::uint64_t(patch.width) * std::uint64_t(patch.width);
+      place += square_px;
     }
-    const std::uint64_t square = place - std::uint64_t(patch.width) * std::uint64_t(patch.width);
     --left;
-    patch.x = every_second_bit(square);
-    patch.y = every_second_bit(square >> 1U) + left * patch.height;
+    patch.x = every_second_bit(place - square_px);
+    patch.y = every_second_bit((place - square_px) >> 1U) + left * patch.height;
   }
   return place;
 }
 
-// Of the texels beyond the triangle's sides: about the nearest point of it.
-SurfacePoint point_at(std::size_t triangle, const Patch& patch, int x, int y) {
-  double along = double(std::max(0, x - margin_of(patch.width))) / patch.leg_x();
-  double across = double(std::max(0, y - margin_of(patch.height))) / patch.leg_y();
-  if (const double beyond = along + across - 1; beyond > 0) {
-    along = std::clamp(along - beyond / 2, 0.0, 1.0);
-    across = std::min(across, 1 - along);
-  }
-  std::array<double, 3> weight{};
-  weight[patch.corner[0]] = 1 - along - across;
-  weight[patch.corner[1]] = along;
-  weight[patch.corner[2]] = across;
-  return {int(triangle), weight[1], weight[2]};
-}
+// One patch's colours.
+class Filling {
+ public:
+  Filling(const TriangleMesh& mesh, const Paint& paint, const Patches& patches, Image& texture)
+      : mesh_(mesh), paint_(paint), patches_(patches), texture_(texture) {}
 
-void fill(const Paint& paint, std::size_t triangle, const Patch& patch, Image& texture) {
-  for (int y = 0; y < patch.height; ++y)
-    for (int x = 0; x < patch.width; ++x) {
-      const LinearColor color = paint.color_at(point_at(triangle, patch, x, y));
-      std::uint8_t* pixel = texture.pixel(patch.x + x, patch.y + y);
-      pixel[0] = linear_to_srgb8(color.r);
-      pixel[1] = linear_to_srgb8(color.g);
-      pixel[2] = linear_to_srgb8(color.b);
-      pixel[3] = 255;
+  void fill(const Patch& patch) const {
+    const auto texels = std::size_t(patch.width) * std::size_t(patch.height);
+    std::vector<Nearest> nearest(texels);
+    const Plane plane(mesh_, patches_.triangles[patch.first]);
+    CheckEvery check(64);
+    for (std::size_t i = 0; i < patch.count; ++i) {
+      check();
+      look_for(patches_.triangles[patch.first + i], patch, plane, nearest);
     }
-}
+    spread(patch, nearest);
+    for (int y = 0; y < patch.height; ++y) {
+      check();
+      for (int x = 0; x < patch.width; ++x) {
+        const Nearest& at = nearest[std::size_t(y) * std::size_t(patch.width) + std::size_t(x)];
+        store(paint_.color_at(at.point), texture_.pixel(patch.x + x, patch.y + y));
+      }
+    }
+  }
+
+ private:
+  struct Nearest {
+    SurfacePoint point{-1, 0, 0};
+    double distance_px = 1e300;
+  };
+
+  // The texels in a triangle and next to it.
+  void look_for(std::size_t triangle, const Patch& patch, const Plane& plane,
+                std::vector<Nearest>& nearest) const {
+    std::array<Vec2, 3> corner;
+    Box2 box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner[k] = patch.texel(plane(mesh_.positions[std::size_t(mesh_.triangles[triangle][k])])) -
+                  Vec2(patch.x, patch.y);
+      box.add(corner[k]);
+    }
+    const Vec2 e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
+    const double twice = cross2(e1, e2);
+    const auto [first_y, last_y] = texels_near(box.min.y(), box.max.y(), patch.height);
+    for (int y = first_y; y <= last_y; ++y) {
+      // One more, so that the triangle always meets it.
+      const auto [low, high] = across_band(corner, y - kNearest_px - 1, y + kNearest_px + 1);
+      const auto [first_x, last_x] = texels_near(low, high, patch.width);
+      for (int x = first_x; x <= last_x; ++x) {
+        const Vec2 to = Vec2(x, y) - corner[0];
+        // No weight below 0: about the nearest point of the triangle.
+        double u = 0, v = 0;
+        if (twice != 0) {
+          u = std::clamp(cross2(to, e2) / twice, 0.0, 1.0);
+          v = std::clamp(cross2(e1, to) / twice, 0.0, 1.0);
+        }
+        if (u + v > 1) {
+          u = std::clamp(u - (u + v - 1) / 2, 0.0, 1.0);
+          v = 1 - u;
+        }
+        const double distance_px = (to - u * e1 - v * e2).norm();
+        Nearest& at = nearest[std::size_t(y) * std::size_t(patch.width) + std::size_t(x)];
+        if (!(distance_px < at.distance_px)) continue;
+        at = {{int(triangle), u, v}, distance_px};
+      }
+    }
+  }
+
+  // Further away as in the nearest column, then as in the nearest row.
+  static void spread(const Patch& patch, std::vector<Nearest>& nearest) {
+    const auto at = [&](int x, int y) -> Nearest& {
+      return nearest[std::size_t(y) * std::size_t(patch.width) + std::size_t(x)];
+    };
+    const auto take = [](Nearest& here, const Nearest& beside) {
+      if (here.point.triangle < 0) here = beside;
+    };
+    for (int y = 0; y < patch.height; ++y) {
+      for (int x = 1; x < patch.width; ++x) take(at(x, y), at(x - 1, y));
+      for (int x = patch.width - 2; x >= 0; --x) take(at(x, y), at(x + 1, y));
+    }
+    for (int x = 0; x < patch.width; ++x) {
+      for (int y = 1; y < patch.height; ++y) take(at(x, y), at(x, y - 1));
+      for (int y = patch.height - 2; y >= 0; --y) take(at(x, y), at(x, y + 1));
+    }
+  }
+
+  static std::pair<int, int> texels_near(double low, double high, int side_px) {
+    return {std::max(0, int(std::floor(low)) - kNearest_px),
+            std::min(side_px - 1, int(std::ceil(high)) + kNearest_px)};
+  }
+
+  // From where to where a triangle reaches between two heights that it meets.
+  static std::pair<double, double> across_band(const std::array<Vec2, 3>& corner, double low,
+                                               double high) {
+    double least = 1e300, most = -1e300;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2 &a = corner[k], &b = corner[(k + 1) % 3];
+      for (const double y : {std::clamp(a.y(), low, high), std::clamp(b.y(), low, high)}) {
+        if (y < std::min(a.y(), b.y()) || y > std::max(a.y(), b.y())) continue;
+        const double x =
+            a.y() == b.y() ? a.x() : a.x() + (b.x() - a.x()) * (y - a.y()) / (b.y() - a.y());
+        least = std::min({least, x, a.y() == b.y() ? b.x() : x});
+        most = std::max({most, x, a.y() == b.y() ? b.x() : x});
+      }
+    }
+    return {least, most};
+  }
+
+  static void store(const LinearColor& color, std::uint8_t* pixel) {
+    pixel[0] = linear_to_srgb8(color.r);
+    pixel[1] = linear_to_srgb8(color.g);
+    pixel[2] = linear_to_srgb8(color.b);
+    pixel[3] = 255;
+  }
+
+  const TriangleMesh& mesh_;
+  const Paint& paint_;
+  const Patches& patches_;
+  Image& texture_;
+};
 
 // v runs up, rows run down.
-CornerUv corners_of(const Patch& patch, int side_px) {
-  const auto at = [&](int x, int y) {
-    return Eigen::Vector2f(float((patch.x + x + 0.5) / side_px),
-                           float(1 - (patch.y + y + 0.5) / side_px));
-  };
-  const int left = margin_of(patch.width), upper = margin_of(patch.height);
-  CornerUv uv;
-  uv[patch.corner[0]] = at(left, upper);
-  uv[patch.corner[1]] = at(left + patch.leg_x(), upper);
-  uv[patch.corner[2]] = at(left, upper + patch.leg_y());
-  return uv;
+void tell_corners(const TriangleMesh& mesh, const Patches& patches, const Patch& patch, int side_px,
+                  std::vector<CornerUv>& uvs) {
+  const Plane plane(mesh, patches.triangles[patch.first]);
+  for (std::size_t i = 0; i < patch.count; ++i) {
+    const std::size_t t = patches.triangles[patch.first + i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2 at = patch.texel(plane(mesh.positions[std::size_t(mesh.triangles[t][k])]));
+      uvs[t][k] =
+          Eigen::Vector2f(float((at.x() + 0.5) / side_px), float(1 - (at.y() + 0.5) / side_px));
+    }
+  }
 }
 
 // What patches of the least size would hold.
@@ -173,19 +346,19 @@ Object baked(const TriangleMesh& mesh, const Paint& paint, int most_px) {
   object.material_of.assign(mesh.triangles.size(), 0);
   if (mesh.triangles.empty()) return object;
 
+  Patches patches = patches_of(mesh);
   double total_mm2 = 0;
-  for (const Triangle& t : mesh.triangles) total_mm2 += area_of(mesh, t);
-  double density = total_mm2 > 0 ? most_px / std::sqrt(total_mm2) : 1;
-  std::vector<Patch> patches = patches_for(mesh, density);
-  std::uint64_t texels = lay_out(patches);
-  for (int halvings = 0; double(texels) > double(most_px) * most_px && halvings < 24; ++halvings) {
-    density /= 2;
-    patches = patches_for(mesh, density);
-    texels = lay_out(patches);
+  for (const Patch& patch : patches.list) total_mm2 += patch.size_mm.prod();
+  double density = total_mm2 > 0 ? 2 * most_px / std::sqrt(total_mm2) : 1;
+  std::uint64_t texels = std::numeric_limits<std::uint64_t>::max();
+  for (int smaller = 0; double(texels) > double(most_px) * most_px && smaller < 48; ++smaller) {
+    density /= std::numbers::sqrt2;
+    size_patches(patches.list, density);
+    texels = lay_out(patches.list);
   }
-  const bool all_least = std::all_of(patches.begin(), patches.end(), [](const Patch& patch) {
-    return patch.width == kLeastSide_px;
-  });
+  const bool all_least =
+      std::all_of(patches.list.begin(), patches.list.end(),
+                  [](const Patch& patch) { return patch.width == kLeastSide_px; });
   if (all_least) {
     object.colors = corner_colors(mesh, paint);
     return object;
@@ -193,10 +366,14 @@ Object baked(const TriangleMesh& mesh, const Paint& paint, int most_px) {
   const auto side_px =
       int(std::bit_ceil(std::max(2U, unsigned(std::ceil(std::sqrt(double(texels)))))));
   auto texture = std::make_shared<Image>(side_px, side_px);
-  parallel_for(patches.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) fill(paint, t, patches[t], *texture);
+  object.uvs.resize(mesh.triangles.size());
+  const Filling filling(mesh, paint, patches, *texture);
+  parallel_for(patches.list.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      filling.fill(patches.list[n]);
+      tell_corners(mesh, patches, patches.list[n], side_px, object.uvs);
+    }
   });
-  for (const Patch& patch : patches) object.uvs.push_back(corners_of(patch, side_px));
   object.textures.push_back(std::move(texture));
   object.materials[0].texture = 0;
   return object;
