@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/error.h"
@@ -13,6 +14,8 @@ namespace hydrodip {
 namespace {
 
 constexpr double kTiny_mm = 5, kHuge_mm = 1000;
+// Film lies where it should within a few thousandths of a millimetre.
+constexpr double kRounded_mm = 0.003;
 
 // The film image as wanted, stretched, inked and seen, and what is written of it.
 constexpr double kBytesPerPixel = 32;
@@ -28,6 +31,20 @@ void warn_if_tiny(const TriangleMesh& mesh, const RunContext& context) {
   context.warn(fmt::format(
       "The object's largest extent is {} mm: if that is not meant, say its --units or --size.",
       length));
+}
+
+// Files of models keep seven digits of a coordinate, or are read so.
+void warn_if_far(const TriangleMesh& mesh, double scale, const RunContext& context) {
+  const Box3 box = mesh.bounds();
+  if (box.empty()) return;
+  const double far_mm = scale * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff();
+  const double rounded_mm = far_mm * std::numeric_limits<float>::epsilon();
+  if (!(rounded_mm > kRounded_mm)) return;
+  context.warn(fmt::format(
+      "The model lies up to {:.0f} mm from its file's origin, so far that its coordinates are "
+      "rounded to {} mm: move it to the origin where it was made, and save it anew.",
+      far_mm,
+      rounded_mm < 1 ? fmt::format("{:.1g}", rounded_mm) : fmt::format("{:.0f}", rounded_mm)));
 }
 
 void require_room(const DesignOptions& options, double inked_mm2, double limit_bytes) {
@@ -62,6 +79,7 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
   result.health.area_mm2 *= scale * scale;
   result.health.volume_mm3 *= scale * scale * scale;
   warn_if_tiny(result.posed.mesh(), context);
+  warn_if_far(*object, scale, context);
   context.progress("loading", 1);
   if (options.artwork.empty()) return result;
   Artwork artwork = lay_artwork({options.artwork, std::move(pictures), result.paint,

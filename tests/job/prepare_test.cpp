@@ -68,6 +68,23 @@ TEST(Size, IsAskedForWhereItIsLikelyMeantOtherwise) {
   EXPECT_NO_THROW(require_size(cube(1.7), said, "part.stl"));
 }
 
+TEST(PrepareObject, SaysWhereCoordinatesAreRounded) {
+  ObjectOptions options;
+  options.load.units = "mm";
+  for (const double off_mm : {0.0, 1e4, 1e6}) {
+    auto model = std::make_shared<LoadedObject>();
+    model->object = make_sample("box");
+    for (Vec3& p : model->object.positions) p.x() += off_mm;
+    options.given = model;
+    RunContext context;
+    prepare_object("box.obj", options, context);
+    int said = 0;
+    for (const std::string& warning : context.warnings())
+      said += contains(warning, "rounded to 0.1 mm") ? 1 : 0;
+    EXPECT_EQ(said, off_mm > 1e5 ? 1 : 0) << off_mm;
+  }
+}
+
 TEST(Memory, IsEnoughAtTheResolutionThatIsProposed) {
   DesignOptions options;
   options.film.width_mm = options.film.height_mm = 100000;
