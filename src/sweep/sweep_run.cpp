@@ -228,6 +228,7 @@ SweepDone run_sweep(const fs::path& folder, const SweepPlan& plan, const SweepWo
   FileHashes hashes;
   std::vector<std::function<void()>> tasks;
   const std::vector<const SweepRun*> runs = chosen(plan, work);
+  tasks.reserve(runs.size());
   for (const SweepRun* run : runs)
     tasks.emplace_back([&, run] {
       if (!is_pending(folder, plan, run->id, work.again)) {
