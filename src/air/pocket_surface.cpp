@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "base/disjoint_sets.h"
 #include "base/run_scope.h"
+#include "object/edges.h"
 
 namespace hydrodip {
 
@@ -39,26 +39,13 @@ void for_fan(const Polygon& polygon, const Visit& visit) {
 }  // namespace
 
 PocketSurface::PocketSurface(const TriangleMesh& mesh) : mesh_(mesh) {
-  struct Side {
-    std::int32_t a, b, triangle;
-  };
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
-      sides.push_back({a, b, std::int32_t(t)});
-    }
-  sort_unless_cancelled(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
-    return std::tie(x.a, x.b, x.triangle) < std::tie(y.a, y.b, y.triangle);
+  const std::vector<TriangleSide> sides = sorted_sides(mesh);
+  for_each_edge(sides, [&](std::size_t begin, std::size_t end) {
+    const std::int32_t a = sides[begin].low_vertex(), b = sides[begin].high_vertex();
+    for (std::size_t i = begin + 1; i < end; ++i)
+      shared_.push_back({a, b, face_of(sides[begin]), face_of(sides[i])});
+    if (end == begin + 1) open_edges_.push_back({a, b});
   });
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    for (; end < sides.size() && sides[end].a == sides[i].a && sides[end].b == sides[i].b; ++end)
-      shared_.push_back({sides[i].a, sides[i].b, sides[i].triangle, sides[end].triangle});
-    if (end == i + 1) open_edges_.push_back({sides[i].a, sides[i].b});
-    i = end;
-  }
 }
 
 PocketSurface::Part PocketSurface::part(

@@ -8,45 +8,26 @@
 #include <numeric>
 
 #include "base/run_scope.h"
+#include "object/edges.h"
 
 namespace hydrodip {
 namespace {
 
 const double kLeastCosine = std::cos(0.5 * std::numbers::pi / 180);
 
-struct Side {
-  std::int32_t from, to;  // ascending
-  std::int32_t triangle;
-};
-
 // Per triangle: those across its sides, -1 for none.
 std::vector<std::array<std::int32_t, 3>> across_sides(const TriangleMesh& mesh) {
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [from, to] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
-      sides.push_back({from, to, std::int32_t(t)});
-    }
-  const auto before = [](const Side& a, const Side& b) {
-    return std::array{a.from, a.to, a.triangle} < std::array{b.from, b.to, b.triangle};
-  };
-  sort_unless_cancelled(sides.begin(), sides.end(), before);
   std::vector<std::array<std::int32_t, 3>> across(mesh.triangles.size(), {-1, -1, -1});
   const auto join = [&](std::int32_t triangle, std::int32_t other) {
     auto& of = across[std::size_t(triangle)];
     if (const auto free = std::find(of.begin(), of.end(), -1); free != of.end()) *free = other;
   };
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    while (end < sides.size() && sides[end].from == sides[i].from && sides[end].to == sides[i].to)
-      ++end;
-    if (end - i == 2) {
-      join(sides[i].triangle, sides[i + 1].triangle);
-      join(sides[i + 1].triangle, sides[i].triangle);
-    }
-    i = end;
-  }
+  const std::vector<TriangleSide> sides = sorted_sides(mesh);
+  for_each_edge(sides, [&](std::size_t begin, std::size_t end) {
+    if (end - begin != 2) return;
+    join(face_of(sides[begin]), face_of(sides[begin + 1]));
+    join(face_of(sides[begin + 1]), face_of(sides[begin]));
+  });
   return across;
 }
 

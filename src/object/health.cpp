@@ -13,6 +13,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/run_scope.h"
+#include "object/edges.h"
 #include "object/polygon.h"
 
 namespace hydrodip {
@@ -132,47 +133,7 @@ long drop_duplicates(Object& object) {
 
 // ---- edges --------------------------------------------------------------------------------------
 
-// One side of a triangle. Sorting brings those on the same edge together.
-struct Side {
-  std::uint64_t edge;   // smaller vertex in the high half, larger in the low half
-  std::uint32_t place;  // 3 * face + corner
-  bool operator<(const Side& other) const {
-    return edge != other.edge ? edge < other.edge : place < other.place;
-  }
-  std::int32_t low_vertex() const { return std::int32_t(edge >> 32); }
-  std::int32_t high_vertex() const { return std::int32_t(edge & 0xffffffffu); }
-};
-
-std::int32_t face_of(const Side& side) { return std::int32_t(side.place / 3); }
-
-// Whether the triangle runs from the edge's smaller to its larger vertex.
-bool runs_up(const Object& object, const Side& side) {
-  return object.triangles[side.place / 3][side.place % 3] == side.low_vertex();
-}
-
-std::vector<Side> sorted_sides(const Object& object) {
-  std::vector<Side> sides(3 * object.triangles.size());
-  for (std::size_t place = 0; place < sides.size(); ++place) {
-    const Triangle& t = object.triangles[place / 3];
-    const auto a = std::uint64_t(t[place % 3]), b = std::uint64_t(t[(place + 1) % 3]);
-    sides[place] = {std::min(a, b) << 32 | std::max(a, b), std::uint32_t(place)};
-  }
-  sort_unless_cancelled(sides.begin(), sides.end(), std::less<>());
-  return sides;
-}
-
-// Calls visit(begin, end) for the sides of every edge, in edge order.
-template <typename Visit>
-void for_each_edge(const std::vector<Side>& sides, Visit visit) {
-  CheckEvery check(kTurns);
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    check();
-    while (end < sides.size() && sides[end].edge == sides[begin].edge) ++end;
-    visit(begin, end);
-  }
-}
-
-void count_edges(const Object& object, const std::vector<Side>& sides, MeshHealth& health) {
+void count_edges(const Object& object, const std::vector<TriangleSide>& sides, MeshHealth& health) {
   DisjointSets rims(object.positions.size());
   std::vector<std::int32_t> rim_vertices;
   for_each_edge(sides, [&](std::size_t begin, std::size_t end) {
@@ -206,7 +167,8 @@ long count_shells(const Object& object) {
 // Closes holes that are small beside the object and beside the shell that they are in.
 class HoleFiller {
  public:
-  HoleFiller(Object& object, const std::vector<Side>& sides) : object_(object), sides_(sides) {}
+  HoleFiller(Object& object, const std::vector<TriangleSide>& sides)
+      : object_(object), sides_(sides) {}
 
   // Returns how many it closed.
   long run() {
@@ -328,7 +290,7 @@ class HoleFiller {
   }
 
   Object& object_;
-  const std::vector<Side>& sides_;
+  const std::vector<TriangleSide>& sides_;
   std::vector<Rim> rims_;
   std::optional<DisjointSets> shells_;
   std::vector<Box3> shell_boxes_;
@@ -346,7 +308,7 @@ struct Patches {
 };
 
 // For each side its partner across a two-face edge, or -1.
-std::vector<std::int32_t> partners(const std::vector<Side>& sides) {
+std::vector<std::int32_t> partners(const std::vector<TriangleSide>& sides) {
   std::vector<std::int32_t> partner(sides.size(), -1);
   for_each_edge(sides, [&](std::size_t begin, std::size_t end) {
     if (end - begin != 2) return;
@@ -365,7 +327,7 @@ bool same_direction(const Object& object, std::int32_t place_a, std::int32_t pla
 
 // Floods each patch from its first face; a neighbour that runs along the shared edge in the same
 // direction faces the other way.
-Patches agree_within_patches(const Object& object, const std::vector<Side>& sides) {
+Patches agree_within_patches(const Object& object, const std::vector<TriangleSide>& sides) {
   const std::vector<std::int32_t> partner = partners(sides);
   Patches patches;
   patches.patch_of.assign(object.triangles.size(), -1);
@@ -402,7 +364,7 @@ Patches agree_within_patches(const Object& object, const std::vector<Side>& side
 }
 
 // A patch is closed if around every edge its own faces cancel: as many run up as run down.
-void find_closed(const Object& object, const std::vector<Side>& sides, Patches& patches) {
+void find_closed(const Object& object, const std::vector<TriangleSide>& sides, Patches& patches) {
   std::vector<std::pair<std::int32_t, int>> balance;
   for_each_edge(sides, [&](std::size_t begin, std::size_t end) {
     balance.clear();
@@ -620,7 +582,7 @@ void flip(Object& object, std::size_t face) {
   if (!object.colors.empty()) std::swap(object.colors[face][1], object.colors[face][2]);
 }
 
-void orient(Object& object, const std::vector<Side>& sides, MeshHealth& health) {
+void orient(Object& object, const std::vector<TriangleSide>& sides, MeshHealth& health) {
   Patches patches = agree_within_patches(object, sides);
   find_closed(object, sides, patches);
   const std::vector<char> invert = patches_to_invert(object, patches);
@@ -700,7 +662,7 @@ MeshHealth check_and_repair(Object& object) {
   health.degenerate_removed = drop_collapsed(object);
   health.duplicates_removed = drop_duplicates(object);
   {
-    std::vector<Side> sides = sorted_sides(object);
+    std::vector<TriangleSide> sides = sorted_sides(object);
     health.holes_closed = HoleFiller(object, sides).run();
     if (health.holes_closed > 0) sides = sorted_sides(object);
     count_edges(object, sides, health);
