@@ -111,7 +111,6 @@ Design design(const ConfigHandle& handle, const py::object& progress) {
     if (asks_for_several_dips(config))
       throw InputError("design() is for one dip; print_job() makes the sheets of several");
     const RunScope scope(context.with_threads(config.threads));
-    require_address_space(config.design);
     Timings times;
     auto job = std::make_shared<const ReadyJob>(make_ready(config, true, times, context));
     DesignedJob made = designed(*job, times, context);

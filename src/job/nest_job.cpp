@@ -302,7 +302,6 @@ std::vector<std::string> file_names(std::size_t parts) {
 
 JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const RunContext& context) {
   const RunScope scope(context.with_threads(sheet.threads));
-  require_address_space(sheet.design);
   require_memory(sheet.design, sheet.design.film.width_mm * sheet.design.film.height_mm);
   require_fonts("the pieces' names");
   OutputFolder folder(sheet.output, sheet.earlier_result);

@@ -122,12 +122,9 @@ double sheet_memory_bytes(const DesignOptions& options, double inked_mm2) {
   return kBytesPerPixel * inked_mm2 * px_per_mm * px_per_mm;
 }
 
-void require_address_space(const DesignOptions& options) {
+void require_memory(const DesignOptions& options, double inked_mm2) {
   const double sheet_mm2 = options.film.width_mm * options.film.height_mm;
   require_room(options, sheet_mm2, address_limit_bytes());
-}
-
-void require_memory(const DesignOptions& options, double inked_mm2) {
   require_room(options, inked_mm2, memory_limit_bytes());
 }
 

@@ -49,10 +49,8 @@ void require_appearance(const PreparedObject& prepared, const std::filesystem::p
 double inkable_mm2(const PreparedObject& prepared, const DesignOptions& options);
 // What a sheet takes while it is designed and written, about: blank film takes none.
 double sheet_memory_bytes(const DesignOptions& options, double inked_mm2);
-// Throws InputError if the pictures of the whole sheet, blank or not, are beyond the process's own
-// limits. Needs no object.
-void require_address_space(const DesignOptions& options);
-// Throws InputError if the sheet's pictures cannot fit the memory that there is.
+// Throws InputError if the sheet's pictures cannot fit the memory that there is, or the whole
+// sheet, blank or not, the process's own limits.
 void require_memory(const DesignOptions& options, double inked_mm2);
 
 }  // namespace hydrodip

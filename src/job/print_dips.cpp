@@ -87,7 +87,6 @@ bool asks_for_several_dips(const JobConfig& config) {
 
 JobResult print_dips(const JobConfig& config, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
-  require_address_space(config.design);
   require_no_correction(config);
   OutputFolder folder(config.output, config.earlier_result);
   Timings times;

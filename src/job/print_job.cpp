@@ -61,7 +61,6 @@ DesignedJob designed(const ReadyJob& job, Timings& times, const RunContext& cont
 JobResult print_job(const JobConfig& given, const RunContext& context) {
   if (asks_for_several_dips(given)) return print_dips(given, context);
   const RunScope scope(context.with_threads(given.threads));
-  require_address_space(given.design);
   OutputFolder folder(given.output, given.earlier_result);
   Timings times;
 
