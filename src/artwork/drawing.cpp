@@ -176,7 +176,8 @@ struct Drawing::Impl {
   Vec2 size;
   std::string name;
 
-  bool has_text = false;
+  bool is_text = false;   // of letters alone
+  bool has_text = false;  // an SVG drawing has
   std::string linked;
   bool is_indivisible = false;
   double most_scale = 1e300;  // pixels per unit
@@ -186,14 +187,21 @@ struct Drawing::Impl {
             std::string& why) const {
     const Owned<cairo_t> cairo(cairo_create(surface));
     cairo_translate(cairo.get(), -left, -top);
-    // One factor for both directions would leave a strip of a rounded size blank.
-    cairo_scale(cairo.get(), whole.x() / size.x(), whole.y() / size.y());
-    const RsvgRectangle all{0, 0, size.x(), size.y()};
-    GError* error = nullptr;
+    const Vec2 scale = whole.cwiseQuotient(size);
     check_cancelled();
-    if (rsvg_handle_render_document(handle.get(), cairo.get(), &all, &error)) return true;
-    why = message_of(error);
-    return false;
+    // librsvg sets lines too long or too short where the two directions differ.
+    if (is_stretched(whole) && (is_text || has_text))
+      return draw_stretched(cairo.get(), scale, why);
+    if (is_text) {
+      const double both = scale.minCoeff();
+      const Vec2 rim = 0.5 * (whole - both * size);
+      cairo_translate(cairo.get(), rim.x(), rim.y());
+      cairo_scale(cairo.get(), both, both);
+    } else {
+      // One factor for both directions would leave a strip of a rounded size blank.
+      cairo_scale(cairo.get(), scale.x(), scale.y());
+    }
+    return render(cairo.get(), why);
   }
 
   // Empty, with a reason, if it cannot be drawn.
@@ -223,6 +231,37 @@ struct Drawing::Impl {
   }
 
  private:
+  // By more than a size in whole pixels has to be.
+  bool is_stretched(const Vec2& whole) const {
+    const Vec2 scale = whole.cwiseQuotient(size);
+    return std::abs(scale.x() * size.y() - whole.y()) >= 1 &&
+           std::abs(scale.y() * size.x() - whole.x()) >= 1;
+  }
+
+  // Set at one scale for both directions, the larger one, and then pressed together.
+  bool draw_stretched(cairo_t* cairo, const Vec2& scale, std::string& why) const {
+    const Owned<cairo_surface_t> lines(
+        cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr));
+    const Owned<cairo_t> setting(cairo_create(lines.get()));
+    const double both = scale.maxCoeff();
+    cairo_scale(setting.get(), both, both);
+    if (!render(setting.get(), why)) return false;
+    cairo_scale(cairo, scale.x() / both, scale.y() / both);
+    cairo_set_source_surface(cairo, lines.get(), 0, 0);
+    cairo_paint(cairo);
+    const cairo_status_t status = cairo_status(cairo);
+    if (status != CAIRO_STATUS_SUCCESS) why = cairo_status_to_string(status);
+    return status == CAIRO_STATUS_SUCCESS;
+  }
+
+  bool render(cairo_t* cairo, std::string& why) const {
+    const RsvgRectangle all{0, 0, size.x(), size.y()};
+    GError* error = nullptr;
+    if (rsvg_handle_render_document(handle.get(), cairo, &all, &error)) return true;
+    why = message_of(error);
+    return false;
+  }
+
   static Owned<cairo_surface_t> blank(int width, int height) {
     Owned<cairo_surface_t> surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
     if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
@@ -283,6 +322,7 @@ Drawing Drawing::from_text(const std::string& text, const std::string& font,
   impl->handle = parse(svg_around(element, ink), why);
   if (!impl->handle) throw InputError(fmt::format("{} cannot be set: {}.", name, why));
   impl->size = {ink.width, ink.height};
+  impl->is_text = true;
   impl->most_scale = kLargestLetter_px / kFontSize;
   return Drawing(std::move(impl));
 }

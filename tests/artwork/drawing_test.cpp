@@ -129,6 +129,58 @@ TEST(Drawing, LettersCanBeLarge) {
   EXPECT_TRUE(tiles->shows_anything());
 }
 
+// How much ink is in each column, and the first and last that have any.
+struct Columns {
+  std::vector<double> ink;
+  int first = -1, last = -1;
+};
+
+Columns columns_of(const Image& image) {
+  Columns columns{std::vector<double>(std::size_t(image.width_px), 0)};
+  for (int x = 0; x < image.width_px; ++x) {
+    for (int y = 0; y < image.height_px; ++y)
+      columns.ink[std::size_t(x)] += image.pixel(x, y)[3] / 255.0;
+    if (!(columns.ink[std::size_t(x)] > 0)) continue;
+    if (columns.first < 0) columns.first = x;
+    columns.last = x;
+  }
+  return columns;
+}
+
+// A word that is its own mirror image stays it at any size, small, rounded or stretched on purpose,
+// and fills it from edge to edge, but for what half a pixel of its height comes to.
+TEST(Drawing, WordsFillWhateverSizeIsAsked) {
+  const Drawing word = Drawing::from_text("HIT IT OHO TI TIH", "sans bold", {});
+  for (const double stretched : {1.0, 0.95, 1.04, 0.3, 4.0})
+    for (const int width : {83, 151, 400, 3000}) {
+      const int height = std::max(1, int(stretched * width / word.aspect()));
+      const Columns columns = columns_of(word.pixels(width, height));
+      SCOPED_TRACE(testing::Message() << width << " x " << height);
+      const double rim = 0.02 * width + 1 + 0.5 * width / height;
+      EXPECT_LE(columns.first, rim);
+      EXPECT_GE(columns.last, width - 1 - rim);
+      double sum = 0, left = 0;
+      for (int x = 0; x < width; ++x) {
+        sum += columns.ink[std::size_t(x)];
+        if (2 * x + 1 < width) left += columns.ink[std::size_t(x)];
+      }
+      EXPECT_NEAR(left / sum, 0.5, 0.02);
+    }
+}
+
+TEST(Drawing, TextInAStretchedDrawingStaysInItsPlace) {
+  const Drawing drawing = drawing_of(
+      "<text x='150' y='120' font-size='40' text-anchor='middle' font-weight='bold' "
+      "font-family='sans'>HIT OHO TIH</text>");
+  const Columns plain = columns_of(drawing.pixels(600, 400));
+  for (const auto& [width, height] : {std::pair(600, 150), std::pair(200, 600)}) {
+    const Columns columns = columns_of(drawing.pixels(width, height));
+    const double scale = width / 600.0;
+    EXPECT_NEAR(columns.first, scale * plain.first, 2) << width;
+    EXPECT_NEAR(columns.last, scale * plain.last, 2) << width;
+  }
+}
+
 TEST(Drawing, KnowsWhatItsFileLacks) {
   const std::string shape = "<rect width='9' height='9'/>";
   EXPECT_FALSE(drawing_of(shape).has_text());
