@@ -108,6 +108,11 @@ DesignOptions draft_of(DesignOptions options) {
   return options;
 }
 
+bool is_draft(const DesignOptions& options) {
+  return options.film.elements <= kDraftElements && options.dip.step_mm >= kDraftStep_mm &&
+         options.rounds_max == 1;
+}
+
 double InkResult::last_change_mm() const { return rounds.empty() ? 0 : rounds.back().change_mm; }
 
 Designed design_on(const DesignTask& task, const DippedObject& dipped, const RunContext& context) {

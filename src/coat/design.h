@@ -40,6 +40,8 @@ inline constexpr int kDraftElements = 10000;
 inline constexpr double kDraftStep_mm = 1;
 inline constexpr int kDraftAirCells = 40000;
 DesignOptions draft_of(DesignOptions options);
+// Whether a design by such options is no better than a draft.
+bool is_draft(const DesignOptions& options);
 
 // What lies on the film, and what comes of it on the object.
 struct FilmInk {

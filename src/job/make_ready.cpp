@@ -17,6 +17,7 @@ ReadyJob make_ready(const JobConfig& given, bool to_print, Timings& times,
   if (to_print) {
     require_appearance(prepared, config.model);
     require_memory(config.design, inkable_mm2(prepared, config.design));
+    warn_if_draft(config.design, context);
   }
   if (config.plan.find_pose || config.plan.find_depth)
     times.measure("find", [&] { find_what_is_asked(config, prepared, context); });

@@ -122,6 +122,13 @@ double sheet_memory_bytes(const DesignOptions& options, double inked_mm2) {
   return kBytesPerPixel * inked_mm2 * px_per_mm * px_per_mm;
 }
 
+void warn_if_draft(const DesignOptions& options, const RunContext& context) {
+  if (is_draft(options))
+    context.warn(
+        "This is a draft, of coarse film in long steps and as if ink did not stiffen it: before "
+        "you dip, print it without --quality draft.");
+}
+
 void require_memory(const DesignOptions& options, double inked_mm2) {
   const double sheet_mm2 = options.film.width_mm * options.film.height_mm;
   require_room(options, sheet_mm2, address_limit_bytes());

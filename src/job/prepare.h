@@ -47,6 +47,8 @@ void require_appearance(const PreparedObject& prepared, const std::filesystem::p
 // At most so much of a sheet is inked: film on the object is no larger than what it lies on, and
 // the bleed goes round it. Artwork that is laid on the film may go anywhere.
 double inkable_mm2(const PreparedObject& prepared, const DesignOptions& options);
+// A draft shows what becomes of the object; its sheet is not to be dipped through.
+void warn_if_draft(const DesignOptions& options, const RunContext& context);
 // What a sheet takes while it is designed and written, about: blank film takes none.
 double sheet_memory_bytes(const DesignOptions& options, double inked_mm2);
 // Throws InputError if the sheet's pictures cannot fit the memory that there is, or the whole

@@ -46,6 +46,8 @@ SheetOptions sheet_of(const JobConfig& config, const PosedObject& posed, const R
   SheetOptions sheet = sheet_of(config, posed);
   if (concern_of(findings(report)) == Concern::kStop)
     sheet.alarm = "DO NOT DIP: " + short_verdict(report);
+  else if (report.command == "print" && is_draft(config.design))
+    sheet.alarm = "DRAFT: not to be dipped through";
   return sheet;
 }
 
