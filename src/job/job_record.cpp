@@ -63,7 +63,8 @@ std::vector<ReportFigure> dip_figures(const DipStatistics& s) {
       {"steps", "Steps", std::int64_t(s.steps), ""},
       {"iterations", "Iterations", std::int64_t(s.iterations), ""},
       {"unconverged_steps", "Steps at the iteration bound", std::int64_t(s.unconverged_steps), ""},
-      {"largest_residual_mm", "Largest last update", s.largest_residual_mm, "mm"}};
+      {"largest_residual_mm", "The furthest that film moved in any step's last iteration",
+       s.largest_residual_mm, "mm"}};
 }
 
 std::vector<ReportFigure> ink_figures(const InkRound& round, bool first) {
@@ -73,7 +74,7 @@ std::vector<ReportFigure> ink_figures(const InkRound& round, bool first) {
       {"tears_kept", "Tears kept from before", round.tears_kept, ""}};
   if (!first)
     figures.insert(figures.begin(),
-                   {"change_mm", "Mean change of the film", round.change_mm, "mm"});
+                   {"change_mm", "Mean change of whole film on the object", round.change_mm, "mm"});
   return figures;
 }
 
@@ -96,7 +97,8 @@ void add_ink(const JobRecord& record, std::vector<ReportFigure>& figures) {
       figures.end(),
       {{"ink_rounds", "Rounds", std::int64_t(record.ink->rounds.size()), ""},
        {"ink_settled", "Ink settled", record.ink->settled, ""},
-       {"ink_last_change_mm", "Last mean change of the film", record.ink->last_change_mm(), "mm"},
+       {"ink_last_change_mm", "Last mean change of whole film on the object",
+        record.ink->last_change_mm(), "mm"},
        {"lightened", "Factor on all inks (gamut.policy=scale)", record.ink->ink.inking.lightened,
         ""},
        {"out_of_gamut_mm2", "Colours that cannot be reached", reach.out_of_reach_mm2, "mm2"},

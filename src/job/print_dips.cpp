@@ -45,8 +45,6 @@ void write_dip(OutputFolder& folder, const MadeDip& dip, const MadeDips& all,
                const std::vector<ReportInput>& inputs, const Printer& printer, const Timings& times,
                const RunContext& context) {
   const std::string inside = dip.folder + "/";
-  write_sheet_files(folder, dip.made.ink.ink, printer, sheet_of(dip.config, dip.made.dipped.posed),
-                    context, inside);
   write_film_ply(folder.path(inside + "film.ply"), *dip.made.dipped.film);
   const PosedObject& posed = dip.made.dipped.posed;
   const int texture_px = dip.config.preview_texture_px;
@@ -65,6 +63,8 @@ void write_dip(OutputFolder& folder, const MadeDip& dip, const MadeDips& all,
   report.ink = ink_amounts(dip.made.ink.ink.inking.inks, dip.config.design.inking.limit);
   report.dip_number = dip.number;
   report.dip_of = int(all.dips.size());
+  write_sheet_files(folder, dip.made.ink.ink, printer,
+                    sheet_of(dip.config, dip.made.dipped.posed, report), context, inside);
   write_report_json(folder.path(inside + "report.json"), report);
 }
 
@@ -98,6 +98,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   require_appearance(prepared, config.model);
   require_no_pattern(*prepared.paint);
   require_memory(config.design, inkable_mm2(prepared, config.design));
+  warn_if_draft(config.design, context);
   const Printer printer = make_printer(config.printer);
   const std::vector<ReportInput> inputs = describe_inputs(config, prepared, printer);
 

@@ -106,7 +106,7 @@ Finding tears(const Coverage& c, const std::optional<ReportWanted>& wanted, bool
                            "lost."
                          : "of the film that meets the object tears; nothing is printed there.",
           "Turn steep sides down (--rotate, --down), dip less deep (--depth) and the rest in "
-          "another turn, or use a film that bears more. The overlay \"tears\" shows where."};
+          "another turn, or use a film that bears more."};
 }
 
 bool is_of_several(const Report& report) { return report.dips.size() > 1 || report.dip_of > 1; }
@@ -151,13 +151,11 @@ void add_obstacles(const std::vector<ReportDip>& dips, std::vector<Finding>& lis
 // Pressed together, or lifted out of the water on the way: only where there is any worth naming.
 void add_slack_film(const Coverage& c, std::vector<Finding>& list) {
   if (c.wrinkled_mm2 > kFewWrinkles * c.covered_mm2)
-    list.push_back(
-        {"wrinkles", Concern::kCare, "Wrinkles",
-         percent(Coverage::share(c.wrinkled_mm2, c.covered_mm2)),
-         "of the film on the object is pressed together and wrinkles; the overlay \"wrinkles\" "
-         "shows where.",
-         "Let the object come down straighter there, or roll it less "
-         "(material.wrinkle_stretch says what the film bears)."});
+    list.push_back({"wrinkles", Concern::kCare, "Wrinkles",
+                    percent(Coverage::share(c.wrinkled_mm2, c.covered_mm2)),
+                    "of the film on the object is pressed together and wrinkles.",
+                    "Let the object come down straighter there, or roll it less "
+                    "(material.wrinkle_stretch says what the film bears)."});
   if (c.lifted_mm2 > 0)
     list.push_back(
         {"lifted", Concern::kCare, "Lifted out", fmt::format("{:.0f} mm2", c.lifted_mm2),
@@ -255,7 +253,7 @@ Finding steepness(const DipAngles& angles) {
   if (share > kMuchSteep)
     finding.advice =
         "Film stretches most and comes off most easily there: turn the object so that little of "
-        "what matters is steep. The overlay \"dip angle\" shows where.";
+        "what matters is steep.";
   return finding;
 }
 
@@ -272,8 +270,8 @@ void add_doubtful(const Coverage& c, std::vector<Finding>& list) {
   if (c.doubtful_mm2 > kLittleDoubt * c.covered_mm2) {
     finding.concern = Concern::kCare;
     finding.advice =
-        "Let nothing that matters lie there: the map shows where. How much your film bears a test "
-        "dip tells (material.safe_stretch, material.tear_stretch, material.lost_stretch).";
+        "Let nothing that matters lie there. How much your film bears a test dip tells "
+        "(material.safe_stretch, material.tear_stretch, material.lost_stretch).";
   }
   list.push_back(std::move(finding));
 }
@@ -353,10 +351,7 @@ Finding colors(const ReportColors& colors) {
   finding.text = fmt::format(
       "on average where film lies (CIEDE2000; 1 is just visible); 95 % of it is within {:.1f}.",
       colors.error_most_of);
-  if (plain)
-    finding.advice =
-        "Where it is above 5 the difference is plain to see. The overlay \"colour error\" shows "
-        "where.";
+  if (plain) finding.advice = "Where it is above 5 the difference is plain to see.";
   return finding;
 }
 

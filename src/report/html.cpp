@@ -43,9 +43,13 @@ std::string html_begin(const std::string& title, const std::string& audience) {
          "</style>\n</head>\n<body>\n<main>\n";
 }
 
+bool has_view(const ReportPictures& pictures) {
+  return !pictures.scene.empty() && !viewer_script().empty();
+}
+
 std::string html_end(const ReportPictures& pictures) {
   std::string scripts;
-  if (!pictures.scene.empty() && !viewer_script().empty())
+  if (has_view(pictures))
     scripts = "<script type=\"application/json\" id=\"scene\">" + pictures.scene +
               "</script>\n<script>" + viewer_script() + "</script>\n";
   return "</main>\n" + scripts + "</body>\n</html>\n";

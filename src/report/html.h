@@ -17,6 +17,9 @@ std::string html_escaped(const std::string& text);
 std::string html_begin(const std::string& title, const std::string& audience);
 std::string html_end(const ReportPictures& pictures);
 
+// Whether the page has the 3D view.
+bool has_view(const ReportPictures& pictures);
+
 // Empty without a picture.
 std::string html_picture(const std::vector<std::uint8_t>& png, const std::string& alt);
 std::string html_logo(const ReportPictures& pictures);

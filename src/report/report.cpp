@@ -12,21 +12,8 @@ namespace {
 
 bool has_wanted(const Report& report) { return report.wanted && report.wanted->covered_mm2 > 0; }
 
-}  // namespace
-
-ReportInput describe_input(const std::string& role, const std::filesystem::path& path) {
-  const std::vector<std::uint8_t> bytes = read_file(path);
-  return {role, path.string(), sha256_hex(bytes), bytes.size()};
-}
-
-std::string no_film_verdict(const Coverage& coverage) {
-  return coverage.torn_mm2 > 0
-             ? "No film stays on the object: all that meets it tears; turn a flatter side down "
-               "with --rotate or --down."
-             : "No film lies on the object: check --down and --depth.";
-}
-
-std::string short_verdict(const Report& report) {
+// How much is covered, and how much torn.
+std::string short_film_part(const Report& report) {
   const Coverage& coverage = *report.coverage;
   if (!has_wanted(report) && !(coverage.film_on_object_mm2 > 0))
     return coverage.torn_mm2 > 0 ? "all film that meets the object tears"
@@ -46,6 +33,35 @@ std::string short_verdict(const Report& report) {
   if (coverage.stretch_max > kMostStretch)
     text += fmt::format(", the rest stretched up to {:.2f} times", coverage.stretch_max);
   return text;
+}
+
+std::string uncapitalized(std::string words) {
+  if (!words.empty() && words[0] >= 'A' && words[0] <= 'Z') words[0] = char(words[0] - 'A' + 'a');
+  return words;
+}
+
+}  // namespace
+
+ReportInput describe_input(const std::string& role, const std::filesystem::path& path) {
+  const std::vector<std::uint8_t> bytes = read_file(path);
+  return {role, path.string(), sha256_hex(bytes), bytes.size()};
+}
+
+std::string no_film_verdict(const Coverage& coverage) {
+  return coverage.torn_mm2 > 0
+             ? "No film stays on the object: all that meets it tears; turn a flatter side down "
+               "with --rotate or --down."
+             : "No film lies on the object: check --down and --depth.";
+}
+
+std::string short_verdict(const Report& report) {
+  const std::vector<Finding> list = findings(report);
+  const Finding* obstacle = first_obstacle(list);
+  const std::string film = short_film_part(report);
+  // What forbids the dip comes first: margins and captions are short.
+  return obstacle
+             ? fmt::format("{}: {}; {}", uncapitalized(obstacle->title), obstacle->figure, film)
+             : film;
 }
 
 namespace {

@@ -164,7 +164,8 @@ struct Report {
 // Where no film stays on the object: why, and how to mend it.
 std::string no_film_verdict(const Coverage& coverage);
 
-// Some words of it, for a caption or a band. Of a report that has its coverage.
+// Some words of it, for a caption or a band: what forbids the dip besides the film, if anything
+// does, and what becomes of the film. Of a report that has its coverage.
 std::string short_verdict(const Report& report);
 
 // A plain sentence or two: how much is covered, how far the film

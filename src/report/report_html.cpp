@@ -82,9 +82,48 @@ std::string verdict(const Report& report, const std::vector<Finding>& list) {
   return html_verdict(concern, headline(concern), sentence);
 }
 
+// The overlays of the 3D view that show where a finding holds, by their labels there.
+struct ShownBy {
+  const char* finding;
+  const char* overlay;
+  bool of_several;  // also where several dips' finish is shown
+};
+constexpr std::array<ShownBy, 4> kShownBy = {{{"tears", "tears", false},
+                                              {"wrinkles", "wrinkles", false},
+                                              {"steepness", "dip angle", false},
+                                              {"colors", "colour error", true}}};
+constexpr const char* kMapsTitle = "Where it is difficult";
+
+// Where on the page it is seen; empty: nowhere.
+std::string shown_where(const Finding& finding, const Report& report,
+                        const ReportPictures& pictures) {
+  if (finding.concern == Concern::kNone) return "";
+  const bool several = !report.dips.empty();
+  // Against the vertical the view shows it; along other ways only the maps know it.
+  const bool needs_map =
+      finding.key == "doubtful" || (finding.key == "steepness" && !report.way_in.empty());
+  if (needs_map)
+    return pictures.maps_png.empty() ? ""
+                                     : fmt::format("The map under \"{}\" shows where.", kMapsTitle);
+  if (!has_view(pictures)) return "";
+  for (const ShownBy& shown : kShownBy)
+    if (finding.key == shown.finding && (shown.of_several || !several))
+      return fmt::format("The overlay \"{}\" shows where.", shown.overlay);
+  return "";
+}
+
+std::vector<Finding> saying_where(std::vector<Finding> list, const Report& report,
+                                  const ReportPictures& pictures) {
+  for (Finding& finding : list) {
+    const std::string where = shown_where(finding, report, pictures);
+    if (!where.empty()) finding.advice += (finding.advice.empty() ? "" : " ") + where;
+  }
+  return list;
+}
+
 std::string maps(const ReportPictures& pictures) {
   if (pictures.maps_png.empty()) return "";
-  return "<section>\n<h2>Where it is difficult</h2>\n"
+  return fmt::format("<section>\n<h2>{}</h2>\n", kMapsTitle) +
          "<p>Left: how steeply the surface meets the film. Blue is easy; from orange to dark red "
          "the surface is steeper than the limit, and the film stretches much or tears: turn the "
          "object so that little of what matters lies there.</p>\n"
@@ -317,7 +356,7 @@ std::string report_html(const Report& report, const ReportPictures& pictures) {
   html += heading(report, pictures);
   html += verdict(report, list);
   html += html_preview(pictures);
-  html += html_cards(list);
+  html += html_cards(saying_where(list, report, pictures));
   html += dips(report, pictures);
   html += maps(pictures);
   html += outputs(report);

@@ -141,6 +141,30 @@ TEST(Report, ACustomerReadsNothingOfTheWorkshop) {
   EXPECT_NE(words.find("It cannot be made well like this"), std::string::npos);
 }
 
+// What a page does not show it does not name.
+TEST(Report, FindingsSayWhereOnThePageTheyAreSeen) {
+  Report report = bad_report();
+  const auto names = [&](const ReportPictures& pictures, const std::string& words) {
+    return report_html(report, pictures).find(words) != std::string::npos;
+  };
+  const std::string tears = "The overlay &quot;tears&quot; shows where.";
+  const std::string colors = "The overlay &quot;colour error&quot; shows where.";
+  const std::string map = "The map under &quot;Where it is difficult&quot; shows where.";
+  const ReportPictures of_a_draft;
+  for (const std::string& words : {tears, colors, map}) EXPECT_FALSE(names(of_a_draft, words));
+  const ReportPictures all{{1}, {2}, R"({"mark":1})"};
+  const bool has_view = !viewer_script().empty();
+  EXPECT_EQ(names(all, tears), has_view);
+  EXPECT_EQ(names(all, colors), has_view);
+  EXPECT_TRUE(names(all, map));
+  // The view of several dips shows the finish, not one film.
+  report.dips = {ReportDip{}, ReportDip{}};
+  const ReportPictures finish{{1}, {}, R"({"mark":1})", {3}};
+  EXPECT_FALSE(names(finish, tears));
+  EXPECT_FALSE(names(finish, map));
+  EXPECT_EQ(names(finish, colors), has_view);
+}
+
 TEST(Report, HtmlTagsAreBalanced) {
   Report customers = bad_report();
   customers.for_customer = true;

@@ -171,6 +171,10 @@ test('every overlay changes the picture and explains itself', async () => {
     assert.ok((await text('#legend')).length > 20, `${overlay} has a legend`);
   }
   assert.equal(new Set(pictures).size, pictures.length, 'all look different');
+  const offered = await browser.value('[...document.querySelectorAll("#overlay option")].map((o) => o.textContent)');
+  const named = [...(await text('.findings')).matchAll(/The overlay "([^"]+)" shows where/g)].map((match) => match[1]);
+  assert.ok(named.includes('tears'), 'the cards say where film tears');
+  for (const overlay of named) assert.ok(offered.includes(overlay), `${overlay} is among ${offered}`);
   await choose('#overlay', 'angle', 'change');
   assert.match(await text('#legend'), /45\u00b0/);
   await choose('#overlay', 'none', 'change');
