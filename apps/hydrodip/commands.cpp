@@ -115,6 +115,7 @@ void declare_nest_command(CLI::App& app, Request& request) {
   declare_nest(app, request);
   declare_output(app, request, "nest");
   declare_reporting(app, request);
+  declare_strict(app, request);
   declare_film(app, request);
   declare_ink(app, request);
   declare_resolution(app, request);

@@ -359,7 +359,7 @@ void declare_nest(CLI::App& app, Request& request) {
          "models or jobs, once for each copy; or [[part]] tables (job, count) in a --config")
       ->type_name("");
   app.add_option("--clearance", request.clearance_mm,
-                 "free film around each part (default: a quarter of its depth, 10 mm or more)")
+                 "free film around each part (default: as much as the sheet has room for)")
       ->group(kFilmGroup)
       ->type_name("MM")
       ->check(between(0, 1000));

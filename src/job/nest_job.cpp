@@ -11,14 +11,17 @@
 #include "base/file.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
-#include "coat/film_paint.h"
 #include "hydrodip/hydrodip.h"
 #include "image/files.h"
+#include "job/computed.h"
+#include "job/job_record.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
 #include "job/sheet_of.h"
+#include "job/wanted.h"
 #include "plan/fit.h"
 #include "plan/sheet_packing.h"
+#include "report/findings.h"
 #include "session/sheet_files.h"
 
 namespace hydrodip {
@@ -26,16 +29,32 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr double kLeastClearance_mm = 10, kClearancePerDepth = 0.25;
+// Film between the object and the tape: the less there is, the more it is stretched, and tears. As
+// much as the sheet has room for, from the least to enough.
+constexpr double kLeastClearance_mm = 10, kLeastClearancePerDepth = 0.25;
+constexpr double kEnoughClearance_mm = 30, kEnoughClearancePerDepth = 1.5;
+constexpr int kClearances = 32;  // tried between the two
 // Lines to cut along, and what is written beside them, in the taped margin.
 constexpr double kLine_mm = 0.2, kLabel_mm = 3;
 
-// A part and its piece of film.
+// A part on a piece of film of its own.
 struct Part {
-  JobConfig config;
+  ReadyJob job;
   int count = 1;
-  PreparedObject prepared;
-  Trajectory trajectory;
+
+  std::string name() const { return job.config.model.filename().string(); }
+  const FilmOptions& film() const { return job.config.design.film; }
+};
+
+// What is printed for it, and what is to be said of its dip.
+struct MadePart {
+  DesignedJob made;
+  Report report;
+
+  const Coverage& coverage() const { return *report.coverage; }
+  Concern concern() const { return concern_of(findings(report)); }
+  bool is_not_to_be_dipped() const { return concern() == Concern::kStop; }
+  std::string verdict() const { return headline(concern()) + ". " + verdict_of(report); }
 };
 
 // One piece of the sheet.
@@ -48,16 +67,20 @@ struct Piece {
 struct Nest {
   std::vector<Part> parts;
   std::vector<Piece> pieces;
-  std::vector<std::shared_ptr<const Designed>> made;  // per part
+  std::vector<MadePart> made;  // per part
 };
 
 Vec2 film_size(const FilmOptions& film) { return {film.width_mm, film.height_mm}; }
 
-// The piece that an object needs: itself, free film, tape.
-FilmOptions piece_for(const Room& room, const FilmOptions& sheet, double clearance_mm) {
-  const double clearance = clearance_mm > 0
-                               ? clearance_mm
-                               : std::max(kLeastClearance_mm, kClearancePerDepth * room.depth_mm);
+// From the least, at 0, to enough, at 1.
+double clearance_mm(double depth_mm, double amount) {
+  const double least = std::max(kLeastClearance_mm, kLeastClearancePerDepth * depth_mm);
+  const double enough = std::max(kEnoughClearance_mm, kEnoughClearancePerDepth * depth_mm);
+  return least + amount * (enough - least);
+}
+
+// The piece of an object: itself, free film, tape.
+FilmOptions piece_for(const Room& room, const FilmOptions& sheet, double clearance) {
   FilmOptions piece = sheet;
   piece.shape = FilmShape::kRectangle;
   piece.width_mm = std::ceil(2 * (room.half_width_mm + clearance + sheet.margin_mm));
@@ -66,7 +89,7 @@ FilmOptions piece_for(const Room& room, const FilmOptions& sheet, double clearan
 }
 
 Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet,
-                  const NestRequest& request, const RunContext& context) {
+                  const RunContext& context) {
   JobConfig config = wanted.config;
   for (const std::filesystem::path& correction : {config.correction, sheet.correction})
     if (!correction.empty())
@@ -81,39 +104,105 @@ Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet,
   require_appearance(prepared, config.model);
   const TriangleMesh& mesh = prepared.posed.mesh();
   Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
-  config.design.film =
-      piece_for(room_of(mesh, trajectory), sheet.design.film, request.clearance_mm);
-  require_fit(mesh, room_of(mesh, trajectory), config.design.film, config.bath, context);
-  return {std::move(config), wanted.count, std::move(prepared), std::move(trajectory)};
+  Printer printer = make_printer(config.printer);
+  return {{std::move(config), std::move(prepared), std::move(trajectory), std::move(printer)},
+          wanted.count};
 }
 
-std::vector<Piece> placed(const std::vector<Part>& parts, const FilmOptions& sheet) {
+Room room_of(const Part& part) {
+  return room_of(part.job.prepared.posed.mesh(), part.job.trajectory);
+}
+
+void cut_pieces(std::vector<Part>& parts, const FilmOptions& sheet, double amount,
+                double given_mm) {
+  for (Part& part : parts) {
+    const Room room = room_of(part);
+    part.job.config.design.film =
+        piece_for(room, sheet, given_mm > 0 ? given_mm : clearance_mm(room.depth_mm, amount));
+  }
+}
+
+// As far as they find room.
+std::vector<Piece> place(const std::vector<Part>& parts, const FilmOptions& sheet) {
   std::vector<Piece> pieces;
   std::vector<Vec2> sizes;
   for (std::size_t p = 0; p < parts.size(); ++p)
     for (int n = 0; n < parts[p].count; ++n) {
       pieces.push_back({p, int(pieces.size()) + 1, {}});
-      sizes.push_back(film_size(parts[p].config.design.film));
+      sizes.push_back(film_size(parts[p].film()));
     }
   const Vec2 room = film_size(sheet) - 2 * Vec2::Constant(sheet.margin_mm);
   const std::vector<PackedPiece> places = pack_pieces(sizes, room);
-  int fit = 0;
-  std::string left_out;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     pieces[i].place = places[i];
     pieces[i].place.corner_mm += Vec2::Constant(sheet.margin_mm);
-    fit += places[i].placed ? 1 : 0;
-    if (!places[i].placed && left_out.empty())
-      left_out = fmt::format("{} needs a piece of {:.0f} x {:.0f} mm",
-                             parts[pieces[i].part].config.model.filename().string(), sizes[i].x(),
-                             sizes[i].y());
   }
-  if (fit < int(pieces.size()))
-    throw InputError(fmt::format(
-        "the film of {:g} x {:g} mm holds {} of the {} parts ({}); take a larger --film, fewer "
-        "parts, or less --clearance",
-        sheet.width_mm, sheet.height_mm, fit, pieces.size(), left_out));
   return pieces;
+}
+
+const Piece* first_left_out(const std::vector<Piece>& pieces) {
+  for (const Piece& piece : pieces)
+    if (!piece.place.placed) return &piece;
+  return nullptr;
+}
+
+// Sizes the pieces and places them.
+void share_out_film(Nest& nest, const FilmOptions& sheet, double given_mm,
+                    const RunContext& context) {
+  for (int k = given_mm > 0 ? 0 : kClearances; k >= 0; --k) {
+    cut_pieces(nest.parts, sheet, double(k) / kClearances, given_mm);
+    nest.pieces = place(nest.parts, sheet);
+    if (!first_left_out(nest.pieces)) break;
+    context.check_cancelled();
+  }
+  if (const Piece* left_out = first_left_out(nest.pieces)) {
+    const Part& part = nest.parts[left_out->part];
+    throw InputError(fmt::format(
+        "the film of {:g} x {:g} mm holds {} of the {} parts ({} needs a piece of {:.0f} x {:.0f} "
+        "mm); take a larger --film, fewer parts, or less --clearance",
+        sheet.width_mm, sheet.height_mm,
+        std::count_if(nest.pieces.begin(), nest.pieces.end(),
+                      [](const Piece& piece) { return piece.place.placed; }),
+        nest.pieces.size(), part.name(), part.film().width_mm, part.film().height_mm));
+  }
+  for (const Part& part : nest.parts)
+    require_fit(part.job.prepared.posed.mesh(), room_of(part), part.film(), part.job.config.bath,
+                context);
+}
+
+// ---- the parts' dips ----
+
+MadePart make_part(const Part& part, Timings& timings, const RunContext& context) {
+  const ReadyJob& job = part.job;
+  DesignedJob made = designed(job, timings, context);
+  const RunContext silent = context.quiet();
+  const std::vector<ReportInput> inputs;
+  JobRecord record{"print", job.config,         job.prepared,
+                   inputs,  made.finish,        timings,
+                   silent,  &made.designed.ink, job.printer.model->name()};
+  record.wanted = wanted_coverage(made.designed.dipped, made.finish.paint());
+  Report report = make_report(record);
+  return {std::move(made), std::move(report)};
+}
+
+void make_parts(Nest& nest, const RunContext& context) {
+  Timings timings;
+  for (const Part& part : nest.parts) {
+    nest.made.push_back(make_part(part, timings, context));
+    const MadePart& made = nest.made.back();
+    if (made.is_not_to_be_dipped())
+      context.warn(fmt::format("{}: do not dip it like this: {}; 'hydrodip plan' looks for ways.",
+                               part.name(), short_verdict(made.report)));
+  }
+}
+
+// "2, 3"
+std::string not_to_be_dipped(const Nest& nest) {
+  std::string numbers;
+  for (const Piece& piece : nest.pieces)
+    if (nest.made[piece.part].is_not_to_be_dipped())
+      numbers += fmt::format("{}{}", numbers.empty() ? "" : ", ", piece.number);
+  return numbers;
 }
 
 // ---- the sheet ----
@@ -195,8 +284,10 @@ void mark_piece(FilmInk& ink, const std::string& label, double margin_mm, double
       blacken(ink, left + x, top + y, letters.pixel(x, y)[3]);
 }
 
-std::string label_of(const Piece& piece, const Part& part) {
-  return fmt::format("{}: {}", piece.number, part.config.model.stem().string());
+std::string label_of(const Piece& piece, const Nest& nest) {
+  return fmt::format("{}: {}{}", piece.number,
+                     nest.parts[piece.part].job.config.model.stem().string(),
+                     nest.made[piece.part].is_not_to_be_dipped() ? " - DO NOT DIP" : "");
 }
 
 FilmInk whole_sheet(const Nest& nest, const SheetRaster& sheet) {
@@ -204,13 +295,13 @@ FilmInk whole_sheet(const Nest& nest, const SheetRaster& sheet) {
   whole.wanted = Image(sheet.width_px(), sheet.height_px());
   whole.inking.inks = InkImage(sheet.width_px(), sheet.height_px());
   for (const Piece& piece : nest.pieces) {
-    const Part& part = nest.parts[piece.part];
-    const FilmInk& made = nest.made[piece.part]->ink.ink;
+    const Designed& designed = nest.made[piece.part].made.designed;
+    const FilmInk& made = designed.ink.ink;
     FilmInk own;
     own.wanted = made.wanted;
     own.inking.inks = made.inking.inks;
-    mark_piece(own, label_of(piece, part), part.config.design.film.margin_mm, sheet.dpi);
-    const PieceOnSheet on(piece, nest.made[piece.part]->raster, sheet);
+    mark_piece(own, label_of(piece, nest), nest.parts[piece.part].film().margin_mm, sheet.dpi);
+    const PieceOnSheet on(piece, designed.raster, sheet);
     on.copy(own.wanted, whole.wanted);
     on.copy(own.inking.inks, whole.inking.inks);
   }
@@ -223,17 +314,20 @@ json described(const Nest& nest) {
   json list = json::array();
   for (const Piece& piece : nest.pieces) {
     const Part& part = nest.parts[piece.part];
-    const Coverage& coverage = nest.made[piece.part]->dipped.coverage;
+    const MadePart& made = nest.made[piece.part];
+    const Coverage& coverage = made.coverage();
     list.push_back({{"number", piece.number},
-                    {"model", part.config.model.string()},
+                    {"model", part.job.config.model.string()},
                     {"from_left_mm", piece.place.corner_mm.x()},
                     {"from_bottom_mm", piece.place.corner_mm.y()},
-                    {"width_mm", part.config.design.film.width_mm},
-                    {"height_mm", part.config.design.film.height_mm},
+                    {"width_mm", part.film().width_mm},
+                    {"height_mm", part.film().height_mm},
                     {"turned", piece.place.turned},
-                    {"depth_mm", part.trajectory.depth_mm()},
+                    {"depth_mm", part.job.trajectory.depth_mm()},
                     {"covered_downward_share", coverage.covered_downward_share()},
-                    {"torn_share", coverage.torn_share()}});
+                    {"torn_share", coverage.torn_share()},
+                    {"concern", concern_name(made.concern())},
+                    {"verdict", verdict_of(made.report)}});
   }
   return list;
 }
@@ -249,36 +343,40 @@ std::string run_sheet(const Nest& nest, const JobConfig& sheet) {
   std::string page = fmt::format(
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>hydrodip run sheet</title>"
       "<style>body{{font:16px sans-serif;margin:2em}}td,th{{padding:.3em .8em;text-align:left;"
-      "border-bottom:1px solid #ccc}}img{{max-height:24em;border:1px solid #ccc}}</style>"
+      "border-bottom:1px solid #ccc}}img{{max-height:24em;border:1px solid #ccc}}"
+      ".stop{{color:#b00020}}</style>"
       "<h1>Run sheet: {} parts on one film of {:g} x {:g} mm</h1>"
       "<p>Print print.pdf at 100 %, cut along the lines, tape each piece over {:g} mm all around, "
       "and dip each part on its own piece, centred, with the piece's writing towards you.</p>"
       "<p><img src=\"print.png\" alt=\"the sheet\"></p>"
       "<table><tr><th>piece<th>part<th>from the left edge<th>from the lower "
       "edge<th>size<th>writing "
-      "on the sheet<th>depth of the dip<th>covered<th>torn</tr>",
+      "on the sheet<th>depth of the dip<th>covered<th>torn<th>verdict</tr>",
       nest.pieces.size(), sheet.design.film.width_mm, sheet.design.film.height_mm,
       sheet.design.film.margin_mm);
   for (const Piece& piece : nest.pieces) {
     const Part& part = nest.parts[piece.part];
-    const Coverage& coverage = nest.made[piece.part]->dipped.coverage;
+    const MadePart& made = nest.made[piece.part];
+    const Coverage& coverage = made.coverage();
     page += fmt::format(
         "<tr><td>{}<td>{}<td>{:.0f} mm<td>{:.0f} mm<td>{:g} x {:g} mm<td>{}<td>{:.1f} mm<td>{:.0f} "
-        "%<td>{:.1f} %</tr>",
-        piece.number, html_escaped(part.config.model.filename().string()),
-        piece.place.corner_mm.x(), piece.place.corner_mm.y(), part.config.design.film.width_mm,
-        part.config.design.film.height_mm, piece.place.turned ? "upright, on the right" : "below",
-        part.trajectory.depth_mm(), 100 * coverage.covered_downward_share(),
-        100 * coverage.torn_share());
+        "%<td>{:.1f} %<td class=\"{}\">{}</tr>",
+        piece.number, html_escaped(part.name()), piece.place.corner_mm.x(),
+        piece.place.corner_mm.y(), part.film().width_mm, part.film().height_mm,
+        piece.place.turned ? "upright, on the right" : "below", part.job.trajectory.depth_mm(),
+        100 * coverage.covered_downward_share(), 100 * coverage.torn_share(),
+        concern_name(made.concern()), headline(made.concern()));
   }
   page += "</table>";
   for (std::size_t p = 0; p < nest.parts.size(); ++p)
-    page += fmt::format("<h2>{}</h2><img src=\"part-{}.png\" alt=\"wanted and predicted\">",
-                        html_escaped(nest.parts[p].config.model.filename().string()), p + 1);
+    page += fmt::format(
+        "<h2>{}</h2><p class=\"{}\">{}</p><img src=\"part-{}.png\" alt=\"wanted and predicted\">",
+        html_escaped(nest.parts[p].name()), concern_name(nest.made[p].concern()),
+        html_escaped(nest.made[p].verdict()), p + 1);
   return page + "</html>\n";
 }
 
-SheetOptions sheet_options(const JobConfig& config, std::size_t pieces) {
+SheetOptions sheet_options(const JobConfig& config, const Nest& nest) {
   SheetOptions sheet;
   sheet.width_mm = config.design.film.width_mm;
   sheet.height_mm = config.design.film.height_mm;
@@ -286,8 +384,10 @@ SheetOptions sheet_options(const JobConfig& config, std::size_t pieces) {
   sheet.dpi = config.design.dpi;
   sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
   sheet.printer = printer_of(config.print);
-  sheet.job_name =
-      config.print.job_name.empty() ? fmt::format("{} parts", pieces) : config.print.job_name;
+  sheet.job_name = config.print.job_name.empty() ? fmt::format("{} parts", nest.pieces.size())
+                                                 : config.print.job_name;
+  const std::string bad = not_to_be_dipped(nest);
+  if (!bad.empty()) sheet.alarm = "DO NOT DIP " + bad;
   return sheet;
 }
 
@@ -303,32 +403,26 @@ std::vector<std::string> file_names(std::size_t parts) {
 JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const RunContext& context) {
   const RunScope scope(context.with_threads(sheet.threads));
   require_memory(sheet.design, sheet.design.film.width_mm * sheet.design.film.height_mm);
+  warn_if_draft(sheet.design, context);
   require_fonts("the pieces' names");
   OutputFolder folder(sheet.output, sheet.earlier_result);
   Nest nest;
   std::vector<std::filesystem::path> inputs;
   for (const NestRequest::Part& part : request.parts) {
-    nest.parts.push_back(prepare_part(part, sheet, request, context));
-    const auto& files = nest.parts.back().prepared.files;
+    nest.parts.push_back(prepare_part(part, sheet, context));
+    const auto& files = nest.parts.back().job.prepared.files;
     inputs.insert(inputs.end(), files.begin(), files.end());
   }
   folder.announce(file_names(nest.parts.size()), inputs);
-  nest.pieces = placed(nest.parts, sheet.design.film);
+  share_out_film(nest, sheet.design.film, request.clearance_mm, context);
 
+  make_parts(nest, context);
   const Printer printer = make_printer(sheet.printer);
-  Timings timings;
-  for (const Part& part : nest.parts)
-    nest.made.push_back(
-        std::make_shared<const Designed>(design({part.prepared.posed, *part.prepared.paint,
-                                                 Allotment(), *printer.model, part.config.design},
-                                                timings, context)));
-
   const FilmInk whole = whole_sheet(nest, raster_of(sheet.design.film, sheet.design.dpi));
-  write_sheet_files(folder, whole, printer, sheet_options(sheet, nest.pieces.size()), context);
+  write_sheet_files(folder, whole, printer, sheet_options(sheet, nest), context);
   for (std::size_t p = 0; p < nest.parts.size(); ++p)
     write_png(folder.path(fmt::format("part-{}.png", p + 1)),
-              render(finish(nest.parts[p].prepared.paint, {*nest.made[p]}, printer),
-                     sheet.preview_width_px, context));
+              render(nest.made[p].made.finish, sheet.preview_width_px, context));
   const json report = {{"schema_version", 1},
                        {"command", "nest"},
                        {"film_mm", {sheet.design.film.width_mm, sheet.design.film.height_mm}},
@@ -344,7 +438,10 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
   result.folder = folder.folder();
   result.files = file_names(nest.parts.size());
   result.json = text;
+  result.do_not_dip = !not_to_be_dipped(nest).empty();
   result.text = folder.told_replaced();
+  for (std::size_t p = 0; p < nest.parts.size(); ++p)
+    result.text += fmt::format("{}: {}\n", nest.parts[p].name(), nest.made[p].verdict());
   result.text += fmt::format(
       "wrote to {}:\n  print.pdf    the sheet with {} pieces: print it at 100 % (no scaling)\n"
       "  print.png    what the sheet will look like\n  print.tif    its inks\n"

@@ -105,7 +105,35 @@ def box(p):
 a, b = map(box, pieces)
 assert a[2] <= b[0] + 1e-6 or b[2] <= a[0] + 1e-6 or a[3] <= b[1] + 1e-6 or b[3] <= a[1] + 1e-6
 assert all(10 <= v <= 190 for v in a + b)
+assert all(p['concern'] == 'stop' and 'tears' in p['verdict'] for p in pieces)  # a box that goes under
 PY
+# A larger sheet gives each part more film around it, up to what helps.
+for side in 300 600 900; do
+  # shellcheck disable=SC2086
+  "$hydrodip" nest samples/box.obj samples/box.obj ${nest#--film 200x200} --film ${side}x$side -o roomy --json --quiet > roomy-$side.json ||
+    fail "nest on $side mm: $?"
+done
+python3 - <<'PY' || fail 'nest shares out the film'
+import json
+width, *more = [json.load(open(name))['pieces'][0]['width_mm']
+                for name in ('nest.json', 'roomy-300.json', 'roomy-600.json', 'roomy-900.json')]
+assert width < more[0] <= more[1] == more[2], (width, more)
+PY
+# What is not to be dipped is said where one looks: terminal, exit code, files.
+printf 'object.file = "samples/box.obj"\ndip.depth_mm = 2\n' > flat.dip.toml
+# shellcheck disable=SC2086
+"$hydrodip" nest samples/box.obj flat.dip.toml ${nest#--film 200x200} --film 300x300 --strict -o torn --quiet > torn.txt
+[ $? -eq 4 ] || fail 'nest --strict of a box that goes under'
+grep -q 'box.obj: Do not dip it like this' torn.txt || fail 'nest says nothing of a part that tears'
+grep -q 'class="stop"' torn/nest.html || fail 'nor does its run sheet'
+pdftotext torn/print.pdf - | grep -q '^DO NOT DIP 1$' || fail 'nor does its sheet, of that piece alone'
+
+# A draft's sheet is to be looked at.
+# shellcheck disable=SC2086
+"$hydrodip" print plate.stl --art photo.png --quality draft --dpi 72 -o draft --quiet > draft.txt || fail 'a draft'
+grep -q '^warning: This is a draft' draft.txt || fail 'a draft does not say that it is one'
+pdftotext draft/print.pdf - | grep -q DRAFT || fail 'nor does its sheet'
+
 
 # Profiles count: Display P3 and CMYK come out as Little CMS's own tool has them.
 inks=/usr/share/color/icc/ghostscript/default_cmyk.icc
