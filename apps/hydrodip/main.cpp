@@ -24,7 +24,7 @@ constexpr int kExitFailed = 3;
 constexpr int kExitDoNotDip = 4;
 
 JobResult run_with_progress(const CommandLine& line, const RunContext& context) {
-  ProgressLine progress(::isatty(STDERR_FILENO) != 0);
+  ProgressLine progress(line.command->name, ::isatty(STDERR_FILENO) != 0);
   if (!line.request.quiet)
     context.on_progress(
         [&](const std::string& activity, double fraction) { progress.update(activity, fraction); });

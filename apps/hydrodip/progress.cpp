@@ -32,11 +32,12 @@ std::string show_time(double duration_s) {
 
 }  // namespace
 
-ProgressLine::ProgressLine(bool terminal)
-    : terminal_(terminal), job_start_(Clock::now()), activity_start_(job_start_) {}
+ProgressLine::ProgressLine(const std::string& command, bool terminal)
+    : terminal_(terminal), job_(command), job_start_(Clock::now()), activity_start_(job_start_) {}
 
 void ProgressLine::update(const std::string& activity, double fraction) {
   const auto now = Clock::now();
+  job_.update(activity, fraction);
   const bool new_activity = activity != activity_;
   if (new_activity) {
     activity_ = activity;
@@ -77,10 +78,17 @@ void ProgressLine::add_line(double fraction) {
 std::string ProgressLine::describe(double fraction) const {
   if (!terminal_ && fraction <= 0) return activity_;
   std::string line = fmt::format("{} {:3.0f} %", activity_, std::floor(100 * fraction));
-  const double spent_s = seconds(Clock::now() - activity_start_);
-  if (spent_s >= kEstimateFrom_s && fraction >= kEstimateFromFraction && fraction < 1)
-    line += ", " + show_time(spent_s * (1 - fraction) / fraction) + " left";
-  return line;
+  if (job_.fraction() > 0) line += fmt::format("; job {:.0f} %", std::floor(100 * job_.fraction()));
+  const double left = left_s(fraction);
+  return left > 0 ? line + ", " + show_time(left) + " left" : line;
+}
+
+double ProgressLine::left_s(double fraction) const {
+  const auto now = Clock::now();
+  if (job_.fraction() > 0) return job_.left_s(seconds(now - job_start_));
+  const double spent_s = seconds(now - activity_start_);
+  const bool told = spent_s >= kEstimateFrom_s && fraction >= kEstimateFromFraction && fraction < 1;
+  return told ? spent_s * (1 - fraction) / fraction : -1;
 }
 
 }  // namespace hydrodip

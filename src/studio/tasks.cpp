@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "image/files.h"
+#include "job/job_progress.h"
 #include "job/jobs.h"
 #include "render/hold_pictures.h"
 #include "report/plain_words.h"
@@ -213,57 +214,6 @@ Json do_task(const TaskRequest& request, const RunContext& context) {
 
 }  // namespace
 
-// ---- progress ----
-
-// The weights are the share of each step in jobs of the samples and of spot; what a job does not
-// have is passed over.
-TaskProgress::TaskProgress(const std::string& kind) {
-  if (kind == "print")
-    steps_ = {{"loading", 3},
-              {"laying artwork", 3},
-              {"looking for trapped air", 4},
-              {"dipping", 45},
-              {"writing the sheet", 15},
-              {"drawing the previews", 25},
-              {"drawing the run sheets", 5}};
-  else if (kind == "orient")
-    steps_ = {{"loading", 3}, {"trying", 60}, {"dipping the best", 25}, {"drawing", 12}};
-  else
-    steps_ = {{"loading", 3},       {"dipping what is given", 5},
-              {"trying", 55},       {"trying poses like", 10},
-              {"dipping them", 17}, {"drawing", 10}};
-}
-
-void TaskProgress::update(const std::string& activity, double fraction) {
-  double before = 0;
-  const Step* step = nullptr;
-  double start = 0;
-  for (const Step& s : steps_) {
-    // The longest beginning counts.
-    if (activity.starts_with(s.activity) && (!step || s.activity.size() > step->activity.size())) {
-      step = &s;
-      start = before;
-    }
-    before += s.weight;
-  }
-  if (!step) return;
-  if (step->activity != step_) {
-    step_ = step->activity;
-    done_ = 0;
-  } else if (fraction < last_) {
-    done_ += (1 - done_) / 2;
-  }
-  last_ = fraction;
-  // Nobody knows how often a step comes again: each time it has half of what is left.
-  const double own = done_ + (1 - done_) / 2 * fraction;
-  fraction_ = std::max(fraction_, (start + step->weight * own) / before);
-}
-
-double TaskProgress::left_s(double elapsed_s) const {
-  if (fraction_ < 0.08 || elapsed_s < 0.5) return -1;
-  return elapsed_s * (1 - fraction_) / fraction_;
-}
-
 // ---- tasks ----
 
 struct Tasks::Task {
@@ -273,7 +223,7 @@ struct Tasks::Task {
   const std::string name;
   const TaskRequest request;
   RunContext context;
-  TaskProgress progress;
+  JobProgress progress;
   std::string state = "running", activity = "beginning";
   Json error, result;
   Steady::time_point begun = Steady::now(), told = {};

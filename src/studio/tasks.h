@@ -25,29 +25,6 @@ struct TaskRequest {
   std::filesystem::path uploads;  // whose files sentences call by their names alone
 };
 
-// How far a task is, from what its steps say of themselves. Rises only.
-class TaskProgress {
- public:
-  explicit TaskProgress(const std::string& kind);
-
-  void update(const std::string& activity, double fraction);
-
-  double fraction() const { return fraction_; }
-  // What it will still take; negative: that cannot be told yet.
-  double left_s(double elapsed_s) const;
-
- private:
-  struct Step {
-    std::string activity;  // begins with
-    double weight;
-  };
-  std::vector<Step> steps_;
-  std::string step_;
-  double last_ = 0;  // of the present step
-  double done_ = 0;  // of it, when it last began again
-  double fraction_ = 0;
-};
-
 class Tasks {
  public:
   // `tell` is called by any thread whenever a task has changed.

@@ -62,23 +62,6 @@ TEST(PlainWords, HaveNoOptionsInThem) {
   EXPECT_EQ(in_plain_words("12 mm (x) and 3 % (CIEDE2000)"), "12 mm (x) and 3 % (CIEDE2000)");
 }
 
-TEST(TaskProgress, OnlyRisesAndKnowsNoEndBeforeTheEnd) {
-  for (const char* kind : {"print", "orient", "plan"}) {
-    TaskProgress progress(kind);
-    double last = 0;
-    for (const char* activity :
-         {"loading", "dipping", "mapping", "dipping", "dipping", "dipping", "writing the sheet",
-          "trying directions", "dipping the best for good", "drawing the previews", "dipping"})
-      for (double f = 0; f <= 1; f += 0.25) {
-        progress.update(activity, f);
-        EXPECT_GE(progress.fraction(), last);
-        EXPECT_LT(progress.fraction(), 1);
-        last = progress.fraction();
-      }
-    EXPECT_GT(last, 0.5);
-  }
-}
-
 TEST(SampleShelf, PlacesWhatTheSampleIsAndKeepsNothingOfOtherBuilds) {
   const TemporaryFolder folder;
   for (const char* name : {"shelf/other-build/box", "made", "first", "second"})
