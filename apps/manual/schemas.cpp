@@ -119,9 +119,11 @@ std::optional<std::pair<double, double>> bounds_of(std::string_view range) {
 Json layer_schema(const LayerKey& key) {
   if (const auto bounds = bounds_of(key.range))
     return {{"type", "number"}, {"minimum", bounds->first}, {"maximum", bounds->second}};
-  if (key.range == "three numbers X,Y,Z") return array_of(text("number"), 3, 3);
-  if (key.range == "W or W,H, each more than 0") {
-    const Json length = {{"type", "number"}, {"exclusiveMinimum", 0}};
+  if (key.range.starts_with("three numbers X,Y,Z")) return array_of(text("number"), 3, 3);
+  constexpr std::string_view kSizes = "W or W,H, each ";
+  if (key.range.starts_with(kSizes)) {
+    const auto bounds = bounds_of("a number " + key.range.substr(kSizes.size())).value();
+    const Json length = {{"type", "number"}, {"minimum", bounds.first}, {"maximum", bounds.second}};
     return or_else(length, array_of(length, 1, 2));
   }
   if (key.range.starts_with("one of ")) return {{"enum", words_of(key.range.substr(7))}};

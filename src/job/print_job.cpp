@@ -17,6 +17,7 @@
 #include "job/sheet_of.h"
 #include "job/wanted.h"
 #include "job/ways.h"
+#include "plan/fit.h"
 #include "report/findings.h"
 #include "report/report.h"
 #include "session/sheet_files.h"
@@ -24,8 +25,21 @@
 namespace hydrodip {
 namespace {
 
+// Why no film lies on the object.
+std::string why_no_film(const DippedObject& dipped, const Trajectory& trajectory) {
+  const Room wet = room_of(dipped.posed.mesh(), trajectory);
+  const double wide_mm = 2 * std::min(wet.half_width_mm, wet.half_height_mm);
+  const double cell_mm = dipped.film->mesh().cell_mm;
+  if (dipped.coverage.torn_mm2 > 0 || wide_mm > 2 * cell_mm)
+    return no_film_verdict(dipped.coverage);
+  return fmt::format(
+      "What comes into the water of the object is {:.2g} mm wide, and the film's triangles are "
+      "{:.2g} mm: raise film.elements, take a smaller --film, or dip deeper (--depth).",
+      wide_mm, cell_mm);
+}
+
 // A sheet without a drop on it is never what was meant.
-void require_ink(const Designed& designed, const JobConfig& config) {
+void require_ink(const Designed& designed, const JobConfig& config, const Trajectory& trajectory) {
   const auto& laid = designed.ink.ink.inking.inks.cmyk;
   if (std::any_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value != 0; })) return;
   const Coverage& coverage = designed.dipped.coverage;
@@ -37,7 +51,7 @@ void require_ink(const Designed& designed, const JobConfig& config) {
         "Either the film tears wherever there is something to print (turn flatter sides down with "
         "--rotate or --down), or what it reaches of the model is white, transparent or of the "
         "object's own colour (check its texture and colours).";
-  if (!(coverage.film_on_object_mm2 > 0)) why = no_film_verdict(coverage);
+  if (!(coverage.film_on_object_mm2 > 0)) why = why_no_film(designed.dipped, trajectory);
   throw InputError(fmt::format("{}: the sheet would be blank. {}", config.model.string(), why));
 }
 
@@ -48,7 +62,7 @@ DesignedJob designed(const ReadyJob& job, Timings& times, const RunContext& cont
   Designed made =
       design({prepared.posed, *prepared.paint, Allotment(), *job.printer.model, job.config.design},
              times, context);
-  require_ink(made, job.config);
+  require_ink(made, job.config, job.trajectory);
   // Only further coats would ask for that.
   made.ink.ink.stretch = {};
   // Held once, by the finish.

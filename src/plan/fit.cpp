@@ -165,6 +165,7 @@ bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath) {
 
 void require_fit(const TriangleMesh& posed, const Room& room, const FilmOptions& film,
                  const BathOptions& bath, const RunContext& context) {
+  half_of_free_film(film);  // throws where there is none
   const std::vector<RoomFit> list = fits(posed, room, film, bath);
   for (const RoomFit& fit : list)
     if (fit.excess_mm() > kFitTolerance_mm)

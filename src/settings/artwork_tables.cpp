@@ -15,7 +15,7 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kLongest_mm = 1e5;
+constexpr double kLeastSize_mm = 0.01, kLongest_mm = 1e5;
 
 using Numbers = std::vector<double>;
 
@@ -89,7 +89,7 @@ Key number(const char* name, const char* unit, double min, double max, double Ar
 
 Key vector(const char* name, const char* unit, std::optional<Vec3> ArtworkLayer::*member,
            const char* help) {
-  return {{name, unit, "three numbers X,Y,Z", help},
+  return {{name, unit, fmt::format("three numbers X,Y,Z, none beyond {:g}", kLongest_mm), help},
           [=](ArtworkLayer& layer, const Setting& setting) {
             const auto values = numbers_of(setting);
             if (!values || values->size() != 3) return false;
@@ -104,23 +104,24 @@ Key vector(const char* name, const char* unit, std::optional<Vec3> ArtworkLayer:
 }
 
 Key size() {
-  return {{"size_mm", "mm", "W or W,H, each more than 0",
-           "width and height on the surface; one figure keeps the picture's shape; default: as "
-           "large as fits"},
-          [](ArtworkLayer& layer, const Setting& setting) {
-            const auto values = numbers_of(setting);
-            if (!values || values->empty() || values->size() > 2) return false;
-            for (const double value : *values)
-              if (!(value >= 0.01 && value <= kLongest_mm)) return false;
-            layer.width_mm = (*values)[0];
-            layer.height_mm = values->size() > 1 ? (*values)[1] : 0;
-            return true;
-          },
-          [](const ArtworkLayer& layer) {
-            if (!(layer.width_mm > 0)) return std::string();
-            return layer.height_mm > 0 ? fmt::format("{},{}", layer.width_mm, layer.height_mm)
-                                       : fmt::format("{}", layer.width_mm);
-          }};
+  return {
+      {"size_mm", "mm", fmt::format("W or W,H, each from {:g} to {:g}", kLeastSize_mm, kLongest_mm),
+       "width and height on the surface; one figure keeps the picture's shape; default: as "
+       "large as fits"},
+      [](ArtworkLayer& layer, const Setting& setting) {
+        const auto values = numbers_of(setting);
+        if (!values || values->empty() || values->size() > 2) return false;
+        for (const double value : *values)
+          if (!(value >= kLeastSize_mm && value <= kLongest_mm)) return false;
+        layer.width_mm = (*values)[0];
+        layer.height_mm = values->size() > 1 ? (*values)[1] : 0;
+        return true;
+      },
+      [](const ArtworkLayer& layer) {
+        if (!(layer.width_mm > 0)) return std::string();
+        return layer.height_mm > 0 ? fmt::format("{},{}", layer.width_mm, layer.height_mm)
+                                   : fmt::format("{}", layer.width_mm);
+      }};
 }
 
 template <class Enum>
