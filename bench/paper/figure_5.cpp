@@ -86,7 +86,8 @@ Outcome print_and_dip(DesignOptions options, bool compensate, const Study& study
   Outcome outcome;
   outcome.difference = measure(on_object, stretch,
                                largest_ratio_in_gamut(*model, options.inking.limit), options.dpi);
-  outcome.film = film_square(look_on_film(inks, print.wanted, *model), raster, 90, kPicture_px);
+  outcome.film =
+      film_square(look_on_film(inks, print.inking.printed, *model), raster, 90, kPicture_px);
   outcome.object = dipped_picture(dipped, on_object, raster, kPicture_px, study.context);
   return outcome;
 }

@@ -21,7 +21,7 @@ Growth follow(const std::string& sample, const DesignOptions& options, const Stu
   const PosedObject object = posed(make_sample(sample));
   const double side_mm = 1.25 * object.mesh().bounds().size().head<2>().maxCoeff();
   const auto picture = [&](const FilmInk& ink) {
-    return film_square(look_on_film(ink.inking.inks, ink.wanted, *model), raster, side_mm,
+    return film_square(look_on_film(ink.inking.inks, ink.inking.printed, *model), raster, side_mm,
                        kPicture_px);
   };
   Growth growth;

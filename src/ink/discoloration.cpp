@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/blank_pages.h"
 #include "base/parallel.h"
@@ -180,13 +181,20 @@ Inks compensated(const Inks& wanted, double area_ratio, GamutPolicy policy, doub
   return limited(clipped(needed), limit);
 }
 
+Inking no_ink(int width_px, int height_px) {
+  Inking result;
+  result.inks.width_px = width_px;
+  result.inks.height_px = height_px;
+  result.inks.cmyk =
+      blank<std::uint8_t>(std::size_t(4) * std::size_t(width_px) * std::size_t(height_px));
+  result.printed = PixelSet(width_px, height_px);
+  return result;
+}
+
 Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
                 const InkingOptions& options, const RunContext& context) {
   const RunScope scope(context);
-  Inking result;
-  result.inks.width_px = wanted.width_px;
-  result.inks.height_px = wanted.height_px;
-  result.inks.cmyk = blank<std::uint8_t>(wanted.rgba.size());
+  Inking result = no_ink(wanted.width_px, wanted.height_px);
   const auto unstretched = blank<float>(options.compensate ? 0 : area_ratio.size());
   const std::vector<float>& ratio = options.compensate ? area_ratio : unstretched;
   if (options.policy == GamutPolicy::kScale)
@@ -196,6 +204,7 @@ Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const
     separate_row(wanted, y, model, options.base, inks);
     for (int x = 0; x < wanted.width_px; ++x) {
       if (wanted.pixel(x, y)[3] == 0) continue;
+      result.printed.insert(x, y);
       const std::size_t i = std::size_t(y) * std::size_t(wanted.width_px) + std::size_t(x);
       const Inks laid = compensated(inks[std::size_t(x)].times(float(result.lightened)),
                                     double(ratio_or_one(ratio[i])), options.policy, options.limit);
@@ -206,12 +215,20 @@ Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const
   return result;
 }
 
-Image look_on_film(const InkImage& inks, const Image& wanted, const ColorModel& model) {
-  Image image = blank_image(inks.width_px, inks.height_px);
-  for_each_row(inks.height_px, [&](int y) {
+Image look_on_film(InkImage inks, const PixelSet& printed, const ColorModel& model) {
+  Image image;
+  image.width_px = inks.width_px;
+  image.height_px = inks.height_px;
+  image.rgba = std::move(inks.cmyk);
+  for_each_row(image.height_px, [&](int y) {
     InkedPixels row;
-    for (int x = 0; x < inks.width_px; ++x)
-      if (wanted.pixel(x, y)[3] != 0) row.add(x, from_bytes(inks.pixel(x, y)));
+    for (int x = 0; x < image.width_px; ++x) {
+      std::uint8_t* pixel = image.pixel(x, y);
+      if (printed.contains(x, y))
+        row.add(x, from_bytes(pixel));
+      else if (!is_blank(pixel))  // blank pages stay so
+        std::fill_n(pixel, 4, std::uint8_t{0});
+    }
     row.look(model, [&](int x, const SrgbColor& color) { store(color, image.pixel(x, y)); });
   });
   return image;

@@ -7,6 +7,7 @@
 
 #include "base/context.h"
 #include "image/image.h"
+#include "image/pixel_set.h"
 #include "ink/color_model.h"
 #include "transfer/raster.h"
 
@@ -36,8 +37,12 @@ Inks compensated(const Inks& wanted, double area_ratio, GamutPolicy policy, doub
 
 struct Inking {
   InkImage inks;         // to print
+  PixelSet printed;      // where anything is, be it white: where what is wanted is not transparent
   double lightened = 1;  // kScale: factor on all inks, 1 if everything fits
 };
+
+// A sheet on which nothing is printed.
+Inking no_ink(int width_px, int height_px);
 
 // The inks to print so that `wanted` (straight alpha: 0 where nothing is to be printed) appears on
 // the object. area_ratio: FilmStretch's. Ink lies on the base as a filter: the light that comes
@@ -45,9 +50,9 @@ struct Inking {
 Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
                 const InkingOptions& options, const RunContext& context);
 
-// What a film with these inks looks like before the dip: over white; transparent where `wanted`
-// is, so that the rest of the sheet stays empty.
-Image look_on_film(const InkImage& inks, const Image& wanted, const ColorModel& model);
+// What a film with these inks looks like before the dip: over white; transparent where nothing is
+// printed, so that the rest of the sheet stays empty. Takes the place of the inks in memory.
+Image look_on_film(InkImage inks, const PixelSet& printed, const ColorModel& model);
 
 // The same film pixel by pixel as it will look on the object, paled and over the base colour.
 // Transparent where there is no ink and no film on the object.

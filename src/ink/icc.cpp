@@ -243,8 +243,8 @@ bool is_rgb_profile(const std::vector<std::uint8_t>& bytes) {
   return profile && cmsGetColorSpace(profile.get()) == cmsSigRgbData;
 }
 
-Image in_printer_rgb(const Image& image, const std::vector<std::uint8_t>& profile,
-                     const std::string& name, RenderingIntent intent) {
+Image in_printer_rgb(Image image, const std::vector<std::uint8_t>& profile, const std::string& name,
+                     RenderingIntent intent) {
   const Context context = quiet_context();
   const Profile printer = open_profile(context.get(), profile);
   const Profile srgb(cmsCreate_sRGBProfileTHR(context.get()));
@@ -258,14 +258,16 @@ Image in_printer_rgb(const Image& image, const std::vector<std::uint8_t>& profil
         "{}: cannot be used to print; give the ICC profile of a CMYK or RGB printer, or leave "
         "--printer-profile out",
         name));
-  Image result(image.width_px, image.height_px);
-  const std::size_t row = 4 * std::size_t(image.width_px);
-  for (std::size_t at = 0; at < image.rgba.size(); at += row) {
+  for (int y = 0; y < image.height_px; ++y) {
     check_cancelled();
-    cmsDoTransform(transform.get(), &image.rgba[at], &result.rgba[at],
-                   static_cast<cmsUInt32Number>(image.width_px));
+    int begin = 0, end = image.width_px;
+    while (begin < end && image.pixel(begin, y)[3] == 0) ++begin;
+    while (end > begin && image.pixel(end - 1, y)[3] == 0) --end;
+    if (begin == end) continue;
+    std::uint8_t* shown = image.pixel(begin, y);
+    cmsDoTransform(transform.get(), shown, shown, static_cast<cmsUInt32Number>(end - begin));
   }
-  return result;
+  return image;
 }
 
 std::filesystem::path installed_cmyk_profile() {

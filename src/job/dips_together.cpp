@@ -1,6 +1,7 @@
 #include "job/dips_together.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/run_scope.h"
 #include "ink/discoloration.h"
@@ -46,8 +47,8 @@ DipsTogether put_together(const JobConfig& config, const PreparedObject& prepare
   look.colors = std::move(painted.colors);
   look.parts = std::move(painted.parts);
   for (std::size_t k = 0; k < all.dips.size(); ++k) {
-    const FilmInk& ink = all.dips[k].made.ink.ink;
-    look.sheets.push_back(look_on_film(ink.inking.inks, ink.wanted, *printer.model));
+    Inking& laid = all.dips[k].made.ink.ink.inking;
+    look.sheets.push_back(look_on_film(std::move(laid.inks), laid.printed, *printer.model));
     look.color_of.push_back(dip_color(k));
   }
   return look;

@@ -31,6 +31,7 @@ struct JobRecord {
   std::string ink_model = {};               // how colours became inks
   std::string better_way = {};              // how else to dip it; empty: none is known
   std::optional<ReportWanted> wanted = {};  // where something shall be printed
+  std::optional<ReportInk> laid = {};       // how much of each ink, once that is known
 
   const DippedObject& dipped() const { return finish.coats().front().dipped; }
   const Paint& paint() const { return finish.paint(); }

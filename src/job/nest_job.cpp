@@ -222,15 +222,16 @@ class PieceOnSheet {
   int wide() const { return turned_ ? height_ : width_; }
   int high() const { return turned_ ? width_ : height_; }
 
-  // Copies 4-byte pixels of the piece. Turned: its right edge is up on the sheet.
-  template <class Pixels>
-  void copy(const Pixels& from, Pixels& sheet) const {
+  // Copies what is printed of the piece. Turned: its right edge is up on the sheet.
+  void copy(const Inking& from, Inking& sheet) const {
     for (int y = 0; y < height_; ++y)
       for (int x = 0; x < width_; ++x) {
+        if (!from.printed.contains(x, y)) continue;
         const int to_x = left_ + (turned_ ? y : x);
         const int to_y = top_ + (turned_ ? width_ - 1 - x : y);
-        if (to_x < sheet.width_px && to_y < sheet.height_px)
-          std::copy_n(from.pixel(x, y), 4, sheet.pixel(to_x, to_y));
+        if (to_x >= sheet.inks.width_px || to_y >= sheet.inks.height_px) continue;
+        std::copy_n(from.inks.pixel(x, y), 4, sheet.inks.pixel(to_x, to_y));
+        sheet.printed.insert(to_x, to_y);
       }
   }
 
@@ -241,31 +242,27 @@ class PieceOnSheet {
 };
 
 // Black on a piece: where `alpha` says so.
-void blacken(FilmInk& ink, int x, int y, std::uint8_t alpha) {
-  if (x < 0 || y < 0 || x >= ink.wanted.width_px || y >= ink.wanted.height_px) return;
-  std::uint8_t* inks = ink.inking.inks.pixel(x, y);
+void blacken(Inking& laid, int x, int y, std::uint8_t alpha) {
+  if (alpha == 0 || x < 0 || y < 0 || x >= laid.inks.width_px || y >= laid.inks.height_px) return;
+  std::uint8_t* inks = laid.inks.pixel(x, y);
   inks[3] = std::max(inks[3], alpha);
-  std::uint8_t* wanted = ink.wanted.pixel(x, y);
-  if (wanted[3] < alpha) {
-    wanted[0] = wanted[1] = wanted[2] = 0;
-    wanted[3] = alpha;
-  }
+  laid.printed.insert(x, y);
 }
 
 // What is needed to cut a piece out and to know it again.
-void mark_piece(FilmInk& ink, const std::string& label, double margin_mm, double dpi) {
-  const int width = ink.wanted.width_px, height = ink.wanted.height_px;
+void mark_piece(Inking& laid, const std::string& label, double margin_mm, double dpi) {
+  const int width = laid.inks.width_px, height = laid.inks.height_px;
   const double pixels_per_mm = dpi / kMmPerInch;
   const int line = std::max(1, int(std::lround(kLine_mm * pixels_per_mm)));
   for (int x = 0; x < width; ++x)
     for (int k = 0; k < line; ++k) {
-      blacken(ink, x, k, 255);
-      blacken(ink, x, height - 1 - k, 255);
+      blacken(laid, x, k, 255);
+      blacken(laid, x, height - 1 - k, 255);
     }
   for (int y = 0; y < height; ++y)
     for (int k = 0; k < line; ++k) {
-      blacken(ink, k, y, 255);
-      blacken(ink, width - 1 - k, y, 255);
+      blacken(laid, k, y, 255);
+      blacken(laid, width - 1 - k, y, 255);
     }
   if (margin_mm < kLabel_mm + 2) return;
   const Drawing text = Drawing::from_text(label, "sans bold", {0, 0, 0, 1});
@@ -281,7 +278,7 @@ void mark_piece(FilmInk& ink, const std::string& label, double margin_mm, double
   const int top = height - int((0.5 * margin_mm + 0.5 * high_mm) * pixels_per_mm);
   for (int y = 0; y < letters.height_px; ++y)
     for (int x = 0; x < letters.width_px; ++x)
-      blacken(ink, left + x, top + y, letters.pixel(x, y)[3]);
+      blacken(laid, left + x, top + y, letters.pixel(x, y)[3]);
 }
 
 std::string label_of(const Piece& piece, const Nest& nest) {
@@ -290,20 +287,14 @@ std::string label_of(const Piece& piece, const Nest& nest) {
                      nest.made[piece.part].is_not_to_be_dipped() ? " - DO NOT DIP" : "");
 }
 
-FilmInk whole_sheet(const Nest& nest, const SheetRaster& sheet) {
-  FilmInk whole;
-  whole.wanted = Image(sheet.width_px(), sheet.height_px());
-  whole.inking.inks = InkImage(sheet.width_px(), sheet.height_px());
+Inking whole_sheet(const Nest& nest, const SheetRaster& sheet) {
+  Inking whole = no_ink(sheet.width_px(), sheet.height_px());
   for (const Piece& piece : nest.pieces) {
     const Designed& designed = nest.made[piece.part].made.designed;
-    const FilmInk& made = designed.ink.ink;
-    FilmInk own;
-    own.wanted = made.wanted;
-    own.inking.inks = made.inking.inks;
+    Inking own = designed.ink.ink.inking;
     mark_piece(own, label_of(piece, nest), nest.parts[piece.part].film().margin_mm, sheet.dpi);
     const PieceOnSheet on(piece, designed.raster, sheet);
-    on.copy(own.wanted, whole.wanted);
-    on.copy(own.inking.inks, whole.inking.inks);
+    on.copy(own, whole);
   }
   return whole;
 }
@@ -418,8 +409,9 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
 
   make_parts(nest, context);
   const Printer printer = make_printer(sheet.printer);
-  const FilmInk whole = whole_sheet(nest, raster_of(sheet.design.film, sheet.design.dpi));
-  write_sheet_files(folder, whole, printer, sheet_options(sheet, nest), context);
+  Inking whole = whole_sheet(nest, raster_of(sheet.design.film, sheet.design.dpi));
+  write_sheet_files(folder, std::move(whole.inks), whole.printed, printer,
+                    sheet_options(sheet, nest), context);
   for (std::size_t p = 0; p < nest.parts.size(); ++p)
     write_png(folder.path(fmt::format("part-{}.png", p + 1)),
               render(nest.made[p].made.finish, sheet.preview_width_px, context));

@@ -47,7 +47,7 @@ ReportColors colors_of(const FilmLayer& error) {
 Report full_report(const JobRecord& record, const Previews& previews) {
   Report report = make_report(record);
   report.colors = previews.colors;
-  report.ink = previews.ink;
+  report.ink = record.laid;
   return report;
 }
 
@@ -226,8 +226,6 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
   // Once for all who want as many pixels.
   const Image glb_sheet = shrink_to(film_image, 2 * record.config.preview_texture_px);
   std::optional<TellingViews> views;
-  if (record.ink != nullptr)
-    previews.ink = ink_amounts(record.ink->ink.inking.inks, record.config.design.inking.limit);
   // The longest first.
   if (record.config.pictures) {
     layers = measure_layers(record, shown, raster, previews);

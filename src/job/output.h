@@ -17,7 +17,6 @@ namespace hydrodip {
 struct Previews {
   ReportPictures pictures;  // preview.png and maps.png, and the 3D view's scene
   std::optional<ReportColors> colors;
-  std::optional<ReportInk> ink;
 };
 
 // Writes film.ply, preview.glb, preview.png, maps.png, and gamut.png if there is ink, for a film

@@ -40,11 +40,12 @@ void require_some_ink(const MadeDips& all) {
         all.config.model.string()));
 }
 
-// What the wet bench needs of one dip.
-void write_dip(OutputFolder& folder, const MadeDip& dip, const MadeDips& all,
+// What the wet bench needs of one dip, whose inks are spent on it.
+void write_dip(OutputFolder& folder, MadeDip& dip, const MadeDips& all,
                const std::vector<ReportInput>& inputs, const Printer& printer, const Timings& times,
                const RunContext& context) {
   const std::string inside = dip.folder + "/";
+  Inking& laid = dip.made.ink.ink.inking;
   write_film_ply(folder.path(inside + "film.ply"), *dip.made.dipped.film);
   const PosedObject& posed = dip.made.dipped.posed;
   const int texture_px = dip.config.preview_texture_px;
@@ -60,10 +61,10 @@ void write_dip(OutputFolder& folder, const MadeDip& dip, const MadeDips& all,
                          context, &dip.made.ink, printer.model->name()};
   Report report = make_report(record);
   report.warnings.clear();
-  report.ink = ink_amounts(dip.made.ink.ink.inking.inks, dip.config.design.inking.limit);
+  report.ink = ink_amounts(laid.inks, dip.config.design.inking.limit);
   report.dip_number = dip.number;
   report.dip_of = int(all.dips.size());
-  write_sheet_files(folder, dip.made.ink.ink, printer,
+  write_sheet_files(folder, std::move(laid.inks), laid.printed, printer,
                     sheet_of(dip.config, dip.made.dipped.posed, report), context, inside);
   write_report_json(folder.path(inside + "report.json"), report);
 }
@@ -117,8 +118,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   const Finish finish = make_dips(all, shared, printer, times, context);
   require_some_ink(all);
   times.measure("sheet", [&] {
-    for (const MadeDip& dip : all.dips)
-      write_dip(folder, dip, all, inputs, printer, times, context);
+    for (MadeDip& dip : all.dips) write_dip(folder, dip, all, inputs, printer, times, context);
   });
   const FinishCheck check =
       times.measure("check", [&] { return FinishCheck(finish, shared, context); });

@@ -84,7 +84,7 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   announce_outputs(folder, "print", config, inputs);
   folder.supersede(sheets_of_other_prints(0));
 
-  const DesignedJob made = designed(job, times, context);
+  DesignedJob made = designed(job, times, context);
   const DippedObject& dipped = made.designed.dipped;
   const InkResult& ink = made.designed.ink;
   JobRecord record{"print", config,      job.prepared,
@@ -96,7 +96,11 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
     record.better_way =
         times.measure("find", [&] { return better_way(config, job.prepared, dipped, context); });
   const SheetOptions sheet = sheet_of(config, job.prepared.posed, first_look);
-  times.measure("sheet", [&] { write_sheet_files(folder, ink.ink, job.printer, sheet, context); });
+  Inking& laid = made.designed.ink.ink.inking;
+  record.laid = ink_amounts(laid.inks, config.design.inking.limit);
+  times.measure("sheet", [&] {
+    write_sheet_files(folder, std::move(laid.inks), laid.printed, job.printer, sheet, context);
+  });
 
   const Previews previews =
       times.measure("preview", [&] { return write_previews(folder, record); });

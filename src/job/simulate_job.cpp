@@ -160,15 +160,17 @@ void clear_margin(PrintedFilm& printed, const FilmOptions& film, const RunContex
 }
 
 // The sheet as it was given, with marks.
-void write_given_sheet(OutputFolder& folder, const PrintedFilm& printed, const Printer& printer,
+void write_given_sheet(OutputFolder& folder, PrintedFilm printed, const Printer& printer,
                        SheetOptions sheet, const RunContext& context) {
-  FilmInk film;
-  film.inking.inks = printed.inks;
-  film.wanted = Image(printed.inks.width_px, printed.inks.height_px);
-  for (std::size_t i = 0; i < printed.inks.cmyk.size(); i += 4)
-    film.wanted.rgba[i + 3] = is_blank(printed.inks.cmyk.data() + i) ? 0 : 255;
+  const InkImage& inks = printed.inks;
+  PixelSet inked(inks.width_px, inks.height_px);
+  for (int y = 0; y < inks.height_px; ++y) {
+    context.check_cancelled();
+    for (int x = 0; x < inks.width_px; ++x)
+      if (!is_blank(inks.pixel(x, y))) inked.insert(x, y);
+  }
   sheet.dpi = printed.raster.dpi;
-  write_sheet_files(folder, film, printer, sheet, context);
+  write_sheet_files(folder, std::move(printed.inks), inked, printer, sheet, context);
 }
 
 SimulatedJob dipped_with(const PrintedFilm& printed, const ReadyJob& job,
@@ -198,7 +200,7 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
   const std::vector<ReportInput> inputs = describe_inputs(config, job.prepared, job.printer);
   announce_outputs(folder, command, config, inputs);
   folder.supersede(command == "print" ? sheets_of_other_prints(0) : pictures_of_jobs());
-  const PrintedFilm printed = times.measure("film image", [&] {
+  PrintedFilm printed = times.measure("film image", [&] {
     PrintedFilm film_image = printed_film(config, *job.printer.model);
     if (command == "print") clear_margin(film_image, config.design.film, context);
     return film_image;
@@ -215,7 +217,7 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
         "find", [&] { return better_way(config, job.prepared, made.dipped, context); });
   if (command == "print")
     times.measure("sheet", [&] {
-      write_given_sheet(folder, printed, job.printer,
+      write_given_sheet(folder, std::move(printed), job.printer,
                         sheet_of(config, job.prepared.posed, first_look), context);
     });
   const Previews previews = times.measure("preview", [&] {

@@ -135,7 +135,8 @@ void write_sheet(const std::filesystem::path& folder, const Designed& designed,
                  const Printer& printer, const SheetOptions& options, const RunContext& context) {
   const RunScope scope(context);
   OutputFolder output(folder);
-  write_sheet_files(output, designed.ink.ink, printer, options, context);
+  const Inking& laid = designed.ink.ink.inking;
+  write_sheet_files(output, laid.inks, laid.printed, printer, options, context);
   context.check_cancelled();
   output.commit();
 }

@@ -156,8 +156,9 @@ std::size_t bytes_of(const DippedObject& dipped) {
 std::size_t bytes_of(const Designed& made) {
   const FilmInk& ink = made.ink.ink;
   return bytes_of(made.dipped) + bytes_of(ink.wanted) + bytes_of(ink.on_object) +
-         bytes_of(ink.inking.inks.cmyk) + bytes_of(ink.stretch.area_ratio) +
-         bytes_of(ink.stretch.on_object) + bytes_of(made.ink.reach.difference);
+         bytes_of(ink.inking.inks.cmyk) + ink.inking.printed.bytes() +
+         bytes_of(ink.stretch.area_ratio) + bytes_of(ink.stretch.on_object) +
+         bytes_of(made.ink.reach.difference);
 }
 
 struct SharedPaint {

@@ -140,7 +140,7 @@ void add_film(Bundle& bundle, const DippedFilm& film) {
 }
 
 void add_sheet(Bundle& bundle, const FilmInk& ink, const ColorModel& model) {
-  bundle.add("sheet.printed", look_on_film(ink.inking.inks, ink.wanted, model).rgba, 4);
+  bundle.add("sheet.printed", look_on_film(ink.inking.inks, ink.inking.printed, model).rgba, 4);
   std::vector<std::uint8_t> predicted = ink.on_object.rgba;
   const std::vector<std::uint8_t>& laid = ink.inking.inks.cmyk;
   for (std::size_t i = 0; i < predicted.size(); i += 4)
