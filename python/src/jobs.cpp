@@ -113,7 +113,7 @@ Design design(const ConfigHandle& handle, const py::object& progress) {
     const RunScope scope(context.with_threads(config.threads));
     Timings times;
     auto job = std::make_shared<const ReadyJob>(make_ready(config, true, times, context));
-    DesignedJob made = designed(*job, times, context);
+    DesignedJob made = designed(*job, {.wanted = true, .stretch = false}, times, context);
     DippedObject dipped = made.designed.dipped;
     return Design{{std::move(job), std::move(dipped),
                    std::make_shared<const Finish>(std::move(made.finish)), context.warnings()},

@@ -10,7 +10,7 @@
 namespace hydrodip {
 
 // Elsewhere, what becomes of pages that are given back is not as sure; then they stay.
-void give_back_zeros(void* begin, std::size_t bytes) {
+void give_back(void* begin, std::size_t bytes) {
 #if defined(__linux__)
   const auto page = std::uintptr_t(sysconf(_SC_PAGESIZE));
   const auto first = (std::uintptr_t(begin) + page - 1) / page * page;

@@ -10,9 +10,9 @@
 
 namespace hydrodip {
 
-// Gives zeros' pages back to the system, which makes new ones of zeros once they are written to.
-// All that is there has to be zero.
-void give_back_zeros(void* begin, std::size_t bytes);
+// Gives whole pages back to the system, which makes new ones of zeros once they are looked at. What
+// was there is lost: some of it stays and the rest is zero.
+void give_back(void* begin, std::size_t bytes);
 
 // std::vector<T>(count), made in pieces. Throws Cancelled, as check_cancelled() does.
 template <typename T>
@@ -24,7 +24,7 @@ std::vector<T> blank(std::size_t count) {
     check_cancelled();
     const std::size_t begin = values.size();
     values.resize(std::min(count, begin + kPiece));
-    give_back_zeros(values.data() + begin, (values.size() - begin) * sizeof(T));
+    give_back(values.data() + begin, (values.size() - begin) * sizeof(T));
   }
   return values;
 }

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/blank_pages.h"
 #include "base/run_scope.h"
 #include "coat/ink_rounds.h"
+#include "image/blank_image.h"
 
 namespace hydrodip {
 namespace {
@@ -15,13 +17,41 @@ bool ink_matters(const DesignOptions& options) {
   return options.stiffness.ratio > 1 && options.dip.method != DipMethod::kProjection;
 }
 
-// What comes of the print on the object.
-void look_at(InkResult& result, const DesignTask& task) {
+// Rows that are printed together: enough for many threads, a small part of a large sheet.
+constexpr int kBandRows = 256;
+
+// Gives the memory of rows back that nobody asks any more.
+template <class T>
+void forget(std::vector<T>& image, const RowBand& rows, int values_per_row) {
+  const auto per_row = std::size_t(values_per_row);
+  give_back(image.data() + std::size_t(rows.begin) * per_row,
+            std::size_t(rows.end - rows.begin) * per_row * sizeof(T));
+}
+
+// The inks for what is wanted, and what comes of them on the object: band by band, so that they
+// take the place in memory of what they are made from and nobody keeps.
+void print(InkResult& result, const DesignTask& task, const Box2& covered) {
   FilmInk& ink = result.ink;
-  ink.on_object =
-      look_on_object(ink.inking.inks, ink.stretch.area_ratio, task.model, task.paint.base());
-  result.reach = measure_reach(ink.wanted, ink.on_object, ink.stretch,
-                               raster_of(task.options.film, task.options.dpi));
+  const InkingOptions options = inking_of(task, task.options);
+  const std::vector<float>& area_ratio = ink.stretch.area_ratio;
+  const int width_px = ink.wanted.width_px, height_px = ink.wanted.height_px;
+  ink.inking = prepared_inking(ink.wanted, area_ratio, task.model, options);
+  ink.on_object = blank_image(width_px, height_px);
+  ReachMeter reach(raster_of(task.options.film, task.options.dpi), covered);
+  for (int row = 0; row < height_px; row += kBandRows) {
+    const RowBand band{row, std::min(row + kBandRows, height_px)};
+    ink_rows(band, ink.wanted, area_ratio, task.model, options, ink.inking);
+    look_at_rows(band, ink.inking.inks, area_ratio, task.model, options.base, ink.on_object);
+    reach.add(band, ink.wanted, ink.on_object, ink.stretch);
+    if (!task.kept.wanted) forget(ink.wanted.rgba, band, 4 * width_px);
+    if (!task.kept.stretch) {
+      forget(ink.stretch.area_ratio, band, width_px);
+      forget(ink.stretch.on_object, band, width_px);
+    }
+  }
+  if (!task.kept.wanted) ink.wanted = {};
+  if (!task.kept.stretch) ink.stretch = {};
+  result.reach = reach.result();
 }
 
 std::shared_ptr<const TrappedAir> air_of(const DesignTask& task, const RunContext& context) {
@@ -86,8 +116,10 @@ class Settling {
   }
 
   void finish(InkRounds& rounds) {
-    result_.ink = timings_.measure("invert", [&] { return rounds.print_last(options().dpi); });
-    look_at(result_, task_);
+    timings_.measure("invert", [&] {
+      result_.ink = rounds.wanted_last(options().dpi);
+      print(result_, task_, rounds.dipped().map->covered());
+    });
   }
 
   const DesignTask task_;
@@ -118,10 +150,10 @@ double InkResult::last_change_mm() const { return rounds.empty() ? 0 : rounds.ba
 Designed design_on(const DesignTask& task, const DippedObject& dipped, const RunContext& context) {
   const RunScope scope(context);
   InkResult result;
-  result.ink = print_by(task, task.options, *dipped.map, task.options.dpi, context);
-  look_at(result, task);
+  result.ink = wanted_on(task, task.options, *dipped.map, task.options.dpi, context);
   InkRound round;
   round.printed_mm2 = printed_area_mm2(result.ink.wanted, task.options.dpi);
+  print(result, task, dipped.map->covered());
   round.dip = dipped.statistics;
   result.rounds.push_back(round);
   result.settled = true;

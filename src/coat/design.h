@@ -45,8 +45,9 @@ bool is_draft(const DesignOptions& options);
 
 // What lies on the film, and what comes of it on the object.
 struct FilmInk {
-  Image wanted;  // per pixel of the film, what shall appear on the object; transparent: no ink
-  FilmStretch stretch;
+  // Per pixel of the film, what shall appear on the object; transparent: no ink. Empty: not kept.
+  Image wanted;
+  FilmStretch stretch;  // likewise
   Inking inking;
   Image on_object;  // what will appear
 };
@@ -82,6 +83,13 @@ struct FirstDip {
   std::vector<double> modulus = {};  // per triangle, as film_modulus() has it; empty: no ink
 };
 
+// What stays of the film image once its inks are known, and what comes of them: each takes 4 to 5
+// bytes of memory an inked pixel.
+struct KeptImages {
+  bool wanted = true;   // to be looked at
+  bool stretch = true;  // for coats over this one, or if this one lies over others
+};
+
 // What a design is made for. Refers to all of it.
 struct DesignTask {
   const PosedObject& posed;
@@ -91,6 +99,7 @@ struct DesignTask {
   const DesignOptions& options;
   // A dip of it that was made already: then the first round makes none. Null: there is none.
   const FirstDip* first = nullptr;
+  KeptImages kept = {};
 };
 
 // The dip with the ink that it calls for as it lay without: how film falls that carries ink, all

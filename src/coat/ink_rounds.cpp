@@ -59,15 +59,18 @@ double printed_area_mm2(const Image& wanted, double dpi) {
   return pixels * (kMmPerInch / dpi) * (kMmPerInch / dpi);
 }
 
-FilmInk print_by(const DesignTask& task, const DesignOptions& options, const FilmMap& map,
-                 double dpi, const RunContext& context) {
-  const SheetRaster raster = raster_of(options.film, dpi);
+InkingOptions inking_of(const DesignTask& task, const DesignOptions& options) {
   InkingOptions inking = options.inking;
   inking.base = task.paint.base();
+  return inking;
+}
+
+FilmInk wanted_on(const DesignTask& task, const DesignOptions& options, const FilmMap& map,
+                  double dpi, const RunContext& context) {
+  const SheetRaster raster = raster_of(options.film, dpi);
   FilmInk ink;
   ink.wanted = film_image(task.paint, map, raster, options.inverse, task.allotment, context);
   ink.stretch = film_stretch(map, raster, options.inverse.bleed_mm, context);
-  ink.inking = ink_film(ink.wanted, ink.stretch.area_ratio, task.model, inking, context);
   return ink;
 }
 
@@ -118,11 +121,11 @@ std::vector<double> InkRounds::modulus() const {
                       options_.stiffness);
 }
 
-FilmInk InkRounds::print(double dpi, bool all) const {
-  if (!outline_.is_kept()) return print_by(task_, options_, *dipped_->map, dpi, context_);
+FilmInk InkRounds::wanted(double dpi, bool all) const {
+  if (!outline_.is_kept()) return wanted_on(task_, options_, *dipped_->map, dpi, context_);
   const Surface& surface = dipped_->posed.surface();
   const DippedFilm kept = outline_.applied(*dipped_->film, surface, all);
-  return print_by(task_, options_, FilmMap(dipped_->posed.mesh(), surface, kept), dpi, context_);
+  return wanted_on(task_, options_, FilmMap(dipped_->posed.mesh(), surface, kept), dpi, context_);
 }
 
 // False if the film cannot be dipped with its ink: then the last dip stays.
@@ -146,13 +149,17 @@ bool InkRounds::dip() {
 
 void InkRounds::print_round() {
   ink_ = {};
-  ink_ = timings_.measure("ink", [&] { return print(rounds_dpi_, false); });
+  timings_.measure("ink", [&] {
+    ink_ = wanted(rounds_dpi_, false);
+    ink_.inking = ink_film(ink_.wanted, ink_.stretch.area_ratio, task_.model,
+                           inking_of(task_, options_), context_);
+  });
   judge();
 }
 
-FilmInk InkRounds::print_last(double dpi) {
+FilmInk InkRounds::wanted_last(double dpi) {
   ink_ = {};
-  return print(dpi, true);
+  return wanted(dpi, true);
 }
 
 void InkRounds::judge() {

@@ -14,9 +14,12 @@ namespace hydrodip {
 // What a round has led to.
 enum class Outcome { kGoesOn, kSettled, kUnsettled, kFailed };
 
-// What to print on film that lies like that.
-FilmInk print_by(const DesignTask& task, const DesignOptions& options, const FilmMap& map,
-                 double dpi, const RunContext& context);
+// What is wanted on film that lies like that, and how it is stretched; no ink yet.
+FilmInk wanted_on(const DesignTask& task, const DesignOptions& options, const FilmMap& map,
+                  double dpi, const RunContext& context);
+
+// As options.inking, over the paint's base.
+InkingOptions inking_of(const DesignTask& task, const DesignOptions& options);
 
 // Of a film image.
 double printed_area_mm2(const Image& wanted, double dpi);
@@ -44,17 +47,17 @@ class InkRounds {
   // Of the film that was dipped last; empty: no ink.
   const std::vector<double>& dipped_modulus() const { return dip_options_.modulus; }
 
-  // What to print at `dpi` on the film as it was dipped last, wherever it lies on the object. Ends
-  // the rounds: their own ink gives its memory back first.
-  FilmInk print_last(double dpi);
+  // What is wanted at `dpi` on the film as it was dipped last, wherever it lies on the object, and
+  // how it is stretched. Ends the rounds: their own ink gives its memory back first.
+  FilmInk wanted_last(double dpi);
 
  private:
   int number() const { return int(rounds_.size()); }
   double change(int rounds_ago) const;
   std::vector<double> modulus() const;
   bool dip();
-  // As print_last; without `all` only within the outline that is kept.
-  FilmInk print(double dpi, bool all) const;
+  // As wanted_last; without `all` only within the outline that is kept.
+  FilmInk wanted(double dpi, bool all) const;
   void print_round();
   void judge();
   Outcome outcome() const;

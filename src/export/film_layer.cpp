@@ -13,21 +13,10 @@
 namespace hydrodip {
 namespace {
 
-constexpr int kLongestSide = 400;                         // cells: about half a millimetre on A4
 constexpr std::array<double, 2> kSamples = {0.25, 0.75};  // per cell and axis
 
 FilmLayer empty_layer(const std::string& key, const Box2& extent) {
-  FilmLayer layer;
-  layer.key = key;
-  if (extent.empty()) return layer;
-  layer.extent = extent;
-  const Vec2 size = extent.max - extent.min;
-  const double cell = std::max(1e-6, size.maxCoeff() / kLongestSide);
-  layer.width = std::max(1, int(std::ceil(size.x() / cell - 1e-9)));
-  layer.height = std::max(1, int(std::ceil(size.y() / cell - 1e-9)));
-  layer.values.assign(std::size_t(layer.width) * std::size_t(layer.height),
-                      std::numeric_limits<float>::quiet_NaN());
-  return layer;
+  return {empty_cells(extent), key};
 }
 
 double least_stretch(const DippedFilm& film, std::size_t triangle) {
@@ -101,40 +90,6 @@ FilmLayer color_error_layer(const TriangleMesh& object, const FilmMap& map,
   parallel_for(std::size_t(layer.height), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) error.fill_row(layer, int(row));
   });
-  return layer;
-}
-
-FilmLayer pixel_layer(const std::string& key, const std::function<float(std::size_t pixel)>& value,
-                      int width_px, int height_px, const Vec2& sheet_mm, const Box2& extent) {
-  FilmLayer layer = empty_layer(key, extent);
-  std::vector<double> sum(layer.values.size(), 0);
-  std::vector<int> count(layer.values.size(), 0);
-  const Vec2 size = layer.extent.max - layer.extent.min;
-  // The cells of pixel columns; -1: none.
-  std::vector<int> column_of(std::size_t(width_px), -1);
-  for (int x = 0; x < width_px; ++x) {
-    const double u = (x + 0.5) / width_px * sheet_mm.x() - 0.5 * sheet_mm.x();
-    const double column = (u - layer.extent.min.x()) / size.x() * layer.width;
-    if (column >= 0 && column < layer.width) column_of[std::size_t(x)] = int(column);
-  }
-  for (int y = 0; y < height_px && !layer.values.empty(); ++y) {
-    check_cancelled();
-    const double u = 0.5 * sheet_mm.y() - (y + 0.5) / height_px * sheet_mm.y();
-    const double row = (layer.extent.max.y() - u) / size.y() * layer.height;
-    if (!(row >= 0 && row < layer.height)) continue;
-    for (int x = 0; x < width_px; ++x) {
-      if (column_of[std::size_t(x)] < 0) continue;
-      const float here = value(std::size_t(y) * std::size_t(width_px) + std::size_t(x));
-      if (std::isnan(here)) continue;
-      const auto cell =
-          std::size_t(int(row)) * std::size_t(layer.width) + std::size_t(column_of[std::size_t(x)]);
-      sum[cell] += double(here);
-      ++count[cell];
-    }
-  }
-  for (std::size_t i = 0; i < layer.values.size(); ++i) {
-    if (count[i] > 0) layer.values[i] = float(sum[i] / count[i]);
-  }
   return layer;
 }
 

@@ -225,15 +225,28 @@ struct PngWriter {
   PngWriter& operator=(const PngWriter&) = delete;
 };
 
+// A row's pixels, from the right if mirrored: then in `turned`.
+const std::uint8_t* row_of(const Image& image, int y, bool mirrored, Bytes& turned) {
+  const std::uint8_t* row = image.pixel(0, y);
+  if (!mirrored) return row;
+  const std::size_t width = std::size_t(image.width_px);
+  turned.resize(4 * width);
+  for (std::size_t x = 0; x < width; ++x)
+    std::copy_n(row + 4 * (width - 1 - x), 4, turned.data() + 4 * x);
+  return turned.data();
+}
+
 // Each row begins with its filter's number and holds differences to the row above.
-std::vector<Bytes> png_rows(const Image& image, bool drop_alpha) {
+std::vector<Bytes> png_rows(const Image& image, bool mirrored, bool drop_alpha) {
   constexpr std::uint8_t kUp = 2;
   const std::size_t channels = drop_alpha ? 3 : 4, width = std::size_t(image.width_px);
   return deflate_rows(std::size_t(image.height_px), 1 + channels * width,
                       [&](std::size_t y, std::uint8_t* out) {
                         *out++ = kUp;
-                        const std::uint8_t* here = image.pixel(0, int(y));
-                        const std::uint8_t* above = y > 0 ? here - 4 * width : nullptr;
+                        Bytes turned, turned_above;
+                        const std::uint8_t* here = row_of(image, int(y), mirrored, turned);
+                        const std::uint8_t* above =
+                            y > 0 ? row_of(image, int(y) - 1, mirrored, turned_above) : nullptr;
                         for (std::size_t x = 0; x < width; ++x)
                           for (std::size_t k = 0; k < channels; ++k)
                             *out++ = std::uint8_t(here[4 * x + k] - (above ? above[4 * x + k] : 0));
@@ -241,7 +254,7 @@ std::vector<Bytes> png_rows(const Image& image, bool drop_alpha) {
 }
 
 bool png_encode(PngWriter& writer, const Image& image, bool drop_alpha, double dpi,
-                const std::vector<Bytes>& rows, Bytes& out) {
+                std::vector<Bytes>& rows, Bytes& out) {
   png_structp png = writer.png;
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_write_fn(png, &out, png_append, png_no_flush);
@@ -255,8 +268,10 @@ bool png_encode(PngWriter& writer, const Image& image, bool drop_alpha, double d
     png_set_pHYs(png, writer.info, per_m, per_m, PNG_RESOLUTION_METER);
   }
   png_write_info(png, writer.info);
-  for (const Bytes& piece : rows)
+  for (Bytes& piece : rows) {
     png_write_chunk(png, reinterpret_cast<png_const_bytep>("IDAT"), piece.data(), piece.size());
+    Bytes().swap(piece);  // all of them may be large
+  }
   png_write_chunk(png, reinterpret_cast<png_const_bytep>("IEND"), nullptr, 0);
   return true;
 }
@@ -577,12 +592,12 @@ double recorded_dpi(const Bytes& bytes) {
   return is_jpeg(bytes) ? jpeg_dpi(bytes) : 0;
 }
 
-Bytes encode_png(const Image& image, double dpi) {
+Bytes encode_png(const Image& image, double dpi, bool mirrored) {
   if (image.width_px <= 0 || image.height_px <= 0) {
     throw InputError("An image without pixels cannot be written as PNG.");
   }
   const bool drop_alpha = opaque(image);
-  const std::vector<Bytes> rows = png_rows(image, drop_alpha);
+  std::vector<Bytes> rows = png_rows(image, mirrored, drop_alpha);
   Bytes out;
   char message[kMessageSize] = {};
   PngWriter writer(message);
@@ -605,8 +620,8 @@ Bytes encode_jpeg(const Image& image, int quality) {
   return {writer.data, writer.data + writer.size};
 }
 
-void save_png(const std::filesystem::path& path, const Image& image, double dpi) {
-  const Bytes bytes = encode_png(image, dpi);
+void save_png(const std::filesystem::path& path, const Image& image, double dpi, bool mirrored) {
+  const Bytes bytes = encode_png(image, dpi, mirrored);
   write_file(path, bytes.data(), bytes.size());
 }
 

@@ -25,11 +25,13 @@ Image load_image(const std::filesystem::path& path);
 double recorded_dpi(const std::vector<std::uint8_t>& bytes);
 
 // Writes RGBA, or RGB when every pixel is opaque, with an sRGB chunk and, if dpi > 0, pHYs.
-// The bytes depend on the pixels alone. Throws InputError if the file cannot be written.
-void save_png(const std::filesystem::path& path, const Image& image, double dpi = 0);
+// Mirrored: left is right. The bytes depend on the pixels alone. Throws InputError if the file
+// cannot be written.
+void save_png(const std::filesystem::path& path, const Image& image, double dpi = 0,
+              bool mirrored = false);
 
 // The same into memory (for GLB and HTML).
-std::vector<std::uint8_t> encode_png(const Image& image, double dpi = 0);
+std::vector<std::uint8_t> encode_png(const Image& image, double dpi = 0, bool mirrored = false);
 
 // JPEG for pictures inside other files, where size counts; quality 1 to 100. Alpha is dropped.
 std::vector<std::uint8_t> encode_jpeg(const Image& image, int quality);

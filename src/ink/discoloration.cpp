@@ -17,8 +17,7 @@ namespace hydrodip {
 namespace {
 
 constexpr std::size_t kRowGrain = 16;  // rows
-constexpr std::size_t kPixelGrain = 65536;
-constexpr float kKnee = 0.8F;  // of kSoft: up to here nothing is held back
+constexpr float kKnee = 0.8F;          // of kSoft: up to here nothing is held back
 
 // Identity up to the knee, then ever flatter towards 1, without a kink.
 float soft(float amount) {
@@ -76,12 +75,35 @@ void store(const SrgbColor& color, std::uint8_t* pixel) {
   pixel[3] = 255;
 }
 
+// Columns [begin, end) outside of which nothing is wanted in a row: most of a sheet.
+struct Columns {
+  std::size_t begin = 0, end = 0;
+};
+
+Columns printed_columns(const Image& wanted, int y) {
+  int begin = 0, end = wanted.width_px;
+  while (begin < end && wanted.pixel(begin, y)[3] == 0) ++begin;
+  while (end > begin && wanted.pixel(end - 1, y)[3] == 0) --end;
+  return {std::size_t(begin), std::size_t(end)};
+}
+
+// Whether what comes out of a pixel is compared with what was wanted.
+bool is_compared(const Image& wanted, const FilmStretch& stretch, std::size_t pixel) {
+  return stretch.on_object[pixel] != 0 && wanted.rgba[4 * pixel + 3] == 255;
+}
+
 // work(row) for every row, on any thread.
 template <class Work>
-void for_each_row(int height, const Work& work) {
-  parallel_for(std::size_t(height), kRowGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) work(static_cast<int>(y));
+void for_each_row(const RowBand& rows, const Work& work) {
+  const auto count = static_cast<std::size_t>(rows.end - rows.begin);
+  parallel_for(count, kRowGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) work(rows.begin + static_cast<int>(n));
   });
+}
+
+template <class Picture>
+RowBand all_rows(const Picture& picture) {
+  return {0, picture.height_px};
 }
 
 // Inks of a row before any compensation; blank where the image is transparent.
@@ -148,17 +170,22 @@ class Differences {
   std::vector<Known> known_ = std::vector<Known>(4096);
 };
 
+// By how much film stretches that its ink makes up for.
+float compensated_ratio(float area_ratio, const InkingOptions& options) {
+  return options.compensate ? ratio_or_one(area_ratio) : 1;
+}
+
 // How much too much the neediest point asks for: 1 if everything fits.
 float overshoot(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
                 const InkingOptions& options) {
   std::vector<float> of_row(std::size_t(wanted.height_px), 1.0F);
-  for_each_row(wanted.height_px, [&](int y) {
+  for_each_row(all_rows(wanted), [&](int y) {
     std::vector<Inks> inks;
     separate_row(wanted, y, model, options.base, inks);
     float& most = of_row[std::size_t(y)];
     for (int x = 0; x < wanted.width_px; ++x) {
       const std::size_t i = std::size_t(y) * std::size_t(wanted.width_px) + std::size_t(x);
-      const Inks needed = inks[std::size_t(x)].times(ratio_or_one(area_ratio[i]));
+      const Inks needed = inks[std::size_t(x)].times(compensated_ratio(area_ratio[i], options));
       most = std::max({most, needed.c, needed.m, needed.y, needed.k,
                        needed.density() / static_cast<float>(options.limit)});
     }
@@ -194,12 +221,22 @@ Inking no_ink(int width_px, int height_px) {
 Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
                 const InkingOptions& options, const RunContext& context) {
   const RunScope scope(context);
+  Inking result = prepared_inking(wanted, area_ratio, model, options);
+  ink_rows(all_rows(wanted), wanted, area_ratio, model, options, result);
+  return result;
+}
+
+Inking prepared_inking(const Image& wanted, const std::vector<float>& area_ratio,
+                       const ColorModel& model, const InkingOptions& options) {
   Inking result = no_ink(wanted.width_px, wanted.height_px);
-  const auto unstretched = blank<float>(options.compensate ? 0 : area_ratio.size());
-  const std::vector<float>& ratio = options.compensate ? area_ratio : unstretched;
   if (options.policy == GamutPolicy::kScale)
-    result.lightened = 1 / double(overshoot(wanted, ratio, model, options));
-  for_each_row(wanted.height_px, [&](int y) {
+    result.lightened = 1 / double(overshoot(wanted, area_ratio, model, options));
+  return result;
+}
+
+void ink_rows(const RowBand& rows, const Image& wanted, const std::vector<float>& area_ratio,
+              const ColorModel& model, const InkingOptions& options, Inking& result) {
+  for_each_row(rows, [&](int y) {
     std::vector<Inks> inks;
     separate_row(wanted, y, model, options.base, inks);
     for (int x = 0; x < wanted.width_px; ++x) {
@@ -207,12 +244,12 @@ Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const
       result.printed.insert(x, y);
       const std::size_t i = std::size_t(y) * std::size_t(wanted.width_px) + std::size_t(x);
       const Inks laid = compensated(inks[std::size_t(x)].times(float(result.lightened)),
-                                    double(ratio_or_one(ratio[i])), options.policy, options.limit);
+                                    double(compensated_ratio(area_ratio[i], options)),
+                                    options.policy, options.limit);
       const auto bytes = to_bytes(laid);
       std::copy(bytes.begin(), bytes.end(), result.inks.pixel(x, y));
     }
   });
-  return result;
 }
 
 Image look_on_film(InkImage inks, const PixelSet& printed, const ColorModel& model) {
@@ -220,7 +257,7 @@ Image look_on_film(InkImage inks, const PixelSet& printed, const ColorModel& mod
   image.width_px = inks.width_px;
   image.height_px = inks.height_px;
   image.rgba = std::move(inks.cmyk);
-  for_each_row(image.height_px, [&](int y) {
+  for_each_row(all_rows(image), [&](int y) {
     InkedPixels row;
     for (int x = 0; x < image.width_px; ++x) {
       std::uint8_t* pixel = image.pixel(x, y);
@@ -237,6 +274,12 @@ Image look_on_film(InkImage inks, const PixelSet& printed, const ColorModel& mod
 Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
                      const ColorModel& model, const LinearColor& base) {
   Image image = blank_image(inks.width_px, inks.height_px);
+  look_at_rows(all_rows(inks), inks, area_ratio, model, base, image);
+  return image;
+}
+
+void look_at_rows(const RowBand& rows, const InkImage& inks, const std::vector<float>& area_ratio,
+                  const ColorModel& model, const LinearColor& base, Image& image) {
   const bool white = is_white(base);
   const Inks none;
   SrgbColor bare;
@@ -244,7 +287,7 @@ Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
   bare = over_base(bare, base);
   std::array<std::uint8_t, 4> blank{};
   store(bare, blank.data());
-  for_each_row(inks.height_px, [&](int y) {
+  for_each_row(rows, [&](int y) {
     InkedPixels row;
     for (int x = 0; x < inks.width_px; ++x) {
       const std::uint8_t* laid = inks.pixel(x, y);
@@ -259,12 +302,11 @@ Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
       store(white ? color : over_base(color, base), image.pixel(x, y));
     });
   });
-  return image;
 }
 
 InkImage inks_of_film(const Image& image, const ColorModel& model) {
   InkImage result(image.width_px, image.height_px);
-  for_each_row(image.height_px, [&](int y) {
+  for_each_row(all_rows(image), [&](int y) {
     std::vector<Inks> inks;
     separate_row(image, y, model, LinearColor{1, 1, 1, 1}, inks);
     for (int x = 0; x < image.width_px; ++x) {
@@ -276,43 +318,70 @@ InkImage inks_of_film(const Image& image, const ColorModel& model) {
 }
 
 Reach measure_reach(const Image& wanted, const Image& on_object, const FilmStretch& stretch,
-                    const SheetRaster& raster) {
-  Reach reach;
-  const std::size_t pixels = stretch.area_ratio.size();
-  const auto counts = [&](std::size_t i) {
-    return stretch.on_object[i] != 0 && wanted.rgba[4 * i + 3] == 255;
-  };
-  reach.difference = blank<float>(pixels);
-  parallel_for(pixels, kPixelGrain, [&](std::size_t begin, std::size_t end) {
-    Differences differences;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint8_t *asked = &wanted.rgba[4 * i], *got = &on_object.rgba[4 * i];
-      if (!counts(i) || std::equal(asked, asked + 3, got)) continue;
-      reach.difference[i] = differences.between(asked, got);
+                    const SheetRaster& raster, const Box2& film) {
+  ReachMeter meter(raster, film);
+  meter.add(all_rows(wanted), wanted, on_object, stretch);
+  return meter.result();
+}
+
+ReachMeter::ReachMeter(const SheetRaster& raster, const Box2& film)
+    : pixel_mm2_((kMmPerInch / raster.dpi) * (kMmPerInch / raster.dpi)), means_(raster, film) {
+  reach_.out_of_reach =
+      blank<float>(std::size_t(raster.width_px()) * std::size_t(raster.height_px()));
+}
+
+void ReachMeter::add(const RowBand& rows, const Image& wanted, const Image& on_object,
+                     const FilmStretch& stretch) {
+  const auto count = static_cast<std::size_t>(rows.end - rows.begin);
+  const auto width = static_cast<std::size_t>(wanted.width_px);
+  const std::size_t first = static_cast<std::size_t>(rows.begin) * width;
+  if (differences_.size() < count * width) differences_ = blank<float>(count * width);
+  std::vector<Columns> printed(count);
+  parallel_for(count, kRowGrain, [&](std::size_t begin, std::size_t end) {
+    Differences known;
+    for (std::size_t n = begin; n < end; ++n) {
+      printed[n] = printed_columns(wanted, rows.begin + static_cast<int>(n));
+      for (std::size_t x = printed[n].begin; x < printed[n].end; ++x) {
+        const std::size_t at = n * width + x, i = first + at;
+        const std::uint8_t *asked = &wanted.rgba[4 * i], *got = &on_object.rgba[4 * i];
+        const bool same = !is_compared(wanted, stretch, i) || std::equal(asked, asked + 3, got);
+        differences_[at] = same ? 0 : known.between(asked, got);
+        if (differences_[at] > kVisible) reach_.out_of_reach[i] = differences_[at];
+      }
     }
   });
-  double within = 0, beyond = 0;
-  const double pixel_mm = kMmPerInch / raster.dpi;
-  CheckEvery check(1 << 16);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    check();
-    if (!counts(i)) continue;
-    const double area = pixel_mm * pixel_mm * double(ratio_or_one(stretch.area_ratio[i]));
-    const double difference = double(reach.difference[i]);
-    reach.compared_mm2 += area;
-    reach.largest = std::max(reach.largest, difference);
-    if (difference > kVisible) {
-      reach.out_of_reach_mm2 += area;
-      beyond += area * difference;
-    } else {
-      within += area * difference;
+  // In the pixels' order, so that the sums do not depend on the threads, nor on the bands.
+  for (std::size_t n = 0; n < count; ++n) {
+    check_cancelled();
+    for (std::size_t x = printed[n].begin; x < printed[n].end; ++x) {
+      const std::size_t at = n * width + x, i = first + at;
+      if (wanted.rgba[4 * i + 3] == 0) continue;
+      means_.add(static_cast<int>(x), rows.begin + static_cast<int>(n), differences_[at]);
+      if (!is_compared(wanted, stretch, i)) continue;
+      count_pixel(pixel_mm2_ * double(ratio_or_one(stretch.area_ratio[i])),
+                  double(differences_[at]));
     }
   }
+}
+
+void ReachMeter::count_pixel(double area_mm2, double difference) {
+  reach_.compared_mm2 += area_mm2;
+  reach_.largest = std::max(reach_.largest, difference);
+  if (difference > kVisible) {
+    reach_.out_of_reach_mm2 += area_mm2;
+    beyond_ += area_mm2 * difference;
+  } else {
+    within_ += area_mm2 * difference;
+  }
+}
+
+Reach ReachMeter::result() {
   const auto mean = [](double sum, double area) { return area > 0 ? sum / area : 0; };
-  reach.mean = mean(within + beyond, reach.compared_mm2);
-  reach.mean_within = mean(within, reach.compared_mm2 - reach.out_of_reach_mm2);
-  reach.mean_beyond = mean(beyond, reach.out_of_reach_mm2);
-  return reach;
+  reach_.mean = mean(within_ + beyond_, reach_.compared_mm2);
+  reach_.mean_within = mean(within_, reach_.compared_mm2 - reach_.out_of_reach_mm2);
+  reach_.mean_beyond = mean(beyond_, reach_.out_of_reach_mm2);
+  reach_.difference = means_.cells();
+  return std::move(reach_);
 }
 
 }  // namespace hydrodip

@@ -9,6 +9,7 @@
 #include "image/image.h"
 #include "image/pixel_set.h"
 #include "ink/color_model.h"
+#include "transfer/film_cells.h"
 #include "transfer/raster.h"
 
 namespace hydrodip {
@@ -70,7 +71,10 @@ struct Reach {
   double mean_within = 0;       // over what is within reach
   double mean_beyond = 0;       // over what is out of reach
   double largest = 0;
-  std::vector<float> difference;  // per pixel of the film image; 0 where nothing was compared
+  // Per pixel of the film image: CIEDE2000 where it is out of reach, elsewhere 0. Where all is
+  // within reach it takes no memory.
+  std::vector<float> out_of_reach;
+  FilmCells difference;  // means of the CIEDE2000 where anything is printed; 0 where not compared
 
   double out_of_reach_share() const {
     return compared_mm2 > 0 ? out_of_reach_mm2 / compared_mm2 : 0;
@@ -79,8 +83,47 @@ struct Reach {
 inline constexpr double kVisible = 1;  // CIEDE2000
 
 // Compares the pixels that lie on the object (and are opaque in `wanted`), each weighing its area
-// there.
+// there. `film`: the part of it over whose cells differences are averaged, in film coordinates.
 Reach measure_reach(const Image& wanted, const Image& on_object, const FilmStretch& stretch,
-                    const SheetRaster& raster);
+                    const SheetRaster& raster, const Box2& film = {});
+
+// ---- all of that in bands of rows ----
+
+// Rows [begin, end) of an image.
+struct RowBand {
+  int begin = 0, end = 0;
+};
+
+// ink_film() is: this, and ink_rows() of all rows. Nothing is printed yet; how much lighter all
+// inks have to be is known.
+Inking prepared_inking(const Image& wanted, const std::vector<float>& area_ratio,
+                       const ColorModel& model, const InkingOptions& options);
+void ink_rows(const RowBand& rows, const Image& wanted, const std::vector<float>& area_ratio,
+              const ColorModel& model, const InkingOptions& options, Inking& result);
+
+// look_on_object() is: this of all rows of a transparent image.
+void look_at_rows(const RowBand& rows, const InkImage& inks, const std::vector<float>& area_ratio,
+                  const ColorModel& model, const LinearColor& base, Image& image);
+
+// measure_reach() is: this with a single band.
+class ReachMeter {
+ public:
+  ReachMeter(const SheetRaster& raster, const Box2& film);
+
+  // Bands from the first row to the last; nothing is asked of rows before them.
+  void add(const RowBand& rows, const Image& wanted, const Image& on_object,
+           const FilmStretch& stretch);
+  // Once, when all rows are there.
+  Reach result();
+
+ private:
+  void count_pixel(double area_mm2, double difference);
+
+  const double pixel_mm2_;
+  CellMeans means_;
+  Reach reach_;
+  double within_ = 0, beyond_ = 0;  // sums of area times difference
+  std::vector<float> differences_;  // of the band
+};
 
 }  // namespace hydrodip

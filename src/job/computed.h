@@ -33,11 +33,13 @@ struct SimulatedJob {
 SimulatedJob simulated(const ReadyJob& job, const SharedFilmMesh& film, Timings& times,
                        const RunContext& context);
 
-// What to print, and its dip. Throws InputError if nothing would be printed.
+// What to print, and its dip. Of the film image that is kept which is asked for; of what comes out
+// on the object the finish has the only copy. Throws InputError if nothing would be printed.
 struct DesignedJob {
   Designed designed;
   Finish finish;
 };
-DesignedJob designed(const ReadyJob& job, Timings& times, const RunContext& context);
+DesignedJob designed(const ReadyJob& job, const KeptImages& kept, Timings& times,
+                     const RunContext& context);
 
 }  // namespace hydrodip

@@ -108,8 +108,13 @@ class Allotments {
   }
 
   DesignTask task(const MadeDip& dip, const Printer& printer) const {
-    return {dip.posed,      *all_.prepared.paint, of_[std::size_t(dip.number - 1)],
-            *printer.model, dip.config.design,    &dip.first};
+    return {.posed = dip.posed,
+            .paint = *all_.prepared.paint,
+            .allotment = of_[std::size_t(dip.number - 1)],
+            .model = *printer.model,
+            .options = dip.config.design,
+            .first = &dip.first,
+            .kept = {.wanted = false}};
   }
 
  private:

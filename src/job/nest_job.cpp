@@ -174,7 +174,7 @@ void share_out_film(Nest& nest, const FilmOptions& sheet, double given_mm,
 
 MadePart make_part(const Part& part, Timings& timings, const RunContext& context) {
   const ReadyJob& job = part.job;
-  DesignedJob made = designed(job, timings, context);
+  DesignedJob made = designed(job, {.wanted = false, .stretch = false}, timings, context);
   const RunContext silent = context.quiet();
   const std::vector<ReportInput> inputs;
   JobRecord record{"print", job.config,         job.prepared,

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -78,7 +77,7 @@ PreviewPair reach_pair(const JobRecord& record, const SheetRaster& raster) {
     const int y = std::clamp(int(pixel.y()), 0, raster.height_px() - 1);
     return reach_color(
         record.ink->reach
-            .difference[std::size_t(y) * std::size_t(raster.width_px()) + std::size_t(x)]);
+            .out_of_reach[std::size_t(y) * std::size_t(raster.width_px()) + std::size_t(x)]);
   };
   pair.titles = {"predicted", "out of reach: yellow, red"};
   pair.caption = fmt::format(
@@ -124,17 +123,6 @@ std::vector<std::uint8_t> write_pairs(const std::filesystem::path& preview_png,
   return write_picture(preview_png, pictures[0]);
 }
 
-// How far each colour is from what was wanted, where there is film with ink.
-FilmLayer reach_layer(const JobRecord& record, const SheetRaster& raster) {
-  const InkResult& ink = *record.ink;
-  const auto difference = [&](std::size_t pixel) {
-    const bool blank = ink.ink.wanted.rgba[4 * pixel + 3] == 0;
-    return blank ? std::numeric_limits<float>::quiet_NaN() : ink.reach.difference[pixel];
-  };
-  return pixel_layer("out_of_gamut", difference, raster.width_px(), raster.height_px(),
-                     Vec2(raster.width_mm, raster.height_mm), record.dipped().map->covered());
-}
-
 Image draw_maps(const TellingViews& views, const JobRecord& record) {
   const DippedObject& dipped = record.dipped();
   MapOptions options;
@@ -153,14 +141,14 @@ Image draw_maps(const TellingViews& views, const JobRecord& record) {
 // Quantities over the film, and what is learnt from them. Every verdict needs that, so it comes
 // before any picture.
 std::vector<FilmLayer> measure_layers(const JobRecord& record, const Appearance& shown,
-                                      const SheetRaster& raster, Previews& previews) {
+                                      Previews& previews) {
   const DippedObject& dipped = record.dipped();
   std::vector<FilmLayer> layers;
   if (record.paint().says_anything()) {
     layers.push_back(color_error_layer(dipped.posed.mesh(), *dipped.map, shown, record.context));
     previews.colors = colors_of(layers.back());
   }
-  if (record.ink != nullptr) layers.push_back(reach_layer(record, raster));
+  if (record.ink != nullptr) layers.push_back({record.ink->reach.difference, "out_of_gamut"});
   if (dipped.coverage.wrinkled_mm2 > 0)
     layers.push_back(pressed_layer(*dipped.film, dipped.map->covered()));
   return layers;
@@ -228,7 +216,7 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
   std::optional<TellingViews> views;
   // The longest first.
   if (record.config.pictures) {
-    layers = measure_layers(record, shown, raster, previews);
+    layers = measure_layers(record, shown, previews);
     views.emplace(dipped.posed.mesh(), dipped.posed.surface(), *dipped.film,
                   record.config.preview_width_px, standing_of(dipped.posed, way_up(record.config)),
                   false, record.context);

@@ -57,14 +57,17 @@ void require_ink(const Designed& designed, const JobConfig& config, const Trajec
 
 }  // namespace
 
-DesignedJob designed(const ReadyJob& job, Timings& times, const RunContext& context) {
+DesignedJob designed(const ReadyJob& job, const KeptImages& kept, Timings& times,
+                     const RunContext& context) {
   const PreparedObject& prepared = job.prepared;
-  Designed made =
-      design({prepared.posed, *prepared.paint, Allotment(), *job.printer.model, job.config.design},
-             times, context);
+  Designed made = design({.posed = prepared.posed,
+                          .paint = *prepared.paint,
+                          .allotment = Allotment(),
+                          .model = *job.printer.model,
+                          .options = job.config.design,
+                          .kept = kept},
+                         times, context);
   require_ink(made, job.config, job.trajectory);
-  // Only further coats would ask for that.
-  made.ink.ink.stretch = {};
   // Held once, by the finish.
   auto look = std::make_shared<const Image>(std::move(made.ink.ink.on_object));
   Finish finish(paint_as_dipped(prepared.paint, made.dipped),
@@ -84,7 +87,7 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   announce_outputs(folder, "print", config, inputs);
   folder.supersede(sheets_of_other_prints(0));
 
-  DesignedJob made = designed(job, times, context);
+  DesignedJob made = designed(job, {.wanted = false, .stretch = false}, times, context);
   const DippedObject& dipped = made.designed.dipped;
   const InkResult& ink = made.designed.ink;
   JobRecord record{"print", config,      job.prepared,

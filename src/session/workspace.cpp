@@ -158,7 +158,7 @@ std::size_t bytes_of(const Designed& made) {
   return bytes_of(made.dipped) + bytes_of(ink.wanted) + bytes_of(ink.on_object) +
          bytes_of(ink.inking.inks.cmyk) + ink.inking.printed.bytes() +
          bytes_of(ink.stretch.area_ratio) + bytes_of(ink.stretch.on_object) +
-         bytes_of(made.ink.reach.difference);
+         bytes_of(made.ink.reach.out_of_reach);
 }
 
 struct SharedPaint {

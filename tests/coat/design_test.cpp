@@ -82,6 +82,45 @@ TEST(InkRoundsSlow, SettleWhereATearLineCrossesThePicture) {
   EXPECT_LT(all.result.last_change_mm(), kSettled_mm);
 }
 
+// What is not kept gives its place to what is made of it.
+TEST(Design, IsTheSameWhateverIsKeptOfTheFilmImage) {
+  DesignOptions options = quick(3000);
+  options.dip.step_mm = 2;
+  options.trajectory.depth_mm = 8;
+  options.rounds_max = 1;
+  const RunContext context;
+  const auto object = std::make_shared<const Object>(make_sample("sphere"));
+  const PosedObject posed(object, {});
+  const auto paint = model_paint(object);
+  const auto model = make_device_model();
+  const auto made = [&](const KeptImages& kept) {
+    Timings timings;
+    return design({.posed = posed,
+                   .paint = *paint,
+                   .allotment = Allotment(),
+                   .model = *model,
+                   .options = options,
+                   .kept = kept},
+                  timings, context)
+        .ink;
+  };
+  const InkResult all = made({});
+  ASSERT_FALSE(all.ink.wanted.empty());
+  for (const KeptImages kept : {KeptImages{false, false}, {true, false}, {false, true}}) {
+    const InkResult some = made(kept);
+    EXPECT_EQ(some.ink.wanted.rgba,
+              kept.wanted ? all.ink.wanted.rgba : std::vector<std::uint8_t>());
+    EXPECT_EQ(some.ink.stretch.area_ratio,
+              kept.stretch ? all.ink.stretch.area_ratio : std::vector<float>());
+    EXPECT_EQ(some.ink.stretch.on_object,
+              kept.stretch ? all.ink.stretch.on_object : std::vector<std::uint8_t>());
+    EXPECT_EQ(some.ink.inking.inks.cmyk, all.ink.inking.inks.cmyk);
+    EXPECT_EQ(some.ink.on_object.rgba, all.ink.on_object.rgba);
+    EXPECT_EQ(some.reach.out_of_reach, all.reach.out_of_reach);
+    EXPECT_EQ(some.reach.mean, all.reach.mean);
+  }
+}
+
 TEST(InkRounds, AreMadeAtMostAsOftenAsAsked) {
   DesignOptions options = quick(8000);
   options.dip.step_mm = 2;

@@ -61,27 +61,6 @@ TEST(FilmLayer, ColorErrorIsWhereTheColoursDiffer) {
   EXPECT_NEAR(summary.most_of, expected, 1e-4);
 }
 
-TEST(FilmLayer, PixelsKeepTheirPlace) {
-  // 2000 x 1000 px over 200 x 100 mm: a value only right of x = 20 mm and above y = 10 mm.
-  std::vector<float> values(2000 * 1000, std::numeric_limits<float>::quiet_NaN());
-  for (int y = 0; y < 400; ++y) {
-    for (int x = 1200; x < 2000; ++x) values[std::size_t(y * 2000 + x)] = 3;
-  }
-  Box2 extent;
-  extent.add({0, 0});
-  extent.add({40, 20});
-  const FilmLayer layer = pixel_layer(
-      "out_of_gamut", [&](std::size_t i) { return values[i]; }, 2000, 1000, {200, 100}, extent);
-  for (int y = 0; y < layer.height; ++y) {
-    for (int x = 0; x < layer.width; ++x) {
-      const float value = layer.values[std::size_t(y * layer.width + x)];
-      const bool there = x >= layer.width / 2 && y < layer.height / 2;
-      ASSERT_EQ(std::isnan(value), !there) << x << ", " << y;
-      ASSERT_TRUE(std::isnan(value) || value == 3.0F);
-    }
-  }
-}
-
 TEST(FilmLayer, NothingCoveredIsNothing) {
   FilmLayer empty;
   EXPECT_EQ(summarize(empty).mean, 0);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "ink/difference.h"
 
@@ -162,6 +163,67 @@ TEST_F(OnFilm, WithoutCompensationTheFilmIsPrintedAsWanted) {
   EXPECT_GT(found.mean, 5);
   const Image film = look_on_film(inks_, printed_, *model_);
   EXPECT_EQ(film.rgba, wanted_.rgba);
+}
+
+// Bands of any height give what all rows at once give, and nothing is asked of rows that are done.
+TEST_F(OnFilm, BandsOfRowsGiveTheSameAsAllRowsAtOnce) {
+  Box2 film;
+  film.add({-1.5, -0.3});
+  film.add({1.5, 0.3});
+  for (std::size_t i = 0; i < stretch_.area_ratio.size(); ++i)
+    stretch_.area_ratio[i] = 1 + 0.01F * float(i % 90);
+  wanted_.pixel(7, 3)[3] = 100;
+  for (const GamutPolicy policy : {GamutPolicy::kClip, GamutPolicy::kScale, GamutPolicy::kSoft}) {
+    const InkingOptions options{.policy = policy};
+    const Inking inking = ink_film(wanted_, stretch_.area_ratio, *model_, options, context_);
+    const Image seen = look_on_object(inking.inks, stretch_.area_ratio, *model_, options.base);
+    const Reach reach = measure_reach(wanted_, seen, stretch_, raster_, film);
+    ASSERT_GT(reach.largest, 0);
+    ASSERT_FALSE(reach.difference.values.empty());
+    for (const int height : {1, 2, 3, 5, 7}) {
+      Image wanted = wanted_;
+      FilmStretch stretch = stretch_;
+      Inking banded = prepared_inking(wanted, stretch.area_ratio, *model_, options);
+      Image look(wanted.width_px, wanted.height_px);
+      ReachMeter meter(raster_, film);
+      for (int row = 0; row < wanted.height_px; row += height) {
+        const RowBand rows{row, std::min(row + height, wanted.height_px)};
+        ink_rows(rows, wanted, stretch.area_ratio, *model_, options, banded);
+        look_at_rows(rows, banded.inks, stretch.area_ratio, *model_, options.base, look);
+        meter.add(rows, wanted, look, stretch);
+        const auto done = std::ptrdiff_t(rows.end) * wanted.width_px;
+        std::fill_n(wanted.rgba.begin(), 4 * done, 7);
+        std::fill_n(stretch.area_ratio.begin(), done, -1);
+        std::fill_n(stretch.on_object.begin(), done, 7);
+      }
+      EXPECT_EQ(banded.inks.cmyk, inking.inks.cmyk) << height;
+      EXPECT_EQ(banded.lightened, inking.lightened) << height;
+      EXPECT_EQ(look.rgba, seen.rgba) << height;
+      const Reach found = meter.result();
+      EXPECT_EQ(found.compared_mm2, reach.compared_mm2) << height;
+      EXPECT_EQ(found.mean, reach.mean) << height;
+      EXPECT_EQ(found.mean_beyond, reach.mean_beyond) << height;
+      EXPECT_EQ(found.out_of_reach, reach.out_of_reach) << height;
+      // NaN is not NaN.
+      EXPECT_EQ(std::memcmp(found.difference.values.data(), reach.difference.values.data(),
+                            reach.difference.values.size() * sizeof(float)),
+                0)
+          << height;
+    }
+  }
+}
+
+// Where anything is printed is known without the picture of what is wanted.
+TEST_F(OnFilm, IsPrintedWhereAnythingIsWanted) {
+  wanted_.pixel(3, 2)[3] = 1;
+  std::fill_n(wanted_.pixel(5, 5), 4, 255);  // white: no ink, but not bare
+  reach({});
+  const Image film = look_on_film(inks_, printed_, *model_);
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 36; ++x) {
+      ASSERT_EQ(printed_.contains(x, y), wanted_.pixel(x, y)[3] != 0) << x << ", " << y;
+      ASSERT_EQ(film.pixel(x, y)[3], printed_.contains(x, y) ? 255 : 0) << x << ", " << y;
+    }
 }
 
 // A grey base is a filter: white is out of reach, what is darker than the base is not.
