@@ -11,10 +11,10 @@
 #include "base/memory.h"
 #include "base/timings.h"
 #include "dip/tear_doubt.h"
-#include "hydrodip/hydrodip.h"
 #include "job/correction_fit.h"
 #include "job/dips_side_by_side.h"
 #include "job/ways.h"
+#include "session/coat_of.h"
 
 namespace hydrodip {
 namespace {
@@ -205,12 +205,14 @@ Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& prin
       context.log(fmt::format("dip {} of {}: {} rounds", dip.number, all.dips.size(),
                               dip.made.ink.rounds.size()));
   });
-  std::vector<Designed> designs;
-  for (const MadeDip& dip : all.dips) {
-    designs.push_back(dip.made);
+  // The paint does not depend on the film: require_no_pattern().
+  std::vector<Coat> coats;
+  for (MadeDip& dip : all.dips) {
+    coats.push_back(coat_of(dip.made, coats.empty(), *printer.model));
+    dip.made.ink.ink.stretch = {};
     all.worth.push_back(worth_at_nodes(all, dip, *dip.made.dipped.film));
   }
-  return finish(all.prepared.paint, designs, printer);
+  return Finish(all.prepared.paint, std::move(coats));
 }
 
 }  // namespace hydrodip

@@ -13,6 +13,7 @@
 #include "render/preview.h"
 #include "samples/samples.h"
 #include "session/appearance_of.h"
+#include "session/coat_of.h"
 #include "session/sheet_files.h"
 
 namespace hydrodip {
@@ -100,18 +101,19 @@ Designed design(const PosedObject& posed, const Paint& paint, const DesignOption
   return design({posed, paint, allotment, *printer.model, options}, timings, job);
 }
 
+Coat coat_of(const Designed& made, bool is_first, const ColorModel& model) {
+  const FilmInk& ink = made.ink.ink;
+  auto look = std::make_shared<const Image>(
+      is_first ? ink.on_object
+               : look_on_object(ink.inking.inks, ink.stretch.area_ratio, model, {1, 1, 1, 1}));
+  return {made.dipped, made.raster, std::move(look)};
+}
+
 Finish finish(std::shared_ptr<const Paint> paint, const std::vector<Designed>& designs,
               const Printer& printer) {
   std::vector<Coat> coats;
-  for (const Designed& made : designs) {
-    const FilmInk& ink = made.ink.ink;
-    // Only the first lies on the bare object: of the others, what they do to light from below.
-    auto look = std::make_shared<const Image>(
-        coats.empty() ? ink.on_object
-                      : look_on_object(ink.inking.inks, ink.stretch.area_ratio, *printer.model,
-                                       {1, 1, 1, 1}));
-    coats.push_back({made.dipped, made.raster, std::move(look)});
-  }
+  for (const Designed& made : designs)
+    coats.push_back(coat_of(made, coats.empty(), *printer.model));
   if (!coats.empty()) paint = paint_as_dipped(std::move(paint), coats.front().dipped);
   return Finish(std::move(paint), std::move(coats));
 }
