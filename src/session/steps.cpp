@@ -112,6 +112,7 @@ Coat coat_of(const Designed& made, bool is_first, const ColorModel& model) {
 Finish finish(std::shared_ptr<const Paint> paint, const std::vector<Designed>& designs,
               const Printer& printer) {
   std::vector<Coat> coats;
+  coats.reserve(designs.size());
   for (const Designed& made : designs)
     coats.push_back(coat_of(made, coats.empty(), *printer.model));
   if (!coats.empty()) paint = paint_as_dipped(std::move(paint), coats.front().dipped);
