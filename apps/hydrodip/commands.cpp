@@ -280,7 +280,7 @@ std::vector<Command> own_commands() {
   return {
       {"print", "from a textured model to a film image, ready to print and dip",
        "Writes print.pdf (print it at 100 %, no scaling), print.png, print.tif, film.ply,\n"
-       "preview.png, maps.png, preview.glb, report.json and report.html.\n"
+       "preview.png, maps.png, gamut.png, preview.glb, report.json and report.html.\n"
        "'hydrodip view DIR' opens the report.",
        declare_print, run_print},
       {"simulate", "where the film goes, and what an image on it would look like",

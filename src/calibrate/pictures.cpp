@@ -131,45 +131,73 @@ constexpr const char* kAxisNames[3] = {"z_stretch", "ink_stiffness_ratio", "pois
 // Of the distance in joint_distance, for two parameters.
 constexpr double kHalf = 1.177, kNearlyAll = 2.448;
 
+// A fitted parameter along an axis of the picture: as the film's parameter grows, from 0 to 1.
+struct Along {
+  double low = 0, high = 0;  // fitted
+  bool falls = false;        // as the film's parameter grows
+  double at(double share) const { return low + (falls ? 1 - share : share) * (high - low); }
+  double share_of(double value) const {
+    const double share = (value - low) / (high - low);
+    return falls ? 1 - share : share;
+  }
+};
+
+// The 95 % interval of one parameter, as the fit has it.
+std::pair<double, double> fitted_interval(const Certainty& certainty, int k) {
+  const double a = to_fit(certainty.low)[k], b = to_fit(certainty.high)[k];
+  return {std::min(a, b), std::max(a, b)};
+}
+
+// Wide enough for both regions and the interval, and not beyond what a film can be.
+Along along(const Answer& answer, int k) {
+  const double deviation = std::sqrt(answer.certainty.covariance(k, k));
+  const double middle = answer.fit.point[k];
+  const auto [low, high] = fitted_interval(answer.certainty, k);
+  const double far = std::max({3.5 * deviation, 1.1 * (middle - low), 1.1 * (high - middle)});
+  // Ink does not soften film, and Poisson's ratio is a material's.
+  constexpr std::array<double, 3> kMost = {1e300, 1, 0.5};
+  return {std::max(0.0, middle - far), std::min(kMost[std::size_t(k)], middle + far), k == 1};
+}
+
+// The film's own figure for a fitted one.
+std::string label_of(int k, double value) {
+  if (k != 1) return fmt::format("{:.4g}", value);
+  return value > 0 ? fmt::format("{:.3g}", 1 / (value * value)) : "no end";
+}
+
 void draw_region(Image& page, int left, int top, const Answer& answer, int x, int y) {
-  constexpr int kAxis = 88, kSide = kSurfacePanel - kAxis;
-  // Wide enough for both regions, and not beyond what a film can be.
-  const auto range = [&](int k) {
-    const double deviation = std::sqrt(answer.certainty.covariance(k, k));
-    const double middle = answer.fit.point[k];
-    return std::pair(std::max(0.0, middle - 3.5 * deviation), middle + 3.5 * deviation);
-  };
-  const auto [x_low, x_high] = range(x);
-  const auto [y_low, y_high] = range(y);
+  constexpr int kAxis = 88, kSide = kSurfacePanel - kAxis, kCell = 6, kBar = 5;
+  const Along across = along(answer, x), up = along(answer, y);
   const int x0 = left + kAxis, y1 = top + kSide;
-  constexpr int kCell = 6;
   for (int i = 0; i < kSide; i += kCell)
     for (int j = 0; j < kSide; j += kCell) {
       const double distance =
           joint_distance(answer.fit, answer.certainty.noise_mm, x,
-                         x_low + (x_high - x_low) * (i + 0.5 * kCell) / kSide, y,
-                         y_low + (y_high - y_low) * (j + 0.5 * kCell) / kSide);
+                         across.at((i + 0.5 * kCell) / kSide), y, up.at((j + 0.5 * kCell) / kSide));
       const double t = distance <= kHalf ? 1 : distance <= kNearlyAll ? 0.5 : 0.02;
       fill(page, x0 + i, y1 - j - kCell, x0 + i + kCell, y1 - j, surface_ramp().at(t));
     }
-  const auto column = [&, low = x_low, high = x_high](double value) {
-    return x0 + int(std::lround(kSide * (value - low) / (high - low)));
-  };
-  const auto row = [&, low = y_low, high = y_high](double value) {
-    return y1 - int(std::lround(kSide * (value - low) / (high - low)));
-  };
-  const int mark_x = column(answer.fit.point[x]), mark_y = row(answer.fit.point[y]);
+  const auto column = [&](double share) { return x0 + int(std::lround(kSide * share)); };
+  const auto row = [&](double share) { return y1 - int(std::lround(kSide * share)); };
+  const int mark_x = column(across.share_of(answer.fit.point[x]));
+  const int mark_y = row(up.share_of(answer.fit.point[y]));
   fill(page, mark_x - 7, mark_y - 1, mark_x + 8, mark_y + 2, kMark);
   fill(page, mark_x - 1, mark_y - 7, mark_x + 2, mark_y + 8, kMark);
-  const auto label = [](int k, double value) {
-    return k == 1 && value > 0 ? fmt::format("{:.3g}", 1 / (value * value))
-                               : fmt::format("{:.4g}", value);
+  // The intervals, beside the axes.
+  const auto ends = [&](const Along& axis, int k) {
+    const auto [low, high] = fitted_interval(answer.certainty, k);
+    const double a = std::clamp(axis.share_of(low), 0.0, 1.0);
+    const double b = std::clamp(axis.share_of(high), 0.0, 1.0);
+    return std::pair(std::min(a, b), std::max(a, b));
   };
+  const auto [from_x, to_x] = ends(across, x);
+  const auto [from_y, to_y] = ends(up, y);
+  fill(page, column(from_x), y1 + 3, column(to_x), y1 + 3 + kBar, kMark);
+  fill(page, x0 - 3 - kBar, row(to_y), x0 - 3, row(from_y), kMark);
   for (const double share : {0.0, 0.5, 1.0}) {
-    const double at_x = x_low + share * (x_high - x_low), at_y = y_low + share * (y_high - y_low);
-    draw_centered(page, label(x, at_x), column(at_x), y1 + 26, style(13));
-    const std::string text = label(y, at_y);
-    draw_text(page, text, x0 - 10 - text_width_px(text, style(13)), row(at_y) + 6, style(13));
+    draw_centered(page, label_of(x, across.at(share)), column(share), y1 + 30, style(13));
+    const std::string text = label_of(y, up.at(share));
+    draw_text(page, text, x0 - 14 - text_width_px(text, style(13)), row(share) + 6, style(13));
   }
   draw_centered(page, kAxisNames[x], x0 + 0.5 * kSide, y1 + 60, style(16, kTitleInk));
   draw_text(page, kAxisNames[y], left + 4, top - 14, style(16, kTitleInk));
@@ -290,8 +318,9 @@ Image draw_joint_regions(const Answer& answer, const std::string& caption) {
   Image page = blank_page(2 * kMargin + panels * (kSurfacePanel + kGap) - kGap,
                           kHeader + 30 + kSurfacePanel + kFooter);
   draw_centered(page,
-                pairs.empty() ? "Fewer than two parameters were looked for"
-                              : "Where two parameters can be together: dark 50 %, blue 95 %",
+                pairs.empty()
+                    ? "Fewer than two parameters were looked for"
+                    : "Where two parameters can be together, by noise alone: dark 50 %, blue 95 %",
                 0.5 * page.width_px, 40, style(22, kTitleInk));
   int left = kMargin;
   for (const auto& [x, y] : pairs) {
@@ -299,7 +328,9 @@ Image draw_joint_regions(const Answer& answer, const std::string& caption) {
     left += kSurfacePanel + kGap;
   }
   const TextStyle small = style(15);
-  draw_centered(page, fit_text(caption, small, page.width_px - 2.0 * kMargin), 0.5 * page.width_px,
+  const std::string words =
+      "Red bars: 95 % of each by itself, with what simulations add. " + caption;
+  draw_centered(page, fit_text(words, small, page.width_px - 2.0 * kMargin), 0.5 * page.width_px,
                 page.height_px - 24, small);
   return page;
 }

@@ -15,7 +15,8 @@ Image draw_error_surface(const SearchOptions& options, const std::vector<GridPoi
                          const FilmParameters& answer, const std::string& caption);
 
 // Where each pair of parameters can be together, the third as good as it gets: joint regions of 50
-// and 95 % with the answer, the single intervals beside them. Needs two free parameters; pairs of
+// and 95 % by noise alone, with the answer, and the single intervals, which hold what simulations
+// add, beside them. Needs two free parameters; pairs of
 // others are left out.
 Image draw_joint_regions(const Answer& answer, const std::string& caption);
 
