@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "image/blank_image.h"
+#include "image/shown_columns.h"
 
 namespace hydrodip {
 namespace {
@@ -36,18 +37,12 @@ std::vector<Span> spans(int source, int target) {
   return list;
 }
 
-// Columns outside of which no row of the span shows anything: most of a sheet.
-struct Range {
-  int begin = 0, end = 0;
-};
-
-Range shown(const Image& image, const Span& rows) {
-  Range all{image.width_px, 0};
+// Outside of them no row of the span shows anything.
+Columns shown(const Image& image, const Span& rows) {
+  Columns all{image.width_px, 0};
   for (int y = rows.first; y < rows.end(); ++y) {
-    int begin = 0, end = image.width_px;
-    while (begin < end && image.pixel(begin, y)[3] == 0) ++begin;
-    while (end > begin && image.pixel(end - 1, y)[3] == 0) --end;
-    if (begin < end) all = {std::min(all.begin, begin), std::max(all.end, end)};
+    const Columns row = shown_columns(image, y);
+    if (!row.empty()) all = {std::min(all.begin, row.begin), std::max(all.end, row.end)};
   }
   return all;
 }
@@ -76,7 +71,7 @@ Image resize(const Image& image, int width_px, int height_px) {
   Image result = blank_image(width_px, height_px);
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
-      const Range seen = shown(image, rows[y]);
+      const Columns seen = shown(image, rows[y]);
       for (std::size_t x = 0; x < columns.size(); ++x)
         if (columns[x].first < seen.end && columns[x].end() > seen.begin)
           average_into(image, columns[x], rows[y], result.pixel(int(x), int(y)));

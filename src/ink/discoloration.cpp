@@ -8,6 +8,7 @@
 #include "base/blank_pages.h"
 #include "base/parallel.h"
 #include "image/blank_image.h"
+#include "image/shown_columns.h"
 #include "image/to_byte.h"
 #include "ink/difference.h"
 #include "transfer/area_ratio.h"
@@ -73,18 +74,6 @@ void store(const SrgbColor& color, std::uint8_t* pixel) {
   pixel[1] = to_byte(color.g);
   pixel[2] = to_byte(color.b);
   pixel[3] = 255;
-}
-
-// Columns [begin, end) outside of which nothing is wanted in a row: most of a sheet.
-struct Columns {
-  std::size_t begin = 0, end = 0;
-};
-
-Columns printed_columns(const Image& wanted, int y) {
-  int begin = 0, end = wanted.width_px;
-  while (begin < end && wanted.pixel(begin, y)[3] == 0) ++begin;
-  while (end > begin && wanted.pixel(end - 1, y)[3] == 0) --end;
-  return {std::size_t(begin), std::size_t(end)};
 }
 
 // Whether what comes out of a pixel is compared with what was wanted.
@@ -340,9 +329,9 @@ void ReachMeter::add(const RowBand& rows, const Image& wanted, const Image& on_o
   parallel_for(count, kRowGrain, [&](std::size_t begin, std::size_t end) {
     Differences known;
     for (std::size_t n = begin; n < end; ++n) {
-      printed[n] = printed_columns(wanted, rows.begin + static_cast<int>(n));
-      for (std::size_t x = printed[n].begin; x < printed[n].end; ++x) {
-        const std::size_t at = n * width + x, i = first + at;
+      printed[n] = shown_columns(wanted, rows.begin + static_cast<int>(n));
+      for (int x = printed[n].begin; x < printed[n].end; ++x) {
+        const std::size_t at = n * width + static_cast<std::size_t>(x), i = first + at;
         const std::uint8_t *asked = &wanted.rgba[4 * i], *got = &on_object.rgba[4 * i];
         const bool same = !is_compared(wanted, stretch, i) || std::equal(asked, asked + 3, got);
         differences_[at] = same ? 0 : known.between(asked, got);
@@ -353,10 +342,10 @@ void ReachMeter::add(const RowBand& rows, const Image& wanted, const Image& on_o
   // In the pixels' order, so that the sums do not depend on the threads, nor on the bands.
   for (std::size_t n = 0; n < count; ++n) {
     check_cancelled();
-    for (std::size_t x = printed[n].begin; x < printed[n].end; ++x) {
-      const std::size_t at = n * width + x, i = first + at;
+    for (int x = printed[n].begin; x < printed[n].end; ++x) {
+      const std::size_t at = n * width + static_cast<std::size_t>(x), i = first + at;
       if (wanted.rgba[4 * i + 3] == 0) continue;
-      means_.add(static_cast<int>(x), rows.begin + static_cast<int>(n), differences_[at]);
+      means_.add(x, rows.begin + static_cast<int>(n), differences_[at]);
       if (!is_compared(wanted, stretch, i)) continue;
       count_pixel(pixel_mm2_ * double(ratio_or_one(stretch.area_ratio[i])),
                   double(differences_[at]));

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/run_scope.h"
+#include "image/shown_columns.h"
 #include "ink/color_model.h"
 #include "ink/profiles.h"
 #include "ink/rgb_profile.h"
@@ -260,12 +261,11 @@ Image in_printer_rgb(Image image, const std::vector<std::uint8_t>& profile, cons
         name));
   for (int y = 0; y < image.height_px; ++y) {
     check_cancelled();
-    int begin = 0, end = image.width_px;
-    while (begin < end && image.pixel(begin, y)[3] == 0) ++begin;
-    while (end > begin && image.pixel(end - 1, y)[3] == 0) --end;
-    if (begin == end) continue;
-    std::uint8_t* shown = image.pixel(begin, y);
-    cmsDoTransform(transform.get(), shown, shown, static_cast<cmsUInt32Number>(end - begin));
+    const Columns shown = shown_columns(image, y);
+    if (shown.empty()) continue;
+    std::uint8_t* row = image.pixel(shown.begin, y);
+    cmsDoTransform(transform.get(), row, row,
+                   static_cast<cmsUInt32Number>(shown.end - shown.begin));
   }
   return image;
 }

@@ -203,6 +203,7 @@ Report make_report(const JobRecord& record) {
   report.rounds = rounds(record);
   report.coverage = record.dipped().coverage;
   report.wanted = record.wanted;
+  report.ink = record.laid;
   report.air = record.dipped().air;
   report.way_in = way_in(record.config, record.dipped().posed.mesh());
   report.angles = record.dipped().angles;

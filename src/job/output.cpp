@@ -42,11 +42,10 @@ ReportColors colors_of(const FilmLayer& error) {
   return {summary.mean, summary.most_of};
 }
 
-// With what is known of colours and inks.
+// With what is known of colours.
 Report full_report(const JobRecord& record, const Previews& previews) {
   Report report = make_report(record);
   report.colors = previews.colors;
-  report.ink = record.laid;
   return report;
 }
 

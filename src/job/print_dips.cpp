@@ -57,11 +57,11 @@ void write_dip(OutputFolder& folder, MadeDip& dip, const MadeDips& all,
   const Finish alone(all.prepared.paint,
                      {{dip.made.dipped, dip.made.raster,
                        std::make_shared<const Image>(dip.made.ink.ink.on_object)}});
-  const JobRecord record{"print", dip.config,    all.prepared,         inputs, alone, times,
-                         context, &dip.made.ink, printer.model->name()};
+  JobRecord record{"print", dip.config,    all.prepared,         inputs, alone, times,
+                   context, &dip.made.ink, printer.model->name()};
+  record.laid = ink_amounts(laid.inks, dip.config.design.inking.limit);
   Report report = make_report(record);
   report.warnings.clear();
-  report.ink = ink_amounts(laid.inks, dip.config.design.inking.limit);
   report.dip_number = dip.number;
   report.dip_of = int(all.dips.size());
   write_sheet_files(folder, std::move(laid.inks), laid.printed, printer,

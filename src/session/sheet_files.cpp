@@ -28,12 +28,12 @@ void write_sheet_files(OutputFolder& folder, InkImage inks, const PixelSet& prin
   std::vector<std::function<void()>> of_inks{
       [&] { write_print_tiff(tiff, inks, model.profile(), options); }};
   if (pdf_of_inks) of_inks.emplace_back([&] { write_pdf(inks, model.profile()); });
-  context.side_by_side("writing the sheet", of_inks);
+  context.side_by_side(activity, of_inks);
 
   Image look = look_on_film(std::move(inks), printed, model);
   std::vector<std::function<void()>> of_look{[&] { write_print_png(png, look, options); }};
   if (pdf_in_srgb) of_look.emplace(of_look.begin(), [&] { write_pdf(look, srgb_profile()); });
-  context.side_by_side("writing the sheet", of_look);
+  context.side_by_side(activity, of_look);
 
   if (pdf_of_inks || pdf_in_srgb) return;
   write_pdf(in_printer_rgb(std::move(look), printer.profile_bytes, printer.profile_file.string(),
