@@ -22,6 +22,7 @@
 #include "plan/fit.h"
 #include "plan/sheet_packing.h"
 #include "report/findings.h"
+#include "report/html.h"
 #include "session/sheet_files.h"
 
 namespace hydrodip {
@@ -40,6 +41,7 @@ constexpr double kLine_mm = 0.2, kLabel_mm = 3;
 // A part on a piece of film of its own.
 struct Part {
   ReadyJob job;
+  Room room;  // that its wet part takes
   int count = 1;
 
   std::string name() const { return job.config.model.filename().string(); }
@@ -88,7 +90,7 @@ FilmOptions piece_for(const Room& room, const FilmOptions& sheet, double clearan
   return piece;
 }
 
-Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet,
+Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet, const Printer& printer,
                   const RunContext& context) {
   JobConfig config = wanted.config;
   for (const std::filesystem::path& correction : {config.correction, sheet.correction})
@@ -104,22 +106,16 @@ Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet,
   require_appearance(prepared, config.model);
   const TriangleMesh& mesh = prepared.posed.mesh();
   Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
-  Printer printer = make_printer(config.printer);
-  return {{std::move(config), std::move(prepared), std::move(trajectory), std::move(printer)},
-          wanted.count};
-}
-
-Room room_of(const Part& part) {
-  return room_of(part.job.prepared.posed.mesh(), part.job.trajectory);
+  const Room room = room_of(mesh, trajectory);
+  return {
+      {std::move(config), std::move(prepared), std::move(trajectory), printer}, room, wanted.count};
 }
 
 void cut_pieces(std::vector<Part>& parts, const FilmOptions& sheet, double amount,
                 double given_mm) {
-  for (Part& part : parts) {
-    const Room room = room_of(part);
-    part.job.config.design.film =
-        piece_for(room, sheet, given_mm > 0 ? given_mm : clearance_mm(room.depth_mm, amount));
-  }
+  for (Part& part : parts)
+    part.job.config.design.film = piece_for(
+        part.room, sheet, given_mm > 0 ? given_mm : clearance_mm(part.room.depth_mm, amount));
 }
 
 // As far as they find room.
@@ -166,7 +162,7 @@ void share_out_film(Nest& nest, const FilmOptions& sheet, double given_mm,
         nest.pieces.size(), part.name(), part.film().width_mm, part.film().height_mm));
   }
   for (const Part& part : nest.parts)
-    require_fit(part.job.prepared.posed.mesh(), room_of(part), part.film(), part.job.config.bath,
+    require_fit(part.job.prepared.posed.mesh(), part.room, part.film(), part.job.config.bath,
                 context);
 }
 
@@ -323,13 +319,6 @@ json described(const Nest& nest) {
   return list;
 }
 
-std::string html_escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  return out;
-}
-
 std::string run_sheet(const Nest& nest, const JobConfig& sheet) {
   std::string page = fmt::format(
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>hydrodip run sheet</title>"
@@ -368,17 +357,12 @@ std::string run_sheet(const Nest& nest, const JobConfig& sheet) {
 }
 
 SheetOptions sheet_options(const JobConfig& config, const Nest& nest) {
-  SheetOptions sheet;
-  sheet.width_mm = config.design.film.width_mm;
-  sheet.height_mm = config.design.film.height_mm;
-  sheet.margin_mm = config.design.film.margin_mm;
-  sheet.dpi = config.design.dpi;
-  sheet.ink_side_up = config.print.ink_side == InkSide::kUp;
-  sheet.printer = printer_of(config.print);
-  sheet.job_name = config.print.job_name.empty() ? fmt::format("{} parts", nest.pieces.size())
-                                                 : config.print.job_name;
+  SheetOptions sheet = sheet_of(config);
+  // Of pieces that are cut out nobody finds the sheet's own rim and marks.
+  sheet.disc = sheet.camera_marks = false;
+  if (config.print.job_name.empty()) sheet.job_name = fmt::format("{} parts", nest.pieces.size());
   const std::string bad = not_to_be_dipped(nest);
-  if (!bad.empty()) sheet.alarm = "DO NOT DIP " + bad;
+  sheet.alarm = bad.empty() ? draft_alarm(config.design) : "DO NOT DIP " + bad;
   return sheet;
 }
 
@@ -397,10 +381,11 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
   warn_if_draft(sheet.design, context);
   require_fonts("the pieces' names");
   OutputFolder folder(sheet.output, sheet.earlier_result);
+  const Printer printer = make_printer(sheet.printer);
   Nest nest;
   std::vector<std::filesystem::path> inputs;
   for (const NestRequest::Part& part : request.parts) {
-    nest.parts.push_back(prepare_part(part, sheet, context));
+    nest.parts.push_back(prepare_part(part, sheet, printer, context));
     const auto& files = nest.parts.back().job.prepared.files;
     inputs.insert(inputs.end(), files.begin(), files.end());
   }
@@ -408,7 +393,6 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
   share_out_film(nest, sheet.design.film, request.clearance_mm, context);
 
   make_parts(nest, context);
-  const Printer printer = make_printer(sheet.printer);
   Inking whole = whole_sheet(nest, raster_of(sheet.design.film, sheet.design.dpi));
   write_sheet_files(folder, std::move(whole.inks), whole.printed, printer,
                     sheet_options(sheet, nest), context);

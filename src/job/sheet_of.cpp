@@ -13,6 +13,10 @@ PrinterScale printer_of(const PrintOptions& print) {
   return {print.scale_x, print.scale_y, print.scale_y * lean};
 }
 
+std::string draft_alarm(const DesignOptions& options) {
+  return is_draft(options) ? "DRAFT: not to be dipped through" : "";
+}
+
 SheetOptions sheet_of(const JobConfig& config) {
   SheetOptions sheet;
   sheet.width_mm = config.design.film.width_mm;
@@ -46,8 +50,8 @@ SheetOptions sheet_of(const JobConfig& config, const PosedObject& posed, const R
   SheetOptions sheet = sheet_of(config, posed);
   if (concern_of(findings(report)) == Concern::kStop)
     sheet.alarm = "DO NOT DIP: " + short_verdict(report);
-  else if (report.command == "print" && is_draft(config.design))
-    sheet.alarm = "DRAFT: not to be dipped through";
+  else if (report.command == "print")
+    sheet.alarm = draft_alarm(config.design);
   return sheet;
 }
 

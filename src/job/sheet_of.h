@@ -10,6 +10,9 @@ namespace hydrodip {
 
 PrinterScale printer_of(const PrintOptions& print);
 
+// What the margin says of a draft; empty of a design that is none.
+std::string draft_alarm(const DesignOptions& options);
+
 SheetOptions sheet_of(const JobConfig& config);
 // With the outlines of a dip, if they are asked for.
 SheetOptions sheet_of(const JobConfig& config, const PosedObject& posed);

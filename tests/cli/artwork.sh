@@ -133,6 +133,8 @@ pdftotext torn/print.pdf - | grep -q '^DO NOT DIP 1$' || fail 'nor does its shee
 "$hydrodip" print plate.stl --art photo.png --quality draft --dpi 72 -o draft --quiet > draft.txt || fail 'a draft'
 grep -q '^warning: This is a draft' draft.txt || fail 'a draft does not say that it is one'
 pdftotext draft/print.pdf - | grep -q DRAFT || fail 'nor does its sheet'
+"$hydrodip" nest flat.dip.toml --film 200x200 --quality draft --dpi 72 -o drafts --quiet > drafts.txt || fail 'a nest of drafts'
+pdftotext drafts/print.pdf - | grep -q DRAFT || fail 'nor does a sheet of several'
 
 
 # Profiles count: Display P3 and CMYK come out as Little CMS's own tool has them.
