@@ -29,11 +29,6 @@ std::filesystem::path output_folder(const Request& request, const std::string& c
   return std::filesystem::path(request.model).stem().string() + "-" + command;
 }
 
-void require_one_dip(const Request& request, const JobConfig& config, const std::string& why) {
-  if (!config.dips.empty())
-    throw InputError(request.model + ": this job has [[dip]] tables: " + why);
-}
-
 // One for each of several dips, beside its sheet.
 void add_run_sheets(JobResult& result, const RunContext& context) {
   for (const std::string& dip : result.dips) {
@@ -146,8 +141,6 @@ JobResult run_nest(const Request& request, const RunContext& context) {
   const NestRequest nest{parts_of(request, sheet), request.clearance_mm};
   if (nest.parts.empty())
     throw InputError("name the parts to nest, as in 'hydrodip nest a.toml b.stl b.stl --film a3'");
-  if (!(request.clearance_mm >= 0 && request.clearance_mm <= 500))
-    throw InputError("--clearance: must be a width from 0 to 500 mm");
   return nest_job(sheet, nest, context);
 }
 
@@ -168,7 +161,6 @@ void declare_simulate(CLI::App& app, Request& request) {
 JobResult run_simulate(const Request& request, const RunContext& context) {
   require_model(request.model, "simulate");
   JobConfig config = configure(request);
-  require_one_dip(request, config, "simulate makes one dip; 'hydrodip print' makes them all");
   config.output = output_folder(request, "simulate");
   return simulate_job(config, context);
 }
@@ -199,8 +191,6 @@ void declare_orient(CLI::App& app, Request& request) {
 JobResult run_orient(const Request& request, const RunContext& context) {
   require_model(request.model, "orient");
   JobConfig config = configure(request);
-  require_one_dip(request, config,
-                  "orient looks for ways to make one dip; 'hydrodip plan' looks for theirs");
   config.output = output_folder(request, "orient");
   return orient_job(config, context);
 }

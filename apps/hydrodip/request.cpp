@@ -1,6 +1,8 @@
 #include "request.h"
 
 #include <fmt/format.h>
+#include <pwd.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -73,8 +75,10 @@ std::filesystem::path profile_folder() {
     return std::filesystem::path(value != nullptr ? value : "");
   };
   const std::filesystem::path configured = folder("XDG_CONFIG_HOME");
-  return (configured.is_absolute() ? configured : folder("HOME") / ".config") / "hydrodip" /
-         "profiles";
+  std::filesystem::path home = folder("HOME");
+  if (!home.is_absolute())
+    if (const passwd* user = getpwuid(getuid())) home = user->pw_dir;
+  return (configured.is_absolute() ? configured : home / ".config") / "hydrodip" / "profiles";
 }
 
 void declare_model(CLI::App& app, Request& request) {
@@ -362,7 +366,7 @@ void declare_nest(CLI::App& app, Request& request) {
                  "free film around each part (default: as much as the sheet has room for)")
       ->group(kFilmGroup)
       ->type_name("MM")
-      ->check(between(0, 1000));
+      ->check(between(0, 500));
 }
 
 void declare_sample(CLI::App& app, Request& request) {

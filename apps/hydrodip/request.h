@@ -42,7 +42,7 @@ struct Request {
   StudioOptions studio;
   PatternRequest pattern;
   std::vector<std::string> jobs;  // of several parts
-  double clearance_mm = 0;
+  std::optional<double> clearance_mm;
   std::string name;  // of a profile
   std::string file;  // to import
   std::vector<std::string> unset;

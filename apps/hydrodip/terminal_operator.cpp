@@ -55,7 +55,9 @@ void TerminalOperator::show(const std::string& line) {
 bool TerminalOperator::pressed_enter() {
   read_some(0);
   std::string line;
-  return take_line(line);
+  if (take_line(line)) return true;
+  if (ended_) throw Cancelled("nobody answers: the input has ended");
+  return false;
 }
 
 bool TerminalOperator::read_some(double seconds) {

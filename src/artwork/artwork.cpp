@@ -119,7 +119,10 @@ bool lies_within(const PictureFrame& frame, const Vec2& place_mm) {
 class Search {
  public:
   Search(const Layer& layer, const TriangleMesh& mesh)
-      : layer_(layer), mesh_(mesh), finest_mm_(layer.frame.size_mm().minCoeff() / kPerPicture) {}
+      : layer_(layer),
+        mesh_(mesh),
+        finest_mm_(std::max(layer.frame.size_mm().minCoeff() / kPerPicture,
+                            layer.frame.size_mm().maxCoeff() / kPerLength)) {}
 
   bool finds(std::size_t triangle) const {
     const Triangle& v = mesh_.triangles[triangle];
@@ -133,7 +136,7 @@ class Search {
   }
 
  private:
-  static constexpr double kPerPicture = 48, kPerTriangle = 256;
+  static constexpr double kPerPicture = 48, kPerLength = 4000, kPerTriangle = 256;
 
   bool finds_in(int triangle, const std::array<Vec2, 3>& part, double edge_mm,
                 double coarse_mm) const {

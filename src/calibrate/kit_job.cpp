@@ -110,9 +110,8 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
                   "margin must measure true. Four squares together are {:g} mm wide.",
                   4 * board.square_mm),
       {"Four squares, mm"});
-  page.task(fmt::format(
-      "Tape {:g} mm around all four edges. Dry for as long as your ink needs.",
-      tape_mm(film.width_mm, film.height_mm, film.margin_mm, config.print.camera_marks)));
+  page.task(fmt::format("Tape {:g} mm around all four edges. Dry for as long as your ink needs.",
+                        tape_mm(film.width_mm, film.height_mm, film.margin_mm, false)));
 
   page.heading("Dip");
   for (const std::string& text : objects) {

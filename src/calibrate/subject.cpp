@@ -157,11 +157,14 @@ std::string fingerprint_of(const CalibrationObject& object, const Board& board,
   print.add(program);
   for (const Vec3& p : object.object.positions)
     for (int k = 0; k < 3; ++k) print.add(p[k]);
+  for (const Triangle& t : object.object.triangles)
+    for (int k = 0; k < 3; ++k) print.add(double(t[k]));
   for (const double value :
        {object.depth_mm, board.square_mm, double(board.about_square), double(board.period),
-        design.film.width_mm, design.film.height_mm, design.film.margin_mm,
-        double(design.film.elements), design.film.grading, double(design.film.shape),
-        design.dip.step_mm, double(design.dip.scheme), design.stiffness.filter_mm})
+        design.film.width_mm, design.film.height_mm, design.film.margin_mm, design.film.swelling_x,
+        design.film.swelling_y, double(design.film.elements), design.film.grading,
+        double(design.film.shape), design.dip.step_mm, double(design.dip.scheme),
+        design.stiffness.filter_mm})
     print.add(value);
   for (const std::uint8_t ink : board.ink) print.add(ink);
   return print.text();

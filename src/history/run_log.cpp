@@ -31,6 +31,8 @@ void take_in(const Json& entry, DipRun& run) {
   } else if (event == "water") {
     (text(entry, "when") == "after" ? run.water_after_c : run.water_before_c) =
         number(entry, "celsius");
+  } else if (event == "film on the water") {
+    run.soak_s = 0;  // until it is known
   } else if (event == "soaked") {
     run.soak_s = number(entry, "seconds");
   } else if (event == "activator") {
@@ -43,6 +45,8 @@ void take_in(const Json& entry, DipRun& run) {
     run.notes = text(entry, "text");
   } else if (event == "end") {
     run.outcome = text(entry, "outcome");
+    // A piece fails in the water, not at a loose cable.
+    if (run.outcome == "failed" && !run.soak_s) run.outcome = "cancelled";
   }
 }
 

@@ -78,7 +78,35 @@ std::string difference(const CorrectedDip& then, const CorrectedDip& now) {
         "and this job has {:g}, {:g} and {:g}",
         then.z_stretch, then.poisson, then.ink_stiffness_ratio, now.z_stretch, now.poisson,
         now.ink_stiffness_ratio);
+  if (!then.way.empty() && then.way != now.way)
+    return fmt::format("was found for a dip {}, and this one goes {}", then.way, now.way);
   return "";
+}
+
+// "straight down", "along a path (1f0a...), drawn straight up"
+std::string way_of(const DesignOptions& design) {
+  const TrajectoryOptions& way = design.trajectory;
+  std::string text = "straight down";
+  if (!way.path.empty()) {
+    std::vector<std::uint8_t> bytes;
+    const auto add = [&bytes](double value) {
+      const auto* begin = reinterpret_cast<const std::uint8_t*>(&value);
+      bytes.insert(bytes.end(), begin, begin + sizeof value);
+    };
+    for (const Keyframe& key : way.path)
+      for (const double value : {key.lower_mm, key.shift_x_mm, key.shift_y_mm, key.turn_x_deg,
+                                 key.turn_y_deg, key.turn_z_deg})
+        add(value);
+    for (const double value : way.pivot_mm) add(value);
+    text = fmt::format("along a path ({})", sha256_hex(bytes).substr(0, 8));
+  } else if (way.tilt_deg != 0 || way.roll_deg != 0) {
+    text = fmt::format("leaning over by {:g} degrees towards {:g}, rolled by {:g}", way.tilt_deg,
+                       way.tilt_toward_deg, way.roll_deg);
+  }
+  if (design.dip.method == DipMethod::kSingleStep) text += ", draped in a single step";
+  if (design.dip.method == DipMethod::kProjection) text += ", projected";
+  if (design.film.shape == FilmShape::kDisc) text += ", through a disc of film";
+  return text;
 }
 
 }  // namespace
@@ -101,6 +129,7 @@ CorrectedDip corrected_dip(const JobConfig& config, const PosedObject& posed, do
   dip.z_stretch = config.design.dip.material.z_stretch;
   dip.poisson = config.design.dip.material.poisson;
   dip.ink_stiffness_ratio = config.design.stiffness.ratio;
+  dip.way = way_of(config.design);
   return dip;
 }
 

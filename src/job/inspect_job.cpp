@@ -10,6 +10,7 @@
 #include "image/files.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
+#include "job/print_dips.h"
 #include "job/ways.h"
 #include "object/dip_angles.h"
 #include "object/surface.h"
@@ -223,6 +224,9 @@ JobResult inspect_job(const JobConfig& given, const RunContext& context) {
   JobConfig config = given;
   const RunScope scope(context.with_threads(config.threads));
   PreparedObject prepared = prepare_object(config.model, config.object, context);
+  if (asks_for_several_dips(config))
+    context.warn(
+        "This job is of several dips; inspect looks at the object as [object] and [dip] hold it.");
   find_what_is_asked(config, prepared, context);
   const TriangleMesh& mesh = prepared.posed.mesh();
   const FilmOptions& film = config.design.film;

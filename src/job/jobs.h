@@ -68,7 +68,7 @@ struct NestRequest {
     int count = 1;
   };
   std::vector<Part> parts;
-  double clearance_mm = 0;  // free film around the object; 0: as much as the sheet has room for
+  std::optional<double> clearance_mm;  // free film; none: as much as the sheet has room for
 };
 
 // print.pdf, print.png, print.tif of the whole sheet; nest.html, the run sheet; nest.json; a

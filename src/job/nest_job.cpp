@@ -16,9 +16,12 @@
 #include "job/computed.h"
 #include "job/job_record.h"
 #include "job/jobs.h"
+#include "job/output.h"
 #include "job/prepare.h"
+#include "job/print_dips.h"
 #include "job/sheet_of.h"
 #include "job/wanted.h"
+#include "job/ways.h"
 #include "plan/fit.h"
 #include "plan/sheet_packing.h"
 #include "report/findings.h"
@@ -99,11 +102,13 @@ Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet, const
           "{}: a correction is of one dip on a sheet of its own, and parts that share a sheet get "
           "pieces of other sizes; leave it out, or print the part by itself",
           correction.string()));
+  require_one_dip(config, "a part gets one piece of film; print it by itself");
   config.printer = sheet.printer;
   config.design.dpi = sheet.design.dpi;
   PreparedObject prepared = prepare_object(config.model, config.object, context, config.design.dpi,
                                            config.design.inverse.samples_per_axis);
   require_appearance(prepared, config.model);
+  find_what_is_asked(config, prepared, context);
   const TriangleMesh& mesh = prepared.posed.mesh();
   Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
   const Room room = room_of(mesh, trajectory);
@@ -112,10 +117,10 @@ Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet, const
 }
 
 void cut_pieces(std::vector<Part>& parts, const FilmOptions& sheet, double amount,
-                double given_mm) {
+                std::optional<double> given_mm) {
   for (Part& part : parts)
     part.job.config.design.film = piece_for(
-        part.room, sheet, given_mm > 0 ? given_mm : clearance_mm(part.room.depth_mm, amount));
+        part.room, sheet, given_mm ? *given_mm : clearance_mm(part.room.depth_mm, amount));
 }
 
 // As far as they find room.
@@ -143,9 +148,9 @@ const Piece* first_left_out(const std::vector<Piece>& pieces) {
 }
 
 // Sizes the pieces and places them.
-void share_out_film(Nest& nest, const FilmOptions& sheet, double given_mm,
+void share_out_film(Nest& nest, const FilmOptions& sheet, std::optional<double> given_mm,
                     const RunContext& context) {
-  for (int k = given_mm > 0 ? 0 : kClearances; k >= 0; --k) {
+  for (int k = given_mm ? 0 : kClearances; k >= 0; --k) {
     cut_pieces(nest.parts, sheet, double(k) / kClearances, given_mm);
     nest.pieces = place(nest.parts, sheet);
     if (!first_left_out(nest.pieces)) break;
@@ -390,6 +395,9 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
     inputs.insert(inputs.end(), files.begin(), files.end());
   }
   folder.announce(file_names(nest.parts.size()), inputs);
+  std::vector<std::string> others = prints();
+  others.insert(others.end(), {"report.json", "report.html"});
+  folder.supersede(others);
   share_out_film(nest, sheet.design.film, request.clearance_mm, context);
 
   make_parts(nest, context);

@@ -4,6 +4,7 @@
 
 #include "base/run_scope.h"
 #include "job/command_text.h"
+#include "job/print_dips.h"
 #include "job/search_output.h"
 #include "render/hold_pictures.h"
 #include "transfer/film_map.h"
@@ -94,6 +95,9 @@ std::string in_words(const JobConfig& config, const Paint& paint, const SearchRe
 
 JobResult orient_job(const JobConfig& given, const RunContext& context) {
   JobConfig config = given;
+  config.plan.dips = 0;  // of another command
+  require_one_dip(config,
+                  "orient looks for ways to make one dip; 'hydrodip plan' looks for theirs");
   config.plan.find_depth = config.plan.find_depth || !(config.design.trajectory.depth_mm > 0);
   const RunScope scope(context.with_threads(config.threads));
   SearchOutput output(config, "orient", {}, context);

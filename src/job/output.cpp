@@ -264,6 +264,12 @@ std::vector<std::string> pictures_of_jobs() {
   return {"preview.png", "maps.png", "gamut.png", "dips.png"};
 }
 
+std::vector<std::string> prints() {
+  std::vector<std::string> names = sheets_of_other_prints(0);
+  for (const std::string& name : sheets_of_other_prints(1)) names.push_back(name);
+  return names;
+}
+
 std::vector<std::string> sheets_of_other_prints(std::size_t dips) {
   std::vector<std::string> names;
   const auto add = [&](const std::string& folder) {
@@ -273,6 +279,7 @@ std::vector<std::string> sheets_of_other_prints(std::size_t dips) {
   };
   if (dips > 0) add("");  // whose report is replaced
   for (const std::string& picture : pictures_of_jobs()) names.push_back(picture);
+  for (const char* of_nest : {"nest.json", "nest.html"}) names.emplace_back(of_nest);
   for (std::size_t k = dips; k < kMostDips; ++k) add(fmt::format("dip-{}/", k + 1));
   return names;
 }

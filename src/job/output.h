@@ -42,5 +42,7 @@ std::vector<std::string> pictures_of_jobs();
 // nobody shall print a sheet of an earlier job, or take its pictures for those of this one. 0: a
 // single dip, in no folder of its own.
 std::vector<std::string> sheets_of_other_prints(std::size_t dips);
+// All that prints put into a folder: for what else is put there.
+std::vector<std::string> prints();
 
 }  // namespace hydrodip

@@ -13,6 +13,8 @@
 #include "coat/flat_film.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
+#include "job/print_dips.h"
+#include "job/ways.h"
 
 namespace hydrodip {
 namespace {
@@ -48,6 +50,9 @@ std::vector<Vec3> posed_spots(const PatternRequest& request, const PosedObject& 
   const double size = posed.mesh().bounds().size().norm();
   std::vector<Vec3> spots;
   for (const PatternRequest::Spot& spot : request.spots) {
+    if (!(spot.radius_mm > 0))
+      throw InputError(fmt::format("--keep {}: the radius must be above 0, not {:g} mm",
+                                   as_given(spot.at_mm), spot.radius_mm));
     spots.push_back(frame.point(spot.at_mm));
     const auto hit = posed.surface().closest_point(spots.back(), 100 * size);
     if (hit && hit->t <= spot.radius_mm) continue;
@@ -141,6 +146,7 @@ std::string describe(const TilePlace& place, const PatternRequest& request) {
 
 JobResult pattern_job(const JobConfig& given, const PatternRequest& request,
                       const RunContext& context) {
+  require_one_dip(given, "a tile is placed for one dip; make a job of each dip by itself");
   const RunScope scope(context.with_threads(given.threads));
   JobConfig config = given;
   ArtworkLayer layer = tile_layer(request);
@@ -153,7 +159,8 @@ JobResult pattern_job(const JobConfig& given, const PatternRequest& request,
   RunContext quiet = context.quiet();
   ObjectOptions bare = config.object;
   bare.artwork.clear();
-  const PreparedObject prepared = prepare_object(config.model, bare, quiet);
+  PreparedObject prepared = prepare_object(config.model, bare, quiet);
+  find_what_is_asked(config, prepared, context);
   const TriangleMesh& mesh = prepared.posed.mesh();
   const Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
   require_fit(mesh, room_of(mesh, trajectory), config.design.film, config.bath, quiet);

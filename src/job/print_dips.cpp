@@ -86,6 +86,12 @@ bool asks_for_several_dips(const JobConfig& config) {
   return config.plan.dips > 1 || !config.dips.empty();
 }
 
+void require_one_dip(const JobConfig& config, const std::string& why) {
+  if (asks_for_several_dips(config))
+    throw InputError(fmt::format("{}: this job is of several dips ({}): {}", config.model.string(),
+                                 config.dips.empty() ? "plan.dips" : "[[dip]] tables", why));
+}
+
 JobResult print_dips(const JobConfig& config, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   require_no_correction(config);

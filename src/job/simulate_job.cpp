@@ -91,10 +91,28 @@ void fit_height(InkImage& inks, int height_px) {
   inks.height_px = height_px;
 }
 
+// What draws and photographs records one of these whatever the size.
+bool means_nothing(double dpi) { return std::abs(dpi - 72) < 0.5 || std::abs(dpi - 96) < 0.5; }
+
+// A finished sheet knows how large it is.
+void warn_of_other_size(int width_px, int height_px, double recorded_dpi, const JobConfig& config,
+                        const RunContext& context) {
+  constexpr double kSame = 0.02;
+  if (!(recorded_dpi > 0) || means_nothing(recorded_dpi)) return;
+  const double width_mm = width_px * kMmPerInch / recorded_dpi;
+  const FilmOptions& film = config.design.film;
+  if (std::abs(width_mm / film.width_mm - 1) < kSame) return;
+  context.warn(fmt::format(
+      "{} says that it is {:.1f} x {:.1f} mm; it is printed {:.1f} mm wide, as the film is: check "
+      "--film.",
+      config.film_image.string(), width_mm, height_px * kMmPerInch / recorded_dpi, film.width_mm));
+}
+
 // Inks as they are.
-PrintedFilm read_ink_image(const JobConfig& config) {
+PrintedFilm read_ink_image(const JobConfig& config, const RunContext& context) {
   CmykFile file = read_cmyk_tiff(config.film_image);
   require_aspect(file.inks.width_px, file.inks.height_px, config);
+  warn_of_other_size(file.inks.width_px, file.inks.height_px, file.dpi, config, context);
   PrintedFilm film;
   film.raster = raster_of(config.design.film, image_dpi(file.inks.width_px, file.dpi, config));
   film.inks = std::move(file.inks);
@@ -103,12 +121,14 @@ PrintedFilm read_ink_image(const JobConfig& config) {
   return film;
 }
 
-PrintedFilm read_film_image(const JobConfig& config, const ColorModel& model) {
+PrintedFilm read_film_image(const JobConfig& config, const ColorModel& model,
+                            const RunContext& context) {
   const std::vector<std::uint8_t> bytes = read_file(config.film_image);
-  if (is_tiff(bytes)) return read_ink_image(config);
+  if (is_tiff(bytes)) return read_ink_image(config, context);
   PrintedFilm film;
   Image image = decode_image(bytes, config.film_image.string());
   require_aspect(image.width_px, image.height_px, config);
+  warn_of_other_size(image.width_px, image.height_px, recorded_dpi(bytes), config, context);
   film.raster =
       raster_of(config.design.film, image_dpi(image.width_px, recorded_dpi(bytes), config));
   if (image.width_px != film.raster.width_px() || image.height_px != film.raster.height_px())
@@ -118,8 +138,9 @@ PrintedFilm read_film_image(const JobConfig& config, const ColorModel& model) {
   return film;
 }
 
-PrintedFilm printed_film(const JobConfig& config, const ColorModel& model) {
-  if (!config.film_image.empty()) return read_film_image(config, model);
+PrintedFilm printed_film(const JobConfig& config, const ColorModel& model,
+                         const RunContext& context) {
+  if (!config.film_image.empty()) return read_film_image(config, model, context);
   const SheetRaster raster =
       raster_of(config.design.film, config.pictures ? kCheckerboardDpi : kDraftDpi);
   return {inks_of_film(checkerboard(raster), model), raster};
@@ -199,9 +220,9 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
   const JobConfig& config = job.config;
   const std::vector<ReportInput> inputs = describe_inputs(config, job.prepared, job.printer);
   announce_outputs(folder, command, config, inputs);
-  folder.supersede(command == "print" ? sheets_of_other_prints(0) : pictures_of_jobs());
+  folder.supersede(command == "print" ? sheets_of_other_prints(0) : prints());
   PrintedFilm printed = times.measure("film image", [&] {
-    PrintedFilm film_image = printed_film(config, *job.printer.model);
+    PrintedFilm film_image = printed_film(config, *job.printer.model, context);
     if (command == "print") clear_margin(film_image, config.design.film, context);
     return film_image;
   });
@@ -231,12 +252,13 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
 
 SimulatedJob simulated(const ReadyJob& job, const SharedFilmMesh& film, Timings& times,
                        const RunContext& context) {
-  const PrintedFilm printed =
-      times.measure("film image", [&] { return printed_film(job.config, *job.printer.model); });
+  const PrintedFilm printed = times.measure(
+      "film image", [&] { return printed_film(job.config, *job.printer.model, context); });
   return dipped_with(printed, job, film, times, context);
 }
 
 JobResult simulate_job(const JobConfig& config, const RunContext& context) {
+  require_one_dip(config, "simulate makes one dip; 'hydrodip print' makes them all");
   return forward_job("simulate", config, context);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "dip/travel.h"
@@ -64,12 +65,11 @@ RoomFit film_fit(const TriangleMesh& posed, const std::string& what, double need
 }
 
 RoomFit bath_fit(const TriangleMesh& posed, const std::string& what, double needed_mm,
-                 double available_mm) {
+                 double available_mm, const std::string& parameter) {
   const std::string remedy = fmt::format(
       "shrink it with {}, turn it with --rotate or --down, or give the size of your bath with "
-      "--set bath.{}_mm=...",
-      shrunk_size(posed, needed_mm, available_mm),
-      what.starts_with("wide") ? "width" : (what.starts_with("long") ? "height" : "depth"));
+      "--set {}=...",
+      shrunk_size(posed, needed_mm, available_mm), parameter);
   return {what, "the bath", needed_mm, available_mm, remedy};
 }
 
@@ -96,9 +96,13 @@ void add_film_fits(std::vector<RoomFit>& list, const TriangleMesh& posed, const 
 void add_bath_fits(std::vector<RoomFit>& list, const TriangleMesh& posed, const Room& footprint,
                    const FilmOptions& film, const BathOptions& tank) {
   const Vec2 bath = bath_along_film(film, tank);
-  list.push_back(bath_fit(posed, "wide (x)", 2 * footprint.half_width_mm, bath.x()));
-  list.push_back(bath_fit(posed, "long (y)", 2 * footprint.half_height_mm, bath.y()));
-  RoomFit depth = bath_fit(posed, "deep in the water", footprint.depth_mm, tank.depth_mm);
+  const bool x_by_width = (film.width_mm > film.height_mm) == (tank.width_mm >= tank.height_mm);
+  const char *of_x = "bath.width_mm", *of_y = "bath.height_mm";
+  if (!x_by_width) std::swap(of_x, of_y);
+  list.push_back(bath_fit(posed, "wide (x)", 2 * footprint.half_width_mm, bath.x(), of_x));
+  list.push_back(bath_fit(posed, "long (y)", 2 * footprint.half_height_mm, bath.y(), of_y));
+  RoomFit depth =
+      bath_fit(posed, "deep in the water", footprint.depth_mm, tank.depth_mm, "bath.depth_mm");
   depth.remedy = "dip less of it with --depth, " + depth.remedy;
   list.push_back(depth);
 }

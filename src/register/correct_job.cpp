@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -195,6 +196,46 @@ void require_most(const std::filesystem::path& file, std::size_t used, std::size
   if (double(used) < kUsual * double(of)) context.warn(said + "; the others are left out.");
 }
 
+// Where places were printed, told by where the job means them to be: the linear map that fits best.
+// Nothing if they are too few or too near to each other to tell.
+std::optional<Mat2> printed_by_meant(const std::vector<Vec2>& printed,
+                                     const std::vector<Vec2>& meant) {
+  constexpr std::size_t kLeastPlaces = 6;
+  constexpr double kLeastSpread_mm = 2;
+  if (meant.size() < kLeastPlaces) return std::nullopt;
+  Vec2 p0 = Vec2::Zero(), m0 = Vec2::Zero();
+  for (const Vec2& p : printed) p0 += p / double(printed.size());
+  for (const Vec2& m : meant) m0 += m / double(meant.size());
+  Mat2 across = Mat2::Zero(), spread = Mat2::Zero();
+  for (std::size_t i = 0; i < meant.size(); ++i) {
+    across += (printed[i] - p0) * (meant[i] - m0).transpose() / double(meant.size());
+    spread += (meant[i] - m0) * (meant[i] - m0).transpose() / double(meant.size());
+  }
+  const double half = 0.5 * spread.trace();
+  const double least = half - std::sqrt(std::max(0.0, half * half - spread.determinant()));
+  if (!(least > kLeastSpread_mm * kLeastSpread_mm)) return std::nullopt;
+  return across * spread.inverse();
+}
+
+// Film stretches and shifts; it is not turned over, and hardly turned.
+void require_likely(const std::filesystem::path& file, const std::vector<Vec2>& printed,
+                    const std::vector<Vec2>& meant, const RunContext& context) {
+  constexpr double kMuch = 0.15;
+  const std::optional<Mat2> map = printed_by_meant(printed, meant);
+  if (!map) return;
+  if (map->determinant() < 0)
+    throw InputError(fmt::format(
+        "{}: its places on the sheet are the mirror image of where this job printed them: u and v "
+        "are swapped, or one of them has the wrong sign",
+        file.string()));
+  if ((*map - Mat2::Identity()).norm() > kMuch)
+    context.warn(fmt::format(
+        "{}: its places on the sheet are turned or scaled against where this job printed them, "
+        "more than film stretches; check that they are in mm, from the sheet's middle, and of "
+        "this print.",
+        file.string()));
+}
+
 DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
                 const FilmOptions& sheet, const CorrectRequest& request,
                 const RunContext& context) {
@@ -202,12 +243,15 @@ DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
                                                  : read_grid(file, film, sheet, request, context);
   DipSeen dip{file, landings.board, landings.square_mm, {}, {}, 0, 0};
   double square = 0, on_object = 0, on_object_count = 0;
+  std::vector<Vec2> printed, meant_at;
   for (const Landed& place : landings.places) {
     const auto near = film.posed.surface().closest_point(place.position, kReach_mm);
     if (!near) continue;
     const auto meant =
         film.map->to_film(film.posed.surface().position(*near), film.posed.surface().normal(*near));
     if (!meant) continue;
+    printed.push_back(place.printed);
+    meant_at.push_back(*meant);
     const Vec2 model = film.to_model(*meant), off = place.printed - *meant;
     if (!(off.norm() < kFarthest_mm)) continue;
     dip.samples.push_back({model, place.printed - model});
@@ -218,6 +262,7 @@ DipSeen seen_by(const std::filesystem::path& file, const PrintedFilm& film,
       ++on_object_count;
     }
   }
+  require_likely(file, printed, meant_at, context);
   if (dip.samples.empty())
     throw InputError(
         fmt::format("{}: none of its places lies on the film of this job; check that it is a dip "
@@ -260,7 +305,8 @@ Json json_of(const CorrectedDip& of) {
           {"material",
            {{"z_stretch", of.z_stretch},
             {"poisson", of.poisson},
-            {"ink_stiffness_ratio", of.ink_stiffness_ratio}}}};
+            {"ink_stiffness_ratio", of.ink_stiffness_ratio}}},
+          {"way", of.way}};
 }
 
 Json json_of(const CorrectedDip& of, const std::vector<DipSeen>& dips,
@@ -327,6 +373,16 @@ void require_different(const std::vector<DipSeen>& dips) {
                                      dips[i].file.string(), dips[j].file.string()));
 }
 
+// Beyond its places a correction goes on as it was.
+void require_moderate(const DisplacementFit& fit) {
+  for (const Vec2& move : fit.field.move)
+    if (!(move.cwiseAbs().maxCoeff() <= kFarthestCorrection_mm))
+      throw InputError(fmt::format(
+          "the places that were seen ask for the print to be moved by {:.0f} mm somewhere, which "
+          "is no correction: check that they are of this print and its object, in mm",
+          move.cwiseAbs().maxCoeff()));
+}
+
 // Places are looked up on the model as it is now.
 void warn_of_change(const RigJob& job, const CorrectedDip& of, const RunContext& context) {
   if (of.model_sha256.empty() || job.model_sha256.empty() || of.model_sha256 == job.model_sha256)
@@ -370,6 +426,7 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
   const Vec2 half = 0.5 * Vec2(sheet.width_mm, sheet.height_mm);
   const DisplacementFit fit = fit_displacements(samples, {-half, half});
   const double before_mm = std::sqrt(square / count);
+  require_moderate(fit);
 
   JobResult result;
   result.json =
@@ -381,11 +438,12 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
   result.folder = job.folder;
   result.files = {kFile, kPicture};
   result.text = fmt::format(
-      "{} dips, {:.0f} places: off by {:.3f} mm rms on the sheet, {:.3f} mm on the object\n"
+      "{}, {:.0f} places: off by {:.3f} mm rms on the sheet, {:.3f} mm on the object\n"
       "corrected, places that were left out are foretold to {:.3f} mm, of which {:.3f} mm are "
       "noise; it changes over {:g} mm\n",
-      dips.size(), count, before_mm, std::sqrt(on_object / count), fit.left_out_rms_mm,
-      std::sqrt(2.0) * fit.noise_mm, fit.smooth_mm);
+      dips.size() == 1 ? "1 dip" : fmt::format("{} dips", dips.size()), count, before_mm,
+      std::sqrt(on_object / count), fit.left_out_rms_mm, std::sqrt(2.0) * fit.noise_mm,
+      fit.smooth_mm);
   if (dips.size() > 1)
     result.text += fmt::format(
         "from dip to dip the film lay {:.3f} mm elsewhere: no correction takes that out\n",

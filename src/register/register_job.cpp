@@ -122,6 +122,7 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
   FilmSearch search{marks_of(job), request.water_sigma_mm, request.tolerance_mm};
   const std::filesystem::path camera = camera_file(job, request);
   Tank tank = read_tank(camera);
+  const double kept_below_mm = tank.water_below_mm;
   if (request.water_below_mm) tank.water_below_mm = *request.water_below_mm;
   search.any_turn = request.set_place;
   OutputFolder output(job.folder, job.config.earlier_result);
@@ -136,6 +137,7 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
   result.json = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   result.text = sentence(pose);
   if (request.set_place) {
+    tank.water_below_mm = kept_below_mm;  // what was said is of this photo
     set_place(tank, pose, camera);
     result.text += fmt::format("{}: this is where film is to lie from now on\n", camera.string());
     return result;

@@ -88,9 +88,11 @@ class Guide {
   }
 
   void mount_object() {
+    const std::string otherwise = hung_otherwise(job_);
     person_.say(
         "\nOBJECT. Clean, dry, free of grease; mounted as the run sheet shows, over the middle of "
-        "the film's place.");
+        "the film's place." +
+        (otherwise.empty() ? "" : " It hangs " + otherwise + "."));
     person_.ask("Enter when it hangs: ");
   }
 
@@ -132,6 +134,7 @@ class Guide {
         "\nLAY THE FILM. Ink side {}, from one side, no bubbles below, no water on top.",
         job_.config.print.ink_side == InkSide::kUp ? "up" : "down"));
     person_.ask("Enter the moment it lies on the water: ");
+    record_.note("film on the water", {});
     const double soaked_s =
         wait("soak", process_.soak_min_s, process_.soak_max_s, "press Enter when it lies flat");
     const bool right = soaked_s >= process_.soak_min_s && soaked_s <= process_.soak_max_s;

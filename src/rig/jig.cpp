@@ -402,8 +402,11 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
   bare.load.texture.clear();
   context.progress("cutting the socket", 0);
   const PreparedObject prepared = prepare_object(job.config.model, bare, context.quiet());
-  const TriangleMesh& object = prepared.posed.mesh();
-  const Jig jig = make_jig(job, object, prepared.posed.surface(), options);
+  TriangleMesh object = prepared.posed.mesh();
+  const Eigen::Isometry3d in_bath = hanging(job);
+  for (Vec3& p : object.positions) p = in_bath * p;
+  const Surface surface(object.positions, object.triangles);
+  const Jig jig = make_jig(job, object, surface, options);
 
   OutputFolder output(folder, job.config.earlier_result);
   JobResult result;

@@ -70,11 +70,8 @@ Image render(const Object& object, const View& view, int width_px, int height_px
 std::vector<PosePicture> pose_pictures(const RigJob& job, int width_px, int height_px,
                                        const RunContext& context) {
   Object hanging = hanging_object(job, context);
-  if (!job.way_in.empty()) {  // as it first touches the water
-    const Trajectory start = Trajectory::through({job.way_in.front().pose, job.way_in.front().pose},
-                                                 job.config.design.trajectory.pivot_mm);
-    for (Vec3& p : hanging.positions) p = start.bath_from_object(0) * p;
-  }
+  const Eigen::Isometry3d in_bath = hydrodip::hanging(job);
+  for (Vec3& p : hanging.positions) p = in_bath * p;
   const std::vector<View> views = {
       {"from the front (-y)", Turn::kUpright, Vec3::UnitZ()},
       {"from the right (+x)", Turn::kUpright, Vec3::UnitX()},

@@ -116,7 +116,10 @@ double ink_coverage(const Json& report) {
 SheetUse sheet_use_of(const Json& report) {
   JobConfig printed;
   apply_settings(printed, settings_of(report["parameters"], "report.json"));
-  SheetUse use{1e-6 * film_area_mm2(printed.design.film), ink_coverage(report)};
+  const FilmOptions& film = printed.design.film;
+  // Means are over the whole picture, which reaches beyond a disc.
+  const double picture_mm2 = film.width_mm * film.height_mm, film_mm2 = film_area_mm2(film);
+  SheetUse use{1e-6 * film_mm2, ink_coverage(report) * picture_mm2 / film_mm2};
   if (report.contains("dip_of_several") && report["dip_of_several"].is_object())
     use.first_of_piece = count_of(report["dip_of_several"], "number") == 1;
   return use;
@@ -177,6 +180,33 @@ std::optional<SheetUse> sheet_use(const std::string& report) {
   } catch (const InputError&) {  // of a version with other ranges
     return {};
   }
+}
+
+Eigen::Isometry3d hanging(const RigJob& job) {
+  if (job.way_in.empty()) return Eigen::Isometry3d::Identity();
+  const Keyframe& first = job.way_in.front().pose;
+  return Trajectory::through({first, first}, job.config.design.trajectory.pivot_mm)
+      .bath_from_object(0);
+}
+
+std::string hung_otherwise(const RigJob& job) {
+  if (job.way_in.empty()) return "";
+  constexpr double kNothing = 0.05;  // of what is shown
+  const Keyframe& pose = job.way_in.front().pose;
+  const Vec3 turn(pose.turn_x_deg, pose.turn_y_deg, pose.turn_z_deg);
+  const Vec2 shift(pose.shift_x_mm, pose.shift_y_mm);
+  std::string words;
+  if (turn.cwiseAbs().maxCoeff() >= kNothing)
+    words = fmt::format(
+        "turned from that by {:.1f}, {:.1f} and {:.1f} degrees about x, then y, then "
+        "z of the bath",
+        turn.x(), turn.y(), turn.z());
+  if (shift.cwiseAbs().maxCoeff() >= kNothing)
+    words += fmt::format(
+        "{}moved by {:.1f} mm along the film's width (x) and {:.1f} mm along its "
+        "length (y)",
+        words.empty() ? "" : ", and ", shift.x(), shift.y());
+  return words;
 }
 
 bool moves_aside(const RigJob& job) {

@@ -1,6 +1,7 @@
 // A finished job, read back from its folder, as far as the bench needs it.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -43,6 +44,11 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
 
 // The same of a report.json's text. Nothing if it is none of a dip.
 std::optional<SheetUse> sheet_use(const std::string& report);
+
+// Where the object hangs as it first touches the water: in the bath, from the posed-object frame.
+Eigen::Isometry3d hanging(const RigJob& job);
+// How that differs from the pose, in words: "turned by 0.0, 20.0 and 0.0 degrees ..."; empty: not.
+std::string hung_otherwise(const RigJob& job);
 
 // Whether the object shifts or turns while it comes down, so that lowering it is not enough.
 bool moves_aside(const RigJob& job);

@@ -15,7 +15,7 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kLeastSize_mm = 0.01, kLongest_mm = 1e5;
+constexpr double kLeastSize_mm = 0.01, kLongest_mm = 1e5, kMostAspect = 1000;
 
 using Numbers = std::vector<double>;
 
@@ -113,6 +113,11 @@ Key size() {
         if (!values || values->empty() || values->size() > 2) return false;
         for (const double value : *values)
           if (!(value >= kLeastSize_mm && value <= kLongest_mm)) return false;
+        const auto [least, most] = std::minmax(values->front(), values->back());
+        if (most > kMostAspect * least)
+          throw InputError(fmt::format(
+              "{}: {} is longer than {:g} times its width; such a picture shows nothing",
+              setting.origin, setting.shown, kMostAspect));
         layer.width_mm = (*values)[0];
         layer.height_mm = values->size() > 1 ? (*values)[1] : 0;
         return true;

@@ -14,7 +14,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kFarthest_mm = 50;  // that a correction moves anything
 constexpr int kMostPoints = 1000000;
 constexpr std::uintmax_t kLargestFile = 256 << 20;  // a million points and as many samples
 constexpr double kMostLength_mm = 1e5;
@@ -82,8 +81,9 @@ CorrectedDip read_dip(const Json& json, const Reader& read) {
   dip.margin_mm = value("film", "margin_mm", kMostLength_mm);
   dip.swelling = {value("film", "swelling_x", 10), value("film", "swelling_y", 10)};
   dip.z_stretch = value("material", "z_stretch", 1e3);
-  dip.poisson = value("material", "poisson", 1);
+  dip.poisson = read.number(read.member(read.member(json, "material"), "poisson"), -1, 1);
   dip.ink_stiffness_ratio = value("material", "ink_stiffness_ratio", 1e9);
+  if (json.contains("way")) dip.way = read.text(json["way"]);
   return dip;
 }
 
@@ -108,11 +108,17 @@ CorrectionFile read_correction(const std::filesystem::path& file) {
   field.nx = int(read.number(read.member(grid, "nx"), 2, kMostPoints));
   field.ny = int(read.number(read.member(grid, "ny"), 2, kMostPoints));
   for (const Json& move : read.list(read.member(grid, "move_mm")))
-    field.move.push_back(read.pair(move, kFarthest_mm));
+    field.move.push_back(read.pair(move, kMostLength_mm));
+  for (const Vec2& move : field.move)
+    if (!(move.cwiseAbs().maxCoeff() <= kFarthestCorrection_mm))
+      throw InputError(fmt::format(
+          "{}: moves the print by {:.0f} mm, which is no correction: its places are not those of "
+          "this sheet; see how they were read, and run 'hydrodip correct' again",
+          file.string(), move.cwiseAbs().maxCoeff()));
   if (double(field.move.size()) != double(field.nx) * double(field.ny)) refuse(file);
   for (const Json& sample : read.list(read.member(json, "samples")))
     result.samples.push_back({read.pair(read.member(sample, "model_mm"), 1e4),
-                              read.pair(read.member(sample, "move_mm"), kFarthest_mm)});
+                              read.pair(read.member(sample, "move_mm"), kMostLength_mm)});
   return result;
 }
 

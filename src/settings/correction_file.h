@@ -18,6 +18,9 @@ struct CorrectionSample {
   Vec2 model_mm = Vec2::Zero(), move_mm = Vec2::Zero();
 };
 
+// No correction moves anything farther.
+inline constexpr double kFarthestCorrection_mm = 50;
+
 // Of which dip a correction is. It holds for no other: another shape, pose, depth or film goes
 // wrong elsewhere.
 struct CorrectedDip {
@@ -32,6 +35,7 @@ struct CorrectedDip {
   Vec2 swelling = Vec2::Ones();
   // What the film was taken for: the correction is the rest.
   double z_stretch = 0, poisson = 0, ink_stiffness_ratio = 1;
+  std::string way;  // into the water, and onto the object, in words; empty: not known
 };
 
 struct CorrectionFile {

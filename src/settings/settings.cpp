@@ -31,6 +31,34 @@ void apply_dependent_defaults(JobConfig& config, const std::vector<Setting>& giv
   if (config.design.dip.scheme == DipScheme::kPaper && !graded) config.design.film.grading = 1;
 }
 
+// A profile that was named is to be used.
+void settle_ink_model(JobConfig& config, const std::vector<Setting>& given) {
+  if (config.printer.profile.empty()) return;
+  const auto told = std::find_if(given.rbegin(), given.rend(), [](const Setting& setting) {
+    return setting.name == "ink.model";
+  });
+  if (told == given.rend())
+    config.printer.model = InkModel::kProfile;
+  else if (config.printer.model == InkModel::kDevice)
+    throw InputError(fmt::format(
+        "{}: ink.model=device takes no profile, and {} is one: leave out ink.model or the profile",
+        told->origin, config.printer.profile.string()));
+}
+
+void require_order(const char* from, const char* to, double least, double most) {
+  if (least > most)
+    throw InputError(fmt::format("{} ({:g}) must not be above {} ({:g})", from, least, to, most));
+}
+
+void require_order(const ProcessOptions& process) {
+  require_order("process.water_min_c", "process.water_max_c", process.water_min_c,
+                process.water_max_c);
+  require_order("process.soak_min_s", "process.soak_max_s", process.soak_min_s, process.soak_max_s);
+  require_order("process.dry_min_h", "process.dry_max_h", process.dry_min_h, process.dry_max_h);
+  require_order("process.activator_tolerance_g", "process.activator_g",
+                process.activator_tolerance_g, process.activator_g);
+}
+
 void require_order(const FilmMaterial& material) {
   if (material.safe_stretch > material.lost_stretch)
     throw InputError(fmt::format(
@@ -67,7 +95,7 @@ std::vector<Setting> film_settings(const std::string& film) {
     return {option_setting("film.width_mm", width, film),
             option_setting("film.height_mm", height, film)};
   }
-  const std::size_t cross = film.find('x');
+  const std::size_t cross = name.find('x');
   const bool starts_like_a_size =
       !film.empty() && (film[0] == '-' || (film[0] >= '0' && film[0] <= '9'));
   if (cross == std::string::npos || !starts_like_a_size) {
@@ -80,7 +108,8 @@ std::vector<Setting> film_settings(const std::string& film) {
         "--film: '{}' is neither letter, a4, a3 (or -landscape) nor WxH in mm, as in 200x150{}",
         film, did_you_mean(film, names)));
   }
-  const std::string width = film.substr(0, cross), height = film.substr(cross + 1);
+  std::string width = name.substr(0, cross), height = name.substr(cross + 1);
+  if (landscape) std::swap(width, height);
   return {option_setting("film.width_mm", width, "'" + width + "'"),
           option_setting("film.height_mm", height, "'" + height + "'")};
 }
@@ -127,7 +156,9 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
   add(sources.options);
   add(sources.sets);
   apply_dependent_defaults(config, all);
+  settle_ink_model(config, all);
   require_order(config.design.dip.material);
+  require_order(config.process);
   if (!config.correction.empty())
     config.design.film.correction =
         std::make_shared<const FilmCorrection>(read_correction(config.correction).field);

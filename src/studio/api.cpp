@@ -171,6 +171,20 @@ Value value_in(const Json& json, const char* key, const Value& otherwise) {
   }
 }
 
+// None: not given. Fractions and what no revision or place can be are refused.
+std::optional<long> count_in(const Json& json, const char* key) {
+  if (!json.contains(key)) return std::nullopt;
+  const Json& value = json[key];
+  constexpr std::int64_t kMost = std::int64_t(1) << 52U;
+  const bool fine = value.is_number_integer() &&
+                    (!value.is_number_unsigned() || value.get<std::uint64_t>() <= kMost) &&
+                    value.get<std::int64_t>() >= 0;
+  if (!fine)
+    throw ApiError(400, "bad-request",
+                   fmt::format("The request's {} is no whole number from 0.", key));
+  return long(value.get<std::int64_t>());
+}
+
 std::string client_in(const std::string& name) {
   const bool fine =
       !name.empty() && name.size() <= 40 && std::all_of(name.begin(), name.end(), [](char c) {
@@ -547,10 +561,10 @@ HttpAnswer Api::command(HttpRequest& request, const Parts& parts, OpenJob& job) 
   if (what == "document" && puts) {
     OpenJob::Change change;
     change.client = client_in(value_in(body, "client", std::string()));
-    change.base = value_in(body, "base", -1L);
+    change.base = count_in(body, "base");
     change.document = value_in(body, "document", Json());
     change.live = value_in(body, "live", false);
-    change.dip = std::size_t(std::clamp(value_in(body, "dip", 0L), 0L, kMostDips - 1L));
+    change.dip = std::size_t(std::min(count_in(body, "dip").value_or(0), kMostDips - 1L));
     try {
       return json_answer(job.put(change));
     } catch (const ApiError& error) {

@@ -129,7 +129,7 @@ JobConfig OpenJob::checked(const Json& document) const {
 Json OpenJob::put(const Change& change) {
   const std::lock_guard lock(mutex_);
   require_pen(change.client);
-  if (change.base >= 0 && change.base != revision_)
+  if (change.base && *change.base != revision_)
     throw ApiError(409, "stale", "The job was changed meanwhile.");
   const JobConfig config = checked(change.document);
   accept(change.document, config, change.client, change.live, change.dip, false);
@@ -792,7 +792,8 @@ Json OpenJob::counts() const {
 // ---- long work ----
 
 std::string OpenJob::start_task(const Json& request) {
-  const std::string kind = request.value("kind", "");
+  const Json named = request.value("kind", Json());
+  const std::string kind = named.is_string() ? named.get<std::string>() : "";
   if (kind != "print" && kind != "orient" && kind != "plan")
     throw ApiError(400, "bad-request", "A task is print, orient or plan.");
   TaskRequest task;
@@ -805,7 +806,11 @@ std::string OpenJob::start_task(const Json& request) {
   if (task.config.model.empty())
     throw ApiError(422, "no-model", "There is no model yet: drop one here, or open a sample.");
   if (kind == "plan") {
-    task.config.plan.dips = request.value("dips", 2);
+    const Json dips = request.value("dips", Json(2));
+    if (!dips.is_number_integer())
+      throw ApiError(400, "bad-request", "The request's dips is no whole number.");
+    task.config.plan.dips =
+        int(std::clamp<std::int64_t>(dips.get<std::int64_t>(), 0, kMostDips + 1));
     if (task.config.plan.dips < 1 || task.config.plan.dips > kMostDips)
       throw ApiError(422, "bad-value", fmt::format("A job has 1 to {} dips.", kMostDips),
                      "plan.dips");

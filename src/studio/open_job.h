@@ -40,7 +40,7 @@ class OpenJob {
   Json describe() const;
   struct Change {
     std::string client;
-    long base = -1;  // negative: whatever is there
+    std::optional<long> base;  // none: whatever is there
     Json document;
     bool live = false;
     std::size_t dip = 0;

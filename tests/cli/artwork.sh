@@ -107,6 +107,17 @@ assert a[2] <= b[0] + 1e-6 or b[2] <= a[0] + 1e-6 or a[3] <= b[1] + 1e-6 or b[3]
 assert all(10 <= v <= 190 for v in a + b)
 assert all(p['concern'] == 'stop' and 'tears' in p['verdict'] for p in pieces)  # a box that goes under
 PY
+# A part is dipped as its job says, or not at all: what auto finds is as in any other command.
+printf '[object]\nfile = "samples/box.obj"\n[[dip]]\ndepth_mm = 3\n[[dip]]\ndown = "+z"\n' > twice.dip.toml
+printf '[object]\nfile = "samples/box.obj"\n[dip]\ndepth_mm = "auto"\n' > found.dip.toml
+# shellcheck disable=SC2086
+refused 'is of several dips' nest twice.dip.toml $nest -o twice
+# shellcheck disable=SC2086
+"$hydrodip" nest found.dip.toml $nest -o found --quiet > /dev/null || fail "nest of a depth to be found: $?"
+python3 - <<'PY' || fail 'nest takes the whole object where its job says auto'
+import json
+assert 0 < json.load(open('found/nest.json'))['pieces'][0]['depth_mm'] < 15
+PY
 # A larger sheet gives each part more film around it, up to what helps.
 for side in 300 600 900; do
   # shellcheck disable=SC2086

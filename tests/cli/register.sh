@@ -131,6 +131,8 @@ sed 's/255 0 0$/200 9 9/' colored.ply > repainted.ply
   refused 'was found 6.0 mm deep, and this dip goes 7.0' colored.ply --film 140x130 --depth 7
   refused 'was found on film of 140 x 130 mm' colored.ply --film 150x130 --depth 6
   refused 'was found on a print for film that swells' colored.ply $dip --film-state registration.json
+  refused 'was found for a dip straight down, and this one goes leaning' colored.ply $dip --set dip.tilt_deg=5
+  refused 'was found for a dip straight down, and this one goes straight down, through a disc' colored.ply $dip --set film.shape=disc
   refused 'was found with film of z_stretch' colored.ply $dip --set material.z_stretch=0.9
   expect 2 'pieces of other sizes' nest colored.ply --set film.correction=job/correction.json
   expect 0 'wrote' print repainted.ply $quick $dip -o repainted --correction job/correction.json
@@ -138,6 +140,8 @@ sed 's/255 0 0$/200 9 9/' colored.ply > repainted.ply
 expect 2 'give each dip once' correct job places.csv places.csv
 head -n 1 places.csv > none.csv
 expect 2 'no place' correct job none.csv
+awk -F, -v OFS=, 'NR > 1 { $1 = -$1 } 1' places.csv > mirrored.csv
+expect 2 'mirror image' correct job mirrored.csv
 cp colored.ply kept.ply
 cp otherwise.ply colored.ply
 expect 0 'has changed since it was printed' correct job places.csv

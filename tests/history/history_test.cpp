@@ -64,6 +64,29 @@ TEST(History, TakesInWhatTheLogsSay) {
 }
 
 // The computer went off in mid-line; and later the same run is read again.
+// What breaks off before film is on the water spoils nothing; what is given up afterwards does.
+TEST(History, FilmIsUsedUpFromTheMomentItLiesOnTheWater) {
+  const TemporaryFolder job;
+  const std::string start =
+      "{\"time\":\"2026-01-01T10:00:00Z\",\"event\":\"start\",\"depth_mm\":12.0}\n";
+  const std::string laid = "{\"time\":\"t\",\"event\":\"film on the water\"}\n";
+  const auto end = [](const std::string& outcome) {
+    return "{\"time\":\"t\",\"event\":\"end\",\"outcome\":\"" + outcome + "\"}\n";
+  };
+  write_run(job, "rig-1", start + end("failed"));
+  write_run(job, "rig-2", start + laid + end("cancelled"));
+  write_run(job, "rig-3", start + laid + end("failed"));
+  const std::vector<DipRun> runs = History(job.path()).runs();
+  ASSERT_EQ(runs.size(), 3U);
+  const SheetUse sheet{0.06, 0.5};
+  EXPECT_EQ(runs[0].outcome, "cancelled");
+  EXPECT_EQ(use_of(runs[0], sheet, {}).film_m2, 0);
+  EXPECT_EQ(runs[1].outcome, "cancelled");
+  EXPECT_EQ(use_of(runs[1], sheet, {}).film_m2, 0.06);
+  EXPECT_EQ(runs[2].outcome, "failed");
+  EXPECT_EQ(use_of(runs[2], sheet, {}).film_m2, 0.06);
+}
+
 TEST(History, ForgivesABrokenLogAndReadsItAgain) {
   const TemporaryFolder job;
   write_run(job, "rig-1", guided_log("2026-01-01T10:00:00Z", "7", "{\"time\":\"t\",\"eve"));

@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 
 #include "base/error.h"
+#include "dip/trajectory.h"
 #include "rig/jig.h"
 #include "rig/solids.h"
 #include "sheet/film_marks.h"
@@ -75,6 +77,28 @@ RigJob job_of(double depth_mm) {
   job.config.bath.width_mm = 370;
   job.config.bath.height_mm = 270;
   return job;
+}
+
+// The bench knows of a lean what the dip was computed with.
+TEST(Hanging, IsAsTheDipBegins) {
+  const TriangleMesh object = hook(40);
+  for (const double tilt_deg : {0.0, 20.0}) {
+    TrajectoryOptions options;
+    options.depth_mm = 12;
+    options.tilt_deg = tilt_deg;
+    const Trajectory way = make_trajectory(options, object.positions);
+    RigJob job = job_of(12);
+    job.config.design.trajectory = options;
+    job.way_in = {{0, way.at(0)}, {12, way.at(1)}};
+    double lowest = 1e9;
+    for (const Vec3& p : object.positions) {
+      EXPECT_NEAR((hanging(job) * p - way.bath_from_object(0) * p).norm(), 0, 1e-9);
+      lowest = std::min(lowest, (hanging(job) * p).z());
+    }
+    EXPECT_NEAR(lowest, 0, 1e-6) << tilt_deg;
+    EXPECT_FALSE(moves_aside(job));
+    EXPECT_EQ(hung_otherwise(job).empty(), tilt_deg == 0) << hung_otherwise(job);
+  }
 }
 
 TEST(Jig, ItsPartsAreWatertightAndStandOnTheBed) {

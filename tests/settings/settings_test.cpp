@@ -286,6 +286,27 @@ TEST_F(Settings, FilmDoesNotSurelyHoldWhereNoFilmDoes) {
   EXPECT_THROW(apply({parse_set("material.lost_stretch=1.2")}), InputError);
 }
 
+JobConfig config_of(const std::vector<std::string>& sets) {
+  SettingSources sources;
+  for (const std::string& set : sets) sources.sets.push_back(parse_set(set));
+  JobConfig config;
+  apply_sources(config, sources);
+  return config;
+}
+
+TEST_F(Settings, RangesOfTheProcessDoNotRunBackwards) {
+  EXPECT_NO_THROW(config_of({"process.soak_min_s=10", "process.soak_max_s=10"}));
+  for (const char* set : {"process.water_min_c=31", "process.soak_max_s=59", "process.dry_min_h=4",
+                          "process.activator_tolerance_g=4"})
+    EXPECT_THROW(config_of({set}), InputError) << set;
+}
+
+TEST_F(Settings, AProfileOfInksIsUsedOrRefused) {
+  EXPECT_EQ(config_of({}).printer.model, InkModel::kDevice);
+  EXPECT_EQ(config_of({"ink.profile=a.icc"}).printer.model, InkModel::kProfile);
+  EXPECT_THROW(config_of({"ink.profile=a.icc", "ink.model=device"}), InputError);
+}
+
 TEST_F(Settings, MethodsHaveNames) {
   EXPECT_EQ(from_toml("").design.dip.method, DipMethod::kFull);
   EXPECT_EQ(from_toml("dip.method = 'single-step'").design.dip.method, DipMethod::kSingleStep);
