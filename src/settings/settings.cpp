@@ -55,8 +55,6 @@ void require_order(const ProcessOptions& process) {
                 process.water_max_c);
   require_order("process.soak_min_s", "process.soak_max_s", process.soak_min_s, process.soak_max_s);
   require_order("process.dry_min_h", "process.dry_max_h", process.dry_min_h, process.dry_max_h);
-  require_order("process.activator_tolerance_g", "process.activator_g",
-                process.activator_tolerance_g, process.activator_g);
 }
 
 void require_order(const FilmMaterial& material) {

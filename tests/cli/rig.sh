@@ -53,7 +53,7 @@ grep -q '^dip,' job/rig-1/trace.csv || fail "the trace has no dip"
 "$hydrodip" rig stage dip job --port "$port" --yes --set process.speed_mm_per_min=20 \
   --set stage.clearance_mm=6 > said.txt 2> asked.txt &
 dip=$!
-until grep -q '"phase":"dip"' job/rig-2/log.jsonl 2> /dev/null; do sleep 0.1; done
+until grep -q '"phase":"dip"' job/rig-2/log.jsonl 2> /dev/null || ! kill -0 "$dip" 2> /dev/null; do sleep 0.1; done
 kill -s INT "$dip"
 wait "$dip"
 code=$?

@@ -296,8 +296,7 @@ JobConfig config_of(const std::vector<std::string>& sets) {
 
 TEST_F(Settings, RangesOfTheProcessDoNotRunBackwards) {
   EXPECT_NO_THROW(config_of({"process.soak_min_s=10", "process.soak_max_s=10"}));
-  for (const char* set : {"process.water_min_c=31", "process.soak_max_s=59", "process.dry_min_h=4",
-                          "process.activator_tolerance_g=4"})
+  for (const char* set : {"process.water_min_c=31", "process.soak_max_s=59", "process.dry_min_h=4"})
     EXPECT_THROW(config_of({set}), InputError) << set;
 }
 
