@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace hydrodip {
 namespace {
@@ -29,6 +30,15 @@ Vec2 FilmCorrection::at(const Vec2& u) const {
              move[std::size_t(y) * std::size_t(nx) + std::size_t(x)];
     }
   return sum;
+}
+
+double FilmCorrection::farthest_mm() const {
+  double farthest = 0;
+  for (const Vec2& m : move) {
+    if (!m.allFinite()) return std::numeric_limits<double>::infinity();
+    farthest = std::max(farthest, m.cwiseAbs().maxCoeff());
+  }
+  return farthest;
 }
 
 }  // namespace hydrodip

@@ -17,6 +17,8 @@ struct FilmCorrection {
   // Between the grid's points cubic (Catmull and Rom), beyond its edge as on it; nothing without
   // any points.
   Vec2 at(const Vec2& u) const;
+  // In x or y, at any of the grid's points; infinity if one is no number.
+  double farthest_mm() const;
 };
 
 }  // namespace hydrodip

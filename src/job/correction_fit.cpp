@@ -20,14 +20,25 @@ namespace {
 constexpr double kSameTurn_deg = 0.5, kSameSize = 0.002, kSameDepth_mm = 0.5, kSameFilm_mm = 0.5;
 constexpr double kSameSwelling = 0.003, kSameMaterial = 0.01, kSameRatio = 0.02;
 
+void append(std::vector<std::uint8_t>& bytes, const void* data, std::size_t size) {
+  const auto* begin = static_cast<const std::uint8_t*>(data);
+  bytes.insert(bytes.end(), begin, begin + size);
+}
+
 std::string shape_hash(const Object& object) {
   std::vector<std::uint8_t> bytes;
-  const auto add = [&bytes](const void* data, std::size_t size) {
-    const auto* begin = static_cast<const std::uint8_t*>(data);
-    bytes.insert(bytes.end(), begin, begin + size);
-  };
-  for (const Vec3& p : object.positions) add(p.data(), 3 * sizeof(double));
-  for (const Triangle& t : object.triangles) add(t.data(), sizeof t);
+  for (const Vec3& p : object.positions) append(bytes, p.data(), 3 * sizeof(double));
+  for (const Triangle& t : object.triangles) append(bytes, t.data(), sizeof t);
+  return sha256_hex(bytes);
+}
+
+std::string path_hash(const TrajectoryOptions& way) {
+  std::vector<std::uint8_t> bytes;
+  for (const Keyframe& key : way.path)
+    for (const double value : {key.lower_mm, key.shift_x_mm, key.shift_y_mm, key.turn_x_deg,
+                               key.turn_y_deg, key.turn_z_deg})
+      append(bytes, &value, sizeof value);
+  append(bytes, way.pivot_mm.data(), 3 * sizeof(double));
   return sha256_hex(bytes);
 }
 
@@ -83,22 +94,12 @@ std::string difference(const CorrectedDip& then, const CorrectedDip& now) {
   return "";
 }
 
-// "straight down", "along a path (1f0a...), drawn straight up"
+// "straight down", "along a path (1f0a93c2), projected"
 std::string way_of(const DesignOptions& design) {
   const TrajectoryOptions& way = design.trajectory;
   std::string text = "straight down";
   if (!way.path.empty()) {
-    std::vector<std::uint8_t> bytes;
-    const auto add = [&bytes](double value) {
-      const auto* begin = reinterpret_cast<const std::uint8_t*>(&value);
-      bytes.insert(bytes.end(), begin, begin + sizeof value);
-    };
-    for (const Keyframe& key : way.path)
-      for (const double value : {key.lower_mm, key.shift_x_mm, key.shift_y_mm, key.turn_x_deg,
-                                 key.turn_y_deg, key.turn_z_deg})
-        add(value);
-    for (const double value : way.pivot_mm) add(value);
-    text = fmt::format("along a path ({})", sha256_hex(bytes).substr(0, 8));
+    text = fmt::format("along a path ({})", path_hash(way).substr(0, 8));
   } else if (way.tilt_deg != 0 || way.roll_deg != 0) {
     text = fmt::format("leaning over by {:g} degrees towards {:g}, rolled by {:g}", way.tilt_deg,
                        way.tilt_toward_deg, way.roll_deg);

@@ -10,7 +10,6 @@
 #include "job/ways.h"
 
 namespace hydrodip {
-
 namespace {
 
 // A picture that is left on the film may lie beside it.

@@ -277,8 +277,10 @@ std::vector<std::string> sheets_of_other_prints(std::size_t dips) {
       if (!folder.empty() || name != "report.json") names.push_back(folder + name);
     names.push_back(folder + "run-sheet.pdf");
   };
-  if (dips > 0) add("");  // whose report is replaced
-  names.emplace_back("run-sheet.pdf");
+  if (dips > 0)
+    add("");  // whose report is replaced
+  else
+    names.emplace_back("run-sheet.pdf");
   for (const std::string& picture : pictures_of_jobs()) names.push_back(picture);
   for (const char* of_nest : {"nest.json", "nest.html"}) names.emplace_back(of_nest);
   for (std::size_t k = dips; k < kMostDips; ++k) add(fmt::format("dip-{}/", k + 1));

@@ -375,12 +375,11 @@ void require_different(const std::vector<DipSeen>& dips) {
 
 // Beyond its places a correction goes on as it was.
 void require_moderate(const DisplacementFit& fit) {
-  for (const Vec2& move : fit.field.move)
-    if (!(move.cwiseAbs().maxCoeff() <= kFarthestCorrection_mm))
-      throw InputError(fmt::format(
-          "the places that were seen ask for the print to be moved by {:.0f} mm somewhere, which "
-          "is no correction: check that they are of this print and its object, in mm",
-          move.cwiseAbs().maxCoeff()));
+  if (fit.field.farthest_mm() > kFarthestCorrection_mm)
+    throw InputError(fmt::format(
+        "the places that were seen ask for the print to be moved by {:.0f} mm somewhere, which is "
+        "no correction: check that they are of this print and its object, in mm",
+        fit.field.farthest_mm()));
 }
 
 // Places are looked up on the model as it is now.

@@ -403,7 +403,7 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
   context.progress("cutting the socket", 0);
   const PreparedObject prepared = prepare_object(job.config.model, bare, context.quiet());
   TriangleMesh object = prepared.posed.mesh();
-  const Eigen::Isometry3d in_bath = hanging(job);
+  const Eigen::Isometry3d in_bath = hanging_pose(job);
   for (Vec3& p : object.positions) p = in_bath * p;
   const Surface surface(object.positions, object.triangles);
   const Jig jig = make_jig(job, object, surface, options);

@@ -70,7 +70,7 @@ Image render(const Object& object, const View& view, int width_px, int height_px
 std::vector<PosePicture> pose_pictures(const RigJob& job, int width_px, int height_px,
                                        const RunContext& context) {
   Object hanging = hanging_object(job, context);
-  const Eigen::Isometry3d in_bath = hydrodip::hanging(job);
+  const Eigen::Isometry3d in_bath = hanging_pose(job);
   for (Vec3& p : hanging.positions) p = in_bath * p;
   const std::vector<View> views = {
       {"from the front (-y)", Turn::kUpright, Vec3::UnitZ()},

@@ -182,7 +182,7 @@ std::optional<SheetUse> sheet_use(const std::string& report) {
   }
 }
 
-Eigen::Isometry3d hanging(const RigJob& job) {
+Eigen::Isometry3d hanging_pose(const RigJob& job) {
   if (job.way_in.empty()) return Eigen::Isometry3d::Identity();
   const Keyframe& first = job.way_in.front().pose;
   return Trajectory::through({first, first}, job.config.design.trajectory.pivot_mm)

@@ -46,7 +46,7 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
 std::optional<SheetUse> sheet_use(const std::string& report);
 
 // Where the object hangs as it first touches the water: in the bath, from the posed-object frame.
-Eigen::Isometry3d hanging(const RigJob& job);
+Eigen::Isometry3d hanging_pose(const RigJob& job);
 // How that differs from the pose, in words: "turned by 0.0, 20.0 and 0.0 degrees ..."; empty: not.
 std::string hung_otherwise(const RigJob& job);
 

@@ -101,6 +101,20 @@ class RunSheet {
     return words + "...";
   }
 
+  // Goes on where the object's size ends.
+  std::string how_to_hang() const {
+    const std::string otherwise = hung_otherwise(job_);
+    const std::string also = otherwise.empty() ? "" : ", " + otherwise;
+    if (moves_aside(job_))
+      return also +
+             ". Shown as it first meets the water; from there along the way in on page 2, x along "
+             "the film's width.";
+    if (otherwise.empty())
+      return ". Hang it over the middle of the film, x along the film's width.";
+    return ". Hang it over the middle of the film" + also +
+           ": as the pictures show it. It stays like that all the way down.";
+  }
+
   void draw_pictures() {
     page_.heading("How the object hangs");
     page_.y -= 1;
@@ -120,19 +134,7 @@ class RunSheet {
     std::string words = fmt::format(
         "The object is {} ({}): {:.1f} mm wide (x), {:.1f} mm deep (y), {:.1f} mm high (z)",
         describe_hold(pose, way_up(job_.config)), hold_options(pose), size.x(), size.y(), size.z());
-    const std::string otherwise = hung_otherwise(job_);
-    page_.paragraph(
-        page_.left(), page_.width(),
-        words + (moves_aside(job_)
-                     ? (otherwise.empty() ? "" : ", " + otherwise) +
-                           ". Shown as it first meets the water; from there along the way "
-                           "in on page 2, x along the film's width."
-                 : otherwise.empty()
-                     ? ". Hang it over the middle of the film, x along the film's width."
-                     : ". Hang it over the middle of the film, " + otherwise +
-                           ": as the pictures show it. It stays like that all the way "
-                           "down."),
-        kBody_pt);
+    page_.paragraph(page_.left(), page_.width(), words + how_to_hang(), kBody_pt);
   }
 
   void draw_film_and_figures() {

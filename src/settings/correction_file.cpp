@@ -109,12 +109,11 @@ CorrectionFile read_correction(const std::filesystem::path& file) {
   field.ny = int(read.number(read.member(grid, "ny"), 2, kMostPoints));
   for (const Json& move : read.list(read.member(grid, "move_mm")))
     field.move.push_back(read.pair(move, kMostLength_mm));
-  for (const Vec2& move : field.move)
-    if (!(move.cwiseAbs().maxCoeff() <= kFarthestCorrection_mm))
-      throw InputError(fmt::format(
-          "{}: moves the print by {:.0f} mm, which is no correction: its places are not those of "
-          "this sheet; see how they were read, and run 'hydrodip correct' again",
-          file.string(), move.cwiseAbs().maxCoeff()));
+  if (field.farthest_mm() > kFarthestCorrection_mm)
+    throw InputError(fmt::format(
+        "{}: moves the print by {:.0f} mm, which is no correction: its places are not those of "
+        "this sheet; see how they were read, and run 'hydrodip correct' again",
+        file.string(), field.farthest_mm()));
   if (double(field.move.size()) != double(field.nx) * double(field.ny)) refuse(file);
   for (const Json& sample : read.list(read.member(json, "samples")))
     result.samples.push_back({read.pair(read.member(sample, "model_mm"), 1e4),

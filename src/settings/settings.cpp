@@ -23,21 +23,24 @@ Setting option_setting(const std::string& name, const std::string& value,
   return {name, value, false, shown, "--film"};
 }
 
+// nullptr: left at its default.
+const Setting* last_given(const std::vector<Setting>& given, const std::string& name) {
+  const auto last = std::find_if(given.rbegin(), given.rend(),
+                                 [&name](const Setting& setting) { return setting.name == name; });
+  return last == given.rend() ? nullptr : &*last;
+}
+
 // The paper's film is a regular grid.
-void apply_dependent_defaults(JobConfig& config, const std::vector<Setting>& given) {
-  const bool graded = std::any_of(given.begin(), given.end(), [](const Setting& setting) {
-    return setting.name == "film.grading";
-  });
-  if (config.design.dip.scheme == DipScheme::kPaper && !graded) config.design.film.grading = 1;
+void settle_grading(JobConfig& config, const std::vector<Setting>& given) {
+  if (config.design.dip.scheme == DipScheme::kPaper && !last_given(given, "film.grading"))
+    config.design.film.grading = 1;
 }
 
 // A profile that was named is to be used.
 void settle_ink_model(JobConfig& config, const std::vector<Setting>& given) {
   if (config.printer.profile.empty()) return;
-  const auto told = std::find_if(given.rbegin(), given.rend(), [](const Setting& setting) {
-    return setting.name == "ink.model";
-  });
-  if (told == given.rend())
+  const Setting* told = last_given(given, "ink.model");
+  if (!told)
     config.printer.model = InkModel::kProfile;
   else if (config.printer.model == InkModel::kDevice)
     throw InputError(fmt::format(
@@ -153,7 +156,7 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
   if (own_layer) config.object.artwork.emplace_back();
   add(sources.options);
   add(sources.sets);
-  apply_dependent_defaults(config, all);
+  settle_grading(config, all);
   settle_ink_model(config, all);
   require_order(config.design.dip.material);
   require_order(config.process);

@@ -92,8 +92,8 @@ TEST(Hanging, IsAsTheDipBegins) {
     job.way_in = {{0, way.at(0)}, {12, way.at(1)}};
     double lowest = 1e9;
     for (const Vec3& p : object.positions) {
-      EXPECT_NEAR((hanging(job) * p - way.bath_from_object(0) * p).norm(), 0, 1e-9);
-      lowest = std::min(lowest, (hanging(job) * p).z());
+      EXPECT_NEAR((hanging_pose(job) * p - way.bath_from_object(0) * p).norm(), 0, 1e-9);
+      lowest = std::min(lowest, (hanging_pose(job) * p).z());
     }
     EXPECT_NEAR(lowest, 0, 1e-6) << tilt_deg;
     EXPECT_FALSE(moves_aside(job));
