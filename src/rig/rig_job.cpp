@@ -189,6 +189,10 @@ Eigen::Isometry3d hanging_pose(const RigJob& job) {
       .bath_from_object(0);
 }
 
+std::string tenths(double value) {
+  return fmt::format("{:.1f}", std::round(10 * value) / 10 + 0.0);
+}
+
 std::string hung_otherwise(const RigJob& job) {
   if (job.way_in.empty()) return "";
   constexpr double kNothing = 0.05;  // of what is shown
@@ -198,14 +202,14 @@ std::string hung_otherwise(const RigJob& job) {
   std::string words;
   if (turn.cwiseAbs().maxCoeff() >= kNothing)
     words = fmt::format(
-        "turned from that by {:.1f}, {:.1f} and {:.1f} degrees about x, then y, then "
+        "turned from that by {}, {} and {} degrees about x, then y, then "
         "z of the bath",
-        turn.x(), turn.y(), turn.z());
+        tenths(turn.x()), tenths(turn.y()), tenths(turn.z()));
   if (shift.cwiseAbs().maxCoeff() >= kNothing)
     words += fmt::format(
-        "{}moved by {:.1f} mm along the film's width (x) and {:.1f} mm along its "
+        "{}moved by {} mm along the film's width (x) and {} mm along its "
         "length (y)",
-        words.empty() ? "" : ", and ", shift.x(), shift.y());
+        words.empty() ? "" : ", and ", tenths(shift.x()), tenths(shift.y()));
   return words;
 }
 

@@ -47,6 +47,8 @@ std::optional<SheetUse> sheet_use(const std::string& report);
 
 // Where the object hangs as it first touches the water: in the bath, from the posed-object frame.
 Eigen::Isometry3d hanging_pose(const RigJob& job);
+// With one digit, never as -0.0.
+std::string tenths(double value);
 // How that differs from the pose, in words: "turned by 0.0, 20.0 and 0.0 degrees ..."; empty: not.
 std::string hung_otherwise(const RigJob& job);
 

@@ -252,9 +252,6 @@ class RunSheet {
     page_.heading("Way in (from the first touch; turns about x, then y, then z of the bath)");
     row({"second", "lowered, mm", "shift x, mm", "shift y, mm", "turn x, \u00b0", "turn y, \u00b0",
          "turn z, \u00b0"});
-    const auto tenths = [](double value) {
-      return fmt::format("{:.1f}", std::round(10 * value) / 10 + 0.0);  // never -0.0
-    };
     for (const WayPoint& point : job_.way_in)
       row({tenths(60 * point.travelled_mm / process_.speed_mm_per_min), tenths(point.pose.lower_mm),
            tenths(point.pose.shift_x_mm), tenths(point.pose.shift_y_mm),
