@@ -39,6 +39,19 @@ std::vector<double> not_falling(const std::vector<double>& values,
   return result;
 }
 
+// What is left of the residual if all inks follow the law, with the ratio that suits them best: a
+// ratio that was given, or ends at its range, says nothing against the law.
+double squares_by_law(const Eigen::MatrixXd& slope, const Eigen::VectorXd& residual,
+                      const std::vector<double>& densities, double ratio) {
+  const auto inks = Eigen::Index(densities.size()), free = slope.cols() - inks;
+  Eigen::VectorXd by_ratio(inks);  // of an ink's logarithm
+  for (Eigen::Index i = 0; i < inks; ++i)
+    by_ratio[i] = densities[std::size_t(i)] / (1 + densities[std::size_t(i)] * (ratio - 1));
+  Eigen::MatrixXd law(slope.rows(), free + 1);
+  law << slope.leftCols(free), slope.rightCols(inks) * by_ratio;
+  return (residual + law * MinimumNorm(law).solve(-residual)).squaredNorm();
+}
+
 }  // namespace
 
 StiffnessTable stiffness_table(const FilmFit& fit, const std::vector<double>& densities,
@@ -79,7 +92,7 @@ StiffnessTable stiffness_table(const FilmFit& fit, const std::vector<double>& de
                           std::max(1.0, std::exp(std::min(700.0, logarithms[i] + half)))});
   }
   if (inks > 1 && variance > 0) {
-    const double gain = (residual.squaredNorm() - squares) / variance;
+    const double gain = (squares_by_law(slope, residual, densities, ratio) - squares) / variance;
     const auto freedom = std::min(std::size_t(inks - 1), std::size(kChi99));
     table.gain_per_ink = gain / double(inks - 1);
     table.law_holds = gain < kChi99[freedom - 1];

@@ -21,9 +21,11 @@ constexpr double kNoiseShares[] = {1e-4, 1e-3, 1e-2, 0.1, 1, 10};
 constexpr double kPitch_mm = 5, kBeyond_mm = 10;
 constexpr int kDrift = 3;  // 1, x, y
 
+// Of the samples that lie near to each other.
 struct Place {
   Vec2 at = Vec2::Zero(), move = Vec2::Zero();
   double count = 0;
+  double scatter = 0;  // sum of the samples' squares about their mean
 };
 
 std::vector<Place> averaged(const std::vector<CorrectionSample>& samples, double pitch_mm) {
@@ -33,12 +35,14 @@ std::vector<Place> averaged(const std::vector<CorrectionSample>& samples, double
         cells[{std::lround(s.model_mm.x() / pitch_mm), std::lround(s.model_mm.y() / pitch_mm)}];
     cell.at += s.model_mm;
     cell.move += s.move_mm;
+    cell.scatter += s.move_mm.squaredNorm();
     ++cell.count;
   }
   std::vector<Place> places;
   places.reserve(cells.size());
   for (auto& [key, cell] : cells)
-    places.push_back({cell.at / cell.count, cell.move / cell.count, cell.count});
+    places.push_back({cell.at / cell.count, cell.move / cell.count, cell.count,
+                      std::max(0.0, cell.scatter - cell.move.squaredNorm() / cell.count)});
   return places;
 }
 
@@ -61,7 +65,7 @@ struct Kriging {
   double length_mm = 0, noise_share = 0;
   Eigen::MatrixXd inverse;   // of samples, then drift
   Eigen::MatrixX2d weights;  // for the samples' displacements
-  double left_out = 0;       // mean square of both components together, by sample
+  double left_out = 0;       // mean square of both components together, of places' means
   double variance = 0;       // of the field
 };
 
@@ -104,6 +108,16 @@ Kriging best_of(const std::vector<Place>& places) {
   // Displacements that are affine to the last digit.
   if (best.inverse.size() == 0) best = krige(places, kLengths_mm[6], 1);
   return best;
+}
+
+// A sample is off by as much as its place's mean, and by as much as it is off that.
+double scatter_of_samples(const std::vector<Place>& places) {
+  double scatter = 0, count = 0;
+  for (const Place& p : places) {
+    scatter += p.scatter;
+    count += p.count;
+  }
+  return scatter / count;
 }
 
 void require_spread(const std::vector<Place>& places) {
@@ -149,7 +163,7 @@ DisplacementFit fit_displacements(const std::vector<CorrectionSample>& samples,
     }
   fit.smooth_mm = kriging.length_mm;
   fit.noise_mm = std::sqrt(std::max(0.0, kriging.variance * kriging.noise_share));
-  fit.left_out_rms_mm = std::sqrt(kriging.left_out);
+  fit.left_out_rms_mm = std::sqrt(kriging.left_out + scatter_of_samples(places));
   return fit;
 }
 

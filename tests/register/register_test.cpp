@@ -63,6 +63,23 @@ TEST(DisplacementFit, IsNearerToTheTruthThanItsNoisySamplesAndKnowsHowNear) {
   EXPECT_GT(std::sqrt(square), 0.4 * std::sqrt(told));
 }
 
+// However many dips are averaged, a sample is foretold no better than its own noise.
+TEST(DisplacementFit, ForetellsASampleAsWellAsItsNoiseAllows) {
+  constexpr double kNoise_mm = 0.1;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, kNoise_mm);
+  for (const int dips : {1, 3, 12}) {
+    std::vector<CorrectionSample> samples;
+    for (int i = 0; i < 169 * dips; ++i) {
+      const Vec2 at(8 * (i % 13) - 48, 8 * (i % 169 / 13) - 48);
+      samples.push_back({at, Vec2(std::sin(at.x() / 25) + noise(random), noise(random))});
+    }
+    const DisplacementFit fit = fit_displacements(samples, {Vec2(-50, -50), Vec2(50, 50)});
+    EXPECT_NEAR(fit.left_out_rms_mm, std::sqrt(2.0) * kNoise_mm, 0.015) << dips;
+    EXPECT_GT(fit.left_out_rms_mm, 0.97 * std::sqrt(2.0) * fit.noise_mm) << dips;
+  }
+}
+
 TEST(DisplacementFit, RefusesWhatTellsNoField) {
   const auto still = [](const Vec2&) -> Vec2 { return {0, 0}; };
   EXPECT_THROW(fit_displacements({}, {Vec2(-9, -9), Vec2(9, 9)}), InputError);
