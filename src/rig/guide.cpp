@@ -60,6 +60,7 @@ class Guide {
     if (answer != "yes") return;
     done_ = kept;
     record_.note("taken up", {{"from", broken.name}, {"done", done}});
+    for (const std::string& step : kept) record_.note("step kept", {{"step", step}});
   }
 
   void introduce() {

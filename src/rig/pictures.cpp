@@ -38,11 +38,14 @@ bool is_as_printed(const RigJob& job) {
   }
 }
 
-// In the posed-object frame.
+// In the posed-object frame: from the model, sharp and with all its sides, unless there was artwork
+// on it, which the folder's own picture of it has as well.
 Object hanging_object(const RigJob& job, const RunContext& context) {
   // What there is to say about the model was said when it was printed.
   const RunContext unheard = context.quiet();
-  if (is_as_printed(job)) {
+  std::error_code ignored;
+  const bool is_shown = std::filesystem::exists(job.folder / "preview.glb", ignored);
+  if (is_as_printed(job) && !(job.has_artwork && is_shown)) {
     const PreparedObject prepared = prepare_object(job.config.model, job.config.object, unheard);
     return painted_object(prepared.posed.mesh(), *prepared.paint);
   }

@@ -249,6 +249,7 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
   if (job.config.correction.empty()) job.config.correction = correction;
   job.way_in = way_in(report, folder / "report.json");
   find_model(report, job);
+  job.has_artwork = report["parameters"].contains("artwork[1].projection");
   job.report_sha256 = read.sha256;
   job.sheet = sheet_use_of(report);
   const Json& figures = report["figures"];

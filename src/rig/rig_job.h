@@ -30,6 +30,7 @@ struct RigJob {
   std::vector<WayPoint> way_in;        // from the first touch on; empty: straight down
   Vec3 object_size_mm = Vec3::Zero();  // as posed
   std::string model_sha256;            // of config.model, when it was printed
+  bool has_artwork = false;            // of which config knows nothing
   std::vector<std::string> warnings;
   std::string alarm;  // "Do not dip it like this: ..."; empty: nothing forbids it
   std::string report_sha256;

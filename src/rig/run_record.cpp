@@ -115,7 +115,8 @@ BrokenRun last_broken_run(const RigJob& job) {
   for (std::string line; std::getline(log, line);) {
     const Json entry = parsed_json<Json>(line);
     if (!entry.is_object() || !entry.contains("event") || !entry["event"].is_string()) continue;
-    if (entry["event"] == "step done" && entry.contains("step") && entry["step"].is_string())
+    const bool is_done = entry["event"] == "step done" || entry["event"] == "step kept";
+    if (is_done && entry.contains("step") && entry["step"].is_string())
       run.steps.push_back(entry["step"]);
     // Only guided runs can be taken up again.
     if (entry["event"] == "end")

@@ -40,7 +40,8 @@ class RunRecord {
   std::vector<std::string> lines_;
 };
 
-// Of the last run, if it was broken off: the steps that it had done. Empty otherwise.
+// Of the last run, if it was broken off: the steps that it had done, or kept of one before. Empty
+// otherwise.
 struct BrokenRun {
   std::string name;  // "rig-3"
   std::vector<std::string> steps;

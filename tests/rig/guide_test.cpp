@@ -341,6 +341,27 @@ TEST_F(GuideTest, ABrokenRunIsTakenUpWithoutRepeatingWhatIsStillThere) {
   EXPECT_EQ(log(2).back()["outcome"], "done");
 }
 
+// Broken off again before anything new was done, it still has what the first one did.
+TEST_F(GuideTest, ARunIsTakenUpTwice) {
+  GuidedBench first;
+  first.clock.at(60, [&] { first.context.cancel(); });
+  EXPECT_THROW(rig_guide(job(""), first.bench, first.context), Cancelled);
+  const std::vector<std::string> steps = last_broken_run(job("")).steps;
+  GuidedBench second;
+  second.person.take_up = "yes";
+  second.clock.at(10, [&] { second.context.cancel(); });
+  EXPECT_THROW(rig_guide(job(""), second.bench, second.context), Cancelled);
+  const BrokenRun again = last_broken_run(job(""));
+  EXPECT_EQ(again.name, "rig-2");
+  ASSERT_FALSE(again.steps.empty());
+  EXPECT_EQ(again.steps.front(), steps.front());
+  GuidedBench third;
+  third.person.take_up = "yes";
+  rig_guide(job(""), third.bench, third.context);
+  EXPECT_EQ(third.person.said.find("Peel the backing"), std::string::npos);
+  EXPECT_EQ(log(3).back()["outcome"], "done");
+}
+
 TEST_F(GuideTest, TheActivatorFollowsTheFilmsArea) {
   const auto with_film = [&](double width, double height) {
     write_report({{"film.width_mm", {{"value", width}}}, {"film.height_mm", {{"value", height}}}});
