@@ -119,9 +119,9 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-// CLI11 leaves in `rest` what it could not place.
-void refuse_rest(const CLI::App& app, const Command& command,
-                 const std::vector<std::string>& rest) {
+// CLI11 leaves in `rest` what it could not place, and the -- that ends the options.
+void refuse_rest(const CLI::App& app, const Command& command, std::vector<std::string> rest) {
+  std::erase(rest, "--");
   for (const std::string& argument : rest) {
     if (!argument.starts_with("-")) continue;
     const std::string name = argument.substr(0, argument.find('='));

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "base/shell_word.h"
+
 namespace hydrodip {
 namespace {
 
-constexpr std::array<const char*, 4> kAlone = {"--json", "--quiet", "--strict", "-q"};
+constexpr std::array<const char*, 5> kAlone = {"--json", "--quiet", "--strict", "-q", "--"};
 constexpr std::array<const char*, 6> kWithValue = {"-o",      "--output", "--rotate",
                                                    "--depth", "--down",   "--dips"};
 
@@ -15,17 +17,6 @@ bool is_one_of(const std::string& word, const auto& list) {
 }
 
 }  // namespace
-
-std::string shell_word(const std::string& word) {
-  const bool is_plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) ||
-           std::string("-_./=,:+@%").find(c) != std::string::npos;
-  });
-  if (is_plain) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
 
 std::string command_text(const JobConfig& config, const std::string& command) {
   std::string text = "hydrodip " + command;

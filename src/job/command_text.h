@@ -7,9 +7,6 @@
 
 namespace hydrodip {
 
-// A word as a shell takes it: in quotation marks if it has more than plain letters.
-std::string shell_word(const std::string& word);
-
 // What was typed, without where to write, how to say it, and how the object is held and how deep:
 // "hydrodip print spot.obj --size 80". Words with blanks are quoted for a shell.
 std::string command_text(const JobConfig& config, const std::string& command);

@@ -4,7 +4,7 @@
 
 #include "base/file.h"
 #include "base/run_scope.h"
-#include "job/command_text.h"
+#include "base/shell_word.h"
 #include "job/dip_plan.h"
 #include "job/search_output.h"
 #include "render/hold_pictures.h"

@@ -4,7 +4,7 @@
 
 #include "base/output_folder.h"
 #include "base/run_scope.h"
-#include "job/command_text.h"
+#include "base/shell_word.h"
 #include "job/jobs.h"
 #include "samples/samples.h"
 

@@ -621,8 +621,9 @@ std::vector<std::string> MeshHealth::findings() const {
                               counted(degenerate_removed, "triangle", "triangles")));
   }
   if (duplicates_removed > 0) {
-    out.push_back(fmt::format("Removed {} of another one.",
-                              counted(duplicates_removed, "duplicate", "duplicates")));
+    out.push_back(fmt::format(
+        "Removed {} there already.",
+        counted(duplicates_removed, "triangle that was", "triangles that were")));
   }
   if (flipped > 0) {
     out.push_back(fmt::format("Turned over {} that faced the wrong way.",

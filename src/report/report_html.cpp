@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/shell_word.h"
 #include "report/findings.h"
 #include "report/html.h"
 #include "report/report.h"
@@ -340,7 +341,8 @@ std::string folded(const std::string& title, const std::string& sections) {
 
 std::string foot(const Report& report) {
   std::string line;
-  for (const std::string& word : report.command_line) line += (line.empty() ? "" : " ") + word;
+  for (const std::string& word : report.command_line)
+    line += (line.empty() ? "" : " ") + shell_word(word);
   std::string html =
       fmt::format("<footer>\n<p>hydrodip {}</p>\n", html_escaped(report.tool_version));
   if (!line.empty()) html += "<p><code>" + html_escaped(line) + "</code></p>\n";

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/file.h"
-#include "job/command_text.h"
+#include "base/shell_word.h"
 
 namespace hydrodip {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/output_folder.h"
-#include "job/command_text.h"
+#include "base/shell_word.h"
 #include "sweep/scripts.h"
 #include "sweep/sweep_table.h"
 

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "base/shell_word.h"
+
 namespace hydrodip {
 namespace {
 
