@@ -219,6 +219,15 @@ void warn_of_idle_words(const ArtworkLayer& layer, const RunContext& context) {
                                     : "wrapped"));
 }
 
+// Film is read from above on the water, and from its other side on the object.
+void warn_of_mirrored_text(const ArtworkLayer& layer, const RunContext& context) {
+  if (layer.projection == Projection::kFilm && !layer.text.empty())
+    context.warn(fmt::format(
+        "{}: on the film it reads as it stands, on the object in mirror writing; lay it on the "
+        "object by another --projection",
+        name_of(layer)));
+}
+
 void warn_of_coarse(const ArtworkLayer& layer, double share, double dpi,
                     const RunContext& context) {
   if (share < 1)
@@ -291,12 +300,14 @@ Vec2 size_on_film(const ArtworkLayer& layer, const PictureSource& picture) {
 Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask& task,
           const PosedObject& posed, LaidLayer& laid, const RunContext& context) {
   warn_of_idle_words(wanted, context);
+  warn_of_mirrored_text(wanted, context);
   warn_of_what_lies_outside(wanted, picture, context);
   Placed placed;
   if (wanted.projection == Projection::kFilm)
-    placed.size_mm = size_on_film(wanted, picture);
+    placed = {nullptr, size_on_film(wanted, picture), wanted};
   else
     placed = place({wanted, picture.aspect(), posed, task.closed}, laid, context);
+  laid.layer = std::move(placed.layer);
   const double pixels_per_mm = task.dpi / kMmPerInch * task.samples_per_axis;
   PictureSource::Shown shown = picture.pixels(placed.size_mm, pixels_per_mm);
   warn_of_coarse(wanted, shown.share, task.dpi, context);
@@ -338,7 +349,7 @@ Artwork lay_artwork(ArtworkTask task, const PosedObject& posed, const RunContext
   Artwork artwork;
   for (std::size_t n = 0; n < task.layers.size(); ++n) {
     context.progress("laying artwork", double(n) / double(task.layers.size()));
-    LaidLayer laid{.name = name_of(task.layers[n]), .fonts = task.pictures[n].fonts()};
+    LaidLayer laid{.name = name_of(task.layers[n]), .layer = {}, .fonts = task.pictures[n].fonts()};
     Layer layer = lay(task.layers[n], task.pictures[n], task, paint->posed(), laid, context);
     laid.size_mm = layer.frame.size_mm();
     context.log(laid.name + ": " + describe(laid));

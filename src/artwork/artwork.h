@@ -29,6 +29,7 @@ struct ArtworkTask {
 // What came of a layer.
 struct LaidLayer {
   std::string name;
+  ArtworkLayer layer;  // so that it lies there however the object is held
   Vec2 size_mm{0, 0};
   // Wrapped: lengths on the surface over the picture's.
   double stretch_least = 1, stretch_most = 1;

@@ -52,7 +52,7 @@ Placed place_by_uv(const PlacementTask& task) {
                     "planar or wrap, needs none",
                     name_of(task.layer)));
   const double side = side_mm(object, task.posed.mesh());
-  return {std::make_unique<ByUv>(object, side), {side, side}};
+  return {std::make_unique<ByUv>(object, side), {side, side}, task.layer};
 }
 
 }  // namespace hydrodip

@@ -29,7 +29,8 @@ class Placement {
 // A picture that has found its place.
 struct Placed {
   std::unique_ptr<const Placement> placement;
-  Vec2 size_mm;  // of the picture, on the surface
+  Vec2 size_mm;        // of the picture, on the surface
+  ArtworkLayer layer;  // with what goes by the pose given: it lies there in any other one, too
 };
 
 // What a placement is made from. `closed`: the surface has an inside.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/error.h"
 
@@ -232,14 +233,23 @@ Aimed aim_plane(const PlacementTask& task) {
   if (task.layer.at_mm) at = frame.point(*task.layer.at_mm);
   const Vec2 room(right.room(at.dot(axes.right)), up.room(at.dot(axes.up)));
   const Vec2 size = fitting_size(task, room);
-  return {std::make_unique<PlanarProjector>(at, toward, axes), size};
+  ArtworkLayer layer = task.layer;
+  if (!layer.toward && !layer.at_mm) layer.toward = rounded(frame.direction_back(toward));
+  return {std::make_unique<PlanarProjector>(at, toward, axes), size, std::move(layer)};
+}
+
+// The way somebody looks who stands before the model: along its y, or where that is up, against its
+// z. All six sides are laid on, so that it does not matter which one enters the water first.
+Vec3 front_of(const PlacementTask& task, const ModelFrame& frame) {
+  if (task.layer.toward) return unit(frame.turn * *task.layer.toward, "toward", task);
+  const bool y_is_up = task.layer.up && std::abs(unit(*task.layer.up, "up", task).y()) >= kParallel;
+  return y_is_up ? Vec3(-frame.turn.col(2)) : Vec3(frame.turn.col(1));
 }
 
 Aimed aim_box(const PlacementTask& task) {
   const ModelFrame frame(task.posed);
   const TriangleMesh& mesh = task.posed.mesh();
-  const Vec3 toward =
-      task.layer.toward ? unit(frame.turn * *task.layer.toward, "toward", task) : Vec3::UnitZ();
+  const Vec3 toward = front_of(task, frame);
   const Upright axes = upright(task, toward);
   const Extent right = extent(mesh, axes.right), up = extent(mesh, axes.up),
                deep = extent(mesh, toward);
@@ -250,7 +260,8 @@ Aimed aim_box(const PlacementTask& task) {
   const Vec2 front = fitting_size(task, {room_right, room_up}),
              side = fitting_size(task, {room_deep, room_up}),
              top = fitting_size(task, {room_right, room_deep});
-  return {std::make_unique<BoxProjector>(at, toward, axes), front.cwiseMin(side).cwiseMin(top)};
+  return {std::make_unique<BoxProjector>(at, toward, axes), front.cwiseMin(side).cwiseMin(top),
+          task.layer};
 }
 
 // Of the model's x, y and z the one to which its surface is most nearly parallel; upright rather
@@ -296,6 +307,15 @@ double radius_at(const PlacementTask& task, const Vec3& foot, const Vec3& out) {
   return std::max(sum / double(task.posed.mesh().positions.size()), 1e-6);
 }
 
+// The layer, with its centre where a ray from the axis or centre to the viewer leaves the surface.
+ArtworkLayer seen_there(const PlacementTask& task, const ModelFrame& frame, const Vec3& point) {
+  ArtworkLayer layer = task.layer;
+  if (layer.at_mm) return layer;
+  const auto hit = task.posed.surface().closest_point(point, 1e9);
+  layer.at_mm = rounded(frame.back(hit ? task.posed.surface().position(*hit) : point));
+  return layer;
+}
+
 Vec3 axis_of(const PlacementTask& task, const ModelFrame& frame, const Vec3& usual) {
   Vec3 axis = task.layer.toward ? unit(frame.turn * *task.layer.toward, "toward", task) : usual;
   if (task.layer.up && axis.dot(frame.turn * *task.layer.up) < 0) axis = -axis;
@@ -315,7 +335,8 @@ Aimed aim_cylinder(const PlacementTask& task) {
   const double from_centre = height - centre.dot(axis);
   const double radius = radius_at(task, centre + from_centre * axis, round.front);
   const Vec2 size = fitting_size(task, {std::numbers::pi * radius, along.room(height)});
-  return {std::make_unique<CylinderProjector>(round, radius, from_centre), size};
+  return {std::make_unique<CylinderProjector>(round, radius, from_centre), size,
+          seen_there(task, frame, centre + from_centre * axis + radius * round.front)};
 }
 
 Aimed aim_sphere(const PlacementTask& task) {
@@ -338,13 +359,20 @@ Aimed aim_sphere(const PlacementTask& task) {
       task, centre, (std::cos(latitude) * round.front + std::sin(latitude) * axis).normalized());
   const Vec2 size = fitting_size(task, {std::numbers::pi * radius * std::cos(latitude),
                                         radius * (0.5 * std::numbers::pi - std::abs(latitude))});
-  return {std::make_unique<SphereProjector>(round, radius, latitude), size};
+  return {std::make_unique<SphereProjector>(round, radius, latitude), size,
+          seen_there(task, frame, centre + radius * round.front)};
 }
 
 }  // namespace
 
 std::string as_given(const Vec3& p) {
   return fmt::format("{:.1f},{:.1f},{:.1f}", p.x(), p.y(), p.z());
+}
+
+Vec3 rounded(const Vec3& v) {
+  constexpr double kPerUnit = 1e6;
+  // Zero without a sign.
+  return Vec3((kPerUnit * v).array().round() / kPerUnit) + Vec3::Zero();
 }
 
 ModelFrame::ModelFrame(const PosedObject& posed)

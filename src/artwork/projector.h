@@ -27,6 +27,7 @@ class Projector {
 struct Aimed {
   std::unique_ptr<const Projector> projector;
   Vec2 size_mm;
+  ArtworkLayer layer;  // as of Placed
 };
 
 // A projector for a layer's projection, with what the layer leaves open chosen. Throws InputError.
@@ -47,7 +48,12 @@ struct ModelFrame {
   explicit ModelFrame(const PosedObject& posed);
   Vec3 point(const Vec3& p) const { return turn * p + offset; }
   Vec3 back(const Vec3& posed) const { return turn.transpose() * (posed - offset); }
+  Vec3 direction_back(const Vec3& posed) const { return turn.transpose() * posed; }
 };
+
+// As it is written down: without the last bits that turning a place or direction there and back
+// leaves (mm, or of length 1).
+Vec3 rounded(const Vec3& v);
 
 // "1.0,2.0,3.0", as options take it.
 std::string as_given(const Vec3& p);

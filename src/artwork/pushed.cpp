@@ -59,7 +59,8 @@ class Pushed : public Placement {
 
 Placed place_pushed(const PlacementTask& task) {
   Aimed aimed = aim(task);
-  return {std::make_unique<Pushed>(task, std::move(aimed.projector), aimed.size_mm), aimed.size_mm};
+  return {std::make_unique<Pushed>(task, std::move(aimed.projector), aimed.size_mm), aimed.size_mm,
+          std::move(aimed.layer)};
 }
 
 }  // namespace hydrodip

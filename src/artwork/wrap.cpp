@@ -219,7 +219,9 @@ Placed place_wrapped(const PlacementTask& task, WrapReport& report) {
   }
   report = report_of(wrapped->fine(), wrapped->chart(),
                      PictureFrame(size, layer.turn_deg, layer.repeat));
-  return {std::move(wrapped), size};
+  ArtworkLayer lying = layer;
+  if (!lying.at_mm) lying.at_mm = rounded(ModelFrame(task.posed).back(position_at(mesh, centre)));
+  return {std::move(wrapped), size, std::move(lying)};
 }
 
 }  // namespace hydrodip

@@ -30,10 +30,10 @@ constexpr double kSettledAmongSeveral_mm = 0.03;
 // What film is worth that lay on the object until it got ink, beside film that lies there with it.
 constexpr float kHoped = 0.3F;
 
-JobConfig config_of(const JobConfig& config, const Trial& trial, std::size_t number,
-                    std::size_t of) {
+JobConfig config_of(const JobConfig& config, const PreparedObject& prepared, const Trial& trial,
+                    std::size_t number, std::size_t of) {
   JobConfig own = config;
-  own.object.pose = trial.pose;
+  hold(own.object, prepared, trial.pose);
   own.design.trajectory.depth_mm = trial.path.empty() ? trial.depth_mm : 0;
   own.design.trajectory.path = trial.path;
   own.correction = correction_of(config, trial);
@@ -157,11 +157,12 @@ MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const 
   MadeDips all{config, prepared, {}, make_nodes(prepared, config.plan.overlap_mm), {}};
   for (std::size_t k = 0; k < plan.dips.size(); ++k) {
     const PosedObject& posed = plan.dips[k].blank.posed;
-    MadeDip dip{config_of(config, plan.dips[k].trial, k + 1, plan.dips.size()),
+    MadeDip dip{config_of(config, prepared, plan.dips[k].trial, k + 1, plan.dips.size()),
                 plan.dips[k].trial,
                 {plan.dips[k].blank, {}},
                 posed,
                 {DippedObject{.posed = posed}, {}, {}},
+                false,
                 fmt::format("dip-{}", k + 1),
                 int(k) + 1};
     const Trajectory way = make_trajectory(dip.config.design.trajectory, posed.mesh().positions);
@@ -196,11 +197,14 @@ Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& prin
                  const RunContext& context) {
   const Allotments allotted(all, shared);
   times.measure("design", [&] {
-    for_each_dip(all, "making films and ink agree", context,
-                 [&](MadeDip& dip, const RunContext& own) {
-                   Timings unheard;
-                   dip.made = design(allotted.task(dip, printer), unheard, own);
-                 });
+    for_each_dip(
+        all, "making films and ink agree", context, [&](MadeDip& dip, const RunContext& own) {
+          Timings unheard;
+          dip.made = design(allotted.task(dip, printer), unheard, own);
+          const auto& laid = dip.made.ink.ink.inking.inks.cmyk;
+          dip.blank =
+              std::all_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value == 0; });
+        });
     for (const MadeDip& dip : all.dips)
       context.log(fmt::format("dip {} of {}: {} rounds", dip.number, all.dips.size(),
                               dip.made.ink.rounds.size()));

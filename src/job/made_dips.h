@@ -25,6 +25,7 @@ struct MadeDip {
   FirstDip first;  // without ink, or with that which the first division gave it
   PosedObject posed;
   Designed made;       // with its ink; empty until then
+  bool blank = false;  // it has no ink
   std::string folder;  // "dip-1"
   int number = 1;
 };

@@ -16,13 +16,20 @@ using json = nlohmann::ordered_json;
 
 constexpr LinearColor kTorn{0.55F, 0.02F, 0.02F, 1};
 
-// What to do with a way to hold it: print, or where there is nothing to print, look.
-std::string command_for(const JobConfig& config, const Paint& paint, const Trial& trial) {
-  return command_text(config, paint.says_anything() ? "print" : "simulate") + " " +
-         trial_options(trial);
-}
+// What to do with ways to hold it: print, or where there is nothing to print, look.
+class Commands {
+ public:
+  Commands(const JobConfig& config, const PreparedObject& prepared, const RunContext& context)
+      : begin_(command_text(config, prepared.paint->says_anything() ? "print" : "simulate")),
+        end_(artwork_options(config, prepared, context)) {}
+  std::string options(const Trial& trial) const { return trial_options(trial) + end_; }
+  std::string command(const Trial& trial) const { return begin_ + " " + options(trial); }
 
-json pose_json(const JobConfig& config, const Paint& paint, const Trial& trial) {
+ private:
+  std::string begin_, end_;
+};
+
+json pose_json(const JobConfig& config, const Commands& commands, const Trial& trial) {
   const Vec3& rotate = trial.pose.rotate_deg;
   const TrialFigures& f = trial.figures;
   return {{"rotate_deg", {rotate.x(), rotate.y(), rotate.z()}},
@@ -34,17 +41,17 @@ json pose_json(const JobConfig& config, const Paint& paint, const Trial& trial) 
           {"air_mm2", f.air_mm2},
           {"score", f.score},
           {"text", describe_trial(trial, way_up(config))},
-          {"command", command_for(config, paint, trial)}};
+          {"command", commands.command(trial)}};
 }
 
-std::string machine_readable(const JobConfig& config, const Paint& paint,
+std::string machine_readable(const JobConfig& config, const Commands& commands,
                              const SearchResult& found) {
   json all = {{"schema_version", 1},
               {"command", "orient"},
               {"model", config.model.string()},
               {"trial_dips", found.trials.size()},
               {"poses", json::array()}};
-  for (const Trial& trial : found.best) all["poses"].push_back(pose_json(config, paint, trial));
+  for (const Trial& trial : found.best) all["poses"].push_back(pose_json(config, commands, trial));
   return all.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
@@ -57,7 +64,7 @@ std::string figures_text(const Trial& trial) {
 }
 
 // Where its film lies in the wanted colours, or in one where none are wanted.
-Image draw_holds(const JobConfig& config, const PreparedObject& prepared,
+Image draw_holds(const JobConfig& config, const PreparedObject& prepared, const Commands& commands,
                  const std::vector<Trial>& best, const RunContext& context) {
   const Paint& paint = *prepared.paint;
   std::vector<PosedObject> posed;
@@ -77,17 +84,17 @@ Image draw_holds(const JobConfig& config, const PreparedObject& prepared,
     pictures.push_back({posed[i].mesh(), posed[i].surface(), look, best[i].depth_mm,
                         fmt::format("{}. {}, {:.4g} mm deep", i + 1,
                                     describe_hold(best[i].pose, way_up(config)), best[i].depth_mm),
-                        figures_text(best[i]) + ": " + trial_options(best[i])});
+                        figures_text(best[i]) + ": " + commands.options(best[i])});
   }
   return render_holds(pictures, config.preview_width_px, context);
 }
 
-std::string in_words(const JobConfig& config, const Paint& paint, const SearchResult& found) {
+std::string in_words(const JobConfig& config, const Commands& commands, const SearchResult& found) {
   std::string text = fmt::format("{} ways to hold it were tried; the best:\n", found.trials.size());
   for (std::size_t i = 0; i < found.best.size(); ++i)
     text +=
         fmt::format("{}. {}\n   {}\n   {}\n", i + 1, describe_trial(found.best[i], way_up(config)),
-                    figures_text(found.best[i]), command_for(config, paint, found.best[i]));
+                    figures_text(found.best[i]), commands.command(found.best[i]));
   return text;
 }
 
@@ -102,9 +109,10 @@ JobResult orient_job(const JobConfig& given, const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   SearchOutput output(config, "orient", {}, context);
   const SearchResult found = find_holds(config, output.prepared(), output.targets(), context);
-  const Paint& paint = *output.prepared().paint;
-  return output.finish(machine_readable(config, paint, found), in_words(config, paint, found),
-                       [&] { return draw_holds(config, output.prepared(), found.best, context); });
+  const Commands commands(config, output.prepared(), context);
+  return output.finish(
+      machine_readable(config, commands, found), in_words(config, commands, found),
+      [&] { return draw_holds(config, output.prepared(), commands, found.best, context); });
 }
 
 }  // namespace hydrodip

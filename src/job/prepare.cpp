@@ -100,6 +100,12 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
   return result;
 }
 
+void hold(ObjectOptions& options, const PreparedObject& prepared, const PoseOptions& pose) {
+  options.pose = pose;
+  for (std::size_t n = 0; n < prepared.artwork.size(); ++n)
+    options.artwork[n] = prepared.artwork[n].layer;
+}
+
 void require_size(const PosedObject& posed, const ObjectOptions& options,
                   const std::filesystem::path& model) {
   if (options.pose.size_mm > 0 || !options.load.units.empty()) return;
@@ -109,6 +115,22 @@ void require_size(const PosedObject& posed, const ObjectOptions& options,
       "{}: is it really {:.4g} mm large? Say its --units (mm, cm, m or in), or the --size that its "
       "largest extent shall have in mm",
       model.string(), largest_mm));
+}
+
+void require_on_film(const PreparedObject& prepared, const FilmOptions& film) {
+  for (const LaidLayer& laid : prepared.artwork) {
+    const ArtworkLayer& layer = laid.layer;
+    if (layer.projection != Projection::kFilm || layer.repeat != Repeat::kOnce || !layer.at_mm)
+      continue;
+    const double reach = 0.5 * laid.size_mm.norm();
+    if (std::abs(layer.at_mm->x()) - reach < 0.5 * film.width_mm &&
+        std::abs(layer.at_mm->y()) - reach < 0.5 * film.height_mm)
+      continue;
+    throw InputError(fmt::format(
+        "{}: the artwork lies beside the sheet, which reaches {:g} x {:g} mm from its middle; move "
+        "it with --art-at",
+        name_of(layer), 0.5 * film.width_mm, 0.5 * film.height_mm));
+  }
 }
 
 double inkable_mm2(const PreparedObject& prepared, const DesignOptions& options) {

@@ -31,6 +31,9 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
                               const RunContext& context, double dpi = 300,
                               int samples_per_axis = 3);
 
+// To hold the object otherwise: in the configuration, whose artwork stays where it was laid.
+void hold(ObjectOptions& options, const PreparedObject& prepared, const PoseOptions& pose);
+
 // Throws InputError that asks for --units or --size if neither is given and the object is smaller
 // or larger than anything that people dip.
 void require_size(const PosedObject& posed, const ObjectOptions& options,
@@ -43,6 +46,9 @@ void require_appearance(const Object& object, const std::vector<std::string>& pi
 
 // The same for an object that may have artwork, which is an appearance.
 void require_appearance(const PreparedObject& prepared, const std::filesystem::path& model);
+
+// Throws InputError for artwork that is laid on film and lies beside the sheet.
+void require_on_film(const PreparedObject& prepared, const FilmOptions& film);
 
 // At most so much of a sheet is inked: film on the object is no larger than what it lies on, and
 // the bleed goes round it. Artwork that is laid on the film may go anywhere.

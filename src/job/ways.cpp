@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/error.h"
 #include "image/files.h"
 
@@ -29,6 +31,14 @@ std::shared_ptr<const Paint> importance_paint(const std::filesystem::path& file,
 }
 
 bool lays_film(const Trial& trial) { return trial.depth_mm > 0 && trial.figures.covered_share > 0; }
+
+// Blank film may promise more than what was printed on it keeps, however it is held.
+bool is_held_so(const Trial& trial, const Trial& made) {
+  constexpr double kSame_mm = 0.5;
+  return trial.pose.down == made.pose.down &&
+         trial.pose.rotate_deg.isApprox(made.pose.rotate_deg) &&
+         std::abs(trial.depth_mm - made.depth_mm) < kSame_mm;
+}
 
 std::string percent(double share) {
   return share > 0 && share < 0.1 ? fmt::format("{:.1f} %", 100 * share)
@@ -118,7 +128,7 @@ void find_what_is_asked(JobConfig& config, PreparedObject& prepared, const RunCo
         "--rotate, or let --rotate auto find out how",
         config.model.string()));
   context.log("found: " + describe_trial(*found, way_up(config)));
-  config.object.pose = found->pose;
+  hold(config.object, prepared, found->pose);
   if (config.plan.find_depth) config.design.trajectory.depth_mm = found->depth_mm;
   config.plan.find_pose = config.plan.find_depth = false;
   prepared.posed = PosedObject(prepared.posed.shared_object(), config.object.pose);
@@ -127,8 +137,8 @@ void find_what_is_asked(JobConfig& config, PreparedObject& prepared, const RunCo
 std::string describe_trial(const Trial& trial, ModelSide up) {
   const TrialFigures& figures = trial.figures;
   std::string text =
-      fmt::format("{}, {:.4g} mm deep: {} covered, {}", describe_hold(trial.pose, up),
-                  trial.depth_mm, percent(figures.covered_share),
+      fmt::format("{}, {:.4g} mm deep: {} of the surface covered, {}",
+                  describe_hold(trial.pose, up), trial.depth_mm, percent(figures.covered_share),
                   figures.torn_share > kHardlyTorn ? percent(figures.torn_share) + " torn"
                                                    : std::string("nothing torn"));
   if (figures.air_mm2 >= kSomeAir_mm2)
@@ -141,6 +151,28 @@ std::string trial_options(const Trial& trial) {
   return fmt::format("{} --depth {:.4g}", hold_options(trial.pose), trial.depth_mm);
 }
 
+std::string artwork_options(const JobConfig& config, const PreparedObject& prepared,
+                            const RunContext& context) {
+  std::string options;
+  for (std::size_t n = 0; n < prepared.artwork.size(); ++n) {
+    const ArtworkLayer& given = config.object.artwork[n];
+    const ArtworkLayer& laid = prepared.artwork[n].layer;
+    const bool toward = !given.toward && laid.toward, at = !given.at_mm && laid.at_mm;
+    if (!toward && !at) continue;
+    const Vec3 place = toward ? *laid.toward : *laid.at_mm;
+    const std::string figures =
+        fmt::format("{:.4g},{:.4g},{:.4g}", place.x(), place.y(), place.z());
+    if (n + 1 == prepared.artwork.size())
+      options = fmt::format(" {} {}", toward ? "--art-toward" : "--art-at", figures);
+    else
+      context.warn(fmt::format(
+          "{}: it goes to another side when the object is held otherwise; it stays where it is "
+          "with {} = [{}] in its [[artwork]] table",
+          prepared.artwork[n].name, toward ? "toward" : "at_mm", figures));
+  }
+  return options;
+}
+
 std::string better_way(const JobConfig& config, const PreparedObject& prepared,
                        const DippedObject& dipped, const RunContext& context) {
   const Targets targets = job_targets(config, prepared, context);
@@ -150,8 +182,9 @@ std::string better_way(const JobConfig& config, const PreparedObject& prepared,
   try {
     const Trial best = search_holds(task, config.object.pose, quick_search(), context).best.front();
     if (!lays_film(best) || best.figures.score < made.figures.score + kWorthSaying) return "";
-    return fmt::format("{}, as blank film ({})", describe_trial(best, way_up(config)),
-                       trial_options(best));
+    if (is_held_so(best, made)) return "";
+    return fmt::format("{}, as blank film ({}{})", describe_trial(best, way_up(config)),
+                       trial_options(best), artwork_options(config, prepared, context));
   } catch (const InputError&) {
     return "";  // it fits in no other way
   }

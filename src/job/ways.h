@@ -33,10 +33,14 @@ ModelSide way_up(const JobConfig& config);
 // configuration and on the object.
 void find_what_is_asked(JobConfig& config, PreparedObject& prepared, const RunContext& context);
 
-// "lying on its -x side, 16 mm deep: 24 % covered, nothing torn"
+// "lying on its -x side, 16 mm deep: 24 % of the surface covered, nothing torn"
 std::string describe_trial(const Trial& trial, ModelSide up);
 // "--rotate 0,90,0 --depth 16"
 std::string trial_options(const Trial& trial);
+// What else has to be said so that artwork stays where it is when the object is held otherwise:
+// " --art-toward 0,0,1". Options say it of the topmost layer; a warning tells of others.
+std::string artwork_options(const JobConfig& config, const PreparedObject& prepared,
+                            const RunContext& context);
 
 // The best way that a short search finds, in words with its options; empty if it is no better than
 // the dip that was made.

@@ -220,6 +220,82 @@ TEST(Box, PutsThePictureOnEverySideUnmirrored) {
   for (const int count : sides) EXPECT_GT(count, 0);
 }
 
+TEST(Box, StandsUprightOnEverySideHoweverTheObjectIsHeld) {
+  for (const Vec3& rotate : {Vec3(0, 0, 0), Vec3(90, 0, 0), Vec3(20, -130, 70)}) {
+    PoseOptions pose;
+    pose.rotate_deg = rotate;
+    const PosedObject object = posed(box({-20, -20, -20}, {20, 20, 20}), pose);
+    const Placed placed = place(layer_of(Projection::kBox), object);
+    const ModelFrame frame(object);
+    int upright = 0;
+    each_point(object.mesh(), [&](const SurfacePoint& point) {
+      Spot spot;
+      ASSERT_TRUE(placed.placement->find(point, spot));
+      const Vec3 p = frame.back(position_at(object.mesh(), point));
+      const Vec3 n = frame.direction_back(face_normal(object.mesh(), point.triangle));
+      if (std::abs(n.z()) > 0.5) return;  // top and bottom
+      ++upright;
+      EXPECT_NEAR(spot.place_mm.y(), p.z(), kExact_mm);
+      EXPECT_NEAR(spot.place_mm.x(), p.dot(Vec3::UnitZ().cross(n)), kExact_mm);
+    });
+    EXPECT_GT(upright, 20);
+  }
+}
+
+TEST(Box, StandsByTheUpThatIsTold) {
+  const PosedObject object = posed(box({-20, -20, -20}, {20, 20, 20}));
+  for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, -2, 0)}) {
+    ArtworkLayer layer = layer_of(Projection::kBox);
+    layer.up = up;
+    const Placed placed = place(layer, object);
+    const Vec3 centre = moved(object, Vec3::Zero());
+    each_point(object.mesh(), [&](const SurfacePoint& point) {
+      Spot spot;
+      const Vec3 n = face_normal(object.mesh(), point.triangle);
+      if (std::abs(n.dot(up.normalized())) > 0.5) return;
+      ASSERT_TRUE(placed.placement->find(point, spot));
+      const Vec3 p = position_at(object.mesh(), point) - centre;
+      EXPECT_NEAR(spot.place_mm.y(), p.dot(up.normalized()), kExact_mm);
+    });
+  }
+}
+
+// A layer that says nothing of its place goes by how the object is held. As it was laid, it does
+// not any more.
+TEST(Placing, IsTheSameInAnyPoseOnceItIsLaid) {
+  TriangleMesh lumpy = ball(30, 48, 24);
+  for (Vec3& p : lumpy.positions) p = Vec3(1.3 * p.x() + 4, p.y() - 7, 0.8 * p.z() + 0.1 * p.x());
+  PoseOptions first, second;
+  first.rotate_deg = Vec3(40, 0, 15);
+  second.down = ModelSide::kPlusX;
+  second.rotate_deg = Vec3(-10, 65, 0);
+  const PosedObject before = posed(lumpy, first), after = posed(lumpy, second);
+  for (const Projection projection : {Projection::kPlanar, Projection::kCylinder,
+                                      Projection::kSphere, Projection::kBox, Projection::kWrap}) {
+    SCOPED_TRACE(int(projection));
+    const ArtworkLayer open = layer_of(projection, 0);
+    const auto laid_on = [&](const ArtworkLayer& layer, const PosedObject& object) {
+      WrapReport unread;
+      return projection == Projection::kWrap ? place_wrapped({layer, 1.5, object, true}, unread)
+                                             : place(layer, object, 1.5);
+    };
+    const Placed wanted = laid_on(open, before), kept = laid_on(wanted.layer, after);
+    EXPECT_NEAR((wanted.size_mm - kept.size_mm).norm(), 0, 2e-3);
+    int seen = 0;
+    each_point(before.mesh(), [&](const SurfacePoint& point) {
+      Spot there, here;
+      const bool is_there = wanted.placement->find(point, there);
+      if (!is_there || there.place_mm.cwiseAbs().maxCoeff() > 15) return;
+      if (!wanted.placement->is_lit(point)) return;
+      ++seen;
+      ASSERT_TRUE(kept.placement->find(point, here));
+      EXPECT_TRUE(kept.placement->is_lit(point));
+      EXPECT_NEAR((here.place_mm - there.place_mm).norm(), 0, 2e-3);
+    });
+    EXPECT_GT(seen, 100);
+  }
+}
+
 TEST(Placing, RefusesWhatIsFarFromTheModelAndSaysWhereItIs) {
   const PosedObject object = posed(box({0, 0, 0}, {60, 40, 30}));
   ArtworkLayer layer = layer_of(Projection::kPlanar);

@@ -112,15 +112,17 @@ export function frameOf(entry: Layer): Frame | null {
   const flat = entry.projection === undefined || entry.projection === 'planar' || entry.projection === 'wrap';
   const far = 2 * Math.hypot(...shown.extent());
   if (far === 0) return null; // no model yet
-  let toward: Vec3 | null = entry.toward && flat ? shown.directionToPosed(entry.toward) : null;
   const given = entry.at_mm ? shown.toPosed(entry.at_mm) : null;
+  const boxed = entry.projection === 'box' && !given; // the front side's picture
+  let toward: Vec3 | null = entry.toward && (flat || boxed) ? shown.directionToPosed(entry.toward) : null;
   if (given && !toward) {
     // Square onto the surface there.
     const out = unit(plus(given, shown.center_mm, -1));
     const met = shown.meet(plus(given, out, far), [-out[0], -out[1], -out[2]]);
     toward = (met ? met.normal : out).map((c) => -c) as Vec3;
   }
-  toward = unit(toward ?? [0, 0, 1]);
+  const front: Vec3 = entry.up && Math.abs(unit(entry.up)[1]) >= PARALLEL ? [0, 0, -1] : [0, 1, 0];
+  toward = unit(toward ?? (boxed ? shown.directionToPosed(front) : [0, 0, 1]));
   const chosen = shown.directionToScaled(toward);
   const upright: Vec3 = entry.up ?? (Math.abs(chosen[2]) < PARALLEL ? [0, 0, 1] : [0, 1, 0]);
   let up = shown.directionToPosed(upright);
