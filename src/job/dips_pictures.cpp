@@ -10,6 +10,7 @@
 #include "export/scene.h"
 #include "image/files.h"
 #include "job/output.h"
+#include "job/wanted.h"
 #include "job/ways.h"
 #include "object/bake.h"
 #include "render/preview.h"
@@ -91,7 +92,7 @@ class FinishPictures {
     PreviewOptions options;
     options.width_px = all_.config.preview_width_px;
     options.base = finish_.paint().base();
-    options.whole = true;
+    options.told = told();
     options.standing = standing_;
     std::vector<PreviewPair> pairs(2);
     pairs[0].shown = appearance_of(finish_);
@@ -112,6 +113,20 @@ class FinishPictures {
   }
 
  private:
+  // What shall be printed, or if that is everywhere the whole surface.
+  std::vector<SurfacePatch> told() const {
+    const Targets& targets = all_.nodes->targets();
+    const std::vector<std::uint8_t> is_wanted = wanted_at(targets, finish_.paint());
+    std::vector<SurfacePatch> patches;
+    for (std::size_t i = 0; i < targets.list.size(); ++i) {
+      if (!is_wanted.empty() && !is_wanted[i]) continue;
+      const Target& node = targets.list[i];
+      patches.push_back({(posed_.matrix() * node.position.homogeneous()).head<3>(),
+                         posed_.turn() * node.normal, node.area});
+    }
+    return patches;
+  }
+
   std::string about_seams() const {
     if (!check_.films_meet())
       return fmt::format("No two films meet; colour error {:.1f}", check_.other_error());

@@ -6,6 +6,7 @@
 
 #include "coat/dipped_object.h"
 #include "job/output.h"
+#include "job/wanted.h"
 #include "job/ways.h"
 #include "report/findings.h"
 
@@ -46,11 +47,25 @@ std::optional<ReportObstacle> obstacle_of(const MadeDip& dip, std::size_t of) {
 struct Brought {
   std::vector<double> gained;  // per dip: the part covered by it and those before, not without it
   double doubtful_share = 0;   // where so much of the ink comes with film that may tear, or move
+  // Of what shall be printed, if that is not everywhere.
+  std::optional<ReportWanted> wanted;
+  std::vector<double> gained_wanted;  // per dip, a share of it
 };
+
+bool is_reached_by_any(const MadeDips& all, const Target& node) {
+  return std::any_of(all.dips.begin(), all.dips.end(), [&](const MadeDip& dip) {
+    return is_reached(dip.made.dipped, (dip.posed.matrix() * node.position.homogeneous()).head<3>(),
+                      dip.posed.turn() * node.normal);
+  });
+}
 
 Brought brought_by(const MadeDips& all, const SharedSurface& shared) {
   const Targets& targets = all.nodes->targets();
-  Brought result{std::vector<double>(all.dips.size(), 0), 0};
+  Brought result;
+  result.gained.resize(all.dips.size(), 0);
+  const std::vector<std::uint8_t> is_wanted = wanted_at(targets, *all.prepared.paint);
+  ReportWanted wanted;
+  std::vector<double> gained_wanted_mm2(all.dips.size(), 0);
   double doubtful_mm2 = 0;
   for (std::size_t i = 0; i < targets.list.size(); ++i) {
     const Target& node = targets.list[i];
@@ -59,12 +74,26 @@ Brought brought_by(const MadeDips& all, const SharedSurface& shared) {
     for (std::size_t k = 0; k < all.dips.size(); ++k) {
       const bool was_covered = brought >= kMuchOfTheInk;
       if (all.worth[k][i] > 0) brought += shares[k];
-      if (!was_covered && brought >= kMuchOfTheInk) result.gained[k] += node.area / targets.area;
+      if (!was_covered && brought >= kMuchOfTheInk) {
+        result.gained[k] += node.area / targets.area;
+        if (!is_wanted.empty() && is_wanted[i]) gained_wanted_mm2[k] += node.area;
+      }
       if (shares[k] > 0 && lies_in_doubt(all.dips[k], node)) in_doubt += shares[k];
     }
     if (in_doubt >= kMuchOfTheInk) doubtful_mm2 += node.area;
+    if (is_wanted.empty() || !is_wanted[i]) continue;
+    wanted.object_mm2 += node.area;
+    if (brought >= kMuchOfTheInk) wanted.covered_mm2 += node.area;
+    if (brought >= kMuchOfTheInk || is_reached_by_any(all, node)) wanted.reached_mm2 += node.area;
   }
   result.doubtful_share = doubtful_mm2 / targets.area;
+  if (is_wanted.empty()) return result;
+  for (const double mm2 : gained_wanted_mm2)
+    result.gained_wanted.push_back(mm2 / wanted.object_mm2);
+  const double scale = all.prepared.posed.scale();
+  for (double* mm2 : {&wanted.object_mm2, &wanted.covered_mm2, &wanted.reached_mm2})
+    *mm2 *= scale * scale;
+  result.wanted = wanted;
   return result;
 }
 
@@ -99,13 +128,13 @@ Coverage coverage_together(const MadeDips& all, const Brought& brought) {
 
 // Which part each does, and what is covered after it.
 std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& shared,
-                                   const std::vector<double>& gained) {
+                                   const Brought& brought) {
   std::vector<ReportDip> list;
   const std::vector<double> parts = shared.shares_of_surface();
   double so_far = 0;
   for (std::size_t k = 0; k < all.dips.size(); ++k) {
     const MadeDip& dip = all.dips[k];
-    so_far += gained[k];
+    so_far += brought.gained[k];
     const Vec3& rotate = dip.trial.pose.rotate_deg;
     list.push_back({side_name(dip.trial.pose.down),
                     {rotate.x(), rotate.y(), rotate.z()},
@@ -113,10 +142,12 @@ std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& sha
                     describe_hold(dip.trial.pose, way_up(all.config)),
                     dip.folder,
                     parts[k],
-                    gained[k],
+                    brought.gained[k],
                     so_far,
                     dip.made.dipped.coverage.torn_share(),
-                    obstacle_of(dip, all.dips.size())});
+                    obstacle_of(dip, all.dips.size()),
+                    brought.wanted ? std::optional(brought.gained_wanted[k]) : std::nullopt,
+                    dip.blank});
   }
   return list;
 }
@@ -128,10 +159,13 @@ Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishC
   Report report = make_report(record);
   const Brought brought = brought_by(all, shared);
   report.coverage = coverage_together(all, brought);
+  report.wanted = brought.wanted;
   report.angles.reset();
-  report.figures.clear();
+  const Vec3 size = all.prepared.posed.mesh().bounds().size();
+  report.figures = {{"object_size_mm", "Object as it stands (x, y, z)",
+                     std::array<double, 3>{size.x(), size.y(), size.z()}, "mm"}};
   report.rounds.clear();
-  report.dips = report_dips(all, shared, brought.gained);
+  report.dips = report_dips(all, shared, brought);
   report.colors = check.colors();
   report.seams = ReportSeams{check.films_meet() ? shared.seam_mm() : 0, all.config.plan.overlap_mm,
                              check.seam_error(), FinishCheck::kOff_mm, check.seam_error_off()};

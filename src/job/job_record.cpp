@@ -232,7 +232,12 @@ JobResult describe_result(const Report& report, const std::filesystem::path& fol
   if (!report.better_way.empty())
     result.text += "Better: " + report.better_way + "\n";
   else if (result.do_not_dip)
-    result.text += "hydrodip orient looks for better ways to hold it.\n";
+    result.text += report.dips.empty()
+                       ? fmt::format(
+                             "hydrodip orient looks for better ways to hold it; --rotate "
+                             "auto{} takes the best.\n",
+                             report.way_in.empty() ? " --depth auto" : "")
+                       : "hydrodip plan looks for better ways to hold it.\n";
   result.text += fmt::format("wrote to {}:\n", folder.string());
   for (const ReportOutput& output : report.outputs) {
     result.files.push_back(output.name);

@@ -166,9 +166,11 @@ void share_out_film(Nest& nest, const FilmOptions& sheet, std::optional<double> 
                       [](const Piece& piece) { return piece.place.placed; }),
         nest.pieces.size(), part.name(), part.film().width_mm, part.film().height_mm));
   }
-  for (const Part& part : nest.parts)
+  for (const Part& part : nest.parts) {
     require_fit(part.job.prepared.posed.mesh(), part.room, part.film(), part.job.config.bath,
                 context);
+    require_on_film(part.job.prepared, part.film());
+  }
 }
 
 // ---- the parts' dips ----
@@ -181,7 +183,7 @@ MadePart make_part(const Part& part, Timings& timings, const RunContext& context
   JobRecord record{"print", job.config,         job.prepared,
                    inputs,  made.finish,        timings,
                    silent,  &made.designed.ink, job.printer.model->name()};
-  record.wanted = wanted_coverage(made.designed.dipped, made.finish.paint());
+  record.wanted = wanted_coverage(made.designed.dipped, *job.prepared.paint);
   Report report = make_report(record);
   return {std::move(made), std::move(report)};
 }
@@ -324,6 +326,12 @@ json described(const Nest& nest) {
   return list;
 }
 
+std::string covered_words(const Report& report) {
+  return report.wanted
+             ? fmt::format("{:.0f} % of the picture", 100 * report.wanted->covered_share())
+             : fmt::format("{:.0f} % of the object", 100 * report.coverage->covered_share());
+}
+
 std::string run_sheet(const Nest& nest, const JobConfig& sheet) {
   std::string page = fmt::format(
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>hydrodip run sheet</title>"
@@ -342,14 +350,13 @@ std::string run_sheet(const Nest& nest, const JobConfig& sheet) {
   for (const Piece& piece : nest.pieces) {
     const Part& part = nest.parts[piece.part];
     const MadePart& made = nest.made[piece.part];
-    const Coverage& coverage = made.coverage();
     page += fmt::format(
-        "<tr><td>{}<td>{}<td>{:.0f} mm<td>{:.0f} mm<td>{:g} x {:g} mm<td>{}<td>{:.1f} mm<td>{:.0f} "
-        "%<td>{:.1f} %<td class=\"{}\">{}</tr>",
+        "<tr><td>{}<td>{}<td>{:.0f} mm<td>{:.0f} mm<td>{:g} x {:g} mm<td>{}<td>{:.1f} "
+        "mm<td>{}<td>{:.1f} %<td class=\"{}\">{}</tr>",
         piece.number, html_escaped(part.name()), piece.place.corner_mm.x(),
         piece.place.corner_mm.y(), part.film().width_mm, part.film().height_mm,
         piece.place.turned ? "upright, on the right" : "below", part.job.trajectory.depth_mm(),
-        100 * coverage.covered_downward_share(), 100 * coverage.torn_share(),
+        covered_words(made.report), 100 * made.coverage().torn_share(),
         concern_name(made.concern()), headline(made.concern()));
   }
   page += "</table>";

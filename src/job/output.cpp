@@ -216,9 +216,11 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
   // The longest first.
   if (record.config.pictures) {
     layers = measure_layers(record, shown, previews);
-    views.emplace(dipped.posed.mesh(), dipped.posed.surface(), *dipped.film,
-                  record.config.preview_width_px, standing_of(dipped.posed, way_up(record.config)),
-                  false, record.context);
+    const TriangleMesh& mesh = dipped.posed.mesh();
+    const Surface& surface = dipped.posed.surface();
+    const Standing standing = standing_of(dipped.posed, way_up(record.config));
+    views.emplace(mesh, surface, telling_directions(mesh, surface, *dipped.film, standing),
+                  record.config.preview_width_px, standing, record.context);
     tasks.emplace_back([&] {
       const bool is_enough = 2 * record.config.preview_texture_px >= kPageTextureSide_px;
       previews.pictures.scene =

@@ -29,11 +29,7 @@ namespace hydrodip {
 namespace {
 
 void require_some_ink(const MadeDips& all) {
-  const bool any = std::any_of(all.dips.begin(), all.dips.end(), [](const MadeDip& dip) {
-    const auto& laid = dip.made.ink.ink.inking.inks.cmyk;
-    return std::any_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value != 0; });
-  });
-  if (!any)
+  if (std::all_of(all.dips.begin(), all.dips.end(), [](const MadeDip& dip) { return dip.blank; }))
     throw InputError(fmt::format(
         "{}: all sheets would be blank: what the films reach of the model is white, transparent or "
         "of the object's own colour; check its texture and colours",

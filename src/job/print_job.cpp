@@ -93,7 +93,7 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   JobRecord record{"print", config,      job.prepared,
                    inputs,  made.finish, times,
                    context, &ink,        job.printer.model->name()};
-  record.wanted = wanted_coverage(dipped, made.finish.paint());
+  record.wanted = wanted_coverage(dipped, *job.prepared.paint);
   const Report first_look = make_report(record);
   if (config.plan.suggest && concern_of(findings(first_look)) == Concern::kStop)
     record.better_way =

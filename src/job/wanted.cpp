@@ -2,7 +2,6 @@
 
 #include "base/parallel.h"
 #include "image/color_difference.h"
-#include "plan/targets.h"
 
 namespace hydrodip {
 namespace {
@@ -13,35 +12,51 @@ constexpr double kNearlyEverywhere = 0.95;
 
 }  // namespace
 
+std::vector<std::uint8_t> wanted_at(const Targets& targets, const Paint& paint) {
+  if (!paint.says_anything()) return {};
+  const Vec3 bare = to_cielab(paint.base());
+  std::vector<std::uint8_t> wanted(targets.list.size());
+  parallel_for(wanted.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      wanted[i] = (to_cielab(paint.color_at(targets.list[i].point)) - bare).norm() > kPrinted;
+  });
+  double wanted_mm2 = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) wanted_mm2 += wanted[i] * targets.list[i].area;
+  if (!(wanted_mm2 > 0) || wanted_mm2 > kNearlyEverywhere * targets.area) return {};
+  return wanted;
+}
+
+bool is_reached(const DippedObject& dipped, const Vec3& position, const Vec3& normal) {
+  if (dipped.map->to_film(position, normal)) return true;
+  const auto direction = dipped.direction_at(position, 0);
+  return direction && normal.dot(*direction) > 0;
+}
+
 std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Paint& paint,
                                             int points) {
-  if (!paint.says_anything()) return std::nullopt;
-  const TriangleMesh& mesh = dipped.posed.mesh();
-  const Targets targets = spread_targets(mesh, points);
-  const Vec3 bare = to_cielab(paint.base());
+  if (!paint.says_anything() || paint.depends_on_film()) return std::nullopt;
+  const Targets targets = spread_targets(dipped.posed.mesh(), points);
+  const std::vector<std::uint8_t> is_wanted = wanted_at(targets, paint);
+  if (is_wanted.empty()) return std::nullopt;
   struct Seen {
-    bool wanted = false, reached = false, covered = false;
+    bool reached = false, covered = false;
   };
   std::vector<Seen> seen(targets.list.size());
   parallel_for(seen.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      if (!is_wanted[i]) continue;
       const Target& at = targets.list[i];
-      seen[i].wanted = (to_cielab(paint.color_at(at.point)) - bare).norm() > kPrinted;
-      if (!seen[i].wanted) continue;
       seen[i].covered = dipped.map->to_film(at.position, at.normal).has_value();
-      const auto direction = dipped.direction_at(at.position, 0);
-      seen[i].reached = seen[i].covered || (direction && at.normal.dot(*direction) > 0);
+      seen[i].reached = seen[i].covered || is_reached(dipped, at.position, at.normal);
     }
   });
   ReportWanted wanted;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const double area = targets.list[i].area;
-    wanted.object_mm2 += seen[i].wanted ? area : 0;
+    wanted.object_mm2 += is_wanted[i] ? area : 0;
     wanted.reached_mm2 += seen[i].reached ? area : 0;
     wanted.covered_mm2 += seen[i].covered ? area : 0;
   }
-  if (!(wanted.object_mm2 > 0) || wanted.object_mm2 > kNearlyEverywhere * targets.area)
-    return std::nullopt;
   return wanted;
 }
 

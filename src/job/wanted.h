@@ -1,19 +1,30 @@
 // What shall be printed, and what of it a dip brings.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "coat/dipped_object.h"
 #include "object/paint.h"
+#include "plan/targets.h"
 #include "report/report.h"
 
 namespace hydrodip {
 
 inline constexpr int kWantedPoints = 20000;
 
-// Looked at in about so many points of the surface. Nothing where the paint says nothing, or wants
-// colour all over the object: coverage says it then.
+// Looked at in about so many points of the surface. Nothing where the paint says nothing, goes by
+// the film (what has no film shows nothing of it), or wants colour all over the object: coverage
+// says it then.
 std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Paint& paint,
                                             int points = kWantedPoints);
+
+// 1 where something shall be printed. Empty where the paint says nothing of it, or wants colour all
+// over the object.
+std::vector<std::uint8_t> wanted_at(const Targets& targets, const Paint& paint);
+// Whether a dip gets there at all: film lies there, or it comes into the water and faces down. In
+// the posed-object frame.
+bool is_reached(const DippedObject& dipped, const Vec3& position, const Vec3& normal);
 
 }  // namespace hydrodip

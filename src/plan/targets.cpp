@@ -15,6 +15,11 @@ namespace {
 // Where nothing needs to be printed, film still makes the surface look and feel the same.
 constexpr double kPlainShare = 0.25;
 constexpr double kDetailShare = 0.25;
+// All of that together at most so much of what has to be printed: beside a small picture, a large
+// bare surface must not decide.
+constexpr double kPlainOfPrinted = 1.0 / 3;
+// What has more than that differs from the bare object.
+constexpr double kHardlyPlain = kPlainShare + 0.02;
 // Differences in CIELAB that count in full.
 constexpr double kFullColor = 25;
 constexpr double kFullDetail = 15;
@@ -32,6 +37,16 @@ void sum_up(Targets& targets) {
     targets.area += target.area;
     targets.weight += target.area * target.importance;
   }
+}
+
+void bound_plain(Targets& targets) {
+  double plain = 0, printed = 0;
+  for (const Target& t : targets.list)
+    (t.importance < kHardlyPlain ? plain : printed) += t.area * t.importance;
+  if (!(printed > 0) || plain <= kPlainOfPrinted * printed) return;
+  const double share = kPlainOfPrinted * printed / plain;
+  for (Target& t : targets.list)
+    if (t.importance < kHardlyPlain) t.importance *= share;
 }
 
 // How far the colours of a cell lie from their mean, root of the mean square.
@@ -101,6 +116,7 @@ void weigh_by_paint(Targets& targets, const Paint& paint) {
     targets.list[i].importance =
         kPlainShare + (1 - kPlainShare - kDetailShare) * color + kDetailShare * detail;
   }
+  bound_plain(targets);
   sum_up(targets);
 }
 

@@ -30,7 +30,8 @@ inline constexpr int kTargets = 4000;
 Targets spread_targets(const TriangleMesh& mesh, int count = kTargets);
 
 // Weighs them by what is wanted there: most where a colour differs from the bare object's or where
-// there is detail; a quarter of that where the bare object would look right.
+// there is detail; a quarter of that where the bare object would look right, and less where that is
+// so much that it would weigh more than a third of the rest.
 void weigh_by_paint(Targets& targets, const Paint& paint);
 
 // Weighs them by a picture's lightness (linear): white counts in full, black not at all. Throws

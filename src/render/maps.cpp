@@ -312,8 +312,9 @@ Appearance map_appearance(const MapScene& scene, const Camera& camera, double ha
 Image render_maps(const TriangleMesh& object, const Surface& surface, const DippedFilm& film,
                   const FilmMap& map, const MapOptions& options, const RunContext& context) {
   const RunScope scope(context);
-  const TellingViews views(object, surface, film, options.width_px, options.standing, false,
-                           context);
+  const TellingViews views(object, surface,
+                           telling_directions(object, surface, film, options.standing),
+                           options.width_px, options.standing, context);
   return render_maps(views, object, film, map, options, context);
 }
 

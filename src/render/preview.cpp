@@ -59,7 +59,10 @@ std::vector<Image> render_previews(const TriangleMesh& object, const Surface& su
                                    const DippedFilm& film, const std::vector<PreviewPair>& pairs,
                                    const PreviewOptions& options, const RunContext& context) {
   const RunScope scope(context);
-  const TellingViews views(object, surface, film, options.width_px, options.standing, options.whole,
+  const auto directions = options.told.empty()
+                              ? telling_directions(object, surface, film, options.standing)
+                              : telling_directions(object, surface, options.told, options.standing);
+  const TellingViews views(object, surface, directions, options.width_px, options.standing,
                            context);
   return render_previews(views, pairs, options.base, context);
 }

@@ -16,8 +16,8 @@ namespace hydrodip {
 struct PreviewOptions {
   int width_px = 1600;
   LinearColor base{1, 1, 1, 1};
-  Standing standing;   // how the object is shown
-  bool whole = false;  // from where most of the object is seen, not most of the film on it
+  Standing standing;               // how the object is shown
+  std::vector<SurfacePatch> told;  // what is to be seen; none: film on the object
 };
 
 // What one picture shows side by side.
@@ -30,8 +30,8 @@ struct PreviewPair {
 };
 
 // Ray-cast pictures, one for each pair: wanted beside predicted, from the two most telling
-// directions (those that see most of the film-covered area and, second, most of what the first does
-// not see), soft light, neutral ground.
+// directions (those that see most of what is told and, second, most of what the first does not
+// see), soft light, neutral ground.
 std::vector<Image> render_previews(const TriangleMesh& object, const Surface& surface,
                                    const DippedFilm& film, const std::vector<PreviewPair>& pairs,
                                    const PreviewOptions& options, const RunContext& context);

@@ -30,11 +30,10 @@ ViewLayout::ViewLayout(const TriangleMesh& object, const std::array<Vec3, 2>& di
 int ViewLayout::px(double length) const { return int(std::lround(length * unit)); }
 
 TellingViews::TellingViews(const TriangleMesh& object, const Surface& surface,
-                           const DippedFilm& film, int width_px, const Standing& standing,
-                           bool whole, const RunContext& context)
+                           const std::array<Vec3, 2>& directions, int width_px,
+                           const Standing& standing, const RunContext& context)
     : standing_(standing),
-      directions_(whole ? telling_directions_of_all(object, surface, standing)
-                        : telling_directions(object, surface, film, standing)),
+      directions_(directions),
       layout_(object, directions_, width_px, standing),
       normals_(corner_normals(object.positions, object.triangles)) {
   const RunScope scope(context);

@@ -27,9 +27,10 @@ struct ViewLayout {
 // Refers to object and surface.
 class TellingViews {
  public:
-  // From the two directions that tell most of the film on the object; `whole`: of the object.
-  TellingViews(const TriangleMesh& object, const Surface& surface, const DippedFilm& film,
-               int width_px, const Standing& standing, bool whole, const RunContext& context);
+  // From two directions towards the eye, as of telling_directions().
+  TellingViews(const TriangleMesh& object, const Surface& surface,
+               const std::array<Vec3, 2>& directions, int width_px, const Standing& standing,
+               const RunContext& context);
   TellingViews(const TellingViews&) = delete;
   TellingViews& operator=(const TellingViews&) = delete;
 

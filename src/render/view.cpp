@@ -16,18 +16,11 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kMostSamples = 1200;
 
-// A small piece of surface that the picture should show.
-struct Patch {
-  Vec3 position;
-  Vec3 normal;  // outward
-  double area;
-};
-
 // Keeps every n-th patch so that few remain; patches come in mesh order, which spreads them.
-std::vector<Patch> thinned(const std::vector<Patch>& patches) {
+std::vector<SurfacePatch> thinned(const std::vector<SurfacePatch>& patches) {
   const std::size_t stride = (patches.size() + kMostSamples - 1) / kMostSamples;
   if (stride <= 1) return patches;
-  std::vector<Patch> kept;
+  std::vector<SurfacePatch> kept;
   // An odd stride does not fall in step with the rows of a regular film grid as easily.
   for (std::size_t i = 0; i < patches.size(); i += stride | 1) kept.push_back(patches[i]);
   return kept;
@@ -40,14 +33,14 @@ Vec3 area_vector(const std::vector<Vec3>& positions, const Triangle& triangle) {
 }
 
 // Film lies with its underside out: outward is against the film's own normal.
-std::vector<Patch> film_patches(const DippedFilm& film) {
+std::vector<SurfacePatch> film_patches(const DippedFilm& film) {
   std::vector<Vec3> outward(film.position.size(), Vec3::Zero());
   for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
     if (!film.lies_on_object(t)) continue;
     const Vec3 area = area_vector(film.position, film.mesh().triangles[t]);
     for (const std::int32_t v : film.mesh().triangles[t]) outward[std::size_t(v)] -= area / 3;
   }
-  std::vector<Patch> patches;
+  std::vector<SurfacePatch> patches;
   for (std::size_t v = 0; v < outward.size(); ++v) {
     const double area = outward[v].norm();
     if (area > 0) patches.push_back({film.position[v], outward[v] / area, area});
@@ -55,8 +48,8 @@ std::vector<Patch> film_patches(const DippedFilm& film) {
   return patches;
 }
 
-std::vector<Patch> object_patches(const TriangleMesh& object) {
-  std::vector<Patch> patches;
+std::vector<SurfacePatch> object_patches(const TriangleMesh& object) {
+  std::vector<SurfacePatch> patches;
   for (const Triangle& triangle : object.triangles) {
     const Vec3 area = area_vector(object.positions, triangle);
     if (!(area.norm() > 0)) continue;
@@ -69,10 +62,10 @@ std::vector<Patch> object_patches(const TriangleMesh& object) {
 }
 
 // Those that face down, or all if none does.
-std::vector<Patch> facing_down(const std::vector<Patch>& patches) {
-  std::vector<Patch> down;
+std::vector<SurfacePatch> facing_down(const std::vector<SurfacePatch>& patches) {
+  std::vector<SurfacePatch> down;
   std::copy_if(patches.begin(), patches.end(), std::back_inserter(down),
-               [](const Patch& patch) { return faces_down(dip_angle_deg(patch.normal)); });
+               [](const SurfacePatch& patch) { return faces_down(dip_angle_deg(patch.normal)); });
   return down.empty() ? patches : down;
 }
 
@@ -112,7 +105,7 @@ std::vector<Candidate> candidates(const Standing& standing) {
 }
 
 // How well each patch shows from each direction: 0 hidden, 1 seen nearly face on.
-std::vector<std::vector<float>> clarity(const std::vector<Patch>& patches,
+std::vector<std::vector<float>> clarity(const std::vector<SurfacePatch>& patches,
                                         const std::vector<Candidate>& views, const Surface& surface,
                                         double extent) {
   std::vector<std::vector<float>> result(views.size(), std::vector<float>(patches.size(), 0));
@@ -132,7 +125,7 @@ std::vector<std::vector<float>> clarity(const std::vector<Patch>& patches,
 
 std::size_t best_view(const std::vector<Candidate>& views,
                       const std::vector<std::vector<float>>& clear,
-                      const std::vector<Patch>& patches, const std::vector<float>& already) {
+                      const std::vector<SurfacePatch>& patches, const std::vector<float>& already) {
   std::size_t best = 0;
   double best_score = -1;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -157,9 +150,9 @@ double extent_of(const TriangleMesh& object) {
   return box.empty() ? 1 : std::max(1e-9, box.size().norm());
 }
 
-std::array<Vec3, 2> most_telling(const std::vector<Patch>& all, const Surface& surface,
+std::array<Vec3, 2> most_telling(const std::vector<SurfacePatch>& all, const Surface& surface,
                                  double extent, const Standing& standing) {
-  const std::vector<Patch> patches = thinned(all);
+  const std::vector<SurfacePatch> patches = thinned(all);
   const std::vector<Candidate> views = candidates(standing);
   const auto clear = clarity(patches, views, surface, extent);
   const std::vector<float> nothing(patches.size(), 0);
@@ -203,14 +196,15 @@ Standing standing_of(const PosedObject& posed, ModelSide up) {
 
 std::array<Vec3, 2> telling_directions(const TriangleMesh& object, const Surface& surface,
                                        const DippedFilm& film, const Standing& standing) {
-  std::vector<Patch> patches = film_patches(film);
+  std::vector<SurfacePatch> patches = film_patches(film);
   if (patches.empty()) patches = facing_down(object_patches(object));
   return most_telling(patches, surface, extent_of(object), standing);
 }
 
-std::array<Vec3, 2> telling_directions_of_all(const TriangleMesh& object, const Surface& surface,
-                                              const Standing& standing) {
-  return most_telling(object_patches(object), surface, extent_of(object), standing);
+std::array<Vec3, 2> telling_directions(const TriangleMesh& object, const Surface& surface,
+                                       const std::vector<SurfacePatch>& patches,
+                                       const Standing& standing) {
+  return most_telling(patches, surface, extent_of(object), standing);
 }
 
 Vec3 Camera::ray(double x, double y) const {

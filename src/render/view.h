@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "film/film.h"
 #include "object/object.h"
@@ -26,9 +27,17 @@ Standing standing_of(const PosedObject& posed, ModelSide up);
 // meets the film) is the front, unless `standing` says otherwise.
 std::array<Vec3, 2> telling_directions(const TriangleMesh& object, const Surface& surface,
                                        const DippedFilm& film, const Standing& standing = {});
-// The same for the whole surface, whatever lies on it.
-std::array<Vec3, 2> telling_directions_of_all(const TriangleMesh& object, const Surface& surface,
-                                              const Standing& standing);
+
+// A small piece of surface that a picture should show.
+struct SurfacePatch {
+  Vec3 position;
+  Vec3 normal;  // unit, outward
+  double area;
+};
+// The same for these pieces of the object's surface, of which there is one at least.
+std::array<Vec3, 2> telling_directions(const TriangleMesh& object, const Surface& surface,
+                                       const std::vector<SurfacePatch>& patches,
+                                       const Standing& standing);
 
 // A perspective camera. Screen coordinates: x right and y up, both in [-1, 1].
 struct Camera {

@@ -1,6 +1,7 @@
 #include "report/findings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +42,10 @@ Finding no_film(const Coverage& c) {
     finding.advice = "Check which side goes down (--down) and how deep (--depth).";
   }
   return finding;
+}
+
+std::string after_dips(std::size_t dips) {
+  return dips == 1 ? "after 1 dip" : fmt::format("after {} dips", dips);
 }
 
 Finding coverage_of_wanted(const ReportWanted& wanted) {
@@ -129,15 +134,20 @@ Finding tears_of_several(const Report& report) {
 
 // A sheet, a bath and an afternoon for nothing.
 void add_idle_dips(const std::vector<ReportDip>& dips, std::vector<Finding>& list) {
-  std::string numbers;
+  std::vector<std::size_t> idle;
   for (std::size_t k = 0; k < dips.size(); ++k)
-    if (dips[k].gained_share < kHardlyAnything)
-      numbers += fmt::format("{}{}", numbers.empty() ? "" : ", ", k + 1);
-  if (numbers.empty()) return;
+    if (dips[k].blank ||
+        dips[k].gained_wanted_share.value_or(dips[k].gained_share) < kHardlyAnything)
+      idle.push_back(k + 1);
+  if (idle.empty()) return;
+  const bool one = idle.size() == 1;
   list.push_back(
-      {"idle_dips", Concern::kStop, "Dips for nothing", numbers,
-       "add hardly anything to what the others bring: their sheets are all but blank.",
-       "Take them away, or hold the object another way: 'hydrodip plan' looks for ways."});
+      {"idle_dips", Concern::kStop, one ? "A dip for nothing" : "Dips for nothing",
+       fmt::format("{}", fmt::join(idle, ", ")),
+       one ? "adds hardly anything to what the others bring: its sheet is all but blank."
+           : "add hardly anything to what the others bring: their sheets are all but blank.",
+       one ? "Take it away, or hold the object another way: 'hydrodip plan' looks for ways."
+           : "Take them away, or hold the object another way: 'hydrodip plan' looks for ways."});
 }
 
 // What is in the way of one of them is in the way of all.
@@ -375,14 +385,22 @@ Finding gamut(double share) {
   return finding;
 }
 
-Finding coverage_of_dips(const Coverage& c, std::size_t dips) {
+Finding coverage_of_dips(const Coverage& c, const std::optional<ReportWanted>& wanted,
+                         std::size_t dips) {
+  if (wanted) {
+    Finding finding = coverage_of_wanted(*wanted);
+    finding.text =
+        fmt::format("of what shall be printed gets film that holds {}.", after_dips(dips));
+    if (!finding.advice.empty())
+      finding.advice = "Plan more dips (--dips): 'hydrodip plan' says how much each one adds.";
+    return finding;
+  }
   const bool nearly_all = c.covered_share() >= kNearlyAll;
   Finding finding{"coverage",
                   nearly_all ? Concern::kNone : Concern::kCare,
                   "Coverage",
                   percent(c.covered_share()),
-                  fmt::format("of the object is under film after {}.",
-                              dips == 1 ? "1 dip" : fmt::format("{} dips", dips)),
+                  fmt::format("of the object is under film {}.", after_dips(dips)),
                   ""};
   if (!nearly_all)
     finding.advice =
@@ -416,7 +434,8 @@ std::vector<Finding> findings(const Report& report) {
   if (report.coverage) {
     const Coverage& c = *report.coverage;
     const bool several = !report.dips.empty() && c.film_on_object_mm2 > 0;
-    list.push_back(several ? coverage_of_dips(c, report.dips.size()) : coverage(c, report.wanted));
+    list.push_back(several ? coverage_of_dips(c, report.wanted, report.dips.size())
+                           : coverage(c, report.wanted));
     if (!report.better_way.empty())
       list.push_back({"better_way", Concern::kNone, "Better", "", report.better_way + ".", ""});
     add_idle_dips(report.dips, list);

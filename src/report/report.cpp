@@ -139,9 +139,10 @@ std::string plain_verdict(const Report& report) {
 std::string several_dips_verdict(const Report& report) {
   const Coverage& c = *report.coverage;
   const std::size_t dips = report.dips.size();
-  return fmt::format("{} {} of the object; {}",
-                     dips == 1 ? "1 dip covers" : fmt::format("{} dips cover", dips),
-                     percent(c.covered_share()),
+  return fmt::format("{} {}; {}", dips == 1 ? "1 dip covers" : fmt::format("{} dips cover", dips),
+                     has_wanted(report)
+                         ? percent(report.wanted->covered_share()) + " of what shall be printed"
+                         : percent(c.covered_share()) + " of the object",
                      c.torn_mm2 > 0 ? fmt::format("{} of the film that meets it tears.",
                                                   percent(c.torn_share()))
                                     : "nothing tears.") +

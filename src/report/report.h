@@ -108,6 +108,9 @@ struct ReportDip {
   double covered_share = 0;  // under film after this dip
   double torn_share = 0;     // of its film that meets the object
   std::optional<ReportObstacle> obstacle;
+  // Like gained_share, of what shall be printed, if that is not everywhere.
+  std::optional<double> gained_wanted_share;
+  bool blank = false;  // its sheet has no ink
 };
 
 // Where several dips meet.

@@ -195,6 +195,9 @@ Json dips_json(const Report& report) {
                     {"gained_share", number(dip.gained_share)},
                     {"covered_share", number(dip.covered_share)},
                     {"torn_share", number(dip.torn_share)}});
+  for (std::size_t k = 0; k < report.dips.size(); ++k)
+    if (const auto& share = report.dips[k].gained_wanted_share)
+      list[k]["gained_wanted_share"] = number(*share);
   return list;
 }
 
@@ -241,6 +244,10 @@ std::string report_json(const Report& report) {
     json["wrinkled_mm2"] = number(report.coverage->wrinkled_mm2);
     json["lifted_mm2"] = number(report.coverage->lifted_mm2);
   }
+  if (report.wanted)
+    json["wanted"] = {{"object_mm2", number(report.wanted->object_mm2)},
+                      {"covered_mm2", number(report.wanted->covered_mm2)},
+                      {"covered_share", number(report.wanted->covered_share())}};
   if (!report.way_in.empty()) json["way_in"] = way_json(report.way_in);
   if (report.air) json["air"] = air_json(*report.air);
   if (report.coverage) json["short_verdict"] = short_verdict(report);

@@ -36,16 +36,20 @@ TEST(Targets, AreNoneOnNothing) {
 
 class HalfPainted : public Paint {
  public:
-  explicit HalfPainted(const TriangleMesh& mesh) : Paint({1, 1, 1, 1}), mesh_(mesh) {}
+  // `off`: from the middle, in shares of half the size; nearer to 1, less is painted.
+  explicit HalfPainted(const TriangleMesh& mesh, double off = 0)
+      : Paint({1, 1, 1, 1}),
+        mesh_(mesh),
+        from_(mesh.bounds().center().x() + 0.5 * off * mesh.bounds().size().x()) {}
   LinearColor color_at(const SurfacePoint& point) const override {
-    return position_at(mesh_, point).x() > mesh_.bounds().center().x()
-               ? LinearColor{0.1F, 0.1F, 0.1F, 1}
-               : LinearColor{1, 1, 1, 1};
+    return position_at(mesh_, point).x() > from_ ? LinearColor{0.1F, 0.1F, 0.1F, 1}
+                                                 : LinearColor{1, 1, 1, 1};
   }
   bool says_anything() const override { return true; }
 
  private:
   const TriangleMesh& mesh_;
+  double from_;
 };
 
 TEST(Targets, PaintedSurfaceMattersMoreThanBare) {
@@ -54,7 +58,7 @@ TEST(Targets, PaintedSurfaceMattersMoreThanBare) {
   weigh_by_paint(targets, HalfPainted(sphere));
   const double middle = sphere.bounds().center().x();
   for (const Target& t : targets.list) {
-    EXPECT_GE(t.importance, 0.2);
+    EXPECT_GE(t.importance, 0.15);
     EXPECT_LE(t.importance, 1);
     if (t.position.x() > middle + 5) {
       EXPECT_GT(t.importance, 0.7);
@@ -62,6 +66,24 @@ TEST(Targets, PaintedSurfaceMattersMoreThanBare) {
     if (t.position.x() < middle - 5) {
       EXPECT_LT(t.importance, 0.3);
     }
+  }
+}
+
+TEST(Targets, ASmallPictureMattersMoreThanAllThatIsBare) {
+  const Object sphere = make_sample("sphere");
+  for (const double off : {0.5, 0.9, 0.99}) {  // a quarter of the sphere, 5 and 0.5 %
+    Targets targets = spread_targets(sphere, 20000);
+    const HalfPainted paint(sphere, off);
+    weigh_by_paint(targets, paint);
+    // Its edge counts with it, as detail.
+    const double half = 0.5 * sphere.bounds().size().x();
+    const double edge = sphere.bounds().center().x() + off * half - 0.15 * half;
+    double painted = 0, bare = 0;
+    for (const Target& t : targets.list)
+      (t.position.x() > edge ? painted : bare) += t.area * t.importance;
+    EXPECT_GT(painted, 2.5 * bare) << off;
+    EXPECT_GT(bare, 0) << off;  // of two ways that show the picture alike, the one that covers more
+    EXPECT_NEAR(painted + bare, targets.weight, 1e-9 * targets.weight);
   }
 }
 

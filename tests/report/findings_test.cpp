@@ -184,8 +184,29 @@ TEST(Findings, OfSeveralDipsNoneIsMadeForNothing) {
   EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
   EXPECT_EQ(find(findings(report), "idle_dips")->figure, "2");
   report.dips[1].gained_share = 0.1;
+  report.dips[1].blank = true;  // film that covers, and brings no ink
+  EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
+  report.dips[1].blank = false;
+  report.dips[1].gained_wanted_share = 0;  // it lies where nothing shall be printed
+  EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
+  report.dips[1].gained_wanted_share = 0.05;
+  EXPECT_EQ(concern_of(findings(report)), Concern::kCare);
   report.coverage->torn_mm2 = 4000;  // 80 %
   EXPECT_EQ(find(findings(report), "tears")->concern, Concern::kStop);
+}
+
+// The bare rest of an object is nothing that dips of a small picture have to bring.
+TEST(Findings, OfSeveralDipsThePictureCountsWhereThereIsOne) {
+  Report report = good_report();
+  report.coverage->object_mm2 = 1000;
+  report.coverage->covered_mm2 = 400;
+  report.dips.resize(2);
+  report.dips[0].gained_share = report.dips[1].gained_share = 0.2;
+  EXPECT_EQ(find(findings(report), "coverage")->figure, "40 %");
+  report.wanted = ReportWanted{200, 200, 198};
+  EXPECT_EQ(find(findings(report), "coverage")->figure, "99 %");
+  EXPECT_NE(verdict_of(report).find("99 % of what shall be printed"), std::string::npos);
+  EXPECT_EQ(verdict_of(report).find("40 %"), std::string::npos);
 }
 
 // Whatever stops a dip is in its sentence, and then it does not end with "dip it like this".
