@@ -130,8 +130,12 @@ std::vector<NestRequest::Part> parts_of(const Request& request, const JobConfig&
   }
   std::vector<NestRequest::Part> parts;
   parts.reserve(entries.size());
-  for (const PartEntry& entry : entries)
+  for (const PartEntry& entry : entries) {
+    if (entry.job.empty())
+      throw InputError(
+          "a [[part]] table names no job: give it job = \"FILE\", a model or a job's TOML");
     parts.push_back({configure_part(request, entry.job.string()), entry.count});
+  }
   return parts;
 }
 

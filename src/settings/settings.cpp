@@ -180,6 +180,15 @@ void require_dips_alone_say(const JobConfig& config, const SettingSources& sourc
             s.origin == "--set" ? "--set " + s.name : s.origin));
 }
 
+// Parts share a sheet; the job of one object would pass them over.
+void require_no_parts(const std::filesystem::path& job) {
+  for (const Setting& s : read_settings(job))
+    if (s.name.starts_with("part["))
+      throw InputError(fmt::format(
+          "{}: [[part]] tables share a sheet among jobs: 'hydrodip nest --config {}' prints it",
+          s.origin, job.string()));
+}
+
 }  // namespace
 
 JobConfig configured(const std::string& model, SettingSources sources) {
@@ -189,6 +198,7 @@ JobConfig configured(const std::string& model, SettingSources sources) {
   apply_sources(config, sources);
   require_dips_alone_say(config, sources);
   if (!is_job) config.model = model;
+  if (is_job) require_no_parts(model);
   if (is_job && config.model.empty())
     throw InputError(fmt::format(
         "{}: the job names no model: begin it with file = \"MODEL\" under [object]", model));

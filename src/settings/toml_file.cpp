@@ -162,14 +162,16 @@ class SettingReader {
     int number = 0;
     for (const toml::node& table : tables) {
       const std::string prefix = fmt::format("{}[{}].", name, ++number);
-      // A dip of which nothing is said is one all the same.
-      if (name == kDipTables) {
-        const auto& at = table.source().begin;
-        found_.push_back({{prefix + "locked", "false", true, "false",
-                           fmt::format("{}:{}", file_.string(), at.line)},
-                          at.line,
-                          at.column});
-      }
+      // One of which nothing is said is one all the same.
+      const auto& at = table.source().begin;
+      const std::string origin = fmt::format("{}:{}", file_.string(), at.line);
+      const auto add_usual = [&](const char* key, const decltype(Setting::value)& value,
+                                 const std::string& shown) {
+        found_.push_back({{prefix + key, value, true, shown, origin}, at.line, at.column});
+      };
+      if (name == kDipTables) add_usual("locked", std::string("false"), "false");
+      if (name == kArtworkTables) add_usual("projection", std::string("planar"), "planar");
+      if (name == kPartTables) add_usual("count", 1.0, "1");
       collect(*table.as_table(), prefix);
     }
   }

@@ -66,6 +66,25 @@ TEST_F(JobFile, WhatHoldsForAllDipsStandsInDips) {
   EXPECT_EQ(config.dips.size(), 2U);
 }
 
+TEST_F(JobFile, ATableThatSaysNothingIsNotPassedOver) {
+  EXPECT_EQ(read("[[artwork]]\n").object.artwork.size(), 1U);
+  const JobConfig two = read("[[artwork]]\n[[artwork]]\ntext = \"a\"\n");
+  ASSERT_EQ(two.object.artwork.size(), 2U);
+  EXPECT_EQ(two.object.artwork[1].text, "a");
+  EXPECT_EQ(read("[[part]]\n[[part]]\n").parts.size(), 2U);
+}
+
+TEST_F(JobFile, OfPartsIsNoJobOfOneObject) {
+  const auto file = (folder_ / "job.toml").string();
+  std::ofstream(file) << "object.file = \"a.obj\"\n[[part]]\njob = \"b.toml\"\n";
+  try {
+    configured(file, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(contains(error.what(), "hydrodip nest --config"));
+  }
+}
+
 TEST_F(JobFile, ReadsWhatItWrites) {
   JobConfig config;
   config.model = folder_ / "a \"b\" \\ c.obj";
