@@ -121,9 +121,9 @@ std::vector<std::string> option_names(const CLI::App& app) {
 
 // CLI11 leaves in `rest` what it could not place, and the -- that ends the options.
 void refuse_rest(const CLI::App& app, const Command& command, std::vector<std::string> rest) {
-  std::erase(rest, "--");
+  const bool ended = std::erase(rest, "--") > 0;
   for (const std::string& argument : rest) {
-    if (!argument.starts_with("-")) continue;
+    if (ended || !argument.starts_with("-")) continue;
     const std::string name = argument.substr(0, argument.find('='));
     const std::string hint = did_you_mean(name, option_names(app));
     throw InputError(fmt::format("unknown option '{}'{}", name,

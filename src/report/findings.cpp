@@ -15,6 +15,7 @@ namespace hydrodip {
 namespace {
 
 constexpr double kWholePicture = 0.98;     // of what shall be printed
+constexpr double kHardlyAPicture = 0.1;    // of it: a fragment
 constexpr double kMuchTorn = 0.1;          // of the film that meets the object
 constexpr double kMuchAir = 0.02;          // of the object's surface
 constexpr double kSomeEscapes = 0.05;      // of a pocket
@@ -50,8 +51,11 @@ std::string after_dips(std::size_t dips) {
 
 Finding coverage_of_wanted(const ReportWanted& wanted) {
   const bool nearly_all = wanted.covered_share() >= kWholePicture;
+  const bool hardly = wanted.covered_share() < kHardlyAPicture;
   Finding finding{"coverage",
-                  nearly_all ? Concern::kNone : Concern::kCare,
+                  nearly_all ? Concern::kNone
+                  : hardly   ? Concern::kStop
+                             : Concern::kCare,
                   "Coverage",
                   percent(wanted.covered_share()),
                   "of what shall be printed gets film that holds.",

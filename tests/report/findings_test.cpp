@@ -195,6 +195,14 @@ TEST(Findings, OfSeveralDipsNoneIsMadeForNothing) {
   EXPECT_EQ(find(findings(report), "tears")->concern, Concern::kStop);
 }
 
+TEST(Findings, AFragmentOfThePictureIsNoDip) {
+  Report report = good_report();
+  report.wanted = ReportWanted{200, 200, 100};
+  EXPECT_EQ(concern_of(findings(report)), Concern::kCare);
+  report.wanted = ReportWanted{200, 12, 10};
+  EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
+}
+
 // The bare rest of an object is nothing that dips of a small picture have to bring.
 TEST(Findings, OfSeveralDipsThePictureCountsWhereThereIsOne) {
   Report report = good_report();
