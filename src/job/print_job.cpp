@@ -38,21 +38,32 @@ std::string why_no_film(const DippedObject& dipped, const Trajectory& trajectory
       wide_mm, cell_mm);
 }
 
+// What film lies on the object, and yet there is no ink on it.
+std::string why_no_ink(const DippedObject& dipped, const Paint& paint) {
+  const std::optional<ReportWanted> wanted = wanted_coverage(dipped, paint);
+  if (!wanted)
+    return "What the film reaches of the model is white, transparent or of the object's own "
+           "colour; "
+           "check its texture and colours, which side enters the water (--down), and --depth.";
+  if (wanted->covered_mm2 > 0)
+    return "Inks only darken what they lie on: what shall be printed where film lies is lighter "
+           "than "
+           "the object (object.base_color), or hardly differs from it.";
+  if (wanted->reached_mm2 > 0)
+    return "The film tears wherever there is something to print: turn flatter sides down with "
+           "--rotate or --down.";
+  return "What shall be printed does not come to the film: turn it down with --rotate or --down "
+         "(--rotate auto finds how), dip deeper (--depth), or move the artwork.";
+}
+
 // A sheet without a drop on it is never what was meant.
-void require_ink(const Designed& designed, const JobConfig& config, const Trajectory& trajectory) {
+void require_ink(const Designed& designed, const ReadyJob& job) {
   const auto& laid = designed.ink.ink.inking.inks.cmyk;
   if (std::any_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value != 0; })) return;
-  const Coverage& coverage = designed.dipped.coverage;
-  std::string why =
-      "What the film reaches of the model is white, transparent or of the object's own colour; "
-      "check its texture and colours, which side enters the water (--down), and --depth.";
-  if (coverage.torn_mm2 > 0)
-    why =
-        "Either the film tears wherever there is something to print (turn flatter sides down with "
-        "--rotate or --down), or what it reaches of the model is white, transparent or of the "
-        "object's own colour (check its texture and colours).";
-  if (!(coverage.film_on_object_mm2 > 0)) why = why_no_film(designed.dipped, trajectory);
-  throw InputError(fmt::format("{}: the sheet would be blank. {}", config.model.string(), why));
+  const bool has_film = designed.dipped.coverage.film_on_object_mm2 > 0;
+  throw InputError(fmt::format("{}: the sheet would be blank. {}", job.config.model.string(),
+                               has_film ? why_no_ink(designed.dipped, *job.prepared.paint)
+                                        : why_no_film(designed.dipped, job.trajectory)));
 }
 
 }  // namespace
@@ -67,7 +78,7 @@ DesignedJob designed(const ReadyJob& job, const KeptImages& kept, Timings& times
                           .options = job.config.design,
                           .kept = kept},
                          times, context);
-  require_ink(made, job.config, job.trajectory);
+  require_ink(made, job);
   // Held once, by the finish.
   auto look = std::make_shared<const Image>(std::move(made.ink.ink.on_object));
   Finish finish(paint_as_dipped(prepared.paint, made.dipped),
