@@ -5,16 +5,21 @@
 namespace hydrodip {
 namespace {
 
+bool is_white(const LinearColor& c) { return c.r >= 1 && c.g >= 1 && c.b >= 1; }
+
 class ModelPaint : public Paint {
  public:
   ModelPaint(std::shared_ptr<const Object> object, const LinearColor& base)
       : Paint(base), object_(std::move(object)), says_anything_(object_->has_appearance()) {}
 
   LinearColor color_at(const SurfacePoint& point) const override {
-    return hydrodip::color_at(*object_, point, base());
+    return says_anything_ ? hydrodip::color_at(*object_, point, base()) : base();
   }
   bool says_anything() const override { return says_anything_; }
-  const Object* as_object() const override { return object_.get(); }
+  // A model that says nothing is white as an object, whatever colour it is made in.
+  const Object* as_object() const override {
+    return says_anything_ || is_white(base()) ? object_.get() : nullptr;
+  }
 
  private:
   std::shared_ptr<const Object> object_;

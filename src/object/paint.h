@@ -40,7 +40,8 @@ class Paint {
   LinearColor base_;
 };
 
-// The colours that a model came with: textures, materials, vertex colours.
+// The colours that a model came with: textures, materials, vertex colours. One that says nothing of
+// its colour is wanted as it is, bare.
 std::shared_ptr<const Paint> model_paint(std::shared_ptr<const Object> object,
                                          const LinearColor& base = {1, 1, 1, 1});
 
