@@ -287,13 +287,19 @@ Placed place(const PlacementTask& task, LaidLayer& laid, const RunContext& conte
 }
 
 // On the film a picture has its own size, or a hand's width.
-Vec2 size_on_film(const ArtworkLayer& layer, const PictureSource& picture) {
+Vec2 size_on_film(const ArtworkLayer& layer, const PictureSource& picture,
+                  const RunContext& context) {
   constexpr double kUsual_mm = 100;
   if (layer.width_mm > 0 && layer.height_mm > 0) return {layer.width_mm, layer.height_mm};
   double width = layer.width_mm;
   if (!(width > 0) && layer.height_mm > 0) width = layer.height_mm * picture.aspect();
   if (!(width > 0)) width = picture.natural_width_mm();
-  if (!(width > 0)) width = kUsual_mm;
+  if (!(width > 0)) {
+    width = kUsual_mm;
+    context.warn(fmt::format(
+        "{}: nothing says how large it is on the film; it is laid {:g} mm wide (--art-size)",
+        name_of(layer), width));
+  }
   return {width, width / picture.aspect()};
 }
 
@@ -304,7 +310,7 @@ Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask&
   warn_of_what_lies_outside(wanted, picture, context);
   Placed placed;
   if (wanted.projection == Projection::kFilm)
-    placed = {nullptr, size_on_film(wanted, picture), wanted};
+    placed = {nullptr, size_on_film(wanted, picture, context), wanted};
   else
     placed = place({wanted, picture.aspect(), posed, task.closed}, laid, context);
   laid.layer = std::move(placed.layer);

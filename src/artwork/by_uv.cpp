@@ -30,6 +30,8 @@ class ByUv : public Placement {
   ByUv(const Object& object, double side_mm) : object_(object), side_(side_mm) {}
   bool find(const SurfacePoint& point, Spot& spot) const override {
     const CornerUv& uv = object_.uvs[std::size_t(point.triangle)];
+    // Faces without coordinates among others that have them.
+    if (uv[0].isZero(0) && uv[1].isZero(0) && uv[2].isZero(0)) return false;
     const Vec2 there = (1 - point.u - point.v) * uv[0].cast<double>() +
                        point.u * uv[1].cast<double>() + point.v * uv[2].cast<double>();
     spot = {side_ * (there - Vec2(0.5, 0.5)), 1};

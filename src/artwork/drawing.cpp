@@ -329,6 +329,29 @@ Drawing Drawing::from_text(const std::string& text, const std::string& font,
 
 double Drawing::aspect() const { return impl_->size.x() / impl_->size.y(); }
 
+double Drawing::natural_width_mm() const {
+  gboolean has_width = FALSE, has_height = FALSE, has_box = FALSE;
+  RsvgLength width{}, height{};
+  RsvgRectangle box{};
+  rsvg_handle_get_intrinsic_dimensions(impl_->handle.get(), &has_width, &width, &has_height,
+                                       &height, &has_box, &box);
+  if (impl_->is_text || !has_width || !(width.length > 0)) return 0;
+  switch (width.unit) {
+    case RSVG_UNIT_MM:
+      return width.length;
+    case RSVG_UNIT_CM:
+      return 10 * width.length;
+    case RSVG_UNIT_IN:
+      return kMmPerInch * width.length;
+    case RSVG_UNIT_PT:
+      return kMmPerInch * width.length / 72;
+    case RSVG_UNIT_PC:
+      return kMmPerInch * width.length / 6;
+    default:
+      return 0;
+  }
+}
+
 bool Drawing::has_text() const { return impl_->has_text; }
 const std::string& Drawing::linked_picture() const { return impl_->linked; }
 

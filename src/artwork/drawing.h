@@ -30,6 +30,8 @@ class Drawing {
 
   // Width over height.
   double aspect() const;
+  // If an SVG drawing says it in mm, inches or the like; else 0.
+  double natural_width_mm() const;
   // Whether an SVG drawing has text, which is set in whatever fonts this machine has.
   bool has_text() const;
   // A picture that an SVG drawing takes from a file of its own and that is not shown; "" if none.

@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/run_scope.h"
 #include "image/files.h"
+#include "image/picture_file.h"
 #include "image/resize.h"
 
 namespace hydrodip {
@@ -112,10 +113,11 @@ PictureSource::PictureSource(const ArtworkLayer& layer) : name_(name_of(layer)) 
   const std::vector<std::uint8_t> bytes = read_file(layer.image);
   if (looks_like_svg(bytes)) {
     drawing_ = Drawing::from_svg(bytes, name_);
+    natural_width_mm_ = drawing_->natural_width_mm();
     return;
   }
   image_ = std::make_shared<const Image>(decode_image(bytes, name_));
-  const double dpi = recorded_dpi(bytes);
+  const double dpi = scan_dpi(bytes);
   if (dpi > 0) natural_width_mm_ = image_->width_px * kMmPerInch / dpi;
 }
 

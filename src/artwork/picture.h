@@ -43,7 +43,7 @@ class PictureSource {
   explicit PictureSource(const ArtworkLayer& layer);
 
   double aspect() const;  // width over height
-  // Of a picture of pixels: as its file says, else 0.
+  // As its file says (PNG, JPEG, TIFF, SVG in absolute units), else 0.
   double natural_width_mm() const { return natural_width_mm_; }
   // What a text is set in.
   const std::vector<FontUse>& fonts() const { return fonts_; }

@@ -366,7 +366,7 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
                      {"shard", fmt::format("{}/{}", shard.number, shard.of)},
                      {"simulations", total - missing},
                      {"missing", missing}}
-                    .dump(2) +
+                    .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
                 "\n";
   return result;
 }

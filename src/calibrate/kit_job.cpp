@@ -259,7 +259,7 @@ JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
                                  {"board", board.name},
                                  {"files", result.files}};
   if (!expected.empty()) json["expected"] = json_of(expected, request.expected_noise_mm);
-  result.json = json.dump(2) + "\n";
+  result.json = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   return result;
 }
 

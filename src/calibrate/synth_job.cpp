@@ -78,7 +78,7 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
                                        {"folder", config.output.string()},
                                        {"files", result.files},
                                        {"scans", scans}}
-                    .dump(2) +
+                    .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
                 "\n";
   return result;
 }

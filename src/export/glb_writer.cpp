@@ -70,7 +70,8 @@ void GlbWriter::add_mesh(const std::string& name, const GlbMesh& mesh,
 std::vector<std::uint8_t> GlbWriter::finish() {
   json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
   Bytes text;
-  text.add(json_.dump());
+  // Names come as they are in the model's file.
+  text.add(json_.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   text.pad(' ');
   Bytes file;
   file.add("glTF");

@@ -85,13 +85,13 @@ class RgbaReader {
     char why[1024] = {};
     if (!TIFFRGBAImageOK(file, why) || !TIFFRGBAImageBegin(&image_, file, 1, why))
       refuse_picture(name, "TIFF", why);
-    image_.req_orientation = ORIENTATION_TOPLEFT;
+    // As stored: libtiff only mirrors, and leaves rows rows that should be columns.
+    image_.req_orientation = image_.orientation = ORIENTATION_TOPLEFT;
     // Whole strips or tiles at a time: parts of one would be unpacked again and again.
     std::uint32_t block = 0;
     TIFFGetFieldDefaulted(file, TIFFIsTiled(file) ? TIFFTAG_TILELENGTH : TIFFTAG_ROWSPERSTRIP,
                           &block);
-    const bool upright = image_.orientation == ORIENTATION_TOPLEFT;
-    if (!upright || block == 0 || block >= image_.height)
+    if (block == 0 || block >= image_.height)
       band_rows_ = image_.height;
     else
       band_rows_ = (kBandRows + block - 1) / block * block;
@@ -149,13 +149,11 @@ PictureBytes profile_of(TIFF* file) {
 
 // How many bytes a pixel has if rows of such pixels lie one after another; 0 if they do not.
 int bytes_a_pixel(TIFF* file) {
-  std::uint16_t bits = 0, samples = 0, planes = 0, orientation = 0;
+  std::uint16_t bits = 0, samples = 0, planes = 0;
   TIFFGetFieldDefaulted(file, TIFFTAG_BITSPERSAMPLE, &bits);
   TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLESPERPIXEL, &samples);
   TIFFGetFieldDefaulted(file, TIFFTAG_PLANARCONFIG, &planes);
-  TIFFGetFieldDefaulted(file, TIFFTAG_ORIENTATION, &orientation);
-  const bool in_rows = bits == 8 && planes == PLANARCONFIG_CONTIG &&
-                       orientation == ORIENTATION_TOPLEFT && !TIFFIsTiled(file);
+  const bool in_rows = bits == 8 && planes == PLANARCONFIG_CONTIG && !TIFFIsTiled(file);
   return in_rows ? samples : 0;
 }
 
@@ -172,6 +170,20 @@ bool is_one_plain_strip(TIFF* file, std::uint16_t photometric) {
   return TIFFNumberOfStrips(file) == 1 &&
          ((photometric == PHOTOMETRIC_RGB && bytes_a_pixel(file) == 3) ||
           (photometric == PHOTOMETRIC_MINISBLACK && bytes_a_pixel(file) == 1));
+}
+
+// Whether what libtiff makes of it is still in the file's own colour space.
+bool keeps_its_space(std::uint16_t photometric) {
+  switch (photometric) {
+    case PHOTOMETRIC_RGB:
+    case PHOTOMETRIC_YCBCR:
+    case PHOTOMETRIC_PALETTE:
+    case PHOTOMETRIC_MINISBLACK:
+    case PHOTOMETRIC_MINISWHITE:
+      return true;
+    default:
+      return false;
+  }
 }
 
 // False if the file is damaged.
@@ -255,6 +267,9 @@ StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
   StoredPicture picture;
   picture.image = Image(int(width), int(height));
   picture.profile = profile_of(file.get());
+  std::uint16_t orientation = ORIENTATION_TOPLEFT;
+  TIFFGetFieldDefaulted(file.get(), TIFFTAG_ORIENTATION, &orientation);
+  picture.orientation = orientation;  // numbered as EXIF's
   picture.inks = has_known_inks(file.get(), photometric, picture.profile);
   const bool by_rows = picture.inks || is_one_plain_strip(file.get(), photometric);
   if (by_rows ? !read_rows(file.get(), picture.image)
@@ -262,7 +277,7 @@ StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
     refuse_picture(name, "TIFF", source.message);
   if (picture.inks) return picture;
   make_straight(picture.image);
-  if (photometric != PHOTOMETRIC_RGB) picture.profile.clear();
+  if (!keeps_its_space(photometric)) picture.profile.clear();
   return picture;
 }
 

@@ -9,6 +9,8 @@
 #include <draco/metadata/metadata_decoder.h>
 #pragma GCC diagnostic pop
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 
 namespace hydrodip {
@@ -46,25 +48,52 @@ void check_counts(std::span<const std::uint8_t> bytes) {
   }
 }
 
-DracoMesh::Attribute values_of(const draco::Mesh& mesh, std::uint32_t id) {
+// What a whole number of that kind stands for 1; 0 of others.
+float full_scale(draco::DataType type) {
+  switch (type) {
+    case draco::DT_INT8:
+      return 127;
+    case draco::DT_UINT8:
+      return 255;
+    case draco::DT_INT16:
+      return 32767;
+    case draco::DT_UINT16:
+      return 65535;
+    default:
+      return 0;
+  }
+}
+
+DracoMesh::Attribute values_of(const draco::Mesh& mesh, const DracoWanted& wanted) {
   DracoMesh::Attribute out;
-  const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id);
+  const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(wanted.id);
   if (!attribute || attribute->num_components() < 1 || attribute->num_components() > 4) return out;
   out.components = attribute->num_components();
   out.values.resize(std::size_t(mesh.num_points()) * std::size_t(out.components));
+  const float scale = full_scale(attribute->data_type());
+  std::array<std::int32_t, 4> numbers{};
   for (std::uint32_t p = 0; p < mesh.num_points(); ++p) {
+    float* to = &out.values[std::size_t(p) * std::size_t(out.components)];
     const draco::AttributeValueIndex value = attribute->mapped_index(draco::PointIndex(p));
-    if (value.value() >= attribute->size() ||
-        !attribute->ConvertValue<float>(value, std::int8_t(out.components),
-                                        &out.values[std::size_t(p) * std::size_t(out.components)]))
-      throw std::runtime_error("its values are damaged");
+    const auto count = std::int8_t(out.components);
+    const bool is_good =
+        value.value() < attribute->size() &&
+        (scale > 0 ? attribute->ConvertValue<std::int32_t>(value, count, numbers.data())
+                   : attribute->ConvertValue<float>(value, count, to));
+    if (!is_good) throw std::runtime_error("its values are damaged");
+    for (int c = 0; scale > 0 && c < out.components; ++c) {
+      const auto number = float(numbers[std::size_t(c)]);
+      to[c] =
+          wanted.normalized || attribute->normalized() ? std::max(number / scale, -1.0F) : number;
+    }
   }
   return out;
 }
 
 }  // namespace
 
-DracoMesh decode_draco(std::span<const std::uint8_t> bytes, const std::vector<std::uint32_t>& ids) {
+DracoMesh decode_draco(std::span<const std::uint8_t> bytes,
+                       const std::vector<DracoWanted>& wanted) {
   check_counts(bytes);
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -81,7 +110,7 @@ DracoMesh decode_draco(std::span<const std::uint8_t> bytes, const std::vector<st
     for (const std::uint32_t point : out.faces.back())
       if (point >= out.points) throw std::runtime_error("its faces are damaged");
   }
-  for (const std::uint32_t id : ids) out.attributes.push_back(values_of(*mesh, id));
+  for (const DracoWanted& one : wanted) out.attributes.push_back(values_of(*mesh, one));
   return out;
 }
 

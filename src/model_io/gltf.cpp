@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "model_io/draco_mesh.h"
@@ -155,8 +158,18 @@ class GltfReader {
       const json* texture = data_.object(*base, old ? "diffuseTexture" : "baseColorTexture");
       if (texture) channel = read_texture(*texture, material);
     }
+    if (material.alpha == Alpha::kMask) decide_alpha(material);
     channels_.push_back(channel);
     file_.materials.push_back(std::move(material));
+  }
+
+  // Factor times picture is compared with the cutoff, and then shown in full or not at all.
+  static void decide_alpha(FileMaterial& material) {
+    constexpr float kNever = 2;
+    const float factor = material.base_color.a, cutoff = material.alpha_cutoff;
+    material.base_color.a = factor >= cutoff ? 1.0F : 0.0F;
+    material.texture_tint.a = 1;
+    if (cutoff > 0) material.alpha_cutoff = factor > 0 ? cutoff / factor : kNever;
   }
 
   void read_alpha(const json& source, FileMaterial& material) const {
@@ -448,7 +461,7 @@ class GltfReader {
     ++stamp_;
     const json* compressed = data_.extension(primitive, "KHR_draco_mesh_compression");
     if (compressed) {
-      add_draco(*compressed, set, part);
+      add_draco(*compressed, *attributes, set, part);
     } else {
       part.positions = attribute(*attributes, "POSITION");
       part.uvs = attribute(*attributes, set.c_str());
@@ -502,24 +515,12 @@ class GltfReader {
     }
   }
 
-  void add_draco(const json& compressed, const std::string& set, Part& part) {
-    const json* ids = data_.object(compressed, "attributes");
-    const std::int64_t view = data_.reference(compressed, "bufferView", "bufferViews");
-    if (!ids || view < 0) data_.refuse("a mesh compressed by Draco is damaged");
-    std::vector<std::uint32_t> wanted;
-    for (const char* name : {"POSITION", set.c_str(), "COLOR_0"})
-      wanted.push_back(std::uint32_t(
-          std::clamp<std::int64_t>(data_.integer(*ids, name, 0xffffffff), 0, 0xffffffff)));
-    DracoMesh mesh;
-    try {
-      mesh = decode_draco(data_.view(view), wanted);
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& error) {
-      throw InputError(fmt::format(
-          "{}: a mesh compressed by Draco cannot be read ({}); export it without compression.",
-          input_.path, error.what()));
-    }
+  void add_draco(const json& compressed, const json& attributes, const std::string& set,
+                 Part& part) {
+    // Copies of a mesh ask again.
+    const auto [known, is_new] = decoded_.try_emplace({&compressed, set});
+    if (is_new) known->second = decoded(compressed, attributes, set);
+    const DracoMesh& mesh = known->second;
     const auto attribute = [&](std::size_t i) {
       const DracoMesh::Attribute& values = mesh.attributes[i];
       return values.values.empty() ? Attribute() : Attribute(values, mesh.points);
@@ -529,6 +530,34 @@ class GltfReader {
     part.colors = attribute(2);
     check(part);
     for (const auto& face : mesh.faces) add_triangle(part, {face[0], face[1], face[2]});
+  }
+
+  bool is_normalized(const json& attributes, const char* name) const {
+    const std::int64_t index = data_.reference(attributes, name, "accessors");
+    if (index < 0) return false;
+    const json& accessor = data_.entry("accessors", index);
+    const auto flag = accessor.find("normalized");
+    return flag != accessor.end() && flag->is_boolean() && flag->get<bool>();
+  }
+
+  DracoMesh decoded(const json& compressed, const json& attributes, const std::string& set) {
+    const json* ids = data_.object(compressed, "attributes");
+    const std::int64_t view = data_.reference(compressed, "bufferView", "bufferViews");
+    if (!ids || view < 0) data_.refuse("a mesh compressed by Draco is damaged");
+    std::vector<DracoWanted> wanted;
+    for (const char* name : {"POSITION", set.c_str(), "COLOR_0"})
+      wanted.push_back({std::uint32_t(std::clamp<std::int64_t>(
+                            data_.integer(*ids, name, 0xffffffff), 0, 0xffffffff)),
+                        is_normalized(attributes, name)});
+    try {
+      return decode_draco(data_.view(view), wanted);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw InputError(fmt::format(
+          "{}: a mesh compressed by Draco cannot be read ({}); export it without compression.",
+          input_.path, error.what()));
+    }
   }
 
   // Parts and copies without any cost as much as a triangle, or a small file could ask for
@@ -596,6 +625,7 @@ class GltfReader {
   };
 
   const ModelInput& input_;
+  std::map<std::pair<const json*, std::string>, DracoMesh> decoded_;
   GltfData data_;
   CancelCheck cancel_;
   ModelFile file_;

@@ -127,11 +127,11 @@ int components_of(const json& accessor) {
 // ---- numbers ------------------------------------------------------------------------------------
 
 const std::uint8_t* GltfNumbers::entry(std::int64_t i) const {
-  if (!replaced_.empty()) {
-    const auto found = std::lower_bound(replaced_.begin(), replaced_.end(), std::uint32_t(i));
-    if (found != replaced_.end() && *found == std::uint32_t(i))
+  if (replaced_) {
+    const auto found = std::lower_bound(replaced_->begin(), replaced_->end(), std::uint32_t(i));
+    if (found != replaced_->end() && *found == std::uint32_t(i))
       return replacements_.data() +
-             std::size_t(found - replaced_.begin()) * std::size_t(components * bytes_of(type_));
+             std::size_t(found - replaced_->begin()) * std::size_t(components * bytes_of(type_));
   }
   return bytes_.empty() ? nullptr : bytes_.data() + std::size_t(i) * stride_;
 }
@@ -411,6 +411,7 @@ FileBytes GltfData::unpacked(const json& compression) const {
 // ---- accessors ----------------------------------------------------------------------------------
 
 GltfNumbers GltfData::accessor(std::int64_t index) {
+  if (const auto known = sparse_.find(index); known != sparse_.end()) return known->second;
   const json& accessor = entry("accessors", index);
   GltfNumbers out;
   out.components = components_of(accessor);
@@ -440,7 +441,10 @@ GltfNumbers GltfData::accessor(std::int64_t index) {
   } else if (out.count > kMostWithoutData) {
     refuse(fmt::format("accessor {} has more entries than any model", index));
   }
-  if (const json* sparse = object(accessor, "sparse")) read_sparse(*sparse, out);
+  if (const json* sparse = object(accessor, "sparse")) {
+    read_sparse(*sparse, out);
+    sparse_.emplace(index, out);
+  }
   return out;
 }
 
@@ -463,13 +467,17 @@ void GltfData::read_sparse(const json& sparse, GltfNumbers& numbers) {
   if (type != kUByte && type != kUShort && type != kUInt) refuse("a sparse accessor is damaged");
   const Span places = part(*indices, bytes_of(type));
   numbers.replacements_ = part(*values, numbers.components * bytes_of(numbers.type_));
-  numbers.replaced_.reserve(std::size_t(count));
+  auto replaced = std::make_shared<std::vector<std::uint32_t>>();
+  replaced->reserve(std::size_t(count));
+  CancelCheck cancel(input_.context);
   for (std::int64_t i = 0; i < count; ++i) {
     const std::uint32_t place = whole(&places[std::size_t(i * bytes_of(type))], type);
-    if (place >= numbers.count || (i > 0 && place <= numbers.replaced_.back()))
+    cancel();
+    if (place >= numbers.count || (i > 0 && place <= replaced->back()))
       refuse("a sparse accessor's entries are not in order");
-    numbers.replaced_.push_back(place);
+    replaced->push_back(place);
   }
+  numbers.replaced_ = std::move(replaced);
 }
 
 }  // namespace hydrodip

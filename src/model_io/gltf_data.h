@@ -31,8 +31,8 @@ class GltfNumbers {
   std::size_t stride_ = 0;
   int type_ = 0;
   bool normalized_ = false;
-  std::vector<std::uint32_t> replaced_;         // sparse: ascending
-  std::span<const std::uint8_t> replacements_;  // theirs, packed
+  std::shared_ptr<const std::vector<std::uint32_t>> replaced_;  // sparse: ascending; else none
+  std::span<const std::uint8_t> replacements_;                  // theirs, packed
 };
 
 // The file's JSON with checked access. Throws InputError.
@@ -87,6 +87,7 @@ class GltfData {
   std::vector<std::span<const std::uint8_t>> buffers_;
   std::vector<std::unique_ptr<FileBytes>> owned_;
   std::map<std::int64_t, std::span<const std::uint8_t>> unpacked_;
+  std::map<std::int64_t, GltfNumbers> sparse_;  // by accessor: copies of a mesh ask again
   std::size_t buffer_bytes_ = 0;
 };
 

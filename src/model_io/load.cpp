@@ -331,7 +331,8 @@ class ObjectMaker {
     if (!has_uvs) return Eigen::Vector2f::Zero();
     Eigen::Vector2f uv = file_.uvs[corner];
     if (moved) uv = moved->transform.leftCols<2>() * uv + moved->transform.col(2);
-    if (!uv.allFinite())
+    constexpr float kLargest = 1e30F;
+    if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > kLargest)
       throw InputError(fmt::format(
           "{}: a texture coordinate is not a finite number; export the model again.", path_));
     return uv;

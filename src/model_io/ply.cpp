@@ -275,6 +275,11 @@ float color_scale(const PlyType& type) {
   return type.bytes == 1 ? 255 : type.bytes == 2 ? 65535 : 255;
 }
 
+// How much brighter colours of that type are if they are counted up to 255 all the same.
+float guess_of(const PlyType& type) {
+  return type.floating ? 1.0F / 255 : type.bytes == 2 ? 65535.0F / 255 : 1;
+}
+
 // ---- rows ---------------------------------------------------------------------------------------
 
 class PlyReader {
@@ -399,6 +404,9 @@ class PlyReader {
       case Use::kAlpha:
         row_.color[std::size_t(property.use) - std::size_t(Use::kRed)] =
             float(value) / color_scale(property.type);
+        most_color_ = std::max(most_color_, value);
+        states_alpha_ = states_alpha_ || property.use == Use::kAlpha;
+        if (property.type.bytes != 1) color_guess_ = guess_of(property.type);
         break;
       case Use::kTexnumber:
         row_.texnumber = value >= 0 && value < 1e9 ? std::int64_t(value) : -1;
@@ -490,8 +498,19 @@ class PlyReader {
                                               file_.positions.size()));
   }
 
+  // Some count fractions, or two bytes, up to 255.
+  void recount_colors() {
+    const bool up_to_255 =
+        color_guess_ < 1 ? most_color_ > 2 : color_guess_ > 1 && most_color_ <= 255;
+    if (!up_to_255 || most_color_ <= 1) return;
+    for (auto* colors : {&vertex_colors_, &face_colors_})
+      for (auto& color : *colors)
+        for (std::size_t c = 0; c < (states_alpha_ ? 4U : 3U); ++c) color[c] *= color_guess_;
+  }
+
   // Vertex colours win over face colours. An alpha that is 0 everywhere was never meant.
   void resolve_colors() {
+    recount_colors();
     if (has_vertex_colors_) {
       const std::vector<LinearColor> colors = linear(vertex_colors_);
       if (colors.size() != file_.positions.size()) return;
@@ -538,6 +557,9 @@ class PlyReader {
   Row row_;
   std::vector<double> strip_;
   std::vector<std::array<float, 4>> vertex_colors_, face_colors_;
+  double most_color_ = 0;  // as the file has it
+  float color_guess_ = 1;
+  bool states_alpha_ = false;
   std::vector<Eigen::Vector2f> vertex_uvs_, wedge_uvs_;
   ModelFile file_;
 };

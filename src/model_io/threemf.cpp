@@ -57,7 +57,7 @@ struct Part {
   std::vector<Group> groups;
   std::vector<bool> group_has_color;
   std::map<std::int64_t, Object3mf> objects;
-  std::vector<Component> items;
+  std::vector<Component> items, items_off;  // off: not to be printed, as slicers mark it
 };
 
 // What the reader tells about in the end.
@@ -219,7 +219,8 @@ class PartReader {
       object_->components.push_back(placement(tag));
       count_placement();
     } else if (name == "item") {
-      part_.items.push_back(placement(tag));
+      const bool is_off = tag.find("printable") && tag.text("printable") == "0";
+      (is_off ? part_.items_off : part_.items).push_back(placement(tag));
       count_placement();
     }
   }
@@ -506,7 +507,9 @@ class ThreeMfReader {
     root_ = root_part();
     const Part& part = this->part(root_);
     file_.units = part.units;
-    std::vector<Component> items = part.items;
+    std::vector<Component> items = part.items.empty() ? part.items_off : part.items;
+    if (!part.items.empty() && !part.items_off.empty())
+      left_out_.features.insert("objects that are switched off for printing");
     // Some write no build at all: then everything is meant.
     if (items.empty())
       for (const auto& [id, object] : part.objects) items.push_back({"", id, Matrix4f::Identity()});

@@ -111,7 +111,42 @@ long drop_slivers(Object& object) {
   return drop_faces(object, drop);
 }
 
-long drop_duplicates(Object& object) {
+bool same_winding(const Triangle& a, const Triangle& b) {
+  for (std::size_t k = 0; k < 3; ++k)
+    if (a[0] == b[k]) return a[1] == b[(k + 1) % 3];
+  return false;
+}
+
+// A face that lay on another one, its back to that one's front, and went.
+struct BackToBack {
+  std::size_t kept;  // the other
+  Triangle kept_corners, corners;
+  int material = 0;
+  CornerUv uvs;
+  CornerColor colors;
+};
+
+BackToBack back_to_back(const Object& object, std::size_t kept, std::size_t gone) {
+  BackToBack pair{kept, object.triangles[kept], object.triangles[gone], 0, {}, {}};
+  if (!object.material_of.empty()) pair.material = object.material_of[gone];
+  if (!object.uvs.empty()) pair.uvs = object.uvs[gone];
+  if (!object.colors.empty()) pair.colors = object.colors[gone];
+  return pair;
+}
+
+// Of two faces, each the other's back, the one that turned out to look outward is seen.
+void show_outer(Object& object, const std::vector<BackToBack>& pairs) {
+  for (const BackToBack& pair : pairs) {
+    if (same_winding(object.triangles[pair.kept], pair.kept_corners)) continue;
+    object.triangles[pair.kept] = pair.corners;
+    if (!object.material_of.empty()) object.material_of[pair.kept] = pair.material;
+    if (!object.uvs.empty()) object.uvs[pair.kept] = pair.uvs;
+    if (!object.colors.empty()) object.colors[pair.kept] = pair.colors;
+  }
+}
+
+// `backs`: of those that were dropped, in the numbers of the faces that stay.
+long drop_duplicates(Object& object, std::vector<BackToBack>& backs) {
   struct Key {
     Triangle corners;
     std::int32_t face;
@@ -125,8 +160,26 @@ long drop_duplicates(Object& object) {
     return std::tie(a.corners, a.face) < std::tie(b.corners, b.face);
   });
   std::vector<char> drop(keys.size(), 0);
+  std::size_t first = 0;
+  bool has_back = false;
   for (std::size_t i = 1; i < keys.size(); ++i) {
-    if (keys[i].corners == keys[i - 1].corners) drop[std::size_t(keys[i].face)] = 1;
+    if (keys[i].corners != keys[first].corners) {
+      first = i;
+      has_back = false;
+      continue;
+    }
+    const auto kept = std::size_t(keys[first].face), gone = std::size_t(keys[i].face);
+    drop[gone] = 1;
+    if (has_back || same_winding(object.triangles[kept], object.triangles[gone])) continue;
+    has_back = true;
+    backs.push_back(back_to_back(object, kept, gone));
+  }
+  std::sort(backs.begin(), backs.end(),
+            [](const BackToBack& a, const BackToBack& b) { return a.kept < b.kept; });
+  std::size_t face = 0, before = 0;
+  for (BackToBack& pair : backs) {
+    for (; face < pair.kept; ++face) before += drop[face] ? 1 : 0;
+    pair.kept -= before;
   }
   return drop_faces(object, drop);
 }
@@ -621,9 +674,9 @@ std::vector<std::string> MeshHealth::findings() const {
                               counted(degenerate_removed, "triangle", "triangles")));
   }
   if (duplicates_removed > 0) {
-    out.push_back(fmt::format(
-        "Removed {} there already.",
-        counted(duplicates_removed, "triangle that was", "triangles that were")));
+    out.push_back(
+        fmt::format("Removed {} there already.",
+                    counted(duplicates_removed, "triangle that was", "triangles that were")));
   }
   if (flipped > 0) {
     out.push_back(fmt::format("Turned over {} that faced the wrong way.",
@@ -661,13 +714,15 @@ MeshHealth check_and_repair(Object& object) {
   MeshHealth health;
   weld(object);
   health.degenerate_removed = drop_collapsed(object);
-  health.duplicates_removed = drop_duplicates(object);
+  std::vector<BackToBack> backs;
+  health.duplicates_removed = drop_duplicates(object, backs);
   {
     std::vector<TriangleSide> sides = sorted_sides(object);
     health.holes_closed = HoleFiller(object, sides).run();
     if (health.holes_closed > 0) sides = sorted_sides(object);
     count_edges(object, sides, health);
     orient(object, sides, health);
+    show_outer(object, backs);
   }
   health.degenerate_removed += drop_slivers(object);
   weld(object);  // positions that only dropped faces used

@@ -17,6 +17,7 @@ struct TexelPair {
 
 // Texture coordinates this small fit an int.
 constexpr float kPlain = 1e6F;
+constexpr float kFarthest = 1e30F;
 
 // std::floor of those, which need not be a call.
 float floored(float x) {
@@ -28,10 +29,11 @@ TexelPair texels(float coordinate, int size, Wrap wrap) {
   float t = coordinate;
   switch (wrap) {
     case Wrap::kRepeat:
-      t -= std::abs(t) < kPlain ? floored(t) : std::floor(t);
+      // Those so far out that they may have grown to infinity between corners mean nothing.
+      t -= std::abs(t) < kPlain ? floored(t) : std::abs(t) < kFarthest ? std::floor(t) : t;
       break;
     case Wrap::kMirror:
-      t -= 2 * std::floor(t / 2);
+      t -= std::abs(t) < kFarthest ? 2 * std::floor(t / 2) : t;
       if (t > 1) t = 2 - t;
       break;
     case Wrap::kClamp:

@@ -464,7 +464,7 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
                                        {"socket_mm", jig.socket_depth_mm},
                                        {"also_fits_deg", jig.also_fits_deg},
                                        {"parts", parts}}
-                    .dump(2) +
+                    .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
                 "\n";
   return result;
 }

@@ -35,6 +35,9 @@ void require_sound(const Object& object) {
       refuse("has a triangle whose material does not exist");
   if (!object.uvs.empty() && object.uvs.size() != triangles)
     refuse("needs texture coordinates for every triangle or none");
+  for (const CornerUv& corners : object.uvs)
+    for (const Eigen::Vector2f& uv : corners)
+      if (!uv.allFinite()) refuse("has a texture coordinate that is not finite");
   if (!object.colors.empty() && object.colors.size() != triangles)
     refuse("needs colours for every triangle or none");
   for (const Material& m : object.materials)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -316,6 +317,27 @@ TEST_F(Layers, WhatHitsNothingIsRefused) {
   EXPECT_THROW(laid(object, {by_uv}), InputError);
 }
 
+// A face without texture coordinates among others that have them shows nothing of the picture.
+TEST_F(Layers, ByUvLieOnlyOnWhatHasThem) {
+  Object object = with_materials(box({0, 0, 0}, {40, 40, 5}));
+  object.uvs.assign(object.triangles.size(),
+                    {Eigen::Vector2f::Zero(), Eigen::Vector2f::Zero(), Eigen::Vector2f::Zero()});
+  object.uvs[2] = {Eigen::Vector2f(0.1F, 0.1F), Eigen::Vector2f(0.9F, 0.1F),
+                   Eigen::Vector2f(0.9F, 0.9F)};
+  const PosedObject posed(std::make_shared<const Object>(object), {});
+  ArtworkLayer layer;
+  layer.image = black();
+  layer.projection = Projection::kUv;
+  const auto paint = laid(posed, {layer});
+  for (int t = 0; t < int(object.triangles.size()); ++t) {
+    const float seen = paint->color_at({t, 0.3, 0.3}).g;
+    if (t == 2)
+      EXPECT_LT(seen, kBlack);
+    else
+      EXPECT_GT(seen, kWhite) << t;
+  }
+}
+
 // A dot on a plate of two triangles a side: as found as a picture that is as large as the plate.
 TEST_F(Layers, TheSmallestPictureIsFound) {
   const PosedObject object = posed(box({0, 0, 0}, {300, 300, 5}));
@@ -392,6 +414,35 @@ TEST_F(Layers, OnTheFilmShowWhereFilmLies) {
   EXPECT_LT(paint->color_on_film(anywhere, {-5, 3}).g, kBlack);
   EXPECT_GT(paint->color_on_film(anywhere, {5, 3}).g, kWhite);
   EXPECT_LT(paint->color_on_film(anywhere, {15, 3}).g, kBlack);
+}
+
+// A drawing that says how large it is, in whatever unit; in pixels it says nothing.
+TEST_F(Layers, OnTheFilmHaveTheSizeThatTheirFileSays) {
+  const PosedObject object = posed(box({0, 0, 0}, {40, 40, 5}));
+  const auto size_of = [&](const char* width, const char* height) {
+    ArtworkLayer layer;
+    layer.image = folder_ / "a.svg";
+    layer.projection = Projection::kFilm;
+    std::ofstream(layer.image) << "<svg xmlns='http://www.w3.org/2000/svg' width='" << width
+                               << "' height='" << height
+                               << "' viewBox='0 0 2 1'><rect width='2' height='1'/></svg>";
+    RunContext context;
+    std::vector<PictureSource> pictures = read_pictures({layer});
+    const Artwork artwork = lay_artwork(
+        {{layer}, std::move(pictures), model_paint(object.shared_object()), true, 100, 1}, object,
+        context);
+    return std::pair(artwork.layers[0].size_mm, context.warnings().size());
+  };
+  for (const auto& [width, height] :
+       {std::pair{"50.8mm", "25.4mm"}, {"5.08cm", "2.54cm"}, {"2in", "1in"}, {"144pt", "72pt"}}) {
+    const auto [size, warnings] = size_of(width, height);
+    EXPECT_NEAR(size.x(), 50.8, 1e-6) << width;
+    EXPECT_NEAR(size.y(), 25.4, 1e-6) << width;
+    EXPECT_EQ(warnings, 0U);
+  }
+  const auto [size, warnings] = size_of("200", "100");
+  EXPECT_NEAR(size.x(), 100, 1e-6);
+  EXPECT_EQ(warnings, 1U);  // that nothing says it
 }
 
 }  // namespace

@@ -232,6 +232,18 @@ TEST(PreviewGlb, VertexColoursComeOnAMeshOfTheirOwn) {
   }
 }
 
+// Old programs write names in their machine's own letters, and long ones are cut anywhere.
+TEST(PreviewGlb, TakesMaterialNamesOfAnyLetters) {
+  Object ball = two_coloured_ball(4);
+  ball.materials[0].name = "Geh\xe4use";
+  ball.materials[1].name = "\xc3";
+  const TemporaryFolder folder;
+  write_preview_glb(folder / "n.glb", ball, surface_of(ball), film_under_ball(), gradient_sheet(),
+                    80, 100, {1, 1, 1, 1}, 64);
+  const Glb glb = parse(read_file(folder / "n.glb"));
+  EXPECT_FALSE(glb.json["materials"].empty());
+}
+
 TEST(PreviewGlb, APlainModelHasNoVariants) {
   Object ball = two_coloured_ball(4);
   ball.materials.resize(1);

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -145,6 +146,84 @@ TEST(Tiff, WithStraightAlphaAndProfileOfItsOwn) {
   for (std::uint32_t y = 0; y < 2; ++y) TIFFWriteScanline(tiff, image.pixel(0, int(y)), y, 0);
   TIFFClose(tiff);
   expect_four(load_image(path));
+}
+
+// Three wide and two high as it is seen, stored as the orientation says: column and row of a pixel
+// that is stored at (x, y), for pictures of w x h that are seen.
+struct Stored {
+  int orientation, width, height;
+  std::function<std::array<int, 2>(int x, int y)> seen_at;
+};
+
+TEST(Tiff, IsSeenAsItsOrientationSays) {
+  constexpr int kWide = 3, kHigh = 2;
+  const std::vector<Stored> ways = {{1, 3, 2,
+                                     [](int x, int y) {
+                                       return std::array{x, y};
+                                     }},
+                                    {2, 3, 2,
+                                     [](int x, int y) {
+                                       return std::array{kWide - 1 - x, y};
+                                     }},
+                                    {3, 3, 2,
+                                     [](int x, int y) {
+                                       return std::array{kWide - 1 - x, kHigh - 1 - y};
+                                     }},
+                                    {4, 3, 2,
+                                     [](int x, int y) {
+                                       return std::array{x, kHigh - 1 - y};
+                                     }},
+                                    // A stored row is a column that is seen: from the left, from
+                                    // the right; from above, from below.
+                                    {5, 2, 3,
+                                     [](int x, int y) {
+                                       return std::array{y, x};
+                                     }},
+                                    {6, 2, 3,
+                                     [](int x, int y) {
+                                       return std::array{kWide - 1 - y, x};
+                                     }},
+                                    {7, 2, 3,
+                                     [](int x, int y) {
+                                       return std::array{kWide - 1 - y, kHigh - 1 - x};
+                                     }},
+                                    {8, 2, 3, [](int x, int y) {
+                                       return std::array{y, kHigh - 1 - x};
+                                     }}};
+  const TemporaryFolder folder;
+  const std::string path = (folder / "a.tif").string();
+  for (const Stored& way : ways)
+    for (const int samples : {3, 4})
+      for (const std::uint32_t rows : {1U, 3U}) {
+        SCOPED_TRACE(testing::Message() << way.orientation << " " << samples << " " << rows);
+        TIFF* tiff = TIFFOpen(path.c_str(), "w");
+        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, way.width);
+        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, way.height);
+        TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+        TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, samples);
+        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
+        TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+        TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, rows);
+        TIFFSetField(tiff, TIFFTAG_ORIENTATION, way.orientation);
+        const std::uint16_t extra[] = {EXTRASAMPLE_UNASSALPHA};
+        if (samples == 4) TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, extra);
+        for (int y = 0; y < way.height; ++y) {
+          Bytes row;
+          for (int x = 0; x < way.width; ++x) {
+            const auto [column, line] = way.seen_at(x, y);
+            row.insert(row.end(), {std::uint8_t(50 * column), std::uint8_t(100 * line), 7});
+            if (samples == 4) row.push_back(255);
+          }
+          TIFFWriteScanline(tiff, row.data(), std::uint32_t(y), 0);
+        }
+        TIFFClose(tiff);
+        const Image image = load_image(path);
+        ASSERT_EQ(image.width_px, kWide);
+        ASSERT_EQ(image.height_px, kHigh);
+        for (int y = 0; y < kHigh; ++y)
+          for (int x = 0; x < kWide; ++x)
+            EXPECT_EQ(at(image, x, y), (Rgba{50 * x, 100 * y, 7, 255}));
+      }
 }
 
 // ---- colour spaces and orientation --------------------------------------------------------------

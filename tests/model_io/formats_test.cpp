@@ -321,6 +321,22 @@ TEST_F(Formats, PlyColoursOfFaces) {
   EXPECT_EQ(seen_at(load(folder_.write("a.ply", text)), 0.5, 0.5), (Rgb{10, 200, 30}));
 }
 
+// Fractions, two bytes and one byte that all count up to 255.
+TEST_F(Formats, PlyColoursThatCountTo255) {
+  for (const char* type : {"uchar", "ushort", "int", "float", "double"}) {
+    const std::string text = ply_square(
+        "", fmt::format("property {0} red\nproperty {0} green\nproperty {0} blue\n", type),
+        " 10 200 30");
+    EXPECT_EQ(seen_at(load(folder_.write("a.ply", text)), 0.5, 0.5), (Rgb{10, 200, 30})) << type;
+  }
+  for (const auto& [type, values] :
+       {std::pair{"float", " 1 0.5 0"}, std::pair{"ushort", " 65535 32768 0"}}) {
+    const std::string text = ply_square(
+        "", fmt::format("property {0} red\nproperty {0} green\nproperty {0} blue\n", type), values);
+    EXPECT_EQ(seen_at(load(folder_.write("a.ply", text)), 0.5, 0.5), (Rgb{255, 128, 0})) << type;
+  }
+}
+
 TEST_F(Formats, PlyDataThatBeginsLikeALineEnd) {
   std::string text =
       "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\n"
@@ -588,6 +604,31 @@ TEST_F(Gltf, CompressedByDraco) {
                        mesh.positions, mesh.uvs)));
 }
 
+// The accessor says how whole numbers count; encoders leave the mesh's own note at no.
+TEST_F(Gltf, ColoursCompressedByDracoCountAsTheirAccessorSays) {
+  const fixtures::DracoMesh mesh =
+      fixtures::draco_mesh({{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {0, 0, -1}},
+                           {{0, 1}, {1, 1}, {1, 0}, {0, 0}}, {{0, 1, 2}, {0, 2, 3}}, {55, 13, 128});
+  std::vector<Piece> pieces = plain();
+  for (Piece& piece : pieces) piece.bytes.assign(piece.bytes.size(), 0);
+  pieces.push_back({Bytes(12, 0),
+                    R"("componentType": 5121, "normalized": true, "count": 4, "type": "VEC3")",
+                    ""});
+  pieces.push_back({mesh.bytes, "", ""});
+  const Loaded loaded = gltf(pieces, R"("pbrMetallicRoughness": {})",
+                             R"(, "extensionsRequired": ["KHR_draco_mesh_compression"])",
+                             R"(, "COLOR_0": 3)", R"("source": 0)",
+                             fmt::format(R"(, "extensions": {{"KHR_draco_mesh_compression":
+{{"bufferView": 4, "attributes": {{"POSITION": {}, "COLOR_0": {}}}}}}})",
+                                         mesh.positions, mesh.colors));
+  const Object& object = loaded.object.object;
+  ASSERT_FALSE(object.colors.empty());
+  // glTF's vertex colours are linear.
+  EXPECT_NEAR(object.colors[0][0].r, 55.0 / 255, 1e-6);
+  EXPECT_NEAR(object.colors[0][0].g, 13.0 / 255, 1e-6);
+  EXPECT_NEAR(object.colors[0][0].b, 128.0 / 255, 1e-6);
+}
+
 TEST_F(Gltf, CompressedByMeshoptimizer) {
   const std::vector<Piece> packed = {
       {fixtures::meshopt_vertices(positions_, 12), "", ""},
@@ -679,6 +720,26 @@ TEST_F(Gltf, AlphaOfVerticesUnderOpaque) {
   const Loaded blended =
       gltf(pieces, std::string(kTextured) + R"(, "alphaMode": "BLEND")", "", R"(, "COLOR_0": 3)");
   EXPECT_LT(at(blended, 0.25, 0.75)[0], 60);
+}
+
+// Factor times picture is compared with the cutoff; what passes is opaque.
+TEST_F(Gltf, MaskedMaterialsShowInFullOrNotAtAll) {
+  const auto with = [&](double alpha, double cutoff, bool pictured) {
+    const Loaded loaded =
+        gltf(plain(),
+             fmt::format(R"("alphaMode": "MASK", "alphaCutoff": {}, "pbrMetallicRoughness":
+{{"baseColorFactor": [1, 0, 0, {}]{}}})",
+                         cutoff, alpha, pictured ? R"(, "baseColorTexture": {"index": 0})" : ""));
+    return at(loaded, 0.25, 0.75);
+  };
+  constexpr Rgb kBare{0, 0, 0};  // of seen_at()
+  for (const bool pictured : {false, true}) {
+    EXPECT_EQ(with(0.8, 0.5, pictured), kRed);
+    EXPECT_EQ(with(0.5, 0.5, pictured), kRed);
+    EXPECT_EQ(with(0.3, 0.5, pictured), kBare);
+    EXPECT_EQ(with(0.3, 0.2, pictured), kRed);
+    EXPECT_EQ(with(0, 0.1, pictured), kBare);
+  }
 }
 
 TEST_F(Gltf, SpecularGlossinessHasABaseColourToo) {
@@ -939,6 +1000,23 @@ TEST_F(ThreeMf, SupportsAreNotDipped) {
                       "</object></resources><build><item objectid=\"1\"/>"
                       "<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 9 0 0\"/></build>")}});
   EXPECT_EQ(loaded.object.health.triangles, 2);
+}
+
+TEST_F(ThreeMf, WhatIsSwitchedOffForPrintingIsLeftOutAndSaid) {
+  const auto build = [&](const char* first, const char* second) {
+    return package({{"3D/3dmodel.model",
+                     model("<resources><object id=\"1\">" + square("") +
+                           "</object></resources><build><item objectid=\"1\" " + first +
+                           "/><item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 9 0 0\" " +
+                           second + "/></build>")}});
+  };
+  const Loaded one = build("printable=\"1\"", "printable=\"0\"");
+  EXPECT_EQ(one.object.health.triangles, 2);
+  ASSERT_FALSE(one.warnings.empty());
+  EXPECT_TRUE(contains(one.warnings.front(), "switched off"));
+  EXPECT_EQ(build("", "").object.health.triangles, 4);
+  // Nothing on: all is meant.
+  EXPECT_EQ(build("printable=\"0\"", "printable=\"0\"").object.health.triangles, 4);
 }
 
 // Bambu Studio and OrcaSlicer: one object of three components, of which one is to be dipped.

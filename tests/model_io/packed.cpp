@@ -18,12 +18,14 @@ namespace hydrodip::fixtures {
 
 DracoMesh draco_mesh(const std::vector<std::array<float, 3>>& positions,
                      const std::vector<std::array<float, 2>>& uvs,
-                     const std::vector<std::array<std::uint16_t, 3>>& triangles) {
+                     const std::vector<std::array<std::uint16_t, 3>>& triangles,
+                     const std::array<std::uint8_t, 3>& color) {
   draco::TriangleSoupMeshBuilder builder;
   builder.Start(int(triangles.size()));
   const int places = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
   const int coordinates =
       builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
+  const int colors = builder.AddAttribute(draco::GeometryAttribute::COLOR, 3, draco::DT_UINT8);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const draco::FaceIndex face{std::uint32_t(t)};
     const auto [a, b, c] = triangles[t];
@@ -31,6 +33,7 @@ DracoMesh draco_mesh(const std::vector<std::array<float, 3>>& positions,
                                       positions[c].data());
     builder.SetAttributeValuesForFace(coordinates, face, uvs[a].data(), uvs[b].data(),
                                       uvs[c].data());
+    builder.SetAttributeValuesForFace(colors, face, color.data(), color.data(), color.data());
   }
   const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
   draco::Encoder encoder;
@@ -38,7 +41,8 @@ DracoMesh draco_mesh(const std::vector<std::array<float, 3>>& positions,
   if (!mesh || !encoder.EncodeMeshToBuffer(*mesh, &buffer).ok()) throw std::runtime_error("Draco");
   return {{buffer.data(), buffer.data() + buffer.size()},
           mesh->attribute(places)->unique_id(),
-          mesh->attribute(coordinates)->unique_id()};
+          mesh->attribute(coordinates)->unique_id(),
+          mesh->attribute(colors)->unique_id()};
 }
 
 Bytes meshopt_vertices(const Bytes& values, std::size_t stride) {

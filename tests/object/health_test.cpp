@@ -134,6 +134,45 @@ TEST(Health, DropsDegenerateAndDuplicateFaces) {
   EXPECT_TRUE(health.closed());
 }
 
+// As programs write walls with two sides: each face twice, back to back, in two materials. Which
+// one comes first must not matter.
+TEST(Health, OfFacesBackToBackTheOuterOneIsSeen) {
+  for (const bool back_first : {false, true}) {
+    Object object = box();
+    object.materials.resize(2);
+    object.colors.assign(object.triangles.size(), {});
+    const std::size_t count = object.triangles.size();
+    for (std::size_t f = 0; f < count; ++f) {
+      object.colors[f] = {LinearColor{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
+      const Triangle& t = object.triangles[f];
+      object.triangles.push_back({t[1], t[0], t[2]});
+      object.material_of.push_back(1);
+      object.colors.push_back({LinearColor{0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}});
+    }
+    const Object outer = box();
+    if (back_first)
+      for (std::size_t f = 0; f < count; ++f) {
+        std::swap(object.triangles[f], object.triangles[count + f]);
+        std::swap(object.material_of[f], object.material_of[count + f]);
+        std::swap(object.colors[f], object.colors[count + f]);
+      }
+    EXPECT_EQ(check_and_repair(object).duplicates_removed, long(count));
+    ASSERT_EQ(object.triangles.size(), count);
+    for (std::size_t f = 0; f < count; ++f) {
+      EXPECT_EQ(object.material_of[f], 0);
+      // Each corner has kept its own colour.
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& at = object.positions[std::size_t(object.triangles[f][k])];
+        for (std::size_t j = 0; j < 3; ++j)
+          if (outer.positions[std::size_t(outer.triangles[f][j])] == at) {
+            EXPECT_EQ(object.colors[f][k].r, j == 0 ? 1 : 0);
+            EXPECT_EQ(object.colors[f][k].g, j == 1 ? 1 : 0);
+          }
+      }
+    }
+  }
+}
+
 TEST(Health, ASliverWithoutAreaStillJoinsItsNeighbours) {
   // A tetrahedron with a vertex on the middle of one edge of one face only; the sliver closes it.
   Object object;

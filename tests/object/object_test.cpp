@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace hydrodip {
 namespace {
@@ -49,6 +50,21 @@ TEST(ColorAt, BottomRowIsAtVZero) {
   const Object object = triangle_with(picture(1, 2, {kRed, kGreen}));
   expect_opaque(color_at(object, at(0.5, 0.25), kBase), 0, 1, 0);
   expect_opaque(color_at(object, at(0.5, 0.75), kBase), 1, 0, 0);
+}
+
+// Numbers that exporters write where they have none: sums of them are no numbers any more.
+TEST(ColorAt, CoordinatesOutOfAllBoundsAreSomeTexel) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  for (const Wrap wrap : {Wrap::kRepeat, Wrap::kMirror, Wrap::kClamp, Wrap::kDecal}) {
+    Object object = triangle_with(picture(2, 2, {kRed, kRed, kRed, kRed}), wrap, wrap);
+    for (const float far : {kMost, -kMost, 1e31F, -1e31F, 1e20F})
+      for (const double u : {0.2, 0.3, 1.0 / 3}) {
+        const Eigen::Vector2f corner(far, far);
+        object.uvs = {{corner, corner, corner}};
+        const LinearColor color = color_at(object, {0, u, 0.3}, kBase);
+        EXPECT_TRUE(std::isfinite(color.r + color.g + color.b)) << far;
+      }
+  }
 }
 
 TEST(ColorAt, InterpolatesInLinearLight) {
