@@ -134,7 +134,7 @@ std::vector<NestRequest::Part> parts_of(const Request& request, const JobConfig&
     if (entry.job.empty())
       throw InputError(
           "a [[part]] table names no job: give it job = \"FILE\", a model or a job's TOML");
-    parts.push_back({configure_part(request, entry.job.string()), entry.count});
+    parts.push_back({configure_part(request, entry.job.string()), entry.count, entry.job});
   }
   return parts;
 }

@@ -198,9 +198,26 @@ bool hits(const Layer& layer, const TriangleMesh& mesh) {
 
 // ---- laying ----
 
+// Of directions at right angles, nearly.
+constexpr double kAcross = 0.2;
+
+bool is_black(const LinearColor& c) { return c.r == 0 && c.g == 0 && c.b == 0 && c.a == 1; }
+
 // What is said of a layer though its projection has no use for it.
 void warn_of_idle_words(const ArtworkLayer& layer, const RunContext& context) {
   const bool uv = layer.projection == Projection::kUv, film = layer.projection == Projection::kFilm;
+  const ArtworkLayer usual;
+  if (layer.text.empty() && (layer.font != usual.font || !is_black(layer.text_color)))
+    context.warn(
+        fmt::format("{}: font and colour mean nothing to a picture, only to text", name_of(layer)));
+  const bool round =
+      layer.projection == Projection::kCylinder || layer.projection == Projection::kSphere;
+  if (round && layer.up && layer.toward &&
+      std::abs(layer.up->normalized().dot(layer.toward->normalized())) < kAcross)
+    context.warn(fmt::format(
+        "{}: its up lies across the axis, along which a picture around it stands: it says nothing; "
+        "turn it with --art-turn",
+        name_of(layer)));
   if (!uv && !film && layer.projection != Projection::kWrap) return;
   std::string idle;
   const auto add = [&](bool said, const char* what) {

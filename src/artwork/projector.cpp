@@ -318,7 +318,13 @@ ArtworkLayer seen_there(const PlacementTask& task, const ModelFrame& frame, cons
 
 Vec3 axis_of(const PlacementTask& task, const ModelFrame& frame, const Vec3& usual) {
   Vec3 axis = task.layer.toward ? unit(frame.turn * *task.layer.toward, "toward", task) : usual;
-  if (task.layer.up && axis.dot(frame.turn * *task.layer.up) < 0) axis = -axis;
+  if (task.layer.up) return axis.dot(frame.turn * *task.layer.up) < 0 ? Vec3(-axis) : axis;
+  // An axis has no direction of its own: up is the model's z, else its y, else its x.
+  constexpr double kSome = 1e-3;
+  for (const int k : {2, 1, 0}) {
+    const double along = axis.dot(frame.turn.col(k));
+    if (std::abs(along) > kSome) return along < 0 ? Vec3(-axis) : axis;
+  }
   return axis;
 }
 
@@ -334,7 +340,7 @@ Aimed aim_cylinder(const PlacementTask& task) {
   if (task.layer.at_mm) nearest_to(task, frame.point(*task.layer.at_mm));
   const double from_centre = height - centre.dot(axis);
   const double radius = radius_at(task, centre + from_centre * axis, round.front);
-  const Vec2 size = fitting_size(task, {std::numbers::pi * radius, along.room(height)});
+  const Vec2 size = fitting_size(task, {0.5 * std::numbers::pi * radius, along.room(height)});
   return {std::make_unique<CylinderProjector>(round, radius, from_centre), size,
           seen_there(task, frame, centre + from_centre * axis + radius * round.front)};
 }
@@ -357,7 +363,7 @@ Aimed aim_sphere(const PlacementTask& task) {
                        : 0;
   const double radius = radius_at(
       task, centre, (std::cos(latitude) * round.front + std::sin(latitude) * axis).normalized());
-  const Vec2 size = fitting_size(task, {std::numbers::pi * radius * std::cos(latitude),
+  const Vec2 size = fitting_size(task, {0.5 * std::numbers::pi * radius * std::cos(latitude),
                                         radius * (0.5 * std::numbers::pi - std::abs(latitude))});
   return {std::make_unique<SphereProjector>(round, radius, latitude), size,
           seen_there(task, frame, centre + radius * round.front)};

@@ -15,6 +15,7 @@
 #include "export/stl.h"
 #include "ink/color_model.h"
 #include "job/sheet_of.h"
+#include "settings/activator.h"
 #include "sheet/film_marks.h"
 #include "sheet/page_writer.h"
 #include "sheet/sheet.h"
@@ -105,6 +106,7 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
 
   page.heading("Film");
   const FilmOptions& film = config.design.film;
+  const Activator activator = activator_for(process, film);
   page.task(
       fmt::format("Print checkerboard.pdf once for each dip at 100 %, no scaling; the ruler in its "
                   "margin must measure true. Four squares together are {:g} mm wide.",
@@ -125,11 +127,10 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
   }
   page.task(
       fmt::format("Water {:g} to {:g} °C; film soaks {:g} to {:g} s until it lies flat; activator "
-                  "{:g} ± {:g} g "
-                  "per letter sheet; wait {:g} s; then dip. Exactly as in the jobs to come.",
+                  "{:.2f} ± {:.2f} g; wait {:g} s; then dip. Exactly as in the jobs to come.",
                   process.water_min_c, process.water_max_c, process.soak_min_s, process.soak_max_s,
-                  process.activator_g, process.activator_tolerance_g, process.activator_wait_s));
-  page.task("Clear the surface, lift the shape out, let it dry.");
+                  activator.mass_g, activator.tolerance_g, process.activator_wait_s));
+  page.task("Clear the surface, lift the shape out, rinse it, let it dry.");
 
   page.heading("Scan");
   page.task(
@@ -162,7 +163,7 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
                   scans_of(objects)));
   say(fmt::format("hydrodip calibrate{} -o my-film", scans_of(objects)));
   say("With the dome's reading: --torn-ring N, once for each dip of it.");
-  say("Where you dipped deeper or less, say so: sphere@11.5=FILE. Then print with "
+  say("Where you dipped deeper or less, say so: sphere-90@18.5=FILE. Then print with "
       "--profile my-film/profile.toml.");
   pdf.save(path);
 }

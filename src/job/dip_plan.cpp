@@ -29,6 +29,7 @@ PoseOptions pose_of(const DipEntry& entry, const PoseOptions& base) {
 }
 
 bool is_given(const DipEntry& entry, bool again) {
+  if (entry.find_rotation && !entry.locked) return false;
   return again ? entry.locked
                : entry.rotate_deg.has_value() || entry.down.has_value() || !entry.path.empty();
 }
@@ -260,7 +261,8 @@ FilmOptions film_of(const JobConfig& config, const Trial& trial) {
   return film;
 }
 
-std::vector<DipEntry> entries_of(const DipPlan& plan, const std::vector<DipEntry>& earlier) {
+std::vector<DipEntry> entries_of(const DipPlan& plan, const JobConfig& config) {
+  const std::vector<DipEntry>& earlier = config.dips;
   std::vector<DipEntry> entries;
   for (const PlannedDip& planned : plan.dips) {
     const Trial& dip = planned.trial;
@@ -270,7 +272,9 @@ std::vector<DipEntry> entries_of(const DipPlan& plan, const std::vector<DipEntry
     if (dip.path.empty()) entry.depth_mm = dip.depth_mm;
     entry.path = dip.path;
     const auto same = std::find_if(earlier.begin(), earlier.end(), [&](const DipEntry& other) {
-      return other.rotate_deg && *other.rotate_deg == *entry.rotate_deg;
+      const PoseOptions pose = pose_of(other, config.object.pose);
+      return (other.rotate_deg || other.locked) && pose.down == dip.pose.down &&
+             pose.rotate_deg == dip.pose.rotate_deg;
     });
     if (same != earlier.end()) {
       entry.locked = same->locked;

@@ -32,6 +32,6 @@ FilmOptions film_of(const JobConfig& config, const Trial& trial);
 std::filesystem::path correction_of(const JobConfig& config, const Trial& trial);
 
 // The plan's dips as the job's, everything given.
-std::vector<DipEntry> entries_of(const DipPlan& plan, const std::vector<DipEntry>& earlier);
+std::vector<DipEntry> entries_of(const DipPlan& plan, const JobConfig& config);
 
 }  // namespace hydrodip

@@ -9,6 +9,7 @@
 #include "dip/wetting.h"
 #include "image/files.h"
 #include "job/jobs.h"
+#include "job/output.h"
 #include "job/prepare.h"
 #include "job/print_dips.h"
 #include "job/ways.h"
@@ -211,6 +212,9 @@ void write_angle_map(const std::filesystem::path& path, const Inspection& i,
 std::string write_files(const Inspection& i, const std::string& report, const RunContext& context) {
   OutputFolder folder(i.config.output, i.config.earlier_result);
   folder.announce({"angles.png", "report.json"}, i.prepared.files);
+  std::vector<std::string> others = prints();
+  others.emplace_back("report.html");
+  folder.supersede(others);
   write_angle_map(folder.path("angles.png"), i, context);
   write_file(folder.path("report.json"), report);
   context.check_cancelled();

@@ -210,6 +210,7 @@ Report make_report(const JobRecord& record) {
   report.mesh = record.prepared.health;
   report.tear_stretch = record.config.design.dip.material.tear_stretch;
   report.finished_image = !record.config.film_image.empty();
+  report.one_dip_only = record.prepared.paint->depends_on_film();
   if (record.command == "print") report.bleed_mm = record.config.design.inverse.bleed_mm;
   report.figures = figures(record.dipped());
   for (std::size_t n = 0; n < record.prepared.artwork.size(); ++n)

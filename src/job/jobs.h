@@ -66,6 +66,7 @@ struct NestRequest {
   struct Part {
     JobConfig config;  // its film is the sheet's; its piece's size follows from the object
     int count = 1;
+    std::filesystem::path file;  // of its job or model, by whose name people know it
   };
   std::vector<Part> parts;
   std::optional<double> clearance_mm;  // free film; none: as much as the sheet has room for

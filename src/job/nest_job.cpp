@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -24,9 +25,13 @@
 #include "job/ways.h"
 #include "plan/fit.h"
 #include "plan/sheet_packing.h"
+#include "render/preview.h"
 #include "report/findings.h"
 #include "report/html.h"
+#include "session/appearance_of.h"
 #include "session/sheet_files.h"
+#include "settings/activator.h"
+#include "settings/params.h"
 
 namespace hydrodip {
 namespace {
@@ -39,15 +44,16 @@ constexpr double kLeastClearance_mm = 10, kLeastClearancePerDepth = 0.25;
 constexpr double kEnoughClearance_mm = 30, kEnoughClearancePerDepth = 1.5;
 constexpr int kClearances = 32;  // tried between the two
 // Lines to cut along, and what is written beside them, in the taped margin.
-constexpr double kLine_mm = 0.2, kLabel_mm = 3;
+constexpr double kLine_mm = 0.2, kLabel_mm = 3, kTick_mm = 3;
 
 // A part on a piece of film of its own.
 struct Part {
   ReadyJob job;
   Room room;  // that its wet part takes
   int count = 1;
+  std::filesystem::path file;  // its job's, or the model's
 
-  std::string name() const { return job.config.model.filename().string(); }
+  std::string name() const { return file.filename().string(); }
   const FilmOptions& film() const { return job.config.design.film; }
 };
 
@@ -93,6 +99,23 @@ FilmOptions piece_for(const Room& room, const FilmOptions& sheet, double clearan
   return piece;
 }
 
+// One sheet is printed and laid on the water in one way.
+void require_the_sheets_own(const JobConfig& config, const JobConfig& sheet,
+                            const std::string& name) {
+  static const std::array<const char*, 8> kOfTheSheet = {
+      "print.ink_side",  "print.scale_x",   "print.scale_y",  "print.skew_deg",
+      "film.swelling_x", "film.swelling_y", "film.margin_mm", "film.shape"};
+  for (const char* of_sheet : kOfTheSheet) {
+    const Parameter& p = find_parameter(of_sheet, "nest");
+    const ParameterValue value = p.get(config);
+    if (value == p.get(sheet) || value == p.default_value()) continue;
+    throw InputError(
+        fmt::format("{}: {} = {} holds for the whole sheet: give it to nest itself (--set, "
+                    "--profile or --config), or take it out of the part's job",
+                    name, of_sheet, show_value(p, value)));
+  }
+}
+
 Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet, const Printer& printer,
                   const RunContext& context) {
   JobConfig config = wanted.config;
@@ -103,6 +126,7 @@ Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet, const
           "pieces of other sizes; leave it out, or print the part by itself",
           correction.string()));
   require_one_dip(config, "a part gets one piece of film; print it by itself");
+  require_the_sheets_own(config, sheet, wanted.file.filename().string());
   config.printer = sheet.printer;
   config.design.dpi = sheet.design.dpi;
   PreparedObject prepared = prepare_object(config.model, config.object, context, config.design.dpi,
@@ -112,8 +136,10 @@ Part prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet, const
   const TriangleMesh& mesh = prepared.posed.mesh();
   Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
   const Room room = room_of(mesh, trajectory);
-  return {
-      {std::move(config), std::move(prepared), std::move(trajectory), printer}, room, wanted.count};
+  return {{std::move(config), std::move(prepared), std::move(trajectory), printer},
+          room,
+          wanted.count,
+          wanted.file};
 }
 
 void cut_pieces(std::vector<Part>& parts, const FilmOptions& sheet, double amount,
@@ -267,6 +293,15 @@ void mark_piece(Inking& laid, const std::string& label, double margin_mm, double
       blacken(laid, k, y, 255);
       blacken(laid, width - 1 - k, y, 255);
     }
+  // Where the object's middle belongs.
+  const int tick = int(std::min(kTick_mm, 0.5 * margin_mm) * pixels_per_mm);
+  for (int k = 0; k < tick; ++k)
+    for (int across = 0; across < line; ++across) {
+      blacken(laid, width / 2 + across, k, 255);
+      blacken(laid, width / 2 + across, height - 1 - k, 255);
+      blacken(laid, k, height / 2 + across, 255);
+      blacken(laid, width - 1 - k, height / 2 + across, 255);
+    }
   if (margin_mm < kLabel_mm + 2) return;
   const Drawing text = Drawing::from_text(label, "sans bold", {0, 0, 0, 1});
   double high_mm = kLabel_mm, wide_mm = high_mm * text.aspect();
@@ -285,8 +320,7 @@ void mark_piece(Inking& laid, const std::string& label, double margin_mm, double
 }
 
 std::string label_of(const Piece& piece, const Nest& nest) {
-  return fmt::format("{}: {}{}", piece.number,
-                     nest.parts[piece.part].job.config.model.stem().string(),
+  return fmt::format("{}: {}{}", piece.number, nest.parts[piece.part].file.stem().string(),
                      nest.made[piece.part].is_not_to_be_dipped() ? " - DO NOT DIP" : "");
 }
 
@@ -332,21 +366,57 @@ std::string covered_words(const Report& report) {
              : fmt::format("{:.0f} % of the object", 100 * report.coverage->covered_share());
 }
 
+// "Pieces 1 and 2"
+std::string pieces_of(const Nest& nest, std::size_t part) {
+  std::vector<int> numbers;
+  for (const Piece& piece : nest.pieces)
+    if (piece.part == part) numbers.push_back(piece.number);
+  return fmt::format("{} {}", numbers.size() == 1 ? "Piece" : "Pieces", fmt::join(numbers, ", "));
+}
+
+// What is the same for all of them.
+std::string bench_figures(const JobConfig& sheet) {
+  const ProcessOptions& process = sheet.process;
+  return fmt::format(
+      "<p>Each: water {:g} to {:g} °C; film on the water, ink side {}, {:g} to {:g} s until it "
+      "lies "
+      "flat; activator; wait {:g} s; dip at {:g} mm/min; hold {:g} s at least; clear the water; "
+      "lift "
+      "at {:g} mm/min; rinse; dry {:g} to {:g} h.</p>",
+      process.water_min_c, process.water_max_c,
+      sheet.print.ink_side == InkSide::kUp ? "up" : "down", process.soak_min_s, process.soak_max_s,
+      process.activator_wait_s, process.speed_mm_per_min, process.dwell_s, process.lift_mm_per_min,
+      process.dry_min_h, process.dry_max_h);
+}
+
+std::string how_to_dip(const Part& part, const ProcessOptions& process) {
+  const Activator activator = activator_for(process, part.film());
+  const PoseOptions& pose = part.job.config.object.pose;
+  return fmt::format("It hangs {} ({}), {:.1f} mm deep at the end. Activator {:.2f} ± {:.2f} g.",
+                     describe_hold(pose, way_up(part.job.config)), hold_options(pose),
+                     part.job.trajectory.depth_mm(), activator.mass_g, activator.tolerance_g);
+}
+
 std::string run_sheet(const Nest& nest, const JobConfig& sheet) {
   std::string page = fmt::format(
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>hydrodip run sheet</title>"
       "<style>body{{font:16px sans-serif;margin:2em}}td,th{{padding:.3em .8em;text-align:left;"
       "border-bottom:1px solid #ccc}}img{{max-height:24em;border:1px solid #ccc}}"
-      ".stop{{color:#b00020}}</style>"
+      ".stop{{color:#b00020}}.wide{{overflow-x:auto}}img{{max-width:100%}}</style>"
       "<h1>Run sheet: {} parts on one film of {:g} x {:g} mm</h1>"
       "<p>Print print.pdf at 100 %, cut along the lines, tape each piece over {:g} mm all around, "
-      "and dip each part on its own piece, centred, with the piece's writing towards you.</p>"
-      "<p><img src=\"print.png\" alt=\"the sheet\"></p>"
-      "<table><tr><th>piece<th>part<th>from the left edge<th>from the lower "
+      "and dip each part on its own piece, over the middle between its four ticks, with the "
+      "piece's "
+      "writing towards you.</p>"
+      "{}<p><img src=\"print.png\" alt=\"the sheet\"></p>"
+      "<div class=\"wide\"><table><tr><th>piece<th>part<th>from the left edge<th>from the lower "
       "edge<th>size<th>writing "
       "on the sheet<th>depth of the dip<th>covered<th>torn<th>verdict</tr>",
       nest.pieces.size(), sheet.design.film.width_mm, sheet.design.film.height_mm,
-      sheet.design.film.margin_mm);
+      sheet.design.film.margin_mm,
+      is_draft(sheet.design)
+          ? "<p class=\"stop\">" + html_escaped(draft_alarm(sheet.design)) + "</p>"
+          : "");
   for (const Piece& piece : nest.pieces) {
     const Part& part = nest.parts[piece.part];
     const MadePart& made = nest.made[piece.part];
@@ -359,13 +429,31 @@ std::string run_sheet(const Nest& nest, const JobConfig& sheet) {
         covered_words(made.report), 100 * made.coverage().torn_share(),
         concern_name(made.concern()), headline(made.concern()));
   }
-  page += "</table>";
+  page += "</table></div>";
+  page += bench_figures(sheet);
   for (std::size_t p = 0; p < nest.parts.size(); ++p)
     page += fmt::format(
-        "<h2>{}</h2><p class=\"{}\">{}</p><img src=\"part-{}.png\" alt=\"wanted and predicted\">",
-        html_escaped(nest.parts[p].name()), concern_name(nest.made[p].concern()),
-        html_escaped(nest.made[p].verdict()), p + 1);
+        "<h2>{}: {}</h2><p class=\"{}\">{}</p><p>{}</p><img src=\"part-{}.png\" alt=\"wanted and "
+        "predicted\">",
+        pieces_of(nest, p), html_escaped(nest.parts[p].name()),
+        concern_name(nest.made[p].concern()), html_escaped(nest.made[p].verdict()),
+        html_escaped(how_to_dip(nest.parts[p], sheet.process)), p + 1);
   return page + "</html>\n";
+}
+
+// Whatever side it is dipped with, people know it upright.
+Image as_it_stands(const Part& part, const MadePart& made, int width_px,
+                   const RunContext& context) {
+  const DippedObject& dipped = made.made.designed.dipped;
+  PreviewOptions options;
+  options.width_px = width_px;
+  options.base = made.made.finish.paint().base();
+  options.standing = standing_of(dipped.posed, way_up(part.job.config));
+  std::vector<PreviewPair> pairs(1);
+  pairs[0].shown = appearance_of(made.made.finish);
+  return render_previews(dipped.posed.mesh(), dipped.posed.surface(), *dipped.film, pairs, options,
+                         context)
+      .front();
 }
 
 SheetOptions sheet_options(const JobConfig& config, const Nest& nest) {
@@ -413,7 +501,7 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
                     sheet_options(sheet, nest), context);
   for (std::size_t p = 0; p < nest.parts.size(); ++p)
     write_png(folder.path(fmt::format("part-{}.png", p + 1)),
-              render(nest.made[p].made.finish, sheet.preview_width_px, context));
+              as_it_stands(nest.parts[p], nest.made[p], sheet.preview_width_px, context));
   const json report = {{"schema_version", 1},
                        {"command", "nest"},
                        {"film_mm", {sheet.design.film.width_mm, sheet.design.film.height_mm}},

@@ -24,6 +24,7 @@
 #include "report/report.h"
 #include "session/appearance_of.h"
 #include "settings/dip_tables.h"
+#include "settings/part_tables.h"
 
 namespace hydrodip {
 namespace {
@@ -284,7 +285,10 @@ std::vector<std::string> sheets_of_other_prints(std::size_t dips) {
   else
     names.emplace_back("run-sheet.pdf");
   for (const std::string& picture : pictures_of_jobs()) names.push_back(picture);
-  for (const char* of_nest : {"nest.json", "nest.html"}) names.emplace_back(of_nest);
+  for (const char* of_others : {"nest.json", "nest.html", "angles.png"})
+    names.emplace_back(of_others);
+  for (std::size_t part = 1; part <= kMostParts; ++part)
+    names.push_back(fmt::format("part-{}.png", part));
   for (std::size_t k = dips; k < kMostDips; ++k) add(fmt::format("dip-{}/", k + 1));
   return names;
 }

@@ -97,14 +97,16 @@ Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPla
 // A plan needs no picture, its print does.
 std::string printing(const SearchOutput& output) {
   const std::string file = shell_word((output.folder() / "plan.toml").string());
+  // A plan.toml of its own name would share its folder with every other plan's print.
+  const std::string result = shell_word(output.config().model.stem().string() + "-print");
   const PreparedObject& prepared = output.prepared();
   if (prepared.paint->says_anything())
-    return fmt::format("print them all: hydrodip print {}\n", file);
+    return fmt::format("print them all: hydrodip print {} -o {}\n", file, result);
   const bool has_uvs = !prepared.posed.object().uvs.empty();
   return fmt::format(
-      "print them all, with the picture that goes on the model: hydrodip print {} {}\n"
+      "print them all, with the picture that goes on the model: hydrodip print {} {} -o {}\n"
       "with it here as well, dips are chosen by what it shows\n",
-      file, has_uvs ? "--texture IMG" : "--art IMG");
+      file, has_uvs ? "--texture IMG" : "--art IMG", result);
 }
 
 }  // namespace
@@ -114,7 +116,7 @@ JobResult plan_job(const JobConfig& config, const RunContext& context, const Job
   SearchOutput output(config, "plan", {"plan.toml"}, context);
   const DipPlan plan = plan_dips(config, output.prepared(), output.targets(), true, context);
   JobConfig planned = to_print != nullptr ? *to_print : config;
-  planned.dips = entries_of(plan, config.dips);
+  planned.dips = entries_of(plan, config);
   planned.plan.dips = 0;
   planned.plan.find_pose = planned.plan.find_depth = false;
   write_file(output.path("plan.toml"), job_file(planned, output.folder()));

@@ -22,6 +22,7 @@ class SearchOutput {
 
   const PreparedObject& prepared() const { return prepared_; }
   const Targets& targets() const { return targets_; }
+  const JobConfig& config() const { return config_; }
   // For one of the others.
   std::filesystem::path path(const std::string& file) { return folder_.path(file); }
   const std::filesystem::path& folder() const { return folder_.folder(); }

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kAsGoodAsAll = 0.98;     // of what shall be printed, or of the object
 constexpr double kLittleDoubt = 0.01;     // of the surface under whole film
+constexpr double kSomePercent = 0.005;    // of the object: less is shown as none
 constexpr double kPale = 1.3;             // area ratio from which paling shows
 constexpr double kPlainDifference = 5;    // CIEDE2000: plain to see
 constexpr double kMuchOutOfGamut = 0.02;  // of the covered surface
@@ -115,7 +116,7 @@ std::vector<Finding> customer_points(const Report& report) {
                     "Where the film cannot follow the shape, places stay bare, as the picture "
                     "shows.",
                     ""});
-  if (c.doubtful_mm2 > kLittleDoubt * c.covered_mm2)
+  if (c.doubtful_mm2 > kLittleDoubt * c.covered_mm2 && c.doubtful_share() >= kSomePercent)
     list.push_back({"doubtful", Concern::kCare, "Doubtful", whole_percent(c.doubtful_share()),
                     "of the object may come out bare or a little displaced.", ""});
   if (report.air && report.air->area_mm2() > 0)

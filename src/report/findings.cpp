@@ -67,7 +67,7 @@ Finding coverage_of_wanted(const ReportWanted& wanted) {
   return finding;
 }
 
-Finding coverage(const Coverage& c, const std::optional<ReportWanted>& wanted) {
+Finding coverage(const Coverage& c, const std::optional<ReportWanted>& wanted, bool one_dip_only) {
   if (!(c.film_on_object_mm2 > 0)) return no_film(c);
   if (wanted) return coverage_of_wanted(*wanted);
   // Beside film that is lost, a share of what faces down would tell little.
@@ -77,7 +77,11 @@ Finding coverage(const Coverage& c, const std::optional<ReportWanted>& wanted) {
             "Coverage",
             percent(c.covered_share()),
             "of the object gets film that holds.",
-            "What stays bare shows the object's own colour: give it other dips, turned (--dips)."};
+            one_dip_only
+                ? "What stays bare shows the object's own colour: paint the object to match "
+                  "(object.base_color), or hold it another way (--rotate auto)."
+                : "What stays bare shows the object's own colour: give it other dips, turned "
+                  "(--dips)."};
   const bool nearly_all = c.covered_downward_share() >= kNearlyAll;
   Finding finding{"coverage", nearly_all ? Concern::kNone : Concern::kCare,
                   "Coverage", percent(c.covered_downward_share()),
@@ -439,7 +443,7 @@ std::vector<Finding> findings(const Report& report) {
     const Coverage& c = *report.coverage;
     const bool several = !report.dips.empty() && c.film_on_object_mm2 > 0;
     list.push_back(several ? coverage_of_dips(c, report.wanted, report.dips.size())
-                           : coverage(c, report.wanted));
+                           : coverage(c, report.wanted, report.one_dip_only));
     if (!report.better_way.empty())
       list.push_back({"better_way", Concern::kNone, "Better", "", report.better_way + ".", ""});
     add_idle_dips(report.dips, list);

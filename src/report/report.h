@@ -158,6 +158,7 @@ struct Report {
   double tear_stretch = 0;  // the film's limit; 0: it never tears
   double bleed_mm = 0;
   bool finished_image = false;  // is printed as it is, wherever film holds or not
+  bool one_dip_only = false;    // what lies on the film belongs to one
   std::vector<ReportFigure> figures;
   std::vector<std::string> warnings;
   std::vector<ReportOutput> outputs;

@@ -69,6 +69,7 @@ class Guide {
                     "goes to {}.",
                     job_.title, job_.depth_mm, process_.speed_mm_per_min,
                     (record_.folder() / "log.jsonl").string()));
+    if (!job_.alarm.empty()) person_.say(job_.alarm);
     for (const std::string& warning : job_.warnings) person_.say("Mind: " + warning);
   }
 
@@ -270,8 +271,10 @@ class Guide {
   }
 
   void dry() {
-    person_.say(fmt::format("\nDRY for {:g} to {:g} h; a clear coat if you like.",
-                            process_.dry_min_h, process_.dry_max_h));
+    person_.say(
+        fmt::format("\nRINSE until nothing is slippery. DRY for {:g} to {:g} h; a clear coat "
+                    "if you like.",
+                    process_.dry_min_h, process_.dry_max_h));
     const std::string notes = person_.ask("Notes for the log, or Enter: ");
     if (!notes.empty()) record_.note("notes", {{"text", notes}});
   }

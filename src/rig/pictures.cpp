@@ -76,8 +76,8 @@ std::vector<PosePicture> pose_pictures(const RigJob& job, int width_px, int heig
   const Eigen::Isometry3d in_bath = hanging_pose(job);
   for (Vec3& p : hanging.positions) p = in_bath * p;
   const std::vector<View> views = {
-      {"from the front (-y)", Turn::kUpright, Vec3::UnitZ()},
-      {"from the right (+x)", Turn::kUpright, Vec3::UnitX()},
+      {"from the front", Turn::kUpright, Vec3::UnitZ()},
+      {"from the right", Turn::kUpright, Vec3::UnitX()},
       {"from below (what meets the film)", Turn::kNone, -Vec3::UnitZ()}};
   std::vector<PosePicture> pictures;
   for (const View& view : views) {

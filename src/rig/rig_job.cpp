@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/json_nesting.h"
 #include "base/small_file.h"
+#include "job/sheet_of.h"
 #include "settings/params.h"
 #include "sheet/film_marks.h"
 
@@ -32,6 +33,10 @@ struct ReadReport {
 ReadReport read_report(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "report.json";
   std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored) &&
+      std::filesystem::exists(folder / "nest.html", ignored))
+    throw InputError(fmt::format("{}: this is a nest; its run sheet is {}", folder.string(),
+                                 (folder / "nest.html").string()));
   if (!std::filesystem::exists(file, ignored))
     throw InputError(
         fmt::format("{}: there is no report.json; name the folder that 'hydrodip print' wrote",
@@ -125,12 +130,6 @@ SheetUse sheet_use_of(const Json& report) {
   return use;
 }
 
-double letter_area_mm2() {
-  for (const FilmFormat& format : film_formats())
-    if (format.name == "letter") return format.width_mm * format.height_mm;
-  return 0;
-}
-
 std::vector<WayPoint> way_in(const Json& report, const std::filesystem::path& file) {
   std::vector<WayPoint> way;
   if (!report.contains("way_in")) return way;
@@ -159,12 +158,6 @@ PlannedMove travel(const std::string& phase, double from_mm, double to_mm, doubl
 }
 
 }  // namespace
-
-double film_area_mm2(const FilmOptions& film) {
-  if (film.shape == FilmShape::kRectangle) return film.width_mm * film.height_mm;
-  const double radius = 0.5 * std::min(film.width_mm, film.height_mm);
-  return std::numbers::pi * radius * radius;
-}
 
 double tape_mm(const JobConfig& config) {
   const FilmOptions& film = config.design.film;
@@ -263,6 +256,8 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
       job.object_size_mm[k] = size[std::size_t(k)];
   if (text_of(report, "concern") == "stop")
     job.alarm = "Do not dip it like this: " + text_of(report, "short_verdict");
+  else if (text_of(report, "command") == "print" && is_draft(job.config.design))
+    job.alarm = draft_alarm(job.config.design);
   if (report.contains("dip_of_several") && report["dip_of_several"].is_object()) {
     const Json& dip = report["dip_of_several"];
     const int number = count_of(dip, "number"), of = count_of(dip, "of");
@@ -276,8 +271,7 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
 }
 
 Activator activator_for(const JobConfig& config) {
-  const double share = film_area_mm2(config.design.film) / letter_area_mm2();
-  return {share * config.process.activator_g, share * config.process.activator_tolerance_g};
+  return activator_for(config.process, config.design.film);
 }
 
 double bath_litres(const BathOptions& bath) {

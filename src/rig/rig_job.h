@@ -9,6 +9,7 @@
 
 #include "base/math.h"
 #include "dip/way_point.h"
+#include "settings/activator.h"
 #include "settings/config.h"
 #include "settings/settings.h"
 
@@ -32,7 +33,8 @@ struct RigJob {
   std::string model_sha256;            // of config.model, when it was printed
   bool has_artwork = false;            // of which config knows nothing
   std::vector<std::string> warnings;
-  std::string alarm;  // "Do not dip it like this: ..."; empty: nothing forbids it
+  // "Do not dip it like this: ...", or that it is a draft; empty: nothing forbids it.
+  std::string alarm;
   std::string report_sha256;
   SheetUse sheet;            // as printed
   std::string batch, label;  // of the piece that is dipped; may be empty
@@ -59,13 +61,9 @@ bool moves_aside(const RigJob& job);
 void require_lowering_only(const RigJob& job);
 
 // What the process facts mean for this job's film.
-struct Activator {
-  double mass_g = 0, tolerance_g = 0;
-};
-Activator activator_for(const JobConfig& config);  // scaled by area from a letter sheet
+Activator activator_for(const JobConfig& config);
 double bath_litres(const BathOptions& bath);
-double film_area_mm2(const FilmOptions& film);  // of the sheet
-double tape_mm(const JobConfig& config);        // of the sheet's edge, all around
+double tape_mm(const JobConfig& config);  // of the sheet's edge, all around
 
 // The stage position at which the object's lowest point meets the water: stage.water_mm, else what
 // was found last and saved in the folder.

@@ -86,17 +86,41 @@ class RunSheet {
   // What the verdict forbids is seen first.
   void draw_alarm() {
     if (job_.alarm.empty()) return;
-    constexpr double kBand_mm = 8;
-    page_.y -= 3 + kBand_mm;
-    page_.pdf().fill_red({Vec2(page_.left(), page_.y), Vec2(page_.right(), page_.y + kBand_mm)});
-    const std::string words = to_winansi(fitted(job_.alarm, page_.width() - 8, kHead_pt));
-    page_.pdf().draw_text(
-        {words, Vec2(page_.left() + 4, page_.y + 2.6), kHead_pt, PdfFont::kBold, 0, 1});
+    constexpr double kLine_mm = 5.4, kEdge_mm = 2.6;
+    const std::vector<std::string> lines = lines_of(job_.alarm, page_.width() - 8);
+    const double band_mm = kEdge_mm + kLine_mm * double(lines.size());
+    page_.y -= 3 + band_mm;
+    page_.pdf().fill_red({Vec2(page_.left(), page_.y), Vec2(page_.right(), page_.y + band_mm)});
+    double base = page_.y + band_mm - kLine_mm;
+    for (const std::string& line : lines) {
+      page_.pdf().draw_text(
+          {to_winansi(line), Vec2(page_.left() + 4, base), kHead_pt, PdfFont::kBold, 0, 1});
+      base -= kLine_mm;
+    }
   }
 
-  std::string fitted(std::string words, double width_mm, double size_pt) const {
-    if (page_.width_of(words, size_pt, PdfFont::kRegular) <= width_mm) return words;
-    while (!words.empty() && page_.width_of(words + "...", size_pt, PdfFont::kRegular) > width_mm)
+  // Of bold letters: as many words on a line as fit, on two lines at most.
+  std::vector<std::string> lines_of(const std::string& text, double width_mm) const {
+    std::vector<std::string> lines(1);
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = std::min(text.find(' ', at), text.size());
+      const std::string word = text.substr(at, end - at);
+      const std::string more = lines.back().empty() ? word : lines.back() + " " + word;
+      if (lines.size() < 2 && !lines.back().empty() &&
+          page_.width_of(more, kHead_pt, PdfFont::kBold) > width_mm)
+        lines.push_back(word);
+      else
+        lines.back() = more;
+      at = end + 1;
+    }
+    lines.back() = fitted(lines.back(), width_mm, kHead_pt, PdfFont::kBold);
+    return lines;
+  }
+
+  std::string fitted(std::string words, double width_mm, double size_pt,
+                     PdfFont font = PdfFont::kRegular) const {
+    if (page_.width_of(words, size_pt, font) <= width_mm) return words;
+    while (!words.empty() && page_.width_of(words + "...", size_pt, font) > width_mm)
       words.pop_back();
     return words + "...";
   }
@@ -170,8 +194,8 @@ class RunSheet {
     pdf.draw_lines(
         {{center - Vec2(3, 0), center + Vec2(3, 0)}, {center - Vec2(0, 3), center + Vec2(0, 3)}});
     centered(center.x(), center.y() - 6, "object", kSmall_pt);
-    centered(center.x(), sheet.min.y() + margin.y() + 2, "front (-y)", kSmall_pt);
-    centered(center.x(), sheet.max.y() - margin.y() - 4, "back (+y)", kSmall_pt);
+    centered(center.x(), sheet.min.y() + margin.y() + 2, "front", kSmall_pt);
+    centered(center.x(), sheet.max.y() - margin.y() - 4, "back: TOP of the sheet", kSmall_pt);
     page_.y = corner.y() - 0.5;
     page_.paragraph(
         x, width,
@@ -310,6 +334,7 @@ class RunSheet {
                            process_.dwell_s));
     page_.task(fmt::format("Lift at {:g} mm/min.", process_.lift_mm_per_min),
                {"Time", "Water, °C"});
+    page_.task("Rinse until nothing is slippery.");
     page_.task(fmt::format("Dry for {:g} to {:g} h; {}.", process_.dry_min_h, process_.dry_max_h,
                            job_.next_dip > 0
                                ? fmt::format("then dip {}, by its own run sheet", job_.next_dip)

@@ -95,6 +95,7 @@ struct PartEntry {
 struct DipEntry {
   std::optional<ModelSide> down;
   std::optional<Vec3> rotate_deg;
+  bool find_rotation = false;  // rotate_deg = "auto", whatever `down` says
   std::optional<double> depth_mm;
   std::vector<Keyframe> path;        // the way in; empty: straight down
   bool locked = false;               // planning leaves it as it is

@@ -72,6 +72,7 @@ bool apply_dip_setting(JobConfig& config, const Setting& setting) {
   } else if (at.key == "rotate_deg") {
     const JobConfig value = checked_as("object.rotate_deg", setting);
     dip.rotate_deg.reset();
+    dip.find_rotation = value.plan.find_pose;
     if (!value.plan.find_pose) dip.rotate_deg = value.object.pose.rotate_deg;
   } else if (at.key == "depth_mm") {
     const JobConfig value = checked_as("dip.depth_mm", setting);
@@ -102,6 +103,7 @@ std::string dip_tables_toml(
   for (const DipEntry& dip : dips) {
     text += "\n[[dip]]\n";
     if (dip.down) text += fmt::format("down = \"{}\"\n", side_name(*dip.down));
+    if (dip.find_rotation) text += "rotate_deg = \"auto\"\n";
     if (dip.rotate_deg)
       text += fmt::format("rotate_deg = [{}, {}, {}]\n", dip.rotate_deg->x(), dip.rotate_deg->y(),
                           dip.rotate_deg->z());

@@ -12,7 +12,6 @@ namespace hydrodip {
 namespace {
 
 constexpr const char* kTable = "part[";
-constexpr std::size_t kMostParts = 100;
 constexpr int kMostCopies = 100;
 
 [[noreturn]] void refuse(const Setting& setting, const std::string& expected) {

@@ -180,6 +180,16 @@ void require_dips_alone_say(const JobConfig& config, const SettingSources& sourc
             s.origin == "--set" ? "--set " + s.name : s.origin));
 }
 
+// Of a path and a depth beside it one would be passed over.
+void require_one_way_down(const JobConfig& config, const std::string& model) {
+  const bool has_path = !config.design.trajectory.path.empty();
+  for (std::size_t k = 0; k < config.dips.size(); ++k)
+    if (config.dips[k].depth_mm && (has_path || !config.dips[k].path.empty()))
+      throw InputError(fmt::format(
+          "{}: [[dip]] {}: a path says all of the way in: leave out depth_mm, or the path", model,
+          k + 1));
+}
+
 // Parts share a sheet; the job of one object would pass them over.
 void require_no_parts(const std::filesystem::path& job) {
   for (const Setting& s : read_settings(job))
@@ -197,6 +207,7 @@ JobConfig configured(const std::string& model, SettingSources sources) {
   if (is_job) sources.configs.insert(sources.configs.begin(), model);
   apply_sources(config, sources);
   require_dips_alone_say(config, sources);
+  require_one_way_down(config, model);
   if (!is_job) config.model = model;
   if (is_job) require_no_parts(model);
   if (is_job && config.model.empty())

@@ -155,6 +155,38 @@ TEST(Cylinder, OnACylinderIsItsArc) {
   });
 }
 
+TEST(Cylinder, AsLargeAsFitsGoesHalfWayAround) {
+  constexpr double kRadius = 20;
+  const PosedObject object = posed(tube(kRadius, 200, 720, 10));
+  ArtworkLayer layer = layer_of(Projection::kCylinder, 0);
+  layer.at_mm = Vec3(0, -kRadius, 100);
+  EXPECT_NEAR(place(layer, object, 1, false).size_mm.x(), kPi * kRadius, 0.01);
+  EXPECT_NEAR(place(layer, object, 1, false).size_mm.y(), kPi * kRadius, 0.01);
+}
+
+// An axis has no direction: written the other way round it is the same one, and up is the model's
+// z.
+TEST(Cylinder, StandsUprightWhicheverWayItsAxisIsWritten) {
+  const PosedObject object = posed(tube(20, 50, 180, 10));
+  ArtworkLayer layer = layer_of(Projection::kCylinder, 30);
+  layer.at_mm = Vec3(0, -20, 25);
+  for (const double sign : {1.0, -1.0}) {
+    layer.toward = Vec3(0, 0, sign);
+    layer.up.reset();
+    const Placed open = place(layer, object, 1, false);
+    layer.up = Vec3(0, 0, -1);
+    const Placed turned = place(layer, object, 1, false);
+    each_point(object.mesh(), [&](const SurfacePoint& point) {
+      const Vec3 p = position_at(object.mesh(), point) - moved(object, Vec3::Zero());
+      Spot spot;
+      if (!open.placement->find(point, spot)) return;
+      EXPECT_NEAR(spot.place_mm.y(), p.z() - 25, kExact_mm);
+      ASSERT_TRUE(turned.placement->find(point, spot));
+      EXPECT_NEAR(spot.place_mm.y(), 25 - p.z(), kExact_mm);
+    });
+  }
+}
+
 TEST(Cylinder, FindsTheAxisOfACupWithAHandle) {
   TriangleMesh cup = tube(35, 90, 256, 8);
   for (Vec3& p : cup.positions) p += Vec3(5, -3, 0);

@@ -118,6 +118,12 @@ python3 - <<'PY' || fail 'nest takes the whole object where its job says auto'
 import json
 assert 0 < json.load(open('found/nest.json'))['pieces'][0]['depth_mm'] < 15
 PY
+# One sheet is printed and laid on the water in one way, whatever a part's job says.
+for of_sheet in 'print.ink_side = "down"' 'film.swelling_x = 1.1' 'print.scale_x = 1.02'; do
+  printf '%s\nobject.file = "samples/box.obj"\n' "$of_sheet" > own.dip.toml
+  # shellcheck disable=SC2086
+  refused 'holds for the whole sheet' nest own.dip.toml $nest -o own
+done
 # A larger sheet gives each part more film around it, up to what helps.
 for side in 300 600 900; do
   # shellcheck disable=SC2086

@@ -41,13 +41,23 @@ grep -q '"gained_share"' plan.json || fail 'plan --json'
 "$hydrodip" plan colored.ply $small --dips 1 --quality draft -o 'a plan' --quiet > said.txt || fail "draft plan: $?"
 ! grep -q 'rounds_max\|pictures' 'a plan/plan.toml' || fail 'plan.toml prints drafts'
 command=$(sed -n 's/^print them all: hydrodip //p' said.txt)
-eval "\"$hydrodip\" $command --dpi 72 --set print.samples=1 --set ink.rounds_max=1 -o dips1 --quiet > /dev/null" ||
+eval "\"$hydrodip\" $command --dpi 72 --set print.samples=1 --set ink.rounds_max=1 --quiet > /dev/null" ||
   fail "its command: $command"
+[ -s colored-print/report.json ] || fail 'a plan prints into a folder that every other plan has'
+# What is locked stays so, plan for plan, though no rotation is given.
+printf '[object]\nfile = "colored.ply"\n[[dip]]\ndown = "+x"\nlocked = true\ndepth_mm = 2\n[[dip]]\n' > locked.toml
+for n in 1 2; do
+  # shellcheck disable=SC2086
+  "$hydrodip" plan locked.toml $small --quality draft -o locked-$n --quiet > /dev/null || fail "a locked dip: $?"
+  cp locked-$n/plan.toml locked.toml
+  sed -i 's|^file = .*|file = "colored.ply"|' locked.toml
+  grep -q '^down = "+x"' locked.toml && grep -q '^locked = true' locked.toml || fail "plan $n loses a locked dip"
+done
 # A model without a picture can be planned; what it ends with says where the picture goes.
 write_tetrahedron plain.obj
 # shellcheck disable=SC2086
 "$hydrodip" plan plain.obj $small --dips 1 --quality draft -o plain --quiet > said.txt || fail "plain: $?"
-grep -q '^print them all, with the picture .*: hydrodip print plain/plan.toml --art IMG$' said.txt || fail 'no word of the picture'
+grep -q '^print them all, with the picture .*: hydrodip print plain/plan.toml --art IMG -o plain-print$' said.txt || fail 'no word of the picture'
 "$hydrodip" print plan/plan.toml --dpi 72 --set print.samples=1 -o dips --quiet > dips.txt ||
   fail "print of a plan: $?"
 for file in dip-1/print.pdf dip-1/print.tif dip-1/report.json dip-1/run-sheet.pdf report.html report.json \

@@ -74,6 +74,31 @@ TEST_F(JobFile, ATableThatSaysNothingIsNotPassedOver) {
   EXPECT_EQ(read("[[part]]\n[[part]]\n").parts.size(), 2U);
 }
 
+TEST_F(JobFile, APathAndADepthOfOneDipAreRefused) {
+  std::ofstream(folder_ / "way.csv") << "lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_"
+                                        "z_deg\n0,0,0,0,0,0\n9,0,0,0,0,0\n";
+  const auto file = (folder_ / "job.toml").string();
+  for (const char* text : {"[[dip]]\npath = \"way.csv\"\ndepth_mm = 3\n",
+                           "path = \"way.csv\"\n[[dip]]\n[[dip]]\ndepth_mm = 3\n"}) {
+    if (text[0] != 'p') std::ofstream(file) << "object.file = \"a.obj\"\n" << text;
+    if (text[0] == 'p') std::ofstream(file) << text << "[object]\nfile = \"a.obj\"\n";
+    try {
+      configured(file, {});
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_TRUE(contains(error.what(), "leave out depth_mm")) << error.what();
+    }
+  }
+}
+
+TEST_F(JobFile, ARotationToBeFoundIsOneBesideTheSideThatGoesDown) {
+  const JobConfig config =
+      read("[[dip]]\ndown = \"+x\"\nrotate_deg = \"auto\"\n[[dip]]\ndown = \"+x\"\n");
+  EXPECT_TRUE(config.dips[0].find_rotation);
+  EXPECT_FALSE(config.dips[1].find_rotation);
+  EXPECT_TRUE(read(job_file(config, folder_)).dips[0].find_rotation);
+}
+
 TEST_F(JobFile, OfPartsIsNoJobOfOneObject) {
   const auto file = (folder_ / "job.toml").string();
   std::ofstream(file) << "object.file = \"a.obj\"\n[[part]]\njob = \"b.toml\"\n";
