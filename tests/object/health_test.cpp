@@ -173,6 +173,24 @@ TEST(Health, OfFacesBackToBackTheOuterOneIsSeen) {
   }
 }
 
+// The sine of a whole turn is not 0, and the last digit that a file writes is not the same twice.
+// What is farther apart is a hole.
+TEST(Health, RoundingPartsNoSeam) {
+  for (const double gap : {1e-14, 3e-7, 1e-4}) {
+    Object object = box();  // each triangle has corners of its own
+    for (std::size_t f = 0; f < object.triangles.size(); f += 2)
+      for (const std::int32_t v : object.triangles[f])
+        for (int k = 0; k < 3; ++k) object.positions[std::size_t(v)][k] += gap * (k - 1);
+    const MeshHealth health = check_and_repair(object);
+    EXPECT_EQ(health.closed(), gap < 1e-5) << gap;
+    if (gap < 1e-5) {
+      EXPECT_EQ(health.vertices, 8);
+      EXPECT_EQ(health.triangles, 12);
+      EXPECT_NEAR(health.volume_mm3, 8, 1e-5);
+    }
+  }
+}
+
 TEST(Health, ASliverWithoutAreaStillJoinsItsNeighbours) {
   // A tetrahedron with a vertex on the middle of one edge of one face only; the sliver closes it.
   Object object;
