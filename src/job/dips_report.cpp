@@ -161,9 +161,7 @@ Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishC
   report.coverage = coverage_together(all, brought);
   report.wanted = brought.wanted;
   report.angles.reset();
-  const Vec3 size = all.prepared.posed.mesh().bounds().size();
-  report.figures = {{"object_size_mm", "Object as it stands (x, y, z)",
-                     std::array<double, 3>{size.x(), size.y(), size.z()}, "mm"}};
+  report.figures = {model_size(all.prepared.posed)};
   report.rounds.clear();
   report.dips = report_dips(all, shared, brought);
   report.colors = check.colors();

@@ -110,11 +110,22 @@ void add_ink(const JobRecord& record, std::vector<ReportFigure>& figures) {
        {"color_difference_max", "Largest difference (CIEDE2000)", reach.largest, ""}});
 }
 
+}  // namespace
+
+ReportFigure model_size(const PosedObject& posed) {
+  const Vec3 size = posed.scale() * posed.object().bounds().size();
+  return {"model_size_mm", "Model as it stands (x, y, z)",
+          std::array<double, 3>{size.x(), size.y(), size.z()}, "mm"};
+}
+
+namespace {
+
 std::vector<ReportFigure> figures(const DippedObject& dipped) {
   const Vec3 size = dipped.posed.mesh().bounds().size();
   const DippedFilm& film = *dipped.film;
   return {{"object_size_mm", "Object as posed (x, y, z)",
            std::array<double, 3>{size.x(), size.y(), size.z()}, "mm"},
+          model_size(dipped.posed),
           {"depth_mm", "Depth of the dip", film.depth_mm, "mm"},
           {"film_triangles", "Film triangles", std::int64_t(film.mesh().triangles.size()), ""},
           {"film_cell_mm", "Film grid spacing", film.mesh().cell_mm, "mm"}};

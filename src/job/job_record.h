@@ -48,6 +48,9 @@ void announce_outputs(OutputFolder& folder, const std::string& command, const Jo
 // How well the dip is known; null: no ink had to settle.
 ReportEquilibrium equilibrium_of(const DipStatistics& dip, const InkResult* ink);
 
+// However it is held: as its own program shows it, scaled.
+ReportFigure model_size(const PosedObject& posed);
+
 Report make_report(const JobRecord& record);
 
 // What the command prints: in words, and the report with its folder as JSON.

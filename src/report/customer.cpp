@@ -72,7 +72,7 @@ std::string facts(const Report& report) {
   std::string rows;
   for (const ReportFigure& f : report.figures)
     if (const auto* size = std::get_if<std::array<double, 3>>(&f.value);
-        size && f.key == "object_size_mm")
+        size && f.key == "model_size_mm")
       rows += row("Size",
                   fmt::format("{:.0f} x {:.0f} x {:.0f} mm", (*size)[0], (*size)[1], (*size)[2]));
   if (!report.dips.empty()) rows += row("Coats of colour", std::to_string(report.dips.size()));

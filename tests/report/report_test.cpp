@@ -114,7 +114,7 @@ Report bad_report() {
   report.better_way = "standing on its nose (--rotate 90,0,0)";
   report.title = "Lion & lamb";
   report.figures.push_back({"out_of_gamut_share", "", 0.25, ""});
-  report.figures.push_back({"object_size_mm", "", std::array<double, 3>{100.2, 130, 30.4}, "mm"});
+  report.figures.push_back({"model_size_mm", "", std::array<double, 3>{100.2, 130, 30.4}, "mm"});
   return report;
 }
 
