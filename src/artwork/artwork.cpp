@@ -198,18 +198,16 @@ bool hits(const Layer& layer, const TriangleMesh& mesh) {
 
 // ---- laying ----
 
-// Of directions at right angles, nearly.
-constexpr double kAcross = 0.2;
-
 bool is_black(const LinearColor& c) { return c.r == 0 && c.g == 0 && c.b == 0 && c.a == 1; }
 
-// What is said of a layer though its projection has no use for it.
-void warn_of_idle_words(const ArtworkLayer& layer, const RunContext& context) {
-  const bool uv = layer.projection == Projection::kUv, film = layer.projection == Projection::kFilm;
-  const ArtworkLayer usual;
-  if (layer.text.empty() && (layer.font != usual.font || !is_black(layer.text_color)))
+void warn_of_words_for_text(const ArtworkLayer& layer, const RunContext& context) {
+  if (layer.text.empty() && (layer.font != ArtworkLayer().font || !is_black(layer.text_color)))
     context.warn(
         fmt::format("{}: font and colour mean nothing to a picture, only to text", name_of(layer)));
+}
+
+void warn_of_up_across_axis(const ArtworkLayer& layer, const RunContext& context) {
+  constexpr double kAcross = 0.2;  // cosine: nearly at right angles
   const bool round =
       layer.projection == Projection::kCylinder || layer.projection == Projection::kSphere;
   if (round && layer.up && layer.toward &&
@@ -218,6 +216,11 @@ void warn_of_idle_words(const ArtworkLayer& layer, const RunContext& context) {
         "{}: its up lies across the axis, along which a picture around it stands: it says nothing; "
         "turn it with --art-turn",
         name_of(layer)));
+}
+
+// What is said of a layer though its projection has no use for it.
+void warn_of_idle_words(const ArtworkLayer& layer, const RunContext& context) {
+  const bool uv = layer.projection == Projection::kUv, film = layer.projection == Projection::kFilm;
   if (!uv && !film && layer.projection != Projection::kWrap) return;
   std::string idle;
   const auto add = [&](bool said, const char* what) {
@@ -322,6 +325,8 @@ Vec2 size_on_film(const ArtworkLayer& layer, const PictureSource& picture,
 
 Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask& task,
           const PosedObject& posed, LaidLayer& laid, const RunContext& context) {
+  warn_of_words_for_text(wanted, context);
+  warn_of_up_across_axis(wanted, context);
   warn_of_idle_words(wanted, context);
   warn_of_mirrored_text(wanted, context);
   warn_of_what_lies_outside(wanted, picture, context);

@@ -120,9 +120,8 @@ class FinishPictures {
     std::vector<SurfacePatch> patches;
     for (std::size_t i = 0; i < targets.list.size(); ++i) {
       if (!is_wanted.empty() && !is_wanted[i]) continue;
-      const Target& node = targets.list[i];
-      patches.push_back({(posed_.matrix() * node.position.homogeneous()).head<3>(),
-                         posed_.turn() * node.normal, node.area});
+      const Target node = in_pose(targets.list[i], posed_);
+      patches.push_back({node.position, node.normal, node.area});
     }
     return patches;
   }

@@ -19,9 +19,8 @@ constexpr float kMuchOfTheInk = 0.5F;
 
 // Whether film of a dip lies there of which nobody knows whether it holds, or where.
 bool lies_in_doubt(const MadeDip& dip, const Target& node) {
-  const PosedObject& posed = dip.posed;
-  const auto hold = dip.made.dipped.map->hold_at(
-      (posed.matrix() * node.position.homogeneous()).head<3>(), posed.turn() * node.normal);
+  const Target hung = in_pose(node, dip.posed);
+  const auto hold = dip.made.dipped.map->hold_at(hung.position, hung.normal);
   const DoubtfulStretch doubtful = doubtful_stretch(dip.config.design.dip.material);
   return hold && !hold->let_go && hold->stretch < doubtful.to &&
          (hold->stretch > doubtful.from || hold->moved_mm > kMoved_mm);
@@ -54,8 +53,9 @@ struct Brought {
 
 bool is_reached_by_any(const MadeDips& all, const Target& node) {
   return std::any_of(all.dips.begin(), all.dips.end(), [&](const MadeDip& dip) {
-    return is_reached(dip.made.dipped, (dip.posed.matrix() * node.position.homogeneous()).head<3>(),
-                      dip.posed.turn() * node.normal);
+    const Target hung = in_pose(node, dip.posed);
+    return dip.made.dipped.map->to_film(hung.position, hung.normal) ||
+           faces_film(dip.made.dipped, hung);
   });
 }
 

@@ -366,7 +366,7 @@ std::string covered_words(const Report& report) {
              : fmt::format("{:.0f} % of the object", 100 * report.coverage->covered_share());
 }
 
-// "Pieces 1 and 2"
+// "Pieces 1, 2"
 std::string pieces_of(const Nest& nest, std::size_t part) {
   std::vector<int> numbers;
   for (const Piece& piece : nest.pieces)

@@ -26,10 +26,9 @@ std::vector<std::uint8_t> wanted_at(const Targets& targets, const Paint& paint) 
   return wanted;
 }
 
-bool is_reached(const DippedObject& dipped, const Vec3& position, const Vec3& normal) {
-  if (dipped.map->to_film(position, normal)) return true;
-  const auto direction = dipped.direction_at(position, 0);
-  return direction && normal.dot(*direction) > 0;
+bool faces_film(const DippedObject& dipped, const Target& at) {
+  const auto direction = dipped.direction_at(at.position, 0);
+  return direction && at.normal.dot(*direction) > 0;
 }
 
 std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Paint& paint,
@@ -47,7 +46,7 @@ std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Pa
       if (!is_wanted[i]) continue;
       const Target& at = targets.list[i];
       seen[i].covered = dipped.map->to_film(at.position, at.normal).has_value();
-      seen[i].reached = seen[i].covered || is_reached(dipped, at.position, at.normal);
+      seen[i].reached = seen[i].covered || faces_film(dipped, at);
     }
   });
   ReportWanted wanted;

@@ -23,8 +23,8 @@ std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Pa
 // 1 where something shall be printed. Empty where the paint says nothing of it, or wants colour all
 // over the object.
 std::vector<std::uint8_t> wanted_at(const Targets& targets, const Paint& paint);
-// Whether a dip gets there at all: film lies there, or it comes into the water and faces down. In
-// the posed-object frame.
-bool is_reached(const DippedObject& dipped, const Vec3& position, const Vec3& normal);
+// Whether a place comes into the water and faces down: a dip gets there then, whether or not film
+// comes to lie. In the posed-object frame.
+bool faces_film(const DippedObject& dipped, const Target& at);
 
 }  // namespace hydrodip

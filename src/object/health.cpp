@@ -262,18 +262,14 @@ long drop_duplicates(Object& object, std::vector<BackToBack>& backs) {
 
 void count_edges(const Object& object, const std::vector<TriangleSide>& sides, MeshHealth& health) {
   DisjointSets rims(object.positions.size());
-  std::vector<std::int32_t> rim_vertices;
   for_each_edge(sides, [&](std::size_t begin, std::size_t end) {
     if (end - begin > 2) ++health.nonmanifold_edges;
     if (end - begin != 1) return;
     ++health.boundary_edges;
-    rim_vertices.push_back(sides[begin].low_vertex());
-    rim_vertices.push_back(sides[begin].high_vertex());
     rims.join(sides[begin].low_vertex(), sides[begin].high_vertex());
   });
-  sort_unless_cancelled(rim_vertices.begin(), rim_vertices.end(), std::less<>());
-  rim_vertices.erase(std::unique(rim_vertices.begin(), rim_vertices.end()), rim_vertices.end());
-  for (const std::int32_t vertex : rim_vertices) health.holes += rims.is_root(std::size_t(vertex));
+  for (const std::int32_t vertex : rim_vertices(sides))
+    health.holes += rims.is_root(std::size_t(vertex));
 }
 
 long count_shells(const Object& object) {

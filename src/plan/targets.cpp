@@ -93,6 +93,13 @@ Targets spread_targets(const TriangleMesh& mesh, int count) {
   return targets;
 }
 
+Target in_pose(const Target& target, const PosedObject& posed) {
+  Target result = target;
+  result.position = (posed.matrix() * target.position.homogeneous()).head<3>();
+  result.normal = posed.turn() * target.normal;
+  return result;
+}
+
 void weigh_by_paint(Targets& targets, const Paint& paint) {
   if (!paint.says_anything()) return;
   Box3 box;

@@ -6,6 +6,7 @@
 
 #include "object/object.h"
 #include "object/paint.h"
+#include "object/posed_object.h"
 
 namespace hydrodip {
 
@@ -28,6 +29,9 @@ inline constexpr int kTargets = 4000;
 // Evenly over the surface, about `count` of them and always the same ones: equal shares of area,
 // and in each triangle the points of a low-discrepancy sequence.
 Targets spread_targets(const TriangleMesh& mesh, int count = kTargets);
+
+// A target of a model's mesh, in the posed-object frame. The area stays the model's.
+Target in_pose(const Target& target, const PosedObject& posed);
 
 // Weighs them by what is wanted there: most where a colour differs from the bare object's or where
 // there is detail; a quarter of that where the bare object would look right, and less where that is

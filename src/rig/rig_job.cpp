@@ -33,14 +33,15 @@ struct ReadReport {
 ReadReport read_report(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "report.json";
   std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored) &&
-      std::filesystem::exists(folder / "nest.html", ignored))
-    throw InputError(fmt::format("{}: this is a nest; its run sheet is {}", folder.string(),
-                                 (folder / "nest.html").string()));
-  if (!std::filesystem::exists(file, ignored))
+  if (!std::filesystem::exists(file, ignored)) {
+    const std::filesystem::path nest = folder / "nest.html";
     throw InputError(
-        fmt::format("{}: there is no report.json; name the folder that 'hydrodip print' wrote",
-                    folder.string()));
+        std::filesystem::exists(nest, ignored)
+            ? fmt::format("{}: this is a nest; its run sheet is {}", folder.string(), nest.string())
+            : fmt::format(
+                  "{}: there is no report.json; name the folder that 'hydrodip print' wrote",
+                  folder.string()));
+  }
   const std::vector<std::uint8_t> bytes = read_small_file(file, kLargestReport, "a report");
   Json report = parsed_json<Json>(bytes);
   if (report.is_object() && report.contains("dips"))
@@ -256,7 +257,7 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
       job.object_size_mm[k] = size[std::size_t(k)];
   if (text_of(report, "concern") == "stop")
     job.alarm = "Do not dip it like this: " + text_of(report, "short_verdict");
-  else if (text_of(report, "command") == "print" && is_draft(job.config.design))
+  else if (text_of(report, "command") == "print")
     job.alarm = draft_alarm(job.config.design);
   if (report.contains("dip_of_several") && report["dip_of_several"].is_object()) {
     const Json& dip = report["dip_of_several"];

@@ -129,27 +129,33 @@ TEST(Tga, PlainAndInRunsFromEitherEdge) {
   expect_four(decode_image(runs, "a.tga"));
 }
 
+// Of 8 bits, red, green and blue, and a fourth sample as alpha, straight.
+TIFF* new_tiff(const std::string& path, int width, int height, int samples) {
+  TIFF* tiff = TIFFOpen(path.c_str(), "w");
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, width);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, height);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, samples);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
+  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  const std::uint16_t extra[] = {EXTRASAMPLE_UNASSALPHA};
+  if (samples == 4) TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, extra);
+  return tiff;
+}
+
 TEST(Tiff, WithStraightAlphaAndProfileOfItsOwn) {
   const TemporaryFolder folder;
   const std::string path = (folder / "a.tif").string();
   Image image = four();
-  TIFF* tiff = TIFFOpen(path.c_str(), "w");
-  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 2);
-  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 2);
-  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
-  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 4);
-  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
-  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  TIFF* tiff = new_tiff(path, 2, 2, 4);
   TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_LZW);
-  const std::uint16_t extra[] = {EXTRASAMPLE_UNASSALPHA};
-  TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, extra);
   for (std::uint32_t y = 0; y < 2; ++y) TIFFWriteScanline(tiff, image.pixel(0, int(y)), y, 0);
   TIFFClose(tiff);
   expect_four(load_image(path));
 }
 
-// Three wide and two high as it is seen, stored as the orientation says: column and row of a pixel
-// that is stored at (x, y), for pictures of w x h that are seen.
+// How large a picture of an orientation is stored, and where a pixel that is stored at (x, y) is
+// seen: column and row.
 struct Stored {
   int orientation, width, height;
   std::function<std::array<int, 2>(int x, int y)> seen_at;
@@ -196,17 +202,9 @@ TEST(Tiff, IsSeenAsItsOrientationSays) {
     for (const int samples : {3, 4})
       for (const std::uint32_t rows : {1U, 3U}) {
         SCOPED_TRACE(testing::Message() << way.orientation << " " << samples << " " << rows);
-        TIFF* tiff = TIFFOpen(path.c_str(), "w");
-        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, way.width);
-        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, way.height);
-        TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
-        TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, samples);
-        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
-        TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+        TIFF* tiff = new_tiff(path, way.width, way.height, samples);
         TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, rows);
         TIFFSetField(tiff, TIFFTAG_ORIENTATION, way.orientation);
-        const std::uint16_t extra[] = {EXTRASAMPLE_UNASSALPHA};
-        if (samples == 4) TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, extra);
         for (int y = 0; y < way.height; ++y) {
           Bytes row;
           for (int x = 0; x < way.width; ++x) {
