@@ -266,6 +266,8 @@ Image over_base(const Image& image, const LinearColor& base) {
   return result;
 }
 
+Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
 Json sheet_json(const SceneSource& source) {
   Json json = {{"width_mm", source.sheet_width_mm}, {"height_mm", source.sheet_height_mm}};
   if (!source.sheet.empty()) {
@@ -301,6 +303,9 @@ std::string scene_json(const SceneSource& source, const RunContext& context) {
   json["cell_mm"] = source.film.mesh().cell_mm;
   json["bath"] = {{"width_mm", source.bath_width_mm}, {"height_mm", source.bath_height_mm}};
   json["sheet"] = sheet_json(source);
+  json["standing"] = {{"up", vector_json(source.standing.up)},
+                      {"front", vector_json(source.standing.front)}};
+  json["first_look"] = vector_json(source.first_look);
   context.progress(activity, 0.3);
   json["object"] = object_json(source.object, packer);
   context.progress(activity, 0.5);

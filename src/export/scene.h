@@ -9,6 +9,7 @@
 #include "export/film_layer.h"
 #include "film/film.h"
 #include "object/object.h"
+#include "render/view.h"
 
 namespace hydrodip {
 
@@ -30,6 +31,8 @@ struct SceneSource {
   double bath_height_mm = 270;
   double tear_stretch = 0;       // the film's limit; 0: it never tears
   LinearColor base{1, 1, 1, 1};  // the bare object's colour
+  Standing standing = {};
+  Vec3 first_look = -Vec3::UnitZ();  // from the object to the eye that opens the page; unit
   std::vector<FilmLayer> layers = {};
   // Not empty: what is predicted is these, and the film is one without triangles.
   std::vector<FinishLook> looks = {};

@@ -92,7 +92,8 @@ class FinishPictures {
     PreviewOptions options;
     options.width_px = all_.config.preview_width_px;
     options.base = finish_.paint().base();
-    options.told = told();
+    const std::vector<SurfacePatch> told = told_patches();
+    options.told = told;
     options.standing = standing_;
     std::vector<PreviewPair> pairs(2);
     pairs[0].shown = appearance_of(finish_);
@@ -109,12 +110,12 @@ class FinishPictures {
     const std::vector<Image> pages =
         render_previews(posed_.mesh(), posed_.surface(), *all_.dips.front().made.dipped.film, pairs,
                         options, context);
-    return {encode_png(pages[0]), encode_png(pages[1]), scene(context)};
+    return {encode_png(pages[0]), encode_png(pages[1]), scene(told, context)};
   }
 
  private:
   // What shall be printed, or if that is everywhere the whole surface.
-  std::vector<SurfacePatch> told() const {
+  std::vector<SurfacePatch> told_patches() const {
     const Targets& targets = all_.nodes->targets();
     const std::vector<std::uint8_t> is_wanted = wanted_at(targets, finish_.paint());
     std::vector<SurfacePatch> patches;
@@ -140,14 +141,8 @@ class FinishPictures {
         check_.error_near(position_at(model, point), face_normal(model, point.triangle)));
   }
 
-  // The page's view shows a mesh with y up and its front towards -z.
-  std::string scene(const RunContext& context) const {
-    Mat3 turn;
-    turn.row(0) = standing_.front.cross(standing_.up);
-    turn.row(1) = standing_.up;
-    turn.row(2) = -standing_.front;
-    TriangleMesh mesh = posed_.mesh();
-    for (Vec3& p : mesh.positions) p = turn * p;
+  std::string scene(const std::vector<SurfacePatch>& told, const RunContext& context) const {
+    const TriangleMesh& mesh = posed_.mesh();
     constexpr int kColors_px = 1024, kOthers_px = 512;
     const auto baked = [&](const Look& look, int most_px) {
       return painted_object(mesh, LookPaint(finish_.paint().base(), look), most_px);
@@ -158,6 +153,8 @@ class FinishPictures {
     SceneSource source{wanted, no_film, no_history, Image()};
     source.base = finish_.paint().base();
     source.dips = int(all_.dips.size());
+    source.standing = standing_;
+    source.first_look = telling_directions(mesh, posed_.surface(), told, standing_)[0];
     source.looks = {
         {"none", baked([&](const auto& p) { return finish_.color_at(p); }, kColors_px)},
         {"parts",

@@ -155,7 +155,7 @@ std::vector<FilmLayer> measure_layers(const JobRecord& record, const Appearance&
 }
 
 // What the 3D view shows.
-std::string make_scene(const JobRecord& record, const Object& looks,
+std::string make_scene(const JobRecord& record, const Object& looks, const TellingViews& views,
                        const std::vector<FilmLayer>& layers, const Image& sheet,
                        const SheetRaster& raster) {
   const DippedObject& dipped = record.dipped();
@@ -166,6 +166,8 @@ std::string make_scene(const JobRecord& record, const Object& looks,
   scene.bath_height_mm = record.config.bath.height_mm;
   scene.tear_stretch = record.config.design.dip.material.tear_stretch;
   scene.base = record.paint().base();
+  scene.standing = views.standing();
+  scene.first_look = views.camera(0).back;
   scene.layers = layers;
   return scene_json(scene, record.context);
 }
@@ -225,7 +227,7 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
     tasks.emplace_back([&] {
       const bool is_enough = 2 * record.config.preview_texture_px >= kPageTextureSide_px;
       previews.pictures.scene =
-          make_scene(record, looks, layers,
+          make_scene(record, looks, *views, layers,
                      shrink_to(is_enough ? glb_sheet : film_image, kPageTextureSide_px), raster);
     });
     add("maps.png", [&](const auto& path) {

@@ -109,8 +109,12 @@ TEST(Scene, EverythingComesBack) {
   const DipHistory history = some_history(film);
   const Image sheet = plain_sheet();
   SceneSource source{ball, film, history, sheet, 80, 100};
+  source.standing = {Vec3::UnitX(), Vec3::UnitZ()};
+  source.first_look = {0, -1, 0};
   RunContext context;
   const Json scene = Json::parse(scene_json(source, context));
+  EXPECT_EQ(scene["standing"], Json({{"up", {1, 0, 0}}, {"front", {0, 0, 1}}}));
+  EXPECT_EQ(scene["first_look"], Json({0, -1, 0}));
   const Unpacked data(scene["data"]);
 
   const std::vector<double> positions = data.lengths(scene["object"]["position"]);

@@ -187,6 +187,10 @@ test('every overlay changes the picture and explains itself', async () => {
 
 test('side by side, both views turn together', async () => {
   await openView(partial);
+  await browser.click('[data-side=front]');
+  await settle();
+  await browser.hover(2, 2);
+  await settle();
   const before = await stage();
   const { x, y, width, height } = await browser.box('.stage');
   const at = { x: x + 0.25 * width, y: y + 0.5 * height, button: 'left', buttons: 1, clickCount: 1 };

@@ -15,7 +15,7 @@ const VIEWS = [
   ['dip', 'The dip'],
 ];
 const SIDES = {
-  result: [['front', 'Front'], ['left', 'Left'], ['right', 'Right'], ['back', 'Back']],
+  result: [['front', 'Front'], ['left', 'Left'], ['right', 'Right'], ['back', 'Back'], ['above', 'Above'], ['below', 'Below']],
   dip: [['side', 'Side'], ['above', 'Above'], ['below', 'Below']],
 };
 const PLAY_SECONDS = 8;

@@ -126,9 +126,22 @@ export class Stage {
     this.torn = part(film.torn, cell);
     this.result = new THREE.Group();
     this.result.add(this.lying, this.torn, ...this.looks.map(({ mesh }) => mesh));
-    // The side that met the film (-z) to the front, +y up.
-    this.result.rotation.y = Math.PI;
-    this.result.position.set(0, -this.center().y, this.center().z);
+    this.standUp();
+  }
+
+  // As people see the object: its front towards +z, +y up.
+  standUp() {
+    const up = new THREE.Vector3(...this.scene.standing.up);
+    const front = new THREE.Vector3(...this.scene.standing.front);
+    const across = new THREE.Matrix4().makeBasis(up.clone().cross(front), up, front);
+    this.result.quaternion.setFromRotationMatrix(across.transpose());
+    this.result.position.copy(this.center().applyQuaternion(this.result.quaternion).negate());
+  }
+
+  // Towards the eye that sees most of what is to be told; not quite along the axis that one turns about.
+  firstLook() {
+    const direction = new THREE.Vector3(...this.scene.first_look).applyQuaternion(this.result.quaternion);
+    return Math.hypot(direction.x, direction.z) < 0.1 ? direction.add(new THREE.Vector3(0, 0, 0.1)) : direction;
   }
 
   center() {
@@ -219,7 +232,7 @@ export class Stage {
       this.controls.target.copy(this.places[kind][1]);
       this.controls.update();
     } else {
-      this.look(kind === 'dip' ? 'side' : 'front');
+      this.look(kind === 'dip' ? 'side' : 'first');
     }
   }
 
@@ -234,7 +247,7 @@ export class Stage {
       above: [0, 1, 0.02],
       below: [0.3, -0.75, 0.8],
     };
-    const direction = new THREE.Vector3(...directions[side]).normalize();
+    const direction = (side === 'first' ? this.firstLook() : new THREE.Vector3(...directions[side])).normalize();
     this.controls.target.set(0, 0, 0);
     const distance = this.kind === 'dip' ? this.dipDistance() : this.objectDistance(direction);
     this.camera.position.copy(direction.multiplyScalar(distance));
