@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "base/run_scope.h"
+#include "base/shell_word.h"
 #include "export/film_ply.h"
 #include "export/preview_glb.h"
 #include "export/scene.h"
@@ -257,8 +258,16 @@ JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previe
   record.context.check_cancelled();
   folder.commit();
   JobResult result = describe_result(report, folder.folder());
-  result.text = folder.told_replaced() + result.text;
+  result.text = folder.told_replaced() + told_earlier_jig(folder) + result.text;
   return result;
+}
+
+std::string told_earlier_jig(const OutputFolder& folder) {
+  const std::filesystem::path jig = folder.folder() / "jig";
+  std::error_code none;
+  if (!folder.replaced_earlier() || !std::filesystem::exists(jig / "mount.stl", none)) return "";
+  return fmt::format("{} was cut for the earlier result: 'hydrodip rig jig {}' cuts it anew\n",
+                     jig.string(), shell_word(folder.folder().string()));
 }
 
 std::vector<std::string> files_of_dip() {

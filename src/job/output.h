@@ -32,6 +32,9 @@ JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previe
 // What a sheet lays of each ink, of a limit to their sum.
 ReportInk ink_amounts(const InkImage& inks, double limit);
 
+// Says that a jig lies beside the new files that was cut for what they have replaced, or nothing.
+std::string told_earlier_jig(const OutputFolder& folder);
+
 // What a job of several dips writes into the folder of each.
 std::vector<std::string> files_of_dip();
 
