@@ -136,6 +136,22 @@ std::vector<Setting> quality_settings(const std::string& quality) {
                                did_you_mean(quality, {"draft", "normal", "fine"})));
 }
 
+namespace {
+
+// A file that has tables of one kind has all of them: fields of an earlier file's would mix with
+// its own.
+void forget_tables_before(JobConfig& config, const std::vector<Setting>& file) {
+  const auto has = [&](const char* table) {
+    return std::any_of(file.begin(), file.end(),
+                       [&](const Setting& s) { return s.name.starts_with(table); });
+  };
+  if (has("artwork[")) config.object.artwork.clear();
+  if (has("part[")) config.parts.clear();
+  if (has("dip[")) config.dips.clear();
+}
+
+}  // namespace
+
 void apply_sources(JobConfig& config, const SettingSources& sources) {
   std::vector<Setting> all;
   const auto add = [&](const std::vector<Setting>& settings) {
@@ -145,7 +161,9 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
   add(sources.quality);
   for (const auto* files : {&sources.profiles, &sources.configs})
     for (const auto& file : *files) {
-      add(read_settings(file));
+      const std::vector<Setting> settings = read_settings(file);
+      forget_tables_before(config, settings);
+      add(settings);
       config.settings_files.push_back(file);
     }
   // Options speak of a layer of their own, above those of files, if they give it a picture.

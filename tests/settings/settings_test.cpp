@@ -254,6 +254,27 @@ TEST_F(Settings, LaterSourcesWin) {
   EXPECT_EQ(config.design.dpi, 400);                     // --set over all
 }
 
+TEST_F(Settings, TablesOfALaterFileTakeThePlaceOfAnEarlierOnes) {
+  SettingSources sources;
+  sources.configs = {
+      file("[[artwork]]\nimage = 'a.png'\nat_mm = [1, 2, 3]\n[[artwork]]\ntext = 'b'\n"
+           "[[dip]]\ndown = '-z'\ndepth_mm = 20\n[[dip]]\ndown = '+z'\n"
+           "[[part]]\njob = 'c.toml'\ncount = 3\n",
+           "job.toml"),
+      file("[[artwork]]\ntext = 'c'\n[[dip]]\ndown = '+x'\n", "later.toml"),
+      file("dip.step_mm = 0.2\n", "last.toml")};
+  JobConfig config;
+  apply_sources(config, sources);
+  ASSERT_EQ(config.object.artwork.size(), 1U);
+  EXPECT_EQ(config.object.artwork[0].text, "c");
+  EXPECT_TRUE(config.object.artwork[0].image.empty());
+  EXPECT_FALSE(config.object.artwork[0].at_mm);
+  ASSERT_EQ(config.dips.size(), 1U);
+  EXPECT_FALSE(config.dips[0].depth_mm);
+  ASSERT_EQ(config.parts.size(), 1U);
+  EXPECT_EQ(config.parts[0].count, 3);
+}
+
 TEST_F(Settings, ThePapersSchemeHasARegularGridUnlessAskedOtherwise) {
   const auto grading = [&](const std::string& toml, const std::vector<Setting>& sets) {
     SettingSources sources;
