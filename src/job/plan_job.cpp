@@ -55,7 +55,7 @@ std::string in_words(const JobConfig& config, const DipPlan& plan) {
   std::string text = "covered after so many dips:";
   for (std::size_t k = 0; k < plan.dips.size(); ++k)
     text += fmt::format("{} {}: {:.0f} %", k > 0 ? "," : "", k + 1, 100 * plan.covered_after[k]);
-  text += "\n";
+  text += " (of film without ink, which stiffens it: a print's may differ by some points)\n";
   for (std::size_t k = 0; k < plan.dips.size(); ++k)
     text +=
         fmt::format("{}. {}\n   {}\n", k + 1, describe_trial(plan.dips[k].trial, way_up(config)),
