@@ -125,6 +125,15 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
   write_file(path, text.data(), text.size());
 }
 
+bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto whole = std::filesystem::weakly_canonical(file, error);
+  if (error) return false;
+  const auto root = std::filesystem::weakly_canonical(folder, error);
+  return !error &&
+         std::mismatch(root.begin(), root.end(), whole.begin(), whole.end()).first == root.end();
+}
+
 std::string sha256_hex(const std::vector<std::uint8_t>& bytes) {
   unsigned char digest[EVP_MAX_MD_SIZE];
   unsigned int size = 0;

@@ -1,4 +1,4 @@
-// Whole-file input and a hash that identifies it in reports.
+// Whole files in and out, where they lie, and a hash that identifies them in reports.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,10 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path);
 // Writes bytes; throws InputError naming the path (disk full, no permission).
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size);
 void write_file(const std::filesystem::path& path, const std::string& text);
+
+// Whether the file lies in the folder or in one of its folders, wherever links on the way to it
+// lead.
+bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 // SHA-256 in lower-case hexadecimal.
 std::string sha256_hex(const std::vector<std::uint8_t>& bytes);

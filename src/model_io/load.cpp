@@ -408,7 +408,7 @@ LoadedObject load_object(const fs::path& path, const LoadOptions& options,
                          const RunContext& context) {
   const Format& format = format_of(path);
   unit_for(options.units, "", format);  // refuses a bad --units before the long part
-  ModelFolder folder(path);
+  ModelFolder folder(path, options.confined_to);
   std::shared_ptr<const Image> only_texture;
   if (!options.texture.empty() && fs::exists(path))
     only_texture = std::make_shared<const Image>(load_image(options.texture));

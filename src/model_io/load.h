@@ -24,6 +24,9 @@ struct LoadOptions {
   // When not empty, this picture alone decides the colour: it replaces every material's texture,
   // base colour and the vertex colours. Needs UVs.
   std::filesystem::path texture;
+  // When not empty, the model reads no other file than those in this folder, whatever it names: for
+  // models of people who may not read all that this process may.
+  std::filesystem::path confined_to = {};
 };
 
 struct LoadedObject {

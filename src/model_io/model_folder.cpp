@@ -29,11 +29,6 @@ std::string percent_decoded(const std::string& text) {
   return out;
 }
 
-bool is_file(const fs::path& path) {
-  std::error_code ignored;
-  return path.has_filename() && fs::is_regular_file(path, ignored);
-}
-
 // A path of another computer, and what is left of it when its outer folders are taken away: of
 // C:/me/textures/wood.png also textures/wood.png, which came along with the model, and wood.png.
 void add_with_fewer_folders(const fs::path& path, std::vector<fs::path>& out) {
@@ -50,7 +45,14 @@ void add_with_fewer_folders(const fs::path& path, std::vector<fs::path>& out) {
 
 }  // namespace
 
-ModelFolder::ModelFolder(const fs::path& model) : folder_(model.parent_path()) {}
+ModelFolder::ModelFolder(const fs::path& model, const fs::path& confined_to)
+    : folder_(model.parent_path()), confined_to_(confined_to) {}
+
+bool ModelFolder::is_file(const fs::path& path) const {
+  std::error_code ignored;
+  if (!path.has_filename() || !fs::is_regular_file(path, ignored)) return false;
+  return confined_to_.empty() || lies_in(path, confined_to_);
+}
 
 fs::path ModelFolder::find(const std::string& name) {
   const auto [known, is_new] = found_.try_emplace(name);

@@ -32,7 +32,7 @@ FileState state_of(const std::filesystem::path& path) {
 }
 
 void add(ContentKey& key, const LoadOptions& load) {
-  key.add(load.units).add(load.texture.string());
+  key.add(load.units).add(load.texture.string()).add(load.confined_to.string());
 }
 
 void add(ContentKey& key, const PoseOptions& pose) {

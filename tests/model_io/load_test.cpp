@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -118,6 +120,30 @@ TEST(Load, SeveralTextures) {
   EXPECT_EQ(loaded.object.textures.size(), 2u);
   expect_color(color_near(loaded.object, 0.25, 0.75), 1, 0, 0);
   expect_color(color_near(loaded.object, 1.25, 0.75), 0, 1, 1);
+}
+
+// What a model names elsewhere is not there for one that is confined, whichever way it leads.
+TEST(Load, ConfinedModelsReadNothingElsewhere) {
+  ModelFolder folder;
+  const auto inside = folder / "inside";
+  std::filesystem::create_directories(inside / "below");
+  obj_in(folder);
+  const auto png = folder / "left.png";
+  std::filesystem::copy(folder / "squares.obj", inside / "squares.obj");
+  std::filesystem::create_symlink(png, inside / "link.png");
+  const auto pictures_read = [&](const std::string& name, bool confined) {
+    std::ofstream(inside / "squares.mtl") << "newmtl left\nmap_Kd " << name << "\n";
+    LoadOptions options;
+    if (confined) options.confined_to = inside;
+    return load(inside / "squares.obj", options).files.size() - 2;
+  };
+  for (const std::string& name : {png.string(), std::string("../left.png"), std::string("link.png"),
+                                  std::string("below/../../left.png")}) {
+    EXPECT_EQ(pictures_read(name, false), 1U) << name;
+    EXPECT_EQ(pictures_read(name, true), 0U) << name;
+  }
+  std::filesystem::copy(png, inside / "below/own.png");
+  EXPECT_EQ(pictures_read("below/own.png", true), 1U);
 }
 
 TEST(Load, MissingTextureFallsBackWithAWarning) {
