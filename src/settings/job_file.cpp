@@ -11,10 +11,9 @@
 namespace hydrodip {
 namespace {
 
-// What belongs to the run or to the machine, not to the job.
+// What belongs to the run, not to the job. A stage's limits go along: without them it would hit.
 bool is_left_out(const Parameter& p) {
-  return p.name.starts_with("run.") || p.name.starts_with("stage.") ||
-         p.name.starts_with("output.") || p.name == "plan.dips";
+  return p.name.starts_with("run.") || p.name.starts_with("output.") || p.name == "plan.dips";
 }
 
 std::string quoted(const std::string& text) {
@@ -76,13 +75,17 @@ std::string artwork_tables_toml(const std::vector<ArtworkLayer>& layers,
 
 }  // namespace
 
-std::string job_file(const JobConfig& config, const std::filesystem::path& folder) {
+std::string job_file(const JobConfig& config, const std::filesystem::path& folder,
+                     const std::vector<std::string>& of_the_run) {
   std::string text = "# A job for hydrodip: hydrodip print THIS_FILE\n", group;
   if (!config.design.trajectory.path.empty())
     text += fmt::format("path = {}\n", path_text(config.design.trajectory.path));
   for (const Parameter& p : parameters()) {
     const ParameterValue value = p.get(config);
-    if (p.type == ParameterType::kWayIn || value == p.default_value() || is_left_out(p)) continue;
+    const bool is_asked_for =
+        std::find(of_the_run.begin(), of_the_run.end(), p.name) != of_the_run.end();
+    if (p.type == ParameterType::kWayIn || value == p.default_value()) continue;
+    if (is_left_out(p) && !is_asked_for) continue;
     const std::size_t dot = p.name.find('.');
     // [dip] and [[dip]] cannot stand in one file: [dips] is what holds for all of them.
     std::string own = p.name.substr(0, dot);

@@ -119,6 +119,7 @@ TEST_F(JobFile, ReadsWhatItWrites) {
   config.design.dip.step_mm = 0.25;
   config.design.dip.material.tear_stretch = 1.3;
   config.plan.overlap_mm = 3;
+  config.stage.lowest_mm = 120;
   config.dips.resize(3);
   config.dips[0].rotate_deg = Vec3(10, -20, 30);
   config.dips[0].depth_mm = 12.3;
@@ -140,6 +141,13 @@ TEST_F(JobFile, ReadsWhatItWrites) {
     EXPECT_EQ(again.dips[k].locked, config.dips[k].locked);
   }
   EXPECT_EQ(again.dips[2].path[1].turn_z_deg, 5);
+}
+
+TEST_F(JobFile, SaysOfARunOnlyWhatItIsToldTo) {
+  JobConfig config;
+  config.threads = 3;
+  EXPECT_EQ(read(job_file(config, folder_)).threads, 0);
+  EXPECT_EQ(read(job_file(config, folder_, {"run.threads"})).threads, 3);
 }
 
 TEST_F(JobFile, IsRefusedWhereItIsWrong) {
