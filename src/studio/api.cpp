@@ -215,10 +215,8 @@ std::string joined(const std::vector<std::string>& parts, std::size_t from) {
 std::filesystem::path file_in(const std::filesystem::path& folder, const std::string& name) {
   require_plain_name(name);
   std::error_code error;
-  auto file = std::filesystem::canonical(folder / name, error);
-  const auto root = std::filesystem::canonical(folder, error);
-  if (folder.empty() || error ||
-      std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first != root.end())
+  auto file = folder / name;
+  if (folder.empty() || !std::filesystem::exists(file, error) || !lies_in(file, folder))
     throw not_found();
   return file;
 }
@@ -353,12 +351,7 @@ HttpAnswer Api::route(HttpRequest& request) {
   if (parts[1] == "hello" && reads) return hello();
   if (parts[1] == "recent" && reads) return json_answer(store_.recent(kMostRecent));
   if (parts[1] == "recent" && parts.size() == 3 && request.method == "DELETE") {
-    {
-      const std::lock_guard lock(mutex_);
-      if (jobs_.contains(parts[2]))
-        throw ApiError(409, "busy", "The job is open; close its tab first.");
-    }
-    store_.forget(parts[2]);
+    forget(parts[2]);
     return json_answer(Json::object());
   }
   if (parts[1] == "profiles" && reads && parts.size() == 2) {
@@ -424,7 +417,7 @@ std::shared_ptr<OpenJob> Api::job(const std::string& name) {
   if (known != jobs_.end()) return known->second;
   if (!store_.has(name))
     throw ApiError(404, "not-found", "There is no such job any more; begin a new one.");
-  return jobs_[name] = std::make_shared<OpenJob>(store_, name, run_);
+  return jobs_[name] = std::make_shared<OpenJob>(store_, name, run_, numbers_);
 }
 
 void Api::open_file(const std::filesystem::path& file) {
@@ -433,7 +426,10 @@ void Api::open_file(const std::filesystem::path& file) {
   if (!earlier.empty()) {
     const Json state = store_.read(earlier);
     const bool unsaved = state.value("revision", 0L) != state.value("saved_revision", 0L);
-    if (!unsaved) job(earlier)->open_file(file);
+    // What was saved is as its file says, which may have been edited since.
+    const std::filesystem::path saved = state.value("where", "");
+    std::error_code none;
+    if (!unsaved && std::filesystem::exists(saved, none)) job(earlier)->open_file(saved);
     job(earlier);
     opened_ = earlier;
     return;
@@ -474,7 +470,27 @@ HttpAnswer Api::new_job(HttpRequest& request) {
   return json_answer(answer, 201);
 }
 
+void Api::forget(const std::string& job) {
+  std::shared_ptr<OpenJob> gone;  // ended without the lock
+  {
+    const std::lock_guard lock(mutex_);
+    const auto open = jobs_.find(job);
+    if (open != jobs_.end()) {
+      if (!open->second->idle_since())
+        throw ApiError(409, "busy", "The job is open; close its tab first.");
+      gone = std::move(open->second);
+      jobs_.erase(open);
+    }
+  }
+  gone.reset();
+  store_.forget(job);
+}
+
 HttpAnswer Api::job_route(HttpRequest& request, const Parts& parts) {
+  // For the list of recent jobs, which opens none of them.
+  if (request.method == "GET" && parts.size() == 4 && parts[3] == "thumbnail" &&
+      store_.has(parts[2]))
+    return file_answer(store_.home(parts[2]) / kThumbnail);
   const std::shared_ptr<OpenJob> open = job(parts[2]);
   if (request.method == "GET" && parts.size() == 4 && parts[3] == "events")
     return events(request, open);
@@ -486,7 +502,6 @@ HttpAnswer Api::read_job(const HttpRequest&, const Parts& parts, OpenJob& job) {
   if (parts.size() == 3) return json_answer(job.describe());
   const std::string& what = parts[3];
   if (what == "files" && parts.size() > 4) return file_answer(job.file(joined(parts, 4)));
-  if (what == "thumbnail") return file_answer(job.thumbnail());
   if (what == "counts") return json_answer(job.counts());
   if (what == "profiles" && parts.size() == 5)
     return json_answer(job.patch_of_profile(known_profile(profiles_, parts[4])));

@@ -1,6 +1,7 @@
 // The studio's interface over HTTP: docs/studio-api.md.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -51,6 +52,7 @@ class Api {
   HttpAnswer upload(HttpRequest& request, const std::string& name, OpenJob& job);
   HttpAnswer events(const HttpRequest& request, const std::shared_ptr<OpenJob>& job);
   HttpAnswer login(HttpRequest& request);
+  void forget(const std::string& job);
   std::shared_ptr<OpenJob> job(const std::string& name);
 
   const JobStore store_;
@@ -60,6 +62,7 @@ class Api {
   const std::function<void()> quit_;
   const std::filesystem::path profiles_;
   std::string opened_;
+  const std::shared_ptr<std::atomic<long>> numbers_ = std::make_shared<std::atomic<long>>(0);
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<OpenJob>> jobs_;
 };

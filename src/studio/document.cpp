@@ -228,6 +228,44 @@ Json values_of(const JobConfig& config, const std::vector<std::string>& names, J
   return patch;
 }
 
+Json machine_values_of(const JobConfig& config) {
+  Json values = Json::object();
+  for (const Parameter& p : parameters()) {
+    const ParameterValue value = p.get(config);
+    if (!is_foreign(p.name) || value == p.default_value()) continue;
+    std::visit([&](const auto& own) { values[p.name] = own; }, value);
+  }
+  return values;
+}
+
+void apply_machine_values(const Json& values, JobConfig& config) {
+  for (const auto& [name, value] : values.items()) {
+    if (!is_foreign(name)) continue;
+    Setting setting{name, std::string(), true, "'" + text_of(value) + "'", kOrigin};
+    if (value.is_number()) setting.value = value.get<double>();
+    if (value.is_string()) setting.value = value.get<std::string>();
+    try {
+      apply_settings(config, {setting});
+    } catch (const InputError& error) {
+      refuse(name, error.what());
+    }
+  }
+}
+
+void each_side_file(JobConfig& config, const std::function<void(std::filesystem::path&)>& visit) {
+  for (const Parameter& p : parameters()) {
+    if (p.type != ParameterType::kPath || p.name == "object.file") continue;
+    std::filesystem::path file = std::get<std::string>(p.get(config));
+    if (file.empty()) continue;
+    visit(file);
+    p.set(config, file.string());
+  }
+  for (ArtworkLayer& layer : config.object.artwork)
+    if (!layer.image.empty()) visit(layer.image);
+  for (DipEntry& dip : config.dips)
+    if (!dip.correction.empty()) visit(dip.correction);
+}
+
 std::string name_of_job(const Json& document) {
   const auto text = [](const Json& value) {
     return value.is_string() ? value.get<std::string>() : std::string();

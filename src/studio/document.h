@@ -1,6 +1,8 @@
 // A job as the page has it: the job file as JSON. docs/studio-api.md.
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,15 @@ Json document_of(const JobConfig& config, JobFiles& files);
 
 // Values of these parameters in groups, as a patch. Files that they name become the job's.
 Json values_of(const JobConfig& config, const std::vector<std::string>& names, JobFiles& files);
+
+// What of a configuration belongs to the machine and not to the document (stage, run, output), by
+// parameter: kept beside the document, so that the job's file says it again.
+Json machine_values_of(const JobConfig& config);
+// Throws ApiError bad-value.
+void apply_machine_values(const Json& values, JobConfig& config);
+
+// Shows every file that a job names besides its model: it may be named otherwise.
+void each_side_file(JobConfig& config, const std::function<void(std::filesystem::path&)>& visit);
 
 // The document's name, or else that of its model.
 std::string name_of_job(const Json& document);

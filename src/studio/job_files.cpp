@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/file.h"
 #include "studio/api_error.h"
 
 namespace hydrodip {
@@ -39,14 +40,6 @@ bool is_plain_name(const std::string& name) {
     begin = end + 1;
   }
   return parts <= kDeepest;
-}
-
-bool is_inside(const std::filesystem::path& file, const std::filesystem::path& folder) {
-  std::error_code error;
-  const auto whole = std::filesystem::weakly_canonical(file, error);
-  const auto root = std::filesystem::weakly_canonical(folder, error);
-  return !error &&
-         std::mismatch(root.begin(), root.end(), whole.begin(), whole.end()).first == root.end();
 }
 
 }  // namespace
@@ -89,7 +82,7 @@ std::filesystem::path JobFiles::find(const std::string& name) const {
   require_plain_name(name);
   std::error_code ignored;
   auto uploaded = uploads_ / name;
-  if (is_inside(uploaded, uploads_) && std::filesystem::is_regular_file(uploaded, ignored))
+  if (lies_in(uploaded, uploads_) && std::filesystem::is_regular_file(uploaded, ignored))
     return uploaded;
   if (const auto known = granted_.find(name); known != granted_.end()) return known->second;
   throw ApiError(422, "bad-value", fmt::format("The job has no file '{}'.", name));
@@ -109,6 +102,14 @@ std::string JobFiles::name_for_upload(const std::string& wanted) const {
         path.parent_path() /
         fmt::format("{}-{}{}", path.stem().string(), number, path.extension().string());
     if (!has(next.string())) return next.string();
+  }
+}
+
+std::string JobFiles::new_folder(const std::string& wanted) const {
+  require_plain_name(wanted);
+  for (int number = 2;; ++number) {
+    std::string name = fmt::format("{}-{}", std::filesystem::path(wanted).stem().string(), number);
+    if (!has(name)) return name;
   }
 }
 

@@ -31,6 +31,9 @@ class JobFiles {
   // Where an upload of that name goes; made unlike all others ("mask-2.obj").
   std::string name_for_upload(const std::string& wanted) const;
 
+  // The name of a folder that there is not yet, for files that came together ("mask-2").
+  std::string new_folder(const std::string& wanted) const;
+
   // The name of a file anywhere, which from now on belongs to the job.
   std::string grant(const std::filesystem::path& file);
 

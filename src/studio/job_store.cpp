@@ -129,7 +129,7 @@ Json JobStore::recent(std::size_t most) const {
     const Json& document = state["document"];
     if (!document.contains("object") && !document.contains("artwork")) continue;  // empty
     std::error_code none;
-    const bool pictured = std::filesystem::exists(home(job) / "thumbnail.png", none);
+    const bool pictured = std::filesystem::exists(home(job) / kThumbnail, none);
     list.push_back(
         {{"job", job},
          {"name", state.value("name", "")},

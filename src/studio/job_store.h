@@ -19,6 +19,9 @@ std::filesystem::path studio_folder();
 // Appears whole, or the file stays as it was. Throws InputError.
 void write_whole(const std::filesystem::path& file, const std::string& text);
 
+// In a job's folder: a picture for the list of recent jobs.
+inline constexpr const char* kThumbnail = "thumbnail.png";
+
 class JobStore {
  public:
   explicit JobStore(std::filesystem::path folder) : folder_(std::move(folder)) {}

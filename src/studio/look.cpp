@@ -329,6 +329,17 @@ Json figures_json(const Look& look) {
           {"steep_share", d.angles.over_limit_share()}};
 }
 
+// What the print would look for: another way than the one that could be shown.
+void require_known_way(const JobConfig& job, std::size_t dip) {
+  const bool is_one_of_several = dip < job.dips.size();
+  const bool leaves_pose = is_one_of_several ? job.dips[dip].find_rotation : job.plan.find_pose;
+  if (leaves_pose || (job.plan.find_depth && !is_one_of_several))
+    refuse("input",
+           "This job leaves open how the object is held, or how deep it goes: look for a way, or "
+           "say one.",
+           is_one_of_several ? Json({orient_mend()}) : auto_mends());
+}
+
 }  // namespace
 
 JobConfig config_of_dip(const JobConfig& config, std::size_t dip) {
@@ -369,6 +380,7 @@ Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Lo
   const RunScope scope(context);
   if (job.model.empty())
     refuse("no-model", "There is no model yet: drop one here, or open a sample.", Json::array());
+  require_known_way(job, dip);
   return or_refused([&] {
     Look look;
     look.config = config_of_dip(job, dip);

@@ -110,6 +110,11 @@ Json orient_mend() {
           {"task", {{"kind", "orient"}}}};
 }
 
+Json auto_mends() {
+  return {orient_mend(), mend("As it stands, and whole", {{"object", {{"rotate_deg", {0, 0, 0}}}},
+                                                          {"dip", {{"depth_mm", 0}}}})};
+}
+
 Json tear_mends(const JobConfig& config, const DippedFilm& film) {
   Json list = Json::array();
   const FilmMesh& mesh = film.mesh();

@@ -16,6 +16,10 @@ std::string misfit(const JobConfig& config, const TriangleMesh& posed);
 // Other ways to hold it: a task, and not a change.
 Json orient_mend();
 
+// For a job that leaves it to the program how the object is held and how deep it goes: a task, or
+// as it stands and whole.
+Json auto_mends();
+
 // For film that tears: the depth up to which nothing does, and other ways to hold the object.
 Json tear_mends(const JobConfig& config, const DippedFilm& film);
 

@@ -63,15 +63,53 @@ std::string texture_for(const Model& model, const std::string& name,
   return meant ? pictures[0] : "";
 }
 
+// Whether nothing is there yet, or the same.
+bool may_become(const std::filesystem::path& to, const std::filesystem::path& file) {
+  std::error_code ignored;
+  return !std::filesystem::exists(to, ignored) || read_file(to) == read_file(file);
+}
+
+void copy_to(const std::filesystem::path& file, const std::filesystem::path& to) {
+  std::error_code ignored;
+  if (std::filesystem::exists(to, ignored)) return;
+  std::filesystem::create_directories(to.parent_path(), ignored);
+  const std::vector<std::uint8_t> bytes = read_file(file);
+  write_file(to, bytes.data(), bytes.size());
+}
+
+// Files that name each other, as they lie to each other; into the folder, or if other ones of their
+// names are there into one inside it. Where the first of them is then.
+std::filesystem::path copy_together(const std::vector<std::filesystem::path>& files,
+                                    const std::filesystem::path& folder) {
+  std::filesystem::path root = files.front().parent_path();
+  const auto is_outside = [&](const std::filesystem::path& file) { return !lies_in(file, root); };
+  while (std::any_of(files.begin(), files.end(), is_outside)) root = root.parent_path();
+  const auto inside = [&](const std::filesystem::path& file) {
+    return std::filesystem::weakly_canonical(file).lexically_relative(
+        std::filesystem::weakly_canonical(root));
+  };
+  std::filesystem::path into = folder;
+  const auto fits = [&](const std::filesystem::path& file) {
+    return may_become(into / inside(file), file);
+  };
+  const std::string stem = files.front().stem().string();
+  for (int number = 1; !std::all_of(files.begin(), files.end(), fits); ++number)
+    into = folder / (number == 1 ? stem : fmt::format("{}-{}", stem, number));
+  for (const std::filesystem::path& file : files) copy_to(file, into / inside(file));
+  return into / inside(files.front());
+}
+
 bool is_job_file(const std::filesystem::path& file) { return file.extension() == ".toml"; }
 
 }  // namespace
 
-OpenJob::OpenJob(JobStore store, std::string job, std::string run)
+OpenJob::OpenJob(JobStore store, std::string job, std::string run,
+                 std::shared_ptr<std::atomic<long>> numbers)
     : store_(std::move(store)),
       job_(std::move(job)),
       run_(std::move(run)),
       home_(store_.home(job_)),
+      numbers_(std::move(numbers)),
       files_(home_ / "files") {
   std::error_code ignored;
   std::filesystem::create_directories(files_.uploads(), ignored);
@@ -79,12 +117,13 @@ OpenJob::OpenJob(JobStore store, std::string job, std::string run)
   if (state.is_object()) {
     files_.set_granted(state.value("granted", Json::object()));
     document_ = state.value("document", Json::object());
+    machine_ = state.value("machine", Json::object());
     revision_ = state.value("revision", 1L);
     saved_revision_ = state.value("saved_revision", 1L);
     where_ = state.value("where", "");
     origin_ = state.value("origin", "");
     try {
-      config_ = config_of(document_, files_);
+      config_ = checked(document_);
     } catch (const ApiError&) {
       // A file of it has gone: the page says so when it asks for a result.
     }
@@ -95,7 +134,7 @@ OpenJob::OpenJob(JobStore store, std::string job, std::string run)
     tell("task", task);
   });
   live_ = std::make_unique<Live>(sinks());
-  ask(false);
+  at_rest_ = true;  // until somebody looks, or changes it
 }
 
 OpenJob::~OpenJob() {
@@ -123,7 +162,11 @@ Json OpenJob::describe() const {
 JobConfig OpenJob::checked(const Json& document) const {
   if (text_of(document).size() > kLargestDocument)
     throw ApiError(413, "too-large", "The job's document is too large.");
-  return config_of(document, files_);
+  JobConfig config = config_of(document, files_);
+  apply_machine_values(machine_, config);
+  // What was uploaded may come from anybody, and names no other file of this machine.
+  if (lies_in(config.model, files_.uploads())) config.object.load.confined_to = files_.uploads();
+  return config;
 }
 
 Json OpenJob::put(const Change& change) {
@@ -141,10 +184,12 @@ Json OpenJob::put(const Change& change) {
 // With the lock.
 void OpenJob::accept(const Json& document, const JobConfig& config, const std::string& client,
                      bool live, std::size_t dip, bool tell_client) {
+  const bool stays_saved = saved_revision_ == revision_ && document == document_;
   document_ = document;
   config_ = config;
   dip_ = dip;
   ++revision_;
+  if (stays_saved) tell_saved();
   if (!live) autosave();
   ask(live);
   const Json event = {{"revision", revision_}, {"document", document_}, {"client", client}};
@@ -173,7 +218,21 @@ void OpenJob::autosave() const {
                       {"saved_revision", saved_revision_},
                       {"open", !tabs_.empty()},
                       {"granted", files_.granted()},
+                      {"machine", machine_},
                       {"document", document_}});
+}
+
+// With the lock.
+std::vector<std::string> OpenJob::machine_names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : machine_.items()) names.push_back(name);
+  return names;
+}
+
+// With the lock.
+void OpenJob::tell_saved() {
+  saved_revision_ = revision_;
+  tell("saved", {{"saved_revision", saved_revision_}, {"where", shown_path(where_)}});
 }
 
 void OpenJob::open_file(const std::filesystem::path& file) {
@@ -194,15 +253,72 @@ void OpenJob::open_file(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(config.model, error))
     throw InputError(fmt::format("{}: there is no such file", config.model.string()));
   const std::lock_guard lock(mutex_);
+  machine_ = machine_values_of(config);
   Json document = document_of(config, files_);
   // What a job file does not say.
   for (const char* own : {"name", "page"})
     if (document_.contains(own)) document[own] = document_[own];
+  if (whole != where_) origin_ = whole;
   if (is_job_file(file)) where_ = whole;
-  origin_ = whole;
-  accept(document, config_of(document, files_), "", false, 0, true);
+  accept(document, checked(document), "", false, 0, true);
   if (is_job_file(file)) saved_revision_ = revision_;
   autosave();
+}
+
+// With the lock. What was dropped at once and meets files of the same names gets a folder of its
+// own, in which every file has the name by which the others know it.
+std::vector<std::string> OpenJob::take_in(const std::vector<std::string>& given) {
+  const auto had_other_name = [&](const std::string& name) { return uploaded_as_.contains(name); };
+  std::string folder;
+  if (given.size() > 1 && std::any_of(given.begin(), given.end(), had_other_name))
+    folder = files_.new_folder(had_other_name(given.front()) ? uploaded_as_[given.front()]
+                                                             : given.front());
+  std::vector<std::string> names;
+  for (const std::string& name : given) {
+    const std::filesystem::path file = files_.find(name);
+    if (kind_of_file(name) == "archive") {
+      unpack(name, names);
+    } else if (folder.empty()) {
+      names.push_back(name);
+    } else {
+      names.push_back(folder + "/" + (had_other_name(name) ? uploaded_as_[name] : name));
+      require_plain_name(names.back());
+      const std::filesystem::path to = files_.uploads() / names.back();
+      std::error_code error;
+      std::filesystem::create_directories(to.parent_path(), error);
+      std::filesystem::rename(file, to, error);
+      if (error) throw ApiError(500, "failed", "The files cannot be kept; free some space.");
+    }
+    uploaded_as_.erase(name);
+  }
+  return names;
+}
+
+// With the lock.
+void OpenJob::unpack(const std::string& archive, std::vector<std::string>& names) {
+  const std::filesystem::path file = files_.find(archive);
+  const std::uintmax_t used = files_.uploaded_bytes();
+  const std::uintmax_t most_bytes = used < kMostJobBytes ? kMostJobBytes - used : 0;
+  const auto is_wanted = [](const std::string& inner) {
+    return kind_of_file(inner) != "unknown" && kind_of_file(inner) != "archive";
+  };
+  try {
+    bool meets_others = false;
+    unpack_zip(file, most_bytes, [&](const std::string& inner) -> std::filesystem::path {
+      meets_others = meets_others || (is_wanted(inner) && files_.has(inner));
+      return {};
+    });
+    const std::string folder = meets_others ? files_.new_folder(archive) + "/" : "";
+    unpack_zip(file, most_bytes, [&](const std::string& inner) -> std::filesystem::path {
+      if (!is_wanted(inner) || files_.has(folder + inner)) return {};
+      names.push_back(folder + inner);
+      return files_.uploads() / names.back();
+    });
+  } catch (const InputError& error) {
+    throw input_error(error.what(), files_);
+  }
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
 }
 
 Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& client) {
@@ -212,30 +328,7 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
   const auto note = [&](const std::string& name, const std::string& as, const std::string& text) {
     adopted.push_back({{"file", name}, {"as", as}, {"text", text}});
   };
-  std::vector<std::string> names;
-  for (const std::string& name : given) {
-    files_.find(name);
-    if (kind_of_file(name) != "archive") {
-      names.push_back(name);
-      continue;
-    }
-    const std::uintmax_t used = files_.uploaded_bytes();
-    try {
-      unpack_zip(files_.find(name), used < kMostJobBytes ? kMostJobBytes - used : 0,
-                 [&](const std::string& inner) -> std::filesystem::path {
-                   if (kind_of_file(inner) == "unknown" || kind_of_file(inner) == "archive" ||
-                       files_.has(inner))
-                     return {};
-                   names.push_back(inner);
-                   return files_.uploads() / inner;
-                 });
-    } catch (const InputError& error) {
-      throw input_error(error.what(), files_);
-    }
-    std::error_code ignored;
-    std::filesystem::remove(files_.find(name), ignored);
-  }
-
+  const std::vector<std::string> names = take_in(given);
   Json document = document_;
   const auto first = [&](const std::string& kind) {
     const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
@@ -253,6 +346,7 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
       // Such a file may name anything on this machine: only what came with it is taken.
       JobFiles uploaded(files_.uploads());
       document = document_of(config, uploaded);
+      machine_ = machine_values_of(config);
       if (!uploaded.granted().empty()) {
         const std::string missing = uploaded.granted().begin().key();
         throw ApiError(
@@ -270,7 +364,9 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
       if (names.size() > 1) {
         const std::filesystem::path path = files_.find(model);
         lock.unlock();
-        const Model read = load(path, {}, RunContext());
+        LoadOptions own;
+        own.confined_to = files_.uploads();
+        const Model read = load(path, own, RunContext());
         lock.lock();
         for (const auto& file : read.files) taken.insert(files_.grant(file));
         if (const std::string texture = texture_for(read, model, names); !texture.empty()) {
@@ -296,43 +392,53 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
   } catch (const InputError& error) {
     throw input_error(error.what(), files_);
   }
-  accept(document, config_of(document, files_), client, false, 0, true);
+  accept(document, checked(document), client, false, 0, true);
   tell("files", files_event());
   return {{"revision", revision_}, {"document", document_}, {"adopted", adopted}};
 }
 
 std::string OpenJob::job_toml(const std::filesystem::path& folder) const {
   const std::lock_guard lock(mutex_);
-  return job_file(config_, folder);
+  return job_file(config_, folder, machine_names());
 }
 
-// With the lock. Pictures that were dropped on a job whose file lies elsewhere are copied beside
-// it: nobody would look for them here.
+// With the lock. The model, then what it names itself.
+std::vector<std::filesystem::path> OpenJob::files_of_model(const JobConfig& config) const {
+  LoadOptions own = config.object.load;
+  own.texture.clear();
+  std::vector<std::filesystem::path> files = {config.model};
+  for (const std::filesystem::path& file : load(config.model, own, RunContext()).files)
+    if (file != config.model) files.push_back(file);
+  return files;
+}
+
+// With the lock. What was dropped on a job whose file lies elsewhere is copied beside that: nobody
+// would look for it here, and it goes when the job is forgotten.
 void OpenJob::bring_along(JobConfig& config) const {
   const std::filesystem::path folder = where_.parent_path();
-  if (folder == files_.uploads()) return;
-  const auto bring = [&](std::filesystem::path& file) {
-    if (file.empty() || file.parent_path() != files_.uploads()) return;
-    const std::vector<std::uint8_t> bytes = read_file(file);
-    std::filesystem::path to = folder / file.filename();
-    std::error_code ignored;
-    for (int number = 2; std::filesystem::exists(to, ignored); ++number) {
-      if (read_file(to) == bytes) break;
-      to = folder / fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string());
-    }
-    if (!std::filesystem::exists(to, ignored)) write_file(to, bytes.data(), bytes.size());
-    file = to;
+  const auto is_ours = [&](const std::filesystem::path& file) {
+    return lies_in(file, files_.uploads());
   };
-  for (ArtworkLayer& layer : config.object.artwork) bring(layer.image);
-  bring(config.object.load.texture);
-  bring(config.plan.importance);
-  bring(config.report.logo);
-  bring(config.printer.profile);
+  if (is_ours(where_)) return;
+  if (is_ours(config.model)) config.model = copy_together(files_of_model(config), folder);
+  each_side_file(config, [&](std::filesystem::path& file) {
+    if (!is_ours(file)) return;
+    std::filesystem::path to = folder / file.filename();
+    for (int number = 2; !may_become(to, file); ++number)
+      to = folder / fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string());
+    copy_to(file, to);
+    file = to;
+  });
 }
 
 Json OpenJob::save(const std::string& name) {
   const std::lock_guard lock(mutex_);
-  if (!name.empty()) document_["name"] = name.substr(0, 200);
+  if (const std::string own = name.substr(0, 200);
+      !own.empty() && own != document_.value("name", "")) {
+    document_["name"] = own;
+    ++revision_;
+    tell("document", {{"revision", revision_}, {"document", document_}, {"client", ""}}, true);
+  }
   const std::string stem = file_name_of(name_of_job(document_));
   // The studio's own files follow the job's name.
   if (where_.parent_path() == files_.uploads() && where_.stem() != stem) {
@@ -351,15 +457,13 @@ Json OpenJob::save(const std::string& name) {
   try {
     JobConfig config = config_;
     bring_along(config);
-    write_whole(where_, job_file(config, where_.parent_path()));
+    write_whole(where_, job_file(config, where_.parent_path(), machine_names()));
   } catch (const InputError& error) {
     throw ApiError(422, "bad-file", error.what());
   }
-  saved_revision_ = revision_;
+  tell_saved();
   autosave();
-  Json saved = {{"saved_revision", saved_revision_}, {"where", shown_path(where_)}};
-  tell("saved", saved);
-  return saved;
+  return {{"saved_revision", saved_revision_}, {"where", shown_path(where_)}};
 }
 
 Json OpenJob::patch_of_profile(const std::filesystem::path& profile) {
@@ -402,16 +506,17 @@ std::filesystem::path OpenJob::pack() const {
   JobConfig config;
   std::shared_ptr<const Model> model;
   std::string name;
+  std::vector<std::string> of_the_run;
   {
     const std::lock_guard lock(mutex_);
     config = config_;
+    of_the_run = machine_names();
     model = model_;
     name = file_name_of(name_of_job(document_));
   }
   // Every file gets the place beside the job file from which the job names it.
   std::set<std::string> used;
   const auto put = [&](std::filesystem::path& file) {
-    if (file.empty()) return;
     std::string inner = file.filename().string();
     for (int number = 2; used.contains(inner); ++number)
       inner = fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string());
@@ -421,19 +526,18 @@ std::filesystem::path OpenJob::pack() const {
   };
   if (model)
     for (const auto& file : model->files) {
-      if (file == config.model || file == config.object.load.texture) continue;
+      // A model may name any file: only what can be a part of one goes along.
+      if (file == config.model || file == config.object.load.texture ||
+          kind_of_file(file.string()) == "unknown")
+        continue;
       std::string inner = file.lexically_relative(config.model.parent_path()).string();
       if (inner.empty() || inner.starts_with("..")) inner = file.filename().string();
       if (used.insert(inner).second) files.emplace_back(inner, file);
     }
-  put(config.model);
-  put(config.object.load.texture);
-  put(config.printer.profile);
-  put(config.plan.importance);
-  put(config.report.logo);
-  for (ArtworkLayer& layer : config.object.artwork) put(layer.image);
+  if (!config.model.empty()) put(config.model);
+  each_side_file(config, put);
   const std::filesystem::path toml = folder / (name + ".toml");
-  write_whole(toml, job_file(config, folder));
+  write_whole(toml, job_file(config, folder, of_the_run));
   files.insert(files.begin(), {name + ".toml", toml});
   std::filesystem::path archive = folder / (name + ".zip");
   pack_zip(archive, files);
@@ -479,7 +583,7 @@ OpenJob::Upload OpenJob::begin_upload(const std::string& wanted) {
   if (kind_of_file(wanted) == "unknown")
     throw ApiError(422, "bad-file",
                    "This is no model, picture, job file or ZIP archive that the studio knows.");
-  return {wanted, home_ / fmt::format("upload-{}.part", ++number_),
+  return {wanted, home_ / fmt::format("upload-{}.part", ++*numbers_),
           std::min(kMostFileBytes, used < kMostJobBytes ? kMostJobBytes - used : 0)};
 }
 
@@ -491,6 +595,7 @@ Json OpenJob::end_upload(const Upload& upload) {
   std::filesystem::create_directories(file.parent_path(), error);
   std::filesystem::rename(upload.file, file, error);
   if (error) throw ApiError(500, "failed", "The file cannot be kept; free some space.");
+  if (name != upload.name) uploaded_as_[name] = upload.name;
   tell("files", files_event());
   return {{"file", name}, {"kind", kind_of_file(name)}};
 }
@@ -607,7 +712,7 @@ void OpenJob::tell(const std::string& event, const Json& data, bool newest_only,
 
 // With the lock.
 std::string OpenJob::new_id(char kind) {
-  return fmt::format("{}-{}{}", run_.substr(0, 8), kind, ++number_);
+  return fmt::format("{}-{}{}", run_.substr(0, 8), kind, ++*numbers_);
 }
 
 bool OpenJob::has_given(const std::string& id) const {
@@ -619,7 +724,7 @@ bool OpenJob::has_given(const std::string& id) const {
   const char* const end = id.data() + id.size();
   const auto [rest, error] = std::from_chars(id.data() + prefix.size() + 1, end, number);
   return (kind == 'm' || kind == 'r' || kind == 'f') && error == std::errc() && rest == end &&
-         number > 0 && number <= number_;
+         number > 0 && number <= *numbers_;
 }
 
 std::string OpenJob::show_mesh(const Model& model, const Object& object) {
@@ -822,13 +927,13 @@ std::string OpenJob::start_task(const Json& request) {
   }
   if (kind == "print") {
     task.job = home_ / "job.toml";
-    write_whole(task.job, job_file(task.config, home_));
+    write_whole(task.job, job_file(task.config, home_, machine_names()));
     const std::string name =
         where_.empty() ? file_name_of(name_of_job(document_)) : where_.stem().string();
     const bool ours = where_.empty() || where_.parent_path() == files_.uploads();
     task.folder = ours ? home_ / "print" / name : where_.parent_path() / (name + "-print");
   } else {
-    task.folder = home_ / "found" / fmt::format("{}-{}", kind, ++number_);
+    task.folder = home_ / "found" / fmt::format("{}-{}", kind, ++*numbers_);
   }
   std::error_code ignored;
   std::filesystem::create_directories(task.folder.parent_path(), ignored);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <list>
@@ -28,8 +29,10 @@ inline constexpr std::uintmax_t kMostJobBytes = std::uintmax_t(2) << 30U;
 // For any number of threads. Everything throws ApiError.
 class OpenJob {
  public:
-  // `run`: this run's name. The job is in the store.
-  OpenJob(JobStore store, std::string job, std::string run);
+  // `run`: this run's name; `numbers`: how many IDs it has given, in whatever job, so that none
+  // comes to mean something else. The job is in the store.
+  OpenJob(JobStore store, std::string job, std::string run,
+          std::shared_ptr<std::atomic<long>> numbers);
   ~OpenJob();
   OpenJob(const OpenJob&) = delete;
   OpenJob& operator=(const OpenJob&) = delete;
@@ -74,7 +77,7 @@ class OpenJob {
   Upload begin_upload(const std::string& name);
   Json end_upload(const Upload& upload);
   std::filesystem::path file(const std::string& name) const;
-  std::filesystem::path thumbnail() const { return home_ / "thumbnail.png"; }
+  std::filesystem::path thumbnail() const { return home_ / kThumbnail; }
 
   // ---- tabs ----
 
@@ -118,11 +121,16 @@ class OpenJob {
   std::string address() const { return "/api/jobs/" + job_; }
   std::string new_id(char kind);
   JobConfig checked(const Json& document) const;
+  std::vector<std::string> take_in(const std::vector<std::string>& given);
+  void unpack(const std::string& archive, std::vector<std::string>& names);
   void accept(const Json& document, const JobConfig& config, const std::string& client, bool live,
               std::size_t dip, bool tell_client);
   void ask(bool live);
   void autosave() const;
   void bring_along(JobConfig& config) const;
+  std::vector<std::filesystem::path> files_of_model(const JobConfig& config) const;
+  std::vector<std::string> machine_names() const;
+  void tell_saved();
   void tell(const std::string& event, const Json& data, bool newest_only = false,
             const std::string& about = "");
   void hand_pen_on();
@@ -138,10 +146,13 @@ class OpenJob {
   const JobStore store_;
   const std::string job_, run_;
   const std::filesystem::path home_;
+  const std::shared_ptr<std::atomic<long>> numbers_;
 
   mutable std::mutex mutex_;
   JobFiles files_;
+  std::map<std::string, std::string> uploaded_as_;  // files that got another name than they had
   Json document_ = Json::object();
+  Json machine_ = Json::object();  // machine_values_of() the file that it was opened from
   JobConfig config_;
   std::size_t dip_ = 0;
   long revision_ = 1, saved_revision_ = 1;
@@ -151,7 +162,7 @@ class OpenJob {
   std::string pen_;  // client
   std::optional<std::chrono::steady_clock::time_point> unwatched_since_;
   bool at_rest_ = false;  // nobody looks: what is shown may be older than the document
-  long number_ = 0, reloads_ = 0;
+  long reloads_ = 0;
   std::list<std::pair<std::string, std::shared_ptr<const ShownMesh>>> meshes_;
   std::shared_ptr<const Model> model_;
   std::string mesh_;  // of the model in its own colours

@@ -15,6 +15,7 @@
 #include "job/job_progress.h"
 #include "job/jobs.h"
 #include "render/hold_pictures.h"
+#include "report/findings.h"
 #include "report/plain_words.h"
 #include "rig/rig.h"
 #include "settings/settings.h"
@@ -37,6 +38,7 @@ JobResult print_from(const TaskRequest& request, const RunContext& context) {
   SettingSources sources;
   sources.configs = {request.job};
   apply_sources(config, sources);
+  config.object.load.confined_to = request.config.object.load.confined_to;
   config.output = request.folder;
   JobResult result = print_job(config, context);
   std::vector<std::string> sheets = result.dips;
@@ -82,20 +84,25 @@ Json files_json(const TaskRequest& request) {
   return list;
 }
 
+Concern concern_called(const std::string& name) {
+  for (const Concern concern : {Concern::kNone, Concern::kCare})
+    if (concern_name(concern) == name) return concern;
+  return Concern::kStop;
+}
+
 Json print_result(const TaskRequest& request, const RunContext& context) {
   const JobResult done = print_from(request, context);
   const Json report = Json::parse(done.json);
   const std::string verdict = report.value("verdict", "");
+  const std::string concern = report.value("concern", "");
   Json result = {{"where", shown_path(request.folder)},
                  {"verdict",
-                  {{"concern", done.do_not_dip ? "stop" : "none"},
-                   {"headline", done.text.substr(0, done.text.find('.'))},
+                  {{"concern", concern},
+                   {"headline", headline(concern_called(concern))},
                    {"text", in_plain_words(verdict)}}},
                  {"files", files_json(request)},
                  {"zip", request.address + "/files.zip"},
                  {"warnings", Json::array()}};
-  if (!done.do_not_dip && result["verdict"]["headline"] != "Good to dip")
-    result["verdict"]["concern"] = "care";
   for (const std::string& warning : context.warnings())
     result["warnings"].push_back(in_plain_words(warning));
   return result;

@@ -19,6 +19,22 @@ namespace {
 
 using nlohmann::json;
 
+const std::string kTetrahedron =
+    "solid a\n"
+    "facet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 40 0\nvertex 40 0 "
+    "0\nendloop\nendfacet\n"
+    "facet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 40 0 0\nvertex 0 0 "
+    "20\nendloop\nendfacet\n"
+    "facet normal -1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 20\nvertex 0 40 "
+    "0\nendloop\nendfacet\n"
+    "facet normal 1 1 1\nouter loop\nvertex 40 0 0\nvertex 0 40 0\nvertex 0 0 "
+    "20\nendloop\nendfacet\n"
+    "endsolid\n";
+const std::string kRedToy =
+    "mtllib toy.mtl\nv 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nusemtl red\n"
+    "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+const std::string kRed = "newmtl red\nKd 1 0 0\n";
+
 // A job of the pyramid that is quick to compute, by default.
 class JobTest : public testing::Test {
  protected:
@@ -494,21 +510,10 @@ TEST_F(JobTest, AWayThatIsFoundCanBeTaken) {
 // A model and a picture dropped together: the picture is on it.
 TEST_F(JobTest, AModelAndAPictureBecomeAJob) {
   const std::string job = client->post("/api/jobs").json()["job"];
-  const std::string stl =
-      "solid a\n"
-      "facet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 40 0\nvertex 40 0 "
-      "0\nendloop\nendfacet\n"
-      "facet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 40 0 0\nvertex 0 0 "
-      "20\nendloop\nendfacet\n"
-      "facet normal -1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 20\nvertex 0 40 "
-      "0\nendloop\nendfacet\n"
-      "facet normal 1 1 1\nouter loop\nvertex 40 0 0\nvertex 0 40 0\nvertex 0 0 "
-      "20\nendloop\nendfacet\n"
-      "endsolid\n";
   const std::string svg =
       "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='10'>"
       "<rect width='20' height='10' fill='red'/></svg>";
-  ASSERT_EQ(client->put(at(job, "/files/part.stl"), stl).status, 201);
+  ASSERT_EQ(client->put(at(job, "/files/part.stl"), kTetrahedron).status, 201);
   ASSERT_EQ(client->put(at(job, "/files/logo.svg"), svg).status, 201);
   const Reply adopted = client->post(at(job, "/adopt"), R"({"files": ["logo.svg", "part.stl"]})");
   ASSERT_EQ(adopted.status, 200) << adopted.body;
@@ -525,7 +530,7 @@ TEST_F(JobTest, AModelAndAPictureBecomeAJob) {
   for (std::size_t i = 0; i < printed.size(); i += 4)
     red = red || (printed[i + 3] > 200 && printed[i] > 150 && printed[i + 1] < 90);
   EXPECT_TRUE(red);
-  EXPECT_EQ(client->put(at(job, "/files/part.stl"), stl).json()["file"], "part-2.stl");
+  EXPECT_EQ(client->put(at(job, "/files/part.stl"), kTetrahedron).json()["file"], "part-2.stl");
 }
 
 // Whoever chose "part.stl" knows it by that name, and not by where this program keeps it.
@@ -567,6 +572,185 @@ TEST_F(JobTest, PatternFilmOfSeveralDipsIsSpokenOfBeforeThePrint) {
   const json dip = {{"down", "-z"}, {"rotate_deg", {0, 0, 0}}, {"depth_mm", 0}};
   document["dips"] = {dip, dip};
   EXPECT_EQ(stops(document), 1);
+}
+
+// The studio has no room for the machine's own settings, and must not lose them: one of them is how
+// deep a stage may go.
+TEST_F(JobTest, WhatAJobFileSaysOfTheMachineStaysInIt) {
+  const auto file = folder / "dips/job.toml";
+  std::filesystem::create_directories(file.parent_path());
+  write_file(folder / "dips/part.stl", kTetrahedron);
+  write_file(file,
+             "object.file = \"part.stl\"\nstage.lowest_mm = 120\nstage.port = \"COM3\"\n"
+             "run.threads = 1\n");
+  studio->api().open_file(file);
+  const std::string job = client->get("/api/hello").json()["opened"];
+  begin();  // it outlives the run
+  ASSERT_EQ(put(job, quick(describe(job)["document"])).status, 200);
+  ASSERT_EQ(client->post(at(job, "/save")).status, 200);
+  SettingSources sources;
+  sources.configs = {file};
+  JobConfig config;
+  apply_sources(config, sources);
+  EXPECT_EQ(config.stage.lowest_mm, 120);
+  EXPECT_EQ(config.stage.port, "COM3");
+  EXPECT_EQ(config.threads, 1);
+  EXPECT_EQ(config.design.film.elements, 2000);
+}
+
+TEST_F(JobTest, ItsModelsNameOpensASavedJobAsItsFileIs) {
+  const auto model = folder / "part.stl", file = folder / "part.toml";
+  write_file(model, kTetrahedron);
+  const auto opened = [&] {
+    studio->api().open_file(model);
+    return client->get("/api/hello").json()["opened"].get<std::string>();
+  };
+  const std::string job = opened();
+  json document = describe(job)["document"];
+  document["object"]["size_mm"] = 33;
+  document["artwork"] = json::array({{{"text", "A"}, {"size_mm", 12}}});
+  put(job, document);
+  ASSERT_EQ(client->post(at(job, "/save")).status, 200);
+  begin();
+  EXPECT_EQ(opened(), job);
+  EXPECT_EQ(describe(job)["document"], document);
+  // Edited by hand meanwhile.
+  const auto bytes = read_file(file);
+  std::string text(bytes.begin(), bytes.end());
+  text.replace(text.find("33"), 2, "44");
+  write_file(file, text);
+  begin();
+  EXPECT_EQ(opened(), job);
+  EXPECT_EQ(describe(job)["document"]["object"]["size_mm"], 44);
+}
+
+TEST_F(JobTest, LookingAtAnotherDipChangesNothing) {
+  const std::string job = sample("pyramid");
+  json document = quick(describe(job)["document"]);
+  const json dip = {{"down", "-z"}, {"rotate_deg", {0, 0, 0}}, {"depth_mm", 10}};
+  document["dips"] = {dip, dip};
+  put(job, document);
+  client->post(at(job, "/save"));
+  const auto unsaved = [&] { return client->get("/api/recent").json()[0]["unsaved"]; };
+  ASSERT_EQ(unsaved(), false);
+  const json look = {{"client", "c1"}, {"document", document}, {"live", false}, {"dip", 1}};
+  ASSERT_EQ(client->put(at(job, "/document"), look.dump()).status, 200);
+  EXPECT_EQ(unsaved(), false);
+  document["object"]["size_mm"] = 20;
+  put(job, document);
+  EXPECT_EQ(unsaved(), true);
+}
+
+// A browser keeps what an ID has named.
+TEST_F(JobTest, NoTwoJobsOfARunGiveTheSameID) {
+  std::set<std::string> seen;
+  for (const char* name : {"pyramid", "box"}) {
+    const std::string job = sample(name);
+    Events events(*client, at(job, "/events?client=c1"));
+    put(job, quick(describe(job)["document"]));
+    const auto told = events.next("result");
+    ASSERT_TRUE(told);
+    EXPECT_TRUE(seen.insert(told->data["result"]).second);
+  }
+}
+
+TEST_F(JobTest, TheListOfRecentJobsOpensNone) {
+  const std::string job = sample("pyramid");
+  put(job, quick(describe(job)["document"]));
+  const std::string png = "\x89PNG...";
+  ASSERT_EQ(client->put(at(job, "/thumbnail"), png).status, 200);
+  begin();
+  EXPECT_EQ(client->get(at(job, "/thumbnail")).body, png);
+  EXPECT_EQ(client->get(at(job, "/counts")).json()["drafts"], 0);
+  EXPECT_EQ(client->remove("/api/recent/" + job).status, 200);
+  EXPECT_EQ(client->get("/api/recent").json().size(), 0U);
+  // One that a tab has open stays.
+  const std::string other = sample("box");
+  const Events tab(*client, at(other, "/events?client=c1"));
+  EXPECT_EQ(client->remove("/api/recent/" + other).code(), "busy");
+}
+
+// Whoever lets the studio forget a job still has what was saved elsewhere.
+TEST_F(JobTest, WhatIsSavedElsewhereNeedsNothingOfTheStudio) {
+  const auto file = folder / "dips/job.toml";
+  std::filesystem::create_directories(file.parent_path());
+  write_file(folder / "dips/part.stl", kTetrahedron);
+  write_file(folder / "dips/toy.mtl", "newmtl other\n");
+  write_file(file, "object.file = \"part.stl\"\n");
+  studio->api().open_file(file);
+  const std::string job = client->get("/api/hello").json()["opened"];
+  client->put(at(job, "/files/toy.obj"), kRedToy);
+  client->put(at(job, "/files/toy.mtl"), kRed);
+  json document =
+      client->post(at(job, "/adopt"), R"({"files": ["toy.obj", "toy.mtl"]})").json()["document"];
+  client->put(at(job, "/files/shift.csv"), "0,0,0,0\n");
+  document["dips"] = json::array({{{"down", "-z"}, {"correction", "shift.csv"}}});
+  ASSERT_EQ(put(job, document).status, 200);
+  ASSERT_EQ(client->post(at(job, "/save")).status, 200);
+  const std::string packed = client->get(at(job, "/job.zip")).body;
+  for (const char* name : {"toy.obj", "toy.mtl", "shift.csv"})
+    EXPECT_NE(packed.find(name), std::string::npos) << name;
+  ASSERT_EQ(client->remove("/api/recent/" + job).status, 200);
+  SettingSources sources;
+  sources.configs = {file};
+  JobConfig config;
+  apply_sources(config, sources);
+  EXPECT_TRUE(std::filesystem::exists(config.dips.at(0).correction));
+  const Model toy = load(config.model, {}, RunContext());
+  EXPECT_EQ(toy.files.size(), 2U);
+  const LinearColor red = toy.object->materials.at(0).base_color;
+  EXPECT_GT(red.r, 0.9);
+  EXPECT_LT(red.g, 0.1);
+}
+
+// Files of the same names, exported again, know each other and not those that were there before.
+TEST_F(JobTest, AModelThatIsDroppedAgainHasItsOwnParts) {
+  const std::string job = client->post("/api/jobs").json()["job"];
+  const auto drop = [&](const std::string& mtl) {
+    const json files = {client->put(at(job, "/files/toy.obj"), kRedToy).json()["file"],
+                        client->put(at(job, "/files/toy.mtl"), mtl).json()["file"]};
+    return client->post(at(job, "/adopt"), json{{"files", files}}.dump()).json();
+  };
+  EXPECT_EQ(drop("newmtl red\nKd 0 1 0\n")["document"]["object"]["file"], "toy.obj");
+  const json again = drop(kRed);
+  EXPECT_EQ(again["document"]["object"]["file"], "toy-2/toy.obj") << again;
+  for (const json& file : again["adopted"]) EXPECT_NE(file["as"], "unused");
+  const auto uploads = folder.path() / "jobs" / job / "files";
+  const Model toy = load(uploads / "toy-2/toy.obj", {}, RunContext());
+  EXPECT_GT(toy.object->materials.at(0).base_color.r, 0.9);
+}
+
+TEST_F(JobTest, AGoodJobIsGoodAgain) {
+  const std::string job = sample("box");
+  json document = quick(describe(job)["document"]);
+  document["dip"]["depth_mm"] = 1;
+  put(job, document);
+  Events events(*client, at(job, "/events?client=c1"));
+  json first;
+  for (int time = 0; time < 2; ++time) {
+    client->post(at(job, "/tasks"), R"({"kind": "print"})");
+    const json task = finished(events, "print");
+    ASSERT_EQ(task["state"], "done") << task;
+    if (time == 0) first = task["result"]["verdict"];
+    EXPECT_EQ(task["result"]["verdict"], first);
+  }
+  EXPECT_NE(first["headline"], "");
+}
+
+// The print would look for a way and show another one than the page does.
+TEST_F(JobTest, AWayThatIsLeftOpenIsSaid) {
+  const std::string job = sample("pyramid");
+  json document = quick(describe(job)["document"]);
+  document["object"]["rotate_deg"] = "auto";
+  Events events(*client, at(job, "/events?client=c1"));
+  const long revision = put(job, document).json()["revision"];
+  const auto problem =
+      events.next("problem", [&](const json& e) { return e["revision"] == revision; });
+  ASSERT_TRUE(problem);
+  ASSERT_EQ(problem->data["mends"].size(), 2U);
+  document.merge_patch(problem->data["mends"][1]["patch"]);
+  const long mended = put(job, document).json()["revision"];
+  EXPECT_TRUE(events.next("result", [&](const json& e) { return e["revision"] == mended; }));
 }
 
 TEST_F(JobTest, QuittingIsForThePageAsWell) {

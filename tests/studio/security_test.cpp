@@ -134,6 +134,25 @@ TEST_F(SecurityTest, ADroppedJobReadsOnlyWhatWasDroppedWithIt) {
   EXPECT_FALSE(client.get("/api/jobs/" + job).json()["document"].contains("object"));
 }
 
+// Nor does a model that was dropped, whatever it names.
+TEST_F(SecurityTest, ADroppedModelReadsOnlyWhatWasDroppedWithIt) {
+  const std::string job = new_job(), at = "/api/jobs/" + job;
+  std::ofstream(folder / "secret.mtl") << "newmtl secret\nKd 1 0 0\n";
+  const std::string obj = "mtllib " + (folder / "secret.mtl").string() +
+                          "\nmtllib ../../../secret.mtl\nv 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\n"
+                          "usemtl secret\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  ASSERT_EQ(client.put(at + "/files/toy.obj", obj).status, 201);
+  ASSERT_EQ(client.put(at + "/files/toy.mtl", "newmtl toy\n").status, 201);
+  ASSERT_EQ(client.post(at + "/adopt", R"({"files": ["toy.obj", "toy.mtl"]})").status, 200);
+  EXPECT_GE(client.get(at + "/files/secret.mtl").status, 400);
+  Events events(client, at + "/events?client=c1");
+  ASSERT_TRUE(events.next("mesh"));
+  const Reply packed = client.get(at + "/job.zip");
+  ASSERT_EQ(packed.status, 200);
+  EXPECT_NE(packed.body.find("toy.obj"), std::string::npos);
+  EXPECT_EQ(packed.body.find("secret.mtl"), std::string::npos);
+}
+
 TEST_F(SecurityTest, TooLargeIsRefusedBeforeItIsSent) {
   const std::string job = new_job();
   const std::string path = "/api/jobs/" + job + "/files/huge.stl";
