@@ -13,7 +13,8 @@ namespace hydrodip {
 // of the time. No dip begins where another pose's dip ended: a value depends on its project alone.
 enum class Quality { kDraft, kNormal };
 
-// What a person works on.
+// What a person works on. Values are kept by its content, so that a dip's material law, solver or
+// relaxed steps of one's own are refused (InputError).
 struct Project {
   std::filesystem::path model;        // its file
   LoadOptions load;                   // how that is read

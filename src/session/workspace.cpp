@@ -1,5 +1,7 @@
 #include "hydrodip/workspace.h"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <mutex>
 #include <optional>
@@ -9,6 +11,8 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_scope.h"
+#include "elastic/linear_solver.h"
+#include "ink/color_model.h"
 #include "object/simplify.h"
 #include "session/node_store.h"
 
@@ -43,6 +47,7 @@ void add(ContentKey& key, const PoseOptions& pose) {
 void add(ContentKey& key, const FilmOptions& film) {
   key.add(film.width_mm).add(film.height_mm).add(film.shape).add(film.margin_mm);
   key.add(film.elements).add(film.grading).add(film.swelling_x).add(film.swelling_y);
+  key.add(film.correction ? "corrected" : "as printed");
   if (!film.correction) return;
   const FilmCorrection& correction = *film.correction;
   key.add(correction.first.x()).add(correction.first.y()).add(correction.pitch_mm);
@@ -60,28 +65,55 @@ void add(ContentKey& key, const TrajectoryOptions& way) {
   }
 }
 
-// A project's dips have no stiffness, tears or solver of their own, and no material law: values are
-// kept by their content, which it does not have.
-void add(ContentKey& key, const DipOptions& dip) {
-  if (dip.material.law)
+void add(ContentKey& key, const std::vector<double>& numbers) {
+  key.add(double(numbers.size()));
+  for (const double number : numbers) key.add(number);
+}
+
+bool is_multigrid(const DipOptions& dip) {
+  const auto* made_by = dip.make_solver.target<decltype(&make_multigrid_solver)>();
+  return made_by && *made_by == &make_multigrid_solver;
+}
+
+// Values are kept by their content, which these do not have: what is behind them is not seen, and
+// steps that dips keep for one another change with every dip.
+void require_content(const DipOptions& dip) {
+  const char* unseen = dip.material.law     ? "film with a material law of its own"
+                       : dip.relaxed_steps  ? "steps that dips keep for one another"
+                       : !is_multigrid(dip) ? "solver of one's own"
+                                            : nullptr;
+  if (unseen)
     throw InputError(
-        "a workspace takes no film with a material law of its own; use the steps of "
-        "hydrodip/hydrodip.h");
+        fmt::format("a workspace takes no {}; use the steps of hydrodip/hydrodip.h", unseen));
+}
+
+// asks_what_moves is not looked at: a dip with its air decides that by itself (dip_object()).
+void add(ContentKey& key, const DipOptions& dip) {
+  require_content(dip);
   key.add(dip.step_mm).add(dip.even_steps).add(dip.method).add(dip.scheme);
   key.add(dip.material.z_stretch).add(dip.material.poisson).add(dip.material.tear_stretch);
   key.add(dip.material.wrinkle_stretch);
   key.add(dip.material.safe_stretch).add(dip.material.lost_stretch).add(dip.quick_look);
+  for (const auto* numbers : {&dip.steps_at_mm, &dip.modulus, &dip.tears_at_mm, &dip.moved_mm})
+    add(key, *numbers);
+  key.add(dip.failed_share_max);
 }
 
 void add(ContentKey& key, const LinearColor& color) {
   key.add(double(color.r)).add(double(color.g)).add(double(color.b)).add(double(color.a));
 }
 
+// Of a file that is not there, too.
+void add_state(ContentKey& key, const std::filesystem::path& file) {
+  const FileState state = state_of(file);
+  key.add(file.string()).add(state.bytes);
+  key.add(double(state.changed.time_since_epoch().count()));
+}
+
 void add(ContentKey& key, const PrinterOptions& printer) {
-  key.add(printer.model).add(printer.intent).add(printer.color).add(printer.profile.string());
-  if (printer.profile.empty()) return;
-  const FileState profile = state_of(printer.profile);
-  key.add(profile.bytes).add(double(profile.changed.time_since_epoch().count()));
+  key.add(printer.model).add(printer.intent).add(printer.color);
+  const bool is_installed = printer.profile.empty() && printer.model == InkModel::kProfile;
+  add_state(key, is_installed ? installed_cmyk_profile() : printer.profile);
 }
 
 void add(ContentKey& key, const DesignOptions& design) {
@@ -101,13 +133,18 @@ void add(ContentKey& key, const std::optional<Vec3>& v) {
   for (int k = 0; v && k < 3; ++k) key.add((*v)[k]);
 }
 
+// A picture at hand is known by its pixels: where they lie in memory, others may lie the next time.
+void add(ContentKey& key, const std::shared_ptr<const Image>& picture) {
+  key.add(picture ? "at hand" : "none");
+  if (!picture) return;
+  key.add(picture->width_px).add(picture->height_px).add(sha256_hex(picture->rgba));
+}
+
 void add(ContentKey& key, const ArtworkLayer& layer) {
-  key.add(layer.image.string()).add(layer.text).add(layer.font);
+  add_state(key, layer.image);
+  add(key, layer.picture);
+  key.add(layer.text).add(layer.font);
   add(key, layer.text_color);
-  if (!layer.image.empty()) {
-    const FileState image = state_of(layer.image);
-    key.add(image.bytes).add(double(image.changed.time_since_epoch().count()));
-  }
   key.add(layer.projection).add(layer.repeat).add(layer.blend).add(layer.through);
   for (const auto* v : {&layer.at_mm, &layer.toward, &layer.up}) add(key, *v);
   key.add(layer.width_mm).add(layer.height_mm).add(layer.turn_deg);

@@ -2,17 +2,27 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <thread>
 
 #include "base/error.h"
 #include "image/files.h"
+#include "refusal.h"
 #include "samples/samples.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
+
+Image grey_picture(std::uint8_t grey) {
+  Image image(8, 16);
+  for (std::size_t i = 0; i < image.rgba.size(); ++i)
+    image.rgba[i] = i % 4 == 3 ? std::uint8_t(255) : grey;
+  return image;
+}
 
 class WorkspaceTest : public testing::Test {
  protected:
@@ -41,6 +51,14 @@ class WorkspaceTest : public testing::Test {
   std::size_t design_it() {
     return computed_by([&] { workspace_.designed(project_, Quality::kNormal, context_); });
   }
+  // Of what is wanted in the middle of the side that enters first.
+  float at_the_bottom() {
+    const auto posed = workspace_.posed(project_, context_);
+    const auto hit = posed->surface().first_hit({0, 0, -1}, {0, 0, 1}, 0, 10);
+    return workspace_.paint(project_, Quality::kNormal, context_)
+        ->color_at({hit->triangle, hit->u, hit->v})
+        .g;
+  }
 
   TemporaryFolder folder_;
   Project project_;
@@ -48,9 +66,55 @@ class WorkspaceTest : public testing::Test {
   RunContext context_;
 };
 
-TEST_F(WorkspaceTest, RefusesALawWhoseContentItCannotSee) {
+TEST_F(WorkspaceTest, RefusesWhatHasNoContentThatItCouldSee) {
+  const DipOptions plain = project_.design.dip;
+  const auto refused = [&] {
+    const bool is = !refusal([&] { dip(); }).empty();
+    project_.design.dip = plain;
+    return is;
+  };
+  EXPECT_FALSE(refused());
   project_.design.dip.material.law = make_corotated_law(0);
-  EXPECT_THROW(workspace_.dipped(project_, Quality::kNormal, context_), InputError);
+  EXPECT_TRUE(refused());
+  project_.design.dip.relaxed_steps = std::make_shared<RelaxedSteps>();
+  EXPECT_TRUE(refused());
+  project_.design.dip.make_solver = [](const FilmMesh& film) {
+    return make_multigrid_solver(film);
+  };
+  EXPECT_TRUE(refused());
+}
+
+// Whatever changes a dip makes it another one.
+TEST_F(WorkspaceTest, NumbersThatADipIsToldAreHeard) {
+  project_.design.dip.material.tear_stretch = 1.02;
+  const auto told_nothing = workspace_.dipped(project_, Quality::kNormal, context_);
+  const std::size_t triangles = told_nothing->film->mesh().triangles.size();
+  const DipOptions plain = project_.design.dip;
+  const auto computed_with = [&](auto change) {
+    project_.design.dip = plain;
+    change(project_.design.dip);
+    return dip();
+  };
+  const auto stiffen = [&](DipOptions& dip) {
+    dip.modulus.assign(triangles, 1);
+    std::fill_n(dip.modulus.begin(), triangles / 2, 50);
+  };
+  EXPECT_EQ(computed_with(stiffen), 1U);
+  const auto stiff = workspace_.dipped(project_, Quality::kNormal, context_);
+  EXPECT_NE(stiff->film->position, told_nothing->film->position);
+  EXPECT_EQ(stiff->film->position, simulate(*workspace_.posed(project_, context_),
+                                            {project_.design.film, project_.design.trajectory,
+                                             project_.design.dip, project_.design.air})
+                                       .film->position);
+  const std::vector<double> never(triangles, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(computed_with([&](DipOptions& dip) { dip.tears_at_mm = never; }), 1U);
+  EXPECT_EQ(computed_with([&](DipOptions& dip) {
+              dip.moved_mm.assign(told_nothing->film->position.size(), 0);
+            }),
+            1U);
+  EXPECT_EQ(computed_with([&](DipOptions& dip) { dip.steps_at_mm = {1, 2, 3, 4}; }), 1U);
+  EXPECT_EQ(computed_with([&](DipOptions& dip) { dip.failed_share_max = 0.5; }), 1U);
+  EXPECT_EQ(computed_with([](DipOptions&) {}), 0U);
 }
 
 TEST_F(WorkspaceTest, OnlyWhatAChangeTouchesIsComputedAgain) {
@@ -164,12 +228,7 @@ TEST_F(WorkspaceTest, TwoWhoAskForTheSameShareOneComputation) {
 
 TEST_F(WorkspaceTest, ArtworkIsSeenAndItsFileWatched) {
   const auto picture = folder_.path() / "art.png";
-  const auto plain = [&](std::uint8_t grey) {
-    Image image(8, 8);
-    for (std::size_t i = 0; i < image.rgba.size(); ++i)
-      image.rgba[i] = i % 4 == 3 ? std::uint8_t(255) : grey;
-    save_png(picture, image);
-  };
+  const auto plain = [&](std::uint8_t grey) { save_png(picture, grey_picture(grey)); };
   plain(0);
   dip();
   design_it();
@@ -178,13 +237,6 @@ TEST_F(WorkspaceTest, ArtworkIsSeenAndItsFileWatched) {
   EXPECT_EQ(design_it(), 2U);  // paint, design
   EXPECT_EQ(design_it(), 0U);
   EXPECT_EQ(dip(), 0U);  // where film of even stiffness goes has nothing to do with it
-  const auto at_the_bottom = [&] {
-    const auto posed = workspace_.posed(project_, context_);
-    const auto hit = posed->surface().first_hit({0, 0, -1}, {0, 0, 1}, 0, 10);
-    return workspace_.paint(project_, Quality::kNormal, context_)
-        ->color_at({hit->triangle, hit->u, hit->v})
-        .g;
-  };
   EXPECT_EQ(at_the_bottom(), 0);
   plain(255);
   std::filesystem::last_write_time(
@@ -192,6 +244,23 @@ TEST_F(WorkspaceTest, ArtworkIsSeenAndItsFileWatched) {
   EXPECT_EQ(at_the_bottom(), 1);
   project_.artwork[0].opacity = 0.5;
   EXPECT_EQ(design_it(), 2U);
+}
+
+TEST_F(WorkspaceTest, AnotherPictureAtHandIsSeen) {
+  project_.artwork.emplace_back();
+  ArtworkLayer& layer = project_.artwork[0];
+  layer.picture = std::make_shared<const Image>(grey_picture(0));
+  EXPECT_EQ(at_the_bottom(), 0);
+  layer.picture = std::make_shared<const Image>(grey_picture(255));
+  EXPECT_EQ(at_the_bottom(), 1);
+  // Pixels count, and not where they lie.
+  layer.picture = std::make_shared<const Image>(grey_picture(0));
+  EXPECT_EQ(computed_by([&] { EXPECT_EQ(at_the_bottom(), 0); }), 0U);
+  // The same bytes in other rows are another picture.
+  auto wide = std::make_shared<Image>(grey_picture(0));
+  std::swap(wide->width_px, wide->height_px);
+  layer.picture = wide;
+  EXPECT_EQ(computed_by([&] { at_the_bottom(); }), 1U);
 }
 
 }  // namespace
