@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
-from typing import TYPE_CHECKING, Any, List, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple
 
 from . import _core
 
@@ -13,9 +14,15 @@ if TYPE_CHECKING:
 
     from ._types import ModelLike, PathLike, PictureLike, Progress
 
+# Of an array's content, or of several arrays'.
+_Digest = Tuple[str, ...]
+
 
 class Mesh:
     """A triangle mesh with its colours, in millimetres.
+
+    Its arrays may be changed in place, and set anew: what is done with the mesh next is done with
+    them as they are then. Of a mesh from a file or sample all else stays as it was there.
 
     Parameters
     ----------
@@ -28,10 +35,17 @@ class Mesh:
         bottom row.
     texture : file or (rows, columns, 3 or 4) uint8, optional
         sRGB picture that the uv refer to.
-    colors : (n, 3 or 4) uint8, optional
-        sRGB colour per vertex.
+    colors : (n, 3 or 4) or (m, 3, 3 or 4) uint8, optional
+        sRGB colour per vertex, or per corner of every face.
     name : str
         In messages.
+
+    Attributes
+    ----------
+    textures : list of (rows, columns, 3 or 4) uint8
+        All pictures of a mesh from a file; `texture` is the first of them.
+    face_materials : (m,) int, optional
+        For each face which of the `materials` it has; None if all have the first.
     """
 
     def __init__(
@@ -44,26 +58,80 @@ class Mesh:
         colors: Optional[Any] = None,
         name: str = "mesh",
     ) -> None:
-        import numpy as np
-
         self.name = name
-        self.vertices: npt.NDArray[np.float64] = np.ascontiguousarray(vertices, dtype=np.float64)
-        triangles = np.asarray(faces)
-        if triangles.dtype not in (np.dtype(np.int32), np.dtype(np.int64)):
-            whole = triangles.astype(np.int64)
-            if not np.array_equal(whole, triangles):
-                raise _core.InputError("the faces have to be whole numbers")
-            triangles = whole
-        self.faces: npt.NDArray[Any] = np.ascontiguousarray(triangles)
-        self.uv: Optional[npt.NDArray[np.float64]] = (
-            None if uv is None else np.ascontiguousarray(uv, dtype=np.float64)
+        self.vertices = vertices
+        self.faces = faces
+        self.uv = uv
+        self.textures: List[Any] = [] if texture is None else [_picture(texture)]
+        self.colors = colors
+        self.face_materials = None
+        # What the arrays are changes of, and what they were there; the last model made of them.
+        self._base: Optional[_core.Model] = None
+        self._as_in_base: Dict[str, _Digest] = {}
+        self._made: Optional[Tuple[Dict[str, _Digest], _core.Model]] = None
+
+    @property
+    def vertices(self) -> npt.NDArray[np.float64]:
+        return self._vertices
+
+    @vertices.setter
+    def vertices(self, vertices: npt.NDArray[np.float64]) -> None:
+        self._vertices = _doubles(vertices)
+
+    @property
+    def faces(self) -> npt.NDArray[Any]:
+        return self._faces
+
+    @faces.setter
+    def faces(self, faces: npt.NDArray[Any]) -> None:
+        self._faces = _whole_numbers(faces, "the faces have to be whole numbers")
+
+    @property
+    def uv(self) -> Optional[npt.NDArray[np.float64]]:
+        return self._uv
+
+    @uv.setter
+    def uv(self, uv: Optional[npt.NDArray[np.float64]]) -> None:
+        self._uv = None if uv is None else _doubles(uv)
+
+    @property
+    def colors(self) -> Optional[npt.NDArray[np.uint8]]:
+        return self._colors
+
+    @colors.setter
+    def colors(self, colors: Optional[npt.NDArray[np.uint8]]) -> None:
+        self._colors = None if colors is None else _bytes(colors, "the colors have")
+
+    @property
+    def face_materials(self) -> Optional[npt.NDArray[Any]]:
+        return self._face_materials
+
+    @face_materials.setter
+    def face_materials(self, numbers: Optional[npt.NDArray[Any]]) -> None:
+        self._face_materials = (
+            None
+            if numbers is None
+            else _whole_numbers(numbers, "the face_materials have to be whole numbers")
         )
-        self.texture: Optional[npt.NDArray[np.uint8]] = None if texture is None else _picture(texture)
-        self.colors: Optional[npt.NDArray[np.uint8]] = (
-            None if colors is None else np.ascontiguousarray(colors, dtype=np.uint8)
-        )
-        self._made: Optional[Tuple[int, _core.Model]] = None
-        self._given: Optional[Tuple[Tuple[Any, ...], _core.Model]] = None
+
+    @property
+    def texture(self) -> Optional[npt.NDArray[np.uint8]]:
+        """The picture that the uv refer to; the first, if there are several."""
+        return self.textures[0] if self.textures else None
+
+    @texture.setter
+    def texture(self, texture: Optional[npt.NDArray[np.uint8]]) -> None:
+        if len(self.textures) > 1:
+            raise _core.InputError(
+                f"the mesh has {len(self.textures)} textures: set mesh.textures[0] and so on, or make "
+                "a Mesh of its vertices, faces and uv with one texture"
+            )
+        self.textures = [] if texture is None else [_picture(texture)]
+
+    @property
+    def materials(self) -> List[str]:
+        """Names of the materials that face_materials counts; of a file's mesh."""
+        return [] if self._base is None else self._base.materials
 
     def __repr__(self) -> str:
         return f"<hydrodip.Mesh {self.name!r}: {len(self.vertices)} vertices, {len(self.faces)} faces>"
@@ -128,39 +196,92 @@ class Mesh:
 
     @classmethod
     def _of(cls, made: _core.Model, name: str) -> Mesh:
-        textures = made.textures
-        mesh = cls(
-            made.vertices, made.faces, uv=made.uv, texture=textures[0] if textures else None, name=name
-        )
-        mesh._given = (mesh._arrays(), made)
+        import numpy as np
+
+        # Copies, which a user may write to.
+        mesh = cls(np.array(made.vertices), np.array(made.faces), name=name)
+        mesh.uv = None if made.uv is None else np.array(made.uv, dtype=np.float64)
+        mesh.colors = None if made.colors is None else np.array(made.colors)
+        mesh.face_materials = np.array(made.face_materials) if len(made.materials) > 1 else None
+        mesh.textures = [np.array(texture) for texture in made.textures]
+        mesh._base = made
+        mesh._as_in_base = mesh._digests()
         return mesh
 
-    def _arrays(self) -> Tuple[Any, ...]:
-        return self.vertices, self.faces, self.uv, self.texture, self.colors
+    def _arrays(self) -> Dict[str, Any]:
+        self.textures[:] = [_picture(texture) for texture in self.textures]
+        return {
+            "vertices": self.vertices,
+            "faces": self.faces,
+            "face_materials": self.face_materials,
+            "uv": self.uv,
+            "colors": self.colors,
+            "textures": self.textures,
+        }
 
-    # As the program takes it. Arrays that were changed since are read again.
+    def _digests(self) -> Dict[str, _Digest]:
+        return {name: _digest(array) for name, array in self._arrays().items()}
+
+    # As the program takes it. What is in the arrays counts, as they may be changed in place.
     def _model(self) -> _core.Model:
-        arrays = self._arrays()
-        if self._given is not None and all(a is b for a, b in zip(arrays, self._given[0])):
-            return self._given[1]
-        import zlib
-
-        key = 0
-        for array in arrays:
-            key = zlib.crc32(array.data if array is not None else b"", key)
-        if self._made is None or self._made[0] != key:
-            self._made = (key, _core.make_model(*arrays))
+        digests = self._digests()
+        if self._base is not None and digests == self._as_in_base:
+            return self._base
+        if self._made is None or self._made[0] != digests:
+            changed = {
+                name: array
+                for name, array in self._arrays().items()
+                if self._base is None or digests[name] != self._as_in_base[name]
+            }
+            self._made = (digests, _core.make_model(self._base, changed))
         return self._made[1]
 
 
-def _picture(picture: Any) -> Any:
+def _digest(array: Any) -> _Digest:
+    if array is None:
+        return ()
+    if isinstance(array, list):
+        return tuple(part for each in array for part in _digest(each))
+    digest = hashlib.sha256(f"{array.dtype.str} {array.shape}".encode())
+    digest.update(array.data)
+    return (digest.hexdigest(),)
+
+
+def _doubles(values: Any) -> npt.NDArray[np.float64]:
     import numpy as np
 
+    return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def _whole_numbers(values: Any, otherwise: str) -> npt.NDArray[Any]:
+    import numpy as np
+
+    given = np.asarray(values)
+    if given.dtype not in (np.dtype(np.int32), np.dtype(np.int64)):
+        whole = given.astype(np.int64)
+        if not np.array_equal(whole, given):
+            raise _core.InputError(otherwise)
+        given = whole
+    return np.ascontiguousarray(given)
+
+
+def _bytes(values: Any, what: str) -> npt.NDArray[np.uint8]:
+    import numpy as np
+
+    given = np.asarray(values)
+    with np.errstate(invalid="ignore"):  # of what is no number the comparison tells
+        whole = given.astype(np.uint8)
+    if not np.array_equal(whole, given):
+        raise _core.InputError(f"{what} to be bytes, whole numbers from 0 to 255")
+    return np.ascontiguousarray(whole if given.dtype != np.uint8 else given)
+
+
+def _picture(picture: Any) -> Any:
     if isinstance(picture, (str, os.PathLike)):
         return _core.read_image(os.fspath(picture))
     if hasattr(picture, "convert"):  # Pillow's
         picture = picture.convert("RGBA")
-    return np.ascontiguousarray(picture, dtype=np.uint8)
+    return _bytes(picture, "a picture's pixels have")
 
 
 def _look(other: Any) -> Any:

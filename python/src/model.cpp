@@ -3,7 +3,11 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "arrays.h"
 #include "base/run_scope.h"
@@ -55,7 +59,10 @@ std::vector<Triangle> triangles_from(const py::array& faces) {
                                                               : triangles_from<std::int64_t>(faces);
 }
 
-void set_uvs(Object& object, const Rows& uv) {
+void set_uvs(Object& object, const py::object& given) {
+  object.uvs.clear();
+  if (given.is_none()) return;
+  const auto uv = given.cast<Rows>();
   const auto vertices = py::ssize_t(object.positions.size()),
              faces = py::ssize_t(object.triangles.size());
   const bool per_vertex = uv.ndim() == 2 && uv.shape(0) == vertices && uv.shape(1) == 2;
@@ -74,17 +81,78 @@ void set_uvs(Object& object, const Rows& uv) {
     }
 }
 
-void set_colors(Object& object, const Bytes& colors) {
-  if (colors.ndim() != 2 || std::size_t(colors.shape(0)) != object.positions.size() ||
-      colors.shape(1) < 3 || colors.shape(1) > 4)
-    throw InputError("the colors have to be an array of bytes of shape (vertices, 3 or 4)");
+void set_colors(Object& object, const py::object& given) {
+  object.colors.clear();
+  if (given.is_none()) return;
+  const auto colors = given.cast<Bytes>();
+  const auto vertices = py::ssize_t(object.positions.size()),
+             faces = py::ssize_t(object.triangles.size());
+  const py::ssize_t channels = colors.ndim() < 2 ? 0 : colors.shape(colors.ndim() - 1);
+  const bool per_vertex = colors.ndim() == 2 && colors.shape(0) == vertices;
+  const bool per_corner = colors.ndim() == 3 && colors.shape(0) == faces && colors.shape(1) == 3;
+  if (!(per_vertex || per_corner) || channels < 3 || channels > 4)
+    throw InputError(
+        "the colors have to be an array of bytes of shape (vertices, 3 or 4) or (faces, 3, 3 or "
+        "4)");
   object.colors.resize(object.triangles.size());
   for (std::size_t t = 0; t < object.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint8_t* c = colors.data(object.triangles[t][k], 0);
+      const std::size_t n = per_corner ? 3 * t + k : std::size_t(object.triangles[t][k]);
+      const std::uint8_t* c = colors.data() + n * std::size_t(channels);
       object.colors[t][k] = {srgb8_to_linear(c[0]), srgb8_to_linear(c[1]), srgb8_to_linear(c[2]),
-                             colors.shape(1) == 4 ? float(c[3]) / 255 : 1.0F};
+                             channels == 4 ? float(c[3]) / 255 : 1.0F};
     }
+}
+
+// Those of a model take the places of its own. Where it had none, what the picture shows is the
+// colour, and no more what the material says.
+void set_textures(Object& object, const py::object& given) {
+  const auto pictures = given.cast<std::vector<Bytes>>();
+  const bool had_some = !object.textures.empty();
+  object.textures.clear();
+  for (const Bytes& picture : pictures)
+    object.textures.push_back(std::make_shared<const Image>(image_from(picture, "the texture")));
+  for (Material& material : object.materials)
+    if (pictures.empty()) {
+      material.texture = -1;
+    } else if (!had_some) {
+      material.texture = 0;
+      material.base_color = Material().base_color;
+    }
+}
+
+void set_face_materials(Object& object, const py::object& numbers) {
+  if (numbers.is_none()) {
+    object.material_of.assign(object.triangles.size(), 0);
+    return;
+  }
+  const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> given(numbers);
+  if (given.ndim() != 1)
+    throw InputError("the face_materials have to be an array of shape (faces,)");
+  const auto materials = std::int64_t(object.materials.size());
+  object.material_of.clear();
+  for (py::ssize_t n = 0; n < given.size(); ++n) {
+    if (given.at(n) < 0 || given.at(n) >= materials)
+      throw InputError(
+          fmt::format("a face has a material number that cannot be: the mesh has {} material{}",
+                      materials, materials == 1 ? "" : "s"));
+    object.material_of.push_back(int(given.at(n)));
+  }
+}
+
+void set_vertices(Object& object, const py::object& given) {
+  const auto vertices = given.cast<Rows>();
+  object.positions.resize(std::size_t(require_rows(vertices, 3, "the vertices")));
+  std::copy_n(vertices.data(), vertices.size(), object.positions.data()->data());
+}
+
+// If all faces have the same material, new ones have it too.
+void set_faces(Object& object, const py::object& given) {
+  object.triangles = triangles_from(given.cast<py::array>());
+  std::vector<int>& materials = object.material_of;
+  if (std::adjacent_find(materials.begin(), materials.end(), std::not_equal_to<>()) ==
+      materials.end())
+    materials.assign(object.triangles.size(), materials.empty() ? 0 : materials.front());
 }
 
 void check_indices(const Object& object) {
@@ -95,30 +163,53 @@ void check_indices(const Object& object) {
                          std::to_string(object.positions.size()) + " vertices");
 }
 
+// Faces may have been changed under what is said of each.
+void check_faces(const Object& object) {
+  const auto require = [&](std::size_t count, const char* name) {
+    if (count != 0 && count != object.triangles.size())
+      throw InputError(
+          fmt::format("there are {0} faces, and {1} for {2}: set {1} for these faces, or to None",
+                      object.triangles.size(), name, count));
+  };
+  require(object.uvs.size(), "uv");
+  require(object.colors.size(), "colors");
+  require(object.material_of.size(), "face_materials");
+}
+
+void check_textures(const Object& object) {
+  const auto has_texture = [](const Material& material) { return material.texture >= 0; };
+  if (object.uvs.empty() &&
+      std::any_of(object.materials.begin(), object.materials.end(), has_texture))
+    throw InputError("a texture needs uv, which say where it lies");
+}
+
 LoadedObject loaded_of(const Model& model) {
   return {*model.object, model.health, model.units, model.files, {}};
 }
 
-ModelHandle make_model(const Rows& vertices, const py::array& faces, const py::object& uv,
-                       const py::object& texture, const py::object& colors) {
+// `base` with other arrays, by the names that hydrodip.Mesh has for them; null: of these alone.
+ModelHandle make_model(const ModelHandle* base, const py::dict& arrays) {
   Object object;
-  object.positions.resize(std::size_t(require_rows(vertices, 3, "the vertices")));
-  std::copy_n(vertices.data(), vertices.size(), object.positions.data()->data());
-  object.triangles = triangles_from(faces);
-  check_indices(object);
-  if (!uv.is_none()) set_uvs(object, uv.cast<Rows>());
-  if (!colors.is_none()) set_colors(object, colors.cast<Bytes>());
   object.materials.resize(1);
-  if (!texture.is_none()) {
-    if (uv.is_none()) throw InputError("a texture needs uv, which say where it lies");
-    object.textures.push_back(
-        std::make_shared<const Image>(image_from(texture.cast<Bytes>(), "the texture")));
-    object.materials[0].texture = 0;
-  }
+  if (base) object = base->loaded->object;
+  const auto set = [&](const char* name, const auto& setter) {
+    if (arrays.contains(name)) setter(object, arrays[name]);
+  };
+  set("vertices", set_vertices);
+  set("faces", set_faces);
+  check_indices(object);
+  set("uv", set_uvs);
+  set("colors", set_colors);
+  set("face_materials", set_face_materials);
+  set("textures", set_textures);
+  check_faces(object);
+  check_textures(object);
   return run_for<ModelHandle>(py::none(), [&](const RunContext& context) {
     const RunScope scope(context);
-    return ModelHandle{
-        std::make_shared<const LoadedObject>(loaded_of(model_from(std::move(object))))};
+    LoadedObject loaded = loaded_of(model_from(std::move(object)));
+    if (base && !arrays.contains("textures"))
+      loaded.picture_problems = base->loaded->picture_problems;
+    return ModelHandle{std::make_shared<const LoadedObject>(std::move(loaded))};
   });
 }
 
@@ -136,6 +227,28 @@ py::object uv_of(const ModelHandle& model) {
   if (object.uvs.empty()) return py::none();
   static_assert(sizeof(CornerUv) == 6 * sizeof(float));
   return view<float>(object.uvs, {3, 2}, keep(model.loaded));
+}
+
+// As bytes, per corner: at a vertex faces may differ.
+py::object colors_of(const ModelHandle& model) {
+  const Object& object = model.loaded->object;
+  if (object.colors.empty()) return py::none();
+  std::vector<std::array<std::uint8_t, 12>> bytes(object.colors.size());
+  for (std::size_t t = 0; t < bytes.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const LinearColor& c = object.colors[t][k];
+      bytes[t][4 * k] = linear_to_srgb8(c.r);
+      bytes[t][4 * k + 1] = linear_to_srgb8(c.g);
+      bytes[t][4 * k + 2] = linear_to_srgb8(c.b);
+      bytes[t][4 * k + 3] = std::uint8_t(std::lround(255 * std::clamp(c.a, 0.0F, 1.0F)));
+    }
+  return taken<std::uint8_t>(std::move(bytes), {3, 4});
+}
+
+std::vector<std::string> material_names_of(const ModelHandle& model) {
+  std::vector<std::string> names;
+  for (const Material& material : model.loaded->object.materials) names.push_back(material.name);
+  return names;
 }
 
 std::vector<py::array> textures_of(const ModelHandle& model) {
@@ -161,6 +274,13 @@ void bind_model(py::module_& m) {
                                return view(model.loaded->object.triangles, model.loaded);
                              })
       .def_property_readonly("uv", &uv_of)
+      .def_property_readonly("colors", &colors_of)
+      .def_property_readonly("materials", &material_names_of)
+      .def_property_readonly("face_materials",
+                             [](const ModelHandle& model) {
+                               return view<std::int32_t>(model.loaded->object.material_of, {},
+                                                         keep(model.loaded));
+                             })
       .def_property_readonly("textures", &textures_of)
       .def_property_readonly("units", [](const ModelHandle& model) { return model.loaded->units; })
       .def_property_readonly("closed",

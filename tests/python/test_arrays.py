@@ -99,8 +99,152 @@ class Meshes(InFolder):
                 hydrodip.simulate(bad, **QUICK)
         with self.assertRaises(hydrodip.InputError):
             hydrodip.Mesh(vertices, faces + 0.5)
+        for share in (np.full((len(vertices), 3), 0.5), np.full((len(vertices), 3), 300)):
+            with self.assertRaisesRegex(hydrodip.InputError, "0 to 255"):
+                hydrodip.Mesh(vertices, faces, colors=share)
         with self.assertRaises(TypeError):
             hydrodip.simulate(3.0)
+
+
+def textured_cone_file():
+    vertices, faces, uv, texture = cone()
+    hydrodip._core.write_png("cone.png", texture)
+    with open("cone.mtl", "w") as mtl:
+        mtl.write("newmtl cone\nmap_Kd cone.png\n")
+    with open("cone.obj", "w") as obj:
+        obj.write("mtllib cone.mtl\nusemtl cone\n")
+        obj.writelines("v {} {} {}\n".format(*v) for v in vertices)
+        obj.writelines("vt {} {}\n".format(*v) for v in uv)
+        obj.writelines("f {0}/{0} {1}/{1} {2}/{2}\n".format(*f) for f in faces + 1)
+
+
+def colored_ply(colors):
+    with open("colors.ply", "w") as ply:
+        ply.write("ply\nformat ascii 1.0\nelement vertex 4\n")
+        ply.writelines(f"property float {axis}\n" for axis in "xyz")
+        ply.writelines(f"property uchar {color}\n" for color in ("red", "green", "blue"))
+        ply.write("element face 4\nproperty list uchar int vertex_indices\nend_header\n")
+        for place, color in zip(("0 0 0", "40 0 0", "0 40 0", "0 0 40"), colors):
+            ply.write(place + " {} {} {}\n".format(*color))
+        ply.write("3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
+
+
+def wanted(mesh):
+    """The colour that is wanted in each face, as bytes."""
+    dip = hydrodip.simulate(mesh, **QUICK)
+    return dip.colors_at(np.arange(len(dip.faces)), np.full((len(dip.faces), 2), 0.3), predicted=False)
+
+
+TETRAHEDRON = "v 0 0 0\nv 40 0 0\nv 0 40 0\nv 0 0 40\nvt 0 0\nvt 1 0\nvt 0 1\n"
+
+
+def two_textures():
+    """A tetrahedron's file with two textured materials: its faces are red, red, blue, blue."""
+    hydrodip._core.write_png("red.png", np.full((4, 4, 3), (200, 0, 0), np.uint8))
+    hydrodip._core.write_png("blue.png", np.full((4, 4, 3), (0, 0, 200), np.uint8))
+    with open("two.mtl", "w") as mtl:
+        mtl.write("newmtl warm\nmap_Kd red.png\nnewmtl cold\nmap_Kd blue.png\n")
+    with open("two.obj", "w") as obj:
+        obj.write("mtllib two.mtl\n" + TETRAHEDRON + "usemtl warm\nf 1/1 3/2 2/3\nf 1/1 2/2 4/3\n")
+        obj.write("usemtl cold\nf 2/1 3/2 4/3\nf 1/1 4/2 3/3\n")
+    return hydrodip.Mesh.load("two.obj")
+
+
+RED, BLUE, GREEN = [200, 0, 0], [0, 0, 200], [0, 200, 0]
+
+
+class LoadedMeshes(InFolder):
+    """What is changed of a mesh from a file is heard, and all else stays."""
+
+    def test_arrays_of_a_file_are_changed_in_place(self):
+        textured_cone_file()
+        mesh = hydrodip.Mesh.load("cone.obj")
+        before = wanted(mesh)
+        mesh.uv += 0.5  # half a picture on: each face has another of the four colours
+        self.assertTrue((wanted(mesh) != before).any(axis=1).all())
+        mesh.uv -= 0.5
+        np.testing.assert_array_equal(wanted(mesh), before)
+        mesh.texture[:] = (*GREEN, 255)
+        self.assertTrue((wanted(mesh) == GREEN).all())
+        width = np.ptp(hydrodip.simulate(mesh, **QUICK).vertices[:, 0])
+        mesh.vertices *= 0.5
+        self.assertAlmostEqual(np.ptp(hydrodip.simulate(mesh, **QUICK).vertices[:, 0]), 0.5 * width)
+        self.assertTrue((wanted(mesh) == GREEN).all())
+
+    def test_a_sample_is_changed_in_place(self):
+        mesh = hydrodip.Mesh.sample("box")
+        before = np.ptp(hydrodip.simulate(mesh, **QUICK).vertices, axis=0)
+        mesh.vertices *= [0.5, 1, 1]
+        after = np.ptp(hydrodip.simulate(mesh, **QUICK).vertices, axis=0)
+        np.testing.assert_allclose(after, before * [0.5, 1, 1])
+
+    def test_materials_and_textures_survive_other_vertices(self):
+        mesh = two_textures()
+        self.assertEqual(mesh.materials, ["warm", "cold"])
+        self.assertEqual(mesh.face_materials.tolist(), [0, 0, 1, 1])
+        self.assertEqual([t[0, 0, :3].tolist() for t in mesh.textures], [RED, BLUE])
+        self.assertEqual(wanted(mesh).tolist(), [RED, RED, BLUE, BLUE])
+        mesh.vertices = 1.5 * mesh.vertices
+        self.assertEqual(wanted(mesh).tolist(), [RED, RED, BLUE, BLUE])
+        mesh.textures[1] = np.full((2, 2, 3), GREEN, np.uint8)
+        self.assertEqual(wanted(mesh).tolist(), [RED, RED, GREEN, GREEN])
+        mesh.face_materials[1] = 1
+        self.assertEqual(wanted(mesh).tolist(), [RED, GREEN, GREEN, GREEN])
+
+    def test_what_other_faces_leave_open_is_asked_for(self):
+        mesh = two_textures()
+        keep = [0, 2, 3]
+        mesh.faces = mesh.faces[keep]
+        for name in ("uv", "face_materials"):
+            with self.assertRaisesRegex(hydrodip.InputError, f"there are 3 faces, and {name} for 4"):
+                wanted(mesh)
+            setattr(mesh, name, getattr(mesh, name)[keep])
+        self.assertEqual(wanted(mesh).tolist(), [RED, BLUE, BLUE])
+        mesh.face_materials[0] = 2
+        with self.assertRaisesRegex(hydrodip.InputError, "2 materials"):
+            wanted(mesh)
+
+    def test_one_picture_does_not_stand_for_two(self):
+        mesh = two_textures()
+        with self.assertRaisesRegex(hydrodip.InputError, "2 textures"):
+            mesh.texture = np.zeros((2, 2, 3), np.uint8)
+        del mesh.textures[1]
+        with self.assertRaisesRegex(hydrodip.InputError, "without its texture"):
+            wanted(mesh)
+
+    def test_vertex_colours_survive_other_vertices(self):
+        colored_ply([RED, RED, BLUE, RED])
+        mesh = hydrodip.Mesh.load("colors.ply")
+        self.assertEqual(mesh.colors.shape, (4, 3, 4))
+        self.assertTrue((mesh.colors[mesh.faces == mesh.faces[0, 0]] == mesh.colors[0, 0]).all())
+        before = wanted(mesh)
+        mesh.vertices = 1.25 * mesh.vertices
+        np.testing.assert_array_equal(wanted(mesh), before)
+        mesh.colors[:] = (*GREEN, 255)
+        self.assertTrue((wanted(mesh) == GREEN).all())
+        mesh.colors = np.full((4, 3), BLUE)  # per vertex
+        self.assertTrue((wanted(mesh) == BLUE).all())
+        mesh.colors = None
+        self.assertTrue((wanted(mesh) == 255).all())
+
+    def test_a_first_texture_is_the_colour(self):
+        with open("plain.mtl", "w") as mtl:
+            mtl.write("newmtl dark\nKd 0.1 0.1 0.1\n")
+        with open("plain.obj", "w") as obj:
+            obj.write("mtllib plain.mtl\n" + TETRAHEDRON + "usemtl dark\n")
+            obj.write("f 1/1 3/2 2/3\nf 1/1 2/2 4/3\nf 2/1 3/2 4/3\nf 1/1 4/2 3/3\n")
+        mesh = hydrodip.Mesh.load("plain.obj")
+        mesh.texture = np.full((2, 2, 3), GREEN, np.uint8)
+        self.assertTrue((wanted(mesh) == GREEN).all())
+        mesh.uv = None
+        with self.assertRaisesRegex(hydrodip.InputError, "needs uv"):
+            wanted(mesh)
+
+    def test_the_same_bytes_in_another_shape_are_another_picture(self):
+        mesh = textured_cone()
+        before = wanted(mesh)
+        mesh.texture = mesh.texture.reshape(2, 32, 3)
+        self.assertTrue((wanted(mesh) != before).any())
 
 
 class Results(unittest.TestCase):

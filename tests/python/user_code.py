@@ -30,6 +30,19 @@ def designed(vertices: npt.NDArray[np.float64], faces: npt.NDArray[np.int64]) ->
     return made
 
 
+def recoloured(file: str) -> hydrodip.Mesh:
+    mesh = hydrodip.Mesh.load(file)
+    mesh.vertices *= 2
+    mesh.vertices = mesh.vertices @ np.diag([1.0, 1.0, 0.5])
+    if mesh.uv is not None:
+        mesh.uv += 0.25
+    if mesh.colors is not None and mesh.face_materials is not None:
+        mesh.colors[mesh.face_materials == mesh.materials.index("lid")] = 255
+    mesh.textures[0][:, :, 0] = 0
+    mesh.texture = np.zeros((8, 8, 3), dtype=np.uint8)
+    return mesh
+
+
 def best(file: str) -> hydrodip.Pose:
     found = hydrodip.orient(file, object_rotate_deg=(0, 0, 30))
     x, y, z = found.poses[0].rotate_deg
