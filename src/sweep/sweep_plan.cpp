@@ -146,18 +146,31 @@ class SweepFile {
   Json json_;
 };
 
-// TOML's [vary.material] z_stretch = ... and "material.z_stretch" = ... are the same.
-void flatten(const Json& table, const std::string& prefix, std::map<std::string, Json>& into,
-             std::vector<std::string>& order) {
+using Entries = std::vector<std::pair<std::string, Json>>;
+
+bool has_entry(const Entries& entries, const std::string& name) {
+  return std::ranges::any_of(entries, [&](const auto& entry) { return entry.first == name; });
+}
+
+void flatten(const SweepFile& file, const Json& table, const std::string& prefix,
+             Entries& entries) {
   for (const auto& [key, value] : table.items()) {
     const std::string name = prefix + key;
     if (value.is_object() && !value.contains("from")) {
-      flatten(value, name + ".", into, order);
-    } else {
-      into[name] = value;
-      order.push_back(name);
+      flatten(file, value, name + ".", entries);
+      continue;
     }
+    if (has_entry(entries, name))
+      file.refuse(fmt::format("{} stands twice in one table: leave out one of them", name));
+    entries.emplace_back(name, value);
   }
+}
+
+// TOML's [vary.material] z_stretch = ... and "material.z_stretch" = ... are the same.
+Entries flat(const SweepFile& file, const Json& table) {
+  Entries entries;
+  flatten(file, table, "", entries);
+  return entries;
 }
 
 // Values that a parameter takes: a list, or a range.
@@ -230,12 +243,16 @@ Axis read_axis(const SweepFile& file, const std::string& name, const Json& value
 }
 
 std::vector<Axis> read_axes(const SweepFile& file, const fs::path& folder) {
-  std::map<std::string, Json> values;
-  std::vector<std::string> order;
-  flatten(file.table("vary"), "", values, order);
+  const Entries held = flat(file, file.table("set"));
   std::vector<Axis> axes;
-  axes.reserve(order.size());
-  for (const std::string& name : order) axes.push_back(read_axis(file, name, values[name], folder));
+  for (const auto& [name, value] : flat(file, file.table("vary"))) {
+    if (has_entry(held, name))
+      file.refuse(fmt::format(
+          "{} stands under [set], which holds for all runs, and under [vary]: leave out one of "
+          "them",
+          name));
+    axes.push_back(read_axis(file, name, value, folder));
+  }
   return axes;
 }
 
@@ -302,16 +319,13 @@ struct Listed {
 Listed listed(const SweepFile& file, const fs::path& folder) {
   Listed list;
   for (const Json& run : file.runs()) {
-    std::map<std::string, Json> values;
-    std::vector<std::string> order;
-    flatten(run, "", values, order);
     list.values.emplace_back();
     list.models.emplace_back();
-    for (const std::string& name : order) {
+    for (const auto& [name, value] : flat(file, run)) {
       if (name == kModel)
-        list.models.back() = file.file_at(values[name], "run.model", folder);
+        list.models.back() = file.file_at(value, "run.model", folder);
       else
-        list.values.back().emplace_back(name, file.text(values[name], name, folder));
+        list.values.back().emplace_back(name, file.text(value, name, folder));
     }
   }
   return list;
@@ -328,12 +342,9 @@ std::vector<std::string> models_of(const SweepFile& file, const fs::path& folder
 }
 
 Values held_values(const SweepFile& file, const fs::path& folder) {
-  std::map<std::string, Json> values;
-  std::vector<std::string> order;
-  flatten(file.table("set"), "", values, order);
   Values held;
-  for (const std::string& name : order)
-    held.emplace_back(name, file.text(values[name], name, folder));
+  for (const auto& [name, value] : flat(file, file.table("set")))
+    held.emplace_back(name, file.text(value, name, folder));
   return held;
 }
 

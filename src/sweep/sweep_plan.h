@@ -58,7 +58,7 @@ struct SweepPlan {
 //
 //   [[run]]                    # of list: one after the other
 //   model = "c.obj"
-//   "dip.depth_mm" = 7
+//   "dip.depth_mm" = 7       # in place of what [set] has
 //
 // File names are relative to the sweep's file; in the plan they are relative to `folder`. Every
 // run's values are checked as a job's are. Throws InputError with file and place, Cancelled.

@@ -47,10 +47,10 @@ class SweepTest : public ::testing::Test {
   }
 
   const TemporaryFolder folder_;
-  const std::string head_ =
+  const std::string any_depth_ =
       "[sweep]\nmodels = [\"tetrahedron.obj\"]\nquality = \"draft\"\n"
-      "[set]\n\"film.elements\" = 300\n\"dip.step_mm\" = 3\n\"dip.depth_mm\" = 9\n"
-      "\"dip.air_cells\" = 0\n";
+      "[set]\n\"film.elements\" = 300\n\"dip.step_mm\" = 3\n\"dip.air_cells\" = 0\n";
+  const std::string head_ = any_depth_ + "\"dip.depth_mm\" = 9\n";
   const RunContext context_;
 };
 
@@ -262,6 +262,12 @@ TEST_F(SweepTest, RefusesWhatItWouldPassOver) {
   EXPECT_TRUE(contains(range("", ", count = 1"), "from 2"));
   EXPECT_TRUE(contains(range("", ", count = 3, log = \"yes\""), "true or false"));
   EXPECT_TRUE(contains(why(one + "[vary]\n\"dip.step_mm\" = [nan]\n"), "nan"));
+  for (const char* vary :
+       {"[vary]\n\"dip.depth_mm\" = [3, 6]\n", "[vary.dip]\ndepth_mm = [3, 6]\n"})
+    EXPECT_TRUE(contains(why(head_ + vary),
+                         "dip.depth_mm stands under [set], which holds for all runs, and under "
+                         "[vary]"));
+  EXPECT_TRUE(contains(why(head_ + "[set.dip]\ndepth_mm = 3\n"), "dip.depth_mm stands twice"));
 }
 
 TEST_F(SweepTest, PlanningCanBeCancelled) {
@@ -329,7 +335,7 @@ TEST_F(SweepTest, SaysWhatIsWrongInItsFile) {
   EXPECT_TRUE(contains(why("[vary]\n\"dip.depth_mm\" = [3]\n"), "no model"));
   EXPECT_TRUE(
       contains(why("[sweep]\nmethod = \"list\"\nmodels = [\"tetrahedron.obj\"]\n"), "[[run]]"));
-  EXPECT_TRUE(contains(why(head_ + "[vary]\n\"film.elements\" = { from = 8, to = 9, count = "
+  EXPECT_TRUE(contains(why(head_ + "[vary]\n\"material.poisson\" = { from = 0, to = 0.3, count = "
                                    "2000000000 }\n"),
                        "at most"));
   EXPECT_TRUE(contains(why("[sweep\n"), "TOML"));
@@ -455,7 +461,7 @@ TEST_F(SweepTest, CancelledItLeavesNothingHalf) {
 }
 
 TEST_F(SweepTest, TheTableHasALineForEveryRun) {
-  const SweepPlan made = plan(head_ + "[vary]\n\"dip.depth_mm\" = [3, 6, 9, 12]\n");
+  const SweepPlan made = plan(any_depth_ + "[vary]\n\"dip.depth_mm\" = [3, 6, 9, 12]\n");
   run_sweep(sweep(), made, {{1, 2}, "", false}, context_);
   const SweepTable table = make_table(sweep(), made);
   const std::string csv = table_csv(table, made);
