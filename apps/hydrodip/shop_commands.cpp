@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "build_version.h"
 #include "job/profile_jobs.h"
 #include "rig/link.h"
 #include "rig/rig_job.h"
@@ -189,6 +190,7 @@ JobResult run_sweep_plan(const Request& request, const RunContext& context) {
   SweepPlanRequest sweep = request.sweep;
   sweep.file = request.file;
   sweep.folder = request.output.empty() ? sweep.file.stem().string() + "-sweep" : request.output;
+  sweep.version = build_version();
   return sweep_plan_job(sweep, context);
 }
 
@@ -200,7 +202,8 @@ void declare_sweep_run(CLI::App& app, Request& request) {
   app.add_option("--task", request.sweep_work.id, "one run alone, by its id")
       ->group(kSweepGroup)
       ->type_name("ID");
-  app.add_flag("--again", request.sweep_work.again, "also do runs that failed once more")
+  app.add_flag("--again", request.sweep_work.again,
+               "also do runs once more that failed or that another version of the program did")
       ->group(kSweepGroup);
   declare_reporting(app, request);
   declare_threads(app, request);
@@ -226,6 +229,7 @@ JobResult run_sweep_run(const Request& request, const RunContext& context) {
   if (request.folder.empty())
     throw InputError("name the sweep's folder, as in 'hydrodip sweep run stretch'");
   SweepWork work = request.sweep_work;
+  work.version = build_version();
   if (!request.shard.empty() && !work.id.empty())
     throw InputError("--task is one run, --shard a part of all: give one of them");
   if (!request.shard.empty())

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -66,13 +67,15 @@ std::string two_digits(double value) {
 }
 
 // The first run. Returns what was wrong, if it was not done.
-std::string run_trial(const fs::path& folder, const SweepPlan& plan, const RunContext& context) {
+std::string run_trial(const SweepPlanRequest& request, const SweepPlan& plan,
+                      const RunContext& context) {
   try {
-    return run_sweep(folder, plan, {{}, plan.runs.front().id, false}, context).what_changed;
+    const SweepWork first{{}, plan.runs.front().id, false, request.version};
+    return run_sweep(request.folder, plan, first, context).what_changed;
   } catch (const Cancelled&) {
     std::error_code ignored;
     for (const char* part : {"claims", "runs", "work"})
-      fs::remove(folder / part, ignored);  // empty
+      fs::remove(request.folder / part, ignored);  // empty
     throw Cancelled("cancelled; the sweep was not planned");
   }
 }
@@ -83,12 +86,19 @@ double seconds_of_one(const SweepPlanRequest& request, const SweepPlan& plan,
   const std::string& id = plan.runs.front().id;
   if (request.trial) {
     context.progress("trying the first run", 0);
-    trouble = run_trial(request.folder, plan, context.quiet());
+    trouble = run_trial(request, plan, context.quiet());
   }
   const auto outcome = read_outcome(request.folder, id);
   if (!outcome) return 0;
   if (!outcome->error.empty()) trouble = outcome->error;
   return outcome->error.empty() ? outcome->seconds : 0;
+}
+
+std::map<std::string, int> versions_of(const SweepTable& table) {
+  std::map<std::string, int> runs;
+  for (const SweepRow& row : table.rows)
+    if (row.state != RunState::kMissing) ++runs[row.version];
+  return runs;
 }
 
 }  // namespace
@@ -160,12 +170,18 @@ JobResult sweep_run_job(const fs::path& folder, const SweepWork& work, const Run
   if (done.before > 0) result.text += fmt::format(", {} were done before", done.before);
   if (done.elsewhere > 0)
     result.text += fmt::format(", {} were taken by another 'sweep run'", done.elsewhere);
+  if (!done.by_others.empty())
+    result.text += fmt::format(
+        "\nother versions did some of those before: {}; this is hydrodip {}, and --again does them "
+        "once more",
+        told_versions(done.by_others), work.version);
   result.text += fmt::format("\n'hydrodip sweep collect {}' puts them together\n",
                              shell_word(folder.string()));
   result.json = dump({{"done", done.done},
                       {"failed", done.failed},
                       {"before", done.before},
-                      {"elsewhere", done.elsewhere}});
+                      {"elsewhere", done.elsewhere},
+                      {"by_other_versions", done.by_others}});
   return result;
 }
 
@@ -200,6 +216,12 @@ JobResult sweep_collect_job(const fs::path& folder, const RunContext& context) {
     if (row.state == RunState::kFailed && shown++ < kShown)
       result.text += fmt::format("  {} failed: {}\n", row.run->id, row.error);
   if (shown > kShown) result.text += fmt::format("  and {} more, see table.csv\n", shown - kShown);
+  const std::map<std::string, int> versions = versions_of(table);
+  if (versions.size() > 1)
+    result.text += fmt::format(
+        "several versions of the program did them: {} (table.csv has which did what); 'hydrodip "
+        "sweep run {} --again' does once more what other versions did\n",
+        told_versions(versions), shell_word(folder.string()));
   result.text += fmt::format("wrote to {}:", folder.string());
   for (const std::string& file : result.files) result.text += " " + file;
   result.text += "\n" + output.told_replaced();
@@ -207,6 +229,7 @@ JobResult sweep_collect_job(const fs::path& folder, const RunContext& context) {
                       {"done", count(RunState::kDone)},
                       {"failed", count(RunState::kFailed)},
                       {"missing", count(RunState::kMissing)},
+                      {"by_version", versions},
                       {"files", result.files}});
   return result;
 }

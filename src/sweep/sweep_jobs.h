@@ -12,8 +12,9 @@ namespace hydrodip {
 struct SweepPlanRequest {
   std::filesystem::path file;
   std::filesystem::path folder;
-  bool trial = true;  // does the first run, to know that it works and how long one takes
-  int tasks = 0;      // of a cluster's array; 0: so many that each lasts some minutes
+  bool trial = true;         // does the first run, to know that it works and how long one takes
+  int tasks = 0;             // of a cluster's array; 0: so many that each lasts some minutes
+  std::string version = {};  // as SweepWork::version
 };
 
 // Writes FOLDER/sweep.json, and scripts that give the runs to GNU parallel and to Slurm. A sweep

@@ -66,10 +66,16 @@ std::size_t count_done(const fs::path& folder, const std::vector<const SweepRun*
   }));
 }
 
-bool is_pending(const fs::path& folder, const SweepPlan& plan, const std::string& id, bool again) {
-  const auto outcome = read_outcome(folder, id);
+// No two of them need to come to the same, and an id says nothing of them.
+bool is_of_another_version(const SweepOutcome& outcome, const SweepWork& work) {
+  return !work.version.empty() && outcome.version != work.version;
+}
+
+bool is_pending(const std::optional<SweepOutcome>& outcome, const fs::path& folder,
+                const SweepPlan& plan, const std::string& id, const SweepWork& work) {
   if (!outcome) return true;
-  if (!outcome->error.empty()) return again;
+  if (work.again && is_of_another_version(*outcome, work)) return true;
+  if (!outcome->error.empty()) return work.again;
   // It was done when its files were not wanted.
   std::error_code ignored;
   return plan.keep_files && !fs::exists(folder / "files" / id, ignored);
@@ -134,6 +140,7 @@ Json independent_of_place(const std::string& text, const fs::path& folder) {
 void write_outcome(const fs::path& folder, const SweepRun& run, const SweepOutcome& outcome,
                    int exit_code) {
   Json json = {{"id", run.id}, {"exit_code", exit_code}, {"seconds", outcome.seconds}};
+  if (!outcome.version.empty()) json["version"] = outcome.version;
   if (outcome.error.empty())
     json["report"] = independent_of_place(outcome.report, folder);
   else
@@ -158,9 +165,10 @@ bool is_out_of_space(const std::string& sentence) {
 // Whether it went well. What is wrong with a run is its outcome; Cancelled leaves, and what
 // is not the run's fault: ChangedInput, and InputError if there is no room for results.
 bool do_run(const SweepPlan& plan, const SweepRun& run, const fs::path& folder,
-            const RunContext& context) {
+            const std::string& version, const RunContext& context) {
   const auto start = std::chrono::steady_clock::now();
   SweepOutcome outcome;
+  outcome.version = version;
   int exit_code = 0;
   try {
     outcome.report = report_of(plan, run, folder, context);
@@ -193,6 +201,16 @@ std::vector<const SweepRun*> chosen(const SweepPlan& plan, const SweepWork& work
   return runs;
 }
 
+// Programs that did not note theirs left their number in the report.
+std::string version_in(const Json& outcome) {
+  const auto text = [](const Json& version) {
+    return version.is_string() ? version.get<std::string>() : std::string();
+  };
+  if (outcome.contains("version")) return text(outcome["version"]);
+  const Json::json_pointer in_report("/report/tool/version");
+  return outcome.contains(in_report) ? text(outcome[in_report]) : "";
+}
+
 }  // namespace
 
 std::optional<SweepOutcome> read_outcome(const fs::path& folder, const std::string& id) {
@@ -213,7 +231,16 @@ std::optional<SweepOutcome> read_outcome(const fs::path& folder, const std::stri
     outcome.report = json["report"].dump();
   else
     outcome.error = json["error"].get<std::string>();
+  outcome.version = version_in(json);
   return outcome;
+}
+
+std::string told_versions(const std::map<std::string, int>& runs_by_version) {
+  std::string told;
+  for (const auto& [version, runs] : runs_by_version)
+    told += fmt::format("{}{} by {}", told.empty() ? "" : ", ", runs,
+                        version.empty() ? "a version that is not noted" : "hydrodip " + version);
+  return told;
 }
 
 SweepDone run_sweep(const fs::path& folder, const SweepPlan& plan, const SweepWork& work,
@@ -225,24 +252,32 @@ SweepDone run_sweep(const fs::path& folder, const SweepPlan& plan, const SweepWo
   std::atomic<int> done = 0, failed = 0, before = 0, elsewhere = 0, changed = 0;
   std::mutex mutex;
   std::string what_changed;
+  std::map<std::string, int> by_others;
   FileHashes hashes;
   std::vector<std::function<void()>> tasks;
   const std::vector<const SweepRun*> runs = chosen(plan, work);
   tasks.reserve(runs.size());
   for (const SweepRun* run : runs)
     tasks.emplace_back([&, run] {
-      if (!is_pending(folder, plan, run->id, work.again)) {
+      const auto is_pending_now = [&](const std::optional<SweepOutcome>& outcome) {
+        return is_pending(outcome, folder, plan, run->id, work);
+      };
+      if (const auto known = read_outcome(folder, run->id); !is_pending_now(known)) {
         ++before;
+        if (!is_of_another_version(*known, work)) return;
+        const std::lock_guard lock(mutex);
+        ++by_others[known->version];
         return;
       }
       const Claim claim(folder, run->id);
-      if (!claim.held() || !is_pending(folder, plan, run->id, work.again)) {
+      if (!claim.held() || !is_pending_now(read_outcome(folder, run->id))) {
         ++elsewhere;
         return;
       }
       try {
         require_unchanged(plan, *run, folder, hashes);
-        ++(do_run(plan, *run, folder, context.quiet().with_threads(1)) ? done : failed);
+        ++(do_run(plan, *run, folder, work.version, context.quiet().with_threads(1)) ? done
+                                                                                     : failed);
       } catch (const ChangedInput& why) {
         const std::lock_guard lock(mutex);
         if (what_changed.empty()) what_changed = why.what();
@@ -258,7 +293,7 @@ SweepDone run_sweep(const fs::path& folder, const SweepPlan& plan, const SweepWo
         "rest",
         count_done(folder, runs), runs.size()));
   }
-  return {done, failed, before, elsewhere, changed, what_changed};
+  return {done, failed, before, elsewhere, changed, what_changed, by_others};
 }
 
 }  // namespace hydrodip

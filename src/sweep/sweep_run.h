@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ struct SweepOutcome {
   std::string error;  // empty: it went well
   double seconds = 0;
   std::string report;  // report.json's text; empty if it failed
+  // Of the program that did it, as SweepWork has it; empty: it is not written there.
+  std::string version = {};
 };
 // Nothing, too, if the file is damaged or another run's: the run has to be done again.
 std::optional<SweepOutcome> read_outcome(const std::filesystem::path& folder,
@@ -25,7 +28,9 @@ std::optional<SweepOutcome> read_outcome(const std::filesystem::path& folder,
 struct SweepWork {
   Shard shard;
   std::string id;      // this one only; empty: all of the shard
-  bool again = false;  // runs that failed, too
+  bool again = false;  // runs that failed and those that other versions did, too
+  // This program's, which outcomes note; empty: none, and nobody asks which did what.
+  std::string version = {};
 };
 
 struct SweepDone {
@@ -34,7 +39,12 @@ struct SweepDone {
   int elsewhere = 0;         // another process was at them
   int changed = 0;           // not done: files that they read are not those that were planned
   std::string what_changed;  // a sentence about the first of these
+  // Of those done before, how many which other version of the program did.
+  std::map<std::string, int> by_others = {};
 };
+
+// "8 by hydrodip 0.1.0, 4 by hydrodip 0.2.0"
+std::string told_versions(const std::map<std::string, int>& runs_by_version);
 
 // Does the runs that have no outcome yet, each on one thread, side by side on the context's. No run
 // is done twice, whoever else is at it: a lock on FOLDER/claims/ID tells, and goes with its

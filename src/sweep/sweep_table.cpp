@@ -58,6 +58,7 @@ SweepTable make_table(const std::filesystem::path& folder, const SweepPlan& plan
     if (const auto outcome = read_outcome(folder, row.run->id)) {
       row.state = outcome->error.empty() ? RunState::kDone : RunState::kFailed;
       row.error = outcome->error;
+      row.version = outcome->version;
       if (row.state == RunState::kDone) {
         const Json report = Json::parse(outcome->report);
         if (report.contains("concern") && report["concern"].is_string())
@@ -88,13 +89,13 @@ std::string table_csv(const SweepTable& table, const SweepPlan& plan) {
   for (const std::string& name : plan.varied) csv += "," + csv_cell(name);
   csv += ",verdict";
   for (const std::string& name : table.figure_names) csv += "," + name;
-  csv += ",error\n";
+  csv += ",version,error\n";
   for (const SweepRow& row : table.rows) {
     csv += row.run->id + "," + state_name(row.state);
     for (const std::string& name : plan.varied) csv += "," + csv_cell(value_of(*row.run, name));
     csv += "," + row.verdict;
     for (const auto& figure : row.figures) csv += figure ? fmt::format(",{}", *figure) : ",";
-    csv += "," + csv_cell(row.error) + "\n";
+    csv += "," + csv_cell(row.version) + "," + csv_cell(row.error) + "\n";
   }
   return csv;
 }
@@ -107,6 +108,7 @@ std::string table_json(const SweepTable& table, const SweepPlan& plan) {
     for (std::size_t i = 0; i < table.figure_names.size(); ++i)
       if (row.figures[i]) figures[table.figure_names[i]] = *row.figures[i];
     Json entry = {{"id", row.run->id}, {"state", state_name(row.state)}, {"values", values}};
+    if (!row.version.empty()) entry["version"] = row.version;
     if (row.state == RunState::kDone) {
       entry["verdict"] = row.verdict;
       entry["figures"] = figures;

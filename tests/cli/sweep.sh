@@ -25,6 +25,15 @@ wait "$one" 2> /dev/null
 [ -z "$(ls s/claims)" ] || fail 'a claim was left'
 "$hydrodip" sweep run s --quiet | grep -q '^0 done, 0 failed, 24 were done before' || fail 'done again'
 
+# What another version of the program did is told, and done once more if that is wanted.
+other=$(ls s/runs/*.json | head -1)
+sed 's/"version":"[^"]*"/"version":"0.0.1"/' "$other" > other.json && mv other.json "$other"
+"$hydrodip" sweep run s --quiet > said.txt || fail 'sweep run after an upgrade'
+grep -q '1 by hydrodip 0\.0\.1; this is hydrodip [0-9]' said.txt || fail "another version: $(cat said.txt)"
+"$hydrodip" sweep run s --quiet --again > said.txt || fail 'sweep run --again'
+grep -q '^1 done, 0 failed, 23 were done before' said.txt || fail "another version: $(cat said.txt)"
+grep -q 'other version' said.txt && fail "no other version is left: $(cat said.txt)"
+
 # Whoever collects may be killed at any moment: the next one clears up.
 for moment in 0 0.005 0.01 0.02 0.03 0.05; do
   "$hydrodip" sweep collect s > /dev/null 2>&1 &

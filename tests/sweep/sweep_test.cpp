@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -388,6 +390,43 @@ TEST_F(SweepTest, WhatIsDoneIsNotDoneAgain) {
   EXPECT_EQ(fs::last_write_time(sweep() / "runs" / (made.runs[1].id + ".json")), before);
   EXPECT_TRUE(fs::is_empty(sweep() / "claims"));
   EXPECT_TRUE(fs::is_empty(sweep() / "work"));
+}
+
+// A newer program may come to other numbers, and an id says nothing of it.
+TEST_F(SweepTest, WhatAnotherVersionDidIsToldAndDoneAgainIfWanted) {
+  const SweepPlan made = plan(head_ + "[vary]\n\"film.margin_mm\" = [10, 12, 200]\n");
+  write_file(sweep() / "sweep.json", manifest_json(made));
+  const SweepWork older{{}, "", false, "1.0"};
+  SweepWork newer{{}, "", false, "1.1"};
+  run_sweep(sweep(), made, {{}, made.runs[0].id, false, "1.1"}, context_);
+  EXPECT_TRUE(contains(sweep_run_job(sweep(), older, context_).text,
+                       "1 by hydrodip 1.1; this is hydrodip 1.0, and --again"));
+  EXPECT_EQ(run_sweep(sweep(), made, newer, context_).by_others,
+            (std::map<std::string, int>{{"1.0", 2}}));
+  EXPECT_TRUE(contains(sweep_run_job(sweep(), newer, context_).text,
+                       "2 by hydrodip 1.0; this is hydrodip 1.1, and --again"));
+  EXPECT_TRUE(
+      contains(sweep_collect_job(sweep(), context_).text, "2 by hydrodip 1.0, 1 by hydrodip 1.1"));
+  const Json table = Json::parse(table_json(make_table(sweep(), made), made));
+  EXPECT_EQ(table["runs"][0]["version"], "1.1");
+  EXPECT_EQ(table["runs"][1]["version"], "1.0");
+
+  newer.again = true;
+  const SweepDone again = run_sweep(sweep(), made, newer, context_);
+  EXPECT_EQ(again.before, 1);
+  EXPECT_EQ(again.done, 1);
+  EXPECT_EQ(again.failed, 1);
+  EXPECT_TRUE(run_sweep(sweep(), made, newer, context_).by_others.empty());
+  EXPECT_FALSE(contains(sweep_collect_job(sweep(), context_).text, "version"));
+}
+
+// Those of before versions were noted have their number in the report.
+TEST_F(SweepTest, AnOutcomeWithoutItsVersionHasItsReports) {
+  const SweepPlan made = plan(head_);
+  run_sweep(sweep(), made, {}, context_);
+  const std::optional<SweepOutcome> outcome = read_outcome(sweep(), made.runs[0].id);
+  EXPECT_EQ(outcome->version, Json::parse(outcome->report)["tool"]["version"]);
+  EXPECT_FALSE(outcome->version.empty());
 }
 
 // Whoever comes first does a run: together the workers do each once.
