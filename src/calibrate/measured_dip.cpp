@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;  // 2: sheet.swelling_x, swelling_y
 constexpr const char* kKind = "hydrodip measured dip";
 constexpr const char *kFactsName = "dip.json", *kCornersName = "corners.csv";
 constexpr const char* kCornersHeading = "patch,column,row,x,y,z";
@@ -133,7 +133,7 @@ Board board_of(const Reader& json) {
   return board;
 }
 
-FilmOptions film_of(const Reader& json) {
+FilmOptions film_of(const Reader& json, bool says_swelling) {
   FilmOptions film;
   film.width_mm = json.number("width_mm", 10, 5000);
   film.height_mm = json.number("height_mm", 10, 5000);
@@ -141,6 +141,10 @@ FilmOptions film_of(const Reader& json) {
   const std::string shape = json.text("shape");
   if (shape != "rectangle" && shape != "disc") json.damaged("shape");
   film.shape = shape == "disc" ? FilmShape::kDisc : FilmShape::kRectangle;
+  if (says_swelling) {
+    film.swelling_x = json.number("swelling_x", 0.8, 1.5);
+    film.swelling_y = json.number("swelling_y", 0.8, 1.5);
+  }
   return film;
 }
 
@@ -234,7 +238,9 @@ void write_measured_dip(const std::filesystem::path& file, const MeasuredDip& di
        {{"width_mm", dip.film.width_mm},
         {"height_mm", dip.film.height_mm},
         {"margin_mm", dip.film.margin_mm},
-        {"shape", dip.film.shape == FilmShape::kDisc ? "disc" : "rectangle"}}},
+        {"shape", dip.film.shape == FilmShape::kDisc ? "disc" : "rectangle"},
+        {"swelling_x", dip.film.swelling_x},
+        {"swelling_y", dip.film.swelling_y}}},
       {"facts", json_of(dip.facts)},
       {"scan", {{"synthetic", dip.scan.synthetic}, {"corners", dip.scan.grid.position.size()}}},
       {"files",
@@ -274,7 +280,8 @@ MeasuredDip read_measured_dip(const std::filesystem::path& file) {
   if (!json.is_object() || !json.contains("kind") || json["kind"] != kKind)
     refuse(file, "this is no measured dip: 'hydrodip calibrate pack' makes them");
   const Reader reader(file, json);
-  if (reader.number("schema_version", 1, 1e6) > kSchemaVersion)
+  const double version = reader.number("schema_version", 1, 1e6);
+  if (version > kSchemaVersion)
     refuse(file, "a newer hydrodip made this measured dip; it is needed to read it");
 
   MeasuredDip dip;
@@ -282,7 +289,8 @@ MeasuredDip read_measured_dip(const std::filesystem::path& file) {
   if (find_shape(dip.object) == nullptr) reader.at("object").damaged("shape");
   dip.depth_mm = reader.at("object").number("depth_mm", 0.1, 5000);
   dip.board = board_of(reader.at("board"));
-  dip.film = film_of(reader.at("sheet"));
+  dip.says_swelling = version >= 2;
+  dip.film = film_of(reader.at("sheet"), dip.says_swelling);
   dip.facts = facts_of(reader.at("facts"));
   dip.scan.synthetic = reader.at("scan").flag("synthetic");
   for (const Json& entry : reader.list("files")) {

@@ -30,7 +30,8 @@ struct MeasuredDip {
   std::string object;  // a shape that has a name
   double depth_mm = 0;
   Board board;
-  FilmOptions film;  // only what the sheet is: extents, margin, shape
+  FilmOptions film;           // only what the sheet is: extents, margin, shape, swelling
+  bool says_swelling = true;  // archives of before schema version 2 do not
   DipFacts facts;
   Scan scan;                         // mm, turned back if it was mirrored
   std::string scan_file;             // the owner's, its name in the archive

@@ -227,7 +227,7 @@ bool same(const Board& a, const Board& b) {
 
 bool same(const FilmOptions& a, const FilmOptions& b) {
   return a.width_mm == b.width_mm && a.height_mm == b.height_mm && a.margin_mm == b.margin_mm &&
-         a.shape == b.shape;
+         a.shape == b.shape && a.swelling_x == b.swelling_x && a.swelling_y == b.swelling_y;
 }
 
 // Lays the scan on a dip's corners: as a whole, then so that what the film's place explains is left
@@ -330,11 +330,16 @@ ScanSetup scan_setup(const JobConfig& config, const CalibrationRequest& request)
   std::string first;
   for (const std::string& text : request.scans) {
     if (!is_measured_dip(text)) continue;
-    const MeasuredDip dip = read_measured_dip(text);
+    MeasuredDip dip = read_measured_dip(text);
     FilmOptions& film = setup.config.design.film;
+    if (!dip.says_swelling) {
+      dip.film.swelling_x = film.swelling_x;
+      dip.film.swelling_y = film.swelling_y;
+    }
     if (!first.empty() && (!same(dip.board, setup.settings.board) || !same(dip.film, film)))
       throw InputError(
-          fmt::format("{}: another board or sheet was dipped than in {}; calibrate them one by one",
+          fmt::format("{}: another board, or a sheet of another size or swelling, was dipped than "
+                      "in {}; calibrate them one by one",
                       text, first));
     first = text;
     setup.settings.board = dip.board;
@@ -343,6 +348,8 @@ ScanSetup scan_setup(const JobConfig& config, const CalibrationRequest& request)
     film.height_mm = dip.film.height_mm;
     film.margin_mm = dip.film.margin_mm;
     film.shape = dip.film.shape;
+    film.swelling_x = dip.film.swelling_x;
+    film.swelling_y = dip.film.swelling_y;
   }
   return setup;
 }

@@ -32,6 +32,8 @@ MeasuredDip some_dip() {
   dip.board = tint_board(4);
   dip.film.width_mm = 215.9;
   dip.film.height_mm = 279.4;
+  dip.film.swelling_x = 1.025;
+  dip.film.swelling_y = 1.013;
   dip.facts = facts();
   for (int i = 0; i < 12; ++i) {
     dip.scan.grid.position.push_back({0.1 * i, 1.0 / (i + 1), -3.7e-5 * i});
@@ -58,6 +60,9 @@ TEST_F(MeasuredDipTest, ComesBackToTheLastDigit) {
   EXPECT_EQ(back.board.square_mm, dip.board.square_mm);
   EXPECT_EQ(back.board.about_square, dip.board.about_square);
   EXPECT_EQ(back.film.width_mm, dip.film.width_mm);
+  EXPECT_TRUE(back.says_swelling);
+  EXPECT_EQ(back.film.swelling_x, dip.film.swelling_x);
+  EXPECT_EQ(back.film.swelling_y, dip.film.swelling_y);
   EXPECT_EQ(back.facts.owner, dip.facts.owner);
   EXPECT_EQ(back.facts.water_c, dip.facts.water_c);
   EXPECT_FALSE(back.facts.speed_mm_per_min);

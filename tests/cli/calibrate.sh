@@ -45,14 +45,15 @@ node -e '
   if (!(full < single && full < straight)) process.exit(1);
 ' || fail "the full method is not the best: $(cat said.json)"
 
-# A dip packed is a scan like any other, with its board, sheet and depth.
+# A dip packed is a scan like any other, with its board, sheet, swelling and depth.
+swollen='--set film.swelling_x=1.01 --set film.swelling_y=1.006'
 told='--film-product f --printer p --ink i --activator a --activator-g 3.5 --water-c 28 --soak-s 70
   --wait-s 30 --owner o --licence CC0-1.0'
 # shellcheck disable=SC2086
-"$hydrodip" calibrate pack sphere@11.9=scans/sphere-scan.obj $film $told -o packed --quiet \
+"$hydrodip" calibrate pack sphere@11.9=scans/sphere-scan.obj $film $swollen $told -o packed --quiet \
   > said.txt || fail "pack"
 # shellcheck disable=SC2086
-"$hydrodip" measure sphere@11.9=scans/sphere-scan.obj $film --quiet | sed 's/([^)]*)//' > by-scan.txt
+"$hydrodip" measure sphere@11.9=scans/sphere-scan.obj $film $swollen --quiet | sed 's/([^)]*)//' > by-scan.txt
 "$hydrodip" measure packed/sphere-dip.zip --set film.elements=3000 --set dip.step_mm=0.5 --quiet |
   sed 's/([^)]*)//' > by-dip.txt
 cmp -s by-scan.txt by-dip.txt || fail "a packed dip measures differently: $(diff by-scan.txt by-dip.txt)"
