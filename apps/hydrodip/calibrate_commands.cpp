@@ -40,6 +40,13 @@ void declare_square(CLI::App& app, Request& request) {
       ->type_name("tints|black");
 }
 
+// Of the dips whose scans these are.
+void declare_dipped_film(CLI::App& app, Request& request) {
+  declare_film(app, request);
+  declare_film_state(app, request,
+                     "the dips' film had swollen as this registration.json, or profile, says");
+}
+
 void declare_scan_reading(CLI::App& app, Request& request) {
   declare_square(app, request);
   app.add_option("--scan-units", request.calibration.scan_units, "unit of the scans (default: mm)")
@@ -79,7 +86,7 @@ void declare_calibrate(CLI::App& app, Request& request) {
       ->group(kScanGroup)
       ->type_name("N")
       ->allow_extra_args(false);
-  declare_film(app, request);
+  declare_dipped_film(app, request);
   declare_configuration(app, request);
 }
 
@@ -111,7 +118,7 @@ void declare_measure(CLI::App& app, Request& request) {
   declare_output(app, request, "none, nothing is written");
   declare_reporting(app, request);
   declare_scan_reading(app, request);
-  declare_film(app, request);
+  declare_dipped_film(app, request);
   declare_configuration(app, request);
 }
 
@@ -144,7 +151,7 @@ void declare_synth(CLI::App& app, Request& request) {
   add("--seed", wanted.seed, "N", "of noise, gaps and pose (default: 1)");
   app.add_flag("--aligned", wanted.aligned, "in the posed object's frame instead of a random pose")
       ->group(kScanGroup);
-  declare_film(app, request);
+  declare_dipped_film(app, request);
   declare_configuration(app, request);
 }
 
@@ -171,7 +178,7 @@ void declare_pack(CLI::App& app, Request& request) {
   add("--notes", facts.notes, "TEXT", "what else is to be known");
   add("--owner", facts.owner, "TEXT", "whose measurement it is, to be named by who uses it");
   add("--licence", facts.licence, "SPDX", "under which it may be used, as CC-BY-4.0 or CC0-1.0");
-  declare_film(app, request);
+  declare_dipped_film(app, request);
   declare_configuration(app, request);
 }
 

@@ -223,14 +223,19 @@ void take_film_state(Request& request, const std::string& file) {
 
 }  // namespace
 
-void declare_film_and_dip(CLI::App& app, Request& request) {
-  declare_film(app, request);
+void declare_film_state(CLI::App& app, Request& request, const std::string& help) {
   app.add_option_function<std::string>(
          "--film-state", [&request](const std::string& file) { take_film_state(request, file); },
-         "design for film that swells as this registration.json, or profile, says")
+         help)
       ->group(kFilmGroup)
       ->type_name("FILE.json|FILE.toml")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+void declare_film_and_dip(CLI::App& app, Request& request) {
+  declare_film(app, request);
+  declare_film_state(app, request,
+                     "design for film that swells as this registration.json, or profile, says");
   add_parameter_option(app, request, "--correction", "film.correction", "FILE.json", kFilmGroup,
                        "take out what 'hydrodip correct' found of earlier dips");
   add_parameter_option(app, request, "--depth", "dip.depth_mm", "MM|auto", kFilmGroup,

@@ -65,8 +65,9 @@ void declare_reporting(CLI::App& app, Request& request);    // --json, --quiet
 void declare_report_page(CLI::App& app, Request& request);  // --for, --logo
 void declare_object(CLI::App& app, Request& request);
 void declare_artwork(CLI::App& app, Request& request);
-void declare_film(CLI::App& app, Request& request);          // --film, --quality
-void declare_film_and_dip(CLI::App& app, Request& request);  // the same, --depth, --method
+void declare_film(CLI::App& app, Request& request);  // --film, --quality
+void declare_film_state(CLI::App& app, Request& request, const std::string& help);  // --film-state
+void declare_film_and_dip(CLI::App& app, Request& request);  // both, --depth, --method
 void declare_strict(CLI::App& app, Request& request);        // --strict
 void declare_dips(CLI::App& app, Request& request);          // --dips
 void declare_ink(CLI::App& app, Request& request);

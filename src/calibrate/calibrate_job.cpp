@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kStoreName = "simulations.jsonl";
 constexpr int kSchemaVersion = 2;  // 2: board, curvature, by_ink,
-                                   // stiffness_table, film_off_mm
+                                   // stiffness_table, film_off_mm, swelling
 constexpr std::size_t kMostGridPoints = 100000;
 
 SearchOptions search_options(const CalibrationRequest& request) {
@@ -159,8 +159,19 @@ std::string source_of(const std::vector<Subject>& subjects) {
   return any_synthetic(subjects) ? text + ", of which some were computed, not scanned" : text;
 }
 
+bool swells(const FilmOptions& film) { return film.swelling_x != 1 || film.swelling_y != 1; }
+
+// The parameters are those of film that swells so: whoever prints with them wants both.
+std::string swelling_toml(const FilmOptions& film) {
+  if (!swells(film)) return {};
+  return fmt::format(
+      "\n# As the film of these dips had swollen; a print's --film-state says it anew.\n[film]\n"
+      "swelling_x = {:.6g}\nswelling_y = {:.6g}\n",
+      film.swelling_x, film.swelling_y);
+}
+
 std::string profile_toml(const Calibration& calibration, const std::vector<Subject>& subjects,
-                         const std::optional<TearLimit>& tear) {
+                         const FilmOptions& film, const std::optional<TearLimit>& tear) {
   std::string text =
       fmt::format("# A film's parameters, calibrated by hydrodip on {}.\n", source_of(subjects));
   for (const Subject& subject : subjects)
@@ -184,7 +195,7 @@ std::string profile_toml(const Calibration& calibration, const std::vector<Subje
     text += fmt::format(
         "tear_stretch = {:.4f}  # {:.3f} to {:.3f}\nsafe_stretch = {:.4f}\nlost_stretch = {:.4f}\n",
         tear->stretch, tear->low, tear->high, tear->low, tear->high);
-  return text;
+  return text + swelling_toml(film);
 }
 
 std::string surface_csv(const Calibration& calibration, const std::vector<Subject>& subjects) {
@@ -234,23 +245,25 @@ Json calibration_json(const Calibration& calibration, const std::vector<Subject>
   const Json tear_json =
       tear ? Json{{"stretch", tear->stretch}, {"low_95", tear->low}, {"high_95", tear->high}}
            : Json(nullptr);
-  return {{"schema_version", kSchemaVersion},
-          {"command", "calibrate"},
-          {"folder", config.output.string()},
-          {"board", board.name},
-          {"square_mm", board.square_mm},
-          {"film_elements", config.design.film.elements},
-          {"step_mm", config.design.dip.step_mm},
-          {"result", json_of(calibration.all)},
-          {"tear_limit", tear_json},
-          {"by_ink", by_ink},
-          {"stiffness_table", stiffness},
-          {"stiffness_law_holds", calibration.stiffness.law_holds},
-          {"average_of_each", json_of(calibration.average)},
-          {"scans", scans},
-          {"grid_points", calibration.grid.size()},
-          {"correction_mm", calibration.correction_mm},
-          {"warnings", context.warnings()}};
+  return {
+      {"schema_version", kSchemaVersion},
+      {"command", "calibrate"},
+      {"folder", config.output.string()},
+      {"board", board.name},
+      {"square_mm", board.square_mm},
+      {"swelling", {{"x", config.design.film.swelling_x}, {"y", config.design.film.swelling_y}}},
+      {"film_elements", config.design.film.elements},
+      {"step_mm", config.design.dip.step_mm},
+      {"result", json_of(calibration.all)},
+      {"tear_limit", tear_json},
+      {"by_ink", by_ink},
+      {"stiffness_table", stiffness},
+      {"stiffness_law_holds", calibration.stiffness.law_holds},
+      {"average_of_each", json_of(calibration.average)},
+      {"scans", scans},
+      {"grid_points", calibration.grid.size()},
+      {"correction_mm", calibration.correction_mm},
+      {"warnings", context.warnings()}};
 }
 
 void warn_of_misfits(const Calibration& calibration, const std::vector<Subject>& subjects,
@@ -276,7 +289,13 @@ void warn_of_misfits(const Calibration& calibration, const std::vector<Subject>&
           misfit.more_stretch > 0 ? "more" : "less"));
 }
 
-void warn_of_edges(const Calibration& calibration, const RunContext& context) {
+void warn_of_edges(const Calibration& calibration, const FilmOptions& film,
+                   const RunContext& context) {
+  const std::string swelling =
+      swells(film)
+          ? ""
+          : " Film that swells and is taken for dry does that too: say how much it swelled "
+            "(--film-state, film.swelling_x and _y).";
   for (std::size_t k = 0; k < 3; ++k) {
     const FilmParameters& p = calibration.all.parameters;
     // No film has less than none, and no ink makes it softer.
@@ -284,8 +303,8 @@ void warn_of_edges(const Calibration& calibration, const RunContext& context) {
     if (calibration.all.fit.at_bound[k] && !natural)
       context.warn(fmt::format(
           "{} came out at the edge of its range; search a wider one, unless the scans do not "
-          "determine it.",
-          kParameters[k].name));
+          "determine it.{}",
+          kParameters[k].name, swelling));
   }
   if (!calibration.all.fit.settled)
     context.warn("The refinement did not settle; the scans hardly determine the parameters.");
@@ -392,12 +411,13 @@ JobResult calibrated(const JobConfig& config, const CalibrationRequest& request,
                   files_of(subjects, config));
   const Calibration calibration = search.run(context);
   warn_of_coarse_film(config.design.film, context);
-  warn_of_edges(calibration, context);
+  warn_of_edges(calibration, config.design.film, context);
   warn_of_misfits(calibration, subjects, context);
   const std::optional<TearLimit> tear =
       read_tear_limit(config, request, calibration.all.parameters, context);
 
-  write_file(folder.path("profile.toml"), profile_toml(calibration, subjects, tear));
+  write_file(folder.path("profile.toml"),
+             profile_toml(calibration, subjects, config.design.film, tear));
   const std::string json = calibration_json(calibration, subjects, config, board, tear, context)
                                .dump(2, ' ', false, Json::error_handler_t::replace) +
                            "\n";

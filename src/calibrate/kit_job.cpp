@@ -74,7 +74,7 @@ std::string scans_of(const std::vector<std::string>& objects) {
 }
 
 // What the dome's and the fit's sections take.
-constexpr double kLastSections_mm = 72;
+constexpr double kLastSections_mm = 81;
 
 void write_instructions(const std::filesystem::path& path, const JobConfig& config,
                         const std::vector<std::string>& objects, const Board& board,
@@ -130,6 +130,11 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
                   "{:.2f} ± {:.2f} g; wait {:g} s; then dip. Exactly as in the jobs to come.",
                   process.water_min_c, process.water_max_c, process.soak_min_s, process.soak_max_s,
                   activator.mass_g, activator.tolerance_g, process.activator_wait_s));
+  page.task(
+      "Film swells on the water, by two or three percent as a rule, and is calibrated wrongly if "
+      "nobody says so. Before the activator, find out by how much: a photo for 'hydrodip register' "
+      "of another sheet of this film with a job's marks, or a rule held over two far squares.",
+      {"Swollen across, %", "Swollen along, %"});
   page.task("Clear the surface, lift the shape out, rinse it, let it dry.");
 
   page.heading("Scan");
@@ -162,6 +167,8 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
   say(fmt::format("hydrodip measure{}    shows at once whether the scans are read well.",
                   scans_of(objects)));
   say(fmt::format("hydrodip calibrate{} -o my-film", scans_of(objects)));
+  say("With the film's swelling: --film-state registration.json, or --set film.swelling_x=1.025 "
+      "--set film.swelling_y=1.015 for 2.5 and 1.5 %.");
   say("With the dome's reading: --torn-ring N, once for each dip of it.");
   say("Where you dipped deeper or less, say so: sphere-90@18.5=FILE. Then print with "
       "--profile my-film/profile.toml.");

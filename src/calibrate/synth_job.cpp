@@ -22,11 +22,12 @@ void check(const CalibrationRequest& request) {
     throw InputError("--missing: give the share of corners to leave out, from 0 to below 1");
 }
 
-std::string truth_toml(const FilmParameters& truth) {
+std::string truth_toml(const FilmParameters& truth, const FilmOptions& film) {
   return fmt::format(
       "# The parameters that these synthetic scans were computed with.\n[material]\n"
-      "z_stretch = {}\nink_stiffness_ratio = {}\npoisson = {}\n",
-      truth.z_stretch, truth.stiffness_ratio, truth.poisson);
+      "z_stretch = {}\nink_stiffness_ratio = {}\npoisson = {}\n\n[film]\n"
+      "swelling_x = {}\nswelling_y = {}\n",
+      truth.z_stretch, truth.stiffness_ratio, truth.poisson, film.swelling_x, film.swelling_y);
 }
 
 }  // namespace
@@ -63,7 +64,7 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
     result.files.push_back(name + ".csv");
     scans.push_back({{"name", object.name}, {"corners", grid.position.size()}});
   }
-  write_file(folder.path("truth.toml"), truth_toml(truth));
+  write_file(folder.path("truth.toml"), truth_toml(truth, config.design.film));
   result.files.push_back("truth.toml");
   folder.announce(result.files, config.settings_files);
   context.check_cancelled();

@@ -113,6 +113,24 @@ write_tetrahedron tetra.obj
 "$hydrodip" simulate tetra.obj $quick_simulate --profile whole/profile.toml -o used --quiet \
   > /dev/null || fail "the profile is refused"
 
+# How film swelled is asked for, taken from where prints take it, and kept.
+grep -q -- '--film-state' instructions.txt || fail "the instructions do not ask for the swelling"
+grep -q 'swelling_x = 1' scans/truth.toml || fail "truth.toml does not say the swelling"
+grep -q 'swelling' whole/profile.toml && fail "dry film has a swelling in its profile"
+cat > registration.json <<'JSON'
+{"shift_mm": {"x": 1, "y": 2}, "turn_deg": {"value": 0}, "swelling": {"x": 1.01, "y": 1.006}}
+JSON
+# shellcheck disable=SC2086
+"$hydrodip" measure sphere@11.9=scans/sphere-scan.obj $film --film-state registration.json --quiet |
+  sed 's/([^)]*)//' > by-state.txt
+cmp -s by-scan.txt by-state.txt || fail "--film-state measures otherwise than the same by --set"
+# shellcheck disable=SC2086
+"$hydrodip" calibrate scans/sphere-scan.obj $film --z-stretch 0.6,0.65 --ratio 30 --poisson 0.1 \
+  --film-state registration.json -o swollen --quiet > said.txt || fail "calibrate --film-state"
+grep -q 'swelling_y = 1.006' swollen/profile.toml || fail "the profile lost the swelling"
+tr -d ' \n' < swollen/calibration.json | grep -q '"swelling":{"x":1.01,"y":1.006}' ||
+  fail "calibration.json lost the swelling"
+
 # Scans that are not right.
 awk -F, '/^[0-9]/ {printf "%s,%s,%.7f,%.7f,%.7f\n", $1, $2, $3/25.4, $4/25.4, $5/25.4; next} {print}' \
   scans/sphere-scan.csv > inches.csv
