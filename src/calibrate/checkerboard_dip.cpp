@@ -77,6 +77,7 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
   CalibrationObject result;
   result.name = name;
   if (const KitShape* shape = find_shape(name)) {
+    result.is_known_shape = true;
     result.object = mesh_of(*shape);
     result.depth_mm = depth > 0 ? depth : shape->depth_mm;
   } else {

@@ -25,6 +25,7 @@ FilmParameters film_parameters(const DesignOptions& design);
 // What is dipped, in the posed-object frame, and how deep.
 struct CalibrationObject {
   std::string name;
+  bool is_known_shape = false;  // by that name; a model file may be called the same
   TriangleMesh object;
   double depth_mm = 0;
 };

@@ -27,10 +27,11 @@ JobResult pack_job(const JobConfig& config, const CalibrationRequest& request,
 
   MeasuredDip dip;
   dip.object = subject.object.name;
-  if (find_shape(dip.object) == nullptr)
+  if (!subject.object.is_known_shape)
     throw InputError(fmt::format(
-        "calibrate pack: {}: only dips of the shapes that calibrations know by name are packed: "
-        "everybody has those",
+        "calibrate pack: {}: only dips of the shapes that calibrations know by name are packed, "
+        "which everybody has; if it is one of them, name it without its file, as in "
+        "sphere-90@17=SCAN",
         request.scans.front()));
   dip.depth_mm = subject.object.depth_mm;
   dip.board = setup.settings.board;

@@ -57,6 +57,11 @@ told='--film-product f --printer p --ink i --activator a --activator-g 3.5 --wat
 "$hydrodip" measure packed/sphere-dip.zip --set film.elements=3000 --set dip.step_mm=0.5 --quiet |
   sed 's/([^)]*)//' > by-dip.txt
 cmp -s by-scan.txt by-dip.txt || fail "a packed dip measures differently: $(diff by-scan.txt by-dip.txt)"
+# Another object is not the kit's for its file's name.
+"$hydrodip" sample sphere -o named --quiet > /dev/null || fail "sample"
+mv named/sphere.obj named/sphere-90.obj
+# shellcheck disable=SC2086
+refuse 'know by name' calibrate pack named/sphere-90.obj@11.9=scans/sphere-scan.obj $film $told -o other
 printf 'PK no archive' > killed.zip
 # shellcheck disable=SC2086
 refuse '--printer' calibrate pack sphere=scans/sphere-scan.obj $film
