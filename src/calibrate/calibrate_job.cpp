@@ -340,6 +340,15 @@ void check_tear_readings(const JobConfig& config, const CalibrationRequest& requ
   tear_limit(std::vector<double>(kDomeRings, 1.0), request.torn_rings);
 }
 
+// The same dip twice is no second witness.
+void require_different(const std::vector<Subject>& subjects) {
+  for (std::size_t i = 0; i < subjects.size(); ++i)
+    for (std::size_t j = i + 1; j < subjects.size(); ++j)
+      if (subjects[i].scan.grid.position == subjects[j].scan.grid.position)
+        throw InputError(fmt::format("{} and {} say the same, corner by corner: give each dip once",
+                                     subjects[i].file.string(), subjects[j].file.string()));
+}
+
 std::string summary(const Calibration& calibration, const std::vector<Subject>& subjects,
                     const std::optional<TearLimit>& tear, const RunContext& context) {
   std::string text =
@@ -457,6 +466,7 @@ JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& reques
   check_tear_readings(config, request, context);
   const std::vector<Subject> subjects =
       load_subjects(request.scans, setup.settings, config, context);
+  require_different(subjects);
   try {
     return calibrated(config, request, board, options, shard, subjects, context);
   } catch (const Cancelled&) {

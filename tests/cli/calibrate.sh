@@ -161,6 +161,9 @@ refuse 'sphere-90=scan.obj' calibrate
 refuse 'which object' calibrate unknown.obj
 refuse 'no-such.csv' calibrate sphere=no-such.csv
 refuse '--poisson' calibrate sphere=scans/sphere-scan.csv --poisson 0:1:0.1
+cp scans/sphere-scan.csv copy.csv
+# shellcheck disable=SC2086
+refuse 'give each dip once' calibrate sphere=scans/sphere-scan.csv sphere=copy.csv $film $grid
 refuse '--shard' calibrate sphere=scans/sphere-scan.csv --shard 3/2
 refuse '--square' measure sphere=scans/sphere-scan.csv --square 0.1
 finish
