@@ -319,14 +319,27 @@ void warn_of_coarse_film(const FilmOptions& film, const RunContext& context) {
         film.elements, tried));
 }
 
+void warn_of_tear_limit(const std::optional<TearLimit>& limit, const RunContext& context) {
+  if (!limit)
+    context.warn(
+        "The dome's rings that were read (--torn-ring) are stretched alike in the simulated dip: "
+        "they tell no limit, and material.tear_stretch is left out.");
+  else if (limit->low <= 1)
+    context.warn(
+        "By the ring that was read (--torn-ring) film may tear before it is stretched at all: "
+        "material.safe_stretch is 1, and every stretched place of a print counts as doubtful. "
+        "Count the rings from the tip again, or read another dip of the dome.");
+}
+
 // What the readings of the dome say, with the film's parameters as they were found.
 std::optional<TearLimit> read_tear_limit(const JobConfig& config, const CalibrationRequest& request,
                                          const FilmParameters& film, const RunContext& context) {
   if (request.torn_rings.empty()) return std::nullopt;
   context.progress("tearing", 0);
-  const TearLimit limit =
+  const std::optional<TearLimit> limit =
       tear_limit(ring_stretches(config.design, film, context), request.torn_rings);
   context.progress("tearing", 1);
+  warn_of_tear_limit(limit, context);
   return limit;
 }
 
@@ -337,7 +350,7 @@ void check_tear_readings(const JobConfig& config, const CalibrationRequest& requ
   const CalibrationObject dome = tear_dome();
   require_fit(dome.object, room_of(dome.object, dome.depth_mm), config.design.film, config.bath,
               context);
-  tear_limit(std::vector<double>(kDomeRings, 1.0), request.torn_rings);
+  require_rings(request.torn_rings);
 }
 
 // The same dip twice is no second witness.

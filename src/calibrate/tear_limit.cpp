@@ -84,22 +84,31 @@ std::vector<double> ring_stretches(const DesignOptions& design, const FilmParame
   return stretches;
 }
 
-TearLimit tear_limit(const std::vector<double>& stretches, const std::vector<int>& torn_from) {
-  const int rings = int(stretches.size());
-  double sum = 0, variance = 0;
-  for (const int ring : torn_from) {
-    if (ring < 2 || ring > rings)
+void require_rings(const std::vector<int>& torn_from) {
+  for (const int ring : torn_from)
+    if (ring < 2 || ring > kDomeRings)
       throw InputError(
           fmt::format("--torn-ring {}: give the innermost ring of the dome on which film is torn, "
                       "from 2 to {}; "
                       "of film that holds further, or not so far, the dome cannot tell the limit",
-                      ring, rings));
+                      ring, kDomeRings));
+}
+
+std::optional<TearLimit> tear_limit(const std::vector<double>& stretches,
+                                    const std::vector<int>& torn_from) {
+  require_rings(torn_from);
+  double sum = 0, variance = 0;
+  for (const int ring : torn_from) {
     const auto k = std::size_t(ring - 1);
     const double before = stretches[k - 1], here = stretches[k];
     sum += 0.5 * (before + here);
-    const double a_ring = here - before;
+    // Where two neighbours happen to be alike, those that a misread ring leads to are not.
+    const std::size_t inner = k < 2 ? 0 : k - 2, outer = std::min(k + 1, stretches.size() - 1);
+    const double a_ring =
+        std::max(here - before, (stretches[outer] - stretches[inner]) / double(outer - inner));
     variance += a_ring * a_ring * (kReadingOff * kReadingOff + 1.0 / 12);
   }
+  if (!(variance > 0)) return std::nullopt;
   const auto count = double(torn_from.size());
   TearLimit limit;
   limit.stretch = sum / count;

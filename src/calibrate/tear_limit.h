@@ -2,6 +2,7 @@
 // it takes up is stretched, and grooves around it count how far the film held.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "calibrate/checkerboard_dip.h"
@@ -27,8 +28,12 @@ std::vector<double> ring_stretches(const DesignOptions& design, const FilmParame
 struct TearLimit {
   double stretch = 0, low = 0, high = 0;
 };
-// `torn_from`: of each dip, the innermost ring on which film is torn anywhere. A reading may be off
-// by a ring. Throws InputError for a ring that does not tell: none, the first, or beyond the last.
-TearLimit tear_limit(const std::vector<double>& stretches, const std::vector<int>& torn_from);
+// Readings: of each dip, the innermost ring on which film is torn anywhere. Throws InputError for
+// one that cannot tell: none, the first, or beyond the last.
+void require_rings(const std::vector<int>& torn_from);
+// A reading may be off by a ring. Nothing where all those rings are stretched alike, which tells no
+// limit. Throws as require_rings() does.
+std::optional<TearLimit> tear_limit(const std::vector<double>& stretches,
+                                    const std::vector<int>& torn_from);
 
 }  // namespace hydrodip

@@ -51,7 +51,7 @@ TEST(TearLimitSlow, IsFoundAgainFromReadingsThatAreARingOff) {
   for (const double limit : {1.25, 1.4, 1.5}) {
     const int ring = torn_from(design, limit, context);
     for (const int off : {-1, 0, 1}) {
-      const TearLimit found = tear_limit(stretches, {ring + off});
+      const TearLimit found = tear_limit(stretches, {ring + off}).value();
       EXPECT_NEAR(found.stretch, limit, 0.03) << ring << " " << off;
       EXPECT_LE(found.low, limit);
       EXPECT_GE(found.high, limit);
@@ -62,12 +62,27 @@ TEST(TearLimitSlow, IsFoundAgainFromReadingsThatAreARingOff) {
 TEST(TearLimitTest, SeveralReadingsAreSurerAndOthersAreRefused) {
   std::vector<double> stretches;
   for (int ring = 1; ring <= kDomeRings; ++ring) stretches.push_back(1 + 0.02 * ring);
-  const TearLimit one = tear_limit(stretches, {12}), four = tear_limit(stretches, {11, 12, 12, 13});
+  const TearLimit one = tear_limit(stretches, {12}).value(),
+                  four = tear_limit(stretches, {11, 12, 12, 13}).value();
   EXPECT_NEAR(one.stretch, 1.23, 1e-12);
   EXPECT_NEAR(four.stretch, 1.23, 1e-12);
   EXPECT_NEAR(four.high - four.low, 0.5 * (one.high - one.low), 1e-3);
   for (const int ring : {-1, 0, 1, kDomeRings + 1})
     EXPECT_THROW(tear_limit(stretches, {ring}), InputError);
+}
+
+// Stretches never fall, and may stand still from one ring to the next.
+TEST(TearLimitTest, IsNeverSaidWithoutDoubt) {
+  std::vector<double> stretches;
+  for (int ring = 1; ring <= kDomeRings; ++ring) stretches.push_back(1 + 0.02 * (ring / 2));
+  for (int ring = 2; ring <= kDomeRings; ++ring) {
+    const auto found = tear_limit(stretches, {ring});
+    ASSERT_TRUE(found) << ring;
+    EXPECT_GT(found->high - found->low, 0.01) << ring;
+    EXPECT_LE(found->low, stretches[std::size_t(ring - 2)]) << ring;
+    EXPECT_GE(found->high, stretches[std::size_t(ring - 1)]) << ring;
+  }
+  EXPECT_FALSE(tear_limit(std::vector<double>(kDomeRings, 1.3), {9, 9}));
 }
 
 // The printed dome is the simulated one but for its grooves.
