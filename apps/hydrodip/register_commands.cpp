@@ -63,11 +63,13 @@ void declare_board(CLI::App& app, Request& request) {
   declare_output(app, request, "the current folder");
   app.add_option("--paper", request.paper, "default: a4")->group("Output")->type_name("a4|letter");
   declare_reporting(app, request);
+  declare_configuration(app, request);
 }
 
 JobResult run_board(const Request& request, const RunContext& context) {
-  return board_job(request.output.empty() ? "." : request.output, request.paper,
-                   configure(request).earlier_result, context);
+  JobConfig config = configure(request);
+  if (config.output.empty()) config.output = ".";
+  return board_job(config, request.paper, context);
 }
 
 void declare_register(CLI::App& app, Request& request) {
@@ -194,7 +196,9 @@ std::vector<Command> register_commands() {
        "  hydrodip register photo.jpg mask-print\n"
        "See docs/registration.md.",
        declare_register, run_register},
-      {"register board", "marks for the tank's rim, to print and glue", "Writes board.pdf.",
+      {"register board", "marks for the tank's rim, to print and glue",
+       "Writes board.pdf, drawn true for the printer of the --profile that 'calibrate printer' "
+       "made.",
        declare_board, run_board},
       {"correct", "what a second print has to do otherwise, from dips of the first",
        "Writes correction.json and correction.png into JOB_DIR. Print again with\n"

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/output_folder.h"
 #include "camera/board.h"
+#include "job/sheet_of.h"
 #include "register/register.h"
 #include "settings/settings.h"
 #include "sheet/page_writer.h"
@@ -32,11 +33,15 @@ void draw_strip(PdfDocument& pdf, int strip, const Vec2& middle) {
   }
 }
 
-void write_board(const std::filesystem::path& path, const PaperSize& paper) {
+void write_board(const std::filesystem::path& path, const PaperSize& paper,
+                 const PrinterScale& printer) {
   PdfDocument pdf;
   pdf.forbid_scaling();
   pdf.set_title("hydrodip: marks for the tank's rim");
   PageWriter page(pdf, paper);
+  // What the printer errs by would be taken for the film's swelling.
+  if (!printer.is_true())
+    pdf.transform_about(0.5 * Vec2(paper.width_mm, paper.height_mm), printer.undone());
   page.y -= 5;
   page.text(page.left(), page.y, "Marks for the tank's rim", PageWriter::kHead_pt, PdfFont::kBold);
   page.y -= 1;
@@ -61,12 +66,12 @@ void write_board(const std::filesystem::path& path, const PaperSize& paper) {
 
 }  // namespace
 
-JobResult board_job(const std::filesystem::path& folder, const std::string& paper,
-                    EarlierResult earlier, const RunContext& context) {
+JobResult board_job(const JobConfig& config, const std::string& paper, const RunContext& context) {
   const PaperSize size = paper_named(paper);
-  OutputFolder output(folder, earlier);
-  output.announce({"board.pdf"}, {});
-  write_board(output.path("board.pdf"), size);
+  const std::filesystem::path& folder = config.output;
+  OutputFolder output(folder, config.earlier_result);
+  output.announce({"board.pdf"}, config.settings_files);
+  write_board(output.path("board.pdf"), size, printer_of(config.print));
   context.check_cancelled();
   output.commit();
   JobResult result;

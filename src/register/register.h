@@ -38,9 +38,9 @@ JobResult printer_job(const JobConfig& config, const PrinterRequest& request,
 
 // ---- register ----
 
-// board.pdf: strips of marks for the tank's rim.
-JobResult board_job(const std::filesystem::path& folder, const std::string& paper,
-                    EarlierResult earlier, const RunContext& context);
+// board.pdf in config.output: strips of marks for the tank's rim, drawn so that the configuration's
+// printer prints them true. `paper`: a4 or letter; empty: a4.
+JobResult board_job(const JobConfig& config, const std::string& paper, const RunContext& context);
 
 struct CameraRequest {
   std::vector<std::filesystem::path> photos;

@@ -77,11 +77,9 @@ void draw_outlines(PdfDocument& document, const Picture& picture, const SheetOpt
 
 // What the printer will stretch and lean over is drawn the other way before.
 void draw_true(PdfDocument& document, const SheetOptions& options) {
-  const PrinterScale& printer = options.printer;
-  if (printer.is_true()) return;
-  Mat2 prints;
-  prints << printer.x, printer.skew, 0, printer.y;
-  document.transform_about(0.5 * Vec2(options.width_mm, options.height_mm), prints.inverse());
+  if (options.printer.is_true()) return;
+  document.transform_about(0.5 * Vec2(options.width_mm, options.height_mm),
+                           options.printer.undone());
 }
 
 }  // namespace

@@ -20,6 +20,8 @@ struct PrinterScale {
   double x = 1, y = 1;
   double skew = 0;
   bool is_true() const { return x == 1 && y == 1 && skew == 0; }
+  // What a page is drawn by about its middle, so that it comes out true.
+  Mat2 undone() const { return (Mat2() << 1 / x, -skew / (x * y), 0, 1 / y).finished(); }
 };
 
 struct SheetOptions {

@@ -60,6 +60,25 @@ cmp -s job/print.pdf bare/print.pdf && fail "there are no marks"
 
 expect 0 'board.pdf' register board -o board
 expect 2 'no_clobber' register board -o board --no-clobber
+if command -v pdftoppm > /dev/null; then
+  # A printer that makes 104 mm of 100 across is given strips of 100/104.
+  expect 0 'board.pdf' register board -o narrow --set print.scale_x=1.04
+  for board in board narrow; do
+    pdftoppm -singlefile -gray -r 100 $board/board.pdf $board-drawn
+  done
+  python3 - board-drawn.pgm narrow-drawn.pgm <<'PY' || fail 'the board is not drawn for the printer'
+import sys
+def ink_width(name):
+    # Of the page's lower half, where strips are and no text is wider.
+    magic, size, _, pixels = open(name, 'rb').read().split(b'\n', 3)
+    width, height = map(int, size.split())
+    rows = [pixels[y * width:(y + 1) * width] for y in range(height // 2, height)]
+    dark = [x for x in range(width) if any(row[x] < 128 for row in rows)]
+    return dark[-1] - dark[0]
+wide, narrow = ink_width(sys.argv[1]), ink_width(sys.argv[2])
+sys.exit(abs(wide / narrow - 1.04) > 0.004)
+PY
+fi
 expect 2 'no_clobber' rig sheet job -o board/board.pdf --set output.no_clobber=on
 expect 0 'sphere.obj' sample sphere -o samples
 expect 2 'no_clobber' sample sphere -o samples --no-clobber
