@@ -87,11 +87,20 @@ std::string money(double value, const CostOptions& cost) {
   return fmt::format("{:.2f}{}{}", value, cost.currency.empty() ? "" : " ", cost.currency);
 }
 
+// Where the film lay, off its place: to the right, to the top.
+std::string off_place(const DipRun& run) {
+  if (!run.registration_x_mm || !run.registration_y_mm) return "-";
+  return fmt::format("{:+.2f} {:+.2f}", *run.registration_x_mm, *run.registration_y_mm);
+}
+
 std::string table(const std::vector<CostedRun>& runs, const RigJob& job) {
   const bool priced = is_priced(job.config.cost);
-  std::string text = fmt::format("{:<9} {:<17} {:<10} {:<10} {:<10} {:>11} {:>6} {:>11}{}  notes\n",
-                                 "run", "begun (UTC)", "batch", "label", "outcome", "water C",
-                                 "soak s", "activator g", priced ? "      cost" : "");
+  const bool registered = std::ranges::any_of(
+      runs, [](const CostedRun& costed) { return off_place(costed.run) != "-"; });
+  std::string text = fmt::format(
+      "{:<9} {:<17} {:<10} {:<10} {:<10} {:>11} {:>6} {:>11}{}{}  notes\n", "run", "begun (UTC)",
+      "batch", "label", "outcome", "water C", "soak s", "activator g",
+      registered ? fmt::format(" {:>15}", "film off x y mm") : "", priced ? "      cost" : "");
   for (const auto& [run, use, known] : runs) {
     const std::string water =
         or_dash(run.water_before_c, 1) +
@@ -99,6 +108,7 @@ std::string table(const std::vector<CostedRun>& runs, const RigJob& job) {
     text += fmt::format("{:<9} {:<17} {:<10} {:<10} {:<10} {:>11} {:>6} {:>11}", run.id,
                         run.started_utc.substr(0, 16), run.batch, run.label, run.outcome, water,
                         or_dash(run.soak_s, 0), or_dash(run.activator_g, 1));
+    if (registered) text += fmt::format(" {:>15}", off_place(run));
     if (priced) text += fmt::format(" {:>9.2f}", use.cost);
     text += run.notes.empty() ? "\n" : "  " + in_one_line(run.notes) + "\n";
   }

@@ -89,6 +89,8 @@ assert sorted(rows) == [("rig-1", "good"), ("rig-2", "good"), ("rig-3", "failed"
 "$hydrodip" history job --add --batch B8 --water 28,27.5 --activator 1.2 --registration 0.3,-0.2,0.5 \
   --notes 'by hand' > said.txt || fail 'history --add'
 "$hydrodip" history job --batch B8 | grep -q '^1 dip: 0 good' || fail 'history of one batch'
+"$hydrodip" history job --batch B8 | grep -q '+0.30 -0.20' || fail 'history does not show where the film lay'
+"$hydrodip" history job --batch B7 | grep -q 'film off' && fail 'a column without anything in it'
 "$hydrodip" history job --settings rig-2 | cmp -s - job/report.json || fail 'history --settings'
 refused 'rig-' history job --run rig-99 --outcome good
 refused 'good' history job --run rig-1 --outcome splendid
