@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parse_double.h"
@@ -200,7 +201,15 @@ namespace {
 // What the film on the water is like: a registration's swelling, or a profile.
 void take_film_state(Request& request, const std::string& file) {
   if (std::filesystem::path(file).extension() == ".toml") {
-    request.sources.profiles.emplace_back(file);
+    const std::vector<std::string> names = names_in_profile(file);
+    const auto is_swelling = [](const std::string& name) {
+      return name.starts_with("film.swelling_");
+    };
+    if (std::ranges::none_of(names, is_swelling))
+      throw InputError("--film-state: " + file +
+                       ": says nothing of how film swells (film.swelling_x, film.swelling_y); give "
+                       "it with --profile");
+    request.film_state = file;
     return;
   }
   std::error_code ignored;
@@ -407,7 +416,9 @@ void declare_studio(CLI::App& app, Request& request) {
 }
 
 JobConfig configure(const Request& request) {
-  JobConfig config = configured(request.model, request.sources);
+  SettingSources sources = request.sources;
+  if (!request.film_state.empty()) sources.profiles.push_back(request.film_state);
+  JobConfig config = configured(request.model, std::move(sources));
   config.film_image = request.film_image;
   config.output = request.output;
   config.command_line = request.command_line;

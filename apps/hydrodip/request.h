@@ -52,6 +52,7 @@ struct Request {
   std::string shard;
   SweepWork sweep_work;
   SettingSources sources;
+  std::filesystem::path film_state;  // a profile, which wins over the others; may be empty
   bool quiet = false;
   bool strict = false;  // a verdict against the dip is a failure
   bool json = false;

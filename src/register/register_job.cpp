@@ -55,7 +55,7 @@ Json json_of(const FilmPose& pose, const RegisterRequest& request,
     marks.push_back({{"tag", mark.id},
                      {"on_sheet_mm", {mark.on_sheet_mm.x(), mark.on_sheet_mm.y()}},
                      {"unexplained_mm", {mark.unexplained_mm.x(), mark.unexplained_mm.y()}}});
-  return {{"schema_version", 1},
+  return {{"schema_version", kRegistrationSchemaVersion},
           {"generator", "hydrodip register"},
           {"photo", {{"path", request.photo.string()}, {"sha256", sha256_hex(photo)}}},
           {"camera", camera.string()},

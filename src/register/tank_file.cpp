@@ -8,6 +8,7 @@
 #include "base/eigenpairs.h"
 #include "base/error.h"
 #include "base/json_nesting.h"
+#include "base/schema_version.h"
 #include "base/small_file.h"
 
 namespace hydrodip {
@@ -16,6 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kLargest = 1e6;
+constexpr int kSchemaVersion = 1;
 constexpr std::uintmax_t kLargestFile = 1 << 20;
 
 [[noreturn]] void refuse(const std::filesystem::path& file) {
@@ -49,7 +51,7 @@ std::string tank_as_json(const Tank& tank) {
   Json board = Json::array();
   for (const auto& [tag, corner] : tank.corner_mm)
     board.push_back({double(tag), corner.x(), corner.y(), corner.z()});
-  return Json{{"schema_version", 1},
+  return Json{{"schema_version", kSchemaVersion},
               {"generator", "hydrodip register --calibrate-camera"},
               {"photo_px", {tank.width_px, tank.height_px}},
               {"lens_focal_center_k1_k2_p1_p2", std::vector<double>(values.begin(), values.end())},
@@ -81,6 +83,7 @@ Tank read_tank(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes =
       read_small_file(file, kLargestFile, "a camera's calibration");
   const Json json = parsed_json<Json>(bytes);
+  require_known_schema(json, kSchemaVersion, file, "this camera's calibration");
   Tank tank;
   const auto px = numbers(json, "photo_px", 2, file);
   const auto lens = numbers(json, "lens_focal_center_k1_k2_p1_p2", Lens::kValues, file);

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/json_nesting.h"
+#include "base/schema_version.h"
 
 namespace hydrodip {
 namespace {
@@ -39,6 +40,7 @@ std::optional<Registration> read_registration(const std::filesystem::path& path)
              turn = number(json, "turn_deg", "value"), sx = number(json, "swelling", "x"),
              sy = number(json, "swelling", "y");
   if (!x || !y || !turn || !sx || !sy) return {};
+  require_known_schema(json, kRegistrationSchemaVersion, path, "this registration");
   Registration result{{*x, *y}, *turn, {*sx, *sy}, ""};
   if (json.contains("photo") && json["photo"].is_object()) {
     const Json& photo = json["photo"];

@@ -18,7 +18,9 @@ struct Registration {
 
 inline constexpr const char* kRegistrationFile = "registration.json";
 
-// Nothing if the file is none.
+inline constexpr int kRegistrationSchemaVersion = 1;
+
+// Nothing if the file is none. Throws InputError if a newer hydrodip wrote it.
 std::optional<Registration> read_registration(const std::filesystem::path& file);
 
 // "Move the frame by 1.40 mm to the left and 2.20 mm to the top, and turn it by 0.70 degrees

@@ -11,8 +11,10 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_nesting.h"
+#include "base/schema_version.h"
 #include "base/small_file.h"
 #include "job/sheet_of.h"
+#include "report/report.h"
 #include "settings/params.h"
 #include "sheet/film_marks.h"
 
@@ -44,6 +46,7 @@ ReadReport read_report(const std::filesystem::path& folder) {
   }
   const std::vector<std::uint8_t> bytes = read_small_file(file, kLargestReport, "a report");
   Json report = parsed_json<Json>(bytes);
+  require_known_schema(report, kReportSchemaVersion, file, "this report");
   if (report.is_object() && report.contains("dips"))
     throw InputError(fmt::format("{}: this job has several dips; name one of them, as {}",
                                  folder.string(), (folder / "dip-1").string()));

@@ -100,6 +100,8 @@ expect 2 'name one photo' register
 expect 2 'camera.json' register scan.png job
 printf '{}' > camera.json
 expect 2 'not a camera' register scan.png job
+printf '{"schema_version": 2}' > camera.json
+expect 2 "a newer hydrodip wrote this camera's" register scan.png job
 rm camera.json
 expect 2 'name the photos' register --calibrate-camera
 if [ -f scan.png ]; then
@@ -120,6 +122,25 @@ cmp -s job/print.png swollen/print.png && fail "swollen film gets the same print
 expect 2 'registration.json' print colored.ply --film-state job/report.json
 expect 2 'no such file' print colored.ply --film-state nowhere.json
 expect 2 'is a folder' print colored.ply --film-state job
+printf '[film]\nmargin_mm = 12\n' > margin.toml
+printf '[film]\nswelling_x = 1.03\n' > swells.toml
+expect 2 'nothing of how film swells' print colored.ply --film-state margin.toml
+# It is said of today's film, and a profile beside it is not.
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $quick --film 140x130 --depth 6 -o both --quiet \
+  --film-state swells.toml --profile margin.toml > /dev/null || fail "print --film-state --profile"
+near "$(grep -A3 '"film.swelling_x"' both/report.json | number value /dev/stdin)" 1.03 1e-9 ||
+  fail "a profile beside --film-state takes it away"
+
+# ---- files of a later version ----
+sed '1s/{/{"schema_version": 99, /' registration.json > later.json
+expect 2 'a newer hydrodip wrote this registration' print colored.ply --film-state later.json
+mkdir later
+sed 's/"schema_version": *[0-9]*/"schema_version": 99/' job/report.json > later/report.json
+for command in 'history later' 'correct later scan.obj' 'rig sheet later'; do
+  # shellcheck disable=SC2086
+  expect 2 'a newer hydrodip wrote this report' $command
+done
 
 # ---- a correction ----
 # Everything landed 1 mm farther to +x of the sheet than was meant: places of film.ply say so.
