@@ -1,9 +1,13 @@
 #include "job/profile_jobs.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -56,6 +60,28 @@ std::string summary(const std::vector<std::string>& names) {
     parts.push_back(count == 1 ? table : fmt::format("{} ({} values)", table, count));
   return parts.empty() ? "sets nothing" : fmt::format("{}", fmt::join(parts, ", "));
 }
+
+// Held while a profile is read, changed and written: what another process changes meanwhile would
+// be lost. Waits for that one, which takes milliseconds. Makes the folder.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder) {
+    std::error_code ignored;  // who writes into it says what is wrong
+    fs::create_directories(folder, ignored);
+    descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor_ < 0) return;
+    while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+    }
+  }
+  ~FolderLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
 
 JobResult written(const fs::path& file, const std::string& what, const std::string& text) {
   OutputFolder output(file.parent_path());
@@ -135,8 +161,13 @@ JobResult save_profile(const fs::path& folder, const std::string& name, const Pr
   require_bare_name(name);
   const fs::path file = profile_path(folder, name);
   std::error_code ignored;
+  if (!fs::exists(file, ignored)) {  // refused before a folder is made
+    if (!edit.remove.empty()) known_profile(folder, name);
+    edited_profile({}, edit);
+    require_files(edit);
+  }
+  const FolderLock lock(folder);
   const bool exists = fs::exists(file, ignored);
-  if (!exists && !edit.remove.empty()) known_profile(folder, name);  // says so
   const std::string text = edited_profile(exists ? file : fs::path(), edit);
   require_files(edit);
   return written(file, exists ? "changed" : "made", text);
@@ -145,13 +176,15 @@ JobResult save_profile(const fs::path& folder, const std::string& name, const Pr
 JobResult import_profile(const fs::path& folder, const fs::path& file, const std::string& name) {
   require_bare_name(name);
   const fs::path to = profile_path(folder, name.empty() ? file.stem().string() : name);
+  const std::string text = edited_profile(file, {});
+  const FolderLock lock(folder);
   std::error_code ignored;
   if (fs::exists(to, ignored))
     throw InputError(fmt::format(
         "there is a profile '{}' already; import it under another name: 'hydrodip profile import "
         "{} NAME'",
         to.stem().string(), file.string()));
-  return written(to, "imported it to", edited_profile(file, {}));
+  return written(to, "imported it to", text);
 }
 
 }  // namespace hydrodip
