@@ -19,14 +19,14 @@
 #include "scan/board.h"
 #include "scan/read_scan.h"
 #include "scan/registration.h"
+#include "settings/settings.h"
 
 namespace hydrodip {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFile = "correction.json";
-constexpr const char* kPicture = "correction.png";
+constexpr const char* kStem = "correction";
 // Points of a scan lie so near to the object.
 constexpr double kReach_mm = 2;
 // A place that lies farther off was not recognised for what it is.
@@ -382,6 +382,47 @@ void require_moderate(const DisplacementFit& fit) {
         fit.field.farthest_mm()));
 }
 
+// What its files are called: a correction that this print was made with stays, as the film is
+// where that one put it.
+std::string free_stem(const RigJob& job) {
+  std::error_code ignored;
+  const auto is_used = [&](const std::string& stem) {
+    return std::filesystem::equivalent(job.folder / (stem + ".json"), job.config.correction,
+                                       ignored);
+  };
+  std::string stem = kStem;
+  for (int number = 2; is_used(stem); ++number) stem = fmt::format("{}-{}", kStem, number);
+  return stem;
+}
+
+// The file with a table for each of several dips, where paths are relative to it. Empty: there is
+// none any more.
+std::filesystem::path job_file_of(const RigJob& job) {
+  std::filesystem::path found;
+  for (const std::filesystem::path& file : job.settings_files) try {
+      const std::vector<Setting> settings = read_settings(file);
+      if (std::ranges::any_of(settings,
+                              [](const Setting& s) { return s.name.starts_with("dip["); }))
+        found = file;
+    } catch (const InputError&) {
+      // Gone, or something else by now.
+    }
+  return found;
+}
+
+std::string how_to_print(const RigJob& job, const std::string& file) {
+  const std::filesystem::path path = job.folder / file;
+  if (job.earlier_dips == 0 && job.next_dip == 0) return "--correction " + path.string();
+  const std::filesystem::path job_file = job_file_of(job);
+  if (job_file.empty())
+    return fmt::format("correction = \"{}\" in this dip's [[dip]] table of the job file",
+                       std::filesystem::absolute(path).lexically_normal().string());
+  const std::filesystem::path folder = std::filesystem::absolute(job_file).parent_path();
+  return fmt::format("correction = \"{}\" in the [[dip]] table {} of {}",
+                     std::filesystem::proximate(path, folder).string(), job.earlier_dips + 1,
+                     job_file.string());
+}
+
 // Places are looked up on the model as it is now.
 void warn_of_change(const RigJob& job, const CorrectedDip& of, const RunContext& context) {
   if (of.model_sha256.empty() || job.model_sha256.empty() || of.model_sha256 == job.model_sha256)
@@ -394,10 +435,11 @@ void warn_of_change(const RigJob& job, const CorrectedDip& of, const RunContext&
 
 JobResult correct_job(const RigJob& job, const CorrectRequest& request, const RunContext& context) {
   const RunScope scope(context.with_threads(job.config.threads));
+  const std::string stem = free_stem(job), file = stem + ".json", picture = stem + ".png";
   OutputFolder output(job.folder, job.config.earlier_result);
   std::vector<std::filesystem::path> inputs = request.scans;
   if (!job.config.correction.empty()) inputs.push_back(job.config.correction);
-  output.announce({kFile, kPicture}, inputs);
+  output.announce({file, picture}, inputs);
   context.progress("reading the dips", 0);
   const PrintedFilm film = read_printed_film(job, context);
   require_correction_fits(job.config, film.posed, job.depth_mm);
@@ -430,12 +472,12 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
   JobResult result;
   result.json =
       json_of(of, dips, samples, fit).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  write_file(output.path(kFile), result.json);
-  save_png(output.path(kPicture), draw_field(fit, sheet, before_mm));
+  write_file(output.path(file), result.json);
+  save_png(output.path(picture), draw_field(fit, sheet, before_mm));
   context.progress("fitting the correction", 1);
   output.commit();
   result.folder = job.folder;
-  result.files = {kFile, kPicture};
+  result.files = {file, picture};
   result.text = fmt::format(
       "{}, {:.0f} places: off by {:.3f} mm rms on the sheet, {:.3f} mm on the object\n"
       "corrected, places that were left out are foretold to {:.3f} mm, of which {:.3f} mm are "
@@ -453,11 +495,8 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
   result.text += output.told_replaced();
-  const bool of_several = job.earlier_dips > 0 || job.next_dip > 0;
-  result.text += fmt::format("wrote {0}/{1} and {0}/{2}\nprint again with {3}{0}/{1}{4}\n",
-                             job.folder.string(), kFile, kPicture,
-                             of_several ? "correction = \"" : "--correction ",
-                             of_several ? "\" in this dip's [[dip]] table of the job file" : "");
+  result.text += fmt::format("wrote {0}/{1} and {0}/{2}\nprint again with {3}\n",
+                             job.folder.string(), file, picture, how_to_print(job, file));
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/small_file.h"
 #include "dip/dip.h"
 #include "job/prepare.h"
@@ -110,11 +111,32 @@ Vec2 PrintedFilm::to_model(const Vec2& printed) const {
   return model;
 }
 
+namespace {
+
+// The film is where that very file put it.
+std::shared_ptr<const FilmCorrection> correction_of(const RigJob& job) {
+  const std::filesystem::path& file = job.config.correction;
+  if (file.empty()) return nullptr;
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    throw InputError(fmt::format(
+        "{}: this job was printed with this correction, and it is not there any more; put it back, "
+        "or say where it is now with --set film.correction=FILE",
+        file.string()));
+  auto field = std::make_shared<const FilmCorrection>(read_correction(file).field);
+  if (!job.correction_sha256.empty() && sha256_hex(read_file(file)) != job.correction_sha256)
+    throw InputError(
+        fmt::format("{}: this correction has changed since the job in {} was printed with it; put "
+                    "the earlier one back, or print the job again",
+                    file.string(), job.folder.string()));
+  return field;
+}
+
+}  // namespace
+
 PrintedFilm read_printed_film(const RigJob& job, const RunContext& context) {
   FilmOptions film = job.config.design.film;
-  if (!job.config.correction.empty())
-    film.correction =
-        std::make_shared<const FilmCorrection>(read_correction(job.config.correction).field);
+  film.correction = correction_of(job);
   // The object alone: what it looks like does not matter here.
   ObjectOptions object = job.config.object;
   object.artwork.clear();

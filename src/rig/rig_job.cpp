@@ -101,12 +101,19 @@ std::string title_of(const Json& report) {
   return "";
 }
 
-void find_model(const Json& report, RigJob& job) {
+// `correction`: that it was printed with.
+void find_inputs(const Json& report, const std::filesystem::path& correction, RigJob& job) {
   if (!report.contains("inputs") || !report["inputs"].is_array()) return;
   for (const Json& input : report["inputs"]) {
-    if (!input.is_object() || text_of(input, "role") != "model") continue;
-    job.config.model = text_of(input, "path");
-    job.model_sha256 = text_of(input, "sha256");
+    if (!input.is_object()) continue;
+    const std::string role = text_of(input, "role"), path = text_of(input, "path");
+    if (role == "model") {
+      job.config.model = path;
+      job.model_sha256 = text_of(input, "sha256");
+    }
+    if (role == "correction" && path == correction)
+      job.correction_sha256 = text_of(input, "sha256");
+    if (role == "settings") job.settings_files.emplace_back(path);
   }
 }
 
@@ -245,7 +252,7 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
   apply_sources(job.config, sources);
   if (job.config.correction.empty()) job.config.correction = correction;
   job.way_in = way_in(report, folder / "report.json");
-  find_model(report, job);
+  find_inputs(report, correction, job);
   job.has_artwork = report["parameters"].contains("artwork[1].projection");
   job.report_sha256 = read.sha256;
   job.sheet = sheet_use_of(report);

@@ -31,7 +31,9 @@ struct RigJob {
   std::vector<WayPoint> way_in;        // from the first touch on; empty: straight down
   Vec3 object_size_mm = Vec3::Zero();  // as posed
   std::string model_sha256;            // of config.model, when it was printed
-  bool has_artwork = false;            // of which config knows nothing
+  std::string correction_sha256;       // of config.correction, then; empty: none, or not known
+  std::vector<std::filesystem::path> settings_files;  // that it was printed by, later ones win
+  bool has_artwork = false;                           // of which config knows nothing
   std::vector<std::string> warnings;
   // "Do not dip it like this: ...", or that it is a draft; empty: nothing forbids it.
   std::string alarm;

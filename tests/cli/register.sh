@@ -152,6 +152,35 @@ expect 0 'off by \(1.00\|0.99\)' correct job places.csv
 python3 "$here/film_ply.py" shifted job/film.ply second/film.ply 1 0.02 ||
   fail "the second print is not moved by 1 mm"
 expect 0 'off by' correct second places.csv
+# That correction is what its film lies by: another one in its place, or none, is told.
+cp job/correction.json first.json
+echo >> job/correction.json
+expect 2 'job/correction.json: this correction has changed since the job in second' correct second places.csv
+rm job/correction.json
+expect 2 'job/correction.json: this job was printed with this correction' correct second places.csv
+expect 0 'off by' correct second places.csv --set film.correction=first.json
+cp first.json job/correction.json
+# A job printed over the one that its correction is of can be corrected again.
+cp -r job own
+# shellcheck disable=SC2086
+"$hydrodip" print colored.ply $quick --film 140x130 --depth 6 -o own --quiet \
+  --correction own/correction.json > /dev/null || fail "print into the correction's folder"
+expect 0 'print again with --correction own/correction-2.json' correct own places.csv
+cmp -s first.json own/correction.json || fail "correct replaced what its print was made with"
+# Of several dips, as the job's file has to name it.
+mkdir plan
+printf '[object]\nfile = "../colored.ply"\n[[dip]]\ndepth_mm = 6\n[[dip]]\nrotate_deg = [180, 0, 0]\ndepth_mm = 3\n' \
+  > plan/two.toml
+# shellcheck disable=SC2086
+"$hydrodip" print plan/two.toml $quick --film 140x130 -o plan/out --quiet > /dev/null || fail "print two dips"
+python3 "$here/film_ply.py" places plan/out/dip-1/film.ply 1 > dip-places.csv || fail "film.ply of a dip"
+expect 0 'off by' correct plan/out/dip-1 dip-places.csv
+named=$(sed -n 's/^print again with \(correction = "[^"]*"\) in the \[\[dip\]\] table 1 of plan.two.toml$/\1/p' said.txt)
+[ "$named" = 'correction = "out/dip-1/correction.json"' ] || fail "the path of a dip's correction: $(cat said.txt)"
+sed -i "0,/^\[\[dip\]\]/s|^\[\[dip\]\]|&\n$named|" plan/two.toml
+# shellcheck disable=SC2086
+"$hydrodip" print plan/two.toml $quick --film 140x130 -o plan/again --quiet > /dev/null ||
+  fail "a dip's correction is not found where correct says"
 
 # It is of that dip alone, whatever its colours.
 refused() {
