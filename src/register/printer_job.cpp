@@ -109,10 +109,11 @@ void draw_test_sheet(const std::filesystem::path& path, double width_mm, double 
     mark.corner += middle;
     for (const Box2& box : mark_boxes(mark)) pdf.fill_rectangle(box, 0);
   }
-  const double width = std::min(110.0, sheet.across_mm - 40);
-  // Between two rows of marks.
-  page.y = middle.y() + half.y() - 50;
-  const double left = middle.x() - 0.5 * width + 6;
+  constexpr double kWidest_mm = 110, kTitle_mm = 4;
+  const Box2 room = sheet.words();
+  const double width = std::min(kWidest_mm, room.max.x() - room.min.x());
+  const double left = middle.x() + 0.5 * (room.min.x() + room.max.x() - width);
+  page.y = middle.y() + room.max.y() - kTitle_mm;
   const auto say = [&](const std::string& words) {
     page.paragraph(left, width, words, PageWriter::kSmall_pt);
     page.y -= 1.5;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kFirstPrinterTag = 500;
 constexpr double kCell_mm = 1;
-constexpr double kLeastSide_mm = 120;
+constexpr double kLeastSide_mm = 190;
 // Printers are off by less than a percent.
 constexpr double kWorstScale = 0.03, kWorstLean = 0.03;
 // A steel rule is read to about 0.1 mm.
@@ -83,12 +83,21 @@ std::string other_marks(const std::vector<SeenMark>& seen) {
 
 }  // namespace
 
+// The row and the column through the middle have a mark at both ends and none between.
+Box2 TestSheet::words() const {
+  constexpr double kGap_mm = 3;
+  const Vec2 far = far_marks(*this);
+  const Box2 mark = mark_outline({0, Vec2::Zero(), Vec2::UnitX(), kCell_mm});
+  const Vec2 gap = Vec2::Constant(kGap_mm);
+  return {-far + mark.max + gap, far + mark.min - gap};
+}
+
 TestSheet test_sheet(double width_mm, double height_mm) {
   if (std::min(width_mm, height_mm) < kLeastSide_mm)
-    throw InputError(
-        fmt::format("the test sheet needs a page of {:g} mm at least; choose another "
-                    "--film",
-                    kLeastSide_mm));
+    throw InputError(fmt::format(
+        "the test sheet needs a page of {0:g} x {0:g} mm at least; a printer errs alike "
+        "on all: print it on larger paper, as with --film a4",
+        kLeastSide_mm));
   TestSheet sheet;
   sheet.across_mm = 10 * std::floor((width_mm - 30) / 10);
   sheet.along_mm = 10 * std::floor((height_mm - 40) / 10);

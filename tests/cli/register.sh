@@ -38,6 +38,14 @@ if command -v pdftotext > /dev/null; then
       fail "the letter sheet's command is not its own: $(cat letter.txt)"
   done
 fi
+# The smallest page has room for all of it, and smaller ones are refused.
+expect 2 '190 x 190 mm at least' calibrate printer --film 180x240
+expect 0 'printer-test.pdf' calibrate printer --film 190x190 -o small
+if command -v pdftoppm > /dev/null; then
+  pdftoppm -singlefile -png -r 200 small/printer-test.pdf small
+  expect 0 'makes 1.0000 mm across and 1.0000 mm along' calibrate printer --film 190x190 --scan small.png \
+    --scan-dpi 200 -o small
+fi
 expect 2 'give its --readings' calibrate printer --save mine
 expect 2 'there is none' calibrate printer --readings 180.9,250.2,308.8,308.7 --scan-dpi 300
 expect 2 'one of them' calibrate printer --readings 180.9,250.2,308.8,308.7 --save mine -o printer
