@@ -49,7 +49,8 @@ void declare_dipped_film(CLI::App& app, Request& request) {
 
 void declare_scan_reading(CLI::App& app, Request& request) {
   declare_square(app, request);
-  app.add_option("--scan-units", request.calibration.scan_units, "unit of the scans (default: mm)")
+  app.add_option("--scan-units", request.calibration.scan_units,
+                 "unit of the scans (default: what the format says, as glTF's metres, else mm)")
       ->group(kScanGroup)
       ->type_name("mm|cm|m|in");
   app.add_flag("--aligned", request.calibration.aligned,

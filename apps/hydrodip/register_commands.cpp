@@ -158,7 +158,8 @@ void declare_correct(CLI::App& app, Request& request) {
       ->group(kScanGroup)
       ->type_name("MM")
       ->check(between(0.5, 100.0));
-  app.add_option("--scan-units", correction.scan_units, "unit of the scans (default: mm)")
+  app.add_option("--scan-units", correction.scan_units,
+                 "unit of the scans (default: what the format says, as glTF's metres, else mm)")
       ->group(kScanGroup)
       ->type_name("mm|cm|m|in");
   app.add_flag("--aligned", correction.aligned,

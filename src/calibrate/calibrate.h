@@ -18,7 +18,7 @@ struct CalibrationRequest {
   std::vector<std::string> scans;  // "sphere=scan.obj", or of synth and kit: "sphere"
   std::string board = "tints";     // which board was printed; board.h
   double square_mm = 0;            // 0: as the board is
-  std::string scan_units = "mm";
+  std::string scan_units;          // as ScanOptions::units
   bool aligned = false;
   bool mirrored = false;
 

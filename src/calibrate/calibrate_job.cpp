@@ -348,8 +348,7 @@ void check_tear_readings(const JobConfig& config, const CalibrationRequest& requ
                          const RunContext& context) {
   if (request.torn_rings.empty()) return;
   const CalibrationObject dome = tear_dome();
-  require_fit(dome.object, room_of(dome.object, dome.depth_mm), config.design.film, config.bath,
-              context);
+  require_room_for_shape(dome, config);
   require_rings(request.torn_rings);
 }
 

@@ -24,7 +24,13 @@ std::pair<std::string, double> split_depth(const std::string& text) {
   const char* begin = text.data() + at + 1;
   const char* end = text.data() + text.size();
   const auto [stop, error] = parse_double(begin, end, depth);
-  if (error != std::errc() || stop != end) return {text, 0};
+  if (error != std::errc() || stop != end) {
+    if (find_shape(text.substr(0, at)) == nullptr) return {text, 0};
+    throw InputError(
+        fmt::format("{}: give the depth in mm after '@', as in {}@12.5, or leave the "
+                    "'@' out",
+                    text, text.substr(0, at)));
+  }
   if (!(depth > 0 && depth < 5000))
     throw InputError(fmt::format("{}: the depth after '@' must be above 0 mm", text));
   return {text.substr(0, at), depth};
@@ -71,6 +77,19 @@ TriangleMesh mesh_of(const KitShape& shape) {
   return rounded_pyramid(size.x(), size.z(), shape.edge_radius_mm).closed();
 }
 
+void require_room_for_shape(const CalibrationObject& shape, const JobConfig& config) {
+  constexpr double kRounding_mm = 0.01;
+  for (const RoomFit& fit :
+       fits(shape.object, room_of(shape.object, shape.depth_mm), config.design.film, config.bath))
+    if (fit.excess_mm() > kRounding_mm)
+      throw InputError(fmt::format(
+          "{}: the shape is {:.1f} mm {} as it dips, {:.1f} more than {} has: take a larger "
+          "--film, "
+          "give the size of a larger bath (bath.width_mm, ...), or name smaller shapes, as sphere, "
+          "pyramid and ellipsoid",
+          shape.name, fit.needed_mm, fit.what, fit.excess_mm(), fit.room));
+}
+
 CalibrationObject calibration_object(const std::string& text, const JobConfig& config,
                                      const RunContext& context) {
   const auto [name, depth] = split_depth(text);
@@ -80,6 +99,7 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
     result.is_known_shape = true;
     result.object = mesh_of(*shape);
     result.depth_mm = depth > 0 ? depth : shape->depth_mm;
+    require_room_for_shape(result, config);
   } else {
     result.object = prepare_object(name, config.object, context).posed.mesh();
     result.name = std::filesystem::path(name).stem().string();

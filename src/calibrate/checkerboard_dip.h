@@ -54,6 +54,10 @@ TriangleMesh mesh_of(const KitShape& shape);  // posed, as it dips
 CalibrationObject calibration_object(const std::string& text, const JobConfig& config,
                                      const RunContext& context);
 
+// Throws InputError if it does not fit film or bath: its size and pose are given, so that what
+// mends it is not what mends a model of one's own.
+void require_room_for_shape(const CalibrationObject& shape, const JobConfig& config);
+
 // Everything about a film that its parameters leave alone. Immutable.
 struct CheckeredFilm {
   SharedFilmMesh mesh;

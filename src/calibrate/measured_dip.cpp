@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -99,6 +100,20 @@ class Reader {
   const std::filesystem::path& file_;
   const Json& json_;
 };
+
+// "2026-11-27", a day that there is.
+bool is_date(const std::string& text) {
+  const bool shaped =
+      text.size() == 10 && text[4] == '-' && text[7] == '-' &&
+      std::ranges::count_if(text, [](unsigned char c) { return std::isdigit(c) != 0; }) == 8;
+  if (!shaped) return false;
+  const auto part = [&](std::size_t from, std::size_t count) {
+    return unsigned(std::stoul(text.substr(from, count)));
+  };
+  return (std::chrono::year(int(part(0, 4))) / std::chrono::month(part(5, 2)) /
+          std::chrono::day(part(8, 2)))
+      .ok();
+}
 
 Json json_of(const DipFacts& facts) {
   Json json;
@@ -208,6 +223,9 @@ void require_facts(const DipFacts& facts) {
         value && !(*value >= fact.least && *value <= fact.most))
       throw InputError(fmt::format("{} {:g}: give a value from {:g} to {:g}", fact.option, *value,
                                    fact.least, fact.most));
+  if (!facts.dipped_on.empty() && !is_date(facts.dipped_on))
+    throw InputError(fmt::format("--dipped-on '{}': give the day as year-month-day, 2026-11-27",
+                                 facts.dipped_on));
   const bool is_identifier = std::all_of(
       facts.licence.begin(), facts.licence.end(),
       [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '.' || c == '+'; });

@@ -68,7 +68,9 @@ std::vector<double> parse_range(const std::string& text, const std::string& opti
         !parse(times ? parts[2].substr(1) : parts[2], step))
       refuse("not a range of numbers");
     if (!(to >= from)) refuse("it ends before it begins");
-    if (times ? !(step > 1 && from > 0) : !(step > 0)) refuse("its step leads nowhere");
+    if (times && !(from > 0)) refuse("no factor leads on from there: begin above 0");
+    if (!(step > (times ? 1 : 0)))
+      refuse(times ? "its factor has to be above 1" : "its step has to be above 0");
     values = times ? multiplied(from, to, step) : stepped(from, to, step);
   } else if (parts.size() == 1) {
     for (const std::string& part : split(text, ',')) {

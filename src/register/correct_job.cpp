@@ -164,7 +164,8 @@ Landings read_grid(const std::filesystem::path& file, const PrintedFilm& film,
 }
 
 Landings read_table(const std::filesystem::path& file, const CorrectRequest& request) {
-  if (request.scan_units != "mm" || !request.board.empty() || request.square_mm > 0)
+  if ((!request.scan_units.empty() && request.scan_units != "mm") || !request.board.empty() ||
+      request.square_mm > 0)
     throw InputError(fmt::format(
         "{}: a table of places is in mm and of no board: leave out --scan-units, --board and "
         "--square",
@@ -483,8 +484,9 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
       "corrected, places that were left out are foretold to {:.3f} mm, of which {:.3f} mm are "
       "noise; it changes over {:g} mm\n",
       dips.size() == 1 ? "1 dip" : fmt::format("{} dips", dips.size()), count, before_mm,
-      std::sqrt(on_object / count), fit.left_out_rms_mm, std::sqrt(2.0) * fit.noise_mm,
-      fit.smooth_mm);
+      std::sqrt(on_object / count), fit.left_out_rms_mm,
+      // Both are estimates; of what is left, no more than all of it.
+      std::min(fit.left_out_rms_mm, std::sqrt(2.0) * fit.noise_mm), fit.smooth_mm);
   if (dips.size() > 1)
     result.text += fmt::format(
         "from dip to dip the film lay {:.3f} mm elsewhere: no correction takes that out\n",

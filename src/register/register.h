@@ -67,9 +67,9 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
 
 struct CorrectRequest {
   std::vector<std::filesystem::path> scans;
-  std::string scan_units = "mm";
-  std::string board;     // tints or black; empty: whichever fits clearly better
-  double square_mm = 0;  // 0: the board's own
+  std::string scan_units;  // as ScanOptions::units
+  std::string board;       // tints or black; empty: whichever fits clearly better
+  double square_mm = 0;    // 0: the board's own
   bool aligned = false;
 };
 // correction.json and correction.png in the job's folder.

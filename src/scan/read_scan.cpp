@@ -40,7 +40,7 @@ constexpr Unit kUnits[] = {{"mm", "millimetres", 1},
 
 const Unit& find_unit(const std::string& name) {
   for (const Unit& unit : kUnits)
-    if (name == unit.name) return unit;
+    if (name == unit.name || (name.empty() && unit.mm == 1)) return unit;
   throw InputError(fmt::format("--scan-units {}: not a known unit; use mm, cm, m or in", name));
 }
 

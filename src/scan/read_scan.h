@@ -10,9 +10,10 @@
 namespace hydrodip {
 
 struct ScanOptions {
-  std::string units = "mm";  // of the file: mm, cm, m or in
-  double square_mm = 5;      // as printed, to check the unit by
-  bool mirrored = false;     // the file is a mirror image: turn it back
+  // Of the file: mm, cm, m or in. Empty: what the format says, as glTF's metres, else mm.
+  std::string units;
+  double square_mm = 5;   // as printed, to check the unit by
+  bool mirrored = false;  // the file is a mirror image: turn it back
 };
 
 struct Scan {

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "base/file.h"
+#include "export/glb_writer.h"
 #include "image/files.h"
+#include "refusal.h"
 #include "scan/dark_squares.h"
+#include "scan/read_scan.h"
 #include "scans.h"
 #include "temporary_folder.h"
 
@@ -102,17 +105,10 @@ TEST_F(ColouredScanSlow, ASphereIsReadFromItsFilesAndLaidOnTheSphere) {
 }
 
 // A flat board, of which everything is known, with texels of 0.1 mm.
-TEST(DarkSquaresTest, OnAFlatSheetSquaresAreSquares) {
-  constexpr int kTexels = 450;  // whole texels to a square
-  constexpr double kSide_mm = 45;
-  Object sheet;
-  sheet.positions = {{0, 0, 0}, {kSide_mm, 0, 0}, {kSide_mm, kSide_mm, 0}, {0, kSide_mm, 0}};
-  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
-  sheet.material_of = {0, 0};
-  sheet.materials.resize(1);
-  sheet.materials[0].texture = 0;
-  using Uv = Eigen::Vector2f;
-  sheet.uvs = {{Uv(0, 0), Uv(1, 0), Uv(1, 1)}, {Uv(0, 0), Uv(1, 1), Uv(0, 1)}};
+constexpr int kTexels = 450;  // whole texels to a square
+constexpr double kSide_mm = 45;
+
+std::shared_ptr<Image> flat_board() {
   auto image = std::make_shared<Image>(kTexels, kTexels);
   for (int y = 0; y < kTexels; ++y)
     for (int x = 0; x < kTexels; ++x) {
@@ -122,7 +118,46 @@ TEST(DarkSquaresTest, OnAFlatSheetSquaresAreSquares) {
       pixel[0] = pixel[1] = pixel[2] = dark ? 20 : 240;
       pixel[3] = 255;
     }
-  sheet.textures.push_back(image);
+  return image;
+}
+
+// glTF is in metres, and nobody has to say so.
+TEST(ColouredScan, OfGltfIsReadInItsFormatsUnit) {
+  const TemporaryFolder folder;
+  save_png(folder / "board.png", *flat_board());
+  GlbWriter writer;
+  writer.add_texture(read_file(folder / "board.png"), "image/png", "board");
+  const int material =
+      writer.add_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  const auto side = float(0.001 * kSide_mm);
+  GlbMesh mesh;
+  mesh.positions = {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}};
+  mesh.normals.assign(4, {0, 0, 1});
+  mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  writer.add_mesh("board", mesh, {{0, 6, material, material}});
+  const std::vector<std::uint8_t> bytes = writer.finish();
+  write_file(folder / "board.glb", bytes.data(), bytes.size());
+  const RunContext context;
+  const CornerGrid grid = read_scan(folder / "board.glb", {}, context).grid;
+  ASSERT_EQ(grid.position.size(), 64u);
+  for (std::size_t c = 1; c < grid.position.size(); ++c) {
+    const Vec2 apart(grid.place[c][0] - grid.place[0][0], grid.place[c][1] - grid.place[0][1]);
+    EXPECT_NEAR((grid.position[c] - grid.position[0]).norm(), 5 * apart.norm(), 0.06);
+  }
+  EXPECT_NE(refusal([&] { read_scan(folder / "board.glb", {.units = "mm"}, context); }), "");
+}
+
+TEST(DarkSquaresTest, OnAFlatSheetSquaresAreSquares) {
+  Object sheet;
+  sheet.positions = {{0, 0, 0}, {kSide_mm, 0, 0}, {kSide_mm, kSide_mm, 0}, {0, kSide_mm, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  sheet.material_of = {0, 0};
+  sheet.materials.resize(1);
+  sheet.materials[0].texture = 0;
+  using Uv = Eigen::Vector2f;
+  sheet.uvs = {{Uv(0, 0), Uv(1, 0), Uv(1, 1)}, {Uv(0, 0), Uv(1, 1), Uv(0, 1)}};
+  sheet.textures.push_back(flat_board());
   const CornerGrid grid = grid_of_dark_squares(find_dark_squares(sheet, 5));
   ASSERT_EQ(grid.position.size(), 64u);  // of 4 by 4 squares
   for (std::size_t c = 0; c < grid.position.size(); ++c) {

@@ -107,6 +107,14 @@ TEST_F(MeasuredDipTest, WhatIsMissingIsAskedForAllAtOnce) {
   DipFacts hot = facts();
   hot.water_c = 400;
   EXPECT_NE(asks(hot).find("--water-c"), std::string::npos);
+  for (const char* date : {"yesterday", "27.11.2026", "2026-13-01", "2026-02-30", "2026-11-271"}) {
+    DipFacts dated = facts();
+    dated.dipped_on = date;
+    EXPECT_NE(asks(dated).find("--dipped-on"), std::string::npos) << date;
+  }
+  DipFacts dated = facts();
+  dated.dipped_on = "2028-02-29";
+  EXPECT_EQ(asks(dated), "");
   DipFacts licence = facts();
   licence.licence = "do what you want";
   EXPECT_NE(asks(licence).find("SPDX"), std::string::npos);

@@ -160,6 +160,11 @@ grep -q 'wrong way round' said.txt || fail "does not say that the scan is mirror
 refuse 'sphere-90=scan.obj' calibrate
 refuse 'which object' calibrate unknown.obj
 refuse 'no-such.csv' calibrate sphere=no-such.csv
+refuse "depth in mm after '@'" measure sphere@=scans/sphere-scan.csv
+refuse 'begin above 0' calibrate sphere=scans/sphere-scan.csv --ratio 0:100:x2
+refuse 'factor has to be above 1' calibrate sphere=scans/sphere-scan.csv --ratio 3:100:x1
+refuse 'larger --film' calibrate kit --film 90x90 -o small
+grep -q -- '--size\|--rotate' stderr.txt && fail "the kit is mended by what it has not: $(cat stderr.txt)"
 refuse '--poisson' calibrate sphere=scans/sphere-scan.csv --poisson 0:1:0.1
 cp scans/sphere-scan.csv copy.csv
 # shellcheck disable=SC2086
