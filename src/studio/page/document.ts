@@ -1,4 +1,5 @@
 // The job as one immutable value, and every way to change it. Nothing here knows of the screen or the program.
+import { leant } from './stage/pose.ts';
 
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 export type Patch = { [key: string]: Json };
@@ -130,17 +131,26 @@ function shiftOf(way: Way | null | undefined): [number, number] {
   return straight ? [first[1] ?? 0, first[2] ?? 0] : [0, 0];
 }
 
+const wayOf = (document: JobDocument, dip: number): Way | null | undefined => document.dips?.[dip]?.path ?? document.path;
+
+// Whether the way in is more than a shift: it says then how deep it goes and where, and nobody else does.
+export const hasWayOfItsOwn = (document: JobDocument, dip: number): boolean => {
+  const way = wayOf(document, dip);
+  return !!way?.length && shiftOf(way).every((s) => s === 0);
+};
+
+export const hasWay = (document: JobDocument): boolean => !!document.path?.length || (document.dips ?? []).some((dip) => dip.path?.length);
+
 export function poseOf(document: JobDocument, dip: number): Pose {
   const object = document.object ?? {};
   const own = document.dips?.[dip];
-  const way = own ? own.path : document.path;
-  const depth = own ? own.depth_mm : document.dip?.['depth_mm'];
+  const way = wayOf(document, dip);
   const shift_mm = shiftOf(way);
   const shifted = shift_mm[0] !== 0 || shift_mm[1] !== 0;
   return {
-    down: (own ? own.down : object.down) ?? '-z',
-    rotate_deg: numbers(own ? own.rotate_deg : object.rotate_deg, [0, 0, 0]),
-    depth_mm: shifted ? (way?.at(-1)?.[0] ?? 0) : plain(depth),
+    down: own?.down ?? object.down ?? '-z',
+    rotate_deg: numbers(own?.rotate_deg ?? object.rotate_deg, [0, 0, 0]),
+    depth_mm: shifted ? (way?.at(-1)?.[0] ?? 0) : plain(own?.depth_mm ?? document.dip?.['depth_mm']),
     shift_mm,
   };
 }
@@ -151,55 +161,114 @@ function without<T extends object>(value: T, ...keys: (keyof T)[]): T {
   return copy;
 }
 
+function withGroup(document: JobDocument, name: 'dip' | 'film', group: Group): JobDocument {
+  const rest = without(document, name);
+  return Object.keys(group).length ? { ...rest, [name]: group } : rest;
+}
+
+// What `dip` says of a way in, and beside a path must not.
+const OF_A_WAY = ['depth_mm', 'tilt_deg', 'tilt_toward_deg', 'roll_deg'];
+export const saysAWay = (name: string): boolean => OF_A_WAY.some((key) => name === `dip.${key}`);
+const withoutWay = (document: JobDocument): JobDocument => withGroup(without(document, 'path'), 'dip', without(document.dip ?? {}, ...OF_A_WAY));
+
+// A tilt is a turn in other words, which a path and each of several dips understand.
+export function withTiltTurned(document: JobDocument): JobDocument {
+  const { tilt_deg, ...settings } = document.dip ?? {};
+  const tilt = plain(tilt_deg);
+  if (!tilt) return document;
+  const toward = plain(settings['tilt_toward_deg']);
+  if (!settings['roll_deg']) delete settings['tilt_toward_deg'];
+  const rest = withGroup(document, 'dip', settings);
+  const turned = (dip: number): Vec3 => leant(poseOf(document, dip), tilt, toward);
+  if (!document.dips?.length) return { ...rest, object: { ...rest.object, rotate_deg: turned(0) } };
+  // One of which no pose is said is looked for.
+  return { ...rest, dips: document.dips.map((own, k) => (own.down ?? own.rotate_deg ? { ...own, rotate_deg: turned(k) } : own)) };
+}
+
+// Straight down into the middle of the film.
+export function withoutWayOf(document: JobDocument, dip: number): JobDocument {
+  if (!document.dips?.[dip]) return without(document, 'path');
+  const own = withOwnWays(document);
+  return withDips(own, (entry, k) => (k === dip ? { ...without(entry, 'path'), depth_mm: entry.depth_mm ?? 0 } : entry));
+}
+
+// Each of several dips says its own way in; what was said of all of them goes to those that said nothing.
+function withOwnWays(document: JobDocument): JobDocument {
+  const depth = document.dip?.['depth_mm'];
+  return withDips(withoutWay(document), (own) => {
+    if (own.path?.length || own.depth_mm !== undefined) return own;
+    if (document.path?.length) return { ...own, path: document.path };
+    return depth === undefined ? own : { ...own, depth_mm: plain(depth) };
+  });
+}
+
+const withDips = (document: JobDocument, change: (dip: Dip, k: number) => Dip): JobDocument => ({ ...document, dips: (document.dips ?? []).map(change) });
+
 // A way into the water says no more than that: a larger object fits no bath.
 const LONGEST_MM = 5000;
 const within = (mm: number): number => Math.min(Math.max(mm, -LONGEST_MM), LONGEST_MM);
 
-// `height_mm`: of the posed object, needed where a shifted way has to say how deep "the whole object" is.
+// `height_mm`: of the posed object, needed where a shifted way has to say how deep "the whole object" is. A way of its own
+// stays as it is until there is a shift. What else was said of a way is not said beside a path.
 export function withPose(document: JobDocument, dip: number, pose: Pose, height_mm: number): JobDocument {
   const [x, y] = [within(pose.shift_mm[0]), within(pose.shift_mm[1])];
   const deep = within(pose.depth_mm || height_mm);
-  const way: Way | null = x || y ? [[0, x, y, 0, 0, 0], [deep, x, y, 0, 0, 0]] : null;
+  const kept = hasWayOfItsOwn(document, dip) ? wayOf(document, dip)! : null;
+  const way: Way | null = x || y ? [[0, x, y, 0, 0, 0], [deep, x, y, 0, 0, 0]] : kept;
   const own = document.dips?.[dip];
   if (own) {
     // Of a dip among several, what is absent would be searched.
     const next: Dip = { ...without(own, 'depth_mm', 'path'), down: pose.down, rotate_deg: pose.rotate_deg };
     if (way) next.path = way;
-    else if (own.path && shiftOf(own.path).every((s) => s === 0)) next.path = own.path;
-    if (!way) next.depth_mm = pose.depth_mm;
-    return { ...document, dips: document.dips!.map((d, k) => (k === dip ? next : d)) };
+    else next.depth_mm = pose.depth_mm;
+    return withDips(way ? withOwnWays(document) : document, (d, k) => (k === dip ? next : d));
   }
   const object: NonNullable<JobDocument['object']> = without(document.object ?? {}, 'down', 'rotate_deg');
   if (pose.down !== '-z') object.down = pose.down;
   if (pose.rotate_deg.some((angle) => angle !== 0)) object.rotate_deg = pose.rotate_deg;
+  if (way) return { ...withoutWay(document), object, path: way };
   const settings = without(document.dip ?? {}, 'depth_mm');
-  if (pose.depth_mm && !way) settings['depth_mm'] = pose.depth_mm;
-  const result: JobDocument = { ...document, object };
-  delete result.dip;
-  if (Object.keys(settings).length) result.dip = settings;
-  const kept = document.path && shiftOf(document.path).every((s) => s === 0) ? document.path : null;
-  delete result.path;
-  if (way ?? kept) result.path = way ?? kept;
-  return result;
+  if (pose.depth_mm) settings['depth_mm'] = pose.depth_mm;
+  return { ...withGroup(without(document, 'path'), 'dip', settings), object };
 }
 
 // One dip more, turned over, so that it brings what the others leave bare.
 export function withAnotherDip(document: JobDocument): JobDocument {
-  const dips = document.dips?.length ? document.dips : [dipFrom(poseOf(document, 0))];
-  const last = dips.at(-1)!;
+  const several = document.dips?.length ? document : withFirstDip(document);
+  const at = several.dips!.length - 1;
+  const { down, rotate_deg, depth_mm } = poseOf(several, at);
   const over: Record<Side, Side> = { '-z': '+z', '+z': '-z', '-y': '+y', '+y': '-y', '-x': '+x', '+x': '-x' };
-  return { ...document, dips: [...dips, { ...without(last, 'locked', 'path', 'correction'), down: over[last.down ?? '-z'] }] };
+  return { ...several, dips: [...several.dips!, { down: over[down], rotate_deg, depth_mm }] };
 }
 
-const dipFrom = (pose: Pose): Dip => ({ down: pose.down, rotate_deg: pose.rotate_deg, depth_mm: pose.depth_mm });
+// The only dip as the first of several, with all that is its own.
+function withFirstDip(document: JobDocument): JobDocument {
+  const { correction, ...film } = document.film ?? {};
+  const leaning = withTiltTurned(document);
+  const { down, rotate_deg, depth_mm } = poseOf(leaning, 0);
+  const first: Dip = { down, rotate_deg };
+  if (leaning.path?.length) first.path = leaning.path;
+  else first.depth_mm = depth_mm;
+  if (typeof correction === 'string') first.correction = correction;
+  const settings = without(leaning.dip ?? {}, 'depth_mm');
+  return { ...withGroup(withGroup(without(leaning, 'path'), 'dip', settings), 'film', film), dips: [first] };
+}
 
 export function withoutDip(document: JobDocument, dip: number): JobDocument {
   const dips = (document.dips ?? []).filter((_, k) => k !== dip);
+  const [first] = dips;
+  if (!first) return without(document, 'dips');
+  return dips.length > 1 ? { ...document, dips } : withOnlyDip({ ...document, dips });
+}
+
+// The first of several as the only one, with all that is its own.
+function withOnlyDip(document: JobDocument): JobDocument {
+  const { path, correction } = document.dips![0]!;
+  const pose = poseOf(document, 0);
   const rest = without(document, 'dips');
-  if (dips.length > 1) return { ...rest, dips };
-  if (!dips[0]) return rest;
-  const pose = poseOf({ dips }, 0);
-  return withPose(rest, 0, pose, pose.depth_mm);
+  if (path?.length) rest.path = path;
+  const corrected = correction ? withGroup(rest, 'film', { ...rest.film, correction }) : rest;
+  return withPose(corrected, 0, pose, pose.depth_mm);
 }
 
 export const withDip = (document: JobDocument, dip: number, change: Partial<Dip>): JobDocument => ({

@@ -1,7 +1,7 @@
 // What the page shows beside the job: which step, view and tool, and what the keys do.
 import { computed, signal } from '@preact/signals';
 import { api, type Hello, type Overlay, type Recent } from './api.ts';
-import { layersOf, poseOf, valueOf, withPose, type Json, type JobDocument, type Pose, type Vec3 } from './document.ts';
+import { hasWayOfItsOwn, layersOf, poseOf, valueOf, withoutWayOf, withPose, withTiltTurned, type Json, type JobDocument, type Pose, type Vec3 } from './document.ts';
 import { Job } from './job.ts';
 import { heightOf, turnOf } from './stage/pose.ts';
 import type { Compare, Hit, Stage, Tool, View } from './stage/stage.ts';
@@ -75,15 +75,32 @@ function wholeDepth(of: Pose): number {
   return mesh ? Math.floor(10 * heightOf(mesh.position, turnOf(of), scale.value)) / 10 : 0;
 }
 
-export function changePose(part: Partial<Pose>, live = false): void {
-  const open = job.value;
-  if (!open) return;
-  const now = poseOf(open.document.value, open.dip.value);
+// The document with another pose of that dip.
+function posed(document: JobDocument, dip: number, part: Partial<Pose>): JobDocument {
+  const shifts = part.shift_mm?.some((s) => s !== 0) ?? false;
+  const from = shifts ? withTiltTurned(document) : document; // no path leans besides
+  const now = poseOf(from, dip);
   const shifted = now.shift_mm.some((s) => s !== 0);
   if (shifted && now.depth_mm >= wholeDepth(now)) now.depth_mm = 0;
   const next = { ...now, ...part };
+  return withPose(from, dip, next, next.shift_mm.some((s) => s !== 0) ? wholeDepth(next) : 0);
+}
+
+// Of a dip with a way of its own: its depth and shift are not to be had.
+export const ownWay = computed(() => job.value !== null && hasWayOfItsOwn(job.value.document.value, job.value.dip.value));
+
+export function changePose(part: Partial<Pose>, live = false): void {
+  const open = job.value;
+  if (!open) return;
   const label = part.depth_mm !== undefined && !part.rotate_deg ? t.undo.depth : part.shift_mm ? t.undo.shift : t.undo.turn;
-  change((document) => withPose(document, open.dip.value, next, next.shift_mm.some((s) => s !== 0) ? wholeDepth(next) : 0), label, live);
+  const { depth_mm: _, shift_mm: __, ...turns } = part;
+  const allowed = ownWay.value ? turns : part;
+  if (Object.keys(allowed).length) change((document) => posed(document, open.dip.value, allowed), label, live);
+}
+
+export function goStraightDown(): void {
+  const open = job.value;
+  if (open) change((document) => withoutWayOf(document, open.dip.value), t.undo.straight);
 }
 
 export const chosenLayer = computed(() => {
@@ -211,7 +228,7 @@ export function showView(name: View): void {
 }
 
 export function chooseTool(name: Tool): void {
-  if (readOnly.value) return;
+  if (readOnly.value || (name === 'move' && ownWay.value)) return;
   tool.value = tool.value === name ? 'none' : name;
   if (tool.value === 'turn' || tool.value === 'move') showView('bath');
   if (tool.value !== 'none') {

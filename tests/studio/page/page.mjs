@@ -502,6 +502,53 @@ test('a second dip: two sheets, each dip\'s part, the seam, and the finish as a 
   await sameAs(toy, first);
 });
 
+// What the program makes of what the page has just sent: a result, or why there is none.
+async function outcome(page, before) {
+  const said = page.locator('[data-finding="problem"]');
+  await until('a result or a problem', async () => (await said.count()) > 0 || ![before, null].includes(await resultOf(page)));
+  return (await said.count()) ? said.textContent() : 'a result';
+}
+
+test('a tilt, a shift and a second dip go together, whichever comes first', async () => {
+  const first = await documentOf(toy);
+  await type(toy, 'dip-tilt_deg', 15);
+  await kept(toy);
+  let before = await resultOf(toy);
+  await type(toy, 'shift-x', 10);
+  await until('the shift', async () => (await documentOf(toy)).path);
+  assert.equal(await outcome(toy, before), 'a result');
+  const { dip, object } = await documentOf(toy);
+  assert.equal(dip.tilt_deg, undefined);
+  assert.deepEqual(object.rotate_deg, [0, 15, 0]);
+  before = await resultOf(toy);
+  await toy.click('[data-name="add-dip"]');
+  await until('two dips', async () => (await documentOf(toy)).dips?.length === 2);
+  assert.equal(await outcome(toy, before), 'a result');
+  before = await resultOf(toy);
+  await toy.click('[data-dip="0"]');
+  assert.equal(await outcome(toy, before), 'a result');
+  assert.equal(await toy.inputValue('input[name="shift-x"]'), '10');
+  await blur(toy);
+  for (let k = 0; k < 3; ++k) await undo(toy);
+  await sameAs(toy, first);
+});
+
+let lone;
+test('a way of its own says depth and shift; straight down they are the person\'s again', async () => {
+  lone = await session.page();
+  await openQuick(lone, 'pyramid', { path: [[0, 0, 0, 0, 0, 0], [10, 5, 0, 0, 10, 0]] });
+  for (const name of ['depth', 'shift-x', 'shift-y']) assert.ok(await lone.locator(`input[name="${name}"]`).isDisabled(), name);
+  assert.equal(await lone.locator('[data-name="depth-handle"]').count(), 0);
+  await lone.keyboard.press('3');
+  assert.equal(await lone.locator('input[name="dip-tilt_deg"]').count(), 0);
+  await lone.click('[data-name="straight"]');
+  await until('no path', async () => !(await documentOf(lone)).path);
+  const before = await resultOf(lone);
+  await type(lone, 'depth', 8);
+  await until('the depth', async () => (await documentOf(lone)).dip.depth_mm === 8);
+  assert.equal(await outcome(lone, before), 'a result');
+});
+
 // ---- Artwork ----
 
 part = 'artwork';
@@ -814,7 +861,7 @@ for (const { name, body, part: of } of tests) {
   } catch (error) {
     ++failures;
     console.log(`FAILED: ${name}\n${error.stack}`);
-    if (failed) for (const [k, page] of [toy, dome].entries()) await page?.screenshot({ path: join(failed, `failed-${failures}-${k}.png`) }).catch(() => {});
+    if (failed) for (const [k, page] of [toy, lone, dome].entries()) await page?.screenshot({ path: join(failed, `failed-${failures}-${k}.png`) }).catch(() => {});
   }
 }
 await session.close();

@@ -2,8 +2,8 @@
 import assert from 'node:assert/strict';
 import { Matrix4, Quaternion, Vector3 } from 'three';
 import {
-  dipCount, equal, laidAnew, merged, patched, poseOf, withAnotherDip, withLayer, withLayerMoved, withNewLayer, withoutDip, withoutLayer, withPose,
-  withValue, type JobDocument, type Json, type Pose, type Side, type Vec3,
+  dipCount, equal, laidAnew, merged, patched, poseOf, withAnotherDip, withLayer, withLayerMoved, withNewLayer, withoutDip, withoutLayer, withoutWayOf,
+  withPose, withTiltTurned, withValue, type JobDocument, type Json, type Pose, type Side, type Vec3,
 } from '../../../src/studio/page/document.ts';
 import { anglesOf, placeOf, turnedDown, turnOf } from '../../../src/studio/page/stage/pose.ts';
 
@@ -18,6 +18,12 @@ const AXES: Record<string, Vec3> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 const outward = (side: Side): Vector3 => new Vector3(...AXES[side[1]!]!).multiplyScalar(side[0] === '-' ? -1 : 1);
 const close = (a: Vector3, b: Vector3, what: string, within = 1e-6): void =>
   assert.ok(a.distanceTo(b) < within, `${what}: ${a.toArray()} is not ${b.toArray()}`);
+
+// As the program asks of each dip: a path, or else a depth and perhaps a tilt.
+const saysOneWay = ({ dip = {}, path, dips = [] }: JobDocument): boolean => {
+  const says = ['depth_mm', 'tilt_deg', 'roll_deg'].some((key) => dip[key]);
+  return !(path && (says || dips.some((own) => own.depth_mm !== undefined))) && !dips.some((own) => own.path && (says || own.depth_mm !== undefined));
+};
 
 const tests: Record<string, () => void> = {
   'a shifted way never says more than a job may'() {
@@ -97,6 +103,55 @@ const tests: Record<string, () => void> = {
     const path = [[0, 0, 0, 0, 0, 0], [20, 6, 0, 0, 10, 0]];
     const turned = withPose({ path }, 0, { down: '-z', rotate_deg: [0, 0, 9], depth_mm: 0, shift_mm: [0, 0] }, 50);
     assert.deepEqual(turned.path, path);
+  },
+
+  'beside a path nothing else is said of the way in, whatever is done in whatever order'() {
+    for (let i = 0; i < 200; ++i) {
+      let document: JobDocument = { object: { file: 'a.stl' }, dip: { tilt_deg: angle() % 85, tilt_toward_deg: angle(), roll_deg: i % 3 } };
+      if (i % 4 === 1) document = { object: { file: 'a.stl' }, path: [[0, 0, 0, 0, 0, 0], [20, 6, 0, 0, 10, 0]] };
+      if (i % 4 === 2) document = { dip: { depth_mm: 9 }, dips: [{ down: '-z' }] };
+      for (let step = 0; step < 8; ++step) {
+        const dip = Math.floor(random() * dipCount(document));
+        const [deep, aside] = [Math.floor(random() * 3), Math.floor(random() * 3)];
+        document = [
+          () => withAnotherDip(document),
+          () => withoutDip(document, dip),
+          () => withoutWayOf(document, dip),
+          () => withPose(document, dip, { ...poseOf(document, dip), depth_mm: 10 * deep }, 30),
+          () => withPose(document, dip, { ...poseOf(document, dip), shift_mm: [5 * aside, 0] }, 30),
+        ][Math.floor(random() * 5)]!();
+        assert.ok(saysOneWay(document), JSON.stringify(document));
+      }
+    }
+  },
+
+  'a tilt turned is the pose that it leant to, of one dip and of several'() {
+    for (let i = 0; i < 50; ++i) {
+      const [tilt_deg, tilt_toward_deg] = [60 * random(), 360 * random()];
+      const pose = { down: SIDES[i % 6]!, rotate_deg: [angle(), angle(), angle()] as Vec3 };
+      const toward = (tilt_toward_deg * Math.PI) / 180;
+      const leaning = new Quaternion().setFromAxisAngle(new Vector3(-Math.sin(toward), Math.cos(toward), 0), (tilt_deg * Math.PI) / 180).multiply(turnOf(pose));
+      const dip = { tilt_deg, tilt_toward_deg };
+      for (const document of [{ object: { file: 'a.stl', ...pose }, dip }, { dips: [pose, pose], dip }]) {
+        const turned = withTiltTurned(document);
+        assert.equal(turned.dip, undefined);
+        assert.ok(turnOf(poseOf(turned, 0)).angleTo(leaning) < 0.006, String(i));
+        assert.equal(poseOf(turned, 0).down, pose.down);
+      }
+    }
+  },
+
+  'the only dip takes its shift, depth and correction along into several, and out again'() {
+    const shifted = withPose({ object: { file: 'a.stl' }, film: { correction: 'c.json', width_mm: 99 } }, 0, { down: '-y', rotate_deg: [0, 0, 5], depth_mm: 12, shift_mm: [7, 0] }, 40);
+    const own: JobDocument = { path: [[0, 0, 0, 0, 0, 0], [20, 6, 0, 0, 10, 0]], object: { down: '+x' } };
+    for (const first of [shifted, own]) {
+      const two = withAnotherDip(first);
+      assert.deepEqual(two.dips![0]!.path, first.path);
+      assert.equal(two.path, undefined);
+      assert.deepEqual([two.dips![0]!.correction, two.dips![1]!.correction, two.film?.['correction']], [first.film?.['correction'], undefined, undefined]);
+      assert.equal(two.dips![1]!.path, undefined);
+      assert.ok(equal(withoutDip(two, 1), first), JSON.stringify(withoutDip(two, 1)));
+    }
   },
 
   'a second dip added and removed gives the first pose again'() {

@@ -34,6 +34,14 @@ export function anglesOf(turn: Quaternion, down: Side): Vec3 {
   return [euler.x, euler.y, euler.z].map((angle) => tidy(MathUtils.radToDeg(angle))) as Vec3;
 }
 
+// The angles of what leans over besides, its top towards a direction from +x to +y.
+export function leant(pose: Pick<Pose, 'down' | 'rotate_deg'>, tilt_deg: number, toward_deg: number): Vec3 {
+  const toward = MathUtils.degToRad(toward_deg);
+  const axis = new Vector3(-Math.sin(toward), Math.cos(toward), 0);
+  const lean = new Quaternion().setFromAxisAngle(axis, MathUtils.degToRad(tilt_deg));
+  return anglesOf(lean.multiply(turnOf(pose)), pose.down);
+}
+
 // The smallest turn more that brings a direction of the posed frame down.
 export function turnedDown(turn: Quaternion, direction: Vector3): Quaternion {
   const more = new Quaternion().setFromUnitVectors(direction.clone().normalize(), new Vector3(0, 0, -1));

@@ -19,10 +19,11 @@ interface NumberProps {
   hint?: string;
   name?: string;
   inline?: boolean;
+  disabled?: boolean;
   onChange: (value: number | null, live: boolean) => void;
 }
 
-export function NumberField({ label, value, unit, min, max, step = 1, empty, hint, name, inline, onChange }: NumberProps) {
+export function NumberField({ label, value, unit, min, max, step = 1, empty, hint, name, inline, disabled, onChange }: NumberProps) {
   const id = useId();
   const typed = useSignal<string | null>(null);
   const bad = useSignal(false);
@@ -71,7 +72,7 @@ export function NumberField({ label, value, unit, min, max, step = 1, empty, hin
           inputMode="decimal"
           autocomplete="off"
           spellcheck={false}
-          disabled={readOnly.value}
+          disabled={disabled || readOnly.value}
           placeholder={empty}
           value={typed.value ?? held}
           aria-invalid={bad.value}

@@ -2,7 +2,7 @@
 import { useRef } from 'preact/hooks';
 import { api } from '../api.ts';
 import { isRound, layerName, layerWidth, withLayer, type Layer, type Vec3 } from '../document.ts';
-import { changePose, change, chosenLayer, drawn, job, layer, pose, readOnly, stage, view } from '../studio.ts';
+import { changePose, change, chosenLayer, drawn, job, layer, ownWay, pose, readOnly, stage, view } from '../studio.ts';
 import { t } from '../strings.ts';
 import { resized } from './steps.tsx';
 
@@ -12,7 +12,7 @@ export function DepthHandle() {
   drawn.value;
   const drag = useRef<{ y: number; depth: number; pixel: number } | null>(null);
   const shown = stage.current;
-  if (!shown || readOnly.value || !shown.extent()[2]) return null;
+  if (!shown || readOnly.value || ownWay.value || !shown.extent()[2]) return null;
   const at = shown.waterLineEnd();
   if (at.behind) return null;
   const height = shown.extent()[2];

@@ -4,11 +4,11 @@ import type { ComponentChildren } from 'preact';
 import type { OrientResult, Parameter } from '../api.ts';
 import { api } from '../api.ts';
 import {
-  dipCount, isRound, laidAnew, layerName, layersOf, layerWidth, patched, poseOf, withAnotherDip, withDip, withLayer, withLayerMoved, withNewLayer,
-  withoutDip, withoutLayer, withPose, withValue, type Json, type Layer, type Projection, type Side, type Vec3,
+  dipCount, hasWay, hasWayOfItsOwn, isRound, laidAnew, layerName, layersOf, layerWidth, patched, poseOf, saysAWay, withAnotherDip, withDip, withLayer, withLayerMoved, withNewLayer,
+  withoutDip, withoutLayer, withPose, withValue, type JobDocument, type Json, type Layer, type Projection, type Side, type Vec3,
 } from '../document.ts';
 import {
-  addFiles, allDips, change, changePose, chooseOverlay, chooseTool, defaults, drawn, goToStep, hello, job, layer, overlay, pose, poseOfDip, readOnly, showView, stage, step,
+  addFiles, allDips, change, changePose, chooseOverlay, chooseTool, defaults, drawn, goStraightDown, goToStep, hello, job, layer, overlay, ownWay, pose, poseOfDip, readOnly, showView, stage, step,
   STEPS, tool, value, type StepName,
 } from '../studio.ts';
 import { t } from '../strings.ts';
@@ -50,7 +50,11 @@ function Step({ name, number }: { name: StepName; number: number }) {
   );
 }
 
-const depthText = (depth: number): string => (depth ? t.steps.deep(depth) : t.steps.wholeDepth);
+function depthText(document: JobDocument, dip: number): string {
+  if (hasWayOfItsOwn(document, dip)) return t.steps.ownWay;
+  const { depth_mm } = poseOfDip(document, dip);
+  return depth_mm ? t.steps.deep(depth_mm) : t.steps.wholeDepth;
+}
 
 export function sheetName(): string {
   const [w, h] = [value<number>('film.width_mm'), value<number>('film.height_mm')];
@@ -68,7 +72,7 @@ function summaryOf(name: StepName): string {
     case 'artwork':
       return t.steps.layers(layersOf(document).length);
     case 'dips':
-      return document.dips?.length ? t.steps.manyDips(document.dips.length, open.wholeFinish.value?.covered_share ?? null) : t.steps.oneDip(depthText(pose.value.depth_mm));
+      return document.dips?.length ? t.steps.manyDips(document.dips.length, open.wholeFinish.value?.covered_share ?? null) : t.steps.oneDip(depthText(document, 0));
     case 'film':
       return t.steps.sheet(sheetName(), value<number>('print.dpi'));
   }
@@ -189,8 +193,9 @@ function PoseFields() {
         unit="mm"
         min={0}
         max={5000}
-        empty={t.model.depthWhole}
+        empty={ownWay.value ? t.model.ownWay : t.model.depthWhole}
         hint={t.model.depthHelp}
+        disabled={ownWay.value}
         value={now.depth_mm || null}
         onChange={(next, live) => changePose({ depth_mm: next ?? 0 }, live)}
       />
@@ -205,11 +210,18 @@ function PoseFields() {
             unit="mm"
             min={-2000}
             max={2000}
+            disabled={ownWay.value}
             value={now.shift_mm[k]!}
             onChange={(next, live) => changePose({ shift_mm: now.shift_mm.map((s, i) => (i === k ? (next ?? 0) : s)) as [number, number] }, live)}
           />
         ))}
       </fieldset>
+      {ownWay.value && (
+        <>
+          <p class="soft">{t.model.ownWayHelp}</p>
+          <Button name="straight" label={t.model.straight} changes onClick={goStraightDown} />
+        </>
+      )}
       <div class="row">
         <Button name="face" label={t.model.face} icon="face" changes pressed={tool.value === 'face'} onClick={() => chooseTool('face')} />
       </div>
@@ -511,7 +523,7 @@ function DipRow({ at }: { at: number }) {
         <DipThumbnail at={at} />
         <span>
           <b>{t.dips.dip(at + 1)}</b>
-          <small>{t.model.shortSides[dip.down ?? '-z']}, {depthText(poseOfDip(document, at).depth_mm)}</small>
+          <small>{t.model.shortSides[dip.down ?? '-z']}, {depthText(document, at)}</small>
           {part ? (
             <small><i class="chip" style={{ background: part.color }} />{t.dips.prints(part.part_share)}</small>
           ) : (
@@ -546,7 +558,7 @@ function DipThumbnail({ at }: { at: number }) {
 
 function Tilt() {
   const document = job.value!.document.value;
-  if (document.dips?.length || pose.value.shift_mm.some((s) => s !== 0)) return null;
+  if (document.dips?.length || hasWay(document)) return null;
   const field = (name: string, label: string, min: number, max: number) => (
     <NumberField key={name} name={name.replace('.', '-')} label={label} unit="°" step={5} min={min} max={max} value={value<number>(name)} onChange={(next, live) => setValue(name, next ?? 0, label, live)} />
   );
@@ -684,8 +696,10 @@ const ELSEWHERE = ['object.file', 'object.down', 'object.rotate_deg', 'path', 's
 function Everything() {
   const search = useSignal('');
   const needle = search.value.trim().toLowerCase();
+  const onPaths = hasWay(job.value!.document.value);
+  const isElsewhere = (p: Parameter): boolean => ELSEWHERE.some((name) => p.name === name || (name.endsWith('.') && p.name.startsWith(name)));
   const list = hello.value!.parameters.filter(
-    (p) => !ELSEWHERE.some((name) => p.name === name || (name.endsWith('.') && p.name.startsWith(name))) && `${p.name} ${p.help}`.toLowerCase().includes(needle),
+    (p) => !isElsewhere(p) && !(onPaths && saysAWay(p.name)) && `${p.name} ${p.help}`.toLowerCase().includes(needle),
   );
   return (
     <details class="everything">

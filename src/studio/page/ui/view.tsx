@@ -6,7 +6,7 @@ import type { MeshData, Overlay } from '../api.ts';
 import type { Vec3 } from '../document.ts';
 import { between, fateOf } from '../../../report/viewer/pick.js';
 import {
-  allDips, bigSheet, changePose, chooseOverlay, chooseTool, compare, divider, drawn, job, layer, level, overlay,
+  allDips, bigSheet, changePose, chooseOverlay, chooseTool, compare, divider, drawn, job, layer, level, overlay, ownWay,
   playing, pointed, pose, readOnly, scale, showView, stage, tool, value, view,
 } from '../studio.ts';
 import { Stage, type Compare, type Hit, type LookFrom, type View } from '../stage/stage.ts';
@@ -231,7 +231,7 @@ function Tools() {
   return (
     <div class="tools" role="group" aria-label={t.stage.tools}>
       <Button name="tool-turn" label={t.stage.turn} icon="turn" iconOnly changes pressed={tool.value === 'turn'} onClick={() => chooseTool('turn')} />
-      <Button name="tool-move" label={t.stage.move} icon="move" iconOnly changes pressed={tool.value === 'move'} onClick={() => chooseTool('move')} />
+      <Button name="tool-move" label={t.stage.move} icon="move" iconOnly changes disabled={ownWay.value} pressed={tool.value === 'move'} onClick={() => chooseTool('move')} />
       <Button name="tool-face" label={t.stage.face} icon="face" iconOnly changes pressed={tool.value === 'face'} onClick={() => chooseTool('face')} />
       <Button name="fit" label={t.stage.fit} icon="fit" iconOnly onClick={() => stage.current?.fit()} />
     </div>
