@@ -75,6 +75,7 @@ void add_size(Json& list, const JobConfig& config, const TriangleMesh& posed) {
 }
 
 void add_depth(Json& list, const JobConfig& config, const TriangleMesh& posed) {
+  if (!config.design.trajectory.path.empty()) return;  // which says itself how deep it goes
   for (const RoomFit& fit : fits_of(config, posed, config.design.film)) {
     const double depth = std::floor(fit.available_mm);
     if (!fit.what.starts_with("deep") || fit.excess_mm() <= kTolerance_mm || depth < 1) continue;

@@ -232,6 +232,28 @@ export function withPose(document: JobDocument, dip: number, pose: Pose, height_
   return { ...withGroup(without(document, 'path'), 'dip', settings), object };
 }
 
+// What a patch says of how the only dip hangs and goes in, for one among several; and what else it says.
+export interface PoseInPatch {
+  pose: Partial<Pose>;
+  tilt: { tilt_deg: number; toward_deg: number } | null; // of the pose as it was, instead of any other
+  straight: boolean; // no path any more
+  rest: Patch;
+}
+
+export function poseInPatch({ object, dip, path, ...others }: Patch): PoseInPatch {
+  const { down, rotate_deg, ...ofObject } = (object ?? {}) as Patch;
+  const { depth_mm, tilt_deg, tilt_toward_deg, roll_deg: _, ...ofDip } = (dip ?? {}) as Patch;
+  const pose: Partial<Pose> = {};
+  if (down) pose.down = down as Side;
+  if (rotate_deg) pose.rotate_deg = rotate_deg as Vec3;
+  if (depth_mm !== undefined) pose.depth_mm = plain(depth_mm ?? 0);
+  const rest: Patch = { ...others };
+  if (Object.keys(ofObject).length) rest['object'] = ofObject;
+  if (Object.keys(ofDip).length) rest['dip'] = ofDip;
+  const tilt = tilt_deg === undefined ? null : { tilt_deg: plain(tilt_deg), toward_deg: plain(tilt_toward_deg) };
+  return { pose, tilt, straight: path === null, rest };
+}
+
 // One dip more, turned over, so that it brings what the others leave bare.
 export function withAnotherDip(document: JobDocument): JobDocument {
   const several = document.dips?.length ? document : withFirstDip(document);

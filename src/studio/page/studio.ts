@@ -1,9 +1,11 @@
 // What the page shows beside the job: which step, view and tool, and what the keys do.
 import { computed, signal } from '@preact/signals';
 import { api, type Hello, type Overlay, type Recent } from './api.ts';
-import { hasWayOfItsOwn, layersOf, poseOf, valueOf, withoutWayOf, withPose, withTiltTurned, type Json, type JobDocument, type Pose, type Vec3 } from './document.ts';
+import {
+  hasWay, hasWayOfItsOwn, layersOf, patched, poseInPatch, poseOf, valueOf, withoutWayOf, withPose, withTiltTurned, type Json, type JobDocument, type Patch, type Pose, type Vec3,
+} from './document.ts';
 import { Job } from './job.ts';
-import { heightOf, turnOf } from './stage/pose.ts';
+import { heightOf, leant, turnOf } from './stage/pose.ts';
 import type { Compare, Hit, Stage, Tool, View } from './stage/stage.ts';
 import { t } from './strings.ts';
 
@@ -96,6 +98,26 @@ export function changePose(part: Partial<Pose>, live = false): void {
   const { depth_mm: _, shift_mm: __, ...turns } = part;
   const allowed = ownWay.value ? turns : part;
   if (Object.keys(allowed).length) change((document) => posed(document, open.dip.value, allowed), label, live);
+}
+
+// A change that the program offers. It speaks of an only dip: of several, that of the one that is shown.
+export function applyPatch(patch: Patch, label: string): void {
+  const open = job.value;
+  if (!open) return;
+  const says = (document: JobDocument): boolean => !document.dips?.length && !hasWay(document);
+  change((document) => (says(document) ? patched(document, patch) : patchedDip(document, open.dip.value, patch)), label);
+}
+
+function patchedDip(document: JobDocument, dip: number, patch: Patch): JobDocument {
+  const { pose, tilt, straight, rest } = poseInPatch(patch);
+  let next = patched(document, rest);
+  if (tilt) {
+    const now = { ...poseOf(next, dip), ...pose };
+    pose.rotate_deg = tilt.tilt_deg ? leant(now, tilt.tilt_deg, tilt.toward_deg) : now.rotate_deg;
+    next = withTiltTurned(next);
+  }
+  if (straight) next = withoutWayOf(next, dip);
+  return Object.keys(pose).length ? posed(next, dip, pose) : next;
 }
 
 export function goStraightDown(): void {

@@ -78,12 +78,12 @@ function png(file, width = 64, height = 48) {
   writeFileSync(file, Buffer.concat([signature, pngChunk('IHDR', head), pngChunk('IDAT', deflateSync(rows)), pngChunk('IEND', Buffer.alloc(0))]));
 }
 
-// A dome, 60 mm wide and 20 mm deep, as people bring it: an STL without colours. It dips towards -z.
-function stl(file) {
+// Part of a bowl about the z axis, 60 mm wide at z = `rim_mm`, round towards z = `pole_mm`.
+function bowl(rim_mm, pole_mm, radius_mm = 30) {
   const corner = (i, j) => {
     const a = (2 * Math.PI * j) / 24;
     const t = (Math.PI / 2) * (i / 8);
-    return [30 * Math.sin(t) * Math.cos(a), 30 * Math.sin(t) * Math.sin(a), 20 - 20 * Math.cos(t)];
+    return [radius_mm * Math.sin(t) * Math.cos(a), radius_mm * Math.sin(t) * Math.sin(a), rim_mm + (pole_mm - rim_mm) * Math.cos(t)];
   };
   const triangles = [];
   for (let i = 0; i < 8; ++i)
@@ -92,14 +92,34 @@ function stl(file) {
       if (i > 0) triangles.push([a, d, b]);
       triangles.push([b, d, c]);
     }
-  for (let j = 0; j < 24; ++j) triangles.push([[0, 0, 20], corner(8, j), corner(8, j + 1)]);
+  return { triangles, rim: (j) => corner(8, j) };
+}
+
+function writeStl(file, triangles) {
   const text = triangles.map((t) => ` facet normal 0 0 0\n  outer loop\n${t.map((p) => `   vertex ${p.map((c) => c.toFixed(5)).join(' ')}\n`).join('')}  endloop\n endfacet\n`);
-  writeFileSync(file, `solid dome\n${text.join('')}endsolid dome\n`);
+  writeFileSync(file, `solid toy\n${text.join('')}endsolid toy\n`);
+}
+
+const SECTORS = [...Array(24).keys()];
+
+// A dome, 60 mm wide and 20 mm deep, as people bring it: an STL without colours. It dips towards -z.
+function domeStl(file) {
+  const { triangles, rim } = bowl(20, 0);
+  writeStl(file, [...triangles, ...SECTORS.map((j) => [[0, 0, 20], rim(j), rim(j + 1)])]);
+}
+
+// A bowl upside down, which keeps air until it leans over.
+function bellStl(file) {
+  const [outside, inside] = [bowl(0, 14), bowl(0, 10, 26)];
+  const turned = (t) => [...t].reverse();
+  const lip = SECTORS.flatMap((j) => [[outside.rim(j), inside.rim(j), inside.rim(j + 1)], [outside.rim(j), inside.rim(j + 1), outside.rim(j + 1)]]);
+  writeStl(file, [...outside.triangles.map(turned), ...inside.triangles, ...lip]);
 }
 
 png(join(work, 'logo.png'));
 png(join(work, 'tile.png'), 32, 32);
-stl(join(work, 'dome.stl'));
+domeStl(join(work, 'dome.stl'));
+bellStl(join(work, 'bell.stl'));
 writeFileSync(join(work, 'broken.png'), 'This is no picture.');
 
 const program = new Program(hydrodip);
@@ -547,6 +567,37 @@ test('a way of its own says depth and shift; straight down they are the person\'
   await type(lone, 'depth', 8);
   await until('the depth', async () => (await documentOf(lone)).dip.depth_mm === 8);
   assert.equal(await outcome(lone, before), 'a result');
+});
+
+test('a mend of one dip among several mends that one', async () => {
+  const dip = (angle) => ({ down: '-z', rotate_deg: [0, 0, angle], depth_mm: 50 });
+  await openQuick(lone, 'sphere', { dips: [dip(0), dip(30)] });
+  await lone.keyboard.press('3');
+  await lone.click('[data-dip="1"]');
+  const mend = lone.locator('.side [data-name="mend"]', { hasText: /^Dip .* mm only$/ });
+  await mend.waitFor();
+  const depth = Number((await mend.textContent()).match(/[\d.]+/)[0]);
+  await mend.click();
+  await until('less depth', async () => (await documentOf(lone)).dips[1].depth_mm === depth);
+  const { dips, dip: all } = await documentOf(lone);
+  assert.deepEqual(dips, [dip(0), { ...dip(30), depth_mm: depth }]);
+  assert.equal(all.depth_mm, undefined);
+});
+
+test('air is let out of one dip among several by turning that one', async () => {
+  const dip = { down: '-z', rotate_deg: [0, 0, 0], depth_mm: 0 };
+  await openQuick(lone, 'box', { dip: { step_mm: 1 }, dips: [dip, dip] }); // with all the cells that advice on air needs
+  await lone.keyboard.press('1');
+  await lone.setInputFiles('[name="open-model"]', join(work, 'bell.stl'));
+  await lone.keyboard.press('3');
+  await lone.click('[data-dip="1"]');
+  const mend = lone.locator('.side [data-name="mend"]', { hasText: /^Tilt it by/ });
+  await mend.waitFor();
+  await mend.click();
+  await until('a turn', async () => (await documentOf(lone)).dips[1].rotate_deg.some((angle) => angle !== 0));
+  const { dips, dip: all } = await documentOf(lone);
+  assert.deepEqual(dips[0], dip);
+  assert.equal(all.tilt_deg, undefined);
 });
 
 // ---- Artwork ----

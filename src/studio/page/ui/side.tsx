@@ -1,7 +1,6 @@
 // The right side: the sheet and what to mind.
 import type { Finding, Mend } from '../api.ts';
-import { patched } from '../document.ts';
-import { change, chooseOverlay, goToStep, job, showView, stage, view } from '../studio.ts';
+import { applyPatch, chooseOverlay, goToStep, job, showView, stage, view } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button } from './fields.tsx';
 import { Icon } from './icons.tsx';
@@ -30,7 +29,7 @@ export function applyMend(mend: Mend): void {
     void job.value?.start(mend.task.kind, { best: 3 });
     return;
   }
-  change((document) => patched(document, mend.patch), t.undo.mend(mend.text));
+  applyPatch(mend.patch, t.undo.mend(mend.text));
 }
 
 function Mends({ mends }: { mends: Mend[] }) {

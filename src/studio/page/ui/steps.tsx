@@ -4,11 +4,11 @@ import type { ComponentChildren } from 'preact';
 import type { OrientResult, Parameter } from '../api.ts';
 import { api } from '../api.ts';
 import {
-  dipCount, hasWay, hasWayOfItsOwn, isRound, laidAnew, layerName, layersOf, layerWidth, patched, poseOf, saysAWay, withAnotherDip, withDip, withLayer, withLayerMoved, withNewLayer,
-  withoutDip, withoutLayer, withPose, withValue, type JobDocument, type Json, type Layer, type Projection, type Side, type Vec3,
+  dipCount, hasWay, hasWayOfItsOwn, isRound, laidAnew, layerName, layersOf, layerWidth, patched, saysAWay, withAnotherDip, withDip, withLayer, withLayerMoved, withNewLayer,
+  withoutDip, withoutLayer, withValue, type JobDocument, type Json, type Layer, type Projection, type Side, type Vec3,
 } from '../document.ts';
 import {
-  addFiles, allDips, change, changePose, chooseOverlay, chooseTool, defaults, drawn, goStraightDown, goToStep, hello, job, layer, overlay, ownWay, pose, poseOfDip, readOnly, showView, stage, step,
+  addFiles, allDips, applyPatch, change, changePose, chooseOverlay, chooseTool, defaults, drawn, goStraightDown, goToStep, hello, job, layer, overlay, ownWay, pose, poseOfDip, readOnly, showView, stage, step,
   STEPS, tool, value, type StepName,
 } from '../studio.ts';
 import { t } from '../strings.ts';
@@ -263,14 +263,7 @@ function Orient() {
                 disabled={readOnly.value}
                 aria-label={`${t.model.waysLabel(k + 1)}: ${way.text}`}
                 title={way.text}
-                onClick={() => {
-                  const dip = open.dip.value;
-                  change((document) => {
-                    if (!document.dips?.length) return patched(document, way.patch);
-                    const hung = poseOf(patched({}, way.patch), 0);
-                    return withPose(document, dip, hung, hung.depth_mm);
-                  }, t.undo.hold);
-                }}
+                onClick={() => applyPatch(way.patch, t.undo.hold)}
               >
                 <img src={way.picture} alt="" />
                 <span>
