@@ -344,8 +344,7 @@ std::optional<TearLimit> read_tear_limit(const JobConfig& config, const Calibrat
 }
 
 // Before hours are spent: the dome has to fit, and the rings have to be rings.
-void check_tear_readings(const JobConfig& config, const CalibrationRequest& request,
-                         const RunContext& context) {
+void check_tear_readings(const JobConfig& config, const CalibrationRequest& request) {
   if (request.torn_rings.empty()) return;
   const CalibrationObject dome = tear_dome();
   require_room_for_shape(dome, config);
@@ -475,7 +474,7 @@ JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& reques
   const Board& board = setup.settings.board;
   if (config.design.dip.method != DipMethod::kFull)
     throw InputError("calibrate: only --method full has parameters to calibrate");
-  check_tear_readings(config, request, context);
+  check_tear_readings(config, request);
   const std::vector<Subject> subjects =
       load_subjects(request.scans, setup.settings, config, context);
   require_different(subjects);

@@ -79,13 +79,14 @@ TriangleMesh mesh_of(const KitShape& shape) {
 
 void require_room_for_shape(const CalibrationObject& shape, const JobConfig& config) {
   constexpr double kRounding_mm = 0.01;
-  for (const RoomFit& fit :
-       fits(shape.object, room_of(shape.object, shape.depth_mm), config.design.film, config.bath))
+  const double size_mm = shape.object.bounds().size().maxCoeff();
+  const Room room = room_of(shape.object, shape.depth_mm);
+  for (const RoomFit& fit : fits(size_mm, room, config.design.film, config.bath))
     if (fit.excess_mm() > kRounding_mm)
       throw InputError(fmt::format(
           "{}: the shape is {:.1f} mm {} as it dips, {:.1f} more than {} has: take a larger "
-          "--film, "
-          "give the size of a larger bath (bath.width_mm, ...), or name smaller shapes, as sphere, "
+          "--film, give the size of a larger bath (bath.width_mm, ...), or name smaller shapes, as "
+          "sphere, "
           "pyramid and ellipsoid",
           shape.name, fit.needed_mm, fit.what, fit.excess_mm(), fit.room));
 }
@@ -95,20 +96,24 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
   const auto [name, depth] = split_depth(text);
   CalibrationObject result;
   result.name = name;
+  double size_mm = 0;
   if (const KitShape* shape = find_shape(name)) {
     result.is_known_shape = true;
     result.object = mesh_of(*shape);
+    size_mm = result.object.bounds().size().maxCoeff();
     result.depth_mm = depth > 0 ? depth : shape->depth_mm;
     require_room_for_shape(result, config);
   } else {
-    result.object = prepare_object(name, config.object, context).posed.mesh();
+    const PosedObject posed = prepare_object(name, config.object, context).posed;
+    result.object = posed.mesh();
+    size_mm = posed.size_mm();
     result.name = std::filesystem::path(name).stem().string();
     TrajectoryOptions way = config.design.trajectory;
     if (depth > 0) way.depth_mm = depth;
     result.depth_mm = make_trajectory(way, result.object.positions).depth_mm();
   }
-  require_fit(result.object, room_of(result.object, result.depth_mm), config.design.film,
-              config.bath, context);
+  require_fit(size_mm, room_of(result.object, result.depth_mm), config.design.film, config.bath,
+              context);
   return result;
 }
 

@@ -53,22 +53,21 @@ double worst_excess_mm(const std::vector<RoomFit>& list) {
   return worst;
 }
 
-FilmChoice try_film(const TriangleMesh& posed, const Room& room, FilmOptions film,
-                    const BathOptions& bath, const std::string& name, double width_mm,
-                    double height_mm) {
+FilmChoice try_film(double size_mm, const Room& room, FilmOptions film, const BathOptions& bath,
+                    const std::string& name, double width_mm, double height_mm) {
   film.width_mm = width_mm;
   film.height_mm = height_mm;
-  return {name, width_mm, height_mm, worst_excess_mm(film_fits(posed, room, film)),
+  return {name, width_mm, height_mm, worst_excess_mm(film_fits(size_mm, room, film)),
           sheet_fits_bath(film, bath)};
 }
 
-std::vector<FilmChoice> film_choices(const TriangleMesh& posed, const Room& room,
-                                     const FilmOptions& film, const BathOptions& bath) {
+std::vector<FilmChoice> film_choices(double size_mm, const Room& room, const FilmOptions& film,
+                                     const BathOptions& bath) {
   std::vector<FilmChoice> list;
   for (const FilmFormat& format : film_formats()) {
     list.push_back(
-        try_film(posed, room, film, bath, format.name, format.width_mm, format.height_mm));
-    list.push_back(try_film(posed, room, film, bath, format.name + "-landscape", format.height_mm,
+        try_film(size_mm, room, film, bath, format.name, format.width_mm, format.height_mm));
+    list.push_back(try_film(size_mm, room, film, bath, format.name + "-landscape", format.height_mm,
                             format.width_mm));
   }
   return list;
@@ -242,8 +241,8 @@ JobResult inspect_job(const JobConfig& given, const RunContext& context) {
                               prepared,
                               room.depth_mm,
                               direction_at,
-                              fits(mesh, room, film, config.bath),
-                              film_choices(mesh, room, film, config.bath),
+                              fits(prepared.posed.size_mm(), room, film, config.bath),
+                              film_choices(prepared.posed.size_mm(), room, film, config.bath),
                               dip_angles(mesh, direction_at),
                               context.warnings()};
   JobResult result;

@@ -167,7 +167,7 @@ MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const 
                 int(k) + 1};
     const Trajectory way = make_trajectory(dip.config.design.trajectory, posed.mesh().positions);
     const Room room = room_of(posed.mesh(), way);
-    require_fit(posed.mesh(), room, config.design.film, config.bath, context);
+    require_fit(posed.size_mm(), room, config.design.film, config.bath, context);
     require_correction_fits(dip.config, posed, room.depth_mm);
     all.dips.push_back(std::move(dip));
   }

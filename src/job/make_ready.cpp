@@ -25,7 +25,7 @@ ReadyJob make_ready(const JobConfig& given, bool to_print, Timings& times,
   const TriangleMesh& mesh = prepared.posed.mesh();
   Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
   const Room room = room_of(mesh, trajectory);
-  require_fit(mesh, room, config.design.film, config.bath, context);
+  require_fit(prepared.posed.size_mm(), room, config.design.film, config.bath, context);
   require_correction_fits(config, prepared.posed, room.depth_mm);
   Printer printer = make_printer(config.printer);
   return {std::move(config), std::move(prepared), std::move(trajectory), std::move(printer)};

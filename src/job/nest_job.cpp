@@ -193,7 +193,7 @@ void share_out_film(Nest& nest, const FilmOptions& sheet, std::optional<double> 
         nest.pieces.size(), part.name(), part.film().width_mm, part.film().height_mm));
   }
   for (const Part& part : nest.parts) {
-    require_fit(part.job.prepared.posed.mesh(), part.room, part.film(), part.job.config.bath,
+    require_fit(part.job.prepared.posed.size_mm(), part.room, part.film(), part.job.config.bath,
                 context);
     require_on_film(part.job.prepared, part.film());
   }

@@ -163,7 +163,8 @@ JobResult pattern_job(const JobConfig& given, const PatternRequest& request,
   find_what_is_asked(config, prepared, context);
   const TriangleMesh& mesh = prepared.posed.mesh();
   const Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
-  require_fit(mesh, room_of(mesh, trajectory), config.design.film, config.bath, quiet);
+  require_fit(prepared.posed.size_mm(), room_of(mesh, trajectory), config.design.film, config.bath,
+              quiet);
   const DippedObject dipped = trial_dip(config, prepared, request.compensate, context);
   const TilePlace place = place_of(request, *tile, tile_mm, pieces_of(dipped, request));
 

@@ -12,4 +12,6 @@ PosedObject::PosedObject(std::shared_ptr<const Object> object, const PoseOptions
   surface_ = std::make_shared<Surface>(mesh_);
 }
 
+double PosedObject::size_mm() const { return scale() * object_->bounds().size().maxCoeff(); }
+
 }  // namespace hydrodip

@@ -27,6 +27,8 @@ class PosedObject {
   const Eigen::Matrix4d& matrix() const { return matrix_; }
   // Lengths in the posed-object frame over those in the model's.
   double scale() const { return matrix_.col(0).head<3>().norm(); }
+  // Largest extent of the object's own box, before it is turned: what PoseOptions calls its size.
+  double size_mm() const;
   // Of directions, from the model's frame to the posed-object frame.
   Mat3 turn() const { return matrix_.topLeftCorner<3, 3>() / scale(); }
 

@@ -51,25 +51,24 @@ void add_wet_part(Room& room, const TriangleMesh& posed, const Moment& moment) {
 }
 
 // "--size 71": the largest extent at which the object would just fit; "" if size cannot help.
-std::string shrunk_size(const TriangleMesh& posed, double needed_mm, double available_mm) {
-  const double size = std::floor(posed.bounds().size().maxCoeff() * available_mm / needed_mm);
+std::string shrunk_size(double size_mm, double needed_mm, double available_mm) {
+  const double size = std::floor(size_mm * available_mm / needed_mm);
   return size >= 1 ? fmt::format("--size {:.0f} or less", size) : "--size";
 }
 
-RoomFit film_fit(const TriangleMesh& posed, const std::string& what, double needed_mm,
-                 double available_mm) {
+RoomFit film_fit(double size_mm, const std::string& what, double needed_mm, double available_mm) {
   const std::string remedy =
       fmt::format("shrink it with {}, turn it with --rotate, or take a larger --film",
-                  shrunk_size(posed, needed_mm, available_mm));
+                  shrunk_size(size_mm, needed_mm, available_mm));
   return {what, "the free film inside the taped rim", needed_mm, available_mm, remedy};
 }
 
-RoomFit bath_fit(const TriangleMesh& posed, const std::string& what, double needed_mm,
-                 double available_mm, const std::string& parameter) {
+RoomFit bath_fit(double size_mm, const std::string& what, double needed_mm, double available_mm,
+                 const std::string& parameter) {
   const std::string remedy = fmt::format(
       "shrink it with {}, turn it with --rotate or --down, or give the size of your bath with "
       "--set {}=...",
-      shrunk_size(posed, needed_mm, available_mm), parameter);
+      shrunk_size(size_mm, needed_mm, available_mm), parameter);
   return {what, "the bath", needed_mm, available_mm, remedy};
 }
 
@@ -80,29 +79,29 @@ Vec2 bath_along_film(const FilmOptions& film, const BathOptions& bath) {
   return film.width_mm > film.height_mm ? Vec2(longer, shorter) : Vec2(shorter, longer);
 }
 
-void add_film_fits(std::vector<RoomFit>& list, const TriangleMesh& posed, const Room& footprint,
+void add_film_fits(std::vector<RoomFit>& list, double size_mm, const Room& footprint,
                    const FilmOptions& film) {
   if (film.shape == FilmShape::kDisc) {
     const double diameter = std::min(film.width_mm, film.height_mm) - 2 * film.margin_mm;
-    list.push_back(film_fit(posed, "across", 2 * footprint.radius_mm, diameter));
+    list.push_back(film_fit(size_mm, "across", 2 * footprint.radius_mm, diameter));
     return;
   }
-  list.push_back(
-      film_fit(posed, "wide (x)", 2 * footprint.half_width_mm, film.width_mm - 2 * film.margin_mm));
-  list.push_back(film_fit(posed, "long (y)", 2 * footprint.half_height_mm,
+  list.push_back(film_fit(size_mm, "wide (x)", 2 * footprint.half_width_mm,
+                          film.width_mm - 2 * film.margin_mm));
+  list.push_back(film_fit(size_mm, "long (y)", 2 * footprint.half_height_mm,
                           film.height_mm - 2 * film.margin_mm));
 }
 
-void add_bath_fits(std::vector<RoomFit>& list, const TriangleMesh& posed, const Room& footprint,
+void add_bath_fits(std::vector<RoomFit>& list, double size_mm, const Room& footprint,
                    const FilmOptions& film, const BathOptions& tank) {
   const Vec2 bath = bath_along_film(film, tank);
   const bool x_by_width = (film.width_mm > film.height_mm) == (tank.width_mm >= tank.height_mm);
   const char *of_x = "bath.width_mm", *of_y = "bath.height_mm";
   if (!x_by_width) std::swap(of_x, of_y);
-  list.push_back(bath_fit(posed, "wide (x)", 2 * footprint.half_width_mm, bath.x(), of_x));
-  list.push_back(bath_fit(posed, "long (y)", 2 * footprint.half_height_mm, bath.y(), of_y));
+  list.push_back(bath_fit(size_mm, "wide (x)", 2 * footprint.half_width_mm, bath.x(), of_x));
+  list.push_back(bath_fit(size_mm, "long (y)", 2 * footprint.half_height_mm, bath.y(), of_y));
   RoomFit depth =
-      bath_fit(posed, "deep in the water", footprint.depth_mm, tank.depth_mm, "bath.depth_mm");
+      bath_fit(size_mm, "deep in the water", footprint.depth_mm, tank.depth_mm, "bath.depth_mm");
   depth.remedy = "dip less of it with --depth, " + depth.remedy;
   list.push_back(depth);
 }
@@ -148,17 +147,16 @@ Room room_of(const TriangleMesh& posed, const Trajectory& trajectory) {
   return room;
 }
 
-std::vector<RoomFit> film_fits(const TriangleMesh& posed, const Room& room,
-                               const FilmOptions& film) {
+std::vector<RoomFit> film_fits(double size_mm, const Room& room, const FilmOptions& film) {
   std::vector<RoomFit> list;
-  add_film_fits(list, posed, room, film);
+  add_film_fits(list, size_mm, room, film);
   return list;
 }
 
-std::vector<RoomFit> fits(const TriangleMesh& posed, const Room& room, const FilmOptions& film,
+std::vector<RoomFit> fits(double size_mm, const Room& room, const FilmOptions& film,
                           const BathOptions& bath) {
-  std::vector<RoomFit> list = film_fits(posed, room, film);
-  add_bath_fits(list, posed, room, film, bath);
+  std::vector<RoomFit> list = film_fits(size_mm, room, film);
+  add_bath_fits(list, size_mm, room, film, bath);
   return list;
 }
 
@@ -167,10 +165,10 @@ bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath) {
   return film.width_mm <= room.x() && film.height_mm <= room.y();
 }
 
-void require_fit(const TriangleMesh& posed, const Room& room, const FilmOptions& film,
-                 const BathOptions& bath, const RunContext& context) {
+void require_fit(double size_mm, const Room& room, const FilmOptions& film, const BathOptions& bath,
+                 const RunContext& context) {
   half_of_free_film(film);  // throws where there is none
-  const std::vector<RoomFit> list = fits(posed, room, film, bath);
+  const std::vector<RoomFit> list = fits(size_mm, room, film, bath);
   for (const RoomFit& fit : list)
     if (fit.excess_mm() > kFitTolerance_mm)
       throw InputError(fmt::format(

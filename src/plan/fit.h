@@ -38,12 +38,12 @@ struct Room {
 Room room_of(const TriangleMesh& posed, const Trajectory& trajectory);
 Room room_of(const TriangleMesh& posed, double depth_mm);  // straight down
 
-// Every direction in which it has to fit the film.
-std::vector<RoomFit> film_fits(const TriangleMesh& posed, const Room& room,
-                               const FilmOptions& film);
+// Every direction in which it has to fit the film. `size_mm`, here and below: the object's own
+// largest extent (PosedObject::size_mm), of which remedies speak.
+std::vector<RoomFit> film_fits(double size_mm, const Room& room, const FilmOptions& film);
 
 // Film first, then the bath.
-std::vector<RoomFit> fits(const TriangleMesh& posed, const Room& room, const FilmOptions& film,
+std::vector<RoomFit> fits(double size_mm, const Room& room, const FilmOptions& film,
                           const BathOptions& bath);
 
 // Whether the whole sheet, margin included, lies flat in the bath.
@@ -51,7 +51,7 @@ bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath);
 
 // Throws InputError for the first that does not fit, saying by how much and how to mend it. Warns
 // about a sheet larger than the bath and about little film around the object.
-void require_fit(const TriangleMesh& posed, const Room& room, const FilmOptions& film,
-                 const BathOptions& bath, const RunContext& context);
+void require_fit(double size_mm, const Room& room, const FilmOptions& film, const BathOptions& bath,
+                 const RunContext& context);
 
 }  // namespace hydrodip

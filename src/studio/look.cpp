@@ -94,9 +94,9 @@ void require_sensible_size(const JobConfig& config, const TriangleMesh& posed) {
 void require_room(const JobConfig& config, const PosedObject& posed, const RunContext& context) {
   const TriangleMesh& mesh = posed.mesh();
   const std::string how = misfit(config, mesh);
-  if (!how.empty()) refuse("input", how, room_mends(config, mesh));
+  if (!how.empty()) refuse("input", how, room_mends(config, posed));
   const Trajectory way = make_trajectory(config.design.trajectory, mesh.positions);
-  require_fit(mesh, room_of(mesh, way), config.design.film, config.bath, context);
+  require_fit(posed.size_mm(), room_of(mesh, way), config.design.film, config.bath, context);
 }
 
 // ---- packing ----

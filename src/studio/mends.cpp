@@ -14,13 +14,14 @@ namespace {
 
 constexpr double kTolerance_mm = 1e-6;
 constexpr double kBesides_mm = 10;  // on both sides together
+constexpr int kMostGuesses = 12;
 // Film torn up to that share of what lies on the object at that depth is none for a hand.
 constexpr double kHardlyTorn = 0.003;
 
 std::vector<RoomFit> fits_of(const JobConfig& config, const TriangleMesh& posed,
                              const FilmOptions& film) {
   const Trajectory way = make_trajectory(config.design.trajectory, posed.positions);
-  return fits(posed, room_of(posed, way), film, config.bath);
+  return fits(posed.bounds().size().maxCoeff(), room_of(posed, way), film, config.bath);
 }
 
 // With film left beside the object to stretch.
@@ -60,17 +61,36 @@ void add_film(Json& list, const JobConfig& config, const TriangleMesh& posed) {
     }
 }
 
-void add_size(Json& list, const JobConfig& config, const TriangleMesh& posed) {
+// How much smaller it would have to be for the tightest of them, if all of it grew smaller alike.
+double tightest(const std::vector<RoomFit>& list) {
   double ratio = 1;
-  for (const RoomFit& fit : fits_of(config, posed, config.design.film))
+  for (const RoomFit& fit : list)
     if (fit.needed_mm > 0)
       ratio = std::min(ratio, (fit.available_mm - comfort_mm(fit)) / fit.needed_mm);
-  // Largest extent of the model itself, which is what a size means, is not known here: the ratio
-  // is.
-  const double largest = config.object.pose.size_mm > 0 ? config.object.pose.size_mm
-                                                        : posed.bounds().size().maxCoeff();
-  const double size = std::floor(largest * ratio);
-  if (ratio > 0 && size >= 1)
+  return ratio;
+}
+
+TriangleMesh shrunk(TriangleMesh posed, double share) {
+  for (Vec3& p : posed.positions) p *= share;
+  return posed;
+}
+
+// The largest at which it fits; 0: it was not found. At a given depth more of a smaller object gets
+// wet, so that it does not grow smaller alike.
+double fitting_size(const JobConfig& config, const PosedObject& posed) {
+  double size = posed.size_mm();
+  for (int guess = 0; guess < kMostGuesses && size >= 1; ++guess) {
+    const TriangleMesh mesh = shrunk(posed.mesh(), size / posed.size_mm());
+    const std::vector<RoomFit> list = fits_of(config, mesh, config.design.film);
+    if (all_fit(list)) return size;
+    size = std::floor(size * std::max(0.0, tightest(list)));
+  }
+  return 0;
+}
+
+void add_size(Json& list, const JobConfig& config, const PosedObject& posed) {
+  const double size = fitting_size(config, posed);
+  if (size >= 1)
     list.push_back(mend(fmt::format("Make it {:.0f} mm", size), {{"object", {{"size_mm", size}}}}));
 }
 
@@ -89,10 +109,10 @@ void add_depth(Json& list, const JobConfig& config, const TriangleMesh& posed) {
 
 }  // namespace
 
-Json room_mends(const JobConfig& config, const TriangleMesh& posed) {
+Json room_mends(const JobConfig& config, const PosedObject& posed) {
   Json list = Json::array();
-  add_film(list, config, posed);
-  add_depth(list, config, posed);
+  add_film(list, config, posed.mesh());
+  add_depth(list, config, posed.mesh());
   add_size(list, config, posed);
   return list;
 }

@@ -8,7 +8,7 @@
 namespace hydrodip {
 
 // For an object that does not fit film or bath: a larger sheet, a smaller object, less depth.
-Json room_mends(const JobConfig& config, const TriangleMesh& posed);
+Json room_mends(const JobConfig& config, const PosedObject& posed);
 
 // How it does not fit, in one sentence; empty if it does.
 std::string misfit(const JobConfig& config, const TriangleMesh& posed);

@@ -4,6 +4,8 @@
 
 #include "base/error.h"
 #include "contains.h"
+#include "object/posed_object.h"
+#include "samples/samples.h"
 
 namespace hydrodip {
 namespace {
@@ -16,6 +18,8 @@ TriangleMesh funnel() {
   return object;
 }
 
+double size_of(const TriangleMesh& object) { return object.bounds().size().maxCoeff(); }
+
 struct Room {
   FilmOptions film = {};
   BathOptions bath = {};
@@ -25,7 +29,7 @@ struct Room {
 std::string fit_error(const TriangleMesh& object, const Room& room) {
   RunContext context;
   try {
-    require_fit(object, room_of(object, room.depth_mm), room.film, room.bath, context);
+    require_fit(size_of(object), room_of(object, room.depth_mm), room.film, room.bath, context);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -75,13 +79,13 @@ TEST(Fit, WarnsAboutAFilmLargerThanTheBathAndAboutATightOne) {
   Room room;
   RunContext context;
   room.film = {297, 420, FilmShape::kRectangle, 10, 1000};
-  require_fit(funnel(), room_of(funnel(), room.depth_mm), room.film, room.bath, context);
+  require_fit(size_of(funnel()), room_of(funnel(), room.depth_mm), room.film, room.bath, context);
   ASSERT_EQ(context.warnings().size(), 1u);
   EXPECT_TRUE(contains(context.warnings()[0], "larger than the bath"));
 
   RunContext tight;
   room.film = {122, 297, FilmShape::kRectangle, 10, 1000};
-  require_fit(funnel(), room_of(funnel(), room.depth_mm), room.film, room.bath, tight);
+  require_fit(size_of(funnel()), room_of(funnel(), room.depth_mm), room.film, room.bath, tight);
   ASSERT_EQ(tight.warnings().size(), 1u);
   EXPECT_TRUE(contains(tight.warnings()[0], "Only 1 mm of free film"));
 }
@@ -92,12 +96,31 @@ TEST(Fit, WarnsOfLessThanFiveMillimetresOnASide) {
     Room room;
     room.film = {100 + 20 + 2 * on_a_side_mm, 297, FilmShape::kRectangle, 10, 1000};
     RunContext context;
-    require_fit(funnel(), room_of(funnel(), room.depth_mm), room.film, room.bath, context);
+    require_fit(size_of(funnel()), room_of(funnel(), room.depth_mm), room.film, room.bath, context);
     ASSERT_EQ(context.warnings().size(), warnings) << on_a_side_mm;
     if (warnings > 0) {
       EXPECT_TRUE(contains(context.warnings()[0], "Only 4.9 mm of free film"));
     }
   }
+}
+
+// A size is the object's own, however it hangs.
+TEST(Fit, TheSizeThatIsToldFits) {
+  const auto pyramid = std::make_shared<const Object>(make_sample("pyramid"));
+  const auto error_at = [&](double size_mm) {
+    const PosedObject posed(pyramid, {.size_mm = size_mm, .rotate_deg = {0, 0, 45}});
+    const FilmOptions film{80, 80, FilmShape::kRectangle, 10, 1000};
+    RunContext context;
+    try {
+      require_fit(posed.size_mm(), room_of(posed.mesh(), 100), film, {}, context);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_TRUE(contains(error_at(60), "--size 42 or less")) << error_at(60);  // 60 / sqrt(2)
+  EXPECT_EQ(error_at(42), "");
+  EXPECT_NE(error_at(43), "");
 }
 
 TEST(Fit, AHugeMisfitAsksForTheUnits) {
