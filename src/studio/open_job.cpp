@@ -919,6 +919,7 @@ std::string OpenJob::start_task(const Json& request) {
     if (task.config.plan.dips < 1 || task.config.plan.dips > kMostDips)
       throw ApiError(422, "bad-value", fmt::format("A job has 1 to {} dips.", kMostDips),
                      "plan.dips");
+    task.dips = document_.value("dips", Json::array());
   }
   if (kind == "orient") {
     // Looked for anew, whatever is said now; the depth too.

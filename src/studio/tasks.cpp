@@ -180,6 +180,22 @@ Json orient_result(const TaskRequest& request, const RunContext& context) {
   return result;
 }
 
+// What was locked stays so, and a correction is of a pose: of the job's dip that is held so.
+void keep_own(Json& planned, const TaskRequest& request) {
+  const std::vector<DipEntry>& dips = request.config.dips;
+  const PoseOptions& usual = request.config.object.pose;
+  for (std::size_t k = 0; k < dips.size(); ++k) {
+    const Vec3 rotate = dips[k].rotate_deg.value_or(usual.rotate_deg);
+    if (!(dips[k].rotate_deg || dips[k].locked) ||
+        planned["down"] != side_name(dips[k].down.value_or(usual.down)) ||
+        planned["rotate_deg"] != Json({rotate.x(), rotate.y(), rotate.z()}))
+      continue;
+    if (dips[k].locked) planned["locked"] = true;
+    if (!dips[k].correction.empty()) planned["correction"] = request.dips[k]["correction"];
+    return;
+  }
+}
+
 Json plan_result(const TaskRequest& request, const RunContext& context) {
   JobConfig config = request.config;
   config.output = request.folder;
@@ -202,12 +218,7 @@ Json plan_result(const TaskRequest& request, const RunContext& context) {
       entry["depth_mm"] = dip["depth_mm"];
     else
       entry["path"] = dip["path"];
-    // What was locked stays so.
-    for (const DipEntry& given : request.config.dips)
-      if (given.locked && given.rotate_deg &&
-          Json({given.rotate_deg->x(), given.rotate_deg->y(), given.rotate_deg->z()}) ==
-              dip["rotate_deg"])
-        entry["locked"] = true;
+    keep_own(entry, request);
     patch.push_back(entry);
   }
   return {{"covered_share", covered}, {"dips", dips}, {"patch", {{"dips", patch}}}};

@@ -21,6 +21,7 @@ struct TaskRequest {
   JobConfig config;               // of orient and plan: as it is
   std::filesystem::path job;      // of print: its job file, from which the bytes are made
   std::filesystem::path folder;   // where its files go
+  Json dips;                      // of plan: the document's, which names files as the page does
   std::string address;            // of these files for the page
   std::filesystem::path uploads;  // whose files sentences call by their names alone
 };

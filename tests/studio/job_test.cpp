@@ -507,6 +507,38 @@ TEST_F(JobTest, AWayThatIsFoundCanBeTaken) {
   EXPECT_NEAR(result.head["figures"]["covered_share"], ways[0]["covered_share"], 0.08);
 }
 
+// A correction of which no more is read than that it is one.
+constexpr const char* kNoMove = R"({"schema_version": 1, "samples": [],
+  "grid": {"first_mm": [-80, -80], "pitch_mm": 160, "nx": 2, "ny": 2, "move_mm": [[0,0],[0,0],[0,0],[0,0]]},
+  "of": {"model": {"path": "", "sha256": "", "shape_sha256": ""},
+    "to_posed": [[1,0,0],[0,1,0],[0,0,1]], "size_mm": [60,60,24], "depth_mm": 10,
+    "film": {"width_mm": 150, "height_mm": 150, "margin_mm": 10, "swelling_x": 1, "swelling_y": 1},
+    "material": {"z_stretch": 1, "poisson": 0.5, "ink_stiffness_ratio": 1}}})";
+
+// Also of a dip of which no turn is said, for it hangs as the object does.
+TEST_F(JobTest, APlanKeepsTheLockAndTheCorrectionOfWhatItKeeps) {
+  const std::string job = sample("pyramid");
+  std::ofstream(folder.path() / "jobs" / job / "files/c.json") << kNoMove;
+  json document = quick(describe(job)["document"]);
+  document["object"]["rotate_deg"] = {0, 0, 15};
+  document["dips"] = {{{"locked", true}, {"depth_mm", 10}, {"correction", "c.json"}},
+                      {{"rotate_deg", {90, 0, 0}}}};
+  ASSERT_EQ(put(job, document, true).status, 200);
+  Events events(*client, at(job, "/events?client=c1"));
+  client->post(at(job, "/tasks"), R"({"kind": "plan", "dips": 2})");
+  const json task = finished(events, "plan");
+  ASSERT_EQ(task["state"], "done") << task;
+  const json dips = task["result"]["patch"]["dips"];
+  ASSERT_EQ(dips.size(), 2u);
+  EXPECT_EQ(dips[0]["rotate_deg"], json({0, 0, 15}));
+  EXPECT_EQ(dips[0].value("locked", false), true);
+  EXPECT_EQ(dips[0].value("correction", ""), "c.json");
+  EXPECT_FALSE(dips[1].contains("locked"));
+  EXPECT_FALSE(dips[1].contains("correction"));
+  document["dips"] = dips;
+  EXPECT_EQ(put(job, document).status, 200);
+}
+
 // A model and a picture dropped together: the picture is on it.
 TEST_F(JobTest, AModelAndAPictureBecomeAJob) {
   const std::string job = client->post("/api/jobs").json()["job"];
