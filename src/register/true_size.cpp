@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kFirstPrinterTag = 500;
 constexpr double kCell_mm = 1;
-constexpr double kLeastSide_mm = 190;
+constexpr double kLeastSide_mm = 180;
 // Printers are off by less than a percent.
 constexpr double kWorstScale = 0.03, kWorstLean = 0.03;
 // A steel rule is read to about 0.1 mm.

@@ -18,7 +18,7 @@ struct TestSheet {
   std::vector<MarkPlace> marks;
   Box2 words() const;  // where there is room for them, between the marks
 };
-// Throws InputError for pages under 190 mm, where words and marks would run into each other.
+// Throws InputError for pages under 180 mm, where words and marks would run into each other.
 TestSheet test_sheet(double width_mm, double height_mm);
 
 // Throws InputError if the lengths do not fit each other, or no printer is so far off.

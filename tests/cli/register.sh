@@ -39,12 +39,16 @@ if command -v pdftotext > /dev/null; then
   done
 fi
 # The smallest page has room for all of it, and smaller ones are refused.
-expect 2 '190 x 190 mm at least' calibrate printer --film 180x240
-expect 0 'printer-test.pdf' calibrate printer --film 190x190 -o small
+expect 2 '180 x 180 mm at least' calibrate printer --film 160x240
+expect 0 'printer-test.pdf' calibrate printer --film 180x180 -o small
 if command -v pdftoppm > /dev/null; then
-  pdftoppm -singlefile -png -r 200 small/printer-test.pdf small
-  expect 0 'makes 1.0000 mm across and 1.0000 mm along' calibrate printer --film 190x190 --scan small.png \
-    --scan-dpi 200 -o small
+  pdftoppm -singlefile -png -r 600 small/printer-test.pdf small
+  "$hydrodip" calibrate printer --film 180x180 --scan small.png --scan-dpi 600 -o small --json > found.json ||
+    fail "the smallest test sheet"
+  for scale in scale_x scale_y; do
+    near "$(number $scale found.json)" 1 0.0004 || fail "the smallest test sheet: $(cat found.json)"
+  done
+  rm small.png
 fi
 expect 2 'give its --readings' calibrate printer --save mine
 expect 2 'there is none' calibrate printer --readings 180.9,250.2,308.8,308.7 --scan-dpi 300
@@ -177,7 +181,7 @@ expect 0 'print again with --correction own/correction-2.json' correct own place
 cmp -s first.json own/correction.json || fail "correct replaced what its print was made with"
 # Of several dips, as the job's file has to name it.
 mkdir plan
-printf '[object]\nfile = "../colored.ply"\n[[dip]]\ndepth_mm = 6\n[[dip]]\nrotate_deg = [180, 0, 0]\ndepth_mm = 3\n' \
+printf '[object]\nfile = "../colored.ply"\n[[dip]]\nrotate_deg = [0, 0, 0]\ndepth_mm = 6\n[[dip]]\nrotate_deg = [180, 0, 0]\ndepth_mm = 3\n' \
   > plan/two.toml
 # shellcheck disable=SC2086
 "$hydrodip" print plan/two.toml $quick --film 140x130 -o plan/out --quiet > /dev/null || fail "print two dips"
