@@ -11,7 +11,7 @@ namespace hydrodip {
 
 struct ScanOptions {
   // Of the file: mm, cm, m or in. Empty: what the format says, as glTF's metres, else mm.
-  std::string units;
+  std::string units = {};
   double square_mm = 5;   // as printed, to check the unit by
   bool mirrored = false;  // the file is a mirror image: turn it back
 };
