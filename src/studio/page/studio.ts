@@ -198,21 +198,22 @@ export async function goToStart(): Promise<void> {
   recent.value = await api.recent().catch(() => recent.value);
 }
 
-export async function addFiles(given: readonly File[], at_mm: Vec3 | null = null): Promise<void> {
+// The number of the last layer that came of them, if one did.
+export async function addFiles(given: readonly File[], at_mm: Vec3 | null = null): Promise<number | null> {
   const most = hello.value?.limits.file_bytes ?? Infinity;
   const files = given.filter((file) => file.size <= most);
   const large = given.find((file) => file.size > most);
   if (large) complain(t.notice.tooLarge(large.name, most));
-  if (!files.length) return;
+  if (!files.length) return null;
   const open = job.value ?? (await createJob());
-  if (!open) return;
+  if (!open) return null;
   const before = layersOf(open.document.value).length;
   await open.add(files, at_mm);
   const now = layersOf(open.document.value).length;
-  if (now > before) {
-    layer.value = now - 1;
-    if (open.document.value.object?.file) goToStep('artwork');
-  }
+  if (now <= before) return null;
+  layer.value = now - 1;
+  if (open.document.value.object?.file) goToStep('artwork');
+  return now - 1;
 }
 
 const jobOfAddress = (): string | null => new URLSearchParams(location.hash.slice(1)).get('job');

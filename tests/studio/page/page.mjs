@@ -121,6 +121,7 @@ png(join(work, 'tile.png'), 32, 32);
 domeStl(join(work, 'dome.stl'));
 bellStl(join(work, 'bell.stl'));
 writeFileSync(join(work, 'broken.png'), 'This is no picture.');
+writeFileSync(join(work, 'notes.dat'), 'Nor is this.');
 
 const program = new Program(hydrodip);
 await program.start();
@@ -692,6 +693,21 @@ test('a pattern of the film is slid on the sheet', async () => {
   await picture(dome, 'pattern');
   await undo(dome);
   await undo(dome);
+  await undo(dome);
+  await kept(dome);
+});
+
+test('what cannot become a pattern leaves the chosen layer as it is', async () => {
+  await dome.click('[data-name="add-text"]');
+  const first = await until('a text', async () => {
+    const document = await documentOf(dome);
+    return document.artwork.at(-1).text && document;
+  });
+  await dome.setInputFiles('[name="add-pattern"]', join(work, 'notes.dat'));
+  await dome.waitForSelector('.notice.error');
+  await dome.click('[data-name="close-notice"]');
+  await kept(dome);
+  assert.deepEqual(await documentOf(dome), first);
   await undo(dome);
   await kept(dome);
 });

@@ -292,8 +292,7 @@ function ArtworkStep() {
     layer.value = layers.length;
   };
   const addPattern = async (files: File[]): Promise<void> => {
-    await addFiles(files);
-    const at = layer.value;
+    const at = await addFiles(files);
     if (at !== null) change((document) => withLayer(document, at, { projection: 'film', repeat: 'tile', size_mm: 80, at_mm: [0, 0, 0], toward: undefined, up: undefined }), t.undo.layerAdd);
   };
   return (
