@@ -153,6 +153,7 @@ Json OpenJob::describe() const {
           {"revision", revision_},
           {"saved_revision", saved_revision_},
           {"document", document_},
+          {"dip", dip_},
           {"files", files_json()},
           {"mesh", mesh_.empty() ? Json() : Json(mesh_)},
           {"tasks", tasks},

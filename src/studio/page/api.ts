@@ -127,6 +127,7 @@ export interface JobState {
   revision: number;
   saved_revision: number;
   document: JobDocument;
+  dip: number;
   files: JobFile[];
   mesh: string | null;
   tasks: Task[];

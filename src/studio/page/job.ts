@@ -105,7 +105,7 @@ export class Job {
     if (!this.closed) this.connect();
   }
 
-  private async load(): Promise<void> {
+  private async load(): Promise<JobState> {
     const state: JobState = await api.job(this.id);
     this.where.value = state.where;
     this.files.value = state.files;
@@ -115,15 +115,18 @@ export class Job {
     for (const task of state.tasks) tasks.set(task.kind, task);
     this.tasks.value = tasks;
     this.document.value = state.document;
+    // The program refines what was shown last.
+    if (!this.loaded.value) this.dip.value = Math.min(state.dip, dipCount(state.document) - 1);
     this.loaded.value = true;
     const held = localStorage.getItem(kept(this.id));
-    if (!held) return;
+    if (!held) return state;
     // A change that the program had not taken when the tab was closed or the program ended.
     const document = JSON.parse(held) as JobDocument;
     localStorage.removeItem(kept(this.id));
-    if (equal(document, state.document)) return;
+    if (equal(document, state.document)) return state;
     this.commit(document, t.undo.recovered);
     this.notice.value = { kind: 'info', text: t.notice.recovered };
+    return state;
   }
 
   close(): void {
@@ -182,11 +185,21 @@ export class Job {
 
   show(dip: number): void {
     if (dip === this.dip.value) return;
+    this.lookAt(dip);
+    this.send(false);
+  }
+
+  private lookAt(dip: number): void {
+    if (dip === this.dip.value) return;
     this.dip.value = dip;
     this.result.value = this.results.value.get(dip) ?? null;
     this.frames.value = null;
     this.newest = { revision: -1, normal: false };
-    this.send(false);
+  }
+
+  // The program refines the dip that it was told of last: by another tab, or by nobody.
+  private agreeOnDip(refined: number): void {
+    if (refined !== this.dip.value && this.mayChange.value) this.send(false);
   }
 
   // --- To the program ---
@@ -325,12 +338,18 @@ export class Job {
       const layers = layersOf(before).length;
       const placed = at_mm && layersOf(answer.document).length > layers && before.object?.file === answer.document.object?.file;
       if (placed) this.take(withLayer(answer.document, layers, { at_mm }));
-      else this.document.value = answer.document;
+      else this.takeAdopted(answer.document);
     }
     const unused = (answer.adopted ?? []).filter((file) => file.as === 'unused');
     if (unused.length) {
       this.notice.value = { kind: 'error', text: unused.map((file) => file.text || t.notice.unused(file.file)).join(' ') };
     }
+  }
+
+  private takeAdopted(document: JobDocument): void {
+    this.document.value = document;
+    this.lookAt(Math.min(this.dip.value, dipCount(document) - 1));
+    this.agreeOnDip(0); // it begins anew with the first
   }
 
   // Until what was changed has arrived there.
@@ -382,11 +401,22 @@ export class Job {
     this.acknowledged();
   }
 
+  // The other tab was closed.
+  private async getPen(): Promise<void> {
+    this.pen.value = true;
+    try {
+      this.agreeOnDip((await api.job(this.id)).dip);
+    } catch (error) {
+      this.complain(error);
+    }
+  }
+
   async takePen(): Promise<void> {
     try {
       await api.pen(this.id, this.client);
-      await this.load();
+      const { dip } = await this.load();
       this.pen.value = true;
+      this.agreeOnDip(dip);
     } catch (error) {
       this.complain(error);
     }
@@ -421,7 +451,7 @@ export class Job {
       events.addEventListener(name, (event) => action(JSON.parse((event as MessageEvent<string>).data) as T));
     on<{ run: string; pen: boolean; revision: number }>('hello', (hello) => this.greet(hello));
     on<{ mine: boolean }>('pen', ({ mine }) => {
-      if (mine) this.pen.value = true;
+      if (mine) void this.getPen();
       else this.losePen();
     });
     on<{ revision: number; document: JobDocument; client: string }>('document', (event) => this.changedElsewhere(event));
@@ -468,6 +498,7 @@ export class Job {
       this.revision.value = state.revision;
       if (!equal(state.document, this.document.value) && this.pen.value) this.send(false);
       else this.acknowledged();
+      this.agreeOnDip(state.dip);
     } catch (error) {
       this.complain(error);
     }
@@ -496,6 +527,7 @@ export class Job {
     this.past.value = [...this.past.value, { document: this.document.value, label: t.undo.elsewhere }];
     this.future.value = [];
     this.document.value = document;
+    this.lookAt(Math.min(this.dip.value, dipCount(document) - 1));
   }
 
   private async takeMesh({ mesh, wanted }: { mesh?: string | null; wanted?: string | null }): Promise<void> {

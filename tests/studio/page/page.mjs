@@ -601,6 +601,37 @@ test('air is let out of one dip among several by turning that one', async () => 
   assert.equal(all.tilt_deg, undefined);
 });
 
+test('the dip that is shown becomes final: after a reload, with new artwork, and without another tab', async () => {
+  const dip = (angle) => ({ down: '-z', rotate_deg: [0, 0, angle], depth_mm: 12 });
+  await openQuick(lone, 'pyramid', { dips: [dip(0), dip(45)] });
+  const isFinal = async (page) => {
+    await page.waitForFunction(() => document.querySelector('.verdict')?.dataset.draft === 'false');
+    await page.keyboard.press('3');
+    assert.equal(await page.getAttribute('[data-dip="1"]', 'aria-pressed'), 'true');
+  };
+  await lone.keyboard.press('3');
+  await lone.click('[data-dip="1"]');
+  await isFinal(lone);
+  await lone.reload();
+  await lone.waitForSelector('.work');
+  await isFinal(lone);
+  const before = await resultOf(lone);
+  await lone.keyboard.press('2');
+  await lone.setInputFiles('[name="add-picture"]', join(work, 'logo.png'));
+  await newResult(lone, before, true);
+  await isFinal(lone);
+  const other = await session.page({ context: lone.context(), address: lone.url() });
+  await other.waitForSelector('[data-name="take-pen"]');
+  await blur(lone);
+  await lone.keyboard.press('3');
+  await lone.click('[data-dip="0"]');
+  await kept(lone);
+  await lone.close();
+  lone = other;
+  await lone.waitForFunction(() => !document.querySelector('.banner'));
+  await isFinal(lone);
+});
+
 // ---- Artwork ----
 
 part = 'artwork';
