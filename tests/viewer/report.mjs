@@ -109,6 +109,16 @@ test('opens without a complaint, asks for nothing, and fits the window', async (
   }
 });
 
+test('its buttons are within the page, and in one line where there is room', async () => {
+  for (const [width, lines] of [[1200, 1], [820, 2], [390, 3]]) {
+    await openView(mask, { width, height: 560 });
+    const parts = await browser.value(`[...document.querySelectorAll('.tools > *')].map((e) => e.getBoundingClientRect()).map((r) => [r.left, r.right, r.top + r.height / 2])`);
+    for (const [left, right] of parts) assert.ok(left >= 0 && right <= width, `${left} to ${right} of ${width}`);
+    const middles = parts.map(([, , middle]) => middle).sort((a, b) => a - b);
+    assert.equal(middles.filter((middle, k) => k === 0 || middle - middles[k - 1] > 12).length, lines, `lines at ${width}`);
+  }
+});
+
 test('is a small page', async () => {
   for (const { page } of [mask, partial, failed]) assert.ok(readFileSync(page).length < 15e6);
 });
