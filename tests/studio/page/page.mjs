@@ -121,7 +121,7 @@ png(join(work, 'tile.png'), 32, 32);
 domeStl(join(work, 'dome.stl'));
 bellStl(join(work, 'bell.stl'));
 writeFileSync(join(work, 'broken.png'), 'This is no picture.');
-writeFileSync(join(work, 'notes.dat'), 'Nor is this.');
+writeFileSync(join(work, 'notes.mtl'), 'newmtl none');
 
 const program = new Program(hydrodip);
 await program.start();
@@ -532,6 +532,8 @@ async function outcome(page, before) {
 
 test('a tilt, a shift and a second dip go together, whichever comes first', async () => {
   const first = await documentOf(toy);
+  await blur(toy);
+  await toy.keyboard.press('3');
   await type(toy, 'dip-tilt_deg', 15);
   await kept(toy);
   let before = await resultOf(toy);
@@ -734,7 +736,7 @@ test('what cannot become a pattern leaves the chosen layer as it is', async () =
     const document = await documentOf(dome);
     return document.artwork.at(-1).text && document;
   });
-  await dome.setInputFiles('[name="add-pattern"]', join(work, 'notes.dat'));
+  await dome.setInputFiles('[name="add-pattern"]', join(work, 'notes.mtl'));
   await dome.waitForSelector('.notice.error');
   await dome.click('[data-name="close-notice"]');
   await kept(dome);
