@@ -86,8 +86,7 @@ void require_room_for_shape(const CalibrationObject& shape, const JobConfig& con
       throw InputError(fmt::format(
           "{}: the shape is {:.1f} mm {} as it dips, {:.1f} more than {} has: take a larger "
           "--film, give the size of a larger bath (bath.width_mm, ...), or name smaller shapes, as "
-          "sphere, "
-          "pyramid and ellipsoid",
+          "sphere, pyramid and ellipsoid",
           shape.name, fit.needed_mm, fit.what, fit.excess_mm(), fit.room));
 }
 
