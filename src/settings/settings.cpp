@@ -174,8 +174,12 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
   if (own_layer) config.object.artwork.emplace_back();
   add(sources.options);
   add(sources.sets);
-  settle_grading(config, all);
-  settle_ink_model(config, all);
+  settle(config, all);
+}
+
+void settle(JobConfig& config, const std::vector<Setting>& given) {
+  settle_grading(config, given);
+  settle_ink_model(config, given);
   require_order(config.design.dip.material);
   require_order(config.process);
   if (!config.correction.empty())

@@ -47,9 +47,13 @@ struct SettingSources {
   std::vector<Setting> sets;                    // --set
 };
 
-// Defaults < quality < profiles < configs < options < sets. With dip.scheme=paper, film.grading
-// defaults to 1. Reads film.correction.
+// Defaults < quality < profiles < configs < options < sets; settled.
 void apply_sources(JobConfig& config, const SettingSources& sources);
+
+// What follows from everything that was `given`, once it is applied: a named profile of inks is
+// used, the paper's film is a regular grid, film.correction is read. Throws InputError for values
+// that do not go together.
+void settle(JobConfig& config, const std::vector<Setting>& given);
 
 // A job's configuration: `model` is a model's file, or a job's (.toml) that names one. Throws
 // InputError.

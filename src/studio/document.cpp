@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "settings/artwork_tables.h"
 #include "settings/params.h"
+#include "settings/settings.h"
 #include "studio/api_error.h"
 
 namespace hydrodip {
@@ -34,6 +35,11 @@ class Reader {
   JobConfig read() {
     if (!document_.is_object()) refuse("", "A job is an object of groups.");
     for (const auto& [key, value] : document_.items()) take(key, value);
+    try {
+      settle(config_, given_);
+    } catch (const InputError& error) {
+      refuse("", error.what());
+    }
     return std::move(config_);
   }
 
@@ -115,6 +121,7 @@ class Reader {
         refuse(name, fmt::format("{} is a number, text or a list of numbers.", name));
       }
       apply_settings(config_, {setting});
+      given_.push_back(std::move(setting));
     } catch (const InputError& error) {
       refuse(name, error.what());
     } catch (const ApiError& error) {
@@ -126,6 +133,7 @@ class Reader {
   const Json& document_;
   const JobFiles& files_;
   JobConfig config_;
+  std::vector<Setting> given_;
 };
 
 // ---- writing ----

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <new>
 #include <optional>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "plan/hold.h"
 #include "report/findings.h"
 #include "report/plain_words.h"
+#include "settings/correction_file.h"
 #include "studio/bundle.h"
 #include "studio/mends.h"
 
@@ -352,7 +354,13 @@ JobConfig config_of_dip(const JobConfig& config, std::size_t dip) {
   if (entry.down) own.object.pose.down = *entry.down;
   if (entry.rotate_deg) own.object.pose.rotate_deg = *entry.rotate_deg;
   if (entry.depth_mm) own.design.trajectory.depth_mm = *entry.depth_mm;
-  if (!entry.path.empty()) own.design.trajectory.path = entry.path;
+  if (!entry.path.empty()) {
+    own.design.trajectory.path = entry.path;
+    own.design.trajectory.depth_mm = 0;  // a path says how deep
+  }
+  if (!entry.correction.empty())
+    own.design.film.correction =
+        std::make_shared<const FilmCorrection>(read_correction(entry.correction).field);
   return own;
 }
 

@@ -5,8 +5,10 @@
 #include "base/file.h"
 #include "report/plain_words.h"
 #include "samples/samples.h"
+#include "studio/api_error.h"
 #include "studio/bundle.h"
 #include "studio/client.h"
+#include "studio/document.h"
 #include "studio/event_stream.h"
 #include "studio/run_file.h"
 #include "studio/sample_shelf.h"
@@ -33,6 +35,21 @@ TEST(Bundle, ArraysLieWhereItSays) {
   EXPECT_EQ((bytes.size() - read.data.size()) % 8, 0u);
   for (const auto& [name, at] : read.head["arrays"].items())
     EXPECT_EQ(at["offset"].get<std::size_t>() % 8, 0u) << name;
+}
+
+// What is shown live is what would be printed.
+TEST(Document, IsSettledAsAJobsFileIs) {
+  const TemporaryFolder folder;
+  write_file(folder / "inks.icc", "any");
+  write_file(folder / "correction.json", "none");
+  const JobFiles files(folder.path());
+  const JobConfig config = config_of({{"ink", {{"profile", "inks.icc"}}}}, files);
+  EXPECT_EQ(config.printer.model, InkModel::kProfile);
+  EXPECT_EQ(config_of({{"dip", {{"scheme", "paper"}}}}, files).design.film.grading, 1);
+  for (const Json& wrong : {Json{{"film", {{"correction", "correction.json"}}}},
+                            Json{{"process", {{"soak_min_s", 90}, {"soak_max_s", 60}}}},
+                            Json{{"ink", {{"profile", "inks.icc"}, {"model", "device"}}}}})
+    EXPECT_THROW(config_of(wrong, files), ApiError) << wrong;
 }
 
 TEST(EventStream, OnlyTheNewestOfAKindWaits) {
