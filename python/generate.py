@@ -48,7 +48,7 @@ OWN = {
     "progress": ("Progress", "is called with what is being done and how much of that is done, 0 to 1; what it raises cancels the work"),
     "board": ("Literal['tints', 'black']", "which board was printed: the kit's tints, or black and blank squares in turn"),
     "square_mm": ("float", "side of the board's squares; 0: as the board is"),
-    "scan_units": ("Literal['mm', 'cm', 'm', 'in']", "unit of the scans"),
+    "scan_units": ("Literal['', 'mm', 'cm', 'm', 'in']", "unit of the scans; empty: what the format says, as glTF's metres, else mm"),
     "aligned": ("bool", "the scans are in the posed object's frame: do not register them"),
     "mirrored": ("bool", "the scans are mirror images: turn them back"),
     "z_stretch": ("str", "values to try: FROM:TO:STEP, FROM:TO:xFACTOR, values with commas, or one that is known"),
@@ -62,7 +62,7 @@ OWN = {
     "seed": ("int", "of noise, gaps and pose"),
 }
 DEFAULTS = {
-    "board": "'tints'", "square_mm": "0.0", "scan_units": "'mm'", "aligned": "False", "mirrored": "False",
+    "board": "'tints'", "square_mm": "0.0", "scan_units": "''", "aligned": "False", "mirrored": "False",
     "z_stretch": "'0.4,0.55,0.7,0.85'", "ratio": "'3:3072:x8'", "poisson": "'0:0.4:0.2'",
     "torn_rings": "()", "shard": "''", "merge": "()", "noise_mm": "0.0", "missing_share": "0.0", "seed": "1",
 }
