@@ -153,6 +153,7 @@ for command in 'history later' 'correct later scan.obj' 'rig sheet later'; do
   # shellcheck disable=SC2086
   expect 2 'a newer hydrodip wrote this report' $command
 done
+rm later/report.json  # of a schema that there is not
 
 # ---- a correction ----
 # Everything landed 1 mm farther to +x of the sheet than was meant: places of film.ply say so.
