@@ -63,6 +63,26 @@ std::string texture_for(const Model& model, const std::string& name,
   return meant ? pictures[0] : "";
 }
 
+// The files that the model itself names, as they are now; none of one that cannot be read.
+std::vector<std::filesystem::path> parts_of_model(const JobConfig& config) {
+  if (config.model.empty()) return {};
+  LoadOptions own = config.object.load;
+  own.texture.clear();
+  try {
+    std::vector<std::filesystem::path> files = load(config.model, own, RunContext()).files;
+    std::erase(files, config.model);
+    return files;
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+std::vector<std::filesystem::path> with_parts(const JobConfig& config) {
+  std::vector<std::filesystem::path> files = parts_of_model(config);
+  files.insert(files.begin(), config.model);
+  return files;
+}
+
 // Whether nothing is there yet, or the same.
 bool may_become(const std::filesystem::path& to, const std::filesystem::path& file) {
   std::error_code ignored;
@@ -403,16 +423,6 @@ std::string OpenJob::job_toml(const std::filesystem::path& folder) const {
   return job_file(config_, folder, machine_names());
 }
 
-// With the lock. The model, then what it names itself.
-std::vector<std::filesystem::path> OpenJob::files_of_model(const JobConfig& config) const {
-  LoadOptions own = config.object.load;
-  own.texture.clear();
-  std::vector<std::filesystem::path> files = {config.model};
-  for (const std::filesystem::path& file : load(config.model, own, RunContext()).files)
-    if (file != config.model) files.push_back(file);
-  return files;
-}
-
 // With the lock. What was dropped on a job whose file lies elsewhere is copied beside that: nobody
 // would look for it here, and it goes when the job is forgotten.
 void OpenJob::bring_along(JobConfig& config) const {
@@ -421,7 +431,7 @@ void OpenJob::bring_along(JobConfig& config) const {
     return lies_in(file, files_.uploads());
   };
   if (is_ours(where_)) return;
-  if (is_ours(config.model)) config.model = copy_together(files_of_model(config), folder);
+  if (is_ours(config.model)) config.model = copy_together(with_parts(config), folder);
   each_side_file(config, [&](std::filesystem::path& file) {
     if (!is_ours(file)) return;
     std::filesystem::path to = folder / file.filename();
@@ -505,14 +515,12 @@ std::filesystem::path OpenJob::pack() const {
   std::filesystem::remove_all(folder, ignored);
   std::filesystem::create_directories(folder, ignored);
   JobConfig config;
-  std::shared_ptr<const Model> model;
   std::string name;
   std::vector<std::string> of_the_run;
   {
     const std::lock_guard lock(mutex_);
     config = config_;
     of_the_run = machine_names();
-    model = model_;
     name = file_name_of(name_of_job(document_));
   }
   // Every file gets the place beside the job file from which the job names it.
@@ -525,16 +533,13 @@ std::filesystem::path OpenJob::pack() const {
     files.emplace_back(inner, file);
     file = folder / inner;
   };
-  if (model)
-    for (const auto& file : model->files) {
-      // A model may name any file: only what can be a part of one goes along.
-      if (file == config.model || file == config.object.load.texture ||
-          kind_of_file(file.string()) == "unknown")
-        continue;
-      std::string inner = file.lexically_relative(config.model.parent_path()).string();
-      if (inner.empty() || inner.starts_with("..")) inner = file.filename().string();
-      if (used.insert(inner).second) files.emplace_back(inner, file);
-    }
+  for (const std::filesystem::path& file : parts_of_model(config)) {
+    // A model may name any file: only what can be a part of one goes along.
+    if (file == config.object.load.texture || kind_of_file(file.string()) == "unknown") continue;
+    std::string inner = file.lexically_relative(config.model.parent_path()).string();
+    if (inner.empty() || inner.starts_with("..")) inner = file.filename().string();
+    if (used.insert(inner).second) files.emplace_back(inner, file);
+  }
   if (!config.model.empty()) put(config.model);
   each_side_file(config, put);
   const std::filesystem::path toml = folder / (name + ".toml");
@@ -753,11 +758,10 @@ void OpenJob::tell_mesh(long revision, const std::string& wanted) {
 
 LiveSinks OpenJob::sinks() {
   LiveSinks sinks;
-  sinks.model = [this](long revision, std::shared_ptr<const Model> model,
+  sinks.model = [this](long revision, const std::shared_ptr<const Model>& model,
                        const std::vector<std::string>&) {
     const std::string id = show_mesh(*model, *model->object);
     const std::lock_guard lock(mutex_);
-    model_ = std::move(model);
     mesh_ = id;
     tell_mesh(revision, id);
   };

@@ -128,7 +128,6 @@ class OpenJob {
   void ask(bool live);
   void autosave() const;
   void bring_along(JobConfig& config) const;
-  std::vector<std::filesystem::path> files_of_model(const JobConfig& config) const;
   std::vector<std::string> machine_names() const;
   void tell_saved();
   void tell(const std::string& event, const Json& data, bool newest_only = false,
@@ -164,7 +163,6 @@ class OpenJob {
   bool at_rest_ = false;  // nobody looks: what is shown may be older than the document
   long reloads_ = 0;
   std::list<std::pair<std::string, std::shared_ptr<const ShownMesh>>> meshes_;
-  std::shared_ptr<const Model> model_;
   std::string mesh_;  // of the model in its own colours
   Json mesh_event_, problem_event_, finish_event_;
   std::array<std::string, 2> finish_meshes_;
