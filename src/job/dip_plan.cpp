@@ -256,13 +256,21 @@ std::filesystem::path correction_of(const JobConfig& config, const Trial& trial)
 FilmOptions film_of(const JobConfig& config, const Trial& trial) {
   FilmOptions film = config.design.film;
   const std::filesystem::path file = correction_of(config, trial);
-  if (!file.empty())
-    film.correction = std::make_shared<const FilmCorrection>(read_correction(file).field);
+  if (!file.empty()) film.correction = read_correction_field(file);
   return film;
 }
 
+std::optional<std::size_t> dip_held_so(const JobConfig& config, const PoseOptions& pose) {
+  const auto same = std::find_if(config.dips.begin(), config.dips.end(), [&](const DipEntry& dip) {
+    const PoseOptions own = pose_of(dip, config.object.pose);
+    return (dip.rotate_deg || dip.locked) && own.down == pose.down &&
+           own.rotate_deg == pose.rotate_deg;
+  });
+  if (same == config.dips.end()) return std::nullopt;
+  return std::size_t(same - config.dips.begin());
+}
+
 std::vector<DipEntry> entries_of(const DipPlan& plan, const JobConfig& config) {
-  const std::vector<DipEntry>& earlier = config.dips;
   std::vector<DipEntry> entries;
   for (const PlannedDip& planned : plan.dips) {
     const Trial& dip = planned.trial;
@@ -271,14 +279,9 @@ std::vector<DipEntry> entries_of(const DipPlan& plan, const JobConfig& config) {
     entry.rotate_deg = dip.pose.rotate_deg;
     if (dip.path.empty()) entry.depth_mm = dip.depth_mm;
     entry.path = dip.path;
-    const auto same = std::find_if(earlier.begin(), earlier.end(), [&](const DipEntry& other) {
-      const PoseOptions pose = pose_of(other, config.object.pose);
-      return (other.rotate_deg || other.locked) && pose.down == dip.pose.down &&
-             pose.rotate_deg == dip.pose.rotate_deg;
-    });
-    if (same != earlier.end()) {
-      entry.locked = same->locked;
-      entry.correction = same->correction;
+    if (const auto same = dip_held_so(config, dip.pose)) {
+      entry.locked = config.dips[*same].locked;
+      entry.correction = config.dips[*same].correction;
     }
     entries.push_back(entry);
   }

@@ -1,6 +1,8 @@
 // Several dips of one object: how each is held and how deep it goes.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "job/ways.h"
@@ -30,6 +32,10 @@ DipPlan plan_dips(const JobConfig& config, const PreparedObject& prepared, const
 FilmOptions film_of(const JobConfig& config, const Trial& trial);
 // That correction's file; empty: none.
 std::filesystem::path correction_of(const JobConfig& config, const Trial& trial);
+
+// Of the job's dips the one that says that it is held like that, or is locked so; its place among
+// them. What is its own, a lock and a correction, stays a planned dip's of that pose.
+std::optional<std::size_t> dip_held_so(const JobConfig& config, const PoseOptions& pose);
 
 // The plan's dips as the job's, everything given.
 std::vector<DipEntry> entries_of(const DipPlan& plan, const JobConfig& config);

@@ -123,7 +123,7 @@ std::shared_ptr<const FilmCorrection> correction_of(const RigJob& job) {
         "{}: this job was printed with this correction, and it is not there any more; put it back, "
         "or say where it is now with --set film.correction=FILE",
         file.string()));
-  auto field = std::make_shared<const FilmCorrection>(read_correction(file).field);
+  auto field = read_correction_field(file);
   if (!job.correction_sha256.empty() && sha256_hex(read_file(file)) != job.correction_sha256)
     throw InputError(
         fmt::format("{}: this correction has changed since the job in {} was printed with it; put "

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/json_nesting.h"
+#include "base/schema_version.h"
 #include "base/small_file.h"
 
 namespace hydrodip {
@@ -94,9 +95,8 @@ CorrectionFile read_correction(const std::filesystem::path& file) {
   const Json json = parsed_json<Json>(bytes);
   const Reader read(file);
   const Json& grid = read.member(json, "grid");
-  if (read.number(read.member(json, "schema_version"), 1, 1e6) > kCorrectionSchemaVersion)
-    throw InputError(fmt::format(
-        "{}: a newer hydrodip wrote this correction; it is needed to read it", file.string()));
+  read.number(read.member(json, "schema_version"), 1, 1e6);
+  require_known_schema(json, kCorrectionSchemaVersion, file, "this correction");
   if (!json.contains("of"))
     throw InputError(fmt::format(
         "{}: does not say of which dip it is; run 'hydrodip correct' again", file.string()));
@@ -119,6 +119,10 @@ CorrectionFile read_correction(const std::filesystem::path& file) {
     result.samples.push_back({read.pair(read.member(sample, "model_mm"), 1e4),
                               read.pair(read.member(sample, "move_mm"), kMostLength_mm)});
   return result;
+}
+
+std::shared_ptr<const FilmCorrection> read_correction_field(const std::filesystem::path& file) {
+  return std::make_shared<const FilmCorrection>(read_correction(file).field);
 }
 
 }  // namespace hydrodip

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -46,5 +47,7 @@ struct CorrectionFile {
 
 // Throws InputError, naming the file, for what is none, and if a newer hydrodip wrote it.
 CorrectionFile read_correction(const std::filesystem::path& file);
+// What film takes of it. Throws as read_correction() does.
+std::shared_ptr<const FilmCorrection> read_correction_field(const std::filesystem::path& file);
 
 }  // namespace hydrodip

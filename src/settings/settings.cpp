@@ -183,8 +183,7 @@ void settle(JobConfig& config, const std::vector<Setting>& given) {
   require_order(config.design.dip.material);
   require_order(config.process);
   if (!config.correction.empty())
-    config.design.film.correction =
-        std::make_shared<const FilmCorrection>(read_correction(config.correction).field);
+    config.design.film.correction = read_correction_field(config.correction);
 }
 
 namespace {

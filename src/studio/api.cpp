@@ -20,6 +20,7 @@
 #include "settings/params.h"
 #include "settings/profiles.h"
 #include "settings/settings.h"
+#include "studio/document.h"
 #include "studio/page_assets.h"
 #include "studio/zip.h"
 
@@ -235,9 +236,7 @@ Json parameters_list() {
   Json list = Json::parse(parameters_json())["parameters"];
   Json own = Json::array();
   for (Json& p : list) {
-    const auto name = p["name"].get<std::string>();
-    if (name.starts_with("run.") || name.starts_with("stage.") || name.starts_with("output."))
-      continue;
+    if (is_of_the_machine(p["name"])) continue;
     if (p.contains("zero_means")) p["zero"] = p["zero_means"];
     own.push_back(p);
   }

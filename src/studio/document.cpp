@@ -21,11 +21,6 @@ constexpr std::size_t kMostForPage = std::size_t(64) << 10U, kLongestName = 200;
   throw ApiError(422, "bad-value", sentence, field);
 }
 
-// Of the run and the machine, not of the job.
-bool is_foreign(const std::string& name) {
-  return name.starts_with("run.") || name.starts_with("stage.") || name.starts_with("output.");
-}
-
 // ---- reading ----
 
 class Reader {
@@ -53,7 +48,7 @@ class Reader {
     if (!value.is_object()) refuse(key, fmt::format("{} is no group of a job's values.", key));
     for (const auto& [inner, own] : value.items()) {
       const std::string name = fmt::format("{}.{}", key, inner);
-      if (is_foreign(name)) refuse(name, name + " belongs to the machine, not to a job.");
+      if (is_of_the_machine(name)) refuse(name, name + " belongs to the machine, not to a job.");
       if (!own.is_null()) apply(name, own);
     }
   }
@@ -201,6 +196,10 @@ Json dip_json(const DipEntry& dip, JobFiles& files) {
 
 }  // namespace
 
+bool is_of_the_machine(const std::string& name) {
+  return name.starts_with("run.") || name.starts_with("stage.") || name.starts_with("output.");
+}
+
 JobConfig config_of(const Json& document, const JobFiles& files) {
   return Reader(document, files).read();
 }
@@ -214,7 +213,8 @@ Json document_of(const JobConfig& config, JobFiles& files) {
   for (const Parameter& p : parameters()) {
     const ParameterValue value = p.get(config);
     const std::size_t dot = p.name.find('.');
-    if (value == p.default_value() || is_foreign(p.name) || dot == std::string::npos) continue;
+    if (value == p.default_value() || is_of_the_machine(p.name) || dot == std::string::npos)
+      continue;
     document[p.name.substr(0, dot)][p.name.substr(dot + 1)] = json_of(p, value, files);
   }
   if (!config.design.trajectory.path.empty())
@@ -230,7 +230,7 @@ Json values_of(const JobConfig& config, const std::vector<std::string>& names, J
   for (const std::string& name : names) {
     const Parameter& p = find_parameter(name, kOrigin);
     const std::size_t dot = p.name.find('.');
-    if (dot == std::string::npos || is_foreign(p.name)) continue;
+    if (dot == std::string::npos || is_of_the_machine(p.name)) continue;
     patch[p.name.substr(0, dot)][p.name.substr(dot + 1)] = json_of(p, p.get(config), files);
   }
   return patch;
@@ -240,7 +240,7 @@ Json machine_values_of(const JobConfig& config) {
   Json values = Json::object();
   for (const Parameter& p : parameters()) {
     const ParameterValue value = p.get(config);
-    if (!is_foreign(p.name) || value == p.default_value()) continue;
+    if (!is_of_the_machine(p.name) || value == p.default_value()) continue;
     std::visit([&](const auto& own) { values[p.name] = own; }, value);
   }
   return values;
@@ -248,7 +248,7 @@ Json machine_values_of(const JobConfig& config) {
 
 void apply_machine_values(const Json& values, JobConfig& config) {
   for (const auto& [name, value] : values.items()) {
-    if (!is_foreign(name)) continue;
+    if (!is_of_the_machine(name)) continue;
     Setting setting{name, std::string(), true, "'" + text_of(value) + "'", kOrigin};
     if (value.is_number()) setting.value = value.get<double>();
     if (value.is_string()) setting.value = value.get<std::string>();

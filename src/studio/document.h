@@ -25,6 +25,9 @@ Json document_of(const JobConfig& config, JobFiles& files);
 // Values of these parameters in groups, as a patch. Files that they name become the job's.
 Json values_of(const JobConfig& config, const std::vector<std::string>& names, JobFiles& files);
 
+// Whether a parameter is of the run or the machine (run, stage, output), and not of the job.
+bool is_of_the_machine(const std::string& name);
+
 // What of a configuration belongs to the machine and not to the document (stage, run, output), by
 // parameter: kept beside the document, so that the job's file says it again.
 Json machine_values_of(const JobConfig& config);

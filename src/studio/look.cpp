@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <new>
 #include <optional>
 #include <utility>
@@ -359,8 +358,7 @@ JobConfig config_of_dip(const JobConfig& config, std::size_t dip) {
     own.design.trajectory.depth_mm = 0;  // a path says how deep
   }
   if (!entry.correction.empty())
-    own.design.film.correction =
-        std::make_shared<const FilmCorrection>(read_correction(entry.correction).field);
+    own.design.film.correction = read_correction_field(entry.correction);
   return own;
 }
 

@@ -12,12 +12,14 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "image/files.h"
+#include "job/dip_plan.h"
 #include "job/job_progress.h"
 #include "job/jobs.h"
 #include "render/hold_pictures.h"
 #include "report/findings.h"
 #include "report/plain_words.h"
 #include "rig/rig.h"
+#include "settings/params.h"
 #include "settings/settings.h"
 #include "studio/api_error.h"
 #include "studio/job_files.h"
@@ -180,20 +182,20 @@ Json orient_result(const TaskRequest& request, const RunContext& context) {
   return result;
 }
 
-// What was locked stays so, and a correction is of a pose: of the job's dip that is held so.
+PoseOptions pose_in(const Json& planned) {
+  JobConfig config;
+  apply_settings(config, {{"object.down", planned["down"].get<std::string>(), true, "", "plan"},
+                          {"object.rotate_deg", planned["rotate_deg"].get<std::vector<double>>(),
+                           true, "", "plan"}});
+  return config.object.pose;
+}
+
 void keep_own(Json& planned, const TaskRequest& request) {
-  const std::vector<DipEntry>& dips = request.config.dips;
-  const PoseOptions& usual = request.config.object.pose;
-  for (std::size_t k = 0; k < dips.size(); ++k) {
-    const Vec3 rotate = dips[k].rotate_deg.value_or(usual.rotate_deg);
-    if (!(dips[k].rotate_deg || dips[k].locked) ||
-        planned["down"] != side_name(dips[k].down.value_or(usual.down)) ||
-        planned["rotate_deg"] != Json({rotate.x(), rotate.y(), rotate.z()}))
-      continue;
-    if (dips[k].locked) planned["locked"] = true;
-    if (!dips[k].correction.empty()) planned["correction"] = request.dips[k]["correction"];
-    return;
-  }
+  const auto same = dip_held_so(request.config, pose_in(planned));
+  if (!same) return;
+  if (request.config.dips[*same].locked) planned["locked"] = true;
+  if (!request.config.dips[*same].correction.empty())
+    planned["correction"] = request.dips[*same]["correction"];
 }
 
 Json plan_result(const TaskRequest& request, const RunContext& context) {
