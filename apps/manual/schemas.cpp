@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/json_text.h"
 #include "base/parse_double.h"
 #include "settings/artwork_tables.h"
 #include "settings/dip_tables.h"
@@ -193,7 +194,7 @@ std::string job_schema() {
                  {"$id", "job.schema.json"},
                  {"title", "A hydrodip job file, configuration or profile: TOML, read as JSON"}};
   schema.update(closed_object(std::move(properties)));
-  return schema.dump(2) + "\n";
+  return json_text(schema);
 }
 
 std::string parameters_schema() {
@@ -213,7 +214,7 @@ std::string parameters_schema() {
   schema.update(closed_object(std::move(properties)));
   // Artwork, dips and parts are there by number.
   schema["patternProperties"] = {{R"(^(artwork|dip|part)\[[0-9]+\]\.)", Json::object()}};
-  return schema.dump(2) + "\n";
+  return json_text(schema);
 }
 
 }  // namespace hydrodip

@@ -16,7 +16,7 @@ namespace hydrodip {
 // What the commands ask beside the configuration.
 struct CalibrationRequest {
   std::vector<std::string> scans;  // "sphere=scan.obj", or of synth and kit: "sphere"
-  std::string board = "tints";     // which board was printed; board.h
+  std::string board;               // which board was printed, as board_named() has it
   double square_mm = 0;            // 0: as the board is
   std::string scan_units;          // as ScanOptions::units
   bool aligned = false;

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "calibrate/calibrate.h"
@@ -400,13 +401,10 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
       shard.number, shard.of, total - missing, total, (config.output / kStoreName).string());
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
-  result.json = Json{{"command", "calibrate"},
-                     {"folder", config.output.string()},
-                     {"shard", fmt::format("{}/{}", shard.number, shard.of)},
-                     {"simulations", total - missing},
-                     {"missing", missing}}
-                    .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                "\n";
+  result.json = json_answer("calibrate", {{"folder", config.output.string()},
+                                          {"shard", fmt::format("{}/{}", shard.number, shard.of)},
+                                          {"simulations", total - missing},
+                                          {"missing", missing}});
   return result;
 }
 
@@ -438,9 +436,8 @@ JobResult calibrated(const JobConfig& config, const CalibrationRequest& request,
 
   write_file(folder.path("profile.toml"),
              profile_toml(calibration, subjects, config.design.film, tear));
-  const std::string json = calibration_json(calibration, subjects, config, board, tear, context)
-                               .dump(2, ' ', false, Json::error_handler_t::replace) +
-                           "\n";
+  const std::string json =
+      json_text(calibration_json(calibration, subjects, config, board, tear, context));
   write_file(folder.path("calibration.json"), json);
   write_file(folder.path("error-surface.csv"), surface_csv(calibration, subjects));
   save_png(folder.path("error-surface.png"),

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "calibrate/calibrate.h"
@@ -226,12 +228,23 @@ nlohmann::ordered_json json_of(const std::vector<Expectation>& expected, double 
   return {{"noise_mm", noise_mm}, {"corners", expected.front().corners}, {"films", list}};
 }
 
+void require_enough_squares(const Board& board, const FilmOptions& film) {
+  constexpr double kFewest = 8;
+  const double side_mm = std::min(film.width_mm, film.height_mm) - 2 * film.margin_mm;
+  if (side_mm < kFewest * board.square_mm)
+    throw InputError(fmt::format(
+        "--square {:g}: that are fewer than {:g} squares on the short side of the sheet "
+        "({:g} mm without its margins), too few to tell anything; give at most {:.1f}",
+        board.square_mm, kFewest, side_mm, std::floor(10 * side_mm / kFewest) / 10));
+}
+
 }  // namespace
 
 JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
                   const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
   const Board board = board_named(request.board, request.square_mm);
+  require_enough_squares(board, config.design.film);
   std::vector<CalibrationObject> objects;
   for (const std::string& text : request.scans)  // refuses what does not fit the film
     objects.push_back(calibration_object(text, config, context));
@@ -262,12 +275,10 @@ JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
   result.text += text_of(expected, request.expected_noise_mm);
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
-  nlohmann::ordered_json json = {{"command", "calibrate kit"},
-                                 {"folder", config.output.string()},
-                                 {"board", board.name},
-                                 {"files", result.files}};
+  nlohmann::ordered_json json = {
+      {"folder", config.output.string()}, {"board", board.name}, {"files", result.files}};
   if (!expected.empty()) json["expected"] = json_of(expected, request.expected_noise_mm);
-  result.json = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  result.json = json_answer("calibrate kit", json);
   return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "calibrate/calibrate.h"
@@ -135,21 +136,18 @@ JobResult measure_job(const JobConfig& given, const CalibrationRequest& request,
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
   const FilmParameters parameters = film_parameters(config.design);
-  result.json = Json{{"schema_version", 1},
-                     {"command", "measure"},
-                     {"folder", config.output.string()},
-                     {"parameters",
-                      {{"z_stretch", parameters.z_stretch},
-                       {"ink_stiffness_ratio", parameters.stiffness_ratio},
-                       {"poisson", parameters.poisson}}},
-                     {"swelling",
-                      {{"x", config.design.film.swelling_x}, {"y", config.design.film.swelling_y}}},
-                     {"board", board.name},
-                     {"square_mm", board.square_mm},
-                     {"scans", scans},
-                     {"warnings", context.warnings()}}
-                    .dump(2, ' ', false, Json::error_handler_t::replace) +
-                "\n";
+  result.json = json_answer(
+      "measure",
+      {{"folder", config.output.string()},
+       {"parameters",
+        {{"z_stretch", parameters.z_stretch},
+         {"ink_stiffness_ratio", parameters.stiffness_ratio},
+         {"poisson", parameters.poisson}}},
+       {"swelling", {{"x", config.design.film.swelling_x}, {"y", config.design.film.swelling_y}}},
+       {"board", board.name},
+       {"square_mm", board.square_mm},
+       {"scans", scans},
+       {"warnings", context.warnings()}});
   if (config.output.empty()) return result;
 
   OutputFolder folder(config.output, config.earlier_result);

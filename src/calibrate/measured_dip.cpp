@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_nesting.h"
+#include "base/json_text.h"
 #include "calibrate/checkerboard_dip.h"
 #include "model_io/archive_writer.h"
 #include "model_io/package.h"
@@ -264,8 +265,7 @@ void write_measured_dip(const std::filesystem::path& file, const MeasuredDip& di
       {"files",
        {{{"name", kCornersName}, {"sha256", sha256_hex(corners)}},
         {{"name", dip.scan_file}, {"sha256", sha256_hex(dip.source)}}}}};
-  const std::vector<std::uint8_t> facts =
-      bytes_of(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  const std::vector<std::uint8_t> facts = bytes_of(json_text(json));
   ArchiveWriter archive(file, file.string(), kKind);
   archive.add(kFactsName, facts);
   archive.add(kCornersName, corners);

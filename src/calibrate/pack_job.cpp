@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "calibrate/calibrate.h"
@@ -59,13 +60,10 @@ JobResult pack_job(const JobConfig& config, const CalibrationRequest& request,
                              dip.facts.licence);
   for (const std::string& warning : context.warnings())
     result.text += fmt::format("warning: {}\n", warning);
-  result.json = nlohmann::ordered_json{{"command", "calibrate pack"},
-                                       {"folder", config.output.string()},
-                                       {"files", result.files},
-                                       {"corners", corners},
-                                       {"warnings", context.warnings()}}
-                    .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                "\n";
+  result.json = json_answer("calibrate pack", {{"folder", config.output.string()},
+                                               {"files", result.files},
+                                               {"corners", corners},
+                                               {"warnings", context.warnings()}});
   return result;
 }
 

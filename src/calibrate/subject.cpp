@@ -321,7 +321,23 @@ ScanMisfits misfits_of(const Subject& subject, const Board& board,
   return result;
 }
 
+namespace {
+
+// A measured dip says itself how its scan is to be read.
+void require_scans_to_read(const CalibrationRequest& request) {
+  const bool told = request.square_mm != 0 || !request.board.empty() ||
+                    !request.scan_units.empty() || request.mirrored;
+  if (told && std::ranges::all_of(request.scans, is_measured_dip))
+    throw InputError(fmt::format(
+        "{}: holds its board, its units and its side; --square, --board, --scan-units and "
+        "--mirrored are for scans given as OBJECT=SCAN",
+        request.scans.front()));
+}
+
+}  // namespace
+
 ScanSetup scan_setup(const JobConfig& config, const CalibrationRequest& request) {
+  require_scans_to_read(request);
   ScanSetup setup = {config,
                      {{request.scan_units, request.square_mm, request.mirrored},
                       board_named(request.board, request.square_mm),

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "calibrate/calibrate.h"
@@ -75,12 +76,9 @@ JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (config.output / file).string());
   result.text += "These scans are computed, not measured: they test the calibration, not a film.\n";
-  result.json = nlohmann::ordered_json{{"command", "calibrate synth"},
-                                       {"folder", config.output.string()},
-                                       {"files", result.files},
-                                       {"scans", scans}}
-                    .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                "\n";
+  result.json =
+      json_answer("calibrate synth",
+                  {{"folder", config.output.string()}, {"files", result.files}, {"scans", scans}});
   return result;
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/json_text.h"
+
 namespace hydrodip {
 namespace {
 
@@ -71,7 +73,7 @@ std::vector<std::uint8_t> GlbWriter::finish() {
   json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
   Bytes text;
   // Names come as they are in the model's file.
-  text.add(json_.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  text.add(json_line(json_));
   text.pad(' ');
   Bytes file;
   file.add("glTF");

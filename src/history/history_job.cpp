@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 
 namespace hydrodip {
 namespace {
@@ -191,24 +192,24 @@ std::string json_of(const std::vector<CostedRun>& runs, const Totals& totals, co
                     const History& history) {
   Json list = Json::array();
   for (const CostedRun& run : runs) list.push_back(json_of(run, job));
-  const Json json = {
-      {"job", job.folder.string()},
-      {"title", job.title},
-      {"currency", job.config.cost.currency},
-      {"runs", list},
-      {"unread_runs", history.unread()},
-      {"totals",
-       {{"dips", totals.dips},
-        {"good", totals.good},
-        {"failed", totals.failed},
-        {"not_judged", totals.not_judged},
-        {"film_m2", totals.use.film_m2},
-        {"ink_ml", or_null(totals.use.ink_ml)},
-        {"dips_without_ink", totals.without_ink},
-        {"activator_g", totals.use.activator_g},
-        {"cost", totals.use.cost},
-        {"cost_per_good_piece", totals.good > 0 ? Json(totals.use.cost / totals.good) : Json()}}}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_answer("history",
+                     {{"job", job.folder.string()},
+                      {"title", job.title},
+                      {"currency", job.config.cost.currency},
+                      {"runs", list},
+                      {"unread_runs", history.unread()},
+                      {"totals",
+                       {{"dips", totals.dips},
+                        {"good", totals.good},
+                        {"failed", totals.failed},
+                        {"not_judged", totals.not_judged},
+                        {"film_m2", totals.use.film_m2},
+                        {"ink_ml", or_null(totals.use.ink_ml)},
+                        {"dips_without_ink", totals.without_ink},
+                        {"activator_g", totals.use.activator_g},
+                        {"cost", totals.use.cost},
+                        {"cost_per_good_piece",
+                         totals.good > 0 ? Json(totals.use.cost / totals.good) : Json()}}}});
 }
 
 // Those of one batch; empty: all.

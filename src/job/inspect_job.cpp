@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "dip/wetting.h"
@@ -193,7 +194,7 @@ std::string machine_readable(const Inspection& i) {
                     {"films", films_json(i.films)},
                     {"dip_angles", json::parse(dip_angles_json(i.angles))},
                     {"warnings", i.warnings}};
-  return all.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  return json_text(all);
 }
 
 void write_angle_map(const std::filesystem::path& path, const Inspection& i,

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "base/json_text.h"
 #include "dip/travel.h"
 #include "job/logo.h"
 #include "report/findings.h"
@@ -259,7 +260,7 @@ JobResult describe_result(const Report& report, const std::filesystem::path& fol
 
   json machine = {{"folder", folder.string()}};
   machine.update(json::parse(report_json(report)));
-  result.json = machine.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  result.json = json_text(machine);
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include "artwork/fonts.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "hydrodip/hydrodip.h"
@@ -507,7 +508,7 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
                        {"film_mm", {sheet.design.film.width_mm, sheet.design.film.height_mm}},
                        {"pieces", described(nest)},
                        {"warnings", context.warnings()}};
-  const std::string text = report.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  const std::string text = json_text(report);
   write_file(folder.path("nest.json"), text);
   write_file(folder.path("nest.html"), run_sheet(nest, sheet));
   context.check_cancelled();

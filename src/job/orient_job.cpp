@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "base/run_scope.h"
 #include "job/command_text.h"
 #include "job/print_dips.h"
@@ -52,7 +53,7 @@ std::string machine_readable(const JobConfig& config, const Commands& commands,
               {"trial_dips", found.trials.size()},
               {"poses", json::array()}};
   for (const Trial& trial : found.best) all["poses"].push_back(pose_json(config, commands, trial));
-  return all.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  return json_text(all);
 }
 
 std::string figures_text(const Trial& trial) {

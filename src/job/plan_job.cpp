@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/run_scope.h"
 #include "base/shell_word.h"
 #include "job/dip_plan.h"
@@ -48,7 +49,7 @@ std::string machine_readable(const JobConfig& config, const DipPlan& plan) {
   const json all = {
       {"schema_version", 1},           {"command", "plan"},  {"model", config.model.string()},
       {"trial_dips", plan.trial_dips}, {"coverage", counts}, {"dips", dips}};
-  return all.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  return json_text(all);
 }
 
 std::string in_words(const JobConfig& config, const DipPlan& plan) {

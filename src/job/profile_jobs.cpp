@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/nearest_name.h"
 #include "base/output_folder.h"
 #include "settings/params.h"
@@ -25,10 +26,6 @@ using Json = nlohmann::ordered_json;
 std::string text_of(const fs::path& file) {
   const std::vector<std::uint8_t> bytes = read_file(file);
   return {bytes.begin(), bytes.end()};
-}
-
-std::string dump(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 fs::path known_profile(const fs::path& folder, const std::string& name) {
@@ -83,7 +80,8 @@ class FolderLock {
   int descriptor_ = -1;
 };
 
-JobResult written(const fs::path& file, const std::string& what, const std::string& text) {
+JobResult written(const char* command, const fs::path& file, const std::string& what,
+                  const std::string& text) {
   OutputFolder output(file.parent_path());
   const std::string name = file.filename().string();
   write_file(output.path(name), text);
@@ -93,7 +91,8 @@ JobResult written(const fs::path& file, const std::string& what, const std::stri
   result.files = {name};
   result.text =
       fmt::format("{} {}\nuse it with --profile {}\n", what, file.string(), file.stem().string());
-  result.json = dump({{"name", file.stem().string()}, {"file", file.string()}, {"text", text}});
+  result.json = json_answer(
+      command, {{"name", file.stem().string()}, {"file", file.string()}, {"text", text}});
   return result;
 }
 
@@ -145,15 +144,17 @@ JobResult list_profiles(const fs::path& folder) {
         "no profiles in {} yet; 'hydrodip profile save shop --film a3 --set film.margin_mm=12' "
         "makes one\n",
         folder.string());
-  result.json = dump({{"folder", folder.string()}, {"profiles", list}});
+  result.json = json_answer("profile list", {{"folder", folder.string()}, {"profiles", list}});
   return result;
 }
 
 JobResult show_profile(const fs::path& folder, const std::string& name) {
   const fs::path file = known_profile(folder, name);
+  names_in_profile(file);  // nobody is to copy one that cannot be used
   JobResult result;
   result.text = text_of(file);
-  result.json = dump({{"name", name}, {"file", file.string()}, {"text", result.text}});
+  result.json =
+      json_answer("profile show", {{"name", name}, {"file", file.string()}, {"text", result.text}});
   return result;
 }
 
@@ -170,7 +171,7 @@ JobResult save_profile(const fs::path& folder, const std::string& name, const Pr
   const bool exists = fs::exists(file, ignored);
   const std::string text = edited_profile(exists ? file : fs::path(), edit);
   require_files(edit);
-  return written(file, exists ? "changed" : "made", text);
+  return written("profile save", file, exists ? "changed" : "made", text);
 }
 
 JobResult import_profile(const fs::path& folder, const fs::path& file, const std::string& name) {
@@ -184,7 +185,7 @@ JobResult import_profile(const fs::path& folder, const fs::path& file, const std
         "there is a profile '{}' already; import it under another name: 'hydrodip profile import "
         "{} NAME'",
         to.stem().string(), file.string()));
-  return written(to, "imported it to", text);
+  return written("profile import", to, "imported it to", text);
 }
 
 }  // namespace hydrodip

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "base/shell_word.h"
@@ -29,11 +30,7 @@ JobResult sample_job(const std::string& name, const std::filesystem::path& folde
   for (const std::string& file : result.files)
     result.text += fmt::format("wrote {}\n", (folder / file).string());
   result.text += fmt::format("try: hydrodip print {}\n", shell_word((folder / model).string()));
-  result.json =
-      nlohmann::ordered_json{
-          {"command", "sample"}, {"folder", folder.string()}, {"files", result.files}}
-          .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-      "\n";
+  result.json = json_answer("sample", {{"folder", folder.string()}, {"files", result.files}});
   return result;
 }
 
@@ -44,7 +41,7 @@ JobResult list_samples() {
     result.text += fmt::format("{:<10} {}\n", sample.name, sample.description);
     list.push_back({{"name", sample.name}, {"description", sample.description}});
   }
-  result.json = nlohmann::ordered_json{{"samples", list}}.dump(2) + "\n";
+  result.json = json_answer("sample", {{"samples", list}});
   return result;
 }
 

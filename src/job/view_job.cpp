@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "job/browser.h"
 #include "job/jobs.h"
 
@@ -37,10 +38,7 @@ JobResult view_job(const std::filesystem::path& where) {
   result.text = opened ? fmt::format("opened {}\n", report.string())
                        : fmt::format("there is no browser here; open this file in one:\n{}\n",
                                      report.string());
-  using json = nlohmann::ordered_json;
-  result.json = json({{"report", report.string()}, {"opened", opened}})
-                    .dump(2, ' ', false, json::error_handler_t::replace) +
-                "\n";
+  result.json = json_answer("view", {{"report", report.string()}, {"opened", opened}});
   return result;
 }
 

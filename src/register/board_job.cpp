@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "camera/board.h"
 #include "job/sheet_of.h"
@@ -79,10 +80,7 @@ JobResult board_job(const JobConfig& config, const std::string& paper, const Run
   result.files = {"board.pdf"};
   result.text = output.told_replaced() + fmt::format("wrote {}\n", (folder / "board.pdf").string());
   result.json =
-      nlohmann::ordered_json{
-          {"command", "register board"}, {"folder", folder.string()}, {"files", result.files}}
-          .dump(2) +
-      "\n";
+      json_answer("register board", {{"folder", folder.string()}, {"files", result.files}});
   return result;
 }
 

@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "image/files.h"
@@ -35,19 +37,24 @@ std::vector<SeenPhoto> read_photos(const std::vector<std::filesystem::path>& fil
   return photos;
 }
 
-// The file is to be replaced: what it says beside the lens is kept.
-void keep_earlier(const std::filesystem::path& file, const CameraRequest& request, Tank& tank,
-                  const RunContext& context) {
+// That the file holds which is to be replaced, if there is one.
+std::optional<Tank> earlier_tank(const std::filesystem::path& file) try {
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(file, ignored)) try {
-      if (!keep_what_was_said(read_tank(file), tank))
-        context.warn(
-            "the strips lie otherwise than before: the film's place is their middle again; set it "
-            "anew with 'hydrodip register PHOTO JOB_DIR --set-place'.");
-    } catch (const InputError&) {
-      // It is none, or of an older kind.
-    }
-  if (request.water_below_mm) tank.water_below_mm = *request.water_below_mm;
+  if (!std::filesystem::exists(file, ignored)) return std::nullopt;
+  return read_tank(file);
+} catch (const InputError&) {
+  throw InputError(fmt::format(
+      "{}: would be replaced, and is no camera's calibration that this program can read; name "
+      "another file with -o, or remove it",
+      file.string()));
+}
+
+// What it says beside the lens holds on.
+void keep_earlier(const Tank& earlier, Tank& tank, const RunContext& context) {
+  if (!keep_what_was_said(earlier, tank))
+    context.warn(
+        "the strips lie otherwise than before: the film's place is their middle again; set it anew "
+        "with 'hydrodip register PHOTO JOB_DIR --set-place'.");
 }
 
 }  // namespace
@@ -57,10 +64,12 @@ JobResult calibrate_camera_job(const CameraRequest& request, const RunContext& c
   const std::filesystem::path file = std::filesystem::absolute(request.file);
   OutputFolder output(file.parent_path());
   output.announce({file.filename().string()}, request.photos);
+  const std::optional<Tank> earlier = earlier_tank(file);
   int width_px = 0, height_px = 0;
   const std::vector<SeenPhoto> photos = read_photos(request.photos, width_px, height_px, context);
   Tank tank = calibrate_tank(photos, width_px, height_px, context);
-  keep_earlier(file, request, tank, context);
+  if (earlier) keep_earlier(*earlier, tank, context);
+  if (request.water_below_mm) tank.water_below_mm = *request.water_below_mm;
   write_file(output.path(file.filename().string()), tank_as_json(tank));
   context.check_cancelled();
   output.commit();
@@ -81,18 +90,14 @@ JobResult calibrate_camera_job(const CameraRequest& request, const RunContext& c
       request.file.string());
   result.text += output.told_replaced();
   for (const std::string& warning : context.warnings()) result.text += "warning: " + warning + "\n";
-  result.json = nlohmann::ordered_json{{"schema_version", 1},
-                                       {"command", "register --calibrate-camera"},
-                                       {"file", request.file.string()},
-                                       {"photos", photos.size()},
-                                       {"board_marks", tank.corner_mm.size()},
-                                       {"rms_px", tank.rms_px},
-                                       {"focal_px", tank.lens.focal_px},
-                                       {"focal_sigma_px", focal_sigma},
-                                       {"water_below_mm", tank.water_below_mm},
-                                       {"warnings", context.warnings()}}
-                    .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                "\n";
+  result.json = json_answer("register --calibrate-camera", {{"file", request.file.string()},
+                                                            {"photos", photos.size()},
+                                                            {"board_marks", tank.corner_mm.size()},
+                                                            {"rms_px", tank.rms_px},
+                                                            {"focal_px", tank.lens.focal_px},
+                                                            {"focal_sigma_px", focal_sigma},
+                                                            {"water_below_mm", tank.water_below_mm},
+                                                            {"warnings", context.warnings()}});
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "image/files.h"
@@ -471,8 +472,7 @@ JobResult correct_job(const RigJob& job, const CorrectRequest& request, const Ru
   require_moderate(fit);
 
   JobResult result;
-  result.json =
-      json_of(of, dips, samples, fit).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  result.json = json_line(json_of(of, dips, samples, fit)) + "\n";
   write_file(output.path(file), result.json);
   save_png(output.path(picture), draw_field(fit, sheet, before_mm));
   context.progress("fitting the correction", 1);

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "image/files.h"
@@ -166,11 +167,8 @@ JobResult test_sheet_written(const JobConfig& config, const RunContext& context)
   result.files = {kSheetFile};
   result.text = output.told_replaced();
   result.text += fmt::format("wrote {}\n", (config.output / kSheetFile).string());
-  result.json = Json{{"command", "calibrate printer"},
-                     {"folder", config.output.string()},
-                     {"files", result.files}}
-                    .dump(2) +
-                "\n";
+  result.json = json_answer("calibrate printer",
+                            {{"folder", config.output.string()}, {"files", result.files}});
   return result;
 }
 
@@ -205,14 +203,10 @@ JobResult printer_job(const JobConfig& config, const PrinterRequest& request,
       "the printer makes {:.4f} mm across and {:.4f} mm along of a millimetre, and leans by "
       "{:+.3f} degrees; print.pdf is drawn the other way from now on\n{}",
       scale.x, scale.y, skew_deg, where);
-  result.json = Json{{"schema_version", 1},
-                     {"command", "calibrate printer"},
-                     {"folder", result.folder.string()},
-                     {"scale_x", scale.x},
-                     {"scale_y", scale.y},
-                     {"skew_deg", skew_deg}}
-                    .dump(2) +
-                "\n";
+  result.json = json_answer("calibrate printer", {{"folder", result.folder.string()},
+                                                  {"scale_x", scale.x},
+                                                  {"scale_y", scale.y},
+                                                  {"skew_deg", skew_deg}});
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "camera/film_pose.h"
@@ -134,7 +135,7 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
 
   JobResult result;
   const Json json = json_of(pose, request, bytes, camera);
-  result.json = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  result.json = json_text(json);
   result.text = sentence(pose);
   if (request.set_place) {
     tank.water_below_mm = kept_below_mm;  // what was said is of this photo

@@ -8,6 +8,7 @@
 #include "base/eigenpairs.h"
 #include "base/error.h"
 #include "base/json_nesting.h"
+#include "base/json_text.h"
 #include "base/schema_version.h"
 #include "base/small_file.h"
 
@@ -41,6 +42,17 @@ std::vector<double> numbers(const Json& json, const char* name, std::size_t coun
   return result;
 }
 
+// Whether every pixel of the rim sees one direction: no such distortion folds the picture.
+bool is_believable(const Tank& tank) {
+  constexpr double kOff_px = 0.1;
+  for (const double x : {0.0, 0.5, 1.0})
+    for (const double y : {0.0, 0.5, 1.0}) {
+      const Vec2 px(x * tank.width_px, y * tank.height_px);
+      if (!((tank.lens.project(tank.lens.ray(px)) - px).norm() < kOff_px)) return false;
+    }
+  return true;
+}
+
 }  // namespace
 
 std::string tank_as_json(const Tank& tank) {
@@ -51,18 +63,17 @@ std::string tank_as_json(const Tank& tank) {
   Json board = Json::array();
   for (const auto& [tag, corner] : tank.corner_mm)
     board.push_back({double(tag), corner.x(), corner.y(), corner.z()});
-  return Json{{"schema_version", kSchemaVersion},
-              {"generator", "hydrodip register --calibrate-camera"},
-              {"photo_px", {tank.width_px, tank.height_px}},
-              {"lens_focal_center_k1_k2_p1_p2", std::vector<double>(values.begin(), values.end())},
-              {"lens_covariance", covariance},
-              {"rms_px", tank.rms_px},
-              {"place_x_y_mm_turn_deg",
-               {tank.place.middle_mm.x(), tank.place.middle_mm.y(), tank.place.turn_deg}},
-              {"water_below_mm", tank.water_below_mm},
-              {"board_tag_x_y_z_mm", board}}
-             .dump(1) +
-         "\n";
+  return json_text(
+      {{"schema_version", kSchemaVersion},
+       {"generator", "hydrodip register --calibrate-camera"},
+       {"photo_px", {tank.width_px, tank.height_px}},
+       {"lens_focal_center_k1_k2_p1_p2", std::vector<double>(values.begin(), values.end())},
+       {"lens_covariance", covariance},
+       {"rms_px", tank.rms_px},
+       {"place_x_y_mm_turn_deg",
+        {tank.place.middle_mm.x(), tank.place.middle_mm.y(), tank.place.turn_deg}},
+       {"water_below_mm", tank.water_below_mm},
+       {"board_tag_x_y_z_mm", board}});
 }
 
 bool keep_what_was_said(const Tank& earlier, Tank& tank) {
@@ -98,7 +109,7 @@ Tank read_tank(const std::filesystem::path& file) {
   const Eigen::VectorXd spread = eigenpairs(tank.lens_covariance).values;
   const bool usable = tank.width_px > 0 && tank.height_px > 0 && tank.lens.focal_px > 1 &&
                       tank.lens_covariance.isApprox(tank.lens_covariance.transpose(), 1e-6) &&
-                      spread[0] > -1e-12 * spread[Lens::kValues - 1];
+                      spread[0] > -1e-12 * spread[Lens::kValues - 1] && is_believable(tank);
   if (!usable || !json.contains("water_below_mm") || !json["water_below_mm"].is_number() ||
       !json.contains("board_tag_x_y_z_mm") || !json["board_tag_x_y_z_mm"].is_array())
     refuse(file);

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "report/findings.h"
 #include "report/report.h"
 
@@ -265,7 +266,7 @@ std::string report_json(const Report& report) {
   json["seconds"] = seconds_json(report);
   if (report.peak_memory_bytes > 0) json["peak_memory_bytes"] = report.peak_memory_bytes;
   // Paths need not be UTF-8; JSON must be.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace hydrodip

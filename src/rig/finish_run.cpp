@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 
 namespace hydrodip {
 namespace {
@@ -34,8 +35,8 @@ void leave_end(RunRecord& record, const std::string& outcome, const std::string&
 
 }  // namespace
 
-JobResult finish_run(RunRecord& record, const std::function<void()>& run,
-                     const std::function<RunEnd()>& end) {
+JobResult finish_run(RunRecord& record, const std::string& command,
+                     const std::function<void()>& run, const std::function<RunEnd()>& end) {
   try {
     run();
   } catch (const Cancelled& cancelled) {
@@ -55,10 +56,7 @@ JobResult finish_run(RunRecord& record, const std::function<void()>& run,
   result.text = fmt::format("wrote to {}:", result.folder.string());
   for (const std::string& file : result.files) result.text += " " + file;
   result.text += "\n";
-  result.json =
-      nlohmann::ordered_json{{"folder", result.folder.string()}, {"files", result.files}}.dump(
-          2, ' ', false, nlohmann::json::error_handler_t::replace) +
-      "\n";
+  result.json = json_answer(command, {{"folder", result.folder.string()}, {"files", result.files}});
   return result;
 }
 

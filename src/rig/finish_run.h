@@ -19,8 +19,8 @@ struct RunEnd {
 };
 
 // Runs it, writes the log's last line and the run's files, and passes on what was thrown (Cancelled
-// with the place of the log added).
-JobResult finish_run(RunRecord& record, const std::function<void()>& run,
-                     const std::function<RunEnd()>& end);
+// with the place of the log added). `command`: "rig guide".
+JobResult finish_run(RunRecord& record, const std::string& command,
+                     const std::function<void()>& run, const std::function<RunEnd()>& end);
 
 }  // namespace hydrodip

@@ -344,7 +344,7 @@ JobResult rig_guide(const RigJob& job, Bench& bench, const RunContext& context) 
                         {"batch", job.batch},
                         {"label", job.label}});
   return finish_run(
-      record, [&] { guide.run(broken); },
+      record, "rig guide", [&] { guide.run(broken); },
       [&] {
         return RunEnd{guide.at_step(), guide.trace(), guide.rest(), true};
       });

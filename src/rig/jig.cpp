@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "export/stl.h"
@@ -458,14 +459,10 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
     parts.push_back({{"file", part.name + ".stl"}, {"size_mm", {size.x(), size.y(), size.z()}}});
   }
   result.text += fmt::format("wrote {}\n", (folder / "jig.png").string());
-  result.json = nlohmann::ordered_json{{"schema_version", 1},
-                                       {"command", "rig jig"},
-                                       {"folder", folder.string()},
-                                       {"socket_mm", jig.socket_depth_mm},
-                                       {"also_fits_deg", jig.also_fits_deg},
-                                       {"parts", parts}}
-                    .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                "\n";
+  result.json = json_answer("rig jig", {{"folder", folder.string()},
+                                        {"socket_mm", jig.socket_depth_mm},
+                                        {"also_fits_deg", jig.also_fits_deg},
+                                        {"parts", parts}});
   return result;
 }
 

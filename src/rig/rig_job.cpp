@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_nesting.h"
+#include "base/json_text.h"
 #include "base/schema_version.h"
 #include "base/small_file.h"
 #include "job/sheet_of.h"
@@ -301,7 +302,7 @@ std::optional<double> known_water_level_mm(const RigJob& job) {
 }
 
 void save_water_level(const RigJob& job, double position_mm) {
-  write_file(job.folder / kLevelFile, Json{{"water_mm", position_mm}}.dump() + "\n");
+  write_file(job.folder / kLevelFile, json_line({{"water_mm", position_mm}}) + "\n");
 }
 
 double in_water_mm(const RigJob& job) {

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_nesting.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 
 namespace hydrodip {
@@ -20,10 +21,6 @@ using Json = nlohmann::ordered_json;
 constexpr int kMostRuns = 100000;
 
 std::string run_name(int number) { return fmt::format("rig-{}", number); }
-
-std::string dump(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 std::string escaped(const std::string& text) {
   std::string result;
@@ -70,7 +67,7 @@ void RunRecord::note(const std::string& event, const LogFields& fields) {
                {"event", event}};
   for (const auto& [name, value] : fields)
     std::visit([&, key = name](const auto& v) { line[key] = v; }, value);
-  lines_.push_back(dump(line));
+  lines_.push_back(json_line(line));
   errno = 0;
   log_.clear();
   log_ << lines_.back() << '\n' << std::flush;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "job/ways.h"
 #include "plan/hold.h"
@@ -378,9 +379,7 @@ JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
   result.folder = output.folder();
   result.files = {path.filename().string()};
   result.text = output.told_replaced() + fmt::format("wrote {}\n", path.string());
-  result.json = nlohmann::ordered_json{{"command", "rig sheet"}, {"file", path.string()}}.dump(
-                    2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                "\n";
+  result.json = json_answer("rig sheet", {{"file", path.string()}});
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/nearest_name.h"
 #include "rig/finish_run.h"
 #include "rig/rig.h"
@@ -19,12 +20,10 @@ const std::vector<std::string>& action_names() {
   return names;
 }
 
-JobResult words(const std::string& text) {
+JobResult words(const std::string& action, const std::string& text) {
   JobResult result;
   result.text = text;
-  result.json = nlohmann::ordered_json{{"text", text}}.dump(
-                    2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                "\n";
+  result.json = json_answer("rig " + action, {{"text", text}});
   return result;
 }
 
@@ -83,7 +82,7 @@ void perform(StageSession& session, const StageAction& action, const RigJob* job
 
 JobResult status(const StageOptions& stage, Bench& bench, const RunContext& context) {
   StageSession session(stage, bench, nullptr, context);
-  return words(session.describe() + "\n" + session.describe_state() + "\n");
+  return words("status", session.describe() + "\n" + session.describe_state() + "\n");
 }
 
 std::vector<std::string> ports() {
@@ -105,8 +104,9 @@ JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOpt
   if (job) require_lowering_only(*job);
   if (action.action == "find") return rig_find(stage, bench, context);
   if (action.dry_run) {
-    if (!job) return words(fmt::format("{}: nothing was moved\n", action.action));
-    return words(describe_plan(*job, known_water_level_mm(*job)) + "Nothing was moved.\n");
+    if (!job) return words(action.action, fmt::format("{}: nothing was moved\n", action.action));
+    return words(action.action,
+                 describe_plan(*job, known_water_level_mm(*job)) + "Nothing was moved.\n");
   }
   if (action.action == "status") return status(stage, bench, context);
   if (action.action == "dip" || action.action == "retract") require_level(*job);
@@ -115,12 +115,12 @@ JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOpt
   if (!job) {
     session.emplace(stage, bench, nullptr, context);
     perform(*session, action, nullptr);
-    return words(session->describe_state() + "\n");
+    return words(action.action, session->describe_state() + "\n");
   }
   RunRecord record(*job, bench.clock);
   record.note("start", {{"job", job->title}, {"action", action.action}});
   JobResult result = finish_run(
-      record,
+      record, "rig " + action.action,
       [&] {
         session.emplace(stage, bench, &record, context);
         perform(*session, action, job);
@@ -149,7 +149,7 @@ JobResult rig_find(const StageOptions& stage, Bench& bench, const RunContext& co
     text += fmt::format("{}  {}\n", port, found);
   }
   if (list.empty()) text = "no serial port (/dev/ttyUSB*, /dev/ttyACM*) on this computer\n";
-  return words(text);
+  return words("find", text);
 }
 
 }  // namespace hydrodip

@@ -42,7 +42,7 @@ Board black_board(double square_mm);
 // Looks the same after a quarter turn and in a mirror: a scan cannot be read the wrong way round.
 Board tint_board(double square_mm);
 
-// "tints" or "black"; squares of 0 mm: its own. Throws InputError.
+// "tints" (also if empty) or "black"; squares of 0 mm: its own. Throws InputError.
 Board board_named(const std::string& name, double square_mm);
 
 }  // namespace hydrodip

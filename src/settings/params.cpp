@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/nearest_name.h"
 #include "base/parse_double.h"
 #include "settings/artwork_tables.h"
@@ -300,7 +301,7 @@ std::string parameters_json() {
     entry["help"] = p.help;
     list.push_back(std::move(entry));
   }
-  return json{{"schema_version", 1}, {"parameters", std::move(list)}}.dump(2) + "\n";
+  return json_text({{"schema_version", 1}, {"parameters", std::move(list)}});
 }
 
 }  // namespace hydrodip

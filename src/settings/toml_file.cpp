@@ -30,6 +30,7 @@ constexpr void check(bool holds) {
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/small_file.h"
 #include "base/unicode.h"
 #include "settings/artwork_tables.h"
@@ -302,8 +303,7 @@ nlohmann::ordered_json as_json(const toml::node& node) {
 }  // namespace
 
 std::string toml_as_json(const std::filesystem::path& file) {
-  return as_json(SettingReader(file).table())
-      .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json_line(as_json(SettingReader(file).table()));
 }
 
 std::vector<Setting> read_settings(const std::filesystem::path& file) {

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "job/browser.h"
 #include "studio/api.h"
 #include "studio/page_assets.h"
@@ -123,7 +124,7 @@ JobResult studio_job(const StudioOptions& options, const RunContext& context) {
   serving.join();
   JobResult result;
   result.text = "the studio has ended; what was not saved is kept, and found under recent jobs\n";
-  result.json = "{\"command\": \"studio\"}\n";
+  result.json = json_answer("studio", nlohmann::ordered_json::object());
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/file.h"
+#include "base/json_text.h"
 #include "model_io/load.h"
 #include "settings/artwork_tables.h"
 #include "settings/params.h"
@@ -86,7 +87,7 @@ std::string id_of(const SweepPlan& plan, const SweepRun& run, const JobConfig& c
                         {"files", named},
                         {"ways", ways_of(config)},
                         {"values", effective_values(run, config)}};
-  const std::string text = content.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = json_line(content);
   return sha256_hex({text.begin(), text.end()}).substr(0, kIdDigits);
 }
 

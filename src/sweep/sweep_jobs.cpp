@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/shell_word.h"
 #include "sweep/scripts.h"
@@ -19,10 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-std::string dump(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
 
 void make_runnable(const fs::path& file) {
   std::error_code ignored;
@@ -149,11 +146,11 @@ JobResult sweep_plan_job(const SweepPlanRequest& request, const RunContext& cont
         script);
   result.text += output.told_replaced();
   if (!trouble.empty()) result.text += "the first run failed: " + trouble + "\n";
-  result.json = dump({{"folder", request.folder.string()},
-                      {"runs", plan.runs.size()},
-                      {"same", plan.same},
-                      {"seconds_each", seconds > 0 ? Json(seconds) : Json()},
-                      {"tasks", tasks}});
+  result.json = json_answer("sweep plan", {{"folder", request.folder.string()},
+                                           {"runs", plan.runs.size()},
+                                           {"same", plan.same},
+                                           {"seconds_each", seconds > 0 ? Json(seconds) : Json()},
+                                           {"tasks", tasks}});
   return result;
 }
 
@@ -177,11 +174,11 @@ JobResult sweep_run_job(const fs::path& folder, const SweepWork& work, const Run
         told_versions(done.by_others), work.version);
   result.text += fmt::format("\n'hydrodip sweep collect {}' puts them together\n",
                              shell_word(folder.string()));
-  result.json = dump({{"done", done.done},
-                      {"failed", done.failed},
-                      {"before", done.before},
-                      {"elsewhere", done.elsewhere},
-                      {"by_other_versions", done.by_others}});
+  result.json = json_answer("sweep run", {{"done", done.done},
+                                          {"failed", done.failed},
+                                          {"before", done.before},
+                                          {"elsewhere", done.elsewhere},
+                                          {"by_other_versions", done.by_others}});
   return result;
 }
 
@@ -225,12 +222,12 @@ JobResult sweep_collect_job(const fs::path& folder, const RunContext& context) {
   result.text += fmt::format("wrote to {}:", folder.string());
   for (const std::string& file : result.files) result.text += " " + file;
   result.text += "\n" + output.told_replaced();
-  result.json = dump({{"runs", table.rows.size()},
-                      {"done", count(RunState::kDone)},
-                      {"failed", count(RunState::kFailed)},
-                      {"missing", count(RunState::kMissing)},
-                      {"by_version", versions},
-                      {"files", result.files}});
+  result.json = json_answer("sweep collect", {{"runs", table.rows.size()},
+                                              {"done", count(RunState::kDone)},
+                                              {"failed", count(RunState::kFailed)},
+                                              {"missing", count(RunState::kMissing)},
+                                              {"by_version", versions},
+                                              {"files", result.files}});
   return result;
 }
 

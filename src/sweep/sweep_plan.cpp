@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_nesting.h"
+#include "base/json_text.h"
 #include "base/nearest_name.h"
 #include "settings/params.h"
 #include "sweep/sweep_inputs.h"
@@ -501,7 +502,7 @@ std::string manifest_json(const SweepPlan& plan) {
                      {"inputs", plan.inputs},
                      {"model_files", plan.model_files},
                      {"runs", runs}};
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 SweepPlan read_manifest(const fs::path& folder) {

@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_nesting.h"
+#include "base/json_text.h"
 #include "job/jobs.h"
 #include "settings/params.h"
 #include "sweep/sweep_inputs.h"
@@ -147,7 +148,7 @@ void write_outcome(const fs::path& folder, const SweepRun& run, const SweepOutco
     json["error"] = outcome.error;
   // Under its final name when it is whole. Only who holds the claim writes it.
   const fs::path unfinished = folder / "work" / (run.id + ".json");
-  write_file(unfinished, json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_file(unfinished, json_line(json) + "\n");
   std::error_code error;
   fs::rename(unfinished, outcome_file(folder, run.id), error);
   if (error)

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "sweep/sweep_run.h"
 
 namespace hydrodip {
@@ -117,7 +118,7 @@ std::string table_json(const SweepTable& table, const SweepPlan& plan) {
     rows.push_back(entry);
   }
   const Json json = {{"hydrodip_sweep_table", 1}, {"varied", plan.varied}, {"runs", rows}};
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace hydrodip

@@ -57,6 +57,8 @@ told='--film-product f --printer p --ink i --activator a --activator-g 3.5 --wat
 "$hydrodip" measure packed/sphere-dip.zip --set film.elements=3000 --set dip.step_mm=0.5 --quiet |
   sed 's/([^)]*)//' > by-dip.txt
 cmp -s by-scan.txt by-dip.txt || fail "a packed dip measures differently: $(diff by-scan.txt by-dip.txt)"
+refuse 'are for scans given as' measure packed/sphere-dip.zip --square 7
+refuse 'fewer than 8 squares' calibrate kit --film 120x120 --square 20 -o kit-20
 # Another object is not the kit's for its file's name.
 "$hydrodip" sample sphere -o named --quiet > /dev/null || fail "sample"
 mv named/sphere.obj named/sphere-90.obj

@@ -116,6 +116,9 @@ printf '{"schema_version": 2}' > camera.json
 expect 2 "a newer hydrodip wrote this camera's" register scan.png job
 rm camera.json
 expect 2 'name the photos' register --calibrate-camera
+cp job/report.json kept.json
+expect 2 'is no camera' register --calibrate-camera scan.png -o job/report.json
+cmp -s kept.json job/report.json || fail 'a report was replaced'
 if [ -f scan.png ]; then
   expect 2 'no strip of the board' register --calibrate-camera scan.png scan.png scan.png scan.png
 fi

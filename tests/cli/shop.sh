@@ -30,10 +30,28 @@ grep -q '^per_piece = 1.5' shop.txt || fail 'the profile forgot what was added'
 "$hydrodip" profile list | grep -q '^shop .*cost (5 values)' || fail "profile list: $("$hydrodip" profile list)"
 "$hydrodip" profile list --json | python3 -c 'import json, sys; assert json.load(sys.stdin)["profiles"][0]["name"] == "shop"' ||
   fail 'profile list --json'
+answers() { # COMMAND ARGUMENT...: with --json it says what it is.
+  command=$1
+  shift
+  # shellcheck disable=SC2086
+  "$hydrodip" $command "$@" --json --quiet |
+    python3 -c 'import json, sys; r = json.load(sys.stdin)
+assert r["schema_version"] == 1 and r["command"] == sys.argv[1], r' "$command" || fail "$command --json"
+}
+answers 'profile list'
+answers 'profile show' shop
+answers sample
+answers sample sphere -o samples
+answers 'register board' -o board
+answers 'calibrate printer' -o test-sheet
+answers 'calibrate kit' -o kit
 cp shop.txt friend.toml
 "$hydrodip" profile import friend.toml > /dev/null || fail 'profile import'
 refused 'already' profile import friend.toml
 refused 'did you mean' profile show shpo
+printf '[film]\nmargin_mm = lots\n' > config/hydrodip/profiles/broken.toml
+refused 'broken.toml' profile show broken
+rm config/hydrodip/profiles/broken.toml
 refused 'did you mean' print colored.ply --profile shpo
 refused 'name' profile save ../evil --film a3
 refused "without .toml: 'shop'" profile save shop.toml --film a3
@@ -48,6 +66,8 @@ cmp -s shop.txt config/hydrodip/profiles/shop.toml || fail 'a refused value chan
 "$hydrodip" print colored.ply --profile shop --set film.elements=800 --set dip.step_mm=1 --dpi 72 \
   --set preview.width_px=200 --set print.samples=1 -o job --quiet > /dev/null || fail 'print'
 grep -q '"cost.per_piece"' job/report.json || fail 'the report has no cost'
+answers history job
+answers 'rig sheet' job
 
 # Five dips, typed in. The third is spoilt.
 dip() { # LABEL TEMPERATURE NOTES

@@ -184,6 +184,19 @@ TEST_F(RegisterFiles, ATankIsReadAsItWasWritten) {
   EXPECT_EQ(read.water_below_mm, 22);
 }
 
+TEST_F(RegisterFiles, ALensThatFoldsThePictureIsRefused) {
+  Tank tank;
+  tank.width_px = 4000;
+  tank.height_px = 3000;
+  tank.lens_covariance.setIdentity();
+  tank.lens = {2950, {2000, 1500}, -0.045, 0.018, 6e-4, -4e-4};
+  EXPECT_NO_THROW(read_tank(written(tank_as_json(tank))));
+  tank.lens.k1 = 1000;
+  EXPECT_THROW(read_tank(written(tank_as_json(tank))), InputError);
+  tank.lens = {1.5, {2000, 1500}, -0.045, 0.018, 6e-4, -4e-4};
+  EXPECT_THROW(read_tank(written(tank_as_json(tank))), InputError);
+}
+
 TEST_F(RegisterFiles, CalibratingAnewKeepsTheLevelAndThePlaceOfStripsThatStay) {
   Tank earlier;
   earlier.water_below_mm = 22;
