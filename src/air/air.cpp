@@ -361,16 +361,16 @@ class Search {
     const Plane rough = plane_at(by_cells);
     const std::vector<Vec3> points = mouths(cells_, hollow, hollow_of_, surface_, rough);
     const double first = std::min(kLidLift_mm, 0.5 * travel_.length_mm());
-    const double open = std::max(first, moments_.travelled_mm(std::max(0, closed - 2)));
-    const double shut = moments_.travelled_mm(std::min(closed + 1, moments_.count()));
+    // Cells are wrong by one or two of them, however fine the moments are.
+    const double doubt = std::max(moments_.travelled_mm(1), cells_.pitch_mm());
+    const double open = std::max(first, by_cells - 2 * doubt);
+    const double shut = std::min(by_cells + 2 * doubt, travel_.length_mm());
     pocket.closed_at_mm = by_cells;
-    if (!points.empty()) {
-      if (open < shut) {
-        if (const auto exact = closing(object_, travel_, points, open, shut, gap))
-          pocket.closed_at_mm = *exact;
-        else if (closed <= 2)
-          pocket.closed_at_mm = 0;  // closed from the first touch on
-      }
+    if (!points.empty() && open < shut) {
+      if (const auto exact = closing(object_, travel_, points, open, shut, gap))
+        pocket.closed_at_mm = *exact;
+      else if (by_cells <= 2 * doubt)
+        pocket.closed_at_mm = 0;  // closed from the first touch on
     }
     pocket.water = plane_at(pocket.closed_at_mm);
     Plane lid = pocket.water;
@@ -411,15 +411,14 @@ class Search {
       }
       return false;
     };
-    std::optional<Plane> reached;
-    if (travel_.trajectory().is_straight_down()) reached = plane_at(travel_.length_mm());
-    PocketSurface::Part part = sides_->part(pocket.water, reached, holds, reach);
+    PocketSurface::Part part = sides_->part(pocket.water, levels(), holds, reach);
     const double by_cells = double(hollow.cells.size()) * std::pow(cells_.pitch_mm(), 3);
     pocket.area_mm2 = part.area_mm2;
     pocket.top = part.top;
-    pocket.volume_mm3 = std::abs(part.volume_mm3 - by_cells) < kVolumeAgrees * by_cells
-                            ? part.volume_mm3
-                            : by_cells;
+    pocket.volume_mm3 =
+        part.is_whole && std::abs(part.volume_mm3 - by_cells) < kVolumeAgrees * by_cells
+            ? part.volume_mm3
+            : by_cells;
     return part;
   }
 
@@ -446,6 +445,15 @@ class Search {
     }
     pocket.escapes_share = 1 - least / then;
     return true;
+  }
+
+  // Where the water stands on the way: what lies under none of them stays dry.
+  std::vector<Plane> levels() const {
+    if (travel_.trajectory().is_straight_down()) return {plane_at(travel_.length_mm())};
+    std::vector<Plane> planes;
+    for (int m = 0; m <= moments_.count(); ++m)
+      planes.push_back(plane_at(moments_.travelled_mm(m)));
+    return planes;
   }
 
   Plane plane_at(double travelled_mm) const { return water_at(travel_.at(travelled_mm)); }

@@ -15,6 +15,13 @@ namespace {
 
 using Polygon = std::vector<Vec3>;
 
+// What cells get wrong at edges leaves so much of a piece in no doubt.
+constexpr double kNearlyAll = 0.8;
+// A rim that is not quite level does not join inside and outside.
+constexpr double kRim_mm = 2e-3;
+// Cosine between normals: a crease from 30 degrees on.
+constexpr double kCrease = 0.866;
+
 // What of it lies on the side where sign * height is above zero.
 Polygon clipped(const Polygon& polygon, const Plane& plane, double sign) {
   Polygon result;
@@ -48,55 +55,89 @@ PocketSurface::PocketSurface(const TriangleMesh& mesh) : mesh_(mesh) {
   });
 }
 
-PocketSurface::Part PocketSurface::part(
-    const Plane& water, const std::optional<Plane>& below,
-    const std::function<bool(const Vec3&, const Vec3&, const Vec3&)>& holds,
-    double reach_mm) const {
-  DisjointSets pieces(mesh_.triangles.size());
-  const auto height = [&](std::int32_t v) { return water.height(mesh_.positions[std::size_t(v)]); };
-  for (const Shared& shared : shared_)
-    if (std::max(height(shared.a), height(shared.b)) > 0) pieces.join(shared.one, shared.other);
+Vec3 PocketSurface::normal_of(std::size_t triangle) const {
+  const auto& v = mesh_.triangles[triangle];
+  const Vec3& a = mesh_.positions[std::size_t(v[0])];
+  return (mesh_.positions[std::size_t(v[1])] - a)
+      .cross(mesh_.positions[std::size_t(v[2])] - a)
+      .normalized();
+}
 
-  std::vector<double> all(mesh_.triangles.size(), 0), in_pocket(mesh_.triangles.size(), 0);
-  const auto above = [&](std::size_t t) {
-    Polygon polygon;
-    for (const std::int32_t v : mesh_.triangles[t])
-      polygon.push_back(mesh_.positions[std::size_t(v)]);
-    return clipped(polygon, water, 1);
-  };
-  const auto normal_of = [&](std::size_t t) {
-    const auto& v = mesh_.triangles[t];
-    const Vec3& a = mesh_.positions[std::size_t(v[0])];
-    return Vec3((mesh_.positions[std::size_t(v[1])] - a)
-                    .cross(mesh_.positions[std::size_t(v[2])] - a)
-                    .normalized());
-  };
+Polygon PocketSurface::above(std::size_t triangle, const Plane& water) const {
+  Polygon polygon;
+  for (const std::int32_t v : mesh_.triangles[triangle])
+    polygon.push_back(mesh_.positions[std::size_t(v)]);
+  return clipped(polygon, water, 1);
+}
+
+std::vector<PocketSurface::Share> PocketSurface::shares(const Plane& water, const Holds& holds,
+                                                        double reach_mm) const {
+  std::vector<Share> shares(mesh_.triangles.size());
   CheckEvery check(1 << 12);
-  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < shares.size(); ++t) {
     check();
-    const auto& v = mesh_.triangles[t];
-    if (height(v[0]) <= 0 && height(v[1]) <= 0 && height(v[2]) <= 0) continue;
+    const Polygon polygon = above(t, water);
+    if (polygon.size() < 3) continue;
     const Vec3 normal = normal_of(t);
-    const auto piece = pieces.find(std::int32_t(t));
-    for_fan(above(t), [&](double area, const Vec3& middle) {
+    for_fan(polygon, [&](double area, const Vec3& middle) {
       if (!(area > 0)) return;
-      all[piece] += area;
+      shares[t].above_mm2 += area;
       if (holds(middle + reach_mm * normal, middle, normal) ||
           (!is_closed() && holds(middle - reach_mm * normal, middle, -normal)))
-        in_pocket[piece] += area;
+        shares[t].in_pocket_mm2 += area;
     });
   }
+  return shares;
+}
 
+std::vector<bool> PocketSurface::belonging(const Plane& water, const std::vector<Share>& shares,
+                                           bool& is_whole) const {
+  const std::size_t count = mesh_.triangles.size();
+  const auto height = [&](std::int32_t v) { return water.height(mesh_.positions[std::size_t(v)]); };
+  DisjointSets pieces(count), patches(count);
+  for (const Shared& shared : shared_) {
+    if (!(std::max(height(shared.a), height(shared.b)) > kRim_mm)) continue;
+    pieces.join(shared.one, shared.other);
+    if (normal_of(std::size_t(shared.one)).dot(normal_of(std::size_t(shared.other))) > kCrease)
+      patches.join(shared.one, shared.other);
+  }
+  // Per triangle, what is true of the whole set that it is in.
+  const auto summed = [&](DisjointSets& sets) {
+    std::vector<Share> sums(count);
+    for (std::size_t t = 0; t < count; ++t) {
+      Share& sum = sums[sets.find(std::int32_t(t))];
+      sum.above_mm2 += shares[t].above_mm2;
+      sum.in_pocket_mm2 += shares[t].in_pocket_mm2;
+    }
+    return sums;
+  };
+  const std::vector<Share> of_pieces = summed(pieces), of_patches = summed(patches);
+  std::vector<bool> belongs(count, false);
+  for (std::size_t t = 0; t < count; ++t) {
+    if (!(shares[t].above_mm2 > 0)) continue;
+    for (const Share* share : {&of_pieces[pieces.find(std::int32_t(t))],
+                               &of_patches[patches.find(std::int32_t(t))], &shares[t]}) {
+      const double part = share->in_pocket_mm2 / share->above_mm2;
+      belongs[t] = part > 0.5;
+      if (share != &of_pieces[pieces.find(std::int32_t(t))] && belongs[t]) is_whole = false;
+      if (part > kNearlyAll || part < 1 - kNearlyAll) break;
+    }
+  }
+  return belongs;
+}
+
+PocketSurface::Part PocketSurface::part(const Plane& water, const std::vector<Plane>& levels,
+                                        const Holds& holds, double reach_mm) const {
   Part part;
+  const std::vector<bool> belongs = belonging(water, shares(water, holds, reach_mm), part.is_whole);
   double highest = -std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-    const auto piece = pieces.find(std::int32_t(t));
-    if (!(in_pocket[piece] > 0.5 * all[piece])) continue;
-    Polygon polygon = above(t);
-    if (polygon.size() < 3) continue;
+    if (!belongs[t]) continue;
+    const Polygon polygon = above(t, water);
     part.triangles.push_back(std::int32_t(t));
     const double slope = water.up.dot(normal_of(t));
     for_fan(polygon, [&](double area, const Vec3& middle) {
+      part.area_mm2 += area;
       part.volume_mm3 -= area * slope * water.height(middle);
     });
     for (const Vec3& p : polygon)
@@ -104,8 +145,11 @@ PocketSurface::Part PocketSurface::part(
         highest = water.height(p);
         part.top = p;
       }
-    if (below) polygon = clipped(polygon, *below, -1);
-    for_fan(polygon, [&](double area, const Vec3&) { part.area_mm2 += area; });
+    // Above all levels lies what never gets under water.
+    Polygon dry = polygon;
+    for (std::size_t k = 0; k < levels.size() && dry.size() > 2; ++k)
+      dry = clipped(dry, levels[k], 1);
+    for_fan(dry, [&](double area, const Vec3&) { part.area_mm2 -= area; });
   }
   return part;
 }
