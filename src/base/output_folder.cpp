@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <stdlib.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -358,6 +359,13 @@ void OutputFolder::commit() {
   created_.clear();
   fs::remove_all(staging_, error);
   staging_.clear();
+}
+
+std::string OutputFolder::told_replaced() const {
+  if (!replaced_earlier_ && superseded_.empty()) return {};
+  return superseded_.empty() ? "replaced the earlier result there\n"
+                             : fmt::format("replaced the earlier result there; gone with it: {}\n",
+                                           fmt::join(superseded_, ", "));
 }
 
 }  // namespace hydrodip

@@ -35,10 +35,8 @@ class OutputFolder {
   void supersede(const std::vector<std::string>& names) { superseded_ = names; }
   // Whether commit() has put new files in the place of earlier ones.
   bool replaced_earlier() const { return replaced_earlier_; }
-  // A line that says so, or nothing.
-  std::string told_replaced() const {
-    return replaced_earlier_ ? "replaced the earlier result there\n" : "";
-  }
+  // After commit(), a line that says so, and what of it is gone; or nothing.
+  std::string told_replaced() const;
 
   // Where to write the file that will be called name; "part/name" lies in a folder inside this one,
   // which is made.

@@ -46,6 +46,14 @@ Inks limited(const Inks& inks, double limit) {
   return sum > limit ? inks.times(static_cast<float>(limit) / sum) : inks;
 }
 
+// Rounding took their sum beyond the limit: the heaviest gives it back.
+std::array<std::uint8_t, 4> within(double limit, std::array<std::uint8_t, 4> inks) {
+  const int most = int(std::floor(255 * limit + 1e-6));
+  for (int over = inks[0] + inks[1] + inks[2] + inks[3] - most; over > 0; --over)
+    --*std::max_element(inks.begin(), inks.end());
+  return inks;
+}
+
 SrgbColor srgb(const std::uint8_t* pixel) {
   return {static_cast<float>(pixel[0]) / 255.0F, static_cast<float>(pixel[1]) / 255.0F,
           static_cast<float>(pixel[2]) / 255.0F};
@@ -219,7 +227,8 @@ Inking prepared_inking(const Image& wanted, const std::vector<float>& area_ratio
                        const ColorModel& model, const InkingOptions& options) {
   Inking result = no_ink(wanted.width_px, wanted.height_px);
   if (options.policy == GamutPolicy::kScale)
-    result.lightened = 1 / double(overshoot(wanted, area_ratio, model, options));
+    result.lightened =
+        std::min(options.lightened_most, 1 / double(overshoot(wanted, area_ratio, model, options)));
   return result;
 }
 
@@ -235,7 +244,7 @@ void ink_rows(const RowBand& rows, const Image& wanted, const std::vector<float>
       const Inks laid = compensated(inks[std::size_t(x)].times(float(result.lightened)),
                                     double(compensated_ratio(area_ratio[i], options)),
                                     options.policy, options.limit);
-      const auto bytes = to_bytes(laid);
+      const auto bytes = within(options.limit, to_bytes(laid));
       std::copy(bytes.begin(), bytes.end(), result.inks.pixel(x, y));
     }
   });

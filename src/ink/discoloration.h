@@ -25,6 +25,7 @@ struct InkingOptions {
   bool compensate = true;  // false: printed as wanted, and it will be pale
   GamutPolicy policy = GamutPolicy::kClip;
   double limit = 3;              // largest sum of inks, in (0, 4]
+  double lightened_most = 1;     // kScale: the factor on all inks is this at most
   LinearColor base{1, 1, 1, 1};  // of the bare object
 };
 

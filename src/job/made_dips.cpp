@@ -136,6 +136,30 @@ void for_each_dip(MadeDips& all, const std::string& activity, const RunContext& 
   }
 }
 
+// With its part of the ink.
+void design_dip(MadeDip& dip, const Allotments& allotted, const Printer& printer,
+                const RunContext& context) {
+  Timings unheard;
+  dip.made = design(allotted.task(dip, printer), unheard, context);
+  const auto& laid = dip.made.ink.ink.inking.inks.cmyk;
+  dip.blank = std::all_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value == 0; });
+}
+
+// By gamut.policy=scale the dip that has to be lightened most decides for all: a colour looks the
+// same on both sides of a seam.
+void lighten_alike(MadeDips& all, const Allotments& allotted, const Printer& printer,
+                   const RunContext& context) {
+  const auto lightened = [](const MadeDip& dip) { return dip.made.ink.ink.inking.lightened; };
+  const double least = lightened(*std::ranges::min_element(all.dips, {}, lightened));
+  if (std::ranges::all_of(all.dips, [&](const auto& dip) { return lightened(dip) == least; }))
+    return;
+  for_each_dip(all, "lightening all dips alike", context, [&](MadeDip& dip, const RunContext& own) {
+    if (lightened(dip) == least) return;
+    dip.config.design.inking.lightened_most = least;
+    design_dip(dip, allotted, printer, own);
+  });
+}
+
 }  // namespace
 
 void require_no_correction(const JobConfig& config) {
@@ -198,13 +222,9 @@ Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& prin
   const Allotments allotted(all, shared);
   times.measure("design", [&] {
     for_each_dip(
-        all, "making films and ink agree", context, [&](MadeDip& dip, const RunContext& own) {
-          Timings unheard;
-          dip.made = design(allotted.task(dip, printer), unheard, own);
-          const auto& laid = dip.made.ink.ink.inking.inks.cmyk;
-          dip.blank =
-              std::all_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value == 0; });
-        });
+        all, "making films and ink agree", context,
+        [&](MadeDip& dip, const RunContext& own) { design_dip(dip, allotted, printer, own); });
+    lighten_alike(all, allotted, printer, context);
     for (const MadeDip& dip : all.dips)
       context.log(fmt::format("dip {} of {}: {} rounds", dip.number, all.dips.size(),
                               dip.made.ink.rounds.size()));

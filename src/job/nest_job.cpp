@@ -103,9 +103,10 @@ FilmOptions piece_for(const Room& room, const FilmOptions& sheet, double clearan
 // One sheet is printed and laid on the water in one way.
 void require_the_sheets_own(const JobConfig& config, const JobConfig& sheet,
                             const std::string& name) {
-  static const std::array<const char*, 8> kOfTheSheet = {
-      "print.ink_side",  "print.scale_x",   "print.scale_y",  "print.skew_deg",
-      "film.swelling_x", "film.swelling_y", "film.margin_mm", "film.shape"};
+  static const auto kOfTheSheet = std::to_array<const char*>(
+      {"print.ink_side", "print.scale_x", "print.scale_y", "print.skew_deg", "print.color",
+       "print.dpi", "ink.model", "ink.profile", "ink.intent", "film.swelling_x", "film.swelling_y",
+       "film.margin_mm", "film.shape"});
   for (const char* of_sheet : kOfTheSheet) {
     const Parameter& p = find_parameter(of_sheet, "nest");
     const ParameterValue value = p.get(config);
@@ -398,7 +399,16 @@ std::string how_to_dip(const Part& part, const ProcessOptions& process) {
                      part.job.trajectory.depth_mm(), activator.mass_g, activator.tolerance_g);
 }
 
+// On the sheet as it is printed, which is mirrored if its ink goes down onto the water.
+double from_left_mm(const Piece& piece, const Part& part, const JobConfig& sheet) {
+  const double x_mm = piece.place.corner_mm.x();
+  if (sheet.print.ink_side == InkSide::kUp) return x_mm;
+  const double wide_mm = piece.place.turned ? part.film().height_mm : part.film().width_mm;
+  return sheet.design.film.width_mm - x_mm - wide_mm;
+}
+
 std::string run_sheet(const Nest& nest, const JobConfig& sheet) {
+  const bool up = sheet.print.ink_side == InkSide::kUp;
   std::string page = fmt::format(
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>hydrodip run sheet</title>"
       "<style>body{{font:16px sans-serif;margin:2em}}td,th{{padding:.3em .8em;text-align:left;"
@@ -409,7 +419,7 @@ std::string run_sheet(const Nest& nest, const JobConfig& sheet) {
       "and dip each part on its own piece, over the middle between its four ticks, with the "
       "piece's "
       "writing towards you.</p>"
-      "{}<p><img src=\"print.png\" alt=\"the sheet\"></p>"
+      "{}{}<p><img src=\"print.png\" alt=\"the sheet\"></p>"
       "<div class=\"wide\"><table><tr><th>piece<th>part<th>from the left edge<th>from the lower "
       "edge<th>size<th>writing "
       "on the sheet<th>depth of the dip<th>covered<th>torn<th>verdict</tr>",
@@ -417,18 +427,23 @@ std::string run_sheet(const Nest& nest, const JobConfig& sheet) {
       sheet.design.film.margin_mm,
       is_draft(sheet.design)
           ? "<p class=\"stop\">" + html_escaped(draft_alarm(sheet.design)) + "</p>"
-          : "");
+          : "",
+      up ? ""
+         : "<p>The sheet is printed mirrored: its ink goes down onto the water, and through "
+           "the film the writing reads as it should. Places below are those on the print.</p>");
   for (const Piece& piece : nest.pieces) {
     const Part& part = nest.parts[piece.part];
     const MadePart& made = nest.made[piece.part];
     page += fmt::format(
         "<tr><td>{}<td>{}<td>{:.0f} mm<td>{:.0f} mm<td>{:g} x {:g} mm<td>{}<td>{:.1f} "
         "mm<td>{}<td>{:.1f} %<td class=\"{}\">{}</tr>",
-        piece.number, html_escaped(part.name()), piece.place.corner_mm.x(),
+        piece.number, html_escaped(part.name()), from_left_mm(piece, part, sheet),
         piece.place.corner_mm.y(), part.film().width_mm, part.film().height_mm,
-        piece.place.turned ? "upright, on the right" : "below", part.job.trajectory.depth_mm(),
-        covered_words(made.report), 100 * made.coverage().torn_share(),
-        concern_name(made.concern()), headline(made.concern()));
+        !piece.place.turned ? "below"
+        : up                ? "upright, on the right"
+                            : "upright, on the left",
+        part.job.trajectory.depth_mm(), covered_words(made.report),
+        100 * made.coverage().torn_share(), concern_name(made.concern()), headline(made.concern()));
   }
   page += "</table></div>";
   page += bench_figures(sheet);
@@ -481,6 +496,10 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
   require_memory(sheet.design, sheet.design.film.width_mm * sheet.design.film.height_mm);
   warn_if_draft(sheet.design, context);
   require_fonts("the pieces' names");
+  if (sheet.design.film.shape == FilmShape::kDisc)
+    throw InputError(
+        "film.shape: parts share a rectangular sheet, and this is a disc; leave the shape out, or "
+        "print each part by itself");
   OutputFolder folder(sheet.output, sheet.earlier_result);
   const Printer printer = make_printer(sheet.printer);
   Nest nest;

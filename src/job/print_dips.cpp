@@ -31,8 +31,10 @@ namespace {
 void require_some_ink(const MadeDips& all) {
   if (std::all_of(all.dips.begin(), all.dips.end(), [](const MadeDip& dip) { return dip.blank; }))
     throw InputError(fmt::format(
-        "{}: all sheets would be blank: what the films reach of the model is white, transparent or "
-        "of the object's own colour; check its texture and colours",
+        "{}: all sheets would be blank: what the films reach of the model is white, transparent, "
+        "of "
+        "the object's own colour or lighter than it (object.base_color); check its texture and "
+        "colours",
         all.config.model.string()));
 }
 

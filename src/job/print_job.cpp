@@ -42,9 +42,9 @@ std::string why_no_film(const DippedObject& dipped, const Trajectory& trajectory
 std::string why_no_ink(const DippedObject& dipped, const Paint& paint) {
   const std::optional<ReportWanted> wanted = wanted_coverage(dipped, paint);
   if (!wanted)
-    return "What the film reaches of the model is white, transparent or of the object's own "
-           "colour; "
-           "check its texture and colours, which side enters the water (--down), and --depth.";
+    return "What the film reaches of the model is white, transparent, of the object's own colour "
+           "or lighter than it (object.base_color); check its texture and colours, which side "
+           "enters the water (--down), and --depth.";
   if (wanted->covered_mm2 > 0)
     return "Inks only darken what they lie on: what shall be printed where film lies is lighter "
            "than "

@@ -55,11 +55,6 @@ double image_dpi(int width_px, double recorded, const JobConfig& config) {
   return width_px * kMmPerInch / config.design.film.width_mm;
 }
 
-bool is_tiff(const std::vector<std::uint8_t>& bytes) {
-  return bytes.size() > 4 &&
-         ((bytes[0] == 'I' && bytes[1] == 'I') || (bytes[0] == 'M' && bytes[1] == 'M'));
-}
-
 // Left and right changed: the film as seen from above, when the ink lies on its underside. Both
 // kinds of image have 4 bytes a pixel.
 template <class Pixels>
@@ -85,10 +80,22 @@ Image checkerboard(const SheetRaster& raster) {
   return image;
 }
 
-// Cut or filled up with blank rows: rounding may cost or give one.
-void fit_height(InkImage& inks, int height_px) {
-  inks.cmyk.resize(std::size_t(4) * std::size_t(inks.width_px) * std::size_t(height_px), 0);
-  inks.height_px = height_px;
+// Inks are not mixed: each row is the one that lies there.
+InkImage with_height(InkImage inks, int height_px) {
+  if (inks.height_px == height_px) return inks;
+  InkImage result(inks.width_px, height_px);
+  for (int y = 0; y < height_px; ++y) {
+    const int from = int((y + 0.5) * inks.height_px / height_px);
+    std::copy_n(inks.pixel(0, from), 4 * inks.width_px, result.pixel(0, y));
+  }
+  return result;
+}
+
+// Two profiles may have been made at other times, and are the same all the same.
+bool same_profile(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+  constexpr std::size_t kHeader = 128;
+  return a.size() == b.size() && a.size() > kHeader &&
+         std::equal(a.begin() + kHeader, a.end(), b.begin() + kHeader);
 }
 
 // What draws and photographs records one of these whatever the size.
@@ -109,22 +116,27 @@ void warn_of_other_size(int width_px, int height_px, double recorded_dpi, const 
 }
 
 // Inks as they are.
-PrintedFilm read_ink_image(const JobConfig& config, const RunContext& context) {
+PrintedFilm read_ink_image(const JobConfig& config, const ColorModel& model,
+                           const RunContext& context) {
   CmykFile file = read_cmyk_tiff(config.film_image);
+  if (!file.profile.empty() && !same_profile(file.profile, model.profile()))
+    context.warn(fmt::format(
+        "{}: its inks are for another printer's profile than this job's ({}): what they look like "
+        "is reckoned by the job's. Name the profile that it was made for with --printer-profile.",
+        config.film_image.string(), model.name()));
   require_aspect(file.inks.width_px, file.inks.height_px, config);
   warn_of_other_size(file.inks.width_px, file.inks.height_px, file.dpi, config, context);
   PrintedFilm film;
   film.raster = raster_of(config.design.film, image_dpi(file.inks.width_px, file.dpi, config));
-  film.inks = std::move(file.inks);
-  fit_height(film.inks, film.raster.height_px());
+  film.inks = with_height(std::move(file.inks), film.raster.height_px());
   if (config.print.ink_side == InkSide::kDown) film.inks = mirrored(film.inks);
   return film;
 }
 
 PrintedFilm read_film_image(const JobConfig& config, const ColorModel& model,
                             const RunContext& context) {
+  if (is_ink_tiff(config.film_image)) return read_ink_image(config, model, context);
   const std::vector<std::uint8_t> bytes = read_file(config.film_image);
-  if (is_tiff(bytes)) return read_ink_image(config, context);
   PrintedFilm film;
   Image image = decode_image(bytes, config.film_image.string());
   require_aspect(image.width_px, image.height_px, config);
@@ -231,7 +243,10 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
   JobRecord record{command, config,      job.prepared,
                    inputs,  made.finish, times,
                    context, nullptr,     job.printer.model->name()};
-  if (config.film_image.empty()) record.wanted = wanted_coverage(made.dipped, *job.prepared.paint);
+  if (config.film_image.empty())
+    record.wanted = wanted_coverage(made.dipped, *job.prepared.paint);
+  else
+    record.laid = ink_amounts(printed.inks, config.design.inking.limit);
   const Report first_look = make_report(record);
   if (config.plan.suggest && concern_of(findings(first_look)) == Concern::kStop)
     record.better_way = times.measure(
@@ -263,6 +278,10 @@ JobResult simulate_job(const JobConfig& config, const RunContext& context) {
 }
 
 JobResult print_film_image_job(const JobConfig& config, const RunContext& context) {
+  if (config.design.film.correction)
+    throw InputError(
+        "film.correction: --film-image is printed as it is; leave one of them out, or print the "
+        "model with the correction");
   if (asks_for_several_dips(config))
     throw InputError(
         "--film-image is the finished sheet of one dip, and this job has several: leave it out, or "

@@ -50,25 +50,49 @@ void add_wet_part(Room& room, const TriangleMesh& posed, const Moment& moment) {
     }
 }
 
-// "--size 71": the largest extent at which the object would just fit; "" if size cannot help.
-std::string shrunk_size(double size_mm, double needed_mm, double available_mm) {
-  const double size = std::floor(size_mm * available_mm / needed_mm);
-  return size >= 1 ? fmt::format("--size {:.0f} or less", size) : "--size";
+// Whether the way of a smaller object is so much smaller: it ends under water, and shifts nowhere.
+bool goes_with_size(const TriangleMesh& posed, const Travel& travel) {
+  const std::vector<Keyframe>& way = travel.trajectory().keyframes();
+  const bool shifts = std::ranges::any_of(way, [&](const Keyframe& key) {
+    return key.shift_x_mm != way.front().shift_x_mm || key.shift_y_mm != way.front().shift_y_mm;
+  });
+  const Moment last = travel.at(travel.length_mm());
+  return !shifts && std::ranges::all_of(posed.positions, [&](const Vec3& p) {
+    return last.height(p) < kFitTolerance_mm;
+  });
 }
 
-RoomFit film_fit(double size_mm, const std::string& what, double needed_mm, double available_mm) {
+// "--size 71 or less": the largest extent at which the object would just fit, as far as it is
+// known.
+std::string shrunk_size(double size_mm, const Room& room, double needed_mm, double available_mm) {
+  const double size = std::floor(size_mm * available_mm / needed_mm);
+  if (size < 1) return "--size";
+  switch (room.shrinks) {
+    case Room::Shrinks::kWhole:
+      return fmt::format("--size {:.0f} or less", size);
+    case Room::Shrinks::kWithDepth:
+      return fmt::format("--size {:.0f} and --depth {:.1f}", size,
+                         std::floor(10 * room.depth_mm * size / size_mm) / 10);
+    case Room::Shrinks::kUnknown:
+      return "--size (its way stays as it is)";
+  }
+  return "--size";
+}
+
+RoomFit film_fit(double size_mm, const Room& room, const std::string& what, double needed_mm,
+                 double available_mm) {
   const std::string remedy =
       fmt::format("shrink it with {}, turn it with --rotate, or take a larger --film",
-                  shrunk_size(size_mm, needed_mm, available_mm));
+                  shrunk_size(size_mm, room, needed_mm, available_mm));
   return {what, "the free film inside the taped rim", needed_mm, available_mm, remedy};
 }
 
-RoomFit bath_fit(double size_mm, const std::string& what, double needed_mm, double available_mm,
-                 const std::string& parameter) {
+RoomFit bath_fit(double size_mm, const Room& room, const std::string& what, double needed_mm,
+                 double available_mm, const std::string& parameter) {
   const std::string remedy = fmt::format(
       "shrink it with {}, turn it with --rotate or --down, or give the size of your bath with "
       "--set {}=...",
-      shrunk_size(size_mm, needed_mm, available_mm), parameter);
+      shrunk_size(size_mm, room, needed_mm, available_mm), parameter);
   return {what, "the bath", needed_mm, available_mm, remedy};
 }
 
@@ -83,12 +107,12 @@ void add_film_fits(std::vector<RoomFit>& list, double size_mm, const Room& footp
                    const FilmOptions& film) {
   if (film.shape == FilmShape::kDisc) {
     const double diameter = std::min(film.width_mm, film.height_mm) - 2 * film.margin_mm;
-    list.push_back(film_fit(size_mm, "across", 2 * footprint.radius_mm, diameter));
+    list.push_back(film_fit(size_mm, footprint, "across", 2 * footprint.radius_mm, diameter));
     return;
   }
-  list.push_back(film_fit(size_mm, "wide (x)", 2 * footprint.half_width_mm,
+  list.push_back(film_fit(size_mm, footprint, "wide (x)", 2 * footprint.half_width_mm,
                           film.width_mm - 2 * film.margin_mm));
-  list.push_back(film_fit(size_mm, "long (y)", 2 * footprint.half_height_mm,
+  list.push_back(film_fit(size_mm, footprint, "long (y)", 2 * footprint.half_height_mm,
                           film.height_mm - 2 * film.margin_mm));
 }
 
@@ -98,10 +122,12 @@ void add_bath_fits(std::vector<RoomFit>& list, double size_mm, const Room& footp
   const bool x_by_width = (film.width_mm > film.height_mm) == (tank.width_mm >= tank.height_mm);
   const char *of_x = "bath.width_mm", *of_y = "bath.height_mm";
   if (!x_by_width) std::swap(of_x, of_y);
-  list.push_back(bath_fit(size_mm, "wide (x)", 2 * footprint.half_width_mm, bath.x(), of_x));
-  list.push_back(bath_fit(size_mm, "long (y)", 2 * footprint.half_height_mm, bath.y(), of_y));
-  RoomFit depth =
-      bath_fit(size_mm, "deep in the water", footprint.depth_mm, tank.depth_mm, "bath.depth_mm");
+  list.push_back(
+      bath_fit(size_mm, footprint, "wide (x)", 2 * footprint.half_width_mm, bath.x(), of_x));
+  list.push_back(
+      bath_fit(size_mm, footprint, "long (y)", 2 * footprint.half_height_mm, bath.y(), of_y));
+  RoomFit depth = bath_fit(size_mm, footprint, "deep in the water", footprint.depth_mm,
+                           tank.depth_mm, "bath.depth_mm");
   depth.remedy = "dip less of it with --depth, " + depth.remedy;
   list.push_back(depth);
 }
@@ -130,6 +156,8 @@ void warn_if_tight(const std::vector<RoomFit>& list, const RunContext& context) 
 
 Room room_of(const TriangleMesh& posed, double depth_mm) {
   Room room{.depth_mm = depth_mm};
+  if (depth_mm < posed.bounds().max.z() - kFitTolerance_mm)
+    room.shrinks = Room::Shrinks::kWithDepth;
   add_wet_part(room, posed, Moment::at_depth(depth_mm));
   return room;
 }
@@ -138,6 +166,7 @@ Room room_of(const TriangleMesh& posed, const Trajectory& trajectory) {
   if (trajectory.is_straight_down()) return room_of(posed, trajectory.depth_mm());
   const Travel travel(trajectory, posed.positions, posed.triangles);
   Room room;
+  if (!goes_with_size(posed, travel)) room.shrinks = Room::Shrinks::kUnknown;
   for (int part = 0; part <= kPathParts; ++part) {
     const Moment moment = travel.at(travel.length_mm() * part / kPathParts);
     add_wet_part(room, posed, moment);

@@ -34,6 +34,9 @@ struct Room {
   double half_width_mm = 0;   // largest |x|, from the film's centre
   double half_height_mm = 0;  // largest |y|
   double radius_mm = 0;
+  // What a smaller object takes: all of it smaller, so unless its way or depth is given in mm; with
+  // a depth that is made less with it; or it is not known.
+  enum class Shrinks { kWhole, kWithDepth, kUnknown } shrinks = Shrinks::kWhole;
 };
 Room room_of(const TriangleMesh& posed, const Trajectory& trajectory);
 Room room_of(const TriangleMesh& posed, double depth_mm);  // straight down

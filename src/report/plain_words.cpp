@@ -18,6 +18,7 @@ std::string in_plain_words(const std::string& sentence) {
     add(R"( \([a-z_., ]*--[^()]*\))", "");
     add(R"( with --set [a-z_.]+=\S+)", "");
     add(R"(with --size ([0-9.]+) or less)", "to $1 mm or less");
+    add(R"(with --size ([0-9.]+) and --depth ([0-9.]+))", "to $1 mm and dip $2 mm of it");
     add(R"( with --(size|rotate|down|texture|film|depth|units)( or --(rotate|down|depth))?)", "");
     add(R"( with --art IMG)", "");
     add(R"(--dpi)", "the resolution");

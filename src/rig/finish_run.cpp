@@ -41,9 +41,9 @@ JobResult finish_run(RunRecord& record, const std::string& command,
     run();
   } catch (const Cancelled& cancelled) {
     leave_end(record, "cancelled", cancelled.what(), end());
-    const std::string what = cancelled.what();
-    throw Cancelled(fmt::format("{}; the log is in {}",
-                                what == Cancelled().what() ? "stopped by you" : what,
+    const std::string what =
+        cancelled.what() == std::string(Cancelled().what()) ? "stopped by you" : cancelled.what();
+    throw Cancelled(fmt::format("{} log is in {}", what + (what.ends_with('.') ? " The" : "; the"),
                                 record.folder().string()));
   } catch (const std::exception& error) {
     leave_end(record, "failed", error.what(), end());

@@ -76,6 +76,8 @@ void perform(StageSession& session, const StageAction& action, const RigJob* job
     session.require_yes("The stage will lift the object.");
     return session.perform(*job, water_mm, "retract");
   }
+  // What goes in has to come out again.
+  for (const PlannedMove& move : plan_dip(*job)) session.require_reach(water_mm, move);
   session.require_yes("The stage will dip the object.");
   for (const char* phase : {"approach", "dip", "dwell"}) session.perform(*job, water_mm, phase);
 }
@@ -96,6 +98,19 @@ std::vector<std::string> ports() {
   return list;
 }
 
+// As far as the configuration knows the stage: it is not asked.
+void require_within_travel(const RigJob& job, double water_mm) {
+  const StageOptions& stage = job.config.stage;
+  for (const PlannedMove& move : plan_dip(job)) {
+    const double position_mm = stage_position_mm(stage, water_mm, move.to_height_mm);
+    if (stage.travel_mm > 0 && (position_mm < 0 || position_mm > stage.travel_mm))
+      throw StageError(fmt::format(
+          "{}: {:.2f} mm is beyond the stage's travel of 0 to {:g} mm (stage.travel_mm): hang the "
+          "object higher or lower, or dip less of it",
+          move.phase, position_mm, stage.travel_mm));
+  }
+}
+
 }  // namespace
 
 JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOptions& stage,
@@ -105,8 +120,9 @@ JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOpt
   if (action.action == "find") return rig_find(stage, bench, context);
   if (action.dry_run) {
     if (!job) return words(action.action, fmt::format("{}: nothing was moved\n", action.action));
-    return words(action.action,
-                 describe_plan(*job, known_water_level_mm(*job)) + "Nothing was moved.\n");
+    const std::optional<double> water_mm = known_water_level_mm(*job);
+    if (water_mm) require_within_travel(*job, *water_mm);
+    return words(action.action, describe_plan(*job, water_mm) + "Nothing was moved.\n");
   }
   if (action.action == "status") return status(stage, bench, context);
   if (action.action == "dip" || action.action == "retract") require_level(*job);

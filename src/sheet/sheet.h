@@ -50,12 +50,16 @@ void write_print_png(const std::filesystem::path& path, const Image& image,
 void write_print_tiff(const std::filesystem::path& path, const InkImage& inks,
                       const std::vector<std::uint8_t>& profile, const SheetOptions& options);
 
-// A CMYK TIFF with 8 bits, in rows, of any compression, and its dpi (0: not recorded).
-// Throws InputError if it cannot be read or is of another kind.
+// A CMYK TIFF with 8 bits, in rows, of any compression, as its orientation wants it seen; its dpi
+// (0: not recorded) and ICC profile (empty: none). Throws InputError if it cannot be read or is of
+// another kind.
 struct CmykFile {
   InkImage inks;
   double dpi = 0;
+  std::vector<std::uint8_t> profile = {};
 };
+// Whether it is a TIFF of inks at all, whatever else.
+bool is_ink_tiff(const std::filesystem::path& path);
 CmykFile read_cmyk_tiff(const std::filesystem::path& path);
 
 // One page of the film's size with the picture over the whole page (it covers the full sheet,

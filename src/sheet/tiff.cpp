@@ -1,4 +1,4 @@
-// The only place that knows libtiff.
+// TIFFs of inks, written and read.
 #include <fmt/format.h>
 #include <tiffio.h>
 
@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/run_scope.h"
+#include "image/decoders.h"
 #include "sheet/page.h"
 #include "sheet/sheet.h"
 
@@ -178,6 +179,28 @@ void check_cmyk(TIFF* tiff, const std::filesystem::path& path) {
     refuse(path, "");
 }
 
+// As its orientation (numbered as EXIF's) wants it seen.
+InkImage upright(InkImage inks, TIFF* tiff) {
+  std::uint16_t orientation = ORIENTATION_TOPLEFT;
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_ORIENTATION, &orientation);
+  Image pixels;
+  pixels.width_px = inks.width_px;
+  pixels.height_px = inks.height_px;
+  pixels.rgba = std::move(inks.cmyk);
+  pixels = oriented(std::move(pixels), orientation);
+  inks.width_px = pixels.width_px;
+  inks.height_px = pixels.height_px;
+  inks.cmyk = std::move(pixels.rgba);
+  return inks;
+}
+
+std::vector<std::uint8_t> embedded_profile(TIFF* tiff) {
+  std::uint32_t size = 0;
+  const std::uint8_t* bytes = nullptr;
+  if (TIFFGetField(tiff, TIFFTAG_ICCPROFILE, &size, &bytes) != 1) return {};
+  return {bytes, bytes + size};
+}
+
 double recorded_tiff_dpi(TIFF* tiff) {
   float dpi = 0;
   std::uint16_t unit = RESUNIT_INCH;
@@ -187,6 +210,14 @@ double recorded_tiff_dpi(TIFF* tiff) {
 }
 
 }  // namespace
+
+bool is_ink_tiff(const std::filesystem::path& path) {
+  std::string ignored;
+  const Tiff tiff = open_tiff(path, "r", ignored);
+  std::uint16_t photometric = 0;
+  return tiff && TIFFGetField(tiff.get(), TIFFTAG_PHOTOMETRIC, &photometric) == 1 &&
+         photometric == PHOTOMETRIC_SEPARATED;
+}
 
 CmykFile read_cmyk_tiff(const std::filesystem::path& path) {
   std::string message;
@@ -211,6 +242,8 @@ CmykFile read_cmyk_tiff(const std::filesystem::path& path) {
     file.inks.cmyk.insert(file.inks.cmyk.end(), row.begin(),
                           row.begin() + std::ptrdiff_t(4) * std::ptrdiff_t(width));
   }
+  file.inks = upright(std::move(file.inks), tiff.get());
+  file.profile = embedded_profile(tiff.get());
   return file;
 }
 

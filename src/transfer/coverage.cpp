@@ -14,6 +14,11 @@ Vec3 area_vector(const std::vector<Vec3>& positions, const Triangle& triangle) {
          (positions[std::size_t(triangle[1])] - a).cross(positions[std::size_t(triangle[2])] - a);
 }
 
+// Vertical walls do not, however they are rounded.
+bool meets_face_on(const Vec3& area, const Vec3& direction) {
+  return area.squaredNorm() > 0 && faces_down(dip_angle_deg(area.normalized(), direction));
+}
+
 // Film that lies on the object has been in the water, wherever its chords run.
 constexpr double kAnyHeight_mm = 1e300;
 
@@ -34,7 +39,7 @@ void add_object(Coverage& sum, const TriangleMesh& object, const DippingDirectio
     const Vec3 area = area_vector(object.positions, triangle);
     sum.object_mm2 += area.norm();
     const auto direction = direction_at(middle(object.positions, triangle), 0);
-    if (direction && area.dot(*direction) > 0) sum.downward_mm2 += area.norm();
+    if (direction && meets_face_on(area, *direction)) sum.downward_mm2 += area.norm();
   }
 }
 
@@ -101,7 +106,7 @@ void add_film(Coverage& sum, const DippedFilm& film, const DippingDirection& dir
     const Vec3 at = middle(film.position, triangle);
     auto direction = direction_at(at, 0);
     if (!direction) direction = direction_at(at, kAnyHeight_mm);
-    if (area.dot(*direction) < 0) sum.covered_downward_mm2 += area.norm();
+    if (meets_face_on(-area, *direction)) sum.covered_downward_mm2 += area.norm();
     if (!film.wrinkled.empty() && film.wrinkled[t]) sum.wrinkled_mm2 += area.norm();
     for (const std::int32_t v : triangle) {
       if (film.lifted.empty() || !film.lifted[std::size_t(v)]) continue;

@@ -140,6 +140,7 @@ TEST_F(OutputFolderTest, PicturesOfAnEarlierResultGoAndOnesOfPeopleStay) {
   folder.commit();
   EXPECT_FALSE(fs::exists(root_ / "maps.png"));
   EXPECT_EQ(read(root_ / "gamut.png"), "mine");
+  EXPECT_EQ(folder.told_replaced(), "replaced the earlier result there; gone with it: maps.png\n");
 }
 
 // Two jobs into one folder, neither of which may replace anything: the second finds the first's.

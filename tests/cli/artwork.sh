@@ -119,11 +119,26 @@ import json
 assert 0 < json.load(open('found/nest.json'))['pieces'][0]['depth_mm'] < 15
 PY
 # One sheet is printed and laid on the water in one way, whatever a part's job says.
-for of_sheet in 'print.ink_side = "down"' 'film.swelling_x = 1.1' 'print.scale_x = 1.02'; do
+for of_sheet in 'print.ink_side = "down"' 'film.swelling_x = 1.1' 'print.scale_x = 1.02' \
+  'ink.model = "profile"' 'print.color = "cmyk"' 'print.dpi = 200'; do
   printf '%s\nobject.file = "samples/box.obj"\n' "$of_sheet" > own.dip.toml
   # shellcheck disable=SC2086
   refused 'holds for the whole sheet' nest own.dip.toml $nest -o own
 done
+# shellcheck disable=SC2086
+refused 'share a rectangular sheet' nest samples/box.obj $nest --set film.shape=disc -o disc
+# What is printed mirrored is measured as it is printed.
+# shellcheck disable=SC2086
+"$hydrodip" nest samples/box.obj ${nest#--film 200x200} --film 300x200 --set print.ink_side=down -o mirrored --quiet > /dev/null ||
+  fail 'a mirrored nest'
+grep -q 'printed mirrored' mirrored/nest.html || fail 'a mirrored nest does not say so'
+python3 - <<'PY' || fail 'the places on a mirrored sheet'
+import json, re
+piece = json.load(open('mirrored/nest.json'))['pieces'][0]
+wide = piece['height_mm'] if piece['turned'] else piece['width_mm']
+told = float(re.search(r'box.obj<td>(\d+) mm', open('mirrored/nest.html').read()).group(1))
+assert abs(300 - piece['from_left_mm'] - wide - told) < 1, (piece, told)
+PY
 # A larger sheet gives each part more film around it, up to what helps.
 for side in 300 600 900; do
   # shellcheck disable=SC2086

@@ -70,6 +70,29 @@ for file in dip-1/print.pdf dip-1/print.png preview.png; do
   cmp "dips/$file" "again/$file" || fail "$file depends on the folder"
 done
 
+# What is lightened is lightened alike on both sides of a seam, though one dip stretches more.
+convert -size 8x8 xc:red red.png
+"$hydrodip" sample sphere -o samples --quiet > /dev/null || fail 'sample sphere'
+cat > red.toml <<'TOML'
+[object]
+file = "samples/sphere.obj"
+texture = "red.png"
+size_mm = 40
+[[dip]]
+rotate_deg = [180, 0, 25]
+depth_mm = 14
+[[dip]]
+rotate_deg = [-8, -13, 25]
+depth_mm = 6
+TOML
+"$hydrodip" print red.toml --film 120x120 --set film.elements=3000 --set dip.step_mm=1 --dpi 72 --set dip.air_cells=0 \
+  --set preview.pictures=off --set gamut.policy=scale -o red --quiet > /dev/null || fail 'print red.toml'
+python3 - <<'PY' || fail 'dips are lightened differently'
+import json
+factors = [json.load(open(f'red/dip-{k}/report.json'))['figures']['lightened'] for k in (1, 2)]
+assert factors[0] == factors[1] < 0.95, factors
+PY
+
 # A dip that landed elsewhere is corrected by its own table.
 python3 "$here/film_ply.py" places dips/dip-1/film.ply 1 > places.csv || fail 'places'
 "$hydrodip" correct dips/dip-1 places.csv --quiet > /dev/null || fail "correct of a dip: $?"

@@ -31,6 +31,8 @@ expect 2 '--port' rig stage status
 expect 2 'no-such-port' rig stage status --port /dev/no-such-port
 expect 2 'not a serial port' rig stage status --port job/report.json
 expect 0 'Nothing was moved' rig stage dip job --dry-run
+expect 3 'beyond the stage' rig stage dip job --dry-run --set stage.travel_mm=750 --set stage.water_mm=749.9
+expect 0 'Nothing was moved' rig stage dip job --dry-run --set stage.travel_mm=750 --set stage.water_mm=400
 
 start_stage
 expect 0 'not homed' rig stage status --port "$port"

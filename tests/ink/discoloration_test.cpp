@@ -152,6 +152,28 @@ TEST_F(OnFilm, ScalingKeepsToTheInkLimit) {
   EXPECT_NEAR(lightened_, 0.5, 1e-6);
 }
 
+// To the byte: what is printed is asked for its limit.
+TEST_F(OnFilm, NothingThatIsPrintedIsBeyondTheInkLimit) {
+  stretch(1.5F);
+  for (const double limit : {1.0, 1.2, 1.5, 1.7, 2.0}) {
+    reach({.limit = limit});
+    int most = 0;
+    for (std::size_t i = 0; i < inks_.cmyk.size(); i += 4)
+      most =
+          std::max(most, inks_.cmyk[i] + inks_.cmyk[i + 1] + inks_.cmyk[i + 2] + inks_.cmyk[i + 3]);
+    EXPECT_LE(most, 255 * limit);
+    EXPECT_GT(most, 255 * limit - 4);
+  }
+}
+
+TEST_F(OnFilm, ScalingIsNoLessThanWhatIsAskedFor) {
+  reach({.policy = GamutPolicy::kScale, .limit = kNoLimit, .lightened_most = 0.7});
+  EXPECT_EQ(lightened_, 0.7);
+  stretch(2);
+  reach({.policy = GamutPolicy::kScale, .limit = kNoLimit, .lightened_most = 0.7});
+  EXPECT_NEAR(lightened_, 0.5, 1e-6);
+}
+
 TEST_F(OnFilm, WhatLiesBesideTheObjectIsNotCompared) {
   std::fill_n(stretch_.on_object.begin(), 36 * 3, 0);
   EXPECT_NEAR(reach({}).compared_mm2, 36 * 3 * 0.01, 1e-6);

@@ -268,5 +268,43 @@ TEST(RoundTripSlow, ALayersColoursComeBackAsTexturesDo) {
   RecordProperty("psnr_db", std::to_string(colors.psnr_db));
 }
 
+// A sheet that somebody else made, half a per cent too low: its middle is still the middle.
+TEST(FilmImage, OfNearlyTheSheetsShapeFillsIt) {
+  const TemporaryFolder folder;
+  write_sample("sphere", make_sample("sphere"), folder.path());
+  JobConfig config;
+  config.model = folder.path() / "sphere.obj";
+  config.output = folder.path() / "out";
+  config.design.film = {120, 150, FilmShape::kRectangle, 10, 800};
+  config.design.dip.step_mm = 1;
+  config.design.trajectory.depth_mm = 5;
+  config.pictures = false;
+  config.plan.suggest = false;
+  constexpr double kDpi = 100;
+  SheetOptions sheet;
+  sheet.width_mm = 120;
+  sheet.height_mm = 149.2;
+  sheet.dpi = kDpi;
+  const SheetRaster given{sheet.width_mm, sheet.height_mm, kDpi};
+  InkImage inks(given.width_px(), given.height_px());
+  const int middle = inks.height_px / 2;
+  for (int y = middle - 3; y < middle + 3; ++y)
+    for (int x = 100; x < 300; ++x) inks.pixel(x, y)[3] = 255;
+  config.film_image = folder.path() / "given.tif";
+  write_print_tiff(config.film_image, inks, make_device_model()->profile(), sheet);
+  RunContext context;
+  print_film_image_job(config, context);
+  EXPECT_TRUE(context.warnings().empty()) << context.warnings().front();
+  const InkImage printed = read_cmyk_tiff(config.output / "print.tif").inks;
+  double sum = 0, count = 0;
+  for (int y = 0; y < printed.height_px; ++y)
+    if (printed.pixel(200, y)[3] > 0) {
+      sum += y + 0.5;
+      ++count;
+    }
+  ASSERT_GT(count, 0);
+  EXPECT_NEAR(sum / count, 0.5 * printed.height_px, 1);
+}
+
 }  // namespace
 }  // namespace hydrodip

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "base/error.h"
 #include "contains.h"
 #include "object/posed_object.h"
@@ -102,6 +104,31 @@ TEST(Fit, WarnsOfLessThanFiveMillimetresOnASide) {
       EXPECT_TRUE(contains(context.warnings()[0], "Only 4.9 mm of free film"));
     }
   }
+}
+
+// With a depth that was given, the one that goes with the size is told too, and both together fit.
+TEST(Fit, TheSizeAndDepthThatAreToldFit) {
+  const auto sphere = std::make_shared<const Object>(make_sample("sphere"));
+  const FilmOptions film{120, 120, FilmShape::kRectangle, 10, 1000};
+  const auto error_at = [&](double size_mm, double depth_mm) {
+    const PosedObject posed(sphere, {.size_mm = size_mm});
+    RunContext context;
+    try {
+      require_fit(posed.size_mm(), room_of(posed.mesh(), depth_mm), film, {}, context);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string refused = error_at(200, 30);
+  double size_mm = 0, depth_mm = 0;
+  const std::size_t told = refused.find("--size ");
+  ASSERT_NE(told, std::string::npos) << refused;
+  ASSERT_EQ(std::sscanf(refused.c_str() + told, "--size %lf and --depth %lf", &size_mm, &depth_mm),
+            2)
+      << refused;
+  EXPECT_EQ(error_at(size_mm, depth_mm), "") << refused;
+  EXPECT_NE(error_at(size_mm + 2, depth_mm * (size_mm + 2) / size_mm), "");
 }
 
 // A size is the object's own, however it hangs.

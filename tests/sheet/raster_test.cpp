@@ -87,6 +87,40 @@ TEST_F(PrintRaster, TheTiffIsReadBack) {
   EXPECT_EQ(file.inks.cmyk, inks.cmyk);
 }
 
+TEST_F(PrintRaster, ATiffIsSeenAsItsOrientationWantsIt) {
+  const SheetOptions options = sheet(52, 61, 5, 150);
+  const InkImage inks = patterned_inks(options);
+  const std::string path = (folder_ / "print.tif").string();
+  const auto turned_by = [&](int orientation) {
+    write_print_tiff(path, inks, device_profile(), options);
+    TIFF* tiff = TIFFOpen(path.c_str(), "r+");
+    TIFFSetField(tiff, TIFFTAG_ORIENTATION, orientation);
+    TIFFRewriteDirectory(tiff);
+    TIFFClose(tiff);
+    return read_cmyk_tiff(path).inks;
+  };
+  const int right = inks.width_px - 1, bottom = inks.height_px - 1;
+  const auto same = [&](const InkImage& a, int ax, int ay, int x, int y) {
+    return std::equal(a.pixel(ax, ay), a.pixel(ax, ay) + 4, inks.pixel(x, y));
+  };
+  const InkImage half = turned_by(ORIENTATION_BOTRIGHT), quarter = turned_by(ORIENTATION_RIGHTTOP);
+  ASSERT_EQ(quarter.width_px, inks.height_px);
+  std::size_t wrong = 0;
+  for (int y = 0; y <= bottom; ++y)
+    for (int x = 0; x <= right; ++x) {
+      wrong += !same(half, right - x, bottom - y, x, y);
+      // Its first row is the picture's right side, its first column the top.
+      wrong += !same(quarter, bottom - y, x, x, y);
+    }
+  EXPECT_EQ(wrong, 0U);
+}
+
+TEST_F(PrintRaster, TheTiffsProfileIsReadBack) {
+  const SheetOptions options = sheet(52, 61, 5, 150);
+  write_print_tiff(folder_ / "print.tif", patterned_inks(options), device_profile(), options);
+  EXPECT_EQ(read_cmyk_tiff(folder_ / "print.tif").profile, device_profile());
+}
+
 TEST_F(PrintRaster, ResolutionsInCentimetresAreConverted) {
   const SheetOptions options = sheet(52, 61, 5, 150);
   const std::string path = (folder_ / "print.tif").string();

@@ -72,6 +72,18 @@ TEST(TearLine, AreasAreThoseOfTheCutSquare) {
   EXPECT_EQ(never.doubtful_mm2, 0);
 }
 
+// Walls that stand upright but for rounding face nowhere.
+TEST(Coverage, UprightWallsDoNotFaceDown) {
+  for (const double noise : {-1e-9, -1e-12, 0.0, 1e-12, 1e-9}) {
+    Object leaning = fixtures::slab();
+    for (Vec3& p : leaning.positions) p += noise * p.z() * Vec3(1, -1, 0);
+    const auto dipped = fixtures::mapped(leaning, fixtures::film_on_slab(5000));
+    const Coverage c = measure_coverage(dipped->object, dipped->film, straight_down_to(9));
+    EXPECT_NEAR(c.downward_mm2, 1600, 1e-3) << noise;
+    EXPECT_NEAR(c.object_mm2, 3200 + 160 * dipped->object.bounds().size().z(), 1e-3) << noise;
+  }
+}
+
 // However little it is stretched.
 TEST(TearLine, FilmWhosePlaceIsNotKnownIsDoubtful) {
   DippedFilm film = fixtures::film_on_slab(5000);
