@@ -94,7 +94,7 @@ class Study {
   RunContext context_;
   JobConfig config_;
   Board board_;
-  SearchOptions options_;
+  GridSearchOptions options_;
   SimulationStore store_;
 };
 

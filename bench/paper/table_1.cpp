@@ -50,8 +50,8 @@ std::string interval(double low, double high, int digits) {
                              : fmt::format("{:.{}f} or more", low, digits);
 }
 
-SearchOptions grid() {
-  SearchOptions options;
+GridSearchOptions grid() {
+  GridSearchOptions options;
   options.z_stretch = {0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8};
   options.stiffness_ratio = {10, 100, 1000, 10000};
   options.poisson = {0, 0.15, 0.3};
@@ -59,7 +59,7 @@ SearchOptions grid() {
 }
 
 Calibration calibrated(const std::vector<Subject>& subjects, const JobConfig& config,
-                       const Board& board, const SearchOptions& options, const Study& study) {
+                       const Board& board, const GridSearchOptions& options, const Study& study) {
   SimulationStore store(study.folder / fmt::format("table_1_{}.jsonl", board.name), {});
   return Search(subjects, config.design, board, options, store).run(study.context);
 }
@@ -88,7 +88,7 @@ std::string table_1(const Study& study) {
 
   const std::vector<Subject> checkered = scans(config, black, study);
   config.design.dip.scheme = DipScheme::kPaper;
-  SearchOptions published = grid();
+  GridSearchOptions published = grid();
   published.correct = false;
   const std::vector<GridPointError> theirs =
       least_of_each(calibrated(checkered, config, black, published, study), checkered.size());

@@ -78,7 +78,7 @@ class Moments {
   std::vector<Plane> planes_;
 };
 
-Numbers numbers(const Cells& cells, const std::function<std::uint16_t(const Vec3&)>& number) {
+Numbers numbers(const AirCells& cells, const std::function<std::uint16_t(const Vec3&)>& number) {
   Numbers result(cells.count());
   parallel_for(result.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) result[cell] = number(cells.center(cell));
@@ -92,7 +92,7 @@ struct Hollow {
   std::uint16_t closed = 0;
 };
 
-std::vector<Hollow> hollows(const Cells& cells, const Flood& flood, const Numbers& wet, int last,
+std::vector<Hollow> hollows(const AirCells& cells, const Flood& flood, const Numbers& wet, int last,
                             std::vector<std::int32_t>& hollow_of) {
   hollow_of.assign(cells.count(), -1);
   std::vector<Hollow> found;
@@ -121,7 +121,7 @@ struct Hole {
 };
 
 std::vector<Hole> small_holes(const TriangleMesh& object, const PocketSurface& sides,
-                              const Surface& surface, const Cells& cells) {
+                              const Surface& surface, const AirCells& cells) {
   std::map<std::int32_t, std::vector<std::int32_t>> next;
   for (const auto& [a, b] : sides.open_edges()) {
     next[a].push_back(b);
@@ -169,7 +169,7 @@ std::vector<Hole> small_holes(const TriangleMesh& object, const PocketSurface& s
 }
 
 // Water in a pocket stands where the last mouth closed. Points in the mouths, one for each.
-std::vector<Vec3> mouths(const Cells& cells, const Hollow& hollow,
+std::vector<Vec3> mouths(const AirCells& cells, const Hollow& hollow,
                          const std::vector<std::int32_t>& hollow_of, const Surface& surface,
                          const Plane& water) {
   const double reach = 1.8 * cells.pitch_mm();
@@ -208,14 +208,14 @@ std::vector<Vec3> mouths(const Cells& cells, const Hollow& hollow,
 // How much of a pocket air keeps when the object leans.
 class Leaning {
  public:
-  Leaning(const TriangleMesh& object, const Cells& all, const Hollow& hollow,
+  Leaning(const TriangleMesh& object, const AirCells& all, const Hollow& hollow,
           const std::vector<std::int32_t>& hollow_of) {
     Box3 box;
     for (const std::uint32_t cell : hollow.cells) box.add(all.center(cell));
     const Vec3 more = Vec3::Constant(2 * all.pitch_mm());
     box.min -= more;
     box.max += more;
-    cells_ = std::make_unique<Cells>(object, box, kTiltCells);
+    cells_ = std::make_unique<AirCells>(object, box, kTiltCells);
     box_ = box;
     const std::int32_t own = hollow_of[hollow.cells.front()];
     for (std::size_t cell = 0; cell < cells_->count(); ++cell)
@@ -270,7 +270,7 @@ class Leaning {
                 std::cos(lean));
   }
 
-  std::unique_ptr<Cells> cells_;
+  std::unique_ptr<AirCells> cells_;
   Box3 box_;
   std::vector<std::size_t> inside_;
 };
@@ -462,7 +462,7 @@ class Search {
   const Surface& surface_;
   const Travel travel_;
   const bool advises_;
-  Cells cells_;
+  AirCells cells_;
   const Moments moments_;
   const Numbers wet_;
   Flood flood_;

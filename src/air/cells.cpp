@@ -17,7 +17,7 @@ const Vec3 kOddShift(0.4142, 0.3028, 0.2361);
 
 }  // namespace
 
-Cells::Cells(const TriangleMesh& mesh, const Box3& part, std::size_t most_cells) {
+AirCells::AirCells(const TriangleMesh& mesh, const Box3& part, std::size_t most_cells) {
   const Vec3 size = part.size().cwiseMax(1e-3);
   const auto counts = [&](double pitch) {
     std::array<int, 3> n{};
@@ -42,7 +42,7 @@ Cells::Cells(const TriangleMesh& mesh, const Box3& part, std::size_t most_cells)
 }
 
 // Every line through centres along the axis, met by every triangle whose shadow it crosses.
-void Cells::block(const TriangleMesh& mesh, int axis) {
+void AirCells::block(const TriangleMesh& mesh, int axis) {
   const int b = (axis + 1) % 3, c = (axis + 2) % 3;
   std::vector<std::uint8_t>& blocked = blocked_[std::size_t(axis)];
   const auto line = [&](int of, double x) { return (x - first_[of]) / pitch_; };
@@ -81,14 +81,14 @@ void Cells::block(const TriangleMesh& mesh, int axis) {
   }
 }
 
-Vec3 Cells::center(std::size_t cell) const {
+Vec3 AirCells::center(std::size_t cell) const {
   const std::size_t x = cell % stride_[1];
   const std::size_t y = cell % stride_[2] / stride_[1];
   const std::size_t z = cell / stride_[2];
   return first_ + pitch_ * Vec3(double(x), double(y), double(z));
 }
 
-std::size_t Cells::cell_of(const Vec3& point) const {
+std::size_t AirCells::cell_of(const Vec3& point) const {
   std::size_t cell = 0;
   for (int k = 0; k < 3; ++k) {
     const double i = std::round((point[k] - first_[k]) / pitch_);
@@ -98,7 +98,7 @@ std::size_t Cells::cell_of(const Vec3& point) const {
   return cell;
 }
 
-bool Cells::on_border(std::size_t cell) const {
+bool AirCells::on_border(std::size_t cell) const {
   const std::array<std::size_t, 3> i = {cell % stride_[1], cell % stride_[2] / stride_[1],
                                         cell / stride_[2]};
   for (std::size_t k = 0; k < 3; ++k)
@@ -106,7 +106,7 @@ bool Cells::on_border(std::size_t cell) const {
   return false;
 }
 
-void Cells::add_link(std::size_t a, std::size_t b) {
+void AirCells::add_link(std::size_t a, std::size_t b) {
   if (a == b) return;
   has_extra_.resize(count());
   for (const auto& link : {std::pair(a, b), std::pair(b, a)}) {

@@ -16,13 +16,13 @@ namespace hydrodip {
 // is further out. Two that share a face are
 // linked unless the surface crosses the way between their centres, which is decided exactly: no
 // wall is too thin to part them. A passage that is narrower than a cell may have no way through it.
-class Cells {
+class AirCells {
  public:
   // Throws Cancelled.
-  Cells(const TriangleMesh& mesh, std::size_t most_cells)
-      : Cells(mesh, mesh.bounds(), most_cells) {}
+  AirCells(const TriangleMesh& mesh, std::size_t most_cells)
+      : AirCells(mesh, mesh.bounds(), most_cells) {}
   // Over a part of it.
-  Cells(const TriangleMesh& mesh, const Box3& part, std::size_t most_cells);
+  AirCells(const TriangleMesh& mesh, const Box3& part, std::size_t most_cells);
 
   double pitch_mm() const { return pitch_; }
   std::size_t count() const { return std::size_t(n_[0]) * std::size_t(n_[1]) * std::size_t(n_[2]); }
@@ -52,7 +52,7 @@ class Cells {
 };
 
 template <typename Visit>
-void Cells::for_linked(std::size_t cell, const Visit& visit) const {
+void AirCells::for_linked(std::size_t cell, const Visit& visit) const {
   std::size_t rest = cell;
   for (int axis = 2; axis >= 0; --axis) {
     const std::size_t stride = stride_[std::size_t(axis)];

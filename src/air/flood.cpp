@@ -8,7 +8,7 @@ namespace hydrodip {
 
 // From the border inwards, cells that stay open longest first: a cell's way is the best one when
 // its turn comes.
-Flood flood(const Cells& cells, const std::vector<std::uint16_t>& wet) {
+Flood flood(const AirCells& cells, const std::vector<std::uint16_t>& wet) {
   Flood result;
   result.closed.assign(wet.size(), Flood::kInside);
   result.from.assign(wet.size(), 0);

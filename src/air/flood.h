@@ -25,6 +25,6 @@ struct Flood {
 };
 
 // `wet`: per cell, the moment at which its centre gets under water. Throws Cancelled.
-Flood flood(const Cells& cells, const std::vector<std::uint16_t>& wet);
+Flood flood(const AirCells& cells, const std::vector<std::uint16_t>& wet);
 
 }  // namespace hydrodip

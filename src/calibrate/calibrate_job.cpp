@@ -28,8 +28,8 @@ constexpr int kSchemaVersion = 2;  // 2: board, curvature, by_ink,
                                    // stiffness_table, film_off_mm, swelling
 constexpr std::size_t kMostGridPoints = 100000;
 
-SearchOptions search_options(const CalibrationRequest& request) {
-  SearchOptions options;
+GridSearchOptions search_options(const CalibrationRequest& request) {
+  GridSearchOptions options;
   options.z_stretch = parse_range(request.z_stretch, "--z-stretch", 0, 5);
   options.stiffness_ratio = parse_range(request.stiffness_ratio, "--ratio", 1, 1e6);
   options.poisson = parse_range(request.poisson, "--poisson", 0, 0.48);
@@ -409,7 +409,7 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
 }
 
 JobResult calibrated(const JobConfig& config, const CalibrationRequest& request, const Board& board,
-                     const SearchOptions& options, const Shard& shard,
+                     const GridSearchOptions& options, const Shard& shard,
                      const std::vector<Subject>& subjects, const RunContext& context) {
   make_folder(config.output);
   SimulationStore store(config.output / kStoreName, store_files(request.merged));
@@ -464,7 +464,7 @@ JobResult calibrated(const JobConfig& config, const CalibrationRequest& request,
 JobResult calibrate_job(const JobConfig& given, const CalibrationRequest& request,
                         const RunContext& context) {
   const RunScope scope(context.with_threads(given.threads));
-  const SearchOptions options = search_options(request);
+  const GridSearchOptions options = search_options(request);
   const Shard shard = parse_shard(request.shard);
   const ScanSetup setup = scan_setup(given, request);
   const JobConfig& config = setup.config;

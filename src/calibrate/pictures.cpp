@@ -288,7 +288,7 @@ void draw_scale(Image& page, int y, double end_mm) {
 
 }  // namespace
 
-Image draw_error_surface(const SearchOptions& options, const std::vector<GridPointError>& grid,
+Image draw_error_surface(const GridSearchOptions& options, const std::vector<GridPointError>& grid,
                          const FilmParameters& answer, const std::string& caption) {
   const std::array<Axis, 3> axes = {{{"z_stretch", options.z_stretch},
                                      {"ink_stiffness_ratio", options.stiffness_ratio},

@@ -11,7 +11,7 @@ namespace hydrodip {
 
 // Eq. 4 of all scans over each pair of parameters, the third as good as it gets; the grid's best
 // and the answer marked.
-Image draw_error_surface(const SearchOptions& options, const std::vector<GridPointError>& grid,
+Image draw_error_surface(const GridSearchOptions& options, const std::vector<GridPointError>& grid,
                          const FilmParameters& answer, const std::string& caption);
 
 // Where each pair of parameters can be together, the third as good as it gets: joint regions of 50

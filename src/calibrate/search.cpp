@@ -27,7 +27,7 @@ constexpr double kAstray[3] = {0.0015, 0.03, 0.025};
 // Rounds of a refinement; a scan alone is read off the last stencil of all, which costs nothing.
 constexpr int kRounds = 8, kRoundsAlone = 1;
 
-DesignOptions grid_design(const DesignOptions& design, const SearchOptions& options) {
+DesignOptions grid_design(const DesignOptions& design, const GridSearchOptions& options) {
   DesignOptions result = design;
   result.film.elements = std::max(8, int(design.film.elements * options.elements_factor));
   result.dip.step_mm = std::min(10.0, design.dip.step_mm * options.step_factor);
@@ -113,7 +113,7 @@ double root_mean_square(const Eigen::VectorXd& values) {
 
 }  // namespace
 
-std::vector<FilmParameters> grid_points(const SearchOptions& options) {
+std::vector<FilmParameters> grid_points(const GridSearchOptions& options) {
   std::vector<FilmParameters> points;
   for (const double z : options.z_stretch)
     for (const double ratio : options.stiffness_ratio)
@@ -122,7 +122,7 @@ std::vector<FilmParameters> grid_points(const SearchOptions& options) {
 }
 
 Search::Search(const std::vector<Subject>& subjects, const DesignOptions& design,
-               const Board& board, const SearchOptions& options, SimulationStore& store)
+               const Board& board, const GridSearchOptions& options, SimulationStore& store)
     : subjects_(subjects),
       options_(options),
       board_(board),
@@ -137,7 +137,8 @@ Search::Search(const std::vector<Subject>& subjects, const DesignOptions& design
 
 namespace {
 
-std::vector<SimulationRequest> grid_requests(const SearchOptions& options, std::size_t subjects) {
+std::vector<SimulationRequest> grid_requests(const GridSearchOptions& options,
+                                             std::size_t subjects) {
   std::vector<SimulationRequest> requests;
   for (const FilmParameters& parameters : grid_points(options))
     for (std::size_t s = 0; s < subjects; ++s) requests.push_back({s, parameters});

@@ -14,7 +14,7 @@
 
 namespace hydrodip {
 
-struct SearchOptions {
+struct GridSearchOptions {
   // Values of the grid, ascending; a single one: known, not searched for.
   std::vector<double> z_stretch, stiffness_ratio, poisson;
   // The grid's film: triangles and step of the configuration times these.
@@ -26,7 +26,7 @@ struct SearchOptions {
 };
 
 // The grid's points in the order in which they are computed.
-std::vector<FilmParameters> grid_points(const SearchOptions& options);
+std::vector<FilmParameters> grid_points(const GridSearchOptions& options);
 
 // Eq. 4 over the grid.
 struct GridPointError {
@@ -72,7 +72,7 @@ class Search {
  public:
   // Refers to all but the options.
   Search(const std::vector<Subject>& subjects, const DesignOptions& design, const Board& board,
-         const SearchOptions& options, SimulationStore& store);
+         const GridSearchOptions& options, SimulationStore& store);
 
   // Simulates the grid, or a shard of it, and keeps the results.
   void simulate_grid(const Shard& shard, const RunContext& context);
@@ -111,7 +111,7 @@ class Search {
                 const FitPoint& start, int rounds, const RunContext& context);
 
   const std::vector<Subject>& subjects_;
-  SearchOptions options_;
+  GridSearchOptions options_;
   Board board_;
   bool same_film_;  // the grid's is the configuration's own
   SimulationStore& store_;

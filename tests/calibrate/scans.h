@@ -42,8 +42,8 @@ struct Truth {
   }
 };
 
-inline SearchOptions around(const FilmParameters& truth) {
-  SearchOptions options;
+inline GridSearchOptions around(const FilmParameters& truth) {
+  GridSearchOptions options;
   options.z_stretch = {truth.z_stretch - 0.12, truth.z_stretch + 0.02, truth.z_stretch + 0.16};
   options.stiffness_ratio = {truth.stiffness_ratio};
   options.poisson = {truth.poisson};

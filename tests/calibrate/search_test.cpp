@@ -36,7 +36,7 @@ class SearchSlow : public testing::Test {
     return sphere;
   }
 
-  Calibration calibrate(const std::vector<Subject>& scanned, const SearchOptions& options,
+  Calibration calibrate(const std::vector<Subject>& scanned, const GridSearchOptions& options,
                         const std::string& store_name,
                         const std::vector<std::filesystem::path>& merged = {}) {
     SimulationStore store(folder_ / store_name, merged);
@@ -76,7 +76,7 @@ class OwnFilmSlow : public SearchSlow {
                             kTruth, config_.design.dip, context_);
   }
 
-  Calibration fit(const SyntheticOptions& scan, SearchOptions options) {
+  Calibration fit(const SyntheticOptions& scan, GridSearchOptions options) {
     const std::filesystem::path file = folder_ / "own.csv";
     write_scan_table(file, synthetic_scan(dip_->landing(*object_), {12, 12}, scan), kSyntheticMark);
     const std::vector<Subject> scanned =
@@ -95,7 +95,7 @@ class OwnFilmSlow : public SearchSlow {
 };
 
 TEST_F(OwnFilmSlow, WithoutNoiseTheAnswerIsTheTruth) {
-  SearchOptions options;
+  GridSearchOptions options;
   options.z_stretch = {0.5, 0.6, 0.7};
   options.stiffness_ratio = {10, 160};
   options.poisson = {0, 0.3};
@@ -129,7 +129,7 @@ TEST_F(OwnSphereSlow, NoiseStaysWithinTheStatedUncertainty) {
 
 // Simulations know nothing of scans: a second scan of the same object costs none.
 TEST_F(OwnFilmSlow, NoiseLeavesAllThreeKnownAndScansShareTheirSimulations) {
-  SearchOptions options;
+  GridSearchOptions options;
   options.z_stretch = {0.6, 0.7};
   options.stiffness_ratio = {20, 80};
   options.poisson = {0, 0.3};
@@ -153,7 +153,7 @@ TEST_F(OwnFilmSlow, NoiseLeavesAllThreeKnownAndScansShareTheirSimulations) {
 
 TEST_F(SearchSlow, InterruptedAnywhereItEndsTheSame) {
   const std::vector<Subject> scanned = subjects({.noise_mm = 0.05}, {"sphere"});
-  const SearchOptions options = scans::around(kTruth);
+  const GridSearchOptions options = scans::around(kTruth);
   const Calibration whole = calibrate(scanned, options, "whole.jsonl");
   std::size_t kept = 0;
   for (const int reports : {2, 5, 9}) {
@@ -178,7 +178,7 @@ TEST_F(SearchSlow, InterruptedAnywhereItEndsTheSame) {
 
 TEST_F(SearchSlow, ShardsMergedAreOneRun) {
   const std::vector<Subject> scanned = subjects({.noise_mm = 0.05}, {"sphere"});
-  const SearchOptions options = scans::around(kTruth);
+  const GridSearchOptions options = scans::around(kTruth);
   const Calibration whole = calibrate(scanned, options, "whole.jsonl");
   std::vector<std::filesystem::path> stores;
   for (const int number : {1, 2}) {

@@ -1,0 +1,17 @@
+# Fails if two headers of SOURCE define classes of one name: both would be hydrodip::NAME, and the
+# linker takes one for the other. cmake -D SOURCE=DIR -P class_names.cmake
+cmake_minimum_required(VERSION 3.25)
+file(GLOB_RECURSE headers RELATIVE ${SOURCE} ${SOURCE}/*.h)
+if(NOT headers)
+  message(FATAL_ERROR "${SOURCE} holds no headers.")
+endif()
+foreach(header IN LISTS headers)
+  file(STRINGS ${SOURCE}/${header} lines REGEX "^(class|struct|enum class) [A-Za-z0-9_]+.*{")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^(class|struct|enum class) ([A-Za-z0-9_]+).*" "\\2" name "${line}")
+    if(DEFINED defined_${name})
+      message(SEND_ERROR "${name} is defined in src/${defined_${name}} and src/${header}")
+    endif()
+    set(defined_${name} ${header})
+  endforeach()
+endforeach()
