@@ -28,14 +28,15 @@ case $? in
   77) exit 77 ;;
   *) fail 'something is not as its schema says' ;;
 esac
-mkdir wrong
+mkdir wrong wrong/print wrong/inspect
 for wrong in '[film]\nwidth_mm = 9\n' '[film]\nwidht_mm = 100\n' '[[artwork]]\nprojection = "round"\n' \
   '[object]\nrotate_deg = [1, 2]\n' '[[dip]]\ndepth = 3\n' '[[part]]\ncount = 2\n'; do
   # shellcheck disable=SC2059
   printf "$wrong" > "wrong/$(ls wrong | wc -l).toml"
 done
-sed 's/"concern": "[a-z]*"/"concern": "perhaps"/' print/report.json > wrong/report.json
+sed 's/"concern": "[a-z]*"/"concern": "perhaps"/' print/report.json > wrong/print/report.json
+sed '/"units"/d' inspect/report.json > wrong/inspect/report.json
 sed 's/"generator":"hydrodip correct"/"generator":"by hand"/' print/correction.json > wrong/correction.json
-"$python" "$source/tests/schemas/validate.py" --refuses "$schemas" wrong/* || fail 'something wrong is taken'
+"$python" "$source/tests/schemas/validate.py" --refuses "$schemas" wrong/*.* wrong/*/report.json || fail 'something wrong is taken'
 rm -r wrong
 finish
