@@ -75,9 +75,11 @@ Json value_schema(const Parameter& p) {
   return schema;
 }
 
-// In a file, vectors may be text as for --set too.
+// In a file, vectors may be text as for --set too, and what is on or off true or false.
 Json file_schema(const Parameter& p) {
   Json schema = value_schema(p);
+  if (is_on_off(p))
+    for (const bool value : {true, false}) schema["enum"].push_back(value);
   if (p.type == ParameterType::kVector) schema = or_else(std::move(schema), text("string"));
   schema["description"] = p.help + (p.unit.empty() ? "" : " (" + p.unit + ")");
   const ParameterValue usual = p.default_value();

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "base/parse_double.h"
+#include "settings/table_key.h"
 
 namespace hydrodip {
 namespace {
@@ -245,14 +245,13 @@ const std::vector<Key>& keys() {
 
 // ---- names ----
 
-constexpr const char* kTable = "artwork[";
-constexpr const char* kOption = "art.";
+constexpr std::string_view kTable = "artwork", kOption = "art.";
 
 // "size_mm" of "artwork[2].size_mm" and "art.size_mm"; "" of others.
 std::string key_of(const std::string& name) {
-  if (name.starts_with(kOption)) return name.substr(std::string(kOption).size());
-  const std::size_t end = name.find("].");
-  return name.starts_with(kTable) && end != std::string::npos ? name.substr(end + 2) : "";
+  if (name.starts_with(kOption)) return name.substr(kOption.size());
+  const auto at = table_key(kTable, name);
+  return at ? at->key : "";
 }
 
 const Key& find_key(const std::string& name, const Setting& setting) {
@@ -266,11 +265,9 @@ const Key& find_key(const std::string& name, const Setting& setting) {
                                hint.empty() ? "; docs/artwork.md lists what it has" : hint));
 }
 
-ArtworkLayer& numbered(std::vector<ArtworkLayer>& layers, const Setting& setting) {
-  const std::string digits = setting.name.substr(std::string(kTable).size());
-  std::size_t number = 0;
-  std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (number < 1 || number > std::min(layers.size() + 1, kMostLayers))
+ArtworkLayer& numbered(std::vector<ArtworkLayer>& layers, std::size_t number,
+                       const Setting& setting) {
+  if (number > std::min(layers.size() + 1, kMostLayers))
     throw InputError(fmt::format("{}: {}: the job has {} layers of artwork, and at most {}",
                                  setting.origin, setting.name, layers.size(), kMostLayers));
   if (number > layers.size()) layers.emplace_back();
@@ -287,10 +284,12 @@ ArtworkLayer& topmost(std::vector<ArtworkLayer>& layers, const Setting& setting)
 
 bool apply_artwork_setting(JobConfig& config, const Setting& setting) {
   const bool is_option = setting.name.starts_with(kOption);
-  if (!is_option && !setting.name.starts_with(kTable)) return false;
+  const auto at = table_key(kTable, setting.name);
+  if (!is_option && !at) return false;
   std::vector<ArtworkLayer>& layers = config.object.artwork;
   const Key& key = find_key(key_of(setting.name), setting);
-  ArtworkLayer& layer = is_option ? topmost(layers, setting) : numbered(layers, setting);
+  ArtworkLayer& layer =
+      is_option ? topmost(layers, setting) : numbered(layers, at->number, setting);
   if (!key.set(layer, setting))
     throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, setting.name,
                                  key.key.range, setting.shown.empty() ? "empty" : setting.shown));

@@ -3,33 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "settings/table_key.h"
 
 namespace hydrodip {
 namespace {
-
-constexpr const char* kStart = "dip[";
-
-struct DipKey {
-  int number = 0;  // from 1
-  std::string key;
-};
-
-// Of "dip[2].depth_mm"; number 0 for other names.
-DipKey dip_key(const std::string& name) {
-  DipKey key;
-  if (!name.starts_with(kStart)) return key;
-  const std::size_t end = name.find("].");
-  if (end == std::string::npos) return key;
-  const char* const first = name.data() + std::string(kStart).size();
-  const auto [rest, error] = std::from_chars(first, name.data() + end, key.number);
-  if (error != std::errc() || rest != name.data() + end) return {};
-  key.key = name.substr(end + 2);
-  return key;
-}
 
 // The value as that parameter of a single dip would take it.
 JobConfig checked_as(const std::string& parameter, const Setting& setting) {
@@ -56,31 +36,31 @@ const std::vector<std::string>& dip_keys() {
 }
 
 bool apply_dip_setting(JobConfig& config, const Setting& setting) {
-  const DipKey at = dip_key(setting.name);
-  if (at.number == 0) return false;
-  if (at.number < 1 || at.number > kMostDips)
+  const auto at = table_key("dip", setting.name);
+  if (!at) return false;
+  if (at->number > kMostDips)
     throw InputError(fmt::format("{}: a job has at most {} dips", setting.origin, kMostDips));
-  if (std::find(dip_keys().begin(), dip_keys().end(), at.key) == dip_keys().end())
+  if (std::find(dip_keys().begin(), dip_keys().end(), at->key) == dip_keys().end())
     throw InputError(fmt::format(
         "{}: unknown value '{}' of a [[dip]] table{}; it has down, rotate_deg, depth_mm, path, "
         "locked and correction, and what holds for all dips is given with --set or in a profile",
-        setting.origin, at.key, did_you_mean(at.key, dip_keys())));
-  if (int(config.dips.size()) < at.number) config.dips.resize(std::size_t(at.number));
-  DipEntry& dip = config.dips[std::size_t(at.number - 1)];
-  if (at.key == "down") {
+        setting.origin, at->key, did_you_mean(at->key, dip_keys())));
+  if (config.dips.size() < at->number) config.dips.resize(at->number);
+  DipEntry& dip = config.dips[at->number - 1];
+  if (at->key == "down") {
     dip.down = checked_as("object.down", setting).object.pose.down;
-  } else if (at.key == "rotate_deg") {
+  } else if (at->key == "rotate_deg") {
     const JobConfig value = checked_as("object.rotate_deg", setting);
     dip.rotate_deg.reset();
     dip.find_rotation = value.plan.find_pose;
     if (!value.plan.find_pose) dip.rotate_deg = value.object.pose.rotate_deg;
-  } else if (at.key == "depth_mm") {
+  } else if (at->key == "depth_mm") {
     const JobConfig value = checked_as("dip.depth_mm", setting);
     dip.depth_mm.reset();
     if (!value.plan.find_depth) dip.depth_mm = value.design.trajectory.depth_mm;
-  } else if (at.key == "path") {
+  } else if (at->key == "path") {
     dip.path = checked_as("path", setting).design.trajectory.path;
-  } else if (at.key == "correction") {
+  } else if (at->key == "correction") {
     dip.correction = checked_as("film.correction", setting).correction;
   } else {
     dip.locked = checked_flag(setting);

@@ -16,6 +16,7 @@
 #include "settings/dip_tables.h"
 #include "settings/part_tables.h"
 #include "settings/path_file.h"
+#include "settings/table_key.h"
 
 namespace hydrodip {
 namespace {
@@ -217,6 +218,19 @@ const Parameter& find_parameter(const std::string& name, const std::string& orig
   std::replace(brief.begin(), brief.end(), '\0', '?');  // a sentence would end there
   throw InputError(fmt::format("{}: unknown parameter '{}'{}", origin, brief,
                                hint.empty() ? "; 'hydrodip params' lists them all" : hint));
+}
+
+bool is_on_off(const Parameter& parameter) {
+  static const std::vector<std::string> on_off = {"on", "off"};
+  return std::ranges::is_permutation(parameter.choices, on_off);
+}
+
+std::optional<std::string> switch_text(const std::string& name, bool value) {
+  const auto dip = table_key("dip", name);
+  if (is_artwork_switch(name) || (dip && dip->key == "locked")) return value ? "true" : "false";
+  for (const Parameter& p : parameters())
+    if (p.name == name && is_on_off(p)) return value ? "on" : "off";
+  return {};
 }
 
 void apply_settings(JobConfig& config, const std::vector<Setting>& settings) {

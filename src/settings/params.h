@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -38,6 +39,13 @@ const std::vector<Parameter>& parameters();
 
 // Throws InputError with the nearest known name; `origin` says where the name came from.
 const Parameter& find_parameter(const std::string& name, const std::string& origin);
+
+// Whether it is either on or off, which a file may also say as true or false.
+bool is_on_off(const Parameter& parameter);
+
+// What true or false in a file means for that parameter or table's key, as its text: "on",
+// "false". Nothing where it is no value.
+std::optional<std::string> switch_text(const std::string& name, bool value);
 
 // One "name = value" from an option (--set, --size: text) or a file (typed).
 struct Setting {

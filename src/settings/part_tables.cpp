@@ -2,16 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/parse_double.h"
+#include "settings/table_key.h"
 
 namespace hydrodip {
 namespace {
 
-constexpr const char* kTable = "part[";
 constexpr int kMostCopies = 100;
 
 [[noreturn]] void refuse(const Setting& setting, const std::string& expected) {
@@ -19,11 +19,8 @@ constexpr int kMostCopies = 100;
                                setting.shown.empty() ? "empty" : setting.shown));
 }
 
-PartEntry& numbered(JobConfig& config, const Setting& setting) {
-  const std::string digits = setting.name.substr(std::string(kTable).size());
-  std::size_t number = 0;
-  std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (number < 1 || number > std::min(config.parts.size() + 1, kMostParts))
+PartEntry& numbered(JobConfig& config, std::size_t number, const Setting& setting) {
+  if (number > std::min(config.parts.size() + 1, kMostParts))
     throw InputError(fmt::format("{}: {}: the job has {} parts, and at most {}", setting.origin,
                                  setting.name, config.parts.size(), kMostParts));
   if (number > config.parts.size()) config.parts.emplace_back();
@@ -43,14 +40,15 @@ int count_of(const Setting& setting) {
 }  // namespace
 
 bool apply_part_setting(JobConfig& config, const Setting& setting) {
-  if (!setting.name.starts_with(kTable)) return false;
-  PartEntry& part = numbered(config, setting);
-  if (setting.name.ends_with("].job")) {
+  const auto at = table_key("part", setting.name);
+  if (!at) return false;
+  PartEntry& part = numbered(config, at->number, setting);
+  if (at->key == "job") {
     const auto* text = std::get_if<std::string>(&setting.value);
     if (!text || text->empty() || text->find('\0') != std::string::npos)
       refuse(setting, "a file name, of a model or a job");
     part.job = *text;
-  } else if (setting.name.ends_with("].count")) {
+  } else if (at->key == "count") {
     part.count = count_of(setting);
   } else {
     throw InputError(fmt::format("{}: unknown '{}': a part has a job and a count", setting.origin,

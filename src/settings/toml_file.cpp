@@ -193,9 +193,6 @@ class SettingReader {
   static std::string known_name(const std::string& name) {
     return name.starts_with("dips.") ? "dip." + name.substr(5) : name;
   }
-  static bool is_switch(const std::string& name) {
-    return is_artwork_switch(name) || (name.starts_with("dip[") && name.ends_with("].locked"));
-  }
 
   void add(const std::string& given, const toml::source_position& at, const toml::node& node) {
     const std::string origin = fmt::format("{}:{}", file_.string(), at.line);
@@ -215,11 +212,16 @@ class SettingReader {
       setting.value = type == ParameterType::kPath || type == ParameterType::kWayIn
                           ? beside_file(*text)
                           : *text;
-    else if (const auto* flag = node.as_boolean(); flag && is_switch(name))
-      setting.value = std::string(flag->get() ? "true" : "false");
+    else if (const auto as_text = as_switch(name, node))
+      setting.value = *as_text;
     else
       setting.value = type == ParameterType::kWayIn ? as_rows(node) : as_numbers(node);
     found_.push_back(std::move(located));
+  }
+
+  static std::optional<std::string> as_switch(const std::string& name, const toml::node& node) {
+    const auto* flag = node.as_boolean();
+    return flag ? switch_text(name, flag->get()) : std::nullopt;
   }
 
   // Only TOML's own numbers: true is not 1.

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "base/error.h"
+#include "base/parse_double.h"
 #include "settings/artwork_tables.h"
 #include "settings/params.h"
 #include "settings/settings.h"
@@ -100,7 +100,8 @@ class Reader {
       if (value.is_number()) {
         setting.value = value.get<double>();
       } else if (value.is_boolean()) {
-        setting.value = std::string(value.get<bool>() ? "true" : "false");
+        const bool flag = value.get<bool>();
+        setting.value = switch_text(name, flag).value_or(flag ? "true" : "false");
       } else if (value.is_string()) {
         const auto text = value.get<std::string>();
         if (text.empty() && (is_path(name) || !name.starts_with("artwork["))) return;
@@ -155,7 +156,7 @@ Json numbers_of(const std::string& text) {
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     double number = 0;
-    std::from_chars(text.data() + begin, text.data() + end, number);
+    parse_double(text.data() + begin, text.data() + end, number);
     list.push_back(number);
     begin = end + 1;
   }

@@ -19,8 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kIdDigits = 16;
-
 const Parameter* known_parameter(const std::string& name) {
   for (const Parameter& parameter : parameters())
     if (parameter.name == name) return &parameter;

@@ -17,6 +17,9 @@ namespace hydrodip {
 // A file as the plan has it: relative to the sweep's folder, or absolute where it cannot be.
 std::string from_folder(const std::filesystem::path& file, const std::filesystem::path& folder);
 
+// Of a run's id, which is a hash.
+inline constexpr std::size_t kIdDigits = 16;
+
 // Whether the setting's text is the name of a file.
 bool names_file(const std::string& setting, const std::string& text);
 

@@ -47,7 +47,7 @@ std::string name_of(SweepCommand wanted) {
 }
 
 constexpr int kSchemaVersion = 2;
-constexpr std::size_t kMostRuns = 1000000, kIdDigits = 16;
+constexpr std::size_t kMostRuns = 1000000;
 constexpr const char* kModel = "model";
 constexpr const char* kModelFile = "object.file";
 
@@ -123,6 +123,8 @@ class SweepFile {
       const auto given = value.get<std::string>();
       return names_file(name, given) ? file_at(value, name, folder) : given;
     }
+    if (value.is_boolean())
+      if (const auto as_text = switch_text(name, value.get<bool>())) return *as_text;
     if (value.is_null()) refuse(fmt::format("{}: inf and nan are no values of a parameter", name));
     if (value.is_number_integer()) return fmt::format("{}", value.get<std::int64_t>());
     if (value.is_number()) return fmt::format("{}", value.get<double>());

@@ -124,6 +124,31 @@ TEST_F(Settings, UnknownNamesSayTheNearestOneAndWhereTheyStand) {
   EXPECT_TRUE(contains(toml_error("[[film]]\nwidth_mm = 3\n"), "unknown parameter 'film'"));
 }
 
+TEST_F(Settings, TablesAreNumbered) {
+  for (const char* name :
+       {"artwork[1x].image", "artwork[ 1].text", "artwork[0].text", "artwork[1]y].text",
+        "part[1]y].job", "part[2x].job", "part[-1].job", "dip[1x].down", "dip[0].down"}) {
+    EXPECT_TRUE(contains(set_error(std::string(name) + "=+z"), "unknown parameter")) << name;
+  }
+  EXPECT_TRUE(contains(set_error("part[1].jop=a.stl"), "a part has a job and a count"));
+  EXPECT_EQ(set_error("part[1].job=a.stl"), "accepted");
+  EXPECT_EQ(set_error("artwork[1].text=a"), "accepted");
+  EXPECT_EQ(set_error("dip[1].down=+z"), "accepted");
+}
+
+TEST_F(Settings, WhatIsOnOrOffMayBeTrueOrFalse) {
+  const JobConfig config = from_toml(
+      "[preview]\npictures = false\n[plan]\nsuggest = true\n[output]\nno_clobber = true\n"
+      "[[artwork]]\ntext = 'a'\nthrough = true\n");
+  EXPECT_FALSE(config.pictures);
+  EXPECT_TRUE(config.plan.suggest);
+  EXPECT_EQ(config.earlier_result, EarlierResult::kKept);
+  EXPECT_TRUE(config.object.artwork.at(0).through);
+  EXPECT_TRUE(contains(toml_error("[film]\nshape = true\n"), "not 'true'"));
+  EXPECT_TRUE(contains(toml_error("[film]\nelements = true\n"), "not 'true'"));
+  EXPECT_TRUE(contains(toml_error("[[artwork]]\ntext = true\n"), "not 'true'"));
+}
+
 TEST_F(Settings, ValuesOutOfRangeNameParameterValueAndRange) {
   EXPECT_EQ(set_error("print.dpi=5000"),
             "--set: print.dpi must be a number from 36 to 1200 dpi, not '5000'");

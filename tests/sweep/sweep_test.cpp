@@ -182,6 +182,17 @@ TEST_F(SweepInputsTest, WhatAValueNamesIsPartOfTheRun) {
   EXPECT_NE(ids(plan(job)), before);
 }
 
+TEST_F(SweepTest, WhatIsOnOrOffMayBeTrueOrFalse) {
+  const SweepPlan made = plan(any_depth_ +
+                              "\"preview.pictures\" = false\n"
+                              "[vary]\n\"ink.compensation\" = [true, false]\n");
+  ASSERT_EQ(made.runs.size(), 2U);
+  EXPECT_EQ(value_of(made.runs[0], "ink.compensation"), "on");
+  EXPECT_EQ(value_of(made.runs[1], "ink.compensation"), "off");
+  EXPECT_TRUE(
+      contains(why(any_depth_ + "[vary]\n\"dip.depth_mm\" = [true]\n"), "true is no value"));
+}
+
 // Wherever the program is started: `sweep run` may be, on another machine, in the sweep's folder.
 TEST_F(SweepInputsTest, FileNamesAreTakenFromTheSweepsFile) {
   const SweepPlan made =
