@@ -238,11 +238,15 @@ std::vector<Command> calibrate_commands() {
        "dip was made. 'measure' and 'calibrate' take such files in place of OBJECT=SCAN.\n"
        "docs/measured-dips.md says why, and what is in it.",
        declare_pack, run_pack},
-      {"calibrate synth", "scans computed from known parameters, to try calibrations on",
+      {"calibrate synth",
+       "scans computed from known parameters, to try calibrations on",
        "Writes OBJECT-scan.obj, OBJECT-scan.csv and truth.toml. They are computed on sixteen "
        "times the\n"
        "triangles and a quarter of the step. Truth: --set material.z_stretch=0.65 and so on.",
-       declare_synth, run_synth},
+       declare_synth,
+       run_synth,
+       {},
+       "[OBJECT...]"},
       {"measure", "the error of a simulated dip against a scan, Eq. 4 of the paper",
        "For the full method and for the baselines single-step and projection. With -o it writes\n"
        "error-map.png and measure.json.",

@@ -33,16 +33,20 @@ std::string general_help() {
   return help;
 }
 
+std::vector<const CLI::Option*> positionals(const CLI::App& app) {
+  return app.get_options([](const CLI::Option* option) { return option->get_positional(); });
+}
+
 // CLI11's layout, with the usage line and the values' names as this program's users read them.
 class HelpFormatter : public CLI::Formatter {
  public:
-  HelpFormatter() { column_width(kHelpColumn); }
+  explicit HelpFormatter(const Command& command) : command_(command) { column_width(kHelpColumn); }
 
   std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {
-    std::string help = app->get_description() + "\n\nUsage: " + app->get_name();
-    for (const CLI::Option* option : positionals(app)) help += " " + option->get_name(true);
-    help += " [OPTIONS]\n\n";
-    for (const CLI::Option* option : positionals(app)) help += make_option(option, true);
+    const std::string operands = operands_of(command_, *app);
+    std::string help = app->get_description() + "\n\nUsage: " + app->get_name() +
+                       (operands.empty() ? "" : " " + operands) + " [OPTIONS]\n\n";
+    for (const CLI::Option* option : positionals(*app)) help += make_option(option, true);
     for (const std::string& group : app->get_groups()) help += options_of(app, group);
     return help + (app->get_footer().empty() ? "" : "\n" + app->get_footer() + "\n");
   }
@@ -52,10 +56,6 @@ class HelpFormatter : public CLI::Formatter {
   }
 
  private:
-  static std::vector<const CLI::Option*> positionals(const CLI::App* app) {
-    return app->get_options([](const CLI::Option* option) { return option->get_positional(); });
-  }
-
   std::string options_of(const CLI::App* app, const std::string& group) const {
     std::string text;
     for (const CLI::Option* option : app->get_options())
@@ -63,6 +63,8 @@ class HelpFormatter : public CLI::Formatter {
         text += make_option(option, false);
     return text.empty() ? "" : "\n" + group + ":\n" + text;
   }
+
+  const Command& command_;
 };
 
 // Names such as "rig sheet" begin with the name of their group.
@@ -158,10 +160,19 @@ CommandLine parse_command(const Command& command, std::vector<std::string> argum
 std::unique_ptr<CLI::App> command_options(const Command& command, Request& request) {
   auto app = std::make_unique<CLI::App>(command.summary, "hydrodip " + command.name);
   app->allow_extras();
-  app->formatter(std::make_shared<HelpFormatter>());
+  app->formatter(std::make_shared<HelpFormatter>(command));
   app->footer(command.details);
   command.declare(*app, request);
   return app;
+}
+
+std::string operands_of(const Command& command, const CLI::App& app) {
+  if (!command.operands.empty()) return command.operands;
+  std::string text;
+  for (const CLI::Option* option : positionals(app))
+    text += (text.empty() ? "" : " ") + option->get_name(true) +
+            (option->get_expected_max() > 1 ? "..." : "");
+  return text;
 }
 
 const std::vector<Remark>& exit_codes() {
@@ -197,7 +208,7 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
   if (first == "--help" || first == "-h" || first == "help") return {nullptr, {}, general_help()};
   const bool asks = arguments.size() == 2 && (arguments[1] == "--help" || arguments[1] == "-h");
   if (asks && !group_help(first).empty() && !is_command(first))
-    return {nullptr, {}, "Usage: hydrodip COMMAND [OPTIONS]\n\n" + group_help(first)};
+    return {nullptr, {}, "Usage: hydrodip " + first + " COMMAND [OPTIONS]\n\n" + group_help(first)};
   if (first == "--version") return {nullptr, {}, fmt::format("hydrodip {}\n", build_version())};
   const std::size_t words = count_name_words(arguments);
   const std::string name = words == 2 ? first + " " + arguments[1] : first;

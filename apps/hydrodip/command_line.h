@@ -12,6 +12,9 @@ namespace hydrodip {
 // A command's arguments and options, which parsing writes into `request`.
 std::unique_ptr<CLI::App> command_options(const Command& command, Request& request);
 
+// What stands between its name and the options: "MODEL", "[MODEL]", "JOB_DIR SCAN..."; or "".
+std::string operands_of(const Command& command, const CLI::App& app);
+
 // Two columns of the general help.
 struct Remark {
   std::string what;

@@ -85,6 +85,7 @@ void declare_pattern_command(CLI::App& app, Request& request) {
   declare_output(app, request, "MODEL-pattern");
   declare_reporting(app, request);
   declare_report_page(app, request);
+  declare_strict(app, request);
   declare_pattern(app, request);
   declare_object(app, request);
   declare_film_and_dip(app, request);
@@ -286,10 +287,14 @@ std::vector<Command> own_commands() {
        "searched so that detail and seams stay away from stretched film and from --keep spots.\n"
        "Writes the same files as 'hydrodip print'.",
        declare_pattern_command, run_pattern},
-      {"nest", "several parts on one sheet of film, each with the film that it needs",
+      {"nest",
+       "several parts on one sheet of film, each with the film that it needs",
        "Writes print.pdf, print.png and print.tif of the whole sheet with lines to cut along,\n"
        "nest.html (the run sheet: which part where), nest.json and a picture of each part.",
-       declare_nest_command, run_nest},
+       declare_nest_command,
+       run_nest,
+       {},
+       "[PART...]"},
       {"inspect", "size, mesh health, dip angles, what fits the film; no simulation",
        "With -o it writes angles.png and report.json.", declare_inspect, run_inspect},
       {"orient", "the best ways to hold the model and how deep to dip it, found by trial dips",
@@ -300,14 +305,18 @@ std::vector<Command> own_commands() {
        "Prints what is covered after each dip; writes plan.toml, plan.json and plan.png.\n"
        "'hydrodip print plan.toml' makes a sheet for each, with seams that are hard to see.",
        declare_plan, run_plan},
-      {"studio", "all of it in the browser: turn it, put a picture on, watch the dip, print",
+      {"studio",
+       "all of it in the browser: turn it, put a picture on, watch the dip, print",
        "Serves a page on this machine alone, and works without a network. What is not saved is\n"
        "kept and found again. See docs/studio.md.",
-       declare_studio, run_studio},
+       declare_studio,
+       run_studio,
+       {},
+       "[MODEL]"},
       {"view", "open a job's report in the browser",
        "Where there is no browser, the report's path is printed.", declare_view, run_view},
       {"sample", "write a built-in sample model with its texture", "", declare_sample_command,
-       run_sample, sample_names()},
+       run_sample, sample_names(), "[NAME]"},
       {"params", "list every parameter: name, default, range, what it does", "", declare_reporting,
        run_params},
   };

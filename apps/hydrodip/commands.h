@@ -17,6 +17,8 @@ struct Command {
   void (*declare)(CLI::App& app, Request& request);
   JobResult (*run)(const Request& request, const RunContext& context);
   std::vector<std::string> words = {};  // one of which the first argument has to be; none: any text
+  // As a usage line has them: "[MODEL]", "PHOTO JOB_DIR"; "": all that it takes, each needed.
+  std::string operands = {};
 };
 
 const std::vector<Command>& commands();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <system_error>
 
@@ -71,6 +72,11 @@ int run_safely(const std::vector<std::string>& arguments) {
     return kExitCancelled;
   } catch (const std::bad_alloc&) {
     return fail(kExitFailed, out_of_memory());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(kExitInput, fmt::format("{}: {}; check the path and its permissions",
+                                        error.path1().empty() ? "the working directory"
+                                                              : error.path1().string(),
+                                        error.code().message()));
   } catch (const std::system_error& error) {
     return fail(kExitFailed, std::string("the system refuses what the job needs (") + error.what() +
                                  "); raise its limits, or try --threads 1");

@@ -188,7 +188,8 @@ std::vector<Command> register_commands() {
        "print.scale_x, print.scale_y and print.skew_deg; every sheet printed with that profile is\n"
        "drawn the other way, so that it comes out true. See docs/registration.md.",
        declare_printer, run_printer},
-      {"register", "where the film lies on the water, from a photo of it",
+      {"register",
+       "where the film lies on the water, from a photo of it",
        "Says how far it lies off its place, how much it has swollen and what that leaves\n"
        "unexplained, each with its uncertainty, and how to move the frame. Writes\n"
        "registration.json (for 'hydrodip print --film-state') and registration.png into JOB_DIR.\n"
@@ -196,7 +197,10 @@ std::vector<Command> register_commands() {
        "  hydrodip register --calibrate-camera --water-below 22 board-*.jpg\n"
        "  hydrodip register photo.jpg mask-print\n"
        "See docs/registration.md.",
-       declare_register, run_register},
+       declare_register,
+       run_register,
+       {},
+       "PHOTO JOB_DIR"},
       {"register board", "marks for the tank's rim, to print and glue",
        "Writes board.pdf, drawn true for the printer of the --profile that 'calibrate printer' "
        "made.",

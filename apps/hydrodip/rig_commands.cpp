@@ -183,7 +183,8 @@ std::vector<Command> rig_commands() {
        "Nothing moves before a yes. Ctrl-C stops softly, a second one at once. See docs/rig.md.",
        declare_stage,
        run_stage,
-       {"find", "status", "home", "jog", "approach", "dip", "retract"}},
+       {"find", "status", "home", "jog", "approach", "dip", "retract"},
+       "ACTION [JOB_DIR]"},
   };
 }
 

@@ -260,8 +260,13 @@ std::vector<Command> shop_commands() {
       {"profile save", "make a profile, or change single values of one",
        "Values that are not named stay as they are. Use it with --profile NAME.",
        declare_profile_save, run_profile_save},
-      {"profile import", "keep a profile that somebody else made", "", declare_profile_import,
-       run_profile_import},
+      {"profile import",
+       "keep a profile that somebody else made",
+       "",
+       declare_profile_import,
+       run_profile_import,
+       {},
+       "FILE [NAME]"},
       {"history", "every dip of a job: readings, outcome, what a good piece costs",
        "'hydrodip rig guide' keeps what it asks; the rest can be told later:\n"
        "  hydrodip history mask-print --run rig-3 --outcome failed --notes 'film slid'\n"

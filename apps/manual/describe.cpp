@@ -87,7 +87,8 @@ OptionText option_of(const CLI::Option& option) {
 CommandText text_of(const Command& command) {
   Request request;
   const std::unique_ptr<CLI::App> app = command_options(command, request);
-  CommandText text{command.name, command.summary, command.details, {}, {}, {}};
+  CommandText text{
+      command.name, command.summary, command.details, operands_of(command, *app), {}, {}, {}};
   for (const CLI::Option* option : app->get_options()) {
     if (option->get_positional())
       text.arguments.push_back(argument_of(*option, command, text.arguments.empty()));

@@ -41,9 +41,10 @@ struct ArgumentText {
 };
 
 struct CommandText {
-  std::string name;     // "rig sheet"
-  std::string summary;  // one line
-  std::string details;  // lines; may be empty
+  std::string name;      // "rig sheet"
+  std::string summary;   // one line
+  std::string details;   // lines; may be empty
+  std::string operands;  // "JOB_DIR SCAN..."; may be empty
   std::vector<ArgumentText> arguments;
   std::vector<std::string> groups;  // of the options, in order
   std::vector<OptionText> options;

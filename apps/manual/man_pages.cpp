@@ -53,6 +53,22 @@ std::string value(const ValueText& text) {
   return out;
 }
 
+// "[PART...]": what stands for something is italic, brackets and dots are as they are.
+std::string operands(const std::string& text) {
+  std::string out, name;
+  for (const char c : text + " ") {
+    if (std::string("[]. ").find(c) == std::string::npos) {
+      name += c;
+      continue;
+    }
+    if (!name.empty()) out += italic(name);
+    name.clear();
+    out += c;
+  }
+  out.pop_back();
+  return out;
+}
+
 std::string heading(const std::string& page, int section, const std::string& release,
                     const std::string& date, const std::string& summary) {
   return fmt::format(".TH {} {} \"{}\" \"{}\" \"hydrodip manual\"\n.SH NAME\n{} \\- {}\n", page,
@@ -129,9 +145,7 @@ std::string command_page(const CommandText& command, const std::string& release,
                          const std::string& date) {
   std::string text = heading(command.page(), 1, release, date, command.summary);
   text += ".SH SYNOPSIS\n.B hydrodip " + roff(command.name) + "\n";
-  for (const ArgumentText& argument : command.arguments)
-    text += argument.repeated ? ".IR " + roff(argument.name) + " ...\n"
-                              : ".I " + roff(argument.name) + "\n";
+  if (!command.operands.empty()) text += operands(command.operands) + "\n";
   text += ".RI [ OPTIONS ]\n.SH DESCRIPTION\n" + roff(sentence(command.summary)) + "\n";
   if (!command.details.empty()) text += ".PP\n" + as_typed(command.details);
   if (!command.arguments.empty()) text += ".SH ARGUMENTS\n";

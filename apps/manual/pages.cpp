@@ -65,9 +65,7 @@ std::string commands_page(const std::vector<CommandText>& commands) {
   for (const CommandText& command : commands) {
     text += fmt::format("\n## hydrodip {} {{#{}}}\n\n{}.\n\n    hydrodip {}", command.name,
                         command.page(), cell(command.summary), command.name);
-    for (const ArgumentText& argument : command.arguments)
-      text += " " + argument.name + (argument.repeated ? " ..." : "");
-    text += " [OPTIONS]\n\n";
+    text += (command.operands.empty() ? "" : " " + command.operands) + " [OPTIONS]\n\n";
     for (const ArgumentText& argument : command.arguments)
       text += "- " + code(argument.name) + ": " + cell(argument.help) + "\n";
     if (!command.details.empty()) {

@@ -83,6 +83,10 @@ done
   --quiet > pattern.txt || fail "pattern: $?"
 grep -q 'pattern at' pattern.txt || fail 'pattern does not say where it lies'
 # shellcheck disable=SC2086
+"$hydrodip" pattern plate.stl --tile photo.png --tile-mm 15 --set material.tear_stretch=1.01 $quick -o fragile --strict \
+  --quiet > fragile.txt
+[ $? -eq 4 ] || fail 'pattern --strict of film that tears'
+# shellcheck disable=SC2086
 "$hydrodip" pattern plate.stl --tile photo.png --tile-mm 15 --compensate --tile-at 0,0 --tile-turn 0 \
   $quick -o flat --quiet > flat.txt || fail "pattern --compensate: $?"
 grep -q 'without' flat.txt || fail 'pattern --compensate does not say what it gains'

@@ -148,6 +148,14 @@ for command in print simulate inspect view sample params; do
   "$hydrodip" "$command" --help | grep -q "^Usage: hydrodip $command" || fail "$command --help"
 done
 "$hydrodip" --help | grep -q inspect || fail '--help'
+# What may be left out is in brackets, what may come several times has dots.
+for usage in 'print MODEL' 'studio [MODEL]' 'sample [NAME]' 'nest [PART...]' 'register PHOTO JOB_DIR' \
+  'rig stage ACTION [JOB_DIR]' 'correct JOB_DIR SCAN...'; do
+  # shellcheck disable=SC2046
+  "$hydrodip" $(echo "$usage" | grep -oE '^[a-z ]+') --help | grep -qxF "Usage: hydrodip $usage [OPTIONS]" ||
+    fail "usage of $usage"
+done
+"$hydrodip" rig --help | grep -qx 'Usage: hydrodip rig COMMAND \[OPTIONS\]' || fail 'rig --help'
 "$hydrodip" --version | grep -q '^hydrodip [0-9]' || fail '--version'
 "$hydrodip" params | grep -q '^film.elements' || fail 'params'
 ("$hydrodip" params; echo "$?" > code.txt) | head -n 1 > /dev/null

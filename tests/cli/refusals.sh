@@ -25,6 +25,13 @@ refused() {
   rm -f "$work.before" "$work.after" "$work.out" "$work.err"
 }
 
+# A working directory that has gone.
+mkdir gone
+(cd gone && rmdir "$work/gone" && "$hydrodip" register --calibrate-camera "$work/inputs/a.png" 2> "$work.err")
+code=$?
+[ "$code" -eq 2 ] || fail "exit code $code instead of 2 in a folder that has gone"
+grep -q '^error: .*check the path' "$work.err" || fail "a folder that has gone: $(cat "$work.err")"
+
 # Files that are no models.
 : > inputs/empty.obj
 : > inputs/empty.stl
@@ -56,6 +63,8 @@ refused 'inputs/empty.png' print samples/box.obj --texture inputs/empty.png -o o
 refused 'nowhere.png' print samples/box.obj --texture nowhere.png -o out
 refused 'inputs/noise.png' simulate tetra.obj --film-image inputs/noise.png -o out
 refused 'nowhere.png' simulate tetra.obj --film-image nowhere.png -o out
+printf 'MM: a letter, and no TIFF' > inputs/letter.png
+refused 'not a picture of a kind that is read' simulate tetra.obj --film-image inputs/letter.png -o out
 refused 'shape of the' simulate tetra.obj --film-image samples/box.png --film 200x100 -o out
 
 # Too large: by how much.
