@@ -403,7 +403,7 @@ HttpAnswer Api::hello() const {
                       {"limits",
                        {{"file_bytes", kMostFileBytes},
                         {"job_bytes", kMostJobBytes},
-                        {"document_bytes", std::uintmax_t(1) << 20U},
+                        {"document_bytes", kLargestDocument},
                         {"layers", kMostLayers},
                         {"dips", kMostDips}}},
                       {"model_types", model_endings()},
@@ -437,11 +437,7 @@ void Api::open_file(const std::filesystem::path& file) {
   try {
     job(name)->open_file(file);
   } catch (...) {
-    {
-      const std::lock_guard lock(mutex_);
-      jobs_.erase(name);
-    }
-    store_.forget(name);
+    forget(name, true);
     throw;
   }
   opened_ = name;
@@ -457,8 +453,8 @@ HttpAnswer Api::new_job(HttpRequest& request) {
       try {
         const std::string file = shelf_.place(sample, store_.home(name) / "files");
         job(name)->adopt({file}, "");
-      } catch (const InputError&) {
-        store_.forget(name);
+      } catch (...) {
+        forget(name, true);
         throw;
       }
     }
@@ -469,13 +465,13 @@ HttpAnswer Api::new_job(HttpRequest& request) {
   return json_answer(answer, 201);
 }
 
-void Api::forget(const std::string& job) {
+void Api::forget(const std::string& job, bool even_if_open) {
   std::shared_ptr<OpenJob> gone;  // ended without the lock
   {
     const std::lock_guard lock(mutex_);
     const auto open = jobs_.find(job);
     if (open != jobs_.end()) {
-      if (!open->second->idle_since())
+      if (!even_if_open && !open->second->idle_since())
         throw ApiError(409, "busy", "The job is open; close its tab first.");
       gone = std::move(open->second);
       jobs_.erase(open);
@@ -493,11 +489,11 @@ HttpAnswer Api::job_route(HttpRequest& request, const Parts& parts) {
   const std::shared_ptr<OpenJob> open = job(parts[2]);
   if (request.method == "GET" && parts.size() == 4 && parts[3] == "events")
     return events(request, open);
-  if (request.method == "GET") return read_job(request, parts, *open);
+  if (request.method == "GET") return read_job(parts, *open);
   return command(request, parts, *open);
 }
 
-HttpAnswer Api::read_job(const HttpRequest&, const Parts& parts, OpenJob& job) {
+HttpAnswer Api::read_job(const Parts& parts, OpenJob& job) {
   if (parts.size() == 3) return json_answer(job.describe());
   const std::string& what = parts[3];
   if (what == "files" && parts.size() > 4) return file_answer(job.file(joined(parts, 4)));

@@ -47,12 +47,12 @@ class Api {
   HttpAnswer hello() const;
   HttpAnswer new_job(HttpRequest& request);
   HttpAnswer job_route(HttpRequest& request, const Parts& parts);
-  HttpAnswer read_job(const HttpRequest& request, const Parts& parts, OpenJob& job);
+  HttpAnswer read_job(const Parts& parts, OpenJob& job);
   HttpAnswer command(HttpRequest& request, const Parts& parts, OpenJob& job);
   HttpAnswer upload(HttpRequest& request, const std::string& name, OpenJob& job);
   HttpAnswer events(const HttpRequest& request, const std::shared_ptr<OpenJob>& job);
   HttpAnswer login(HttpRequest& request);
-  void forget(const std::string& job);
+  void forget(const std::string& job, bool even_if_open = false);
   std::shared_ptr<OpenJob> job(const std::string& name);
 
   const JobStore store_;

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "job/profile_jobs.h"
+#include "model_io/text.h"
 #include "report/plain_words.h"
 #include "settings/dip_tables.h"
 #include "settings/job_file.h"
@@ -54,9 +55,11 @@ std::string texture_for(const Model& model, const std::string& name,
   for (const std::string& other : names)
     if (kind_of_file(other) == "picture") pictures.push_back(other);
   if (pictures.size() != 1) return "";
-  std::string stem = std::filesystem::path(pictures[0]).stem().string();
-  for (char& c : stem) c = char(std::tolower(static_cast<unsigned char>(c)));
-  const bool meant = stem.starts_with(std::filesystem::path(name).stem().string()) ||
+  const auto stem_of = [](const std::string& file) {
+    return lower(std::filesystem::path(file).stem().string());
+  };
+  const std::string stem = stem_of(pictures[0]);
+  const bool meant = stem.starts_with(stem_of(name)) ||
                      std::any_of(kTextureWords.begin(), kTextureWords.end(), [&](const char* word) {
                        return stem.find(word) != std::string::npos;
                      });
@@ -342,6 +345,24 @@ void OpenJob::unpack(const std::string& archive, std::vector<std::string>& names
   std::filesystem::remove(file, ignored);
 }
 
+// With the lock.
+Json OpenJob::adopt_job_file(const std::string& job) {
+  JobConfig config;
+  SettingSources sources;
+  sources.configs = {files_.find(job)};
+  apply_sources(config, sources);
+  // Such a file may name anything on this machine: only what came with it is taken.
+  JobFiles uploaded(files_.uploads());
+  Json document = document_of(config, uploaded);
+  if (!uploaded.granted().empty()) {
+    const std::string missing = uploaded.granted().begin().key();
+    throw ApiError(422, "bad-file",
+                   fmt::format("The job needs {}: drop it here together with {}.", missing, job));
+  }
+  machine_ = machine_values_of(config);
+  return document;
+}
+
 Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& client) {
   std::unique_lock lock(mutex_);
   require_pen(client);
@@ -360,41 +381,30 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
   std::set<std::string> taken;
   try {
     if (const std::string job = first("job"); !job.empty()) {
-      JobConfig config;
-      SettingSources sources;
-      sources.configs = {files_.find(job)};
-      apply_sources(config, sources);
-      // Such a file may name anything on this machine: only what came with it is taken.
-      JobFiles uploaded(files_.uploads());
-      document = document_of(config, uploaded);
-      machine_ = machine_values_of(config);
-      if (!uploaded.granted().empty()) {
-        const std::string missing = uploaded.granted().begin().key();
-        throw ApiError(
-            422, "bad-file",
-            fmt::format("The job needs {}: drop it here together with {}.", missing, job));
-      }
+      document = adopt_job_file(job);
       note(job, "job", "");
       taken.insert(names.begin(), names.end());
     } else if (const std::string model = first("model"); !model.empty()) {
-      document["object"]["file"] = model;
-      document["object"].erase("texture");
-      note(model, "model", "");
-      taken.insert(model);
+      std::string texture;
       // Reading it tells which pictures are its own.
       if (names.size() > 1) {
         const std::filesystem::path path = files_.find(model);
-        lock.unlock();
         LoadOptions own;
         own.confined_to = files_.uploads();
+        lock.unlock();
         const Model read = load(path, own, RunContext());
         lock.lock();
+        // Meanwhile the job was anybody's.
+        require_pen(client);
+        document = document_;
         for (const auto& file : read.files) taken.insert(files_.grant(file));
-        if (const std::string texture = texture_for(read, model, names); !texture.empty()) {
-          document["object"]["texture"] = texture;
-          taken.insert(texture);
-        }
+        texture = texture_for(read, model, names);
       }
+      document["object"]["file"] = model;
+      document["object"].erase("texture");
+      if (!texture.empty()) document["object"]["texture"] = texture;
+      note(model, "model", "");
+      taken.insert({model, texture});
     }
     for (const std::string& name : names) {
       const std::string kind = kind_of_file(name);

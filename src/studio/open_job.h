@@ -123,6 +123,7 @@ class OpenJob {
   JobConfig checked(const Json& document) const;
   std::vector<std::string> take_in(const std::vector<std::string>& given);
   void unpack(const std::string& archive, std::vector<std::string>& names);
+  Json adopt_job_file(const std::string& job);
   void accept(const Json& document, const JobConfig& config, const std::string& client, bool live,
               std::size_t dip, bool tell_client);
   void ask(bool live);

@@ -1,6 +1,7 @@
 // A job over HTTP: its document, what is computed of it, what is printed, and what outlives a run.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include <thread>
 
 #include "base/file.h"
+#include "image/files.h"
 #include "job/jobs.h"
 #include "settings/job_file.h"
 #include "settings/settings.h"
@@ -563,6 +565,72 @@ TEST_F(JobTest, AModelAndAPictureBecomeAJob) {
     red = red || (printed[i + 3] > 200 && printed[i] > 150 && printed[i + 1] < 90);
   EXPECT_TRUE(red);
   EXPECT_EQ(client->put(at(job, "/files/part.stl"), kTetrahedron).json()["file"], "part-2.stl");
+}
+
+// Its own picture is named like the model or like a texture, in whatever letters.
+TEST_F(JobTest, APictureThatIsNamedLikeTheModelIsItsTexture) {
+  const std::string job = client->post("/api/jobs").json()["job"];
+  const std::string toy =
+      "v 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nvt 0 0\nvt 1 0\nvt 0 1\n"
+      "f 1/1 3/3 2/2\nf 1/1 2/2 4/3\nf 2/1 3/2 4/3\nf 1/1 4/3 3/2\n";
+  const std::vector<std::uint8_t> png = encode_png(Image(4, 4));
+  ASSERT_EQ(client->put(at(job, "/files/MyToy.obj"), toy).status, 201);
+  ASSERT_EQ(client->put(at(job, "/files/myTOY-1.png"), {png.begin(), png.end()}).status, 201);
+  const Reply adopted =
+      client->post(at(job, "/adopt"), R"({"files": ["MyToy.obj", "myTOY-1.png"]})");
+  ASSERT_EQ(adopted.status, 200) << adopted.body;
+  const json document = adopted.json()["document"];
+  EXPECT_EQ(document["object"]["texture"], "myTOY-1.png") << document;
+  EXPECT_FALSE(document.contains("artwork"));
+}
+
+// A large model takes a while to read; the job is anybody's meanwhile.
+TEST_F(JobTest, WhatIsSaidWhileAModelIsReadStays) {
+  constexpr int kSide = 300;
+  std::string large;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
+      large += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
+  for (int y = 1; y < kSide; ++y)
+    for (int x = 1; x < kSide; ++x) {
+      const int corner = y * kSide + x;
+      large += "f " + std::to_string(corner - kSide) + " " + std::to_string(corner - kSide + 1) +
+               " " + std::to_string(corner + 1) + " " + std::to_string(corner) + "\n";
+    }
+  const std::string job = client->post("/api/jobs").json()["job"];
+  ASSERT_EQ(client->put(at(job, "/files/large.obj"), large).status, 201);
+  ASSERT_EQ(client->put(at(job, "/files/toy.mtl"), kRed).status, 201);
+  std::atomic<bool> done = false;
+  std::thread other([&, own = studio->client()] {
+    EXPECT_EQ(own.post(at(job, "/adopt"), R"({"files": ["large.obj", "toy.mtl"]})").status, 200);
+    done = true;
+  });
+  int said = 0;
+  const auto kept = [&](const json& document) { return document.value("/page/n"_json_pointer, 0); };
+  while (!done) {
+    const json now = describe(job);
+    EXPECT_EQ(kept(now["document"]), said);
+    json document = now["document"];
+    document["page"]["n"] = said + 1;
+    if (put(job, document, true, "c1", now["revision"]).status == 200) ++said;
+  }
+  other.join();
+  const json document = describe(job)["document"];
+  EXPECT_EQ(kept(document), said);
+  EXPECT_EQ(document["object"]["file"], "large.obj");
+}
+
+TEST_F(JobTest, AJobThatCannotBeBegunLeavesNothing) {
+  sample("box");
+  const auto jobs = [&] {
+    return std::distance(std::filesystem::directory_iterator(folder.path() / "jobs"), {});
+  };
+  const auto before = jobs();
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path() / "samples"))
+    if (entry.path().filename() == "box.obj") std::filesystem::remove(entry.path());
+  EXPECT_GE(client->post("/api/jobs", R"({"sample": "box"})").status, 400);
+  EXPECT_GE(client->post("/api/jobs", R"({"sample": "no such"})").status, 400);
+  EXPECT_EQ(jobs(), before);
 }
 
 // Whoever chose "part.stl" knows it by that name, and not by where this program keeps it.
