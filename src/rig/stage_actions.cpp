@@ -20,11 +20,25 @@ const std::vector<std::string>& action_names() {
   return names;
 }
 
-JobResult words(const std::string& action, const std::string& text) {
+using Json = nlohmann::ordered_json;
+
+JobResult answer(const std::string& action, const std::string& text, const Json& members) {
   JobResult result;
   result.text = text;
-  result.json = json_answer("rig " + action, {{"text", text}});
+  result.json = json_answer("rig " + action, members);
   return result;
+}
+
+JobResult told(const std::string& action, const std::string& text) {
+  return answer(action, text, {{"text", text}});
+}
+
+Json state_json(const StageOptions& stage, const StageState& state) {
+  return {{"port", stage.port},
+          {"position_mm", state.position_known ? Json(state.position_mm) : Json()},
+          {"homed", state.homed},
+          {"moving", state.moving},
+          {"fault", state.fault}};
 }
 
 bool needs_job(const std::string& action) {
@@ -84,7 +98,8 @@ void perform(StageSession& session, const StageAction& action, const RigJob* job
 
 JobResult status(const StageOptions& stage, Bench& bench, const RunContext& context) {
   StageSession session(stage, bench, nullptr, context);
-  return words("status", session.describe() + "\n" + session.describe_state() + "\n");
+  const std::string text = session.describe() + "\n" + session.describe_state() + "\n";
+  return answer("status", text, state_json(stage, session.state()));
 }
 
 std::vector<std::string> ports() {
@@ -119,10 +134,10 @@ JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOpt
   if (job) require_lowering_only(*job);
   if (action.action == "find") return rig_find(stage, bench, context);
   if (action.dry_run) {
-    if (!job) return words(action.action, fmt::format("{}: nothing was moved\n", action.action));
+    if (!job) return told(action.action, fmt::format("{}: nothing was moved\n", action.action));
     const std::optional<double> water_mm = known_water_level_mm(*job);
     if (water_mm) require_within_travel(*job, *water_mm);
-    return words(action.action, describe_plan(*job, water_mm) + "Nothing was moved.\n");
+    return told(action.action, describe_plan(*job, water_mm) + "Nothing was moved.\n");
   }
   if (action.action == "status") return status(stage, bench, context);
   if (action.action == "dip" || action.action == "retract") require_level(*job);
@@ -131,7 +146,8 @@ JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOpt
   if (!job) {
     session.emplace(stage, bench, nullptr, context);
     perform(*session, action, nullptr);
-    return words(action.action, session->describe_state() + "\n");
+    return answer(action.action, session->describe_state() + "\n",
+                  state_json(stage, session->state()));
   }
   RunRecord record(*job, bench.clock);
   record.note("start", {{"job", job->title}, {"action", action.action}});
@@ -150,22 +166,26 @@ JobResult rig_find(const StageOptions& stage, Bench& bench, const RunContext& co
   const std::vector<std::string> list =
       stage.port.empty() ? ports() : std::vector<std::string>{stage.port};
   std::string text;
+  Json found_at = Json::array();
   for (const std::string& port : list) {
     StageOptions options = stage;
     options.port = port;
     options.travel_mm = 0;  // whatever it is
     std::string found;
+    bool is_stage = false;
     try {
       found = StageSession(options, bench, nullptr, context).describe();
+      is_stage = true;
     } catch (const InputError& error) {
       found = error.what();
     } catch (const StageError&) {
       found = "no answer as a stage of this kind (stage.driver, stage.baud, stage.address)";
     }
     text += fmt::format("{}  {}\n", port, found);
+    found_at.push_back({{"port", port}, {"is_stage", is_stage}, {"found", found}});
   }
   if (list.empty()) text = "no serial port (/dev/ttyUSB*, /dev/ttyACM*) on this computer\n";
-  return words("find", text);
+  return answer("find", text, {{"ports", found_at}});
 }
 
 }  // namespace hydrodip

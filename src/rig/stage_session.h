@@ -21,6 +21,7 @@ class StageSession {
   void ensure_home(bool always = false);
   // What the stage is.
   std::string describe() const;
+  StageState state() { return mover_.state(); }
   // "at 12.3 mm, homed, standing still".
   std::string describe_state();
   double position_mm();

@@ -251,6 +251,30 @@ TEST_F(GuideTest, JoggingLowersWhicheverWayTheScaleRuns) {
   }
 }
 
+TEST_F(GuideTest, ProgramsLearnWhereTheStageStands) {
+  GuidedBench guided;
+  guided.bench.yes_given = true;
+  const StageOptions stage = this->job(guided.emulator->port()).config.stage;
+  const auto told = [&](const StageAction& action) {
+    return nlohmann::json::parse(
+        rig_stage(action, nullptr, stage, guided.bench, guided.context).json);
+  };
+  EXPECT_EQ(told({"status"})["homed"], false);
+  StageAction jog{"jog"};
+  jog.jog_mm = 5;
+  const nlohmann::json before = told({"home"}), after = told(jog);
+  EXPECT_EQ(before["homed"], true);
+  EXPECT_EQ(after["port"], stage.port);
+  EXPECT_EQ(after["moving"], false);
+  const double way_mm = after["position_mm"].get<double>() - before["position_mm"].get<double>();
+  EXPECT_NEAR(std::abs(way_mm), 5, 0.001);
+  EXPECT_NEAR(after["position_mm"], guided.emulator->position_mm(), 0.001);
+  const nlohmann::json ports = told({"find"})["ports"];
+  ASSERT_EQ(ports.size(), 1U);
+  EXPECT_EQ(ports[0]["port"], stage.port);
+  EXPECT_EQ(ports[0]["is_stage"], true);
+}
+
 TEST_F(GuideTest, FortyRandomFaultSequencesLeaveNothingMoving) {
   int finished = 0;
   for (unsigned seed = 1; seed <= 20; ++seed)
