@@ -195,8 +195,7 @@ struct History::Database {
   sqlite3* handle = nullptr;
 };
 
-History::History(const fs::path& job_folder)
-    : folder_(job_folder), database_(std::make_unique<Database>(job_folder / kFile)) {
+History::History(const fs::path& job_folder, bool only_look) : folder_(job_folder) {
   std::vector<DipRun> logged;
   std::error_code error;
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end;
@@ -207,6 +206,8 @@ History::History(const fs::path& job_folder)
       else if (!is_begun_log(entry->path()))
         unread_.push_back(entry->path().filename().string());
     }
+  const bool keeps = !only_look || !logged.empty() || fs::exists(folder_ / kFile, error);
+  database_ = std::make_unique<Database>(keeps ? folder_ / kFile : fs::path(":memory:"));
   std::vector<std::uint8_t> report;
   if (fs::exists(folder_ / "report.json", error)) report = read_file(folder_ / "report.json");
   database_->transact([&] {

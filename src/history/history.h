@@ -34,8 +34,9 @@ using RunFields = std::map<std::string, std::string>;
 class History {
  public:
   // Opens or makes JOB/history.sqlite and takes in what the logs of JOB/rig-N say. Throws
-  // InputError if the file is none of ours, of a newer version, or cannot be written.
-  explicit History(const std::filesystem::path& job_folder);
+  // InputError if the file is none of ours, of a newer version, or cannot be written. `only_look`:
+  // nothing will be added or amended; a folder in which nothing was dipped stays as it is.
+  explicit History(const std::filesystem::path& job_folder, bool only_look = false);
   ~History();
   History(const History&) = delete;
   History& operator=(const History&) = delete;

@@ -261,7 +261,7 @@ DipUse use_of(const DipRun& run, const SheetUse& sheet, const CostOptions& cost)
 }
 
 JobResult history_job(const RigJob& job, const HistoryRequest& request, Clock& clock) {
-  History history(job.folder);
+  History history(job.folder, !request.add && request.amend_run.empty());
   if (!request.settings_run.empty()) return report_of_run(history, request.settings_run);
   JobResult result;
   if (request.add)

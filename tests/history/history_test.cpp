@@ -239,6 +239,20 @@ TEST(HistoryJob, SaysWhichInkIsNotInTheCost) {
   EXPECT_TRUE(contains(history_job(job, request, clock).text, "without the ink of 1 dip"));
 }
 
+TEST(HistoryJob, ALookLeavesAFolderWithoutDipsAsItIs) {
+  const TemporaryFolder folder;
+  RigJob job = priced_job();
+  job.folder = folder.path();
+  FixedClock clock;
+  EXPECT_TRUE(contains(history_job(job, {}, clock).text, "nothing was dipped yet"));
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+  // What a log says is kept, so that a damaged one takes nothing away.
+  write_run(folder, "rig-1", guided_log("2026-01-01T10:00:00Z", "1", kDone));
+  history_job(job, {}, clock);
+  write_run(folder, "rig-1", "");
+  EXPECT_FALSE(contains(history_job(job, {}, clock).text, "nothing was dipped yet"));
+}
+
 TEST(HistoryJob, SaysWhichRunsItCannotRead) {
   const TemporaryFolder folder;
   RigJob job = priced_job();
