@@ -35,34 +35,52 @@ FileState state_of(const std::filesystem::path& path) {
           std::filesystem::last_write_time(path, none)};
 }
 
+// What a key leaves out of options gives stale values. So each of these functions takes all members
+// by name: one that is new does not compile until it is here as well.
+
+template <class... Values>
+void add_all(ContentKey& key, const Values&... values) {
+  (key.add(values), ...);
+}
+
+void add(ContentKey& key, const Vec3& v) { add_all(key, v.x(), v.y(), v.z()); }
+
 void add(ContentKey& key, const LoadOptions& load) {
-  key.add(load.units).add(load.texture.string()).add(load.confined_to.string());
+  const auto& [units, texture, confined_to] = load;
+  add_all(key, units, texture.string(), confined_to.string());
 }
 
 void add(ContentKey& key, const PoseOptions& pose) {
-  key.add(pose.size_mm).add(pose.down);
-  for (int k = 0; k < 3; ++k) key.add(pose.rotate_deg[k]);
+  const auto& [size_mm, down, rotate_deg] = pose;
+  add_all(key, size_mm, down);
+  add(key, rotate_deg);
+}
+
+void add(ContentKey& key, const FilmCorrection& correction) {
+  const auto& [first, pitch_mm, nx, ny, move] = correction;
+  add_all(key, first.x(), first.y(), pitch_mm, nx, ny);
+  for (const Vec2& m : move) add_all(key, m.x(), m.y());
 }
 
 void add(ContentKey& key, const FilmOptions& film) {
-  key.add(film.width_mm).add(film.height_mm).add(film.shape).add(film.margin_mm);
-  key.add(film.elements).add(film.grading).add(film.swelling_x).add(film.swelling_y);
-  key.add(film.correction ? "corrected" : "as printed");
-  if (!film.correction) return;
-  const FilmCorrection& correction = *film.correction;
-  key.add(correction.first.x()).add(correction.first.y()).add(correction.pitch_mm);
-  key.add(correction.nx).add(correction.ny);
-  for (const Vec2& move : correction.move) key.add(move.x()).add(move.y());
+  const auto& [width_mm, height_mm, shape, margin_mm, elements, grading, swelling_x, swelling_y,
+               correction] = film;
+  add_all(key, width_mm, height_mm, shape, margin_mm, elements, grading, swelling_x, swelling_y);
+  key.add(correction ? "corrected" : "as printed");
+  if (correction) add(key, *correction);
+}
+
+void add(ContentKey& key, const Keyframe& keyframe) {
+  const auto& [lower_mm, shift_x_mm, shift_y_mm, turn_x_deg, turn_y_deg, turn_z_deg] = keyframe;
+  add_all(key, lower_mm, shift_x_mm, shift_y_mm, turn_x_deg, turn_y_deg, turn_z_deg);
 }
 
 void add(ContentKey& key, const TrajectoryOptions& way) {
-  key.add(way.depth_mm).add(way.tilt_deg).add(way.tilt_toward_deg).add(way.roll_deg);
-  for (int k = 0; k < 3; ++k) key.add(way.pivot_mm[k]);
-  key.add(int(way.path.size()));
-  for (const Keyframe& k : way.path) {
-    key.add(k.lower_mm).add(k.shift_x_mm).add(k.shift_y_mm);
-    key.add(k.turn_x_deg).add(k.turn_y_deg).add(k.turn_z_deg);
-  }
+  const auto& [depth_mm, path, tilt_deg, tilt_toward_deg, roll_deg, pivot_mm] = way;
+  add_all(key, depth_mm, tilt_deg, tilt_toward_deg, roll_deg);
+  add(key, pivot_mm);
+  key.add(int(path.size()));
+  for (const Keyframe& k : path) add(key, k);
 }
 
 void add(ContentKey& key, const std::vector<double>& numbers) {
@@ -87,20 +105,27 @@ void require_content(const DipOptions& dip) {
         fmt::format("a workspace takes no {}; use the steps of hydrodip/hydrodip.h", unseen));
 }
 
+// A law of its own is refused.
+void add(ContentKey& key, const FilmMaterial& material) {
+  const auto& [z_stretch, poisson, tear_stretch, safe_stretch, lost_stretch, wrinkle_stretch, law] =
+      material;
+  add_all(key, z_stretch, poisson, tear_stretch, safe_stretch, lost_stretch, wrinkle_stretch);
+}
+
 // asks_what_moves is not looked at: a dip with its air decides that by itself (dip_object()).
 void add(ContentKey& key, const DipOptions& dip) {
   require_content(dip);
-  key.add(dip.step_mm).add(dip.even_steps).add(dip.method).add(dip.scheme);
-  key.add(dip.material.z_stretch).add(dip.material.poisson).add(dip.material.tear_stretch);
-  key.add(dip.material.wrinkle_stretch);
-  key.add(dip.material.safe_stretch).add(dip.material.lost_stretch).add(dip.quick_look);
-  for (const auto* numbers : {&dip.steps_at_mm, &dip.modulus, &dip.tears_at_mm, &dip.moved_mm})
-    add(key, *numbers);
-  key.add(dip.failed_share_max);
+  const auto& [step_mm, even_steps, steps_at_mm, relaxed_steps, method, scheme, material, modulus,
+               make_solver, tears_at_mm, asks_what_moves, quick_look, moved_mm, failed_share_max] =
+      dip;
+  add_all(key, step_mm, even_steps, method, scheme, quick_look, failed_share_max);
+  add(key, material);
+  for (const auto* numbers : {&steps_at_mm, &modulus, &tears_at_mm, &moved_mm}) add(key, *numbers);
 }
 
 void add(ContentKey& key, const LinearColor& color) {
-  key.add(double(color.r)).add(double(color.g)).add(double(color.b)).add(double(color.a));
+  const auto& [r, g, b, a] = color;
+  add_all(key, double(r), double(g), double(b), double(a));
 }
 
 // Of a file that is not there, too.
@@ -111,26 +136,45 @@ void add_state(ContentKey& key, const std::filesystem::path& file) {
 }
 
 void add(ContentKey& key, const PrinterOptions& printer) {
-  key.add(printer.model).add(printer.intent).add(printer.color);
-  const bool is_installed = printer.profile.empty() && printer.model == InkModel::kProfile;
-  add_state(key, is_installed ? installed_cmyk_profile() : printer.profile);
+  const auto& [model, profile, intent, color] = printer;
+  add_all(key, model, intent, color);
+  const bool is_installed = profile.empty() && model == InkModel::kProfile;
+  add_state(key, is_installed ? installed_cmyk_profile() : profile);
+}
+
+void add(ContentKey& key, const InverseOptions& inverse) {
+  const auto& [bleed_mm, samples_per_axis, quick_look] = inverse;
+  add_all(key, bleed_mm, samples_per_axis, quick_look);
+}
+
+// The base is the paint's.
+void add(ContentKey& key, const InkingOptions& inking) {
+  const auto& [compensate, policy, limit, base] = inking;
+  add_all(key, compensate, policy, limit);
+}
+
+void add(ContentKey& key, const StiffnessOptions& stiffness) {
+  const auto& [ratio, filter_mm] = stiffness;
+  add_all(key, ratio, filter_mm);
 }
 
 void add(ContentKey& key, const DesignOptions& design) {
-  add(key, design.film);
-  add(key, design.trajectory);
-  add(key, design.dip);
-  key.add(design.air.cells);
-  key.add(design.stiffness.ratio).add(design.stiffness.filter_mm);
-  key.add(design.rounds_max).add(design.settled_mm).add(design.rounds_step_mm).add(design.dpi);
-  key.add(design.inverse.bleed_mm).add(design.inverse.samples_per_axis);
-  key.add(design.inverse.quick_look);
-  key.add(design.inking.compensate).add(design.inking.policy).add(design.inking.limit);
+  const auto& [film, trajectory, dip, air, stiffness, rounds_max, settled_mm, rounds_step_mm, dpi,
+               inverse, inking] = design;
+  add(key, film);
+  add(key, trajectory);
+  add(key, dip);
+  const auto& [cells] = air;
+  key.add(cells);
+  add(key, stiffness);
+  add_all(key, rounds_max, settled_mm, rounds_step_mm, dpi);
+  add(key, inverse);
+  add(key, inking);
 }
 
 void add(ContentKey& key, const std::optional<Vec3>& v) {
   key.add(v ? "set" : "open");
-  for (int k = 0; v && k < 3; ++k) key.add((*v)[k]);
+  if (v) add(key, *v);
 }
 
 // A picture at hand is known by its pixels: where they lie in memory, others may lie the next time.
@@ -141,14 +185,15 @@ void add(ContentKey& key, const std::shared_ptr<const Image>& picture) {
 }
 
 void add(ContentKey& key, const ArtworkLayer& layer) {
-  add_state(key, layer.image);
-  add(key, layer.picture);
-  key.add(layer.text).add(layer.font);
-  add(key, layer.text_color);
-  key.add(layer.projection).add(layer.repeat).add(layer.blend).add(layer.through);
-  for (const auto* v : {&layer.at_mm, &layer.toward, &layer.up}) add(key, *v);
-  key.add(layer.width_mm).add(layer.height_mm).add(layer.turn_deg);
-  key.add(layer.fade_deg).add(layer.opacity);
+  const auto& [image, picture, text, font, text_color, projection, at_mm, toward, up, width_mm,
+               height_mm, turn_deg, repeat, through, fade_deg, opacity, blend] = layer;
+  add_state(key, image);
+  add(key, picture);
+  add_all(key, text, font);
+  add(key, text_color);
+  add_all(key, projection, repeat, blend, through);
+  for (const auto* v : {&at_mm, &toward, &up}) add(key, *v);
+  add_all(key, width_mm, height_mm, turn_deg, fade_deg, opacity);
 }
 
 DesignOptions at(Quality quality, const DesignOptions& design) {
