@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/json_nesting.h"
 #include "base/json_text.h"
+#include "base/schema_version.h"
 #include "calibrate/checkerboard_dip.h"
 #include "model_io/archive_writer.h"
 #include "model_io/package.h"
@@ -298,9 +299,8 @@ MeasuredDip read_measured_dip(const std::filesystem::path& file) {
   if (!json.is_object() || !json.contains("kind") || json["kind"] != kKind)
     refuse(file, "this is no measured dip: 'hydrodip calibrate pack' makes them");
   const Reader reader(file, json);
-  const double version = reader.number("schema_version", 1, 1e6);
-  if (version > kSchemaVersion)
-    refuse(file, "a newer hydrodip made this measured dip; it is needed to read it");
+  require_known_schema(json, kSchemaVersion, file, "this measured dip");
+  const double version = reader.number("schema_version", 1, kSchemaVersion);
 
   MeasuredDip dip;
   dip.object = reader.at("object").text("shape");

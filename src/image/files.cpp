@@ -514,12 +514,6 @@ const char* foreign_kind(const Bytes& bytes) {
                                        : "not a picture of a kind that is read"));
 }
 
-bool is_tiff(const Bytes& bytes) {
-  return begins(bytes, std::string_view("II*\0", 4)) ||
-         begins(bytes, std::string_view("MM\0*", 4)) ||
-         begins(bytes, std::string_view("II+\0", 4)) || begins(bytes, std::string_view("MM\0+", 4));
-}
-
 bool is_webp(const Bytes& bytes) { return begins(bytes, "RIFF") && begins(bytes, "WEBP", 8); }
 
 // By its first bytes; TGA has no mark.
@@ -581,6 +575,12 @@ std::vector<std::uint8_t> read_picture(const std::filesystem::path& path) {
 
 Image load_image(const std::filesystem::path& path) {
   return decode_image(read_picture(path), path.string());
+}
+
+bool is_tiff(const Bytes& bytes) {
+  return begins(bytes, std::string_view("II*\0", 4)) ||
+         begins(bytes, std::string_view("MM\0*", 4)) ||
+         begins(bytes, std::string_view("II+\0", 4)) || begins(bytes, std::string_view("MM\0+", 4));
 }
 
 double scan_dpi(const Bytes& bytes) {

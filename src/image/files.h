@@ -21,6 +21,9 @@ Image decode_image(const std::vector<std::uint8_t>& bytes, const std::string& na
 // read_file + decode_image.
 Image load_image(const std::filesystem::path& path);
 
+// By its first bytes.
+bool is_tiff(const std::vector<std::uint8_t>& bytes);
+
 // Dots per inch recorded in a PNG (pHYs) or JPEG (JFIF density); 0 when there is none.
 double recorded_dpi(const std::vector<std::uint8_t>& bytes);
 

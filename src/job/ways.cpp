@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "image/files.h"
+#include "report/shares.h"
 
 namespace hydrodip {
 namespace {
@@ -38,11 +39,6 @@ bool is_held_so(const Trial& trial, const Trial& made) {
   return trial.pose.down == made.pose.down &&
          trial.pose.rotate_deg.isApprox(made.pose.rotate_deg) &&
          std::abs(trial.depth_mm - made.depth_mm) < kSame_mm;
-}
-
-std::string percent(double share) {
-  return share > 0 && share < 0.1 ? fmt::format("{:.1f} %", 100 * share)
-                                  : fmt::format("{:.0f} %", 100 * share);
 }
 
 }  // namespace

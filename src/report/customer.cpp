@@ -7,17 +7,12 @@
 
 #include "report/findings.h"
 #include "report/html.h"
+#include "report/shares.h"
 
 namespace hydrodip {
 namespace {
 
-constexpr double kAsGoodAsAll = 0.98;     // of what shall be printed, or of the object
-constexpr double kLittleDoubt = 0.01;     // of the surface under whole film
-constexpr double kSomePercent = 0.005;    // of the object: less is shown as none
-constexpr double kPale = 1.3;             // area ratio from which paling shows
-constexpr double kPlainDifference = 5;    // CIEDE2000: plain to see
-constexpr double kMuchOutOfGamut = 0.02;  // of the covered surface
-constexpr double kUsualMiss_mm = 1;
+constexpr double kSomePercent = 0.005;  // of the object: less is shown as none
 
 std::string whole_percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
@@ -30,12 +25,12 @@ bool is_of_a_part(const Report& report) { return report.wanted && report.wanted-
 
 Finding coverage_point(const Report& report) {
   const double share = picture_share(report);
-  Finding point{"coverage", share >= kAsGoodAsAll ? Concern::kNone : Concern::kCare,
+  Finding point{"coverage", share >= kWholePicture ? Concern::kNone : Concern::kCare,
                 "Coverage", whole_percent(share),
                 "",         ""};
   if (is_of_a_part(report))
     point.text = "of your picture comes out.";
-  else if (share >= kAsGoodAsAll)
+  else if (share >= kWholePicture)
     point.text = "of the object gets colour.";
   else
     point.text = "of the object gets colour. The rest, sides and back, stays as the bare object.";

@@ -14,22 +14,16 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kWholePicture = 0.98;     // of what shall be printed
 constexpr double kHardlyAPicture = 0.1;    // of it: a fragment
 constexpr double kMuchTorn = 0.1;          // of the film that meets the object
 constexpr double kMuchAir = 0.02;          // of the object's surface
 constexpr double kSomeEscapes = 0.05;      // of a pocket
 constexpr double kFewWrinkles = 0.01;      // of the film on the object
 constexpr double kNearLimit = 0.9;         // of the tear stretch
-constexpr double kPale = 1.3;              // area ratio from which paling shows
 constexpr double kMuchSteep = 0.1;         // of what faces down
-constexpr double kPlainDifference = 5;     // CIEDE2000: plain to see
 constexpr double kMostlyTorn = 0.75;       // the same, of all of several dips
 constexpr double kHardlyAnything = 0.002;  // of the surface: a dip not worth its sheet
-constexpr double kMuchOutOfGamut = 0.02;   // of the covered surface
-constexpr double kUsualMiss_mm = 1;        // how far off a dip usually lands
 constexpr double kFarOff_mm = 3;           // from there on a picture is not on the object
-constexpr double kLittleDoubt = 0.01;      // of the surface under whole film
 
 Finding no_film(const Coverage& c) {
   Finding finding{"coverage", Concern::kStop, "Coverage", "0 %", "", ""};
