@@ -19,7 +19,8 @@ class RunContext {
  public:
   // activity: what is being done, in words ("dipping"); fraction in [0, 1] of that activity.
   using ProgressSink = std::function<void(const std::string& activity, double fraction)>;
-  // One line for people who follow along; never needed to understand the result.
+  // One line for people who follow along; never needed to understand the result. For users of the
+  // library: the program itself shows none.
   using LogSink = std::function<void(const std::string& line)>;
 
   // A job of its own, with all of the processor's threads.

@@ -26,10 +26,6 @@ class DisjointSets {
     if (root_a != root_b) parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
   }
   bool is_root(std::size_t i) const { return parent_[i] == i; }
-  // True only if they are together; found faster than by find().
-  bool clearly_joined(std::int32_t a, std::int32_t b) const {
-    return parent_[std::size_t(a)] == parent_[std::size_t(b)];
-  }
 
  private:
   std::vector<std::uint32_t> parent_;

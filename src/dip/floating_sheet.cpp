@@ -50,8 +50,7 @@ FloatingSheet::FloatingSheet(const DipSetting& setting, DipState& state)
       foresight_(energy_.grid().layout(), film_at_, setting.options.relaxed_steps.get()),
       slid_in_(setting.film.u.size(), -1),
       found_(plan_.entries(), 0),
-      is_plain_(setting.film.triangles.size(), 0),
-      floating_corners_(setting.film.triangles.size(), 0) {
+      is_plain_(setting.film.triangles.size(), 0) {
   for (std::size_t t = 0; t < film_.triangles.size(); ++t) {
     const Triangle& v = film_.triangles[t];
     const Vec2& a = film_.u[std::size_t(v[0])];
@@ -80,8 +79,6 @@ void FloatingSheet::update_load(std::size_t t) {
   const Triangle& v = film_.triangles[t];
   usable_[t] = carries_load(t);
   is_plain_[t] = usable_[t] && !attached(v[0]) && !attached(v[1]) && !attached(v[2]);
-  floating_corners_[t] = 0;
-  for (std::int32_t w : v) floating_corners_[t] += std::uint8_t(usable_[t] && floats(w));
   energy_.set_film(t, usable_[t]);
   for (std::int32_t w : v) {
     const auto begin = film_.incident.begin() + film_.incident_begin[std::size_t(w)],

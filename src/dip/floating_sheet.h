@@ -37,8 +37,6 @@ class FloatingSheet {
 
   // Whether a triangle carries load: it is not torn, and some of it floats.
   bool is_usable(std::size_t t) const { return usable_[t] != 0; }
-  // How many of a triangle's corners float; 0 if it carries no load.
-  int floating_corners(std::size_t t) const { return floating_corners_[t]; }
   // Per vertex: floats and has film around it that carries load.
   const std::vector<std::uint8_t>& free_vertices() const { return is_free_; }
 
@@ -119,7 +117,6 @@ class FloatingSheet {
   std::vector<std::int32_t> slid_in_, slid_in_corner_[3];
   std::vector<std::int64_t> found_;
   std::vector<std::uint8_t> is_plain_;  // per triangle: usable, and none of its corners attached
-  std::vector<std::uint8_t> floating_corners_;
 };
 
 }  // namespace hydrodip

@@ -15,6 +15,8 @@ struct LinearColor {
   float r = 0, g = 0, b = 0, a = 1;
 };
 
+inline bool is_white(const LinearColor& c) { return c.r >= 1 && c.g >= 1 && c.b >= 1; }
+
 // IEC 61966-2-1 transfer functions, on [0, 1].
 float srgb_to_linear(float encoded);
 float linear_to_srgb(float linear);

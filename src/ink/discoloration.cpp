@@ -59,8 +59,6 @@ SrgbColor srgb(const std::uint8_t* pixel) {
           static_cast<float>(pixel[2]) / 255.0F};
 }
 
-bool is_white(const LinearColor& color) { return color.r >= 1 && color.g >= 1 && color.b >= 1; }
-
 // What white film must show so that `color` comes out over the base.
 SrgbColor on_white(const SrgbColor& color, const LinearColor& base) {
   const auto channel = [](float encoded, float under) {
@@ -313,13 +311,6 @@ InkImage inks_of_film(const Image& image, const ColorModel& model) {
     }
   });
   return result;
-}
-
-Reach measure_reach(const Image& wanted, const Image& on_object, const FilmStretch& stretch,
-                    const SheetRaster& raster, const Box2& film) {
-  ReachMeter meter(raster, film);
-  meter.add(all_rows(wanted), wanted, on_object, stretch);
-  return meter.result();
 }
 
 ReachMeter::ReachMeter(const SheetRaster& raster, const Box2& film)

@@ -83,11 +83,6 @@ struct Reach {
 };
 inline constexpr double kVisible = 1;  // CIEDE2000
 
-// Compares the pixels that lie on the object (and are opaque in `wanted`), each weighing its area
-// there. `film`: the part of it over whose cells differences are averaged, in film coordinates.
-Reach measure_reach(const Image& wanted, const Image& on_object, const FilmStretch& stretch,
-                    const SheetRaster& raster, const Box2& film = {});
-
 // ---- all of that in bands of rows ----
 
 // Rows [begin, end) of an image.
@@ -106,9 +101,11 @@ void ink_rows(const RowBand& rows, const Image& wanted, const std::vector<float>
 void look_at_rows(const RowBand& rows, const InkImage& inks, const std::vector<float>& area_ratio,
                   const ColorModel& model, const LinearColor& base, Image& image);
 
-// measure_reach() is: this with a single band.
+// Compares the pixels that lie on the object (and are opaque in `wanted`), each weighing its area
+// there.
 class ReachMeter {
  public:
+  // `film`: the part of it over whose cells differences are averaged, in film coordinates.
   ReachMeter(const SheetRaster& raster, const Box2& film);
 
   // Bands from the first row to the last; nothing is asked of rows before them.

@@ -5,8 +5,6 @@
 namespace hydrodip {
 namespace {
 
-bool is_white(const LinearColor& c) { return c.r >= 1 && c.g >= 1 && c.b >= 1; }
-
 class ModelPaint : public Paint {
  public:
   ModelPaint(std::shared_ptr<const Object> object, const LinearColor& base)

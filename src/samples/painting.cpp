@@ -275,12 +275,6 @@ void Canvas::stroke(const Path& path, double width_mm, const LinearColor& color)
       path, [&](double) { return width_mm / 2; }, color);
 }
 
-void Canvas::swelling_stroke(const Path& path, double width_mm, const LinearColor& color) {
-  stroke(
-      path, [&](double t) { return width_mm / 2 * std::sqrt(std::max(0.0, 4 * t * (1 - t))); },
-      color);
-}
-
 void Canvas::tapering_stroke(const Path& path, double width_mm, const LinearColor& color) {
   stroke(
       path, [&](double t) { return width_mm / 2 * (1 - t); }, color);

@@ -51,8 +51,6 @@ class Canvas {
   // Round-capped line of constant or varying width.
   void stroke(const Path& path, double width_mm, const LinearColor& color);
   void stroke(const Path& path, const Radius& radius_mm, const LinearColor& color);
-  // A line that swells from nothing to width_mm and back.
-  void swelling_stroke(const Path& path, double width_mm, const LinearColor& color);
   // A line that starts at width_mm and runs out to a point.
   void tapering_stroke(const Path& path, double width_mm, const LinearColor& color);
   void dot(const Vec2& center, double radius_mm, const LinearColor& color);

@@ -58,19 +58,4 @@ GridError grid_error(const std::vector<LengthError>& errors, double square_mm) {
   return result;
 }
 
-std::vector<std::optional<double>> corner_errors(const std::vector<LengthError>& errors,
-                                                 std::size_t corners) {
-  std::vector<double> sum(corners, 0);
-  std::vector<int> count(corners, 0);
-  for (const LengthError& error : errors)
-    for (const std::int32_t end : {error.length.from, error.length.to}) {
-      sum[std::size_t(end)] += error.error_mm * error.error_mm;
-      ++count[std::size_t(end)];
-    }
-  std::vector<std::optional<double>> result(corners);
-  for (std::size_t c = 0; c < corners; ++c)
-    if (count[c] > 0) result[c] = root_mean(sum[c], count[c]);
-  return result;
-}
-
 }  // namespace hydrodip

@@ -37,8 +37,4 @@ struct GridError {
 };
 GridError grid_error(const std::vector<LengthError>& errors, double square_mm);
 
-// Per corner: the root mean square of the lengths that end there; nothing where none does.
-std::vector<std::optional<double>> corner_errors(const std::vector<LengthError>& errors,
-                                                 std::size_t corners);
-
 }  // namespace hydrodip

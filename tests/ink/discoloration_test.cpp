@@ -89,7 +89,14 @@ class OnFilm : public ::testing::Test {
     inks_ = inking.inks;
     printed_ = inking.printed;
     const Image seen = look_on_object(inks_, stretch_.area_ratio, *model_, options.base);
-    return measure_reach(wanted_, seen, stretch_, raster_);
+    return reach_of(seen);
+  }
+
+  // All rows at once.
+  Reach reach_of(const Image& seen, const Box2& film = {}) const {
+    ReachMeter meter(raster_, film);
+    meter.add({0, wanted_.height_px}, wanted_, seen, stretch_);
+    return meter.result();
   }
 
   void stretch(float ratio) {
@@ -199,7 +206,7 @@ TEST_F(OnFilm, BandsOfRowsGiveTheSameAsAllRowsAtOnce) {
     const InkingOptions options{.policy = policy};
     const Inking inking = ink_film(wanted_, stretch_.area_ratio, *model_, options, context_);
     const Image seen = look_on_object(inking.inks, stretch_.area_ratio, *model_, options.base);
-    const Reach reach = measure_reach(wanted_, seen, stretch_, raster_, film);
+    const Reach reach = reach_of(seen, film);
     ASSERT_GT(reach.largest, 0);
     ASSERT_FALSE(reach.difference.values.empty());
     for (const int height : {1, 2, 3, 5, 7}) {

@@ -76,17 +76,6 @@ TEST(GridErrorTest, CornersWithoutFilmTakeTheirLengthsWithThem) {
   const GridError error = error_of(grid, warped);
   EXPECT_EQ(error.edges, 12 - 4);
   EXPECT_EQ(error.diagonals, 8 - 4);
-  const auto corners = corner_errors(length_errors(grid_lengths(grid), warped, kSquare_mm), 9);
-  EXPECT_FALSE(corners[4].has_value());
-  EXPECT_TRUE(corners[0].has_value());
-}
-
-TEST(CornerErrors, AreThoseOfAllLengthsThatEndThere) {
-  const auto corners = corner_errors({{{0, 1, false}, 3}, {{1, 2, false}, -4}}, 4);
-  EXPECT_DOUBLE_EQ(corners[0].value(), 3);
-  EXPECT_DOUBLE_EQ(corners[1].value(), std::sqrt((9 + 16) / 2.0));
-  EXPECT_DOUBLE_EQ(corners[2].value(), 4);
-  EXPECT_FALSE(corners[3].has_value());
 }
 
 }  // namespace
