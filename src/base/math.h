@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <numbers>
 
 namespace hydrodip {
 
@@ -17,6 +18,7 @@ using Triangle = std::array<std::int32_t, 3>;
 
 constexpr double kMmPerInch = 25.4;
 constexpr double kMmPerPt = kMmPerInch / 72;
+constexpr double kDegree = std::numbers::pi / 180;  // in radians
 
 // z component of a x b: twice the signed area of the triangle (0, a, b).
 inline double cross2(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }

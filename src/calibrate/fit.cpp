@@ -29,8 +29,6 @@ constexpr double kShareOfRatio = 0.3, kLeastRatioStep = 0.01, kLatticeFactor = 1
 // holds that far, and fits of like scans share their simulations.
 constexpr double kPolishingShare = 0.2;
 constexpr int kPolishings = 2;
-// 97.5 % quantile of the normal distribution.
-constexpr double kQuantile = 1.96;
 
 constexpr int kPairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 

@@ -31,6 +31,9 @@ struct Misfits {
 };
 using MisfitsAt = std::function<Misfits(const std::vector<FitPoint>& points)>;
 
+// 97.5 % of the normal distribution.
+inline constexpr double kQuantile = 1.96;
+
 struct FitOptions {
   FitPoint low, high;  // where the answer is looked for; equal: fixed
   FitPoint step;       // widest half size of the stencil

@@ -181,8 +181,8 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
 
 constexpr double kRatios[] = {3, 10, 30, 100, 300, 1000, 3000};
 // Drafts are enough: to say a standard deviation to a tenth.
-constexpr int kDraftElements = 10000;
-constexpr double kDraftStep_mm = 0.4;
+constexpr int kExpectedElements = 10000;
+constexpr double kExpectedStep_mm = 0.4;
 
 std::vector<Expectation> expectations(const std::vector<CalibrationObject>& objects,
                                       const Board& board, const JobConfig& config, double noise_mm,
@@ -192,8 +192,8 @@ std::vector<Expectation> expectations(const std::vector<CalibrationObject>& obje
   if (!(noise_mm > 0 && noise_mm <= 10))
     throw InputError("--expect: give a scan's noise in mm, above 0 and up to 10");
   DesignOptions draft = config.design;
-  draft.film.elements = std::min(draft.film.elements, kDraftElements);
-  draft.dip.step_mm = std::max(draft.dip.step_mm, kDraftStep_mm);
+  draft.film.elements = std::min(draft.film.elements, kExpectedElements);
+  draft.dip.step_mm = std::max(draft.dip.step_mm, kExpectedStep_mm);
   const CheckeredFilm film = checkered_film(draft, board);
   FilmParameters truth = film_parameters(config.design);
   for (const double ratio : kRatios) {

@@ -9,7 +9,6 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kQuantile = 1.96;
 // 99 % quantiles of the chi-squared distribution with 1, 2, ... degrees of freedom.
 constexpr double kChi99[] = {6.63, 9.21, 11.34, 13.28, 15.09, 16.81, 18.48, 20.09};
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "calibrate/fit.h"
 
 namespace hydrodip {
 namespace {
@@ -17,7 +18,6 @@ constexpr int kAround = 256, kAlong = 256;  // triangles of the dome
 constexpr int kDirections = 64;             // in which a ring is looked at
 // A reading may be a ring off: its standard deviation, in rings.
 constexpr double kReadingOff = 1;
-constexpr double kQuantile = 1.96;
 
 // On the dome, by the arc from its lowest point and the direction from its axis.
 Vec3 on_dome(double arc_mm, double direction) {

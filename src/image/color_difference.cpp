@@ -1,12 +1,9 @@
 #include "image/color_difference.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace hydrodip {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 double lab_root(double t) {
   constexpr double kEdge = 216.0 / 24389;

@@ -6,31 +6,21 @@
 #include <memory>
 #include <new>
 #include <optional>
-#include <type_traits>
 
 #include "base/run_scope.h"
 #include "image/decoders.h"
+#include "image/lcms_handles.h"
 
 namespace hydrodip {
 
 namespace {
 
-struct CloseContext {
-  void operator()(cmsContext context) const { cmsDeleteContext(context); }
-};
-struct CloseProfile {
-  void operator()(cmsHPROFILE profile) const { cmsCloseProfile(profile); }
-};
-struct CloseTransform {
-  void operator()(cmsHTRANSFORM transform) const { cmsDeleteTransform(transform); }
-};
+using Context = lcms::Context;
+using Profile = lcms::Profile;
+using Transform = lcms::Transform;
 struct FreeCurve {
   void operator()(cmsToneCurve* curve) const { cmsFreeToneCurve(curve); }
 };
-// Without a context of its own, Little CMS would report errors through a global.
-using Context = std::unique_ptr<std::remove_pointer_t<cmsContext>, CloseContext>;
-using Profile = std::unique_ptr<void, CloseProfile>;
-using Transform = std::unique_ptr<void, CloseTransform>;
 using Curve = std::unique_ptr<cmsToneCurve, FreeCurve>;
 
 // A byte or two of rounding: not worth touching every pixel for.

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <type_traits>
 
 #include "base/error.h"
 #include "base/run_scope.h"
+#include "image/lcms_handles.h"
 #include "image/shown_columns.h"
 #include "ink/color_model.h"
 #include "ink/profiles.h"
@@ -18,25 +18,14 @@ namespace hydrodip {
 
 namespace {
 
-struct CloseContext {
-  void operator()(cmsContext context) const { cmsDeleteContext(context); }
-};
-struct CloseProfile {
-  void operator()(cmsHPROFILE profile) const { cmsCloseProfile(profile); }
-};
-struct CloseTransform {
-  void operator()(cmsHTRANSFORM transform) const { cmsDeleteTransform(transform); }
-};
+using Context = lcms::Context;
+using Profile = lcms::Profile;
+using Transform = lcms::Transform;
 struct FreePipeline {
   void operator()(cmsPipeline* pipeline) const { cmsPipelineFree(pipeline); }
 };
-using Context = std::unique_ptr<std::remove_pointer_t<cmsContext>, CloseContext>;
-// Both handles are void*.
-using Profile = std::unique_ptr<void, CloseProfile>;
-using Transform = std::unique_ptr<void, CloseTransform>;
 using Pipeline = std::unique_ptr<cmsPipeline, FreePipeline>;
 
-// Without a context of its own, Little CMS would report errors through a global.
 Context quiet_context() { return Context(cmsCreateContext(nullptr, nullptr)); }
 
 // Bytes of a profile, without the time at which they were made.

@@ -14,7 +14,6 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kDeeper_mm = 3;
 constexpr int kDirections = 74;
 constexpr int kFirstElements = 5000;
 // What trial dips promise finer film need not keep: so many times as many dips as are wanted are

@@ -13,7 +13,6 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kTiny_mm = 5, kHuge_mm = 1000;
 // Film lies where it should within a few thousandths of a millimetre.
 constexpr double kRounded_mm = 0.003;
 

@@ -34,6 +34,9 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
 // To hold the object otherwise: in the configuration, whose artwork stays where it was laid.
 void hold(ObjectOptions& options, const PreparedObject& prepared, const PoseOptions& pose);
 
+// The largest extents of what people dip.
+inline constexpr double kTiny_mm = 5, kHuge_mm = 1000;
+
 // Throws InputError that asks for --units or --size if neither is given and the object is smaller
 // or larger than anything that people dip.
 void require_size(const PosedObject& posed, const ObjectOptions& options,

@@ -144,6 +144,12 @@ Vec3 position_at(const TriangleMesh& mesh, const SurfacePoint& point) {
          point.u * mesh.positions[std::size_t(t[1])] + point.v * mesh.positions[std::size_t(t[2])];
 }
 
+Vec3 area_vector(const std::vector<Vec3>& positions, const Triangle& triangle) {
+  const Vec3& a = positions[std::size_t(triangle[0])];
+  return 0.5 *
+         (positions[std::size_t(triangle[1])] - a).cross(positions[std::size_t(triangle[2])] - a);
+}
+
 Vec3 face_normal(const TriangleMesh& mesh, int triangle) {
   const Triangle& t = mesh.triangles[std::size_t(triangle)];
   const Vec3& a = mesh.positions[std::size_t(t[0])];

@@ -59,6 +59,8 @@ struct SurfacePoint {
 };
 
 Vec3 position_at(const TriangleMesh& mesh, const SurfacePoint& point);
+// Along the normal, as long as the triangle's area.
+Vec3 area_vector(const std::vector<Vec3>& positions, const Triangle& triangle);
 // Unit face normal; zero for a degenerate triangle.
 Vec3 face_normal(const TriangleMesh& mesh, int triangle);
 

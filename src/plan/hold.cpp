@@ -10,8 +10,6 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 double whole_degrees(double radians) {
   const double degrees = std::round(radians / kDegree);
   return degrees == -180 ? 180 : degrees + 0.0;  // -0 becomes 0

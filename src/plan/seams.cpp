@@ -30,8 +30,7 @@ constexpr double kFadeIn_mm = 0.6;
 constexpr double kAlwaysSeen = 0.15;
 constexpr double kInkSeen = 0.55;
 constexpr double kDetailSeen = 0.3;
-constexpr double kFullColor = 25, kFullDetail = 15;  // CIELAB
-constexpr double kHollowSeen = 0.4;                  // at least that, in the deepest hollow
+constexpr double kHollowSeen = 0.4;  // at least that, in the deepest hollow
 constexpr int kRays = 32;
 
 // Of evenly spread nodes that are neighbours up to 1.7 spacings apart, a straight line cuts so many

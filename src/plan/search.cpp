@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "base/error.h"
@@ -13,8 +12,6 @@
 
 namespace hydrodip {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // Trial dips go by less fine steps still, in film that is as fine as a draft's.
 constexpr double kTrialStep_mm = 1;
@@ -26,8 +23,6 @@ constexpr int kAround = 6;
 constexpr double kTurn_deg = 30;
 // Hollows are looked for in so many cells.
 constexpr int kTrialAirCells = 20000;
-// One that is confirmed may go deeper than its trial by that much.
-constexpr double kDeeper_mm = 3;
 // Trial dips and the job's are that near to each other.
 constexpr double kClearlyBehind = 0.98;
 // What reaches less than that part of the best is none to choose from, and none to better.

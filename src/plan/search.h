@@ -19,6 +19,9 @@ struct SearchOptions {
   bool confirm = true;        // dip the best as finely as the job
 };
 
+// The job's dip may go deeper than its trial by that much.
+inline constexpr double kDeeper_mm = 3;
+
 // A shorter search, for a word of advice.
 SearchOptions quick_search();
 

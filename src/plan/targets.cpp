@@ -20,16 +20,8 @@ constexpr double kDetailShare = 0.25;
 constexpr double kPlainOfPrinted = 1.0 / 3;
 // What has more than that differs from the bare object.
 constexpr double kHardlyPlain = kPlainShare + 0.02;
-// Differences in CIELAB that count in full.
-constexpr double kFullColor = 25;
-constexpr double kFullDetail = 15;
 // Detail is looked for in cells of this part of the object's extent.
 constexpr double kCellsAcross = 20;
-
-Vec3 area_vector(const TriangleMesh& mesh, const Triangle& t) {
-  const Vec3& a = mesh.positions[std::size_t(t[0])];
-  return 0.5 * (mesh.positions[std::size_t(t[1])] - a).cross(mesh.positions[std::size_t(t[2])] - a);
-}
 
 void sum_up(Targets& targets) {
   targets.area = targets.weight = 0;
@@ -70,7 +62,7 @@ Targets spread_targets(const TriangleMesh& mesh, int count) {
   area_up_to.reserve(mesh.triangles.size());
   double total = 0;
   for (const Triangle& t : mesh.triangles)
-    area_up_to.push_back(total += area_vector(mesh, t).norm());
+    area_up_to.push_back(total += area_vector(mesh.positions, t).norm());
   Targets targets;
   if (!(total > 0)) return targets;
   CheckEvery check(1 << 12);

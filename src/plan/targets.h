@@ -26,6 +26,9 @@ struct Targets {
 
 inline constexpr int kTargets = 4000;
 
+// Differences in CIELAB that count in full, from the bare object and around a point.
+inline constexpr double kFullColor = 25, kFullDetail = 15;
+
 // Evenly over the surface, about `count` of them and always the same ones: equal shares of area,
 // and in each triangle the points of a low-discrepancy sequence.
 Targets spread_targets(const TriangleMesh& mesh, int count = kTargets);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <vector>
 
 #include "base/parallel.h"
@@ -13,7 +12,6 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kMostSamples = 1200;
 
 // Keeps every n-th patch so that few remain; patches come in mesh order, which spreads them.
@@ -24,12 +22,6 @@ std::vector<SurfacePatch> thinned(const std::vector<SurfacePatch>& patches) {
   // An odd stride does not fall in step with the rows of a regular film grid as easily.
   for (std::size_t i = 0; i < patches.size(); i += stride | 1) kept.push_back(patches[i]);
   return kept;
-}
-
-Vec3 area_vector(const std::vector<Vec3>& positions, const Triangle& triangle) {
-  const Vec3& a = positions[std::size_t(triangle[0])];
-  return 0.5 *
-         (positions[std::size_t(triangle[1])] - a).cross(positions[std::size_t(triangle[2])] - a);
 }
 
 // Film lies with its underside out: outward is against the film's own normal.

@@ -12,6 +12,7 @@
 #include "base/run_scope.h"
 #include "coat/film_paint.h"
 #include "job/job_record.h"
+#include "job/prepare.h"
 #include "job/wanted.h"
 #include "job/ways.h"
 #include "plan/hold.h"
@@ -31,7 +32,6 @@ constexpr int kSketchElements = 5000, kSketchAirCells = 10000;
 constexpr std::size_t kSketchTriangles = 20000;
 constexpr int kSketchPoints = 4000;  // at which the report asks what is covered
 constexpr double kSketchStep_mm = 2;
-constexpr double kTiny_mm = 5, kHuge_mm = 1000;  // as require_size() has them
 
 double shown_dpi(const JobConfig& config, LookQuality quality) {
   struct Picture {

@@ -16,7 +16,7 @@ constexpr double kTolerance_mm = 1e-6;
 constexpr double kBesides_mm = 10;  // on both sides together
 constexpr int kMostGuesses = 12;
 // Film torn up to that share of what lies on the object at that depth is none for a hand.
-constexpr double kHardlyTorn = 0.003;
+constexpr double kMayTear = 0.003;
 
 std::vector<RoomFit> fits_of(const JobConfig& config, const TriangleMesh& posed,
                              const FilmOptions& film) {
@@ -155,7 +155,7 @@ Json tear_mends(const JobConfig& config, const DippedFilm& film) {
   double sum = 0, depth = film.depth_mm;
   for (const auto& [at, how_much] : torn) {
     sum += how_much;
-    if (sum <= kHardlyTorn * area) continue;
+    if (sum <= kMayTear * area) continue;
     depth = std::floor(2 * at) / 2 - 0.5;  // a little before that
     break;
   }

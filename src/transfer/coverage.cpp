@@ -8,12 +8,6 @@
 namespace hydrodip {
 namespace {
 
-Vec3 area_vector(const std::vector<Vec3>& positions, const Triangle& triangle) {
-  const Vec3& a = positions[std::size_t(triangle[0])];
-  return 0.5 *
-         (positions[std::size_t(triangle[1])] - a).cross(positions[std::size_t(triangle[2])] - a);
-}
-
 // Vertical walls do not, however they are rounded.
 bool meets_face_on(const Vec3& area, const Vec3& direction) {
   return area.squaredNorm() > 0 && faces_down(dip_angle_deg(area.normalized(), direction));

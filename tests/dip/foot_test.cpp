@@ -9,8 +9,6 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
-
 // Rising along +x: at 30 degrees up to x = 10, at 60 degrees from there on.
 struct TwoSlopes {
   double first = std::tan(30 * kDegree), last = std::tan(60 * kDegree), crease = 10;

@@ -9,8 +9,6 @@
 
 namespace hydrodip::exact {
 
-constexpr double kDegree = M_PI / 180;
-
 // A strip of film, clamped at x = +-half_width and free along its other two edges.
 inline FilmMesh strip(double half_width, int elements, double grading = 4) {
   FilmMesh mesh = make_film_mesh({.width_mm = 2 * half_width + 20,

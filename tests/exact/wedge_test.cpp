@@ -8,8 +8,6 @@ namespace {
 
 using exact::kZStretch;
 
-constexpr double kDegree = M_PI / 180;
-
 // A strip of film, clamped at x = +-100 and free along its other two edges.
 FilmMesh strip(int elements, double grading) {
   FilmMesh mesh = make_film_mesh({.width_mm = 2 * exact::kClampRadius + 20,

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -18,8 +17,6 @@ namespace {
 using fixtures::film_under_ball;
 using fixtures::kRadius;
 using fixtures::two_coloured_ball;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // The ball's dipping angle, from geometry alone.
 double ball_angle_deg(const Vec3& p) {
