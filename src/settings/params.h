@@ -1,5 +1,6 @@
 // Parameters as records: name, unit, type, range, default and help live in one place (the tables in
-// job/records.cpp) and drive validation, `hydrodip params`, configuration files and reports.
+// settings/parameter_table.cpp) and drive validation, `hydrodip params`, configuration files and
+// reports.
 #pragma once
 
 #include <array>
