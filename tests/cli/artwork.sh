@@ -3,6 +3,16 @@
 # pattern film, several parts on a sheet, and what is refused.
 . "$(dirname "$0")/common.sh"
 
+# refused FRAGMENT ARGUMENTS...
+refused() {
+  fragment=$1
+  shift
+  "$hydrodip" "$@" > refused.out 2> refused.err
+  [ $? -eq 2 ] || fail "not refused: $*"
+  grep -q "^error: .*$fragment" refused.err || fail "no '$fragment' in: $(cat refused.err)"
+  [ ! -e nothing ] || fail "left files behind: $*"
+}
+
 # A plate of 40 x 30 x 5 mm as STL: neither UVs nor colours.
 cat > plate.py <<'PY'
 import itertools, struct
@@ -224,15 +234,6 @@ for art in '--art-text=A' '--art=text.svg'; do
   grep -q '^error: .*no fonts are installed' none.err || fail "$art without fonts: $(cat none.err)"
 done
 
-# refused FRAGMENT ARGUMENTS...
-refused() {
-  fragment=$1
-  shift
-  "$hydrodip" "$@" > refused.out 2> refused.err
-  [ $? -eq 2 ] || fail "not refused: $*"
-  grep -q "^error: .*$fragment" refused.err || fail "no '$fragment' in: $(cat refused.err)"
-  [ ! -e nothing ] || fail "left files behind: $*"
-}
 head -c 300 photo.png > broken.png
 echo '<svg xmlns="http://www.w3.org/2000/svg"><rect' > broken.svg
 refused 'nowhere.png' print plate.stl --art nowhere.png -o nothing
