@@ -18,4 +18,8 @@ void check_cancelled() {
   if (work_here.context != nullptr) work_here.context->check_cancelled();
 }
 
+void warn(const std::string& sentence) {
+  if (work_here.context != nullptr) work_here.context->warn(sentence);
+}
+
 }  // namespace hydrodip

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 
 #include "base/context.h"
 #include "base/work.h"
@@ -29,7 +30,11 @@ class RunScope {
 // microseconds. For loops without a context at hand.
 void check_cancelled();
 
-// The same, once in so many turns of a loop.
+// RunContext::warn() of that job; where the thread works for none, nobody hears of it. Not for
+// loops, whose order would be the threads'.
+void warn(const std::string& sentence);
+
+// check_cancelled(), once in so many turns of a loop.
 class CheckEvery {
  public:
   explicit CheckEvery(int turns) : turns_(turns), left_(turns) {}

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/run_scope.h"
 
 namespace hydrodip {
 namespace {
@@ -63,6 +64,7 @@ void require_room(const DesignOptions& options, double inked_mm2, double limit_b
 
 PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOptions& options,
                               const RunContext& context, double dpi, int samples_per_axis) {
+  const RunScope scope(context);
   context.progress("loading", 0);
   std::vector<PictureSource> pictures = read_pictures(options.artwork);
   LoadedObject loaded = options.given ? *options.given : load_object(model, options.load, context);

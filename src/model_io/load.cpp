@@ -406,6 +406,7 @@ PolygonMesh load_polygons(const fs::path& path) {
 
 LoadedObject load_object(const fs::path& path, const LoadOptions& options,
                          const RunContext& context) {
+  const RunScope scope(context);
   const Format& format = format_of(path);
   unit_for(options.units, "", format);  // refuses a bad --units before the long part
   ModelFolder folder(path, options.confined_to);
