@@ -293,7 +293,11 @@ void bind_model(py::module_& m) {
     return ModelHandle{std::make_shared<const LoadedObject>(loaded_of(sample(name)))};
   });
   m.def("read_image", [](const std::filesystem::path& file) {
+    const RunContext context;
+    const RunScope scope(context);
     const auto image = std::make_shared<const Image>(load_image(file));
+    for (const std::string& warning : context.warnings())
+      if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
     return view<std::uint8_t>(image->rgba, {}, keep(image))
         .reshape(std::vector<py::ssize_t>{image->height_px, image->width_px, 4});
   });

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/math.h"
 #include "base/run_scope.h"
 
 namespace hydrodip {
@@ -41,26 +42,101 @@ void check_picture_size(const std::string& name, const char* kind, std::uint32_t
     refuse_picture(name, kind, "too few bytes for its size");
 }
 
-int exif_orientation(std::span<const std::uint8_t> exif) {
-  if (exif.size() < 8 || exif[0] != exif[1] || (exif[0] != 'I' && exif[0] != 'M')) return 1;
-  const bool little = exif[0] == 'I';
-  const auto number = [&](std::size_t at, std::size_t bytes) -> std::uint32_t {
-    if (at > exif.size() || exif.size() - at < bytes) return 0;
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < bytes; ++i)
-      value = value << 8 | exif[at + (little ? bytes - 1 - i : i)];
-    return value;
-  };
-  const std::size_t directory = number(4, 4);
-  const std::uint32_t entries = number(directory, 2);
-  for (std::uint32_t i = 0; i < entries; ++i) {
-    const std::size_t entry = directory + 2 + std::size_t(12) * i;
-    if (entry + 12 > exif.size()) break;
-    if (number(entry, 2) != 0x0112) continue;
-    const std::uint32_t value = number(entry + 8, 2);
-    return value >= 1 && value <= 8 ? int(value) : 1;
+void warn_of_left_out(int channels, const std::string& name) {
+  if (channels == 1)
+    warn(
+        fmt::format("{}: a channel beside its colours is not marked as transparency and is left "
+                    "out: a saved selection or a spot ink is such a one.",
+                    name));
+  else if (channels > 1)
+    warn(
+        fmt::format("{}: {} channels beside its colours are not marked as transparency and are "
+                    "left out: saved selections and spot inks are such.",
+                    name, channels));
+}
+
+void divide_by_alpha(std::uint8_t* values, int count, int alpha) {
+  if (alpha == 0 || alpha == 255) return;
+  for (int c = 0; c < count; ++c)
+    values[c] = std::uint8_t(std::min(255, (values[c] * 255 + alpha / 2) / alpha));
+}
+
+void bring_inks_to_srgb(Image& image) {
+  CheckEvery check(1 << 16);
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    check();
+    const int light = 255 - image.rgba[i + 3];
+    for (std::size_t c = 0; c < 3; ++c)
+      image.rgba[i + c] = std::uint8_t(((255 - image.rgba[i + c]) * light + 127) / 255);
+    image.rgba[i + 3] = 255;
   }
-  return 1;
+}
+
+namespace {
+
+// EXIF's first directory.
+class Exif {
+ public:
+  explicit Exif(std::span<const std::uint8_t> bytes)
+      : bytes_(bytes),
+        is_exif_(bytes.size() >= 8 && bytes[0] == bytes[1] &&
+                 (bytes[0] == 'I' || bytes[0] == 'M')) {}
+
+  // Of a short number; 0 if it is not there.
+  std::uint32_t short_of(std::uint32_t tag) const {
+    const std::size_t value = value_of(tag);
+    return value > 0 ? number(value, 2) : 0;
+  }
+  // Of a fraction; 0 if it is not there.
+  double fraction_of(std::uint32_t tag) const {
+    const std::size_t value = value_of(tag);
+    if (value == 0) return 0;
+    const std::size_t at = number(value, 4);
+    const double under = number(at + 4, 4);
+    return under > 0 ? number(at, 4) / under : 0;
+  }
+
+ private:
+  // Where it stands; 0 for nowhere.
+  std::size_t value_of(std::uint32_t tag) const {
+    if (!is_exif_) return 0;
+    const std::size_t directory = number(4, 4);
+    const std::uint32_t entries = number(directory, 2);
+    for (std::uint32_t i = 0; i < entries; ++i) {
+      const std::size_t entry = directory + 2 + std::size_t(12) * i;
+      if (entry + 12 > bytes_.size()) break;
+      if (number(entry, 2) == tag) return entry + 8;
+    }
+    return 0;
+  }
+
+  std::uint32_t number(std::size_t at, std::size_t count) const {
+    if (at > bytes_.size() || bytes_.size() - at < count) return 0;
+    const bool little = bytes_[0] == 'I';
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      value = value << 8 | bytes_[at + (little ? count - 1 - i : i)];
+    return value;
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  bool is_exif_;
+};
+
+}  // namespace
+
+int exif_orientation(std::span<const std::uint8_t> exif) {
+  const std::uint32_t value = Exif(exif).short_of(0x0112);
+  return value >= 1 && value <= 8 ? int(value) : 1;
+}
+
+Resolution exif_resolution(std::span<const std::uint8_t> exif) {
+  constexpr double kUnknown_dpi = 72;  // is to be written then
+  constexpr std::uint32_t kCentimetres = 3;
+  const Exif tags(exif);
+  const double per_unit = tags.short_of(0x0128) == kCentimetres ? kMmPerInch / 10 : 1;
+  const Resolution found{tags.fraction_of(0x011a) * per_unit, tags.fraction_of(0x011b) * per_unit};
+  return found.across_dpi == kUnknown_dpi ? Resolution() : found;
 }
 
 Image oriented(Image image, int orientation) {

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 #include <png.h>
+#include <zlib.h>
 
-// jpeglib.h needs size_t and FILE first.
+// jpeglib.h needs size_t and FILE first, jerror.h what jpeglib.h defines: its numbers hang on that.
 #include <cstdio>
 
-#include <jerror.h>
 #include <jpeglib.h>
+
+#include <jerror.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +20,7 @@
 #include <new>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -122,8 +125,11 @@ struct PngReader {
     if (!png) throw std::bad_alloc();
     info = png_create_info_struct(png);
     png_set_read_fn(png, &source, png_read_from_memory);
-    // Colour profiles and text are of no use here, and are where decompression bombs hide.
+    // Text and the like are of no use here, and are where decompression bombs hide; profiles are
+    // read by read_png_colors.
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, 0);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER,
+                                reinterpret_cast<png_const_bytep>("iCCP"), 1);
     png_set_chunk_malloc_max(png, 1 << 22);
     png_set_user_limits(png, kMaxSidePx, kMaxSidePx);
   }
@@ -144,16 +150,42 @@ void for_each_chunk(const Bytes& bytes, Visit visit) {
   }
 }
 
-void read_png_colors(png_structp png, png_infop info, const Bytes& bytes, StoredPicture& picture) {
-  png_charp profile_name = nullptr;
-  png_bytep profile = nullptr;
-  png_uint_32 size = 0;
-  int method = 0;
-  if (png_get_iCCP(png, info, &profile_name, &method, &profile, &size))
-    picture.profile.assign(profile, profile + size);
+// The profile of an iCCP chunk: behind its name and a zero that stands for deflate. Empty if it is
+// damaged, or larger than any.
+Bytes png_profile(std::span<const std::uint8_t> chunk) {
+  constexpr std::size_t kLongestName = 79, kLargest = std::size_t(1) << 25;
+  const auto end = std::find(chunk.begin(), chunk.end(), std::uint8_t(0));
+  const auto name = std::size_t(end - chunk.begin());
+  if (name > kLongestName || chunk.size() < name + 2 || chunk[name + 1] != 0) return {};
+  const std::span packed = chunk.subspan(name + 2);
+  Bytes profile;
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
+  stream.next_in = const_cast<Bytef*>(packed.data());
+  stream.avail_in = uInt(packed.size());
+  int status = Z_OK;
+  while (status == Z_OK && profile.size() < kLargest) {
+    constexpr std::size_t kPiece = std::size_t(1) << 16;
+    const std::size_t had = profile.size();
+    profile.resize(had + kPiece);
+    stream.next_out = profile.data() + had;
+    stream.avail_out = uInt(kPiece);
+    status = inflate(&stream, Z_NO_FLUSH);
+    profile.resize(profile.size() - stream.avail_out);
+  }
+  inflateEnd(&stream);
+  return status == Z_STREAM_END ? profile : Bytes();
+}
+
+// A profile counts whether or not the file calls itself sRGB too: libpng would take the first.
+void read_png_colors(const Bytes& bytes, StoredPicture& picture) {
   for_each_chunk(bytes, [&](std::string_view type, std::span<const std::uint8_t> data) {
     if (type == "cICP" && data.size() == 4) picture.cicp = {data[0], data[1], data[2], data[3]};
     if (type == "eXIf") picture.orientation = exif_orientation(data);
+    if (type == "iCCP") {
+      picture.profile = png_profile(data);
+      picture.profile_lost = picture.profile.empty();
+    }
     return true;
   });
 }
@@ -178,24 +210,27 @@ StoredPicture decode_png(const Bytes& bytes, const std::string& name) {
   picture.image = Image(int(width), int(height));
   if (!png_decode_rows(reader.png, reader.info, picture.image))
     refuse_picture(name, "PNG", source.message);
-  read_png_colors(reader.png, reader.info, bytes, picture);
+  read_png_colors(bytes, picture);
   return picture;
 }
 
-double png_dpi(const Bytes& bytes) {
-  double dpi = 0;
+// pHYs counts whole pixels per metre: 300 dpi is stored as 299.9994.
+double dpi_of(double per_m) {
+  const double dpi = per_m * kMmPerInch / 1000;
+  const double whole = std::round(dpi);
+  return std::round(whole * 1000 / kMmPerInch) == per_m ? whole : dpi;
+}
+
+Resolution png_resolution(const Bytes& bytes) {
+  Resolution found;
   for_each_chunk(bytes, [&](std::string_view type, std::span<const std::uint8_t> data) {
     if (type == "IDAT") return false;
     if (type != "pHYs" || data.size() != 9) return true;
-    if (data[8] != 1) return false;  // only an aspect ratio
-    const double per_m = big_endian32(data.data());
-    dpi = per_m * kMmPerInch / 1000;
-    // pHYs counts whole pixels per metre: 300 dpi is stored as 299.9994.
-    const double whole = std::round(dpi);
-    if (std::round(whole * 1000 / kMmPerInch) == per_m) dpi = whole;
+    if (data[8] == 1)  // else only an aspect ratio
+      found = {dpi_of(big_endian32(data.data())), dpi_of(big_endian32(data.data() + 4))};
     return false;
   });
-  return dpi;
+  return found;
 }
 
 bool opaque(const Image& image) {
@@ -292,7 +327,7 @@ struct JpegErrors {
   jpeg_error_mgr manager;  // first: libjpeg hands back a pointer to it
   std::jmp_buf jump;
   char message[JMSG_LENGTH_MAX];
-  bool truncated;
+  bool truncated, damaged, bad_profile;
   jpeg_progress_mgr progress;
 };
 
@@ -320,8 +355,22 @@ static void jpeg_watch(j_common_ptr info) {
 static void jpeg_note_warning(j_common_ptr info, int level) {
   if (level >= 0) return;
   auto* errors = reinterpret_cast<JpegErrors*>(info->err);
-  const int code = errors->manager.msg_code;
-  if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER) errors->truncated = true;
+  switch (errors->manager.msg_code) {
+    case JWRN_JPEG_EOF:
+    case JWRN_HIT_MARKER:
+      errors->truncated = true;
+      break;
+    case JWRN_BOGUS_ICC:
+      errors->bad_profile = true;
+      break;
+    case JWRN_ADOBE_XFORM:
+    case JWRN_JFIF_MAJOR:
+    case JWRN_NOT_SEQUENTIAL:
+    case JWRN_TOO_MUCH_DATA:
+      break;  // nothing that changes a pixel
+    default:
+      errors->damaged = true;
+  }
 }
 
 }  // extern "C"
@@ -360,40 +409,31 @@ struct JpegReader {
     return jpeg_read_icc_profile(&info, profile, size) != 0;
   }
 
-  // row: scratch space for one row of up to four channels. inks: four of them are kept as they are.
-  bool read_rows(Image& image, std::uint8_t* row, bool inks);
+  // Press files hold CMYK.
+  bool has_inks() const { return info.out_color_space == JCS_CMYK; }
+
+  // row: scratch space for one row of up to four channels.
+  bool read_rows(Image& image, std::uint8_t* row);
 };
 
-// Press files hold CMYK; Adobe's are inverted. Without a profile a plain device formula has to do.
-void cmyk_to_rgb(const std::uint8_t* cmyk, bool inverted, std::uint8_t* rgb) {
-  const int k = inverted ? cmyk[3] : 255 - cmyk[3];
-  for (int c = 0; c < 3; ++c) {
-    const int light = inverted ? cmyk[c] : 255 - cmyk[c];
-    rgb[c] = std::uint8_t((light * k + 127) / 255);
-  }
-}
-
-bool JpegReader::read_rows(Image& image, std::uint8_t* row, bool inks) {
+bool JpegReader::read_rows(Image& image, std::uint8_t* row) {
   if (setjmp(errors.jump)) return false;
   jpeg_start_decompress(&info);
-  const bool four_inks = info.out_color_space == JCS_CMYK;
+  const bool inks = has_inks();
   while (info.output_scanline < info.output_height) {
     check_cancelled();
     std::uint8_t* out = image.pixel(0, int(info.output_scanline));
     jpeg_read_scanlines(&info, &row, 1);
     const std::uint8_t* in = row;
-    for (int x = 0; x < image.width_px; ++x, out += 4, in += four_inks ? 4 : 3) {
+    for (int x = 0; x < image.width_px; ++x, out += 4, in += inks ? 4 : 3) {
       if (inks) {
+        // Adobe's are inverted.
         for (int c = 0; c < 4; ++c)
           out[c] = std::uint8_t(info.saw_Adobe_marker ? 255 - in[c] : in[c]);
-        continue;
-      }
-      if (four_inks) {
-        cmyk_to_rgb(in, info.saw_Adobe_marker, out);
       } else {
         std::copy_n(in, 3, out);
+        out[3] = 255;
       }
-      out[3] = 255;
     }
   }
   jpeg_finish_decompress(&info);
@@ -407,14 +447,19 @@ void read_jpeg_colors(JpegReader& reader, StoredPicture& picture) {
         std::memcmp(data.data(), "Exif\0", 6) == 0)
       picture.orientation = exif_orientation(data.subspan(6));
   }
-  JOCTET* profile = nullptr;
+  if (reader.has_inks()) picture.stored = Stored::kInks;
+  JOCTET* data = nullptr;
   unsigned size = 0;
-  if (!reader.read_profile(&profile, &size)) return;
-  picture.profile.assign(profile, profile + size);
-  std::free(profile);
-  if (reader.info.out_color_space == JCS_RGB) return;
-  picture.inks = is_ink_profile(picture.profile);
-  if (!picture.inks) picture.profile.clear();
+  if (!reader.read_profile(&data, &size)) {
+    picture.profile_lost = reader.errors.bad_profile;
+    return;
+  }
+  Bytes profile(data, data + size);
+  std::free(data);
+  if (reader.has_inks())
+    take_ink_profile(picture, std::move(profile));
+  else
+    picture.profile = std::move(profile);
 }
 
 StoredPicture decode_jpeg(const Bytes& bytes, const std::string& name) {
@@ -428,11 +473,12 @@ StoredPicture decode_jpeg(const Bytes& bytes, const std::string& name) {
   picture.image = Image(int(width), int(height));
   std::vector<std::uint8_t> row(std::size_t(4) * width);
   read_jpeg_colors(reader, picture);
-  if (!reader.read_rows(picture.image, row.data(), picture.inks)) {
+  if (!reader.read_rows(picture.image, row.data())) {
     check_cancelled();
     refuse_picture(name, "JPEG", reader.errors.message);
   }
   if (reader.errors.truncated) refuse_picture(name, "JPEG", "it ends too early");
+  picture.damaged = reader.errors.damaged;
   return picture;
 }
 
@@ -478,11 +524,31 @@ struct JpegWriter {
   }
 };
 
-double jpeg_dpi(const Bytes& bytes) {
-  if (bytes.size() < 18 || bytes[3] != 0xe0 || std::memcmp(&bytes[6], "JFIF", 5) != 0) return 0;
-  const double density = bytes[14] * 256.0 + bytes[15];
-  if (bytes[13] == 1) return density;
-  return bytes[13] == 2 ? density * kMmPerInch / 10 : 0;
+// What EXIF data have before them in a JPEG.
+constexpr std::string_view kExifMark("Exif\0\0", 6);
+
+// Without unpacking anything. JFIF's goes before EXIF's.
+Resolution jpeg_resolution(const Bytes& bytes) {
+  constexpr std::string_view kJfif("JFIF\0", 5);
+  Resolution found;
+  for (std::size_t at = 2; at + 4 <= bytes.size() && bytes[at] == 0xff;) {
+    const int marker = bytes[at + 1];
+    const std::size_t length = std::size_t(bytes[at + 2]) << 8 | bytes[at + 3];
+    if (marker < JPEG_APP0 || marker > kProfileMarker || length < 2 ||
+        length > bytes.size() - at - 2)
+      break;
+    const auto data = std::span(bytes).subspan(at + 4, length - 2);
+    const auto is = [&](std::string_view mark) {
+      return data.size() >= mark.size() && std::memcmp(data.data(), mark.data(), mark.size()) == 0;
+    };
+    if (is(kJfif) && data.size() >= 12 && (data[7] == 1 || data[7] == 2)) {
+      const double per_unit = data[7] == 2 ? kMmPerInch / 10 : 1;
+      return {(data[8] * 256 + data[9]) * per_unit, (data[10] * 256 + data[11]) * per_unit};
+    }
+    if (is(kExifMark)) found = exif_resolution(data.subspan(kExifMark.size()));
+    at += 2 + length;
+  }
+  return found;
 }
 
 }  // namespace
@@ -491,6 +557,12 @@ namespace {
 
 bool begins(const Bytes& bytes, std::string_view mark, std::size_t at = 0) {
   return bytes.size() >= at + mark.size() && std::memcmp(&bytes[at], mark.data(), mark.size()) == 0;
+}
+
+bool is_tiff(const Bytes& bytes) {
+  return begins(bytes, std::string_view("II*\0", 4)) ||
+         begins(bytes, std::string_view("MM\0*", 4)) ||
+         begins(bytes, std::string_view("II+\0", 4)) || begins(bytes, std::string_view("MM\0+", 4));
 }
 
 // Kinds that people have and that are not read.
@@ -504,6 +576,7 @@ const char* foreign_kind(const Bytes& bytes) {
   if (begins(bytes, "#?RADIANCE")) return "a Radiance HDR picture";
   if (begins(bytes, "\xff\x0a") || begins(bytes, "JXL ", 4)) return "a JPEG XL picture";
   if (begins(bytes, "<svg") || begins(bytes, "<?xml")) return "an SVG drawing";
+  if (begins(bytes, "\x1f\x8b")) return "a file packed by gzip";
   return bytes.empty() ? "an empty file" : nullptr;
 }
 
@@ -534,18 +607,68 @@ StoredPicture decode_any(const Bytes& bytes, const std::string& name) {
   refuse_kind(bytes, name);
 }
 
+void bring_inks_to_srgb(StoredPicture& picture) {
+  if (picture.profile.empty())
+    bring_inks_to_srgb(picture.image);
+  else
+    bring_inks_to_srgb(picture.image, picture.profile);
+  CheckEvery check(1 << 16);
+  for (std::size_t i = 0; i < picture.ink_alpha.size(); ++i) {
+    check();
+    picture.image.rgba[4 * i + 3] = picture.ink_alpha[i];
+  }
+}
+
+// PNG's cICP goes before a profile. What cannot be used is told.
+void bring_colors_to_srgb(StoredPicture& picture, const std::string& name) {
+  if (picture.cicp) {
+    if (bring_to_srgb(picture.image, *picture.cicp)) {
+      picture.profile_lost = false;
+      return;
+    }
+    if (picture.profile.empty())
+      warn(fmt::format(
+          "{}: its colours are coded in a way that is not read (cICP {}, {}, {}, {}) "
+          "and are taken as sRGB; save it as sRGB from an image editor.",
+          name, (*picture.cicp)[0], (*picture.cicp)[1], (*picture.cicp)[2], (*picture.cicp)[3]));
+  }
+  if (!picture.profile.empty() && !bring_to_srgb(picture.image, picture.profile))
+    picture.profile_lost = true;
+}
+
+void bring_to_srgb(StoredPicture& picture, const std::string& name) {
+  switch (picture.stored) {
+    case Stored::kColors:
+      bring_colors_to_srgb(picture, name);
+      break;
+    case Stored::kInks:
+      bring_inks_to_srgb(picture);
+      break;
+    case Stored::kLab:
+      bring_lab_to_srgb(picture.image);
+      break;
+  }
+  if (picture.profile_lost)
+    warn(
+        fmt::format("{}: its colour profile is damaged or does not fit such a picture, and is not "
+                    "used: {}; save it as sRGB from an image editor.",
+                    name,
+                    picture.stored == Stored::kInks ? "its inks show what a plain formula makes of "
+                                                      "them"
+                                                    : "its colours are taken as sRGB"));
+}
+
 }  // namespace
 
 Image decode_image(const Bytes& bytes, const std::string& name) {
   try {
     StoredPicture picture = decode_any(bytes, name);
-    if (picture.inks) {
-      bring_inks_to_srgb(picture.image, picture.profile);
-    } else if (picture.cicp) {
-      bring_to_srgb(picture.image, *picture.cicp);
-    } else {
-      bring_to_srgb(picture.image, picture.profile);
-    }
+    if (picture.damaged)
+      warn(
+          fmt::format("{}: its data are damaged, and parts of the picture may be wrong; take it "
+                      "anew from where it came from.",
+                      name));
+    bring_to_srgb(picture, name);
     return oriented(std::move(picture.image), picture.orientation);
   } catch (const std::bad_alloc&) {
     throw InputError(fmt::format("{}: not enough memory for this image; scale it down.", name));
@@ -577,19 +700,19 @@ Image load_image(const std::filesystem::path& path) {
   return decode_image(read_picture(path), path.string());
 }
 
-bool is_tiff(const Bytes& bytes) {
-  return begins(bytes, std::string_view("II*\0", 4)) ||
-         begins(bytes, std::string_view("MM\0*", 4)) ||
-         begins(bytes, std::string_view("II+\0", 4)) || begins(bytes, std::string_view("MM\0+", 4));
+Resolution recorded_resolution(const Bytes& bytes) {
+  if (is_png(bytes)) return png_resolution(bytes);
+  if (is_jpeg(bytes)) return jpeg_resolution(bytes);
+  return is_tiff(bytes) ? tiff_resolution(bytes) : Resolution();
 }
 
 double scan_dpi(const Bytes& bytes) {
-  return is_tiff(bytes) ? recorded_tiff_dpi(bytes) : recorded_dpi(bytes);
+  const Resolution found = recorded_resolution(bytes);
+  return found.is_one() ? found.across_dpi : 0;
 }
 
 double recorded_dpi(const Bytes& bytes) {
-  if (is_png(bytes)) return png_dpi(bytes);
-  return is_jpeg(bytes) ? jpeg_dpi(bytes) : 0;
+  return is_tiff(bytes) ? 0 : recorded_resolution(bytes).across_dpi;
 }
 
 Bytes encode_png(const Image& image, double dpi, bool mirrored) {

@@ -12,19 +12,18 @@ namespace hydrodip {
 
 // Decodes PNG, JPEG, WebP, TIFF, GIF (its first frame), BMP or TGA (told apart by their first
 // bytes), any bit depth, palette, grey, interlaced; 16-bit is reduced to 8. Embedded RGB and
-// grey profiles, a CMYK JPEG's or TIFF's profile and PNG's cICP are brought to sRGB, EXIF's
-// orientation is applied; a PNG's bare gamma is not. `name` is used in the error only. Throws
-// InputError: not an image, truncated, over 2^15 px a side or 2^28 px in all (refused before it is
-// unpacked).
+// grey profiles, a CMYK JPEG's or TIFF's profile, Lab and PNG's cICP are brought to sRGB, EXIF's
+// orientation is applied; a PNG's bare gamma is not. A job that this thread works for (run_scope.h)
+// is warned of colours that may be wrong: a damaged profile, damaged data, channels left out.
+// `name` is what it is called there and in errors. Throws InputError: not an image, truncated, over
+// 2^15 px a side or 2^28 px in all (refused before it is unpacked).
 Image decode_image(const std::vector<std::uint8_t>& bytes, const std::string& name);
 
 // read_file + decode_image.
 Image load_image(const std::filesystem::path& path);
 
-// By its first bytes.
-bool is_tiff(const std::vector<std::uint8_t>& bytes);
-
-// Dots per inch recorded in a PNG (pHYs) or JPEG (JFIF density); 0 when there is none.
+// Dots per inch across, recorded in a PNG (pHYs) or JPEG (JFIF's density, EXIF); 0 when there is
+// none.
 double recorded_dpi(const std::vector<std::uint8_t>& bytes);
 
 // Writes RGBA, or RGB when every pixel is opaque, with an sRGB chunk and, if dpi > 0, pHYs.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <string_view>
+#include <utility>
 
 #include "base/run_scope.h"
 #include "image/decoders.h"
@@ -29,17 +31,23 @@ struct CloseGif {
   void operator()(GifFileType* file) const { DGifCloseFile(file, nullptr); }
 };
 
-// The palette's entry that is transparent, or -1.
-int transparent_entry(GifFileType* file) {
+// What an extension says of the picture after it.
+struct GifExtras {
+  int transparent = -1;  // the palette's entry, or -1
+  PictureBytes profile;
+};
+
+void read_extension(GifFileType* file, GifExtras& extras) {
+  constexpr std::string_view kProfile = "ICCRGBG1012";
   int code = 0;
-  GifByteType* data = nullptr;
-  int transparent = -1;
-  if (DGifGetExtension(file, &code, &data) == GIF_ERROR) return -1;
-  while (data) {
-    if (code == GRAPHICS_EXT_FUNC_CODE && data[0] >= 4) transparent = data[1] & 1 ? data[4] : -1;
-    if (DGifGetExtensionNext(file, &data) == GIF_ERROR) break;
-  }
-  return transparent;
+  GifByteType* data = nullptr;  // a length, and so many bytes
+  if (DGifGetExtension(file, &code, &data) == GIF_ERROR || !data) return;
+  if (code == GRAPHICS_EXT_FUNC_CODE && data[0] >= 4)
+    extras.transparent = data[1] & 1 ? data[4] : -1;
+  const bool is_profile = code == APPLICATION_EXT_FUNC_CODE && data[0] == kProfile.size() &&
+                          std::memcmp(data + 1, kProfile.data(), kProfile.size()) == 0;
+  while (DGifGetExtensionNext(file, &data) != GIF_ERROR && data)
+    if (is_profile) extras.profile.insert(extras.profile.end(), data + 1, data + 1 + data[0]);
 }
 
 // Rows of an interlaced picture come in four passes.
@@ -74,7 +82,8 @@ Image read_frame(GifFileType* file, int transparent, const PictureBytes& bytes,
     const int to = frame.Top + (frame.Interlace ? row_of(y, frame.Height) : y);
     for (int x = 0; x < frame.Width; ++x) {
       const int index = row[std::size_t(x)];
-      if (index == transparent || index >= colors->ColorCount) continue;
+      if (index == transparent) continue;
+      if (index >= colors->ColorCount) refuse_picture(name, "GIF", "a pixel is not in its palette");
       const GifColorType& color = colors->Colors[index];
       const std::uint8_t rgba[] = {color.Red, color.Green, color.Blue, 255};
       std::copy_n(rgba, 4, image.pixel(frame.Left + x, to));
@@ -90,15 +99,18 @@ StoredPicture decode_gif(const PictureBytes& bytes, const std::string& name) {
   int error = 0;
   const std::unique_ptr<GifFileType, CloseGif> file(DGifOpen(&source, read_gif, &error));
   if (!file) refuse_picture(name, "GIF", "its header cannot be read");
-  int transparent = -1;
+  GifExtras extras;
   for (;;) {
     GifRecordType kind = UNDEFINED_RECORD_TYPE;
     if (DGifGetRecordType(file.get(), &kind) == GIF_ERROR || kind == TERMINATE_RECORD_TYPE)
       refuse_picture(name, "GIF", "it has no picture");
     if (kind == EXTENSION_RECORD_TYPE) {
-      transparent = std::max(transparent, transparent_entry(file.get()));
+      read_extension(file.get(), extras);
     } else if (kind == IMAGE_DESC_RECORD_TYPE) {
-      return {read_frame(file.get(), transparent, bytes, name), {}, {}, 1};
+      StoredPicture picture;
+      picture.image = read_frame(file.get(), extras.transparent, bytes, name);
+      picture.profile = std::move(extras.profile);
+      return picture;
     }
   }
 }

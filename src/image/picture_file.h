@@ -12,10 +12,18 @@ namespace hydrodip {
 // any picture that is decoded.
 std::vector<std::uint8_t> read_picture(const std::filesystem::path& path);
 
-// Dots per inch that a scanner recorded, TIFF's too; 0 when there is none, or if both axes differ.
-double scan_dpi(const std::vector<std::uint8_t>& bytes);
+// Dots per inch; 0 when a file does not say them.
+struct Resolution {
+  double across_dpi = 0, along_dpi = 0;
+  bool is_one() const { return across_dpi == along_dpi; }  // for both directions
+};
 
+// As a PNG, JPEG (JFIF or EXIF) or TIFF records it.
+Resolution recorded_resolution(const std::vector<std::uint8_t>& bytes);
 // TIFF's alone.
-double recorded_tiff_dpi(const std::vector<std::uint8_t>& bytes);
+Resolution tiff_resolution(const std::vector<std::uint8_t>& bytes);
+
+// That of a scan; 0 when there is none, or if both directions differ.
+double scan_dpi(const std::vector<std::uint8_t>& bytes);
 
 }  // namespace hydrodip

@@ -6,6 +6,8 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <type_traits>
+#include <utility>
 
 #include "base/run_scope.h"
 #include "image/decoders.h"
@@ -37,33 +39,60 @@ bool changes_nothing(cmsHTRANSFORM transform) {
   return true;
 }
 
-// Red, green and blue are one value.
-void transform_grey(Image& image, cmsContext context, cmsHPROFILE from) {
+bool is_grey(const Image& image) {
+  CheckEvery check(1 << 16);
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    check();
+    if (image.rgba[i] != image.rgba[i + 1] || image.rgba[i] != image.rgba[i + 2]) return false;
+  }
+  return true;
+}
+
+// Red, green and blue are one value. False if there is no way from there.
+bool transform_grey(Image& image, cmsContext context, cmsHPROFILE from) {
   const Profile srgb(cmsCreate_sRGBProfileTHR(context));
   const Transform transform(cmsCreateTransformTHR(context, from, TYPE_GRAY_8, srgb.get(),
                                                   TYPE_RGB_8, INTENT_RELATIVE_COLORIMETRIC, 0));
-  if (!transform) return;
+  if (!transform) return false;
   std::array<std::uint8_t, 256> levels{};
   for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = std::uint8_t(i);
   std::array<std::uint8_t, 3 * 256> shown{};
   cmsDoTransform(transform.get(), levels.data(), shown.data(), cmsUInt32Number(levels.size()));
   for (std::size_t i = 0; i < image.rgba.size(); i += 4)
     std::copy_n(&shown[3U * image.rgba[i]], 3, &image.rgba[i]);
+  return true;
 }
 
-void transform_pixels(Image& image, cmsContext context, cmsHPROFILE from) {
-  if (from && cmsGetColorSpace(from) == cmsSigGrayData) transform_grey(image, context, from);
-  if (!from || cmsGetColorSpace(from) != cmsSigRgbData) return;
+void transform_rows(Image& image, cmsHTRANSFORM transform) {
+  for (int y = 0; y < image.height_px; ++y) {
+    check_cancelled();
+    cmsDoTransform(transform, image.pixel(0, y), image.pixel(0, y),
+                   cmsUInt32Number(image.width_px));
+  }
+}
+
+bool transform_pixels(Image& image, cmsContext context, cmsHPROFILE from) {
+  if (!from) return false;
+  if (cmsGetColorSpace(from) == cmsSigGrayData)
+    return is_grey(image) && transform_grey(image, context, from);
+  if (cmsGetColorSpace(from) != cmsSigRgbData) return false;
   const Profile srgb(cmsCreate_sRGBProfileTHR(context));
   const Transform transform(cmsCreateTransformTHR(context, from, TYPE_RGBA_8, srgb.get(),
                                                   TYPE_RGBA_8, INTENT_RELATIVE_COLORIMETRIC,
                                                   cmsFLAGS_COPY_ALPHA));
-  if (!transform || changes_nothing(transform.get())) return;
-  for (int y = 0; y < image.height_px; ++y) {
-    check_cancelled();
-    cmsDoTransform(transform.get(), image.pixel(0, y), image.pixel(0, y),
-                   cmsUInt32Number(image.width_px));
-  }
+  if (!transform) return false;
+  if (!changes_nothing(transform.get())) transform_rows(image, transform.get());
+  return true;
+}
+
+// None if colours cannot be told from it.
+Transform ink_transform(cmsContext context, const PictureBytes& profile, cmsUInt32Number flags) {
+  const Profile from(
+      cmsOpenProfileFromMemTHR(context, profile.data(), cmsUInt32Number(profile.size())));
+  if (!from || cmsGetColorSpace(from.get()) != cmsSigCmykData) return nullptr;
+  const Profile srgb(cmsCreate_sRGBProfileTHR(context));
+  return Transform(cmsCreateTransformTHR(context, from.get(), TYPE_CMYK_8, srgb.get(), TYPE_RGBA_8,
+                                         INTENT_RELATIVE_COLORIMETRIC, flags));
 }
 
 // ITU-T H.273's numbers.
@@ -104,31 +133,23 @@ Curve curve_of(cmsContext context, int number) {
 
 }  // namespace
 
-void bring_to_srgb(Image& image, const PictureBytes& profile) {
-  if (profile.empty()) return;
+bool bring_to_srgb(Image& image, const PictureBytes& profile) {
   const Context context(cmsCreateContext(nullptr, nullptr));
   const Profile from(
       cmsOpenProfileFromMemTHR(context.get(), profile.data(), cmsUInt32Number(profile.size())));
-  transform_pixels(image, context.get(), from.get());
+  return transform_pixels(image, context.get(), from.get());
 }
 
-bool is_ink_profile(const PictureBytes& profile) {
-  if (profile.empty()) return false;
+void take_ink_profile(StoredPicture& picture, PictureBytes profile) {
+  if (profile.empty()) return;
   const Context context(cmsCreateContext(nullptr, nullptr));
-  const Profile from(
-      cmsOpenProfileFromMemTHR(context.get(), profile.data(), cmsUInt32Number(profile.size())));
-  return from && cmsGetColorSpace(from.get()) == cmsSigCmykData &&
-         cmsIsIntentSupported(from.get(), INTENT_RELATIVE_COLORIMETRIC, LCMS_USED_AS_INPUT);
+  picture.profile_lost = !ink_transform(context.get(), profile, cmsFLAGS_NOOPTIMIZE);
+  if (!picture.profile_lost) picture.profile = std::move(profile);
 }
 
 void bring_inks_to_srgb(Image& image, const PictureBytes& profile) {
   const Context context(cmsCreateContext(nullptr, nullptr));
-  const Profile from(
-      cmsOpenProfileFromMemTHR(context.get(), profile.data(), cmsUInt32Number(profile.size())));
-  const Profile srgb(cmsCreate_sRGBProfileTHR(context.get()));
-  const Transform transform(cmsCreateTransformTHR(context.get(), from.get(), TYPE_CMYK_8,
-                                                  srgb.get(), TYPE_RGBA_8,
-                                                  INTENT_RELATIVE_COLORIMETRIC, 0));
+  const Transform transform = ink_transform(context.get(), profile, 0);
   if (!transform) throw std::bad_alloc();
   for (int y = 0; y < image.height_px; ++y) {
     check_cancelled();
@@ -138,15 +159,28 @@ void bring_inks_to_srgb(Image& image, const PictureBytes& profile) {
   }
 }
 
-void bring_to_srgb(Image& image, const std::array<std::uint8_t, 4>& cicp) {
+void bring_lab_to_srgb(Image& image) {
+  const Context context(cmsCreateContext(nullptr, nullptr));
+  const Profile lab(cmsCreateLab4ProfileTHR(context.get(), nullptr));
+  const Profile srgb(cmsCreate_sRGBProfileTHR(context.get()));
+  constexpr cmsUInt32Number kLabAndAlpha =
+      COLORSPACE_SH(PT_Lab) | EXTRA_SH(1) | CHANNELS_SH(3) | BYTES_SH(1);
+  const Transform transform(
+      cmsCreateTransformTHR(context.get(), lab.get(), kLabAndAlpha, srgb.get(), TYPE_RGBA_8,
+                            INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_COPY_ALPHA));
+  if (!transform) throw std::bad_alloc();
+  transform_rows(image, transform.get());
+}
+
+bool bring_to_srgb(Image& image, const std::array<std::uint8_t, 4>& cicp) {
   const auto primaries = primaries_of(cicp[0]);
   const Context context(cmsCreateContext(nullptr, nullptr));
   const Curve curve = curve_of(context.get(), cicp[1]);
-  if (!primaries || !curve || cicp[2] != 0 || cicp[3] != 1) return;
+  if (!primaries || !curve || cicp[2] != 0 || cicp[3] != 1) return false;
   const cmsCIExyY white{0.3127, 0.3290, 1};
   cmsToneCurve* curves[] = {curve.get(), curve.get(), curve.get()};
   const Profile from(cmsCreateRGBProfileTHR(context.get(), &white, &*primaries, curves));
-  transform_pixels(image, context.get(), from.get());
+  return transform_pixels(image, context.get(), from.get());
 }
 
 }  // namespace hydrodip

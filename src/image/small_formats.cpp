@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/run_scope.h"
@@ -60,6 +61,22 @@ class BmpReader {
       read_rows();
     }
     return std::move(image_);
+  }
+
+  // Of the fifth version's headers: in the file, or in one of its own, which is not looked for.
+  void read_profile(StoredPicture& picture) const {
+    constexpr std::uint32_t kEmbedded = 0x4d424544, kLinked = 0x4c494e4b;  // "MBED", "LINK"
+    constexpr std::size_t kHeaderAt = 14, kV5 = 124;
+    if (numbers_.at(kHeaderAt, 4) < kV5) return;
+    const std::uint32_t space = numbers_.at(kHeaderAt + 56, 4);
+    picture.profile_lost = space == kLinked;
+    if (space != kEmbedded) return;
+    const std::size_t at = kHeaderAt + std::size_t(numbers_.at(kHeaderAt + 112, 4));
+    const std::size_t size = numbers_.at(kHeaderAt + 116, 4);
+    picture.profile_lost = size == 0 || at > bytes_.size() || bytes_.size() - at < size;
+    if (!picture.profile_lost)
+      picture.profile.assign(bytes_.begin() + std::ptrdiff_t(at),
+                             bytes_.begin() + std::ptrdiff_t(at + size));
   }
 
  private:
@@ -226,7 +243,7 @@ class TgaReader {
         std::copy_n(next().data(), 4, image.pixel(x, y));
       }
     }
-    make_seen(image);
+    take_alpha_as_meant(image);
     return image;
   }
 
@@ -283,11 +300,35 @@ class TgaReader {
     return repeats_ ? repeated_ : read_pixel();
   }
 
+  // What the second version's last part says the fourth channel is; 3, transparency, without one.
+  std::uint32_t kind_of_alpha() const {
+    constexpr std::string_view kMark = "TRUEVISION-XFILE.";
+    constexpr std::size_t kFooter = 26, kKindAt = 494;
+    if (bytes_.size() < kTgaHeader + kFooter) return 3;
+    const std::size_t footer = bytes_.size() - kFooter;
+    const std::size_t extension = numbers_.at(footer, 4);
+    if (!std::equal(kMark.begin(), kMark.end(), bytes_.begin() + std::ptrdiff_t(footer + 8)) ||
+        extension < kTgaHeader || extension + kKindAt >= footer)
+      return 3;
+    return numbers_.at(extension + kKindAt, 1);
+  }
+
   // An alpha that is 0 everywhere was never meant.
-  void make_seen(Image& image) const {
-    bool seen = false;
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4) seen = seen || image.rgba[i] != 0;
-    for (std::size_t i = 3; !seen && i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+  void take_alpha_as_meant(Image& image) const {
+    const std::uint32_t kind = kind_of_alpha();
+    const bool left_out = has_alpha_ && (kind == 1 || kind == 2), premultiplied = kind == 4;
+    bool seen = false, says_something = false;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+      seen = seen || image.rgba[i] != 0;
+      says_something = says_something || image.rgba[i] != 255;
+    }
+    if (left_out && seen && says_something) warn_of_left_out(1, name_);
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+      if (!seen || left_out)
+        image.rgba[i + 3] = 255;
+      else if (premultiplied)
+        divide_by_alpha(&image.rgba[i], 3, image.rgba[i + 3]);
+    }
   }
 
   const PictureBytes& bytes_;
@@ -305,7 +346,11 @@ class TgaReader {
 }  // namespace
 
 StoredPicture decode_bmp(const PictureBytes& bytes, const std::string& name) {
-  return {BmpReader(bytes, name).run(), {}, {}, 1};
+  StoredPicture picture;
+  BmpReader reader(bytes, name);
+  picture.image = reader.run();
+  reader.read_profile(picture);
+  return picture;
 }
 
 bool looks_like_tga(const PictureBytes& bytes) {
@@ -320,7 +365,9 @@ bool looks_like_tga(const PictureBytes& bytes) {
 }
 
 StoredPicture decode_tga(const PictureBytes& bytes, const std::string& name) {
-  return {TgaReader(bytes, name).run(), {}, {}, 1};
+  StoredPicture picture;
+  picture.image = TgaReader(bytes, name).run();
+  return picture;
 }
 
 }  // namespace hydrodip

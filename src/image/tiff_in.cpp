@@ -1,13 +1,18 @@
 // TIFF pictures; the only place in this folder that knows libtiff (what is printed:
 // sheet/tiff.cpp).
+#include <fmt/format.h>
 #include <tiffio.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <string_view>
 
+#include "base/error.h"
+#include "base/math.h"
 #include "base/run_scope.h"
 #include "image/decoders.h"
 #include "image/picture_file.h"
@@ -19,7 +24,9 @@ namespace {
 struct TiffSource {
   const PictureBytes& bytes;
   std::size_t at = 0;
-  char message[256] = {};
+  char message[256] = {};  // the last error
+  // What warnings told.
+  bool profile_lost = false, jpeg_damaged = false, jpeg_cut = false;
 };
 
 extern "C" {
@@ -58,7 +65,20 @@ static int tiff_keep_error(TIFF*, void* user, const char*, const char* format, v
   return 1;
 }
 
-static int tiff_ignore_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
+// Of a field that cannot be read libtiff says no more than that, and goes on without it.
+static int tiff_note_warning(TIFF*, void* user, const char* module, const char* format,
+                             va_list arguments) {
+  auto* source = static_cast<TiffSource*>(user);
+  char text[256] = {};
+  std::vsnprintf(text, sizeof text, format, arguments);
+  const std::string_view said(text);
+  if (module && std::string_view(module) == "JPEGLib") {
+    source->jpeg_damaged = true;
+    if (said.find("remature end") != said.npos) source->jpeg_cut = true;
+  }
+  if (said.find("ICC Profile") != said.npos) source->profile_lost = true;
+  return 1;
+}
 
 }  // extern "C"
 
@@ -71,20 +91,127 @@ Tiff open(TiffSource& source) {
   TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
   TIFFOpenOptionsSetMaxSingleMemAlloc(options, tmsize_t(1) << 30);
   TIFFOpenOptionsSetErrorHandlerExtR(options, tiff_keep_error, &source);
-  TIFFOpenOptionsSetWarningHandlerExtR(options, tiff_ignore_warning, nullptr);
+  TIFFOpenOptionsSetWarningHandlerExtR(options, tiff_note_warning, &source);
   Tiff file(TIFFClientOpenExt("picture", "rm", &source, tiff_read, tiff_no_write, tiff_seek,
                               tiff_close, tiff_size, tiff_map, tiff_unmap, options));
   TIFFOpenOptionsFree(options);
   return file;
 }
 
-// libtiff's reader of all kinds of pixels.
+[[noreturn]] void refuse_tiff_kind(const std::string& name, const std::string& what) {
+  throw InputError(fmt::format(
+      "{}: a TIFF picture with {} is not read; save it as RGB with 8 bits a channel.", name, what));
+}
+
+// What its pixels are.
+struct TiffPixels {
+  int width = 0, height = 0;
+  std::uint16_t bits = 0, samples = 0, planes = 0, compression = 0, photometric = 0;
+  std::uint16_t format = SAMPLEFORMAT_UINT, ink_set = INKSET_CMYK;
+  std::vector<std::uint16_t> extra;  // what the last samples are
+  int colors = 0;  // the first samples, where these are colours to be read as they are stored
+
+  bool in_planes() const { return planes == PLANARCONFIG_SEPARATE && samples > 1; }
+  bool is_lab() const {
+    return photometric == PHOTOMETRIC_CIELAB || photometric == PHOTOMETRIC_ICCLAB;
+  }
+  // Which sample is transparency, or -1: only what the file says is such.
+  int alpha() const {
+    for (std::size_t i = 0; i < extra.size(); ++i)
+      if (extra[i] == EXTRASAMPLE_ASSOCALPHA || extra[i] == EXTRASAMPLE_UNASSALPHA)
+        return int(samples - extra.size() + i);
+    return -1;
+  }
+  // Whether colours are stored multiplied by it.
+  bool is_premultiplied() const {
+    const int sample = alpha();
+    return sample >= 0 &&
+           extra[std::size_t(sample) + extra.size() - samples] == EXTRASAMPLE_ASSOCALPHA;
+  }
+};
+
+int colors_of(std::uint16_t photometric) {
+  switch (photometric) {
+    case PHOTOMETRIC_MINISBLACK:
+    case PHOTOMETRIC_MINISWHITE:
+      return 1;
+    case PHOTOMETRIC_RGB:
+    case PHOTOMETRIC_CIELAB:
+    case PHOTOMETRIC_ICCLAB:
+      return 3;
+    case PHOTOMETRIC_SEPARATED:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+TiffPixels pixels_of(TIFF* file) {
+  TiffPixels pixels;
+  std::uint32_t width = 0, height = 0;
+  TIFFGetField(file, TIFFTAG_IMAGEWIDTH, &width);
+  TIFFGetField(file, TIFFTAG_IMAGELENGTH, &height);
+  pixels.width = int(width);
+  pixels.height = int(height);
+  TIFFGetFieldDefaulted(file, TIFFTAG_BITSPERSAMPLE, &pixels.bits);
+  TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLESPERPIXEL, &pixels.samples);
+  TIFFGetFieldDefaulted(file, TIFFTAG_PLANARCONFIG, &pixels.planes);
+  TIFFGetFieldDefaulted(file, TIFFTAG_COMPRESSION, &pixels.compression);
+  TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLEFORMAT, &pixels.format);
+  TIFFGetFieldDefaulted(file, TIFFTAG_INKSET, &pixels.ink_set);
+  std::uint16_t count = 0;
+  std::uint16_t* kinds = nullptr;
+  if (TIFFGetField(file, TIFFTAG_EXTRASAMPLES, &count, &kinds) && count < pixels.samples)
+    pixels.extra.assign(kinds, kinds + count);
+  if (!TIFFGetField(file, TIFFTAG_PHOTOMETRIC, &pixels.photometric))
+    pixels.photometric =
+        pixels.samples - pixels.extra.size() < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB;
+  const bool in_bytes = pixels.bits == 8 || pixels.bits == 16;
+  if (in_bytes && pixels.compression != COMPRESSION_OJPEG)
+    pixels.colors = colors_of(pixels.photometric);
+  return pixels;
+}
+
+[[noreturn]] void refuse_unknown_inks(const std::string& name) {
+  refuse_tiff_kind(name, "other inks than cyan, magenta, yellow and black");
+}
+
+// Throws for those of which colours would be wrong, or only guessed.
+void require_known(const TiffPixels& pixels, const std::string& name) {
+  const auto refuse = [&](const std::string& what) { refuse_tiff_kind(name, what); };
+  const bool is_signed = pixels.format == SAMPLEFORMAT_INT && !pixels.is_lab();
+  if (pixels.photometric == PHOTOMETRIC_LOGL || pixels.photometric == PHOTOMETRIC_LOGLUV)
+    refuse("colours of a high dynamic range");
+  if (pixels.photometric == PHOTOMETRIC_ITULAB) refuse("colours of a fax (ITU Lab)");
+  if (is_signed) refuse("signed numbers");
+  if (pixels.format != SAMPLEFORMAT_UINT && pixels.format != SAMPLEFORMAT_INT &&
+      pixels.format != SAMPLEFORMAT_VOID)
+    refuse("floating-point numbers");
+  const bool one_sample = pixels.samples == 1;
+  const bool few_bits = pixels.bits == 1 || pixels.bits == 2 || pixels.bits == 4;
+  if (pixels.bits != 8 && pixels.bits != 16 && !(few_bits && one_sample))
+    refuse(fmt::format("{} bits a channel", pixels.bits));
+  if (pixels.photometric == PHOTOMETRIC_PALETTE && !one_sample)
+    refuse("a palette and further channels");
+  if (pixels.is_lab() && pixels.is_premultiplied())
+    refuse("Lab colours multiplied by their transparency");
+  const auto stored = int(pixels.samples - pixels.extra.size());
+  if (pixels.photometric == PHOTOMETRIC_SEPARATED &&
+      (stored < 4 || (stored > 4 && pixels.ink_set != INKSET_CMYK)))
+    refuse_unknown_inks(name);
+  if (stored < pixels.colors) refuse(fmt::format("{} channels of colour", stored));
+}
+
+// libtiff's reader of all kinds of pixels, for those without transparency that take working out.
 class RgbaReader {
  public:
   RgbaReader(TIFF* file, const std::string& name) {
     char why[1024] = {};
     if (!TIFFRGBAImageOK(file, why) || !TIFFRGBAImageBegin(&image_, file, 1, why))
-      refuse_picture(name, "TIFF", why);
+      throw InputError(fmt::format(
+          "{}: a TIFF picture of a kind that is not read ({}); save it as RGB with 8 bits a "
+          "channel.",
+          name, why));
     // As stored: libtiff only mirrors, and leaves rows rows that should be columns.
     image_.req_orientation = image_.orientation = ORIENTATION_TOPLEFT;
     // Whole strips or tiles at a time: parts of one would be unpacked again and again.
@@ -126,19 +253,6 @@ class RgbaReader {
   std::uint32_t band_rows_ = 0;
 };
 
-// libtiff multiplies colours by alpha.
-void make_straight(Image& image) {
-  CheckEvery check(1 << 20);
-  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-    check();
-    const int alpha = image.rgba[i + 3];
-    if (alpha == 255 || alpha == 0) continue;
-    for (std::size_t c = 0; c < 3; ++c)
-      image.rgba[i + c] =
-          std::uint8_t(std::min(255, (image.rgba[i + c] * 255 + alpha / 2) / alpha));
-  }
-}
-
 PictureBytes profile_of(TIFF* file) {
   std::uint32_t size = 0;
   void* profile = nullptr;
@@ -147,78 +261,170 @@ PictureBytes profile_of(TIFF* file) {
   return {begin, begin + size};
 }
 
-// How many bytes a pixel has if rows of such pixels lie one after another; 0 if they do not.
-int bytes_a_pixel(TIFF* file) {
-  std::uint16_t bits = 0, samples = 0, planes = 0;
-  TIFFGetFieldDefaulted(file, TIFFTAG_BITSPERSAMPLE, &bits);
-  TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLESPERPIXEL, &samples);
-  TIFFGetFieldDefaulted(file, TIFFTAG_PLANARCONFIG, &planes);
-  const bool in_rows = bits == 8 && planes == PLANARCONFIG_CONTIG && !TIFFIsTiled(file);
-  return in_rows ? samples : 0;
-}
+using ByteOf = std::vector<std::uint8_t>;  // of each value that a sample may have
 
-// Four inks of 8 bits in rows, with a profile that says what they show. Of others libtiff makes RGB
-// by a plain formula.
-bool has_known_inks(TIFF* file, std::uint16_t photometric, const PictureBytes& profile) {
-  return photometric == PHOTOMETRIC_SEPARATED && bytes_a_pixel(file) == 4 &&
-         is_ink_profile(profile);
-}
-
-// Red, green, blue or one grey in a single strip, which can be read row by row: libtiff's reader of
-// all kinds of pixels unpacks it as a whole, deaf to a cancel.
-bool is_one_plain_strip(TIFF* file, std::uint16_t photometric) {
-  return TIFFNumberOfStrips(file) == 1 &&
-         ((photometric == PHOTOMETRIC_RGB && bytes_a_pixel(file) == 3) ||
-          (photometric == PHOTOMETRIC_MINISBLACK && bytes_a_pixel(file) == 1));
-}
-
-// Whether what libtiff makes of it is still in the file's own colour space.
-bool keeps_its_space(std::uint16_t photometric) {
-  switch (photometric) {
-    case PHOTOMETRIC_RGB:
-    case PHOTOMETRIC_YCBCR:
-    case PHOTOMETRIC_PALETTE:
-    case PHOTOMETRIC_MINISBLACK:
-    case PHOTOMETRIC_MINISWHITE:
-      return true;
-    default:
-      return false;
-  }
-}
-
-// False if the file is damaged.
-bool read_rows(TIFF* file, Image& to) {
-  const auto bytes = std::size_t(bytes_a_pixel(file));
-  const std::size_t width = std::size_t(to.width_px);
-  std::vector<std::uint8_t> row(bytes * width);
-  if (TIFFScanlineSize(file) != tmsize_t(row.size())) return false;
-  for (int y = 0; y < to.height_px; ++y) {
-    check_cancelled();
-    if (TIFFReadScanline(file, row.data(), std::uint32_t(y), 0) != 1) return false;
-    std::uint8_t* out = to.pixel(0, y);
-    for (std::size_t x = 0; x < width; ++x, out += 4) {
-      const std::uint8_t* in = &row[bytes * x];
-      for (std::size_t c = 0; c < 3; ++c) out[c] = in[bytes == 1 ? 0 : c];
-      out[3] = bytes == 4 ? in[3] : 255;
+// A colour's byte. Lab is stored as TIFF has it, with a sign, or as ICC does.
+ByteOf byte_of(const TiffPixels& pixels, int color) {
+  const bool axis = pixels.is_lab() && color > 0;
+  const bool has_sign = axis && pixels.photometric == PHOTOMETRIC_CIELAB;
+  const std::size_t values = std::size_t(1) << pixels.bits;
+  ByteOf bytes(values);
+  for (std::size_t value = 0; value < values; ++value) {
+    const std::size_t from_least = has_sign ? value ^ (values / 2) : value;
+    std::size_t byte = from_least;
+    if (pixels.bits == 16) {
+      // ICC's old coding: 100 is 0xff00, and every axis has 256 steps to one of 8 bits.
+      const bool by_256 = axis || pixels.photometric == PHOTOMETRIC_ICCLAB;
+      byte = by_256 ? (from_least + 128) / 256 : (from_least + 128) / 257;
     }
+    bytes[value] = std::uint8_t(std::min<std::size_t>(byte, 255));
+  }
+  return bytes;
+}
+
+// Takes samples as they are stored to where they belong.
+class SampleSink {
+ public:
+  SampleSink(const TiffPixels& pixels, StoredPicture& picture)
+      : wide_(pixels.bits == 16), width_(pixels.width) {
+    std::uint8_t* image = picture.image.rgba.data();
+    for (int color = 0; color < pixels.colors; ++color)
+      channels_.push_back({color, image + color, 4, byte_of(pixels, color)});
+    if (pixels.colors == 1)
+      for (const int other : {1, 2}) channels_.push_back({0, image + other, 4, byte_of(pixels, 0)});
+    const int alpha = pixels.alpha();
+    if (alpha < 0) return;
+    TiffPixels grey;
+    grey.bits = pixels.bits;
+    const ByteOf as_grey = byte_of(grey, 0);
+    if (picture.stored != Stored::kInks) {
+      channels_.push_back({alpha, image + 3, 4, as_grey});
+    } else {
+      picture.ink_alpha.resize(picture.image.rgba.size() / 4);
+      channels_.push_back({alpha, picture.ink_alpha.data(), 1, as_grey});
+    }
+  }
+
+  // Whether any of the samples from `first` on, a run of them, is taken.
+  bool takes(int first, int run) const {
+    return std::any_of(channels_.begin(), channels_.end(), [&](const Channel& channel) {
+      return channel.sample >= first && channel.sample < first + run;
+    });
+  }
+
+  // Of so many pixels of a row from (x, y) on, a run of samples each, the first of which is
+  // `first`.
+  void put(int x, int y, int count, int first, int run, const std::uint8_t* from) {
+    const std::size_t size = wide_ ? 2 : 1;
+    for (const Channel& channel : channels_) {
+      if (channel.sample < first || channel.sample >= first + run) continue;
+      const std::uint8_t* in = from + std::size_t(channel.sample - first) * size;
+      std::uint8_t* out = channel.out + std::size_t(channel.step) *
+                                            (std::size_t(y) * std::size_t(width_) + std::size_t(x));
+      for (int i = 0; i < count; ++i, in += std::size_t(run) * size, out += channel.step)
+        *out = channel.byte_of[value(in)];
+    }
+  }
+
+ private:
+  struct Channel {
+    int sample;         // of a pixel in the file
+    std::uint8_t* out;  // of the picture's first pixel
+    int step;           // from pixel to pixel
+    ByteOf byte_of;
+  };
+
+  std::size_t value(const std::uint8_t* in) const {
+    if (!wide_) return *in;
+    std::uint16_t sample = 0;
+    std::memcpy(&sample, in, sizeof sample);
+    return sample;
+  }
+
+  bool wide_;
+  int width_;
+  std::vector<Channel> channels_;
+};
+
+// Of a row or a tile.
+constexpr std::size_t kLargestPiece = std::size_t(1) << 30;
+
+// False if the file is damaged, as are the next two.
+bool read_rows(TIFF* file, const TiffPixels& pixels, SampleSink& sink) {
+  const int run = pixels.in_planes() ? 1 : pixels.samples;
+  const std::size_t row_bytes = std::size_t(run) * pixels.bits / 8 * std::size_t(pixels.width);
+  if (TIFFScanlineSize(file) != tmsize_t(row_bytes) || row_bytes > kLargestPiece) return false;
+  std::vector<std::uint8_t> row(row_bytes);
+  for (int first = 0; first < pixels.samples; first += run)
+    for (int y = 0; sink.takes(first, run) && y < pixels.height; ++y) {
+      check_cancelled();
+      if (TIFFReadScanline(file, row.data(), std::uint32_t(y), std::uint16_t(first)) != 1)
+        return false;
+      sink.put(0, y, pixels.width, first, run, row.data());
+    }
+  return true;
+}
+
+bool read_tiles(TIFF* file, const TiffPixels& pixels, SampleSink& sink) {
+  std::uint32_t wide = 0, high = 0;
+  TIFFGetField(file, TIFFTAG_TILEWIDTH, &wide);
+  TIFFGetField(file, TIFFTAG_TILELENGTH, &high);
+  const int run = pixels.in_planes() ? 1 : pixels.samples;
+  const std::size_t row_bytes = std::size_t(run) * pixels.bits / 8 * wide;
+  const tmsize_t size = TIFFTileSize(file);
+  if (wide == 0 || high == 0 || size < 1 || std::size_t(size) > kLargestPiece ||
+      std::size_t(size) / high != row_bytes)
+    return false;
+  // Not cleared: a damaged file may claim immense ones.
+  const auto tile = std::make_unique_for_overwrite<std::uint8_t[]>(std::size_t(size));
+  for (int first = 0; first < pixels.samples; first += run)
+    for (int top = 0; sink.takes(first, run) && top < pixels.height; top += int(high))
+      for (int left = 0; left < pixels.width; left += int(wide)) {
+        check_cancelled();
+        if (TIFFReadTile(file, tile.get(), std::uint32_t(left), std::uint32_t(top), 0,
+                         std::uint16_t(first)) != size)
+          return false;
+        for (int y = 0; y < std::min(int(high), pixels.height - top); ++y)
+          sink.put(left, top + y, std::min(int(wide), pixels.width - left), first, run,
+                   tile.get() + std::size_t(y) * row_bytes);
+      }
+  return true;
+}
+
+bool read_samples(TIFF* file, const TiffPixels& pixels, StoredPicture& picture) {
+  SampleSink sink(pixels, picture);
+  if (!(TIFFIsTiled(file) ? read_tiles(file, pixels, sink) : read_rows(file, pixels, sink)))
+    return false;
+  const bool inks = picture.stored == Stored::kInks, has_alpha = pixels.alpha() >= 0;
+  const bool premultiplied = pixels.is_premultiplied();
+  const bool inverted = pixels.photometric == PHOTOMETRIC_MINISWHITE;
+  if (inks ? !premultiplied : has_alpha && !premultiplied && !inverted) return true;
+  CheckEvery check(1 << 16);
+  std::uint8_t* pixel = picture.image.rgba.data();
+  for (std::size_t i = 0; i < picture.image.rgba.size() / 4; ++i, pixel += 4) {
+    check();
+    if (!inks && !has_alpha) pixel[3] = 255;
+    if (premultiplied) divide_by_alpha(pixel, inks ? 4 : 3, inks ? picture.ink_alpha[i] : pixel[3]);
+    for (int c = 0; inverted && c < 3; ++c) pixel[c] = std::uint8_t(255 - pixel[c]);
   }
   return true;
 }
 
 }  // namespace
 
-double recorded_tiff_dpi(const PictureBytes& bytes) {
+Resolution tiff_resolution(const PictureBytes& bytes) {
   TiffSource source{bytes};
   const Tiff file = open(source);
   float across = 0, along = 0;
   std::uint16_t unit = RESUNIT_INCH;
   if (!file || TIFFGetField(file.get(), TIFFTAG_XRESOLUTION, &across) != 1 ||
       TIFFGetField(file.get(), TIFFTAG_YRESOLUTION, &along) != 1)
-    return 0;
+    return {};
   TIFFGetFieldDefaulted(file.get(), TIFFTAG_RESOLUTIONUNIT, &unit);
   // Without a unit they are an aspect ratio alone.
-  if (unit == RESUNIT_NONE || !(across > 0) || across != along) return 0;
-  return unit == RESUNIT_CENTIMETER ? 2.54 * double(across) : double(across);
+  if (unit == RESUNIT_NONE || !(across > 0) || !(along > 0)) return {};
+  const double per_unit = unit == RESUNIT_CENTIMETER ? kMmPerInch / 10 : 1;
+  return {double(across) * per_unit, double(along) * per_unit};
 }
 
 namespace {
@@ -258,26 +464,31 @@ StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
   const Tiff file = open(source);
   if (!file) refuse_picture(name, "TIFF", source.message);
   std::uint32_t width = 0, height = 0;
-  std::uint16_t photometric = PHOTOMETRIC_RGB;
   TIFFGetField(file.get(), TIFFTAG_IMAGEWIDTH, &width);
   TIFFGetField(file.get(), TIFFTAG_IMAGELENGTH, &height);
-  TIFFGetField(file.get(), TIFFTAG_PHOTOMETRIC, &photometric);
   check_picture_size(name, "TIFF", width, height,
                      double(width) * height * least_bytes_a_pixel(file.get()), bytes.size());
+  const TiffPixels pixels = pixels_of(file.get());
+  require_known(pixels, name);
   StoredPicture picture;
-  picture.image = Image(int(width), int(height));
-  picture.profile = profile_of(file.get());
+  picture.image = Image(pixels.width, pixels.height);
   std::uint16_t orientation = ORIENTATION_TOPLEFT;
   TIFFGetFieldDefaulted(file.get(), TIFFTAG_ORIENTATION, &orientation);
   picture.orientation = orientation;  // numbered as EXIF's
-  picture.inks = has_known_inks(file.get(), photometric, picture.profile);
-  const bool by_rows = picture.inks || is_one_plain_strip(file.get(), photometric);
-  if (by_rows ? !read_rows(file.get(), picture.image)
-              : !RgbaReader(file.get(), name).read(picture.image))
+  if (pixels.photometric == PHOTOMETRIC_SEPARATED) picture.stored = Stored::kInks;
+  if (pixels.is_lab()) picture.stored = Stored::kLab;
+  if (pixels.colors > 0 ? !read_samples(file.get(), pixels, picture)
+                        : !RgbaReader(file.get(), name).read(picture.image))
     refuse_picture(name, "TIFF", source.message);
-  if (picture.inks) return picture;
-  make_straight(picture.image);
-  if (!keeps_its_space(photometric)) picture.profile.clear();
+  if (source.jpeg_cut) refuse_picture(name, "TIFF", "it ends too early");
+  if (pixels.colors > 0)
+    warn_of_left_out(pixels.samples - pixels.colors - (pixels.alpha() >= 0 ? 1 : 0), name);
+  picture.damaged = source.jpeg_damaged;
+  if (picture.stored == Stored::kInks) take_ink_profile(picture, profile_of(file.get()));
+  if (picture.stored == Stored::kInks && pixels.ink_set != INKSET_CMYK && picture.profile.empty())
+    refuse_unknown_inks(name);
+  if (picture.stored == Stored::kColors) picture.profile = profile_of(file.get());
+  if (source.profile_lost && picture.stored != Stored::kLab) picture.profile_lost = true;
   return picture;
 }
 

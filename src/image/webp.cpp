@@ -37,6 +37,13 @@ bool read_pixels(const PictureBytes& bytes, Image& image) {
   return false;
 }
 
+// By its header, whether or not it is there.
+bool says_profile(const PictureBytes& bytes) {
+  constexpr std::size_t kFlags = 20;
+  return bytes.size() > kFlags && std::equal(&bytes[12], &bytes[16], "VP8X") &&
+         (bytes[kFlags] & ICCP_FLAG) != 0;
+}
+
 PictureBytes chunk(WebPDemuxer* demuxer, const char* kind) {
   WebPChunkIterator found;
   if (!WebPDemuxGetChunk(demuxer, kind, 1, &found)) return {};
@@ -58,9 +65,11 @@ StoredPicture decode_webp(const PictureBytes& bytes, const std::string& name) {
   picture.image = Image(features.width, features.height);
   if (!read_pixels(bytes, picture.image)) refuse_picture(name, "WebP", "its pixels cannot be read");
   const WebPData data{bytes.data(), bytes.size()};
-  const std::unique_ptr<WebPDemuxer, DeleteDemuxer> demuxer(WebPDemux(&data));
+  // What follows the pixels may be cut off.
+  const std::unique_ptr<WebPDemuxer, DeleteDemuxer> demuxer(WebPDemuxPartial(&data, nullptr));
+  if (demuxer) picture.profile = chunk(demuxer.get(), "ICCP");
+  picture.profile_lost = picture.profile.empty() && says_profile(bytes);
   if (!demuxer) return picture;
-  picture.profile = chunk(demuxer.get(), "ICCP");
   const PictureBytes exif = chunk(demuxer.get(), "EXIF");
   const bool marked = exif.size() > 6 && exif[0] == 'E' && exif[1] == 'x';
   picture.orientation = exif_orientation(std::span(exif).subspan(marked ? 6 : 0));

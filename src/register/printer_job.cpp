@@ -143,7 +143,13 @@ PrinterScale found_scale(const JobConfig& config, const PrinterRequest& request,
   if (request.readings) return scale_by(*request.readings, sheet);
   const std::vector<std::uint8_t> bytes = read_picture(request.scan);
   const Image scan = decode_image(bytes, request.scan.string());
-  const double dpi = request.scan_dpi > 0 ? request.scan_dpi : scan_dpi(bytes);
+  const Resolution recorded = recorded_resolution(bytes);
+  if (!(request.scan_dpi > 0) && !recorded.is_one())
+    throw InputError(fmt::format(
+        "{}: the picture has {:g} dpi across and {:g} along; scan it with one resolution for both "
+        "directions",
+        request.scan.string(), recorded.across_dpi, recorded.along_dpi));
+  const double dpi = request.scan_dpi > 0 ? request.scan_dpi : recorded.across_dpi;
   if (!(dpi > 0))
     throw InputError(fmt::format("{}: the picture does not say its resolution; give --scan-dpi",
                                  request.scan.string()));

@@ -58,6 +58,8 @@ expect 2 'not a picture' calibrate printer --scan words.txt
 if [ -f scan.png ] && command -v convert > /dev/null; then
   convert scan.png -units PixelsPerInch -density 200 scan.tif
   expect 0 'makes 1.000' calibrate printer --scan scan.tif -o printer
+  convert scan.png -units PixelsPerInch -density 200x400 uneven.tif
+  expect 2 '200 dpi across and 400 along' calibrate printer --scan uneven.tif -o printer
 fi
 
 # ---- a job with marks ----
