@@ -16,7 +16,7 @@ root=$(cd "$roots" && pwd)/arm64
 tools='ca-certificates cmake ninja-build pkg-config g++ g++-aarch64-linux-gnu dpkg-dev file git gzip qemu-user-static esbuild
   libeigen3-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev'
 libraries='libc6-dev libstdc++-12-dev libembree-dev libtbb-dev zlib1g-dev libssl-dev libpng-dev libtiff-dev libjpeg-dev
-  libwebp-dev libgif-dev libhpdf-dev liblcms2-dev libzip-dev libdraco-dev libmeshoptimizer-dev librsvg2-dev libfmt-dev
+  libwebp-dev libgif-dev libhpdf-dev liblcms2-dev libzip-dev libdraco-dev libmeshoptimizer-dev librsvg2-dev libxml2-dev libfmt-dev
   libfontconfig-dev libsqlite3-dev libapriltag-dev libcminpack-dev libcpp-httplib-dev libgtest-dev'
 if [ ! -e "$root/ready" ]; then
   say 'making a Debian 12 that cross-compiles'

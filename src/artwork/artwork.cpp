@@ -257,12 +257,34 @@ void warn_of_coarse(const ArtworkLayer& layer, double share, double dpi,
                     name_of(layer), std::floor(share * dpi), dpi));
 }
 
+// "'a.png', 'b.png' and 3 more are".
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 5;
+  std::string text;
+  for (std::size_t n = 0; n < std::min(names.size(), kNamed); ++n) {
+    const bool last = n + 1 == names.size();
+    text += (n == 0 ? "'" : last ? " and '" : ", '") + names[n] + "'";
+  }
+  if (names.size() > kNamed) text += fmt::format(" and {} more", names.size() - kNamed);
+  return text + (names.size() == 1 ? " is" : " are");
+}
+
 void warn_of_what_lies_outside(const ArtworkLayer& layer, const PictureSource& picture,
                                const RunContext& context) {
-  if (!picture.linked_picture().empty())
-    context.warn(fmt::format("{}: '{}' is not in the drawing's file and not shown; embed it",
-                             name_of(layer), picture.linked_picture()));
-  if (picture.has_text())
+  const SvgContents contents = picture.contents();
+  if (!contents.outside.empty())
+    context.warn(fmt::format("{}: {} not in the drawing's file and not shown; embed {}",
+                             name_of(layer), listed(contents.outside),
+                             contents.outside.size() == 1 ? "it" : "them"));
+  if (contents.unreadable_pictures > 0)
+    context.warn(fmt::format(
+        "{}: {} in the drawing is damaged or of a kind that is not read, and not shown; embed it "
+        "again as PNG or JPEG",
+        name_of(layer),
+        contents.unreadable_pictures == 1
+            ? "a picture"
+            : fmt::format("each of {} pictures", contents.unreadable_pictures)));
+  if (contents.has_text)
     context.warn(fmt::format(
         "{}: its text is set in the fonts of this machine; convert it to paths in the drawing "
         "program if it must look the same everywhere",

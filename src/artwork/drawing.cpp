@@ -11,6 +11,7 @@
 #include "artwork/fonts.h"
 #include "base/error.h"
 #include "base/run_scope.h"
+#include "image/files.h"
 
 namespace hydrodip {
 namespace {
@@ -68,45 +69,11 @@ Vec2 natural_size(RsvgHandle* handle) {
   return {ink.width, ink.height};
 }
 
-// Where the next element of that name begins its attributes: with or without a prefix, as "<text"
-// and
-// "<svg:text". Finds those in comments too.
-std::size_t find_element(std::string_view svg, std::string_view name, std::size_t from = 0) {
-  for (std::size_t at = svg.find(name, from); at != svg.npos; at = svg.find(name, at + 1)) {
-    const char before = at > 0 ? svg[at - 1] : ' ';
-    const std::size_t end = at + name.size();
-    const bool ends = end == svg.size() || std::string_view("> \n\t\r/").find(svg[end]) != svg.npos;
-    if ((before == '<' || before == ':') && ends) return end;
-  }
-  return svg.npos;
-}
-
-bool has_element(std::string_view svg, std::string_view name) {
-  return find_element(svg, name) != svg.npos;
-}
-
 // Whether anything may be mixed as a whole.
 bool may_mix(std::string_view svg) {
   for (const char* word : {"opacity", "filter", "mask", "blend", "isolation"})
     if (svg.find(word) != svg.npos) return true;
   return false;
-}
-
-// The first picture in a file of its own that a drawing shows.
-std::string first_linked_picture(std::string_view svg) {
-  constexpr std::string_view kLink = "href=";
-  std::size_t end = 0;
-  for (std::size_t at = find_element(svg, "image"); at != svg.npos;
-       at = find_element(svg, "image", end)) {
-    end = std::min(svg.find('>', at), svg.size());
-    const std::string_view tag = svg.substr(at, end - at);
-    const std::size_t link = tag.find(kLink);
-    if (link == tag.npos || link + kLink.size() + 1 >= tag.size()) continue;
-    const std::string_view value = tag.substr(link + kLink.size() + 1);
-    if (!value.starts_with("data:"))
-      return std::string(value.substr(0, value.find(tag[link + kLink.size()])));
-  }
-  return "";
 }
 
 std::string escaped(std::string_view text) {
@@ -156,6 +123,12 @@ std::string svg_around(const std::string& element, const RsvgRectangle& box) {
       box.x, box.y, box.width, box.height, element);
 }
 
+Owned<cairo_surface_t> blank_surface(int width, int height) {
+  Owned<cairo_surface_t> surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
+  if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
+  return surface;
+}
+
 // cairo's pixels are premultiplied, blue first in memory on the machines that we know.
 void make_straight(const unsigned char* row, int width, std::uint8_t* out) {
   for (int x = 0; x < width; ++x, row += 4, out += 4) {
@@ -169,6 +142,69 @@ void make_straight(const unsigned char* row, int width, std::uint8_t* out) {
   }
 }
 
+// What "data:..." stands for; empty if it is damaged.
+std::vector<std::uint8_t> bytes_behind(const std::string& data) {
+  struct Free {
+    void operator()(guchar* bytes) const { g_free(bytes); }
+    void operator()(GBytes* bytes) const { g_bytes_unref(bytes); }
+  };
+  const std::size_t comma = data.find(',');
+  if (comma == std::string::npos) return {};
+  const std::string coded = data.substr(comma + 1);
+  gsize size = 0;
+  if (data.rfind("base64", comma) != std::string::npos) {
+    const std::unique_ptr<guchar, Free> bytes(g_base64_decode(coded.c_str(), &size));
+    return {bytes.get(), bytes.get() + size};
+  }
+  const std::unique_ptr<GBytes, Free> bytes(
+      g_uri_unescape_bytes(coded.data(), gssize(coded.size()), nullptr, nullptr));
+  if (!bytes) return {};
+  const auto* begin = static_cast<const std::uint8_t*>(g_bytes_get_data(bytes.get(), &size));
+  return {begin, begin + size};
+}
+
+// Read without librsvg: there is hardly anything to see of it.
+bool is_transparent_picture(const std::string& data) {
+  constexpr double kHardly = 0.1;
+  const std::vector<std::uint8_t> bytes = bytes_behind(data);
+  try {
+    if (looks_like_svg(bytes)) {
+      std::string ignored;
+      const std::vector<std::uint8_t> svg = unpacked_svg(bytes, "a drawing in it");
+      return parse({reinterpret_cast<const char*>(svg.data()), svg.size()}, ignored) != nullptr;
+    }
+    const Image image = decode_image(bytes, "a picture in it");
+    double seen = 0;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) seen += image.rgba[i] > 0 ? 1 : 0;
+    return seen < kHardly * double(image.rgba.size() / 4);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+// Whether librsvg shows a picture, given as "data:...": tried, as which kinds it reads hangs on the
+// machine. Nothing seen may also be a picture that is transparent, if it can be read at all.
+bool shows_picture(const std::string& data) {
+  constexpr int kSide_px = 32;
+  std::string why;
+  const Owned<RsvgHandle> handle = parse(
+      svg_around(fmt::format("<image width=\"{0}\" height=\"{0}\" preserveAspectRatio=\"none\" "
+                             "href=\"{1}\"/>",
+                             kSide_px, escaped(data)),
+                 {0, 0, kSide_px, kSide_px}),
+      why);
+  if (!handle) return false;
+  const Owned<cairo_surface_t> surface = blank_surface(kSide_px, kSide_px);
+  const Owned<cairo_t> cairo(cairo_create(surface.get()));
+  const RsvgRectangle all{0, 0, kSide_px, kSide_px};
+  if (!rsvg_handle_render_document(handle.get(), cairo.get(), &all, nullptr)) return false;
+  cairo_surface_flush(surface.get());
+  const unsigned char* begin = cairo_image_surface_get_data(surface.get());
+  const unsigned char* end = begin + kSide_px * cairo_image_surface_get_stride(surface.get());
+  return std::any_of(begin, end, [](unsigned char byte) { return byte != 0; }) ||
+         is_transparent_picture(data);
+}
+
 }  // namespace
 
 struct Drawing::Impl {
@@ -176,9 +212,8 @@ struct Drawing::Impl {
   Vec2 size;
   std::string name;
 
-  bool is_text = false;   // of letters alone
-  bool has_text = false;  // an SVG drawing has
-  std::string linked;
+  bool is_text = false;  // of letters alone
+  SvgContents contents;  // of an SVG drawing
   bool is_indivisible = false;
   double most_scale = 1e300;  // pixels per unit
 
@@ -190,7 +225,7 @@ struct Drawing::Impl {
     const Vec2 scale = whole.cwiseQuotient(size);
     check_cancelled();
     // librsvg sets lines too long or too short where the two directions differ.
-    if (is_stretched(whole) && (is_text || has_text))
+    if (is_stretched(whole) && (is_text || contents.has_text))
       return draw_stretched(cairo.get(), scale, why);
     if (is_text) {
       const double both = scale.minCoeff();
@@ -206,7 +241,7 @@ struct Drawing::Impl {
 
   // Empty, with a reason, if it cannot be drawn.
   Image part(const Vec2& whole, int left, int top, int width, int height, std::string& why) const {
-    const Owned<cairo_surface_t> surface = blank(width, height);
+    const Owned<cairo_surface_t> surface = blank_surface(width, height);
     if (!draw(surface.get(), whole, left, top, why)) return {};
     cairo_surface_flush(surface.get());
     const unsigned char* data = cairo_image_surface_get_data(surface.get());
@@ -225,7 +260,7 @@ struct Drawing::Impl {
   // librsvg draws whatever is mixed as a whole (opacity, blending, filters, masks) as large as the
   // drawing, whichever part is asked for, and fails where cairo has no such surface.
   bool can_be_drawn_in_parts() const {
-    const Owned<cairo_surface_t> pixel = blank(1, 1);
+    const Owned<cairo_surface_t> pixel = blank_surface(1, 1);
     std::string ignored;
     return draw(pixel.get(), size * (1.25 * kLongestSide_px / size.maxCoeff()), 0, 0, ignored);
   }
@@ -261,12 +296,6 @@ struct Drawing::Impl {
     why = message_of(error);
     return false;
   }
-
-  static Owned<cairo_surface_t> blank(int width, int height) {
-    Owned<cairo_surface_t> surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
-    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
-    return surface;
-  }
 };
 
 Drawing::Drawing(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -276,16 +305,16 @@ Drawing& Drawing::operator=(Drawing&&) noexcept = default;
 
 Drawing Drawing::from_svg(const std::vector<std::uint8_t>& bytes, const std::string& name) {
   std::string why;
+  const std::vector<std::uint8_t> svg = unpacked_svg(bytes, name);
+  const std::string_view text(reinterpret_cast<const char*>(svg.data()), svg.size());
   auto impl = std::make_unique<Impl>();
   impl->name = name;
-  impl->handle = parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, why);
+  impl->handle = parse(text, why);
   if (!impl->handle)
     throw InputError(
         fmt::format("{}: damaged or truncated SVG drawing ({}); save it again.", name, why));
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  impl->has_text = has_element(text, "text");
-  impl->linked = first_linked_picture(text);
-  if (impl->has_text) require_fonts(name);
+  impl->contents = contents_of(text, shows_picture);
+  if (impl->contents.has_text) require_fonts(name);
   impl->size = natural_size(impl->handle.get());
   if (!(impl->size.minCoeff() > 0) || !impl->size.allFinite())
     throw InputError(fmt::format(
@@ -293,7 +322,7 @@ Drawing Drawing::from_svg(const std::vector<std::uint8_t>& bytes, const std::str
         "viewBox.",
         name));
   // Letters of such a size may be none that can be drawn.
-  impl->is_indivisible = impl->has_text ? may_mix(text) : !impl->can_be_drawn_in_parts();
+  impl->is_indivisible = impl->contents.has_text ? may_mix(text) : !impl->can_be_drawn_in_parts();
   return Drawing(std::move(impl));
 }
 
@@ -352,8 +381,7 @@ double Drawing::natural_width_mm() const {
   }
 }
 
-bool Drawing::has_text() const { return impl_->has_text; }
-const std::string& Drawing::linked_picture() const { return impl_->linked; }
+const SvgContents& Drawing::contents() const { return impl_->contents; }
 
 Drawing::Limits Drawing::limits() const {
   const double side_px = std::min(kMostPixels, impl_->most_scale * impl_->size.maxCoeff());
@@ -387,15 +415,6 @@ std::optional<TiledImage> Drawing::tiles(int width_px, int height_px,
       if (image.bytes() > most_bytes) return {};
     }
   return image;
-}
-
-bool looks_like_svg(const std::vector<std::uint8_t>& bytes) {
-  constexpr std::size_t kLooked = 4096;
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()),
-                              std::min(bytes.size(), kLooked));
-  const std::size_t start = text.find_first_not_of("\xef\xbb\xbf \t\r\n");
-  return start != std::string_view::npos && text[start] == '<' &&
-         text.find("<svg") != std::string_view::npos;
 }
 
 }  // namespace hydrodip

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "artwork/svg_contents.h"
 #include "artwork/tiled_image.h"
 #include "base/math.h"
 #include "image/image.h"
@@ -16,8 +17,8 @@ namespace hydrodip {
 // Not to be used by two threads at once.
 class Drawing {
  public:
-  // Of a file's bytes; nothing outside of them is read. Throws InputError naming `name`: not SVG,
-  // damaged, nothing to see.
+  // Of a file's bytes, packed (.svgz) or not; nothing outside of them is read. Throws InputError
+  // naming `name`: not SVG, damaged, nothing to see.
   static Drawing from_svg(const std::vector<std::uint8_t>& bytes, const std::string& name);
   // One or several lines, cut at the letters' outlines. A letter that no font has (fonts.h) becomes
   // a box. Throws InputError if nothing would be seen, and on a machine without fonts.
@@ -32,10 +33,9 @@ class Drawing {
   double aspect() const;
   // If an SVG drawing says it in mm, inches or the like; else 0.
   double natural_width_mm() const;
-  // Whether an SVG drawing has text, which is set in whatever fonts this machine has.
-  bool has_text() const;
-  // A picture that an SVG drawing takes from a file of its own and that is not shown; "" if none.
-  const std::string& linked_picture() const;
+  // Of an SVG drawing: whether it has text, which is set in whatever fonts this machine has, and
+  // what is not shown of it.
+  const SvgContents& contents() const;
   // The largest that can be drawn: pixels in all, and a side's. A drawing in which something is
   // mixed as a whole (a group's opacity, blending, filters, masks) must be drawn in one piece.
   struct Limits {
@@ -53,8 +53,5 @@ class Drawing {
   explicit Drawing(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
-
-// Whether a file's first bytes are those of an SVG drawing.
-bool looks_like_svg(const std::vector<std::uint8_t>& bytes);
 
 }  // namespace hydrodip

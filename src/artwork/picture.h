@@ -47,10 +47,8 @@ class PictureSource {
   double natural_width_mm() const { return natural_width_mm_; }
   // What a text is set in.
   const std::vector<FontUse>& fonts() const { return fonts_; }
-  // Whether it is a drawing that has text, which is set in whatever fonts this machine has.
-  bool has_text() const { return drawing_ && drawing_->has_text(); }
-  // The picture that a drawing lacks because it is not in its file; "" if none.
-  std::string linked_picture() const { return drawing_ ? drawing_->linked_picture() : ""; }
+  // Of an SVG drawing; else of nothing.
+  SvgContents contents() const { return drawing_ ? drawing_->contents() : SvgContents(); }
 
   // What is shown of a picture that is so large on the surface: a drawing becomes as fine as
   // `pixels_per_mm`, or as fine as it can be; of finer pixels means are taken. Once.

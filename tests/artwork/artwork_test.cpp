@@ -397,6 +397,43 @@ TEST_F(Layers, TextIsSet) {
   EXPECT_THROW(laid(object, {layer}), InputError);
 }
 
+TEST_F(Layers, OfDrawingsSayWhatIsNotShown) {
+  const PosedObject object = posed(box({0, 0, 0}, {40, 40, 5}));
+  const auto warnings = [&](const std::string& inside) {
+    ArtworkLayer layer;
+    layer.image = folder_ / "a.svg";
+    std::ofstream(layer.image) << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><rect "
+                                  "width='9' height='9'/>"
+                               << inside << "</svg>";
+    RunContext context;
+    std::vector<PictureSource> pictures = read_pictures({layer});
+    lay_artwork({{layer}, std::move(pictures), model_paint(object.shared_object()), true, 100, 1},
+                object, context);
+    return context.warnings();
+  };
+  const std::string file = (folder_ / "a.svg").string();
+  EXPECT_TRUE(warnings("").empty());
+  EXPECT_EQ(warnings("<image href='b.png'/>"),
+            std::vector{file + ": 'b.png' is not in the drawing's file and not shown; embed it"});
+  EXPECT_EQ(
+      warnings("<image href='b.png'/><use href='c.svg#c'/>"),
+      std::vector{file + ": 'b.png' and 'c.svg#c' are not in the drawing's file and not shown; "
+                         "embed them"});
+  std::string many, damaged;
+  for (const char name : {'b', 'c', 'd', 'e', 'f', 'g', 'h'}) {
+    many += std::string("<image href='") + name + "'/>";
+    damaged += "<image width='1' height='1' href='data:image/png;base64,AAAA'/>";
+  }
+  EXPECT_EQ(
+      warnings(many),
+      std::vector{file + ": 'b', 'c', 'd', 'e', 'f' and 2 more are not in the drawing's file and "
+                         "not shown; embed them"});
+  EXPECT_EQ(
+      warnings(damaged),
+      std::vector{file + ": each of 7 pictures in the drawing is damaged or of a kind that is not "
+                         "read, and not shown; embed it again as PNG or JPEG"});
+}
+
 TEST_F(Layers, OnTheFilmShowWhereFilmLies) {
   const auto image = painted(100, 100, [](int x, int) {
     return x < 50 ? std::array{0, 0, 0, 255} : std::array{255, 255, 255, 255};

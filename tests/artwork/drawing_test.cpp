@@ -2,6 +2,7 @@
 #include "artwork/drawing.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 #include "artwork/picture.h"
 #include "artwork/tiled_image.h"
 #include "base/error.h"
+#include "image/files.h"
 
 namespace hydrodip {
 namespace {
@@ -181,20 +183,121 @@ TEST(Drawing, TextInAStretchedDrawingStaysInItsPlace) {
   }
 }
 
-TEST(Drawing, KnowsWhatItsFileLacks) {
-  const std::string shape = "<rect width='9' height='9'/>";
-  EXPECT_FALSE(drawing_of(shape).has_text());
-  EXPECT_EQ(drawing_of(shape).linked_picture(), "");
-  EXPECT_TRUE(drawing_of(shape + "<text y='20'>A</text>").has_text());
-  EXPECT_FALSE(drawing_of(shape + "<g class='text' id='image'/>").has_text());
-  EXPECT_EQ(drawing_of(shape + "<image href='data:image/png;base64,'/><image width='3' "
-                               "href=\"photo 1.png\"/>")
-                .linked_picture(),
-            "photo 1.png");
-  // Looking for the end of each of very many takes minutes.
+using Names = std::vector<std::string>;
+
+const std::string kShape = "<rect width='9' height='9'/>";
+
+Names outside(const std::string& inside) { return drawing_of(kShape + inside).contents().outside; }
+
+TEST(Drawing, KnowsWhetherItHasText) {
+  const auto has_text = [](const std::string& inside) {
+    return drawing_of(inside).contents().has_text;
+  };
+  EXPECT_FALSE(has_text(kShape));
+  EXPECT_TRUE(has_text(kShape + "<text y='20'>A</text>"));
+  EXPECT_TRUE(has_text(kShape + "<s:text xmlns:s='http://www.w3.org/2000/svg' y='20'>A</s:text>"));
+  EXPECT_FALSE(has_text(kShape + "<g class='text' id='image'/><!-- <text>A</text> -->"));
+}
+
+TEST(Drawing, NamesAllThatIsNotInItsFile) {
+  EXPECT_EQ(outside(""), Names{});
+  EXPECT_EQ(outside("<image href='a.png'/><image width='3' href = \"photo 1.png\"/>"
+                    "<g xmlns:x='http://www.w3.org/1999/xlink'><image x:href='b.png'/></g>"
+                    "<image href='a.png'/>"),
+            (Names{"a.png", "photo 1.png", "b.png"}));
+  EXPECT_EQ(outside("<use href='other.svg#a'/><rect fill='url(other.svg#b)'/>"
+                    "<rect style='fill:red; mask: url( \"m.svg#c\" )'/>"),
+            (Names{"other.svg#a", "other.svg#b", "m.svg#c"}));
+  EXPECT_EQ(outside("<style>/* url(old.png) */ @import 'a.css'; @font-face{src:url(x.woff)}</style>"
+                    "<style><![CDATA[ rect { fill: url('p.svg#p') } ]]></style>"),
+            (Names{"x.woff", "a.css", "p.svg#p"}));
+  // What is in the file, what is only a way somewhere, and what is no part of the drawing.
+  EXPECT_EQ(outside("<defs><g id='a'/></defs><use href='#a'/><rect fill='url(#a)'/>"
+                    "<a href='http://example.com'><rect/></a><!-- <image href='old.png'/> -->"
+                    "<desc>url(x) &lt;image href='x'></desc>"),
+            Names{});
+  const Drawing styled = Drawing::from_svg(
+      bytes_of("<?xml version='1.0'?><?xml-stylesheet type='text/css' href='s.css'?>"
+               "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'>" +
+               kShape + "</svg>"),
+      "test.svg");
+  EXPECT_EQ(styled.contents().outside, Names{"s.css"});
+  // Looking for the end of each of very many would take minutes.
   std::string comment = "<!--";
   for (int i = 0; i < 300'000; ++i) comment += " <image";
-  EXPECT_EQ(drawing_of(comment + "--><image href='b.png'/>" + shape).linked_picture(), "b.png");
+  EXPECT_EQ(outside(comment + "--><image href='b.png'/>"), Names{"b.png"});
+}
+
+std::string in_base64(const std::vector<std::uint8_t>& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    std::uint32_t three = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      three = three << 8U | (at + i < bytes.size() ? bytes[at + i] : 0U);
+    for (std::size_t i = 0; i < 4; ++i)
+      out += at + i > bytes.size() ? '=' : kDigits[three >> (18 - 6 * i) & 63U];
+  }
+  return out;
+}
+
+TEST(Drawing, CountsPicturesInItThatAreNotShown) {
+  const auto unreadable = [](const std::string& data) {
+    return drawing_of(kShape + "<image width='9' height='9' href='data:" + data + "'/>")
+        .contents()
+        .unreadable_pictures;
+  };
+  Image image(40, 40);
+  std::vector<std::uint8_t> clear = encode_png(image);
+  std::fill(image.rgba.begin(), image.rgba.end(), std::uint8_t(200));
+  std::vector<std::uint8_t> png = encode_png(image);
+  EXPECT_EQ(unreadable("image/png;base64," + in_base64(png)), 0);
+  EXPECT_EQ(unreadable("image/jpeg;base64," + in_base64(encode_jpeg(image, 90))), 0);
+  EXPECT_EQ(unreadable("image/png;base64," + in_base64(clear)), 0);
+  EXPECT_EQ(unreadable("image/png;base64,AAAA"), 1);
+  EXPECT_EQ(unreadable("image/png;base64,"), 1);
+  EXPECT_EQ(unreadable("image/png"), 1);
+  std::vector<std::uint8_t> damaged = png;
+  damaged[20] ^= 0x55U;
+  EXPECT_EQ(unreadable("image/png;base64," + in_base64(damaged)), 1);
+  EXPECT_EQ(unreadable("image/jp2;base64," + in_base64(bytes_of("\xff\x4f\xff\x51"))), 1);
+}
+
+std::vector<std::uint8_t> gzipped(const std::string& text) {
+  std::vector<std::uint8_t> out(text.size() + 1000);
+  z_stream stream{};
+  constexpr int kGzip = 16 + MAX_WBITS;
+  deflateInit2(&stream, 9, Z_DEFLATED, kGzip, 8, Z_DEFAULT_STRATEGY);
+  std::string copy = text;
+  stream.next_in = reinterpret_cast<Bytef*>(copy.data());
+  stream.avail_in = uInt(copy.size());
+  stream.next_out = out.data();
+  stream.avail_out = uInt(out.size());
+  deflate(&stream, Z_FINISH);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
+}
+
+TEST(Drawing, IsTheSamePackedOrWithAPrefix) {
+  const std::string inside = "<circle cx='100' cy='90' r='80' fill='#c02'/>";
+  const Image plain = drawing_of(inside).pixels(60, 40);
+  const std::string svg =
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 300 200'>" + inside + "</svg>";
+  const std::vector<std::uint8_t> packed = gzipped(svg);
+  EXPECT_TRUE(looks_like_svg(packed));
+  EXPECT_EQ(Drawing::from_svg(packed, "a.svgz").pixels(60, 40).rgba, plain.rgba);
+  const std::string prefixed =
+      "<s:svg xmlns:s='http://www.w3.org/2000/svg' viewBox='0 0 300 200'><s:circle cx='100' "
+      "cy='90' r='80' fill='#c02'/></s:svg>";
+  EXPECT_TRUE(looks_like_svg(bytes_of(prefixed)));
+  EXPECT_EQ(Drawing::from_svg(bytes_of(prefixed), "a.svg").pixels(60, 40).rgba, plain.rgba);
+  EXPECT_FALSE(looks_like_svg(gzipped("no drawing")));
+  EXPECT_FALSE(looks_like_svg(bytes_of("<html>svg</html>")));
+  for (std::size_t size = 3; size < packed.size() - 8; size += 7)
+    EXPECT_THROW(Drawing::from_svg({packed.begin(), packed.begin() + std::ptrdiff_t(size)}, "cut"),
+                 InputError)
+        << size;
 }
 
 TEST(Drawing, TakesNoMoreThanItMay) {
