@@ -149,8 +149,8 @@ void add(ContentKey& key, const InverseOptions& inverse) {
 
 // The base is the paint's.
 void add(ContentKey& key, const InkingOptions& inking) {
-  const auto& [compensate, policy, limit, base] = inking;
-  add_all(key, compensate, policy, limit);
+  const auto& [compensate, policy, limit, lightened_most, base] = inking;
+  add_all(key, compensate, policy, limit, lightened_most);
 }
 
 void add(ContentKey& key, const StiffnessOptions& stiffness) {
