@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "artwork/layer.h"
 #include "artwork/picture.h"

@@ -1,7 +1,6 @@
 // Many simulated dips at once: one thread each, results kept in a store.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 

@@ -1,7 +1,6 @@
 // How a printed sheet lies on the water.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 

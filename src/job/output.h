@@ -1,7 +1,6 @@
 // The end of print and simulate: film and previews, report, and everything under its final name.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,8 +1,6 @@
 // How the pipelines look for ways to dip their object.
 #pragma once
 
-#include <memory>
-#include <optional>
 #include <string>
 
 #include "job/prepare.h"

@@ -2,7 +2,6 @@
 // as a whole but pictures.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <string_view>
 #include <unordered_map>

@@ -1,7 +1,6 @@
 // The person at the bath.
 #pragma once
 
-#include <optional>
 #include <string>
 
 namespace hydrodip {

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <condition_variable>
-#include <cstdint>
-#include <functional>
 #include <list>
 #include <memory>
 #include <mutex>

@@ -1,8 +1,6 @@
 // The [[part]] tables of a job whose parts share a sheet: "part[2].count".
 #pragma once
 
-#include <string>
-
 #include "settings/params.h"
 
 namespace hydrodip {

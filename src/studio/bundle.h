@@ -1,7 +1,6 @@
 // A binary answer: JSON, and arrays that a page can use as they lie. docs/studio-api.md.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>

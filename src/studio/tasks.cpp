@@ -7,6 +7,7 @@
 #include <cmath>
 #include <new>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "base/error.h"
