@@ -46,10 +46,10 @@ def kind_of(path, given):
 
 
 def kind_of_report(content):
-    """None of a stand-in, which is of a job that the rig's tests need."""
-    if "command" not in content and "tool" not in content:
+    """None of a stand-in, which is of a job that a test needs."""
+    if not isinstance(content, dict) or not {"schema_version", "command"} <= content.keys():
         return None
-    return "inspect" if content.get("command") == "inspect" else "report"
+    return "inspect" if content["command"] == "inspect" else "report"
 
 
 def refuse(by_kind, files):
