@@ -44,7 +44,8 @@ Board tint_board(double square_mm) {
 }
 
 Board board_named(const std::string& name, double square_mm) {
-  if (name.empty() || name == "tints") return tint_board(square_mm > 0 ? square_mm : kTintSquare_mm);
+  if (name.empty() || name == "tints")
+    return tint_board(square_mm > 0 ? square_mm : kTintSquare_mm);
   if (name == "black") return black_board(square_mm > 0 ? square_mm : kBlackSquare_mm);
   throw InputError(fmt::format("--board '{}': give tints (what the kit prints) or black", name));
 }
