@@ -43,16 +43,15 @@ void check_picture_size(const std::string& name, const char* kind, std::uint32_t
 }
 
 void warn_of_left_out(int channels, const std::string& name) {
-  if (channels == 1)
-    warn(
-        fmt::format("{}: a channel beside its colours is not marked as transparency and is left "
-                    "out: a saved selection or a spot ink is such a one.",
-                    name));
-  else if (channels > 1)
-    warn(
-        fmt::format("{}: {} channels beside its colours are not marked as transparency and are "
-                    "left out: saved selections and spot inks are such.",
-                    name, channels));
+  if (channels < 1) return;
+  const bool one = channels == 1;
+  warn(fmt::format(
+      "{}: {} not marked as transparency (saved selections and spot inks are not) and {} "
+      "left out.",
+      name,
+      one ? "a channel beside its colours is"
+          : fmt::format("{} channels beside its colours are", channels),
+      one ? "is" : "are"));
 }
 
 void divide_by_alpha(std::uint8_t* values, int count, int alpha) {
