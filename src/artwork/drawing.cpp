@@ -176,7 +176,7 @@ bool is_transparent_picture(const std::string& data) {
     const Image image = decode_image(bytes, "a picture in it");
     double seen = 0;
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) seen += image.rgba[i] > 0 ? 1 : 0;
-    return seen < kHardly * double(image.rgba.size() / 4);
+    return 4 * seen < kHardly * double(image.rgba.size());
   } catch (const InputError&) {
     return false;
   }
