@@ -327,7 +327,7 @@ namespace {
 void require_scans_to_read(const CalibrationRequest& request) {
   const bool told = request.square_mm != 0 || !request.board.empty() ||
                     !request.scan_units.empty() || request.mirrored;
-  if (told && std::ranges::all_of(request.scans, is_measured_dip))
+  if (told && !request.scans.empty() && std::ranges::all_of(request.scans, is_measured_dip))
     throw InputError(fmt::format(
         "{}: holds its board, its units and its side; --square, --board, --scan-units and "
         "--mirrored are for scans given as OBJECT=SCAN",

@@ -134,7 +134,7 @@ assert 0 < json.load(open('found/nest.json'))['pieces'][0]['depth_mm'] < 15
 PY
 # One sheet is printed and laid on the water in one way, whatever a part's job says.
 for of_sheet in 'print.ink_side = "down"' 'film.swelling_x = 1.1' 'print.scale_x = 1.02' \
-  'ink.model = "profile"' 'print.color = "cmyk"' 'print.dpi = 200'; do
+  'ink.model = "profile"' 'print.color = "cmyk"'; do
   printf '%s\nobject.file = "samples/box.obj"\n' "$of_sheet" > own.dip.toml
   # shellcheck disable=SC2086
   refused 'holds for the whole sheet' nest own.dip.toml $nest -o own
