@@ -120,17 +120,20 @@ function writeIfNew(path, content) {
   writeFileSync(path, content);
 }
 
+function findPlaces(mutants) {
+  for (const mutant of mutants) {
+    const path = join(root, mutant.file);
+    mutant.place = existsSync(path) ? placeOf(readFileSync(path, "utf8"), mutant) : null;
+  }
+}
+
 // Leaves files that are already right alone, so that the next build is short.
 function makeCopy(mutants) {
   const list = execFileSync("git", ["ls-files", "-co", "--exclude-standard"], { cwd: root, encoding: "utf8" });
   const files = new Set(list.split("\n").filter((f) => f && existsSync(join(root, f))));
   const edits = new Map();  // per file
-  for (const mutant of mutants) {
-    const source = files.has(mutant.file) ? readFileSync(join(root, mutant.file), "utf8") : "";
-    const place = placeOf(source, mutant);
-    mutant.stale = !place;
-    if (place) edits.set(mutant.file, [...(edits.get(mutant.file) ?? []), place]);
-  }
+  for (const { file, place } of mutants)
+    if (place) edits.set(file, [...(edits.get(file) ?? []), place]);
   for (const file of files) {
     const content = readFileSync(join(root, file));
     const source = edits.has(file) ? content.toString() : "";
@@ -246,15 +249,16 @@ for (const folder of folders)
 // All of them go into the copy, whichever are asked for, so that it need not be built again.
 const everything = all.flatMap(readList);
 for (const mutant of everything) mutant.number = numberOf(`${mutant.file} ${mutant.before} ${mutant.after}`);
-makeCopy(everything);
+findPlaces(everything);
 const mutants = everything.filter((m) => folders.includes(m.folder));
-const stale = mutants.filter((m) => m.stale);
+const stale = mutants.filter((m) => !m.place);
 for (const mutant of stale)
   console.log(`no longer fits: ${mutant.folder}.txt:${mutant.line} ${mutant.file}: ${mutant.before}`);
 // HYDRODIP_MUTATE=check: only whether they still fit; =run: with the programs that are built already.
 const only = process.env.HYDRODIP_MUTATE;
 if (only === "check") process.exit(stale.length > 0 ? 1 : 0);
-const fitting = mutants.filter((m) => !m.stale);
+makeCopy(everything);
+const fitting = mutants.filter((m) => m.place);
 const names = [...new Set(fitting.flatMap((m) => m.tests))];
 if (only !== "run") buildTests(names);
 await judge(fitting, names);
