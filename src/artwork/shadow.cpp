@@ -19,6 +19,8 @@ constexpr double kGrazing = 1e-4;
 constexpr double kStart_mm = 1e-3, kStartPerCosine_mm = 4e-5, kFlattest = 0.01;
 // From a corner, where triangles meet.
 constexpr double kCornerStart_mm = 5e-3;
+// On the outline of a patch: so far within it, at most this share of the way to a middle.
+constexpr double kWithin_mm = 0.02, kWithin = 0.1;
 // Between corners so near each other no shadow falls that could be seen.
 constexpr double kSmall_mm = 0.5;
 // Spreads numbers over all bits.
@@ -187,11 +189,18 @@ void Shadow::darken_what_shows_through_holes() {
   std::vector<std::size_t> ring = filled<std::size_t>(mesh.positions.size(), 0);
   std::vector<std::uint8_t> sides = filled<std::uint8_t>(mesh.positions.size(), 0);
   DisjointSets patches(mesh.positions.size());
+  // Where a corner is asked: a hair within its patch, as walls that stand upright on its outline
+  // are in nobody's way.
+  std::vector<Vec3> within = mesh.positions;
   for (std::size_t t = 0; t < facing.size(); ++t) {
     const Triangle& v = mesh.triangles[t];
+    const std::array<Vec3, 3> c = corners_of(mesh, t);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto corner = std::size_t(v[k]);
       sides[corner] |= facing[t] ? 1 : 2;
+      const Vec3 inwards = (c[0] + c[1] + c[2]) / 3 - c[k];
+      if (facing[t])
+        within[corner] = c[k] + std::min(kWithin, kWithin_mm / inwards.norm()) * inwards;
       // Around an inner corner every neighbour is met twice.
       add(ring[corner], std::size_t(v[(k + 1) % 3]));
       add(ring[corner], std::size_t(v[(k + 2) % 3]));
@@ -207,7 +216,7 @@ void Shadow::darken_what_shows_through_holes() {
   parallel_for(lit.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       if (!on_outline(v)) continue;
-      const Vec3& p = mesh.positions[v];
+      const Vec3& p = within[v];
       lit[v] =
           !posed_.surface().is_hit(p, projector_.back(p, Vec3::UnitZ()), kCornerStart_mm, far_mm_);
     }

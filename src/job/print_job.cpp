@@ -52,6 +52,12 @@ std::string why_no_ink(const DippedObject& dipped, const Paint& paint) {
   if (wanted->reached_mm2 > 0)
     return "The film tears wherever there is something to print: turn flatter sides down with "
            "--rotate or --down.";
+  if (const double dry_mm2 = dipped.air->area_mm2(); dry_mm2 > 0)
+    return fmt::format(
+        "What shall be printed does not come to the film, and trapped air keeps {:.0f} mm2 of the "
+        "object dry: turn it so that hollows open upwards (--rotate, --down; --rotate auto finds "
+        "how), or move the artwork.",
+        dry_mm2);
   return "What shall be printed does not come to the film: turn it down with --rotate or --down "
          "(--rotate auto finds how), dip deeper (--depth), or move the artwork.";
 }

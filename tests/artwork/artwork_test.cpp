@@ -183,6 +183,44 @@ TEST_F(Layers, TheInsideOfABowlIsNoHole) {
   });
 }
 
+// A tray of 40 x 40 x 30 mm, 3 mm thick, open above.
+TriangleMesh tray() {
+  TriangleMesh mesh;
+  const auto ring = [&](double half, double z) {
+    for (const Vec2& p :
+         {Vec2(-half, -half), Vec2(half, -half), Vec2(half, half), Vec2(-half, half)})
+      mesh.positions.emplace_back(p.x(), p.y(), z);
+  };
+  const auto quad = [&](int a, int b, int c, int d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  ring(20, 30), ring(17, 30), ring(20, 0), ring(17, 3);
+  for (int k = 0; k < 4; ++k) {
+    const int n = (k + 1) % 4;
+    quad(k, n, n + 4, k + 4);
+    quad(k, k + 8, n + 8, n);
+    quad(k + 4, n + 4, n + 12, k + 12);
+  }
+  quad(11, 10, 9, 8);
+  quad(12, 13, 14, 15);
+  return mesh;
+}
+
+// Its walls stand upright: no ray along them is to tell that its bottom lies behind them.
+TEST_F(Layers, TheBottomOfATrayIsNoHole) {
+  const PosedObject object = posed(tray());
+  const auto paint = laid(object, {downward(black(), 200)});
+  int bottom = 0;
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    const Vec3 p = position_at(object.mesh(), point) - moved(object, Vec3::Zero());
+    if (std::abs(p.z() - 3) > 1e-3) return;
+    ++bottom;
+    EXPECT_LT(paint->color_at(point).g, kBlack) << p.transpose();
+  });
+  EXPECT_GT(bottom, 8);
+}
+
 TEST_F(Layers, ShadowsAreTheSameInSmallTriangles) {
   const auto flat = [](double z) {
     return [z](double s, double t) { return Vec3(40 * s, 40 * t, z); };
