@@ -53,12 +53,14 @@ class Moments {
     count_ = straight_ ? int(std::clamp(wanted, 1.0, 20000.0))
                        : int(std::clamp(wanted, double(kLeastMoments), double(kMostMoments)));
     length_ = travel.length_mm();
-    if (straight_) return;
-    for (int m = 0; m <= count_; ++m) planes_.push_back(water_at(travel.at(travelled_mm(m))));
+    for (int m = straight_ ? count_ : 0; m <= count_; ++m)
+      levels_.push_back(water_at(travel.at(travelled_mm(m))));
   }
 
   int count() const { return count_; }
   double travelled_mm(int moment) const { return length_ * moment / count_; }
+  // Where the water stands: what lies under none of them stays dry. Straight down, the last alone.
+  const std::vector<Plane>& levels() const { return levels_; }
 
   // The first one at which a point is under water; count() + 1: none.
   std::uint16_t wet(const Vec3& point) const {
@@ -67,7 +69,7 @@ class Moments {
       return std::uint16_t(std::clamp(m, 0.0, double(count_ + 1)));
     }
     for (int m = 0; m <= count_; ++m)
-      if (planes_[std::size_t(m)].height(point) <= 0) return std::uint16_t(m);
+      if (levels_[std::size_t(m)].height(point) <= 0) return std::uint16_t(m);
     return std::uint16_t(count_ + 1);
   }
 
@@ -75,7 +77,7 @@ class Moments {
   bool straight_;
   int count_ = 1;
   double length_ = 0;
-  std::vector<Plane> planes_;
+  std::vector<Plane> levels_;
 };
 
 Numbers numbers(const AirCells& cells, const std::function<std::uint16_t(const Vec3&)>& number) {
@@ -411,7 +413,7 @@ class Search {
       }
       return false;
     };
-    PocketSurface::Part part = sides_->part(pocket.water, levels(), holds, reach);
+    PocketSurface::Part part = sides_->part(pocket.water, moments_.levels(), holds, reach);
     const double by_cells = double(hollow.cells.size()) * std::pow(cells_.pitch_mm(), 3);
     pocket.area_mm2 = part.area_mm2;
     pocket.top = part.top;
@@ -445,15 +447,6 @@ class Search {
     }
     pocket.escapes_share = 1 - least / then;
     return true;
-  }
-
-  // Where the water stands on the way: what lies under none of them stays dry.
-  std::vector<Plane> levels() const {
-    if (travel_.trajectory().is_straight_down()) return {plane_at(travel_.length_mm())};
-    std::vector<Plane> planes;
-    for (int m = 0; m <= moments_.count(); ++m)
-      planes.push_back(plane_at(moments_.travelled_mm(m)));
-    return planes;
   }
 
   Plane plane_at(double travelled_mm) const { return water_at(travel_.at(travelled_mm)); }

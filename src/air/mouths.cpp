@@ -1,8 +1,6 @@
 #include "air/mouths.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -74,12 +72,9 @@ void add_polygon(const Loop& polygon, const Plane& plane, TriangleMesh& lids) {
   std::vector<Vec3> corners;
   for (const Vec2& p : polygon) corners.push_back(plane.lifted(p));
   const auto base = std::int32_t(lids.positions.size());
-  const auto is_thin = [&](const std::array<int, 3>& t) {  // along a cut
-    const Vec3& a = corners[std::size_t(t[0])];
-    return (corners[std::size_t(t[1])] - a).cross(corners[std::size_t(t[2])] - a).norm() == 0;
-  };
   for (const auto& t : triangulate(corners))
-    if (!is_thin(t)) lids.triangles.push_back({base + t[0], base + t[2], base + t[1]});
+    if (area_vector(corners, t) != Vec3::Zero())  // else thin, along a cut
+      lids.triangles.push_back({base + t[0], base + t[2], base + t[1]});
   lids.positions.insert(lids.positions.end(), corners.begin(), corners.end());
 }
 

@@ -55,14 +55,6 @@ PocketSurface::PocketSurface(const TriangleMesh& mesh) : mesh_(mesh) {
   });
 }
 
-Vec3 PocketSurface::normal_of(std::size_t triangle) const {
-  const auto& v = mesh_.triangles[triangle];
-  const Vec3& a = mesh_.positions[std::size_t(v[0])];
-  return (mesh_.positions[std::size_t(v[1])] - a)
-      .cross(mesh_.positions[std::size_t(v[2])] - a)
-      .normalized();
-}
-
 Polygon PocketSurface::above(std::size_t triangle, const Plane& water) const {
   Polygon polygon;
   for (const std::int32_t v : mesh_.triangles[triangle])
@@ -78,7 +70,7 @@ std::vector<PocketSurface::Share> PocketSurface::shares(const Plane& water, cons
     check();
     const Polygon polygon = above(t, water);
     if (polygon.size() < 3) continue;
-    const Vec3 normal = normal_of(t);
+    const Vec3 normal = face_normal(mesh_, int(t));
     for_fan(polygon, [&](double area, const Vec3& middle) {
       if (!(area > 0)) return;
       shares[t].above_mm2 += area;
@@ -98,7 +90,7 @@ std::vector<bool> PocketSurface::belonging(const Plane& water, const std::vector
   for (const Shared& shared : shared_) {
     if (!(std::max(height(shared.a), height(shared.b)) > kRim_mm)) continue;
     pieces.join(shared.one, shared.other);
-    if (normal_of(std::size_t(shared.one)).dot(normal_of(std::size_t(shared.other))) > kCrease)
+    if (face_normal(mesh_, shared.one).dot(face_normal(mesh_, shared.other)) > kCrease)
       patches.join(shared.one, shared.other);
   }
   // Per triangle, what is true of the whole set that it is in.
@@ -115,11 +107,11 @@ std::vector<bool> PocketSurface::belonging(const Plane& water, const std::vector
   std::vector<bool> belongs(count, false);
   for (std::size_t t = 0; t < count; ++t) {
     if (!(shares[t].above_mm2 > 0)) continue;
-    for (const Share* share : {&of_pieces[pieces.find(std::int32_t(t))],
-                               &of_patches[patches.find(std::int32_t(t))], &shares[t]}) {
+    const Share* const piece = &of_pieces[pieces.find(std::int32_t(t))];
+    for (const Share* share : {piece, &of_patches[patches.find(std::int32_t(t))], &shares[t]}) {
       const double part = share->in_pocket_mm2 / share->above_mm2;
       belongs[t] = part > 0.5;
-      if (share != &of_pieces[pieces.find(std::int32_t(t))] && belongs[t]) is_whole = false;
+      if (belongs[t] && share != piece) is_whole = false;
       if (part > kNearlyAll || part < 1 - kNearlyAll) break;
     }
   }
@@ -135,7 +127,7 @@ PocketSurface::Part PocketSurface::part(const Plane& water, const std::vector<Pl
     if (!belongs[t]) continue;
     const Polygon polygon = above(t, water);
     part.triangles.push_back(std::int32_t(t));
-    const double slope = water.up.dot(normal_of(t));
+    const double slope = water.up.dot(face_normal(mesh_, int(t)));
     for_fan(polygon, [&](double area, const Vec3& middle) {
       part.area_mm2 += area;
       part.volume_mm3 -= area * slope * water.height(middle);

@@ -44,7 +44,6 @@ class PocketSurface {
   // Per triangle, whether it belongs to the pocket; `is_whole`: as Part has it.
   std::vector<bool> belonging(const Plane& water, const std::vector<Share>& shares,
                               bool& is_whole) const;
-  Vec3 normal_of(std::size_t triangle) const;
   std::vector<Vec3> above(std::size_t triangle, const Plane& water) const;
 
   const TriangleMesh& mesh_;
