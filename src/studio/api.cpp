@@ -437,7 +437,7 @@ void Api::open_file(const std::filesystem::path& file) {
   try {
     job(name)->open_file(file);
   } catch (...) {
-    forget(name, true);
+    forget(name);
     throw;
   }
   opened_ = name;
@@ -454,7 +454,7 @@ HttpAnswer Api::new_job(HttpRequest& request) {
         const std::string file = shelf_.place(sample, store_.home(name) / "files");
         job(name)->adopt({file}, "");
       } catch (...) {
-        forget(name, true);
+        forget(name);
         throw;
       }
     }
@@ -465,13 +465,13 @@ HttpAnswer Api::new_job(HttpRequest& request) {
   return json_answer(answer, 201);
 }
 
-void Api::forget(const std::string& job, bool even_if_open) {
+void Api::forget(const std::string& job) {
   std::shared_ptr<OpenJob> gone;  // ended without the lock
   {
     const std::lock_guard lock(mutex_);
     const auto open = jobs_.find(job);
     if (open != jobs_.end()) {
-      if (!even_if_open && !open->second->idle_since())
+      if (!open->second->let_go())
         throw ApiError(409, "busy", "The job is open; close its tab first.");
       gone = std::move(open->second);
       jobs_.erase(open);

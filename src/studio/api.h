@@ -52,7 +52,7 @@ class Api {
   HttpAnswer upload(HttpRequest& request, const std::string& name, OpenJob& job);
   HttpAnswer events(const HttpRequest& request, const std::shared_ptr<OpenJob>& job);
   HttpAnswer login(HttpRequest& request);
-  void forget(const std::string& job, bool even_if_open = false);
+  void forget(const std::string& job);
   std::shared_ptr<OpenJob> job(const std::string& name);
 
   const JobStore store_;

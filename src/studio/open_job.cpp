@@ -33,6 +33,8 @@ ApiError input_error(const std::string& sentence, const JobFiles& files) {
   return {422, "bad-file", in_plain_words(without_folder(sentence, files.uploads()))};
 }
 
+ApiError gone() { return {404, "not-found", "There is no such job any more; begin a new one."}; }
+
 // A name for a file from what a person calls a job.
 std::string file_name_of(const std::string& name) {
   std::string safe;
@@ -214,11 +216,11 @@ void OpenJob::accept(const Json& document, const JobConfig& config, const std::s
   dip_ = dip;
   ++revision_;
   if (stays_saved) tell_saved();
-  if (!live) autosave();
   ask(live);
   const Json event = {{"revision", revision_}, {"document", document_}, {"client", client}};
   for (const Tab& tab : tabs_)
     if (tell_client || tab.client != client) tab.stream->push("document", event, true);
+  if (!live) autosave();  // last: what the disk has no room for holds all the same
 }
 
 // With the lock.
@@ -234,6 +236,7 @@ void OpenJob::ask(bool live) {
 
 // With the lock.
 void OpenJob::autosave() const {
+  if (let_go_) throw gone();
   store_.write(job_, {{"version", 1},
                       {"name", name_of_job(document_)},
                       {"where", where_.string()},
@@ -244,6 +247,15 @@ void OpenJob::autosave() const {
                       {"granted", files_.granted()},
                       {"machine", machine_},
                       {"document", document_}});
+}
+
+// With the lock. Where nobody is left who could be told that it is not.
+void OpenJob::autosave_if_possible() const {
+  try {
+    autosave();
+  } catch (const std::exception&) {
+    // The changes before were kept, or whoever made them was told.
+  }
 }
 
 // With the lock.
@@ -626,6 +638,7 @@ std::filesystem::path OpenJob::file(const std::string& name) const {
 std::shared_ptr<EventStream> OpenJob::connect(const std::string& client) {
   const Json tasks = tasks_->list();
   const std::lock_guard lock(mutex_);
+  if (let_go_) throw gone();
   if (tabs_.size() >= kMostTabs)
     throw ApiError(503, "busy", "The job is open in too many tabs; close some.");
   auto stream = std::make_shared<EventStream>();
@@ -662,7 +675,7 @@ void OpenJob::disconnect(const std::string& client, const std::shared_ptr<EventS
   const auto gone = std::erase_if(tabs_, [&](const Tab& tab) { return tab.stream == stream; });
   if (gone == 0) return;
   if (tabs_.empty()) {
-    autosave();  // nobody has it open: what comes later recovers nothing
+    autosave_if_possible();  // nobody has it open: what comes later recovers nothing
     unwatched_since_ = std::chrono::steady_clock::now();
     at_rest_ = true;
     live_->rest();
@@ -715,7 +728,14 @@ void OpenJob::say_goodbye(const std::string& text) {
     tab.stream->close();
   }
   tabs_.clear();
-  autosave();
+  autosave_if_possible();
+}
+
+bool OpenJob::let_go() {
+  const std::lock_guard lock(mutex_);
+  if (!tabs_.empty() || tasks_->any_running()) return false;
+  let_go_ = true;
+  return true;
 }
 
 // With the lock.
@@ -921,6 +941,7 @@ std::string OpenJob::start_task(const Json& request) {
   task.address = address() + "/tasks";
   task.uploads = files_.uploads();
   const std::lock_guard lock(mutex_);
+  if (let_go_) throw gone();
   task.config = checked(document_);
   task.revision = revision_;
   if (task.config.model.empty())

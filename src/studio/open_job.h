@@ -87,6 +87,8 @@ class OpenJob {
   // Since when nobody has looked at it and nothing is done; nothing: it is in use.
   std::optional<std::chrono::steady_clock::time_point> idle_since() const;
   void say_goodbye(const std::string& text);
+  // From now on nothing of it is kept, and nobody can connect. False: it is in use.
+  bool let_go();
 
   // ---- what was computed ----
 
@@ -128,6 +130,7 @@ class OpenJob {
               std::size_t dip, bool tell_client);
   void ask(bool live);
   void autosave() const;
+  void autosave_if_possible() const;
   void bring_along(JobConfig& config) const;
   std::vector<std::string> machine_names() const;
   void tell_saved();
@@ -162,6 +165,7 @@ class OpenJob {
   std::string pen_;  // client
   std::optional<std::chrono::steady_clock::time_point> unwatched_since_;
   bool at_rest_ = false;  // nobody looks: what is shown may be older than the document
+  bool let_go_ = false;   // the store has forgotten it
   long reloads_ = 0;
   std::list<std::pair<std::string, std::shared_ptr<const ShownMesh>>> meshes_;
   std::string mesh_;  // of the model in its own colours

@@ -16,6 +16,8 @@
 namespace hydrodip {
 namespace {
 
+constexpr int kAnswer_ms = 60000;
+
 int connected(int port) {
   const int handle = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
@@ -117,6 +119,9 @@ Events::Events(const Client& client, const std::string& path) : socket_(connecte
   headers["Host"] = "127.0.0.1:" + std::to_string(client.port());
   for (const auto& [name, value] : headers) text += name + ": " + value + "\r\n";
   write_all(socket_, text + "\r\n");
+  // From here on the tab is one that the job knows.
+  while (buffer_.find("\r\n\r\n") == std::string::npos && read_some(socket_, buffer_, kAnswer_ms)) {
+  }
 }
 
 Events::~Events() { ::close(socket_); }

@@ -52,7 +52,7 @@ struct Event {
   nlohmann::json data;
 };
 
-// The events of one tab, while it lives.
+// The events of one tab, while it lives; the studio knows of it from the start.
 class Events {
  public:
   Events(const Client& client, const std::string& path);
