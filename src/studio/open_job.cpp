@@ -4,125 +4,29 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <set>
 #include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "job/profile_jobs.h"
-#include "model_io/text.h"
-#include "report/plain_words.h"
 #include "settings/dip_tables.h"
 #include "settings/job_file.h"
 #include "settings/settings.h"
 #include "studio/api_error.h"
+#include "studio/bundle.h"
 #include "studio/document.h"
-#include "studio/zip.h"
+#include "studio/job_copies.h"
 
 namespace hydrodip {
 namespace {
 
-constexpr std::array<const char*, 5> kTextureWords = {"texture", "albedo", "diffuse", "basecolor",
-                                                      "color"};
 constexpr std::array<const char*, 7> kOfProfiles = {"film.", "material.", "ink.",   "print.",
                                                     "bath.", "process.",  "report."};
-constexpr std::size_t kMeshesKept = 8, kResultsKept = 6, kMostTabs = 12;
 
-ApiError input_error(const std::string& sentence, const JobFiles& files) {
-  return {422, "bad-file", in_plain_words(without_folder(sentence, files.uploads()))};
-}
+Json or_null(const std::string& id) { return id.empty() ? Json() : Json(id); }
 
 ApiError gone() { return {404, "not-found", "There is no such job any more; begin a new one."}; }
-
-// A name for a file from what a person calls a job.
-std::string file_name_of(const std::string& name) {
-  std::string safe;
-  for (const char c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool fine = byte >= 0x80 || std::isalnum(byte) || c == '-' || c == '_' || c == ' ' ||
-                      c == ',' || c == '+';
-    safe += fine ? c : '-';
-  }
-  while (!safe.empty() && (safe.front() == ' ' || safe.front() == '-')) safe.erase(0, 1);
-  return safe.empty() ? "job" : safe.substr(0, 120);
-}
-
-// The picture that a model with texture coordinates and without colours must mean: the only one,
-// and named like the model or like a texture.
-std::string texture_for(const Model& model, const std::string& name,
-                        const std::vector<std::string>& names) {
-  if (model.object->uvs.empty() || model.object->has_appearance()) return "";
-  std::vector<std::string> pictures;
-  for (const std::string& other : names)
-    if (kind_of_file(other) == "picture") pictures.push_back(other);
-  if (pictures.size() != 1) return "";
-  const auto stem_of = [](const std::string& file) {
-    return lower(std::filesystem::path(file).stem().string());
-  };
-  const std::string stem = stem_of(pictures[0]);
-  const bool meant = stem.starts_with(stem_of(name)) ||
-                     std::any_of(kTextureWords.begin(), kTextureWords.end(), [&](const char* word) {
-                       return stem.find(word) != std::string::npos;
-                     });
-  return meant ? pictures[0] : "";
-}
-
-// The files that the model itself names, as they are now; none of one that cannot be read.
-std::vector<std::filesystem::path> parts_of_model(const JobConfig& config) {
-  if (config.model.empty()) return {};
-  LoadOptions own = config.object.load;
-  own.texture.clear();
-  try {
-    std::vector<std::filesystem::path> files = load(config.model, own, RunContext()).files;
-    std::erase(files, config.model);
-    return files;
-  } catch (const InputError&) {
-    return {};
-  }
-}
-
-std::vector<std::filesystem::path> with_parts(const JobConfig& config) {
-  std::vector<std::filesystem::path> files = parts_of_model(config);
-  files.insert(files.begin(), config.model);
-  return files;
-}
-
-// Whether nothing is there yet, or the same.
-bool may_become(const std::filesystem::path& to, const std::filesystem::path& file) {
-  std::error_code ignored;
-  return !std::filesystem::exists(to, ignored) || read_file(to) == read_file(file);
-}
-
-void copy_to(const std::filesystem::path& file, const std::filesystem::path& to) {
-  std::error_code ignored;
-  if (std::filesystem::exists(to, ignored)) return;
-  std::filesystem::create_directories(to.parent_path(), ignored);
-  const std::vector<std::uint8_t> bytes = read_file(file);
-  write_file(to, bytes.data(), bytes.size());
-}
-
-// Files that name each other, as they lie to each other; into the folder, or if other ones of their
-// names are there into one inside it. Where the first of them is then.
-std::filesystem::path copy_together(const std::vector<std::filesystem::path>& files,
-                                    const std::filesystem::path& folder) {
-  std::filesystem::path root = files.front().parent_path();
-  const auto is_outside = [&](const std::filesystem::path& file) { return !lies_in(file, root); };
-  while (std::any_of(files.begin(), files.end(), is_outside)) root = root.parent_path();
-  const auto inside = [&](const std::filesystem::path& file) {
-    return std::filesystem::weakly_canonical(file).lexically_relative(
-        std::filesystem::weakly_canonical(root));
-  };
-  std::filesystem::path into = folder;
-  const auto fits = [&](const std::filesystem::path& file) {
-    return may_become(into / inside(file), file);
-  };
-  const std::string stem = files.front().stem().string();
-  for (int number = 1; !std::all_of(files.begin(), files.end(), fits); ++number)
-    into = folder / (number == 1 ? stem : fmt::format("{}-{}", stem, number));
-  for (const std::filesystem::path& file : files) copy_to(file, into / inside(file));
-  return into / inside(files.front());
-}
 
 bool is_job_file(const std::filesystem::path& file) { return file.extension() == ".toml"; }
 
@@ -134,7 +38,7 @@ OpenJob::OpenJob(JobStore store, std::string job, std::string run,
       job_(std::move(job)),
       run_(std::move(run)),
       home_(store_.home(job_)),
-      numbers_(std::move(numbers)),
+      ids_(run_, std::move(numbers)),
       files_(home_ / "files") {
   std::error_code ignored;
   std::filesystem::create_directories(files_.uploads(), ignored);
@@ -153,10 +57,9 @@ OpenJob::OpenJob(JobStore store, std::string job, std::string run,
       // A file of it has gone: the page says so when it asks for a result.
     }
   }
-  unwatched_since_ = std::chrono::steady_clock::now();
   tasks_ = std::make_unique<Tasks>([this](const Json& task) {
     const std::lock_guard lock(mutex_);
-    tell("task", task);
+    tabs_.tell("task", task);
   });
   live_ = std::make_unique<Live>(sinks());
   at_rest_ = true;  // until somebody looks, or changes it
@@ -180,9 +83,9 @@ Json OpenJob::describe() const {
           {"document", document_},
           {"dip", dip_},
           {"files", files_json()},
-          {"mesh", mesh_.empty() ? Json() : Json(mesh_)},
+          {"mesh", or_null(shown_.model_mesh())},
           {"tasks", tasks},
-          {"result", results_.empty() ? Json() : Json(results_.front().id)}};
+          {"result", or_null(shown_.newest_result())}};
 }
 
 JobConfig OpenJob::checked(const Json& document) const {
@@ -197,7 +100,7 @@ JobConfig OpenJob::checked(const Json& document) const {
 
 Json OpenJob::put(const Change& change) {
   const std::lock_guard lock(mutex_);
-  require_pen(change.client);
+  tabs_.require_pen(change.client);
   if (change.base && *change.base != revision_)
     throw ApiError(409, "stale", "The job was changed meanwhile.");
   const JobConfig config = checked(change.document);
@@ -218,8 +121,7 @@ void OpenJob::accept(const Json& document, const JobConfig& config, const std::s
   if (stays_saved) tell_saved();
   ask(live);
   const Json event = {{"revision", revision_}, {"document", document_}, {"client", client}};
-  for (const Tab& tab : tabs_)
-    if (tell_client || tab.client != client) tab.stream->push("document", event, true);
+  tabs_.tell_others(tell_client ? "" : client, "document", event);
   if (!live) autosave();  // last: what the disk has no room for holds all the same
 }
 
@@ -243,7 +145,7 @@ void OpenJob::autosave() const {
                       {"origin", origin_.string()},
                       {"revision", revision_},
                       {"saved_revision", saved_revision_},
-                      {"open", !tabs_.empty()},
+                      {"open", !tabs_.none()},
                       {"granted", files_.granted()},
                       {"machine", machine_},
                       {"document", document_}});
@@ -268,7 +170,7 @@ std::vector<std::string> OpenJob::machine_names() const {
 // With the lock.
 void OpenJob::tell_saved() {
   saved_revision_ = revision_;
-  tell("saved", {{"saved_revision", saved_revision_}, {"where", shown_path(where_)}});
+  tabs_.tell("saved", {{"saved_revision", saved_revision_}, {"where", shown_path(where_)}});
 }
 
 void OpenJob::open_file(const std::filesystem::path& file) {
@@ -301,62 +203,6 @@ void OpenJob::open_file(const std::filesystem::path& file) {
   autosave();
 }
 
-// With the lock. What was dropped at once and meets files of the same names gets a folder of its
-// own, in which every file has the name by which the others know it.
-std::vector<std::string> OpenJob::take_in(const std::vector<std::string>& given) {
-  const auto had_other_name = [&](const std::string& name) { return uploaded_as_.contains(name); };
-  std::string folder;
-  if (given.size() > 1 && std::any_of(given.begin(), given.end(), had_other_name))
-    folder = files_.new_folder(had_other_name(given.front()) ? uploaded_as_[given.front()]
-                                                             : given.front());
-  std::vector<std::string> names;
-  for (const std::string& name : given) {
-    const std::filesystem::path file = files_.find(name);
-    if (kind_of_file(name) == "archive") {
-      unpack(name, names);
-    } else if (folder.empty()) {
-      names.push_back(name);
-    } else {
-      names.push_back(folder + "/" + (had_other_name(name) ? uploaded_as_[name] : name));
-      require_plain_name(names.back());
-      const std::filesystem::path to = files_.uploads() / names.back();
-      std::error_code error;
-      std::filesystem::create_directories(to.parent_path(), error);
-      std::filesystem::rename(file, to, error);
-      if (error) throw ApiError(500, "failed", "The files cannot be kept; free some space.");
-    }
-    uploaded_as_.erase(name);
-  }
-  return names;
-}
-
-// With the lock.
-void OpenJob::unpack(const std::string& archive, std::vector<std::string>& names) {
-  const std::filesystem::path file = files_.find(archive);
-  const std::uintmax_t used = files_.uploaded_bytes();
-  const std::uintmax_t most_bytes = used < kMostJobBytes ? kMostJobBytes - used : 0;
-  const auto is_wanted = [](const std::string& inner) {
-    return kind_of_file(inner) != "unknown" && kind_of_file(inner) != "archive";
-  };
-  try {
-    bool meets_others = false;
-    unpack_zip(file, most_bytes, [&](const std::string& inner) -> std::filesystem::path {
-      meets_others = meets_others || (is_wanted(inner) && files_.has(inner));
-      return {};
-    });
-    const std::string folder = meets_others ? files_.new_folder(archive) + "/" : "";
-    unpack_zip(file, most_bytes, [&](const std::string& inner) -> std::filesystem::path {
-      if (!is_wanted(inner) || files_.has(folder + inner)) return {};
-      names.push_back(folder + inner);
-      return files_.uploads() / names.back();
-    });
-  } catch (const InputError& error) {
-    throw input_error(error.what(), files_);
-  }
-  std::error_code ignored;
-  std::filesystem::remove(file, ignored);
-}
-
 // With the lock.
 Json OpenJob::adopt_job_file(const std::string& job) {
   JobConfig config;
@@ -377,12 +223,12 @@ Json OpenJob::adopt_job_file(const std::string& job) {
 
 Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& client) {
   std::unique_lock lock(mutex_);
-  require_pen(client);
+  tabs_.require_pen(client);
   Json adopted = Json::array();
   const auto note = [&](const std::string& name, const std::string& as, const std::string& text) {
     adopted.push_back({{"file", name}, {"as", as}, {"text", text}});
   };
-  const std::vector<std::string> names = take_in(given);
+  const std::vector<std::string> names = dropped_.take_in(given);
   Json document = document_;
   const auto first = [&](const std::string& kind) {
     const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
@@ -407,7 +253,7 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
         const Model read = load(path, own, RunContext());
         lock.lock();
         // Meanwhile the job was anybody's.
-        require_pen(client);
+        tabs_.require_pen(client);
         document = document_;
         for (const auto& file : read.files) taken.insert(files_.grant(file));
         texture = texture_for(read, model, names);
@@ -433,10 +279,10 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
       }
     }
   } catch (const InputError& error) {
-    throw input_error(error.what(), files_);
+    throw bad_file(error.what(), files_);
   }
   accept(document, checked(document), client, false, 0, true);
-  tell("files", files_event());
+  tabs_.tell("files", files_event());
   return {{"revision", revision_}, {"document", document_}, {"adopted", adopted}};
 }
 
@@ -445,32 +291,14 @@ std::string OpenJob::job_toml(const std::filesystem::path& folder) const {
   return job_file(config_, folder, machine_names());
 }
 
-// With the lock. What was dropped on a job whose file lies elsewhere is copied beside that: nobody
-// would look for it here, and it goes when the job is forgotten.
-void OpenJob::bring_along(JobConfig& config) const {
-  const std::filesystem::path folder = where_.parent_path();
-  const auto is_ours = [&](const std::filesystem::path& file) {
-    return lies_in(file, files_.uploads());
-  };
-  if (is_ours(where_)) return;
-  if (is_ours(config.model)) config.model = copy_together(with_parts(config), folder);
-  each_side_file(config, [&](std::filesystem::path& file) {
-    if (!is_ours(file)) return;
-    std::filesystem::path to = folder / file.filename();
-    for (int number = 2; !may_become(to, file); ++number)
-      to = folder / fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string());
-    copy_to(file, to);
-    file = to;
-  });
-}
-
 Json OpenJob::save(const std::string& name) {
   const std::lock_guard lock(mutex_);
   if (const std::string own = name.substr(0, 200);
       !own.empty() && own != document_.value("name", "")) {
     document_["name"] = own;
     ++revision_;
-    tell("document", {{"revision", revision_}, {"document", document_}, {"client", ""}}, true);
+    tabs_.tell("document", {{"revision", revision_}, {"document", document_}, {"client", ""}},
+               true);
   }
   const std::string stem = file_name_of(name_of_job(document_));
   // The studio's own files follow the job's name.
@@ -489,7 +317,8 @@ Json OpenJob::save(const std::string& name) {
   }
   try {
     JobConfig config = config_;
-    bring_along(config);
+    if (!lies_in(where_, files_.uploads()))
+      bring_along(config, files_.uploads(), where_.parent_path());
     write_whole(where_, job_file(config, where_.parent_path(), machine_names()));
   } catch (const InputError& error) {
     throw ApiError(422, "bad-file", error.what());
@@ -531,11 +360,6 @@ void OpenJob::save_profile(const std::filesystem::path& folder, const std::strin
 }
 
 std::filesystem::path OpenJob::pack() const {
-  std::vector<std::pair<std::string, std::filesystem::path>> files;
-  const std::filesystem::path folder = home_ / "packed";
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
-  std::filesystem::create_directories(folder, ignored);
   JobConfig config;
   std::string name;
   std::vector<std::string> of_the_run;
@@ -545,31 +369,7 @@ std::filesystem::path OpenJob::pack() const {
     of_the_run = machine_names();
     name = file_name_of(name_of_job(document_));
   }
-  // Every file gets the place beside the job file from which the job names it.
-  std::set<std::string> used;
-  const auto put = [&](std::filesystem::path& file) {
-    std::string inner = file.filename().string();
-    for (int number = 2; used.contains(inner); ++number)
-      inner = fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string());
-    used.insert(inner);
-    files.emplace_back(inner, file);
-    file = folder / inner;
-  };
-  for (const std::filesystem::path& file : parts_of_model(config)) {
-    // A model may name any file: only what can be a part of one goes along.
-    if (file == config.object.load.texture || kind_of_file(file.string()) == "unknown") continue;
-    std::string inner = file.lexically_relative(config.model.parent_path()).string();
-    if (inner.empty() || inner.starts_with("..")) inner = file.filename().string();
-    if (used.insert(inner).second) files.emplace_back(inner, file);
-  }
-  if (!config.model.empty()) put(config.model);
-  each_side_file(config, put);
-  const std::filesystem::path toml = folder / (name + ".toml");
-  write_whole(toml, job_file(config, folder, of_the_run));
-  files.insert(files.begin(), {name + ".toml", toml});
-  std::filesystem::path archive = folder / (name + ".zip");
-  pack_zip(archive, files);
-  return archive;
+  return pack_job(std::move(config), of_the_run, name, home_ / "packed");
 }
 
 void OpenJob::reload() {
@@ -606,25 +406,13 @@ Json OpenJob::files_event() const {
 
 OpenJob::Upload OpenJob::begin_upload(const std::string& wanted) {
   const std::lock_guard lock(mutex_);
-  const std::uintmax_t used = files_.uploaded_bytes();
-  require_plain_name(wanted);
-  if (kind_of_file(wanted) == "unknown")
-    throw ApiError(422, "bad-file",
-                   "This is no model, picture, job file or ZIP archive that the studio knows.");
-  return {wanted, home_ / fmt::format("upload-{}.part", ++*numbers_),
-          std::min(kMostFileBytes, used < kMostJobBytes ? kMostJobBytes - used : 0)};
+  return {wanted, home_ / fmt::format("upload-{}.part", ids_.number()), dropped_.room_for(wanted)};
 }
 
 Json OpenJob::end_upload(const Upload& upload) {
   const std::lock_guard lock(mutex_);
-  const std::string name = files_.name_for_upload(upload.name);
-  const std::filesystem::path file = files_.uploads() / name;
-  std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  std::filesystem::rename(upload.file, file, error);
-  if (error) throw ApiError(500, "failed", "The file cannot be kept; free some space.");
-  if (name != upload.name) uploaded_as_[name] = upload.name;
-  tell("files", files_event());
+  const std::string name = dropped_.keep(upload.file, upload.name);
+  tabs_.tell("files", files_event());
   return {{"file", name}, {"kind", kind_of_file(name)}};
 }
 
@@ -639,32 +427,13 @@ std::shared_ptr<EventStream> OpenJob::connect(const std::string& client) {
   const Json tasks = tasks_->list();
   const std::lock_guard lock(mutex_);
   if (let_go_) throw gone();
-  if (tabs_.size() >= kMostTabs)
-    throw ApiError(503, "busy", "The job is open in too many tabs; close some.");
-  auto stream = std::make_shared<EventStream>();
-  // The same tab anew: its old line is dead.
-  for (const Tab& tab : tabs_)
-    if (tab.client == client) tab.stream->close();
-  std::erase_if(tabs_, [&](const Tab& tab) { return tab.client == client; });
-  tabs_.push_back({client, stream});
-  unwatched_since_.reset();
-  if (pen_.empty()) pen_ = client;
-  const bool mine = pen_ == client;
+  auto stream = tabs_.connect(client);
   stream->push("hello", {{"run", run_},
                          {"client", client},
-                         {"pen", mine},
+                         {"pen", tabs_.has_pen(client)},
                          {"revision", revision_},
                          {"saved_revision", saved_revision_}});
-  if (!mesh_event_.is_null()) stream->push("mesh", mesh_event_);
-  // The newest of each dip, the last one last.
-  std::set<std::size_t> told;
-  std::vector<Json> newest;
-  for (const Shown& shown : results_)
-    if (told.insert(shown.event["dip"].get<std::size_t>()).second) newest.push_back(shown.event);
-  for (auto event = newest.rbegin(); event != newest.rend(); ++event)
-    stream->push("result", *event);
-  if (!finish_event_.is_null()) stream->push("finish", finish_event_);
-  if (!problem_event_.is_null()) stream->push("problem", problem_event_);
+  for (const auto& [event, data] : shown_.events()) stream->push(event, data);
   for (const Json& task : tasks) stream->push("task", task);
   if (at_rest_) ask(false);
   return stream;
@@ -672,187 +441,94 @@ std::shared_ptr<EventStream> OpenJob::connect(const std::string& client) {
 
 void OpenJob::disconnect(const std::string& client, const std::shared_ptr<EventStream>& stream) {
   const std::lock_guard lock(mutex_);
-  const auto gone = std::erase_if(tabs_, [&](const Tab& tab) { return tab.stream == stream; });
-  if (gone == 0) return;
-  if (tabs_.empty()) {
-    autosave_if_possible();  // nobody has it open: what comes later recovers nothing
-    unwatched_since_ = std::chrono::steady_clock::now();
-    at_rest_ = true;
-    live_->rest();
-  }
-  if (pen_ == client) hand_pen_on();
-}
-
-// With the lock: to the tab that came next.
-void OpenJob::hand_pen_on() {
-  pen_ = tabs_.empty() ? "" : tabs_.front().client;
-  tell_pen();
-}
-
-// With the lock.
-void OpenJob::tell_pen() {
-  for (const Tab& tab : tabs_) {
-    Json event;
-    event["mine"] = tab.client == pen_;
-    tab.stream->push("pen", event);
-  }
+  if (!tabs_.disconnect(client, stream) || !tabs_.none()) return;
+  autosave_if_possible();  // nobody has it open: what comes later recovers nothing
+  at_rest_ = true;
+  live_->rest();
 }
 
 void OpenJob::take_pen(const std::string& client) {
   const std::lock_guard lock(mutex_);
-  const bool known =
-      std::any_of(tabs_.begin(), tabs_.end(), [&](const Tab& t) { return t.client == client; });
-  if (!known) throw ApiError(404, "not-found", "This tab gets no events yet; connect first.");
-  pen_ = client;
-  tell_pen();
-}
-
-// With the lock.
-void OpenJob::require_pen(const std::string& client) const {
-  if (pen_.empty() || pen_ == client) return;
-  throw ApiError(409, "no-pen", "The job is open in another tab; take over there or here.");
+  tabs_.take_pen(client);
 }
 
 std::optional<std::chrono::steady_clock::time_point> OpenJob::idle_since() const {
   if (tasks_->any_running()) return std::nullopt;
   const std::lock_guard lock(mutex_);
-  return unwatched_since_;
+  return tabs_.none_since();
 }
 
 void OpenJob::say_goodbye(const std::string& text) {
   const std::lock_guard lock(mutex_);
-  for (const Tab& tab : tabs_) {
-    Json event;
-    event["text"] = text;
-    tab.stream->push("bye", event);
-    tab.stream->close();
-  }
-  tabs_.clear();
+  tabs_.close(text);
   autosave_if_possible();
 }
 
 bool OpenJob::let_go() {
   const std::lock_guard lock(mutex_);
-  if (!tabs_.empty() || tasks_->any_running()) return false;
+  if (!tabs_.none() || tasks_->any_running()) return false;
   let_go_ = true;
   return true;
 }
 
-// With the lock.
-void OpenJob::tell(const std::string& event, const Json& data, bool newest_only,
-                   const std::string& about) {
-  for (const Tab& tab : tabs_) tab.stream->push(event, data, newest_only, about);
-}
-
 // ---- what was computed ----
 
-// With the lock.
-std::string OpenJob::new_id(char kind) {
-  return fmt::format("{}-{}{}", run_.substr(0, 8), kind, ++*numbers_);
-}
-
-bool OpenJob::has_given(const std::string& id) const {
-  const std::lock_guard lock(mutex_);
-  const std::string prefix = run_.substr(0, 8) + "-";
-  if (!id.starts_with(prefix) || id.size() < prefix.size() + 2) return false;
-  const char kind = id[prefix.size()];
-  long number = 0;
-  const char* const end = id.data() + id.size();
-  const auto [rest, error] = std::from_chars(id.data() + prefix.size() + 1, end, number);
-  return (kind == 'm' || kind == 'r' || kind == 'f') && error == std::errc() && rest == end &&
-         number > 0 && number <= *numbers_;
-}
+bool OpenJob::has_given(const std::string& id) const { return ids_.has_given(id); }
 
 std::string OpenJob::show_mesh(const Model& model, const Object& object) {
-  std::string id;
-  {
-    const std::lock_guard lock(mutex_);
-    id = new_id('m');
-  }
+  std::string id = ids_.mesh();
   auto made = std::make_shared<const ShownMesh>(
       shown_mesh(model, object, id, address() + "/meshes/" + id, RunContext()));
   const std::lock_guard lock(mutex_);
-  meshes_.emplace_front(id, std::move(made));
-  // The model's own mesh and the finish stay.
-  for (auto old = std::prev(meshes_.end()); meshes_.size() > kMeshesKept; --old)
-    if (old->first != mesh_ && old->first != finish_meshes_[0] && old->first != finish_meshes_[1])
-      old = meshes_.erase(old);
+  shown_.add_mesh(id, std::move(made));
   return id;
 }
 
 // With the lock.
 void OpenJob::tell_mesh(long revision, const std::string& wanted) {
-  mesh_event_ = {{"revision", revision}, {"mesh", mesh_}, {"wanted", wanted}};
-  tell("mesh", mesh_event_, true);
+  tell_held("mesh", {{"revision", revision}, {"mesh", shown_.model_mesh()}, {"wanted", wanted}});
 }
 
+// With the lock.
+void OpenJob::tell_held(const std::string& event, const Json& data) {
+  tabs_.tell(event, shown_.hold(event, data), true);
+}
+
+// Of the live results' thread.
 LiveSinks OpenJob::sinks() {
   LiveSinks sinks;
   sinks.model = [this](long revision, const std::shared_ptr<const Model>& model,
                        const std::vector<std::string>&) {
     const std::string id = show_mesh(*model, *model->object);
     const std::lock_guard lock(mutex_);
-    mesh_ = id;
+    shown_.set_model_mesh(id);
     tell_mesh(revision, id);
   };
   sinks.painted = [this](long revision, const Model& model, const Object& painted) {
     const bool own = &painted == model.object.get();
     const std::string id = own ? "" : show_mesh(model, painted);
     const std::lock_guard lock(mutex_);
-    tell_mesh(revision, own ? mesh_ : id);
+    tell_mesh(revision, own ? shown_.model_mesh() : id);
   };
   sinks.look = [this](long revision, const Look& look, double took_s) {
-    Shown shown;
-    shown.revision = revision;
-    {
-      const std::lock_guard lock(mutex_);
-      shown.id = new_id('r');
-    }
-    shown.made = look.made;
-    shown.bundle = std::make_shared<const std::vector<std::uint8_t>>(
-        result_bundle(look, {{"result", shown.id}, {"revision", revision}}, RunContext()));
-    shown.event = {{"revision", revision},
-                   {"quality", look.quality == LookQuality::kNormal ? "normal" : "draft"},
-                   {"dip", look.dip},
-                   {"result", shown.id},
-                   {"took_s", took_s}};
-    const std::lock_guard lock(mutex_);
-    problem_event_ = nullptr;
-    tell("result", shown.event, true, std::to_string(look.dip));
-    results_.push_front(std::move(shown));
-    keep_newest_results();
+    show_look(revision, look, took_s);
   };
   sinks.finish = [this](long revision, const Model& model, const DipsTogether* look) {
-    if (look) {
-      const std::array<std::string, 2> meshes = {show_mesh(model, look->colors),
-                                                 show_mesh(model, look->parts)};
-      std::string id;
-      {
-        const std::lock_guard lock(mutex_);
-        finish_meshes_ = meshes;
-        id = new_id('f');
-      }
-      auto bundle = std::make_shared<const std::vector<std::uint8_t>>(
-          finish_bundle(*look, {{"finish", id}, {"mesh", meshes[0]}, {"parts", meshes[1]}}));
-      const std::lock_guard lock(mutex_);
-      finish_ = {id, std::move(bundle)};
-    }
+    if (look) show_finish(model, *look);
     const std::lock_guard lock(mutex_);
-    finish_event_ = {{"revision", revision}, {"finish", finish_.first}};
-    tell("finish", finish_event_, true);
+    tell_held("finish", {{"revision", revision}, {"finish", shown_.finish_id()}});
   };
   sinks.no_finish = [this](long revision, const std::string& text) {
     const std::lock_guard lock(mutex_);
-    finish_event_ = {{"revision", revision}, {"problem", without_folder(text, files_.uploads())}};
-    tell("finish", finish_event_, true);
+    tell_held("finish",
+              {{"revision", revision}, {"problem", without_folder(text, files_.uploads())}});
   };
   sinks.problem = [this](long revision, const Problem& problem) {
     const std::lock_guard lock(mutex_);
-    problem_event_ = {{"revision", revision},
-                      {"code", problem.code},
-                      {"text", without_folder(problem.text, files_.uploads())},
-                      {"mends", problem.mends}};
-    tell("problem", problem_event_, true);
+    tell_held("problem", {{"revision", revision},
+                          {"code", problem.code},
+                          {"text", without_folder(problem.text, files_.uploads())},
+                          {"mends", problem.mends}});
   };
   sinks.working = [this](long revision, const std::string& quality, const std::string& activity,
                          double fraction) {
@@ -862,60 +538,65 @@ LiveSinks OpenJob::sinks() {
       event["fraction"] = fraction;
     }
     const std::lock_guard lock(mutex_);
-    tell("working", event, true);
+    tabs_.tell("working", event, true);
   };
   return sinks;
 }
 
-// With the lock. The newest of each dip, and besides them the last few.
-void OpenJob::keep_newest_results() {
-  std::set<std::size_t> seen;
-  std::size_t kept = 0;
-  for (auto shown = results_.begin(); shown != results_.end();) {
-    const bool newest = seen.insert(shown->event["dip"].get<std::size_t>()).second &&
-                        seen.size() <= std::size_t(kMostDips);
-    if (newest || kept < kResultsKept) {
-      ++kept;
-      ++shown;
-    } else {
-      shown = results_.erase(shown);
-    }
-  }
+void OpenJob::show_look(long revision, const Look& look, double took_s) {
+  ShownResults::Result result;
+  result.id = ids_.result();
+  result.dip = look.dip;
+  result.made = look.made;
+  result.bundle = std::make_shared<const std::vector<std::uint8_t>>(
+      result_bundle(look, {{"result", result.id}, {"revision", revision}}, RunContext()));
+  result.event = {{"revision", revision},
+                  {"quality", look.quality == LookQuality::kNormal ? "normal" : "draft"},
+                  {"dip", look.dip},
+                  {"result", result.id},
+                  {"took_s", took_s}};
+  const std::lock_guard lock(mutex_);
+  shown_.hold("problem", nullptr);
+  tabs_.tell("result", result.event, true, std::to_string(look.dip));
+  shown_.add_result(std::move(result));
+}
+
+void OpenJob::show_finish(const Model& model, const DipsTogether& look) {
+  const std::array<std::string, 2> meshes = {show_mesh(model, look.colors),
+                                             show_mesh(model, look.parts)};
+  const std::string id = ids_.finish();
+  auto bundle = std::make_shared<const std::vector<std::uint8_t>>(
+      finish_bundle(look, {{"finish", id}, {"mesh", meshes[0]}, {"parts", meshes[1]}}));
+  const std::lock_guard lock(mutex_);
+  shown_.set_finish(id, std::move(bundle), meshes);
 }
 
 std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::mesh(const std::string& id) const {
   const std::lock_guard lock(mutex_);
-  for (const auto& [known, shown] : meshes_)
-    if (known == id) return {shown, &shown->bundle};
-  return nullptr;
+  return shown_.mesh(id);
 }
 
 std::shared_ptr<const ShownTexture> OpenJob::texture(const std::string& id,
                                                      std::size_t number) const {
   const std::lock_guard lock(mutex_);
-  for (const auto& [known, shown] : meshes_)
-    if (known == id && number < shown->textures.size()) return shown->textures[number];
-  return nullptr;
+  return shown_.texture(id, number);
 }
 
 std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::result(const std::string& id) const {
   const std::lock_guard lock(mutex_);
-  for (const Shown& shown : results_)
-    if (shown.id == id) return shown.bundle;
-  return nullptr;
+  return shown_.result(id);
 }
 
 std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::finish(const std::string& id) const {
   const std::lock_guard lock(mutex_);
-  return id == finish_.first ? finish_.second : nullptr;
+  return shown_.finish(id);
 }
 
 std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::dip(const std::string& id) const {
   std::shared_ptr<const Designed> made;
   {
     const std::lock_guard lock(mutex_);
-    for (const Shown& shown : results_)
-      if (shown.id == id) made = shown.made;
+    made = shown_.made(id);
   }
   if (!made) return nullptr;
   return std::make_shared<const std::vector<std::uint8_t>>(dip_bundle(made->dipped));
@@ -970,7 +651,7 @@ std::string OpenJob::start_task(const Json& request) {
     const bool ours = where_.empty() || where_.parent_path() == files_.uploads();
     task.folder = ours ? home_ / "print" / name : where_.parent_path() / (name + "-print");
   } else {
-    task.folder = home_ / "found" / fmt::format("{}-{}", kind, ++*numbers_);
+    task.folder = home_ / "found" / fmt::format("{}-{}", kind, ids_.number());
   }
   std::error_code ignored;
   std::filesystem::create_directories(task.folder.parent_path(), ignored);

@@ -1,30 +1,26 @@
 // A job that is being worked on: its document, who looks at it, what was computed of it.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <list>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "studio/dropped_files.h"
 #include "studio/event_stream.h"
 #include "studio/job_files.h"
 #include "studio/job_store.h"
 #include "studio/json.h"
 #include "studio/live.h"
-#include "studio/shown_mesh.h"
+#include "studio/shown_results.h"
+#include "studio/tabs.h"
 #include "studio/tasks.h"
 
 namespace hydrodip {
-
-inline constexpr std::uintmax_t kMostFileBytes = std::uintmax_t(512) << 20U;
-inline constexpr std::uintmax_t kMostJobBytes = std::uintmax_t(2) << 30U;
 
 // For any number of threads. Everything throws ApiError.
 class OpenJob {
@@ -108,52 +104,33 @@ class OpenJob {
   std::filesystem::path task_folder(const std::string& task) const;
 
  private:
-  struct Tab {
-    std::string client;
-    std::shared_ptr<EventStream> stream;
-  };
-  struct Shown {
-    long revision = 0;
-    std::string id;
-    std::shared_ptr<const std::vector<std::uint8_t>> bundle;
-    std::shared_ptr<const Designed> made;
-    Json event;
-  };
-
   std::string address() const { return "/api/jobs/" + job_; }
-  std::string new_id(char kind);
   JobConfig checked(const Json& document) const;
-  std::vector<std::string> take_in(const std::vector<std::string>& given);
-  void unpack(const std::string& archive, std::vector<std::string>& names);
   Json adopt_job_file(const std::string& job);
   void accept(const Json& document, const JobConfig& config, const std::string& client, bool live,
               std::size_t dip, bool tell_client);
   void ask(bool live);
   void autosave() const;
   void autosave_if_possible() const;
-  void bring_along(JobConfig& config) const;
   std::vector<std::string> machine_names() const;
   void tell_saved();
-  void tell(const std::string& event, const Json& data, bool newest_only = false,
-            const std::string& about = "");
-  void hand_pen_on();
-  void require_pen(const std::string& client) const;
   Json files_json() const;
   Json files_event() const;
   std::string show_mesh(const Model& model, const Object& object);
   void tell_mesh(long revision, const std::string& wanted);
-  void tell_pen();
-  void keep_newest_results();
+  void tell_held(const std::string& event, const Json& data);
+  void show_look(long revision, const Look& look, double took_s);
+  void show_finish(const Model& model, const DipsTogether& look);
   LiveSinks sinks();
 
   const JobStore store_;
   const std::string job_, run_;
   const std::filesystem::path home_;
-  const std::shared_ptr<std::atomic<long>> numbers_;
+  ShownIds ids_;
 
   mutable std::mutex mutex_;
   JobFiles files_;
-  std::map<std::string, std::string> uploaded_as_;  // files that got another name than they had
+  DroppedFiles dropped_{files_};
   Json document_ = Json::object();
   Json machine_ = Json::object();  // machine_values_of() the file that it was opened from
   JobConfig config_;
@@ -161,18 +138,11 @@ class OpenJob {
   long revision_ = 1, saved_revision_ = 1;
   std::filesystem::path where_;   // the job file that it was opened from or saved to
   std::filesystem::path origin_;  // what the command line named
-  std::vector<Tab> tabs_;
-  std::string pen_;  // client
-  std::optional<std::chrono::steady_clock::time_point> unwatched_since_;
+  Tabs tabs_;
   bool at_rest_ = false;  // nobody looks: what is shown may be older than the document
   bool let_go_ = false;   // the store has forgotten it
   long reloads_ = 0;
-  std::list<std::pair<std::string, std::shared_ptr<const ShownMesh>>> meshes_;
-  std::string mesh_;  // of the model in its own colours
-  Json mesh_event_, problem_event_, finish_event_;
-  std::array<std::string, 2> finish_meshes_;
-  std::pair<std::string, std::shared_ptr<const std::vector<std::uint8_t>>> finish_;
-  std::list<Shown> results_;
+  ShownResults shown_;
 
   std::unique_ptr<Tasks> tasks_;
   std::unique_ptr<Live> live_;  // last: ends first

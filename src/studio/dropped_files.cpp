@@ -1,0 +1,116 @@
+#include "studio/dropped_files.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/error.h"
+#include "model_io/text.h"
+#include "report/plain_words.h"
+#include "studio/zip.h"
+
+namespace hydrodip {
+namespace {
+
+constexpr std::array<const char*, 5> kTextureWords = {"texture", "albedo", "diffuse", "basecolor",
+                                                      "color"};
+
+}  // namespace
+
+ApiError bad_file(const std::string& sentence, const JobFiles& files) {
+  return {422, "bad-file", in_plain_words(without_folder(sentence, files.uploads()))};
+}
+
+std::uintmax_t DroppedFiles::room_left() const {
+  const std::uintmax_t used = files_.uploaded_bytes();
+  return used < kMostJobBytes ? kMostJobBytes - used : 0;
+}
+
+std::uintmax_t DroppedFiles::room_for(const std::string& wanted) const {
+  require_plain_name(wanted);
+  if (kind_of_file(wanted) == "unknown")
+    throw ApiError(422, "bad-file",
+                   "This is no model, picture, job file or ZIP archive that the studio knows.");
+  return std::min(kMostFileBytes, room_left());
+}
+
+std::string DroppedFiles::keep(const std::filesystem::path& whole, const std::string& wanted) {
+  std::string name = files_.name_for_upload(wanted);
+  const std::filesystem::path file = files_.uploads() / name;
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  std::filesystem::rename(whole, file, error);
+  if (error) throw ApiError(500, "failed", "The file cannot be kept; free some space.");
+  if (name != wanted) wanted_[name] = wanted;
+  return name;
+}
+
+std::vector<std::string> DroppedFiles::take_in(const std::vector<std::string>& kept) {
+  const auto had_other_name = [&](const std::string& name) { return wanted_.contains(name); };
+  std::string folder;
+  if (kept.size() > 1 && std::any_of(kept.begin(), kept.end(), had_other_name))
+    folder = files_.new_folder(had_other_name(kept.front()) ? wanted_[kept.front()] : kept.front());
+  std::vector<std::string> names;
+  for (const std::string& name : kept) {
+    const std::filesystem::path file = files_.find(name);
+    if (kind_of_file(name) == "archive") {
+      unpack(name, names);
+    } else if (folder.empty()) {
+      names.push_back(name);
+    } else {
+      names.push_back(folder + "/" + (had_other_name(name) ? wanted_[name] : name));
+      require_plain_name(names.back());
+      const std::filesystem::path to = files_.uploads() / names.back();
+      std::error_code error;
+      std::filesystem::create_directories(to.parent_path(), error);
+      std::filesystem::rename(file, to, error);
+      if (error) throw ApiError(500, "failed", "The files cannot be kept; free some space.");
+    }
+    wanted_.erase(name);
+  }
+  return names;
+}
+
+void DroppedFiles::unpack(const std::string& archive, std::vector<std::string>& names) const {
+  const std::filesystem::path file = files_.find(archive);
+  const std::uintmax_t most_bytes = room_left();
+  const auto is_wanted = [](const std::string& inner) {
+    return kind_of_file(inner) != "unknown" && kind_of_file(inner) != "archive";
+  };
+  try {
+    bool meets_others = false;
+    unpack_zip(file, most_bytes, [&](const std::string& inner) -> std::filesystem::path {
+      meets_others = meets_others || (is_wanted(inner) && files_.has(inner));
+      return {};
+    });
+    const std::string folder = meets_others ? files_.new_folder(archive) + "/" : "";
+    unpack_zip(file, most_bytes, [&](const std::string& inner) -> std::filesystem::path {
+      if (!is_wanted(inner) || files_.has(folder + inner)) return {};
+      names.push_back(folder + inner);
+      return files_.uploads() / names.back();
+    });
+  } catch (const InputError& error) {
+    throw bad_file(error.what(), files_);
+  }
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+}
+
+std::string texture_for(const Model& model, const std::string& name,
+                        const std::vector<std::string>& names) {
+  if (model.object->uvs.empty() || model.object->has_appearance()) return "";
+  std::vector<std::string> pictures;
+  for (const std::string& other : names)
+    if (kind_of_file(other) == "picture") pictures.push_back(other);
+  if (pictures.size() != 1) return "";
+  const auto stem_of = [](const std::string& file) {
+    return lower(std::filesystem::path(file).stem().string());
+  };
+  const std::string stem = stem_of(pictures[0]);
+  const bool meant = stem.starts_with(stem_of(name)) ||
+                     std::any_of(kTextureWords.begin(), kTextureWords.end(), [&](const char* word) {
+                       return stem.find(word) != std::string::npos;
+                     });
+  return meant ? pictures[0] : "";
+}
+
+}  // namespace hydrodip
