@@ -36,11 +36,16 @@ struct StoredPicture {
   bool damaged = false;       // some pixels are not what was meant
 };
 
+StoredPicture decode_png(const PictureBytes& bytes, const std::string& name);
+StoredPicture decode_jpeg(const PictureBytes& bytes, const std::string& name);
 StoredPicture decode_webp(const PictureBytes& bytes, const std::string& name);
 StoredPicture decode_gif(const PictureBytes& bytes, const std::string& name);  // the first frame
 StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name);
 StoredPicture decode_bmp(const PictureBytes& bytes, const std::string& name);
 StoredPicture decode_tga(const PictureBytes& bytes, const std::string& name);
+// By their marks.
+bool is_png(const PictureBytes& bytes);
+bool is_jpeg(const PictureBytes& bytes);
 bool looks_like_tga(const PictureBytes& bytes);  // the format has no mark
 
 // The orientation that EXIF data states (from "II" or "MM" on), 1 if none.

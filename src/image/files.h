@@ -1,4 +1,4 @@
-// Image files in and out. files.cpp knows libpng and libjpeg; other kinds have a file each.
+// Image files in and out. Each kind has a file of its own (decoders.h).
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,9 @@ struct Resolution {
 
 // As a PNG, JPEG (JFIF or EXIF) or TIFF records it.
 Resolution recorded_resolution(const std::vector<std::uint8_t>& bytes);
-// TIFF's alone.
+// Of files of one kind.
+Resolution png_resolution(const std::vector<std::uint8_t>& bytes);
+Resolution jpeg_resolution(const std::vector<std::uint8_t>& bytes);
 Resolution tiff_resolution(const std::vector<std::uint8_t>& bytes);
 
 // That of a scan; 0 when there is none, or if both directions differ.

@@ -10,6 +10,9 @@
 
 namespace hydrodip {
 
+// Turns of a loop over triangles between two looks whether the job was cancelled.
+inline constexpr int kTrianglesBetweenChecks = 1 << 14;
+
 // One side of a triangle. Sorting brings those on the same edge together.
 struct TriangleSide {
   std::uint64_t edge;   // smaller vertex in the high half, larger in the low half
