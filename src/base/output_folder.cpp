@@ -1,11 +1,8 @@
 #include "base/output_folder.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <stdlib.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -81,19 +78,6 @@ void remove_created(std::vector<fs::path>& created) {
 
 constexpr const char* kStagingPrefix = ".hydrodip-";
 
-// Locks the folder for as long as this process lives; -1 if another one has, or it is gone.
-int lock_folder(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-  if (descriptor < 0) return -1;
-  struct stat locked = {}, named = {};
-  // Who removes an abandoned folder may have been faster.
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::fstat(descriptor, &locked) == 0 &&
-      ::stat(folder.c_str(), &named) == 0 && locked.st_ino == named.st_ino)
-    return descriptor;
-  ::close(descriptor);
-  return -1;
-}
-
 // A staging folder that nobody has locked was left by a process that was killed.
 void clear_abandoned(const fs::path& folder) {
   std::error_code ignored;
@@ -101,26 +85,26 @@ void clear_abandoned(const fs::path& folder) {
   for (fs::directory_iterator it(folder, ignored), end; !ignored && it != end;
        it.increment(ignored)) {
     const std::string name = it->path().filename().string();
+    if (!fs::is_directory(it->symlink_status(ignored))) continue;
     if (name.starts_with(kStagingPrefix) && name.size() == std::strlen(kStagingPrefix) + 6)
       found.push_back(it->path());
   }
   for (const fs::path& staging : found) {
-    const int lock = lock_folder(staging);
-    if (lock < 0) continue;
-    fs::remove_all(staging, ignored);
-    ::close(lock);
+    const FolderLock lock(staging);
+    if (lock.state() == FolderLock::State::kHeld) fs::remove_all(staging, ignored);
   }
 }
 
-bool make_staging_folder(const fs::path& folder, fs::path& staging, int& lock) {
+bool make_staging_folder(const fs::path& folder, fs::path& staging, FolderLock& lock) {
   for (int tries = 0; tries < 10; ++tries) {
     std::string name = (folder / (std::string(kStagingPrefix) + "XXXXXX")).string();
     if (mkdtemp(name.data()) == nullptr) return false;
     staging = name;
-    lock = lock_folder(staging);
-    if (lock >= 0 || errno == ENOTSUP || errno == ENOLCK) return true;
+    lock = FolderLock(staging);
+    if (lock.state() == FolderLock::State::kHeld || lock.state() == FolderLock::State::kNone)
+      return true;
   }
-  return true;  // a file system without locks
+  return true;
 }
 
 // Most of what hydrodip writes has its name in it, near one end; JSON results say their command.
@@ -264,7 +248,6 @@ OutputFolder::OutputFolder(const fs::path& folder, EarlierResult earlier)
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   if (!staging_.empty()) fs::remove_all(staging_, ignored);
-  if (lock_ >= 0) ::close(lock_);
   remove_created(created_);
 }
 

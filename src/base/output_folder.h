@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/folder_lock.h"
+
 namespace hydrodip {
 
 // What becomes of an earlier result of ours in the same place.
@@ -56,7 +58,7 @@ class OutputFolder {
   std::filesystem::path folder_;
   EarlierResult earlier_;
   std::filesystem::path staging_;
-  int lock_ = -1;  // on the staging folder, while this process lives
+  FolderLock lock_;  // on the staging folder
   std::vector<std::filesystem::path> created_;
   std::vector<std::string> names_, superseded_;
   std::vector<std::filesystem::path> inputs_;

@@ -45,4 +45,12 @@ std::vector<std::uint8_t> in_utf8(std::vector<std::uint8_t> bytes) {
   return out;
 }
 
+std::string cut_utf8(std::string text, std::size_t most_bytes) {
+  if (text.size() <= most_bytes) return text;
+  std::size_t end = most_bytes;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
+  text.resize(end);
+  return text;
+}
+
 }  // namespace hydrodip

@@ -1,7 +1,9 @@
 // Characters beyond ASCII in bytes: UTF-8 is what all texts are read as.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace hydrodip {
@@ -19,5 +21,8 @@ void append_utf8(std::uint32_t code, Text& out) {
 // A text in UTF-16 with its byte order mark, as Windows' editors and shells save it, brought to
 // UTF-8; other bytes stay as they are.
 std::vector<std::uint8_t> in_utf8(std::vector<std::uint8_t> bytes);
+
+// At most so many bytes of a text, without half a character at its end.
+std::string cut_utf8(std::string text, std::size_t most_bytes);
 
 }  // namespace hydrodip

@@ -1,17 +1,14 @@
 #include "job/profile_jobs.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/folder_lock.h"
 #include "base/json_text.h"
 #include "base/nearest_name.h"
 #include "base/output_folder.h"
@@ -58,27 +55,13 @@ std::string summary(const std::vector<std::string>& names) {
   return parts.empty() ? "sets nothing" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-// Held while a profile is read, changed and written: what another process changes meanwhile would
-// be lost. Waits for that one, which takes milliseconds. Makes the folder.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& folder) {
-    std::error_code ignored;  // who writes into it says what is wrong
-    fs::create_directories(folder, ignored);
-    descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor_ < 0) return;
-    while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
-    }
-  }
-  ~FolderLock() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int descriptor_ = -1;
-};
+// While a profile is read, changed and written: what another process changes meanwhile would be
+// lost. Makes the folder.
+FolderLock locked(const fs::path& folder) {
+  std::error_code ignored;  // who writes into it says what is wrong
+  fs::create_directories(folder, ignored);
+  return FolderLock::waited_for(folder);
+}
 
 JobResult written(const char* command, const fs::path& file, const std::string& what,
                   const std::string& text) {
@@ -167,7 +150,7 @@ JobResult save_profile(const fs::path& folder, const std::string& name, const Pr
     edited_profile({}, edit);
     require_files(edit);
   }
-  const FolderLock lock(folder);
+  const FolderLock lock = locked(folder);
   const bool exists = fs::exists(file, ignored);
   const std::string text = edited_profile(exists ? file : fs::path(), edit);
   require_files(edit);
@@ -178,7 +161,7 @@ JobResult import_profile(const fs::path& folder, const fs::path& file, const std
   require_bare_name(name);
   const fs::path to = profile_path(folder, name.empty() ? file.stem().string() : name);
   const std::string text = edited_profile(file, {});
-  const FolderLock lock(folder);
+  const FolderLock lock = locked(folder);
   std::error_code ignored;
   if (fs::exists(to, ignored))
     throw InputError(fmt::format(

@@ -466,18 +466,16 @@ HttpAnswer Api::new_job(HttpRequest& request) {
 }
 
 void Api::forget(const std::string& job) {
-  std::shared_ptr<OpenJob> gone;  // ended without the lock
-  {
-    const std::lock_guard lock(mutex_);
-    const auto open = jobs_.find(job);
-    if (open != jobs_.end()) {
-      if (!open->second->let_go())
-        throw ApiError(409, "busy", "The job is open; close its tab first.");
-      gone = std::move(open->second);
-      jobs_.erase(open);
-    }
+  const std::lock_guard lock(mutex_);
+  if (const auto open = jobs_.find(job); open != jobs_.end()) {
+    if (!open->second->let_go())
+      throw ApiError(409, "busy", "The job is open; close its tab first.");
+    store_.forget(job);
+    jobs_.erase(open);
+    return;
   }
-  gone.reset();
+  if (store_.hold(job).state() == FolderLock::State::kTaken)
+    throw ApiError(409, "busy", "The job is open in another studio; end that one first.");
   store_.forget(job);
 }
 
@@ -659,17 +657,12 @@ HttpAnswer Api::events(const HttpRequest& request, const std::shared_ptr<OpenJob
 }
 
 void Api::tidy() {
-  std::vector<std::shared_ptr<OpenJob>> gone;  // ended without the lock
   const std::lock_guard lock(mutex_);
   const auto now = std::chrono::steady_clock::now();
   for (auto at = jobs_.begin(); at != jobs_.end();) {
     const auto since = at->second->idle_since();
-    if (since && now - *since > kUnwatched && at->second.use_count() == 1) {
-      gone.push_back(std::move(at->second));
-      at = jobs_.erase(at);
-    } else {
-      ++at;
-    }
+    const bool unused = since && now - *since > kUnwatched && at->second.use_count() == 1;
+    at = unused ? jobs_.erase(at) : std::next(at);
   }
 }
 

@@ -15,7 +15,7 @@ namespace hydrodip {
 namespace {
 
 constexpr const char* kOrigin = "this job";
-constexpr std::size_t kMostForPage = std::size_t(64) << 10U, kLongestName = 200;
+constexpr std::size_t kMostForPage = std::size_t(64) << 10U;
 
 [[noreturn]] void refuse(const std::string& field, const std::string& sentence) {
   throw ApiError(422, "bad-value", sentence, field);

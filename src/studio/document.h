@@ -13,6 +13,7 @@
 namespace hydrodip {
 
 inline constexpr std::size_t kLargestDocument = std::size_t(1) << 20U;
+inline constexpr std::size_t kLongestName = 200;  // of a job, in bytes
 
 // The configuration that a document stands for, checked as a job file is. Throws ApiError
 // bad-value, with the field.

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "model_io/text.h"
 #include "report/plain_words.h"
 #include "studio/zip.h"
@@ -37,6 +38,9 @@ std::string DroppedFiles::keep(const std::filesystem::path& whole, const std::st
   std::string name = files_.name_for_upload(wanted);
   const std::filesystem::path file = files_.uploads() / name;
   std::error_code error;
+  // A link that a person put there may lead anywhere.
+  if (!lies_in(file.parent_path(), files_.uploads()))
+    throw ApiError(400, "bad-name", "A file of a job lies in the job's own folder: rename it.");
   std::filesystem::create_directories(file.parent_path(), error);
   std::filesystem::rename(whole, file, error);
   if (error) throw ApiError(500, "failed", "The file cannot be kept; free some space.");

@@ -1,10 +1,15 @@
 #include "studio/http.h"
 
 #include <httplib.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 
+#include <charconv>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -17,6 +22,7 @@ constexpr std::size_t kThreads = 64;
 // After that long without a request its thread is free again; opening another is cheap here.
 constexpr int kKeepAlive_s = 2;
 constexpr int kTimeout_s = 20;
+constexpr auto kLastAnswers = std::chrono::milliseconds(300);
 constexpr std::size_t kKeepAliveRequests = 1000;
 constexpr std::size_t kLongestPath = 1024;
 constexpr int kTriesToStop = 200;
@@ -53,17 +59,17 @@ void send_file(httplib::Response& to, const HttpAnswer& answer) {
   std::shared_ptr<std::FILE> file(std::fopen(answer.file.c_str(), "rb"), [](std::FILE* opened) {
     if (opened) std::fclose(opened);
   });
-  std::error_code gone;
-  const auto size = std::filesystem::file_size(answer.file, gone);
-  if (!file || gone) {
+  // Of what was opened: another may have its name by now.
+  struct stat opened = {};
+  if (!file || ::fstat(::fileno(file.get()), &opened) != 0) {
     to.status = 404;
     return;
   }
-  if (size == 0) {
+  if (opened.st_size == 0) {
     to.set_content("", answer.type.c_str());
     return;
   }
-  to.set_content_provider(std::size_t(size), answer.type,
+  to.set_content_provider(std::size_t(opened.st_size), answer.type,
                           [file](std::size_t at, std::size_t left, httplib::DataSink& sink) {
                             std::vector<char> piece(std::min(left, kPiece));
                             if (std::fseek(file.get(), long(at), SEEK_SET) != 0) return false;
@@ -98,6 +104,31 @@ void send(httplib::Response& to, const HttpAnswer& answer, bool and_close) {
   }
 }
 
+// Whether that descriptor is a connection to the port of this machine.
+bool is_connection_to(int port, int descriptor) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) != 0) return false;
+  in_port_t own = 0;
+  if (address.ss_family == AF_INET)
+    own = reinterpret_cast<const sockaddr_in*>(&address)->sin_port;
+  else if (address.ss_family == AF_INET6)
+    own = reinterpret_cast<const sockaddr_in6*>(&address)->sin6_port;
+  return own != 0 && ntohs(own) == port;
+}
+
+// cpp-httplib keeps its connections to itself, and waits kTimeout_s for each that stalls.
+void shut_connections(int port, int how) {
+  std::error_code error;
+  for (auto entry = std::filesystem::directory_iterator("/proc/self/fd", error);
+       !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    int descriptor = -1;
+    std::from_chars(name.data(), name.data() + name.size(), descriptor);
+    if (descriptor >= 0 && is_connection_to(port, descriptor)) ::shutdown(descriptor, how);
+  }
+}
+
 }  // namespace
 
 struct HttpServer::Impl {
@@ -105,6 +136,16 @@ struct HttpServer::Impl {
   HttpHandler handler;
   std::function<std::optional<HttpAnswer>(const HttpRequest&)> admit;
   int port = 0;
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool serves = false;
+
+  void set_serving(bool now) {
+    const std::lock_guard lock(mutex);
+    serves = now;
+    changed.notify_all();
+  }
 
   // Requests without a body are answered before any routing, which would only look for patterns.
   httplib::Server::HandlerResponse before(const httplib::Request& from, httplib::Response& to) {
@@ -186,13 +227,24 @@ bool HttpServer::bind(const std::string& address, int port) {
 }
 
 int HttpServer::port() const { return impl_->port; }
-void HttpServer::run() { impl_->server.listen_after_bind(); }
+
+void HttpServer::run() {
+  impl_->set_serving(true);
+  impl_->server.listen_after_bind();
+  impl_->set_serving(false);
+}
 
 void HttpServer::stop() {
   // A server that is about to begin would not hear of it.
   for (int tries = 0; tries < kTriesToStop && !impl_->server.is_running(); ++tries)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   impl_->server.stop();
+  // Whoever stalls in the middle of a request is not waited for; answers on their way are, a
+  // little.
+  shut_connections(impl_->port, SHUT_RD);
+  std::unique_lock lock(impl_->mutex);
+  if (!impl_->changed.wait_for(lock, kLastAnswers, [&] { return !impl_->serves; }))
+    shut_connections(impl_->port, SHUT_RDWR);
 }
 
 }  // namespace hydrodip

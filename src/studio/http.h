@@ -58,7 +58,7 @@ class HttpServer {
   int port() const;
   // Serves until stop() is called.
   void run();
-  // Streams have to end by themselves. Does not wait for run() to return.
+  // Streams have to end by themselves. run() returns soon after: who stalls is cut off.
   void stop();
 
  private:

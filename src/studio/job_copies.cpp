@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/unicode.h"
 #include "settings/job_file.h"
 #include "studio/job_files.h"
 #include "studio/job_store.h"
@@ -16,6 +17,8 @@
 
 namespace hydrodip {
 namespace {
+
+constexpr std::size_t kLongestFileName = 120;
 
 // The files that the model itself names, as they are now; none of one that cannot be read.
 std::vector<std::filesystem::path> parts_of_model(const JobConfig& config) {
@@ -84,7 +87,7 @@ std::string file_name_of(const std::string& job_name) {
     safe += fine ? c : '-';
   }
   while (!safe.empty() && (safe.front() == ' ' || safe.front() == '-')) safe.erase(0, 1);
-  return safe.empty() ? "job" : safe.substr(0, 120);
+  return safe.empty() ? "job" : cut_utf8(safe, kLongestFileName);
 }
 
 void bring_along(JobConfig& config, const std::filesystem::path& uploads,

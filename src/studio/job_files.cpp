@@ -134,7 +134,8 @@ std::vector<std::string> JobFiles::names() const {
   for (auto entry = std::filesystem::recursive_directory_iterator(uploads_, error);
        !error && entry != std::filesystem::recursive_directory_iterator(); entry.increment(error)) {
     const std::string name = entry->path().lexically_relative(uploads_).string();
-    if (entry->is_regular_file(error) && is_plain_name(name)) list.push_back(name);
+    if (entry->is_regular_file(error) && is_plain_name(name) && lies_in(entry->path(), uploads_))
+      list.push_back(name);
   }
   std::sort(list.begin(), list.end());
   for (const auto& [name, path] : granted_) list.push_back(name);

@@ -26,6 +26,26 @@ bool is_job_name(const std::string& name) {
   return name.size() == 16 && name.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
+// As JobStore::write() is given it; a person may have edited the file.
+bool is_state(const Json& state) {
+  static const std::vector<std::pair<const char*, Json::value_t>> members = {
+      {"name", Json::value_t::string},    {"where", Json::value_t::string},
+      {"origin", Json::value_t::string},  {"open", Json::value_t::boolean},
+      {"granted", Json::value_t::object}, {"machine", Json::value_t::object},
+      {"document", Json::value_t::object}};
+  if (!state.is_object()) return false;
+  for (const char* count : {"revision", "saved_revision"})
+    if (state.contains(count) && !state[count].is_number_integer()) return false;
+  const Json granted = state.value("granted", Json::object());
+  return std::all_of(members.begin(), members.end(),
+                     [&](const auto& member) {
+                       return !state.contains(member.first) ||
+                              state[member.first].type() == member.second;
+                     }) &&
+         std::all_of(granted.begin(), granted.end(),
+                     [](const Json& path) { return path.is_string(); });
+}
+
 std::string time_text(std::filesystem::file_time_type time) {
   const auto system = std::chrono::file_clock::to_sys(time);
   return fmt::format(
@@ -93,7 +113,7 @@ std::filesystem::path JobStore::home(const std::string& job) const {
 Json JobStore::read(const std::string& job) const {
   try {
     Json state = parsed_json<Json>(read_file(home(job) / kState));
-    return state.is_discarded() ? Json(nullptr) : state;
+    return is_state(state) ? state : Json(nullptr);
   } catch (const std::exception&) {
     return nullptr;
   }

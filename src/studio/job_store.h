@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/folder_lock.h"
 #include "studio/json.h"
 
 namespace hydrodip {
@@ -35,12 +36,14 @@ class JobStore {
   // For the samples' files, beside the jobs.
   std::filesystem::path samples() const { return folder_ / "samples"; }
 
-  // Null if it cannot be read.
+  // Null if it cannot be read, or is no job's.
   Json read(const std::string& job) const;
   void write(const std::string& job, const Json& state) const;
 
   // RECENT of docs/studio-api.md, latest first.
   Json recent(std::size_t most) const;
+  // Which the studio that has it open holds: no other one may open or forget it meanwhile.
+  FolderLock hold(const std::string& job) const { return FolderLock(home(job)); }
   // With all that was uploaded to it.
   void forget(const std::string& job) const;
 

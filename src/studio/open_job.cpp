@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/unicode.h"
 #include "job/profile_jobs.h"
 #include "settings/dip_tables.h"
 #include "settings/job_file.h"
@@ -26,6 +27,13 @@ constexpr std::array<const char*, 7> kOfProfiles = {"film.", "material.", "ink."
 
 Json or_null(const std::string& id) { return id.empty() ? Json() : Json(id); }
 
+FolderLock held(const JobStore& store, const std::string& job) {
+  FolderLock lock = store.hold(job);
+  if (lock.state() == FolderLock::State::kTaken)
+    throw ApiError(409, "busy", "The job is open in another studio; go on there, or end that one.");
+  return lock;
+}
+
 ApiError gone() { return {404, "not-found", "There is no such job any more; begin a new one."}; }
 
 bool is_job_file(const std::filesystem::path& file) { return file.extension() == ".toml"; }
@@ -38,6 +46,7 @@ OpenJob::OpenJob(JobStore store, std::string job, std::string run,
       job_(std::move(job)),
       run_(std::move(run)),
       home_(store_.home(job_)),
+      held_(held(store_, job_)),
       ids_(run_, std::move(numbers)),
       files_(home_ / "files") {
   std::error_code ignored;
@@ -139,7 +148,7 @@ void OpenJob::ask(bool live) {
 // With the lock.
 void OpenJob::autosave() const {
   if (let_go_) throw gone();
-  store_.write(job_, {{"version", 1},
+  const Json state = {{"version", 1},
                       {"name", name_of_job(document_)},
                       {"where", where_.string()},
                       {"origin", origin_.string()},
@@ -148,7 +157,14 @@ void OpenJob::autosave() const {
                       {"open", !tabs_.none()},
                       {"granted", files_.granted()},
                       {"machine", machine_},
-                      {"document", document_}});
+                      {"document", document_}};
+  try {
+    store_.write(job_, state);
+  } catch (const InputError&) {
+    throw ApiError(500, "failed",
+                   "The job cannot be kept on this machine's disk; free some space, and change "
+                   "something again.");
+  }
 }
 
 // With the lock. Where nobody is left who could be told that it is not.
@@ -293,7 +309,7 @@ std::string OpenJob::job_toml(const std::filesystem::path& folder) const {
 
 Json OpenJob::save(const std::string& name) {
   const std::lock_guard lock(mutex_);
-  if (const std::string own = name.substr(0, 200);
+  if (const std::string own = cut_utf8(name, kLongestName);
       !own.empty() && own != document_.value("name", "")) {
     document_["name"] = own;
     ++revision_;
@@ -360,6 +376,7 @@ void OpenJob::save_profile(const std::filesystem::path& folder, const std::strin
 }
 
 std::filesystem::path OpenJob::pack() const {
+  const std::lock_guard alone(packing_);
   JobConfig config;
   std::string name;
   std::vector<std::string> of_the_run;
@@ -369,7 +386,14 @@ std::filesystem::path OpenJob::pack() const {
     of_the_run = machine_names();
     name = file_name_of(name_of_job(document_));
   }
-  return pack_job(std::move(config), of_the_run, name, home_ / "packed");
+  // Whoever fetches an earlier archive still has that.
+  const std::filesystem::path made =
+      pack_job(std::move(config), of_the_run, name, home_ / "packed");
+  std::filesystem::path archive = home_ / "job.zip";
+  std::error_code error;
+  std::filesystem::rename(made, archive, error);
+  if (error) throw ApiError(500, "failed", "The archive cannot be kept; free some space.");
+  return archive;
 }
 
 void OpenJob::reload() {

@@ -26,7 +26,8 @@ namespace hydrodip {
 class OpenJob {
  public:
   // `run`: this run's name; `numbers`: how many IDs it has given, in whatever job, so that none
-  // comes to mean something else. The job is in the store.
+  // comes to mean something else. The job is in the store. Throws ApiError busy if another studio
+  // has it.
   OpenJob(JobStore store, std::string job, std::string run,
           std::shared_ptr<std::atomic<long>> numbers);
   ~OpenJob();
@@ -126,8 +127,10 @@ class OpenJob {
   const JobStore store_;
   const std::string job_, run_;
   const std::filesystem::path home_;
+  const FolderLock held_;
   ShownIds ids_;
 
+  mutable std::mutex packing_;  // before mutex_
   mutable std::mutex mutex_;
   JobFiles files_;
   DroppedFiles dropped_{files_};

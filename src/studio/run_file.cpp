@@ -11,25 +11,29 @@ namespace {
 
 constexpr std::size_t kMostBytes = 1000;
 
+RunFile::Run run_in(int file) {
+  std::string text(kMostBytes, '\0');
+  const ssize_t count = ::pread(file, text.data(), text.size(), 0);
+  text.resize(count > 0 ? std::size_t(count) : 0);
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("port") || !json.contains("token") ||
+      !json["port"].is_number_integer() || !json["token"].is_string())
+    return {};
+  return {json["port"], json["token"]};
+}
+
 }  // namespace
 
 RunFile::RunFile(const std::filesystem::path& folder) : file_(folder / "run.json") {
   lock_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (lock_ < 0) return;
-  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-    ::close(lock_);
-    lock_ = -1;
+  if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) {
+    earlier_ = run_in(lock_);
     return;
   }
-  std::string text(kMostBytes, '\0');
-  const ssize_t count = ::pread(lock_, text.data(), text.size(), 0);
-  text.resize(count > 0 ? std::size_t(count) : 0);
-  const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object() || !json.contains("port") || !json.contains("token") ||
-      !json["port"].is_number_integer() || !json["token"].is_string())
-    return;
-  port_ = json["port"];
-  token_ = json["token"];
+  another_ = run_in(lock_);
+  ::close(lock_);
+  lock_ = -1;
 }
 
 RunFile::~RunFile() {

@@ -16,17 +16,21 @@ class RunFile {
   RunFile(const RunFile&) = delete;
   RunFile& operator=(const RunFile&) = delete;
 
-  // Of an earlier run that was killed; 0 and "" if there is none.
-  int port() const { return port_; }
-  const std::string& token() const { return token_; }
+  struct Run {
+    int port = 0;  // 0: there is none
+    std::string token;
+  };
+  // One that was killed.
+  const Run& earlier() const { return earlier_; }
+  // One that goes on.
+  const Run& another() const { return another_; }
 
   void keep(int port, const std::string& token);
 
  private:
   std::filesystem::path file_;
   int lock_ = -1;
-  int port_ = 0;
-  std::string token_;
+  Run earlier_, another_;
 };
 
 }  // namespace hydrodip

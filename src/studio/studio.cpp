@@ -5,12 +5,14 @@
 #include <chrono>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_text.h"
 #include "job/browser.h"
 #include "studio/api.h"
+#include "studio/api_error.h"
 #include "studio/page_assets.h"
 #include "studio/run_file.h"
 
@@ -74,6 +76,45 @@ Guard guard_of(const StudioOptions& options, const std::string& token, const std
   return guard;
 }
 
+void open(Api& api, const std::filesystem::path& file, const RunFile::Run& another) {
+  try {
+    api.open_file(file);
+  } catch (const ApiError& error) {
+    if (error.code != "busy") throw;
+    throw InputError(fmt::format(
+        "{}: it is open in another studio; {}", file.string(),
+        another.port > 0 ? fmt::format("go on at http://127.0.0.1:{}/?token={}, or end that one",
+                                       another.port, another.token)
+                         : "go on there, or end that one"));
+  }
+}
+
+// The server's threads, however what goes on beside them ends.
+class Serving {
+ public:
+  Serving(HttpServer& server, Api& api, RunContext warming, bool warms_up)
+      : server_(server), api_(api), warming_(std::move(warming)) {
+    serving_ = std::thread([this] { server_.run(); });
+    // Who begins with a sample need not wait until it is painted.
+    if (warms_up) warm_ = std::thread([this] { api_.warm_up(warming_); });
+  }
+  ~Serving() {
+    api_.end("The studio was ended. Start it again with 'hydrodip studio' to go on.");
+    server_.stop();
+    warming_.cancel();
+    if (warm_.joinable()) warm_.join();
+    serving_.join();
+  }
+  Serving(const Serving&) = delete;
+  Serving& operator=(const Serving&) = delete;
+
+ private:
+  HttpServer& server_;
+  Api& api_;
+  RunContext warming_;
+  std::thread serving_, warm_;
+};
+
 }  // namespace
 
 JobResult studio_job(const StudioOptions& options, const RunContext& context) {
@@ -83,26 +124,22 @@ JobResult studio_job(const StudioOptions& options, const RunContext& context) {
   const std::string password = password_of(options);
   const std::filesystem::path folder = studio_folder();
   RunFile run_file(folder);
-  const std::string token = run_file.token().empty() ? random_hex(24) : run_file.token();
+  const RunFile::Run& earlier = run_file.earlier();
+  const std::string token = earlier.token.empty() ? random_hex(24) : earlier.token;
 
   // The port is part of what the guard knows: the interface is made when it is had.
   std::optional<Api> api;
   HttpServer server([&](HttpRequest& request) { return api->answer(request); },
                     [&](const HttpRequest& request) { return api->admit(request); });
-  bind(server, options, run_file.port());
+  bind(server, options, earlier.port);
   RunContext ending = context;
   api.emplace(
       JobStore(folder), guard_of(options, token, password, server.port()), random_hex(8),
       [ending] { ending.cancel(); }, options.profiles);
-  if (!options.file.empty()) api->open_file(options.file);
+  if (!options.file.empty()) open(*api, options.file, run_file.another());
   run_file.keep(server.port(), token);
 
-  std::thread serving([&] { server.run(); });
-  // Who begins with a sample need not wait until it is painted.
-  const RunContext warming = context.quiet();
-  std::thread warm([&] {
-    if (options.file.empty()) api->warm_up(warming);
-  });
+  const Serving serving(server, *api, context.quiet(), options.file.empty());
   const std::string shown = is_here(options.address) ? "127.0.0.1" : options.address;
   const std::string address =
       password.empty() ? fmt::format("http://{}:{}/?token={}", shown, server.port(), token)
@@ -117,11 +154,6 @@ JobResult studio_job(const StudioOptions& options, const RunContext& context) {
     api->tidy();
     tidied = std::chrono::steady_clock::now();
   }
-  api->end("The studio was ended. Start it again with 'hydrodip studio' to go on.");
-  server.stop();
-  warming.cancel();
-  warm.join();
-  serving.join();
   JobResult result;
   result.text = "the studio has ended; what was not saved is kept, and found under recent jobs\n";
   result.json = json_answer("studio", nlohmann::ordered_json::object());

@@ -113,6 +113,25 @@ Reply Client::send(const std::string& method, const std::string& path, const std
   return reply;
 }
 
+EndlessUpload::EndlessUpload(const Client& client, const std::string& path)
+    : socket_(connected(client.port())) {
+  std::string text = "PUT " + path + " HTTP/1.1\r\nContent-Length: 100000000\r\n";
+  auto headers = client.own_headers();
+  headers["Host"] = "127.0.0.1:" + std::to_string(client.port());
+  for (const auto& [name, value] : headers) text += name + ": " + value + "\r\n";
+  write_all(socket_, text + "\r\n");
+  thread_ = std::thread([this] {
+    while (!ends_ && ::send(socket_, "x", 1, MSG_NOSIGNAL) == 1)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  });
+}
+
+EndlessUpload::~EndlessUpload() {
+  ends_ = true;
+  thread_.join();
+  ::close(socket_);
+}
+
 Events::Events(const Client& client, const std::string& path) : socket_(connected(client.port())) {
   std::string text = "GET " + path + " HTTP/1.1\r\n";
   auto headers = client.own_headers();

@@ -1,12 +1,14 @@
 // A plain HTTP client, and what a page reads: nothing of it is the studio's own code.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace hydrodip {
@@ -71,6 +73,20 @@ class Events {
 
   int socket_ = -1;
   std::string buffer_;
+};
+
+// An upload that goes on and on, a byte at a time, until the other side ends it.
+class EndlessUpload {
+ public:
+  EndlessUpload(const Client& client, const std::string& path);
+  ~EndlessUpload();
+  EndlessUpload(const EndlessUpload&) = delete;
+  EndlessUpload& operator=(const EndlessUpload&) = delete;
+
+ private:
+  int socket_ = -1;
+  std::atomic<bool> ends_ = false;
+  std::thread thread_;
 };
 
 // A binary answer as docs/studio-api.md says.

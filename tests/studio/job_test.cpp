@@ -1,6 +1,7 @@
 // A job over HTTP: its document, what is computed of it, what is printed, and what outlives a run.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -414,7 +415,10 @@ TEST_F(JobTest, AnotherRunGoesOnWhereTheLastStood) {
   document["name"] = "kept";
   document["page"] = {{"camera", {1, 2, 3}}};
   const long revision = put(job, document).json()["revision"];
-  const Served second(folder.path(), "another");  // while the first still stands
+  const TemporaryFolder as_it_stood;
+  std::filesystem::copy(folder.path(), as_it_stood.path(),
+                        std::filesystem::copy_options::recursive);
+  const Served second(as_it_stood.path(), "another");
   const Client again = second.client();
   const json found = again.get(at(job)).json();
   EXPECT_EQ(found["document"], document);
@@ -768,6 +772,108 @@ TEST_F(JobTest, TheListOfRecentJobsOpensNone) {
   const std::string other = sample("box");
   const Events tab(*client, at(other, "/events?client=c1"));
   EXPECT_EQ(client->remove("/api/recent/" + other).code(), "busy");
+}
+
+// A job is open in one studio at a time: what the other writes would be lost.
+TEST_F(JobTest, AnotherStudioHasTheJobMeanwhile) {
+  const std::string job = sample("pyramid");
+  auto tab = std::make_unique<Events>(*client, at(job, "/events?client=c1"));
+  Served beside(folder.path(), "beside");
+  const Client other = beside.client();
+  EXPECT_EQ(other.get(at(job)).code(), "busy");
+  EXPECT_EQ(other.remove("/api/recent/" + job).code(), "busy");
+  EXPECT_EQ(put(job, quick(describe(job)["document"])).status, 200);
+  tab.reset();
+  const std::string is = describe(job)["document"].dump();
+  studio.reset();
+  EXPECT_EQ(other.get(at(job)).json()["document"].dump(), is);
+}
+
+// What a person made of a job's state hides that one and no other.
+TEST_F(JobTest, AStateOfTheWrongKindIsNobodysJob) {
+  const std::string good = sample("pyramid");
+  const std::string bad = sample("box");
+  studio.reset();
+  const std::filesystem::path file = folder / "jobs" / bad / "state.json";
+  const std::string whole(reinterpret_cast<const char*>(read_file(file).data()),
+                          read_file(file).size());
+  for (const json& wrong :
+       {json{{"name", 5}}, json{{"open", 3}}, json{{"where", nullptr}}, json{{"revision", "x"}},
+        json{{"granted", {{"a", 1}}}}, json{{"document", json::array()}}, json{{"machine", 7}}}) {
+    json state = json::parse(whole);
+    state.update(wrong);
+    write_file(file, state.dump());
+    begin();
+    const Reply hello = client->get("/api/hello");
+    ASSERT_EQ(hello.status, 200) << wrong << hello.body;
+    ASSERT_EQ(hello.json()["recent"].size(), 1U) << wrong;
+    EXPECT_EQ(hello.json()["recent"][0]["job"], good);
+    EXPECT_EQ(client->get(at(bad)).status, 200) << wrong;
+    studio.reset();
+  }
+}
+
+TEST_F(JobTest, EverybodyGetsTheWholeArchive) {
+  const std::string job = sample("pyramid");
+  std::atomic<int> whole = 0;
+  std::vector<std::thread> people;
+  for (int n = 0; n < 4; ++n)
+    people.emplace_back([&] {
+      for (int times = 0; times < 10; ++times) {
+        const Reply reply = client->get(at(job, "/job.zip"));
+        // An archive ends with a record of 22 bytes.
+        whole += reply.status == 200 && reply.body.size() > 22 &&
+                 reply.body.compare(reply.body.size() - 22, 4, "PK\x05\x06") == 0;
+      }
+    });
+  for (std::thread& person : people) person.join();
+  EXPECT_EQ(whole, 40);
+}
+
+// "é" has two bytes, of which a limit may not keep one alone.
+TEST_F(JobTest, ALongNameIsCutBetweenCharacters) {
+  const std::string job = sample("pyramid");
+  std::string name = "a";
+  for (int n = 0; n < 300; ++n) name += "\u00e9";
+  ASSERT_EQ(client->post(at(job, "/save"), json{{"name", name}}.dump()).status, 200);
+  const json now = describe(job);
+  const std::string kept = now["document"]["name"];
+  EXPECT_EQ(kept, name.substr(0, 199));
+  EXPECT_EQ(put(job, now["document"]).status, 200);
+  EXPECT_TRUE(name.starts_with(
+      std::filesystem::path(now["where"].get<std::string>()).stem().string().substr(0, 119)));
+  EXPECT_EQ(client->get(at(job, "/job.zip")).status, 200);
+}
+
+// Ended while it reads what never ends.
+TEST_F(JobTest, AnUploadWithoutEndDoesNotKeepTheStudio) {
+  const std::string job = sample("pyramid");
+  const std::filesystem::path home = folder / "jobs" / job;
+  const auto parts = [&] {
+    const std::filesystem::directory_iterator files(home);
+    return std::count_if(std::filesystem::begin(files), std::filesystem::end(files),
+                         [](const auto& file) { return file.path().extension() == ".part"; });
+  };
+  const EndlessUpload upload(*client, at(job, "/files/endless.stl"));
+  while (parts() == 0) std::this_thread::yield();
+  studio.reset();
+  EXPECT_EQ(parts(), 0);
+}
+
+// Links that a person put into a job's folder lead nowhere.
+TEST_F(JobTest, LinksOutOfAJobAreNotItsFiles) {
+  const std::string job = sample("pyramid");
+  const std::filesystem::path files = folder / "jobs" / job / "files";
+  std::filesystem::create_directories(folder / "elsewhere");
+  write_file(folder / "elsewhere/mine.png", "mine");
+  std::filesystem::create_symlink(folder / "elsewhere/mine.png", files / "link.png");
+  std::filesystem::create_symlink("loop.png", files / "loop.png");
+  std::filesystem::create_directory_symlink(folder / "elsewhere", files / "out");
+  const Reply all = client->get(at(job));
+  ASSERT_EQ(all.status, 200) << all.body;
+  for (const json& file : all.json()["files"]) EXPECT_NE(file["file"], "link.png");
+  EXPECT_NE(client->put(at(job, "/files/out/new.png"), "new").status, 201);
+  EXPECT_FALSE(std::filesystem::exists(folder / "elsewhere/new.png"));
 }
 
 // Whoever lets the studio forget a job still has what was saved elsewhere.

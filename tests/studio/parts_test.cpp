@@ -101,19 +101,22 @@ TEST(RunFile, ALaterRunFindsOnlyWhatAKilledOneLeft) {
   const TemporaryFolder folder;
   {
     RunFile first(folder.path());
-    EXPECT_EQ(first.port(), 0);
+    EXPECT_EQ(first.earlier().port, 0);
     first.keep(4714, "secret");
     RunFile beside(folder.path());  // a second studio at the same time
-    EXPECT_EQ(beside.port(), 0);
-    EXPECT_EQ(beside.token(), "");
+    EXPECT_EQ(beside.earlier().port, 0);
+    EXPECT_EQ(beside.earlier().token, "");
+    EXPECT_EQ(beside.another().port, 4714);
+    EXPECT_EQ(beside.another().token, "secret");
     std::filesystem::copy(folder / "run.json", folder / "as-it-was.json");
   }
-  EXPECT_EQ(RunFile(folder.path()).token(), "");  // that one had ended well
+  EXPECT_EQ(RunFile(folder.path()).earlier().token, "");  // that one had ended well
   std::filesystem::copy(folder / "as-it-was.json", folder / "run.json",
                         std::filesystem::copy_options::overwrite_existing);
   RunFile next(folder.path());
-  EXPECT_EQ(next.port(), 4714);
-  EXPECT_EQ(next.token(), "secret");
+  EXPECT_EQ(next.earlier().port, 4714);
+  EXPECT_EQ(next.earlier().token, "secret");
+  EXPECT_EQ(next.another().port, 0);
 }
 
 }  // namespace
