@@ -31,9 +31,13 @@ struct StoredPicture {
       cicp;             // PNG's: primaries, transfer, matrix, full range
   int orientation = 1;  // EXIF's, 1 to 8
   Stored stored = Stored::kColors;
-  PictureBytes ink_alpha;     // a byte for each pixel of inks, or empty: opaque
+  PictureBytes ink_alpha;  // a byte for each pixel of inks, or empty: opaque
+  // Lab of 16 bits, three values a pixel, coded as ICC's version 2 does (100 is 0xff00, 0 is
+  // 0x8000); empty: Lab is in the image.
+  std::vector<std::uint16_t> wide_lab;
   bool profile_lost = false;  // the file has one that cannot be used
   bool damaged = false;       // some pixels are not what was meant
+  bool has_more = false;      // it is the first of several pages or frames
 };
 
 StoredPicture decode_png(const PictureBytes& bytes, const std::string& name);
@@ -64,7 +68,7 @@ bool bring_to_srgb(Image& image, const std::array<std::uint8_t, 4>& cicp);
 void bring_inks_to_srgb(Image& image, const PictureBytes& profile);
 void bring_inks_to_srgb(Image& image);
 // From Stored::kLab, relative to its white. Alpha stays.
-void bring_lab_to_srgb(Image& image);
+void bring_lab_to_srgb(StoredPicture& picture);
 // Takes a profile for inks, if it is one from which their colours can be told; else it is lost.
 void take_ink_profile(StoredPicture& picture, PictureBytes profile);
 

@@ -111,7 +111,7 @@ void bring_to_srgb(StoredPicture& picture, const std::string& name) {
       bring_inks_to_srgb(picture);
       break;
     case Stored::kLab:
-      bring_lab_to_srgb(picture.image);
+      bring_lab_to_srgb(picture);
       break;
   }
   if (picture.profile_lost)
@@ -134,6 +134,9 @@ Image decode_image(const Bytes& bytes, const std::string& name) {
           fmt::format("{}: its data are damaged, and parts of the picture may be wrong; take it "
                       "anew from where it came from.",
                       name));
+    if (picture.has_more)
+      warn(fmt::format("{}: the file holds several pictures (pages or frames); the first is taken.",
+                       name));
     bring_to_srgb(picture, name);
     return oriented(std::move(picture.image), picture.orientation);
   } catch (const std::bad_alloc&) {

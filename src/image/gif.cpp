@@ -92,6 +92,15 @@ Image read_frame(GifFileType* file, int transparent, const PictureBytes& bytes,
   return image;
 }
 
+// Whether a frame follows.
+bool goes_on(GifFileType* file) {
+  GifExtras none;
+  GifRecordType kind = UNDEFINED_RECORD_TYPE;
+  while (DGifGetRecordType(file, &kind) != GIF_ERROR && kind == EXTENSION_RECORD_TYPE)
+    read_extension(file, none);
+  return kind == IMAGE_DESC_RECORD_TYPE;
+}
+
 }  // namespace
 
 StoredPicture decode_gif(const PictureBytes& bytes, const std::string& name) {
@@ -110,6 +119,7 @@ StoredPicture decode_gif(const PictureBytes& bytes, const std::string& name) {
       StoredPicture picture;
       picture.image = read_frame(file.get(), extras.transparent, bytes, name);
       picture.profile = std::move(extras.profile);
+      picture.has_more = goes_on(file.get());
       return picture;
     }
   }

@@ -165,6 +165,7 @@ void read_png_colors(const Bytes& bytes, StoredPicture& picture) {
   for_each_chunk(bytes, [&](std::string_view type, std::span<const std::uint8_t> data) {
     if (type == "cICP" && data.size() == 4) picture.cicp = {data[0], data[1], data[2], data[3]};
     if (type == "eXIf") picture.orientation = exif_orientation(data);
+    if (type == "acTL") picture.has_more = true;  // animated
     if (type == "iCCP") {
       picture.profile = png_profile(data);
       picture.profile_lost = picture.profile.empty();

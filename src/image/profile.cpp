@@ -71,6 +71,14 @@ void transform_rows(Image& image, cmsHTRANSFORM transform) {
   }
 }
 
+// Stored::kLab's codings.
+cmsCIELab lab_of_bytes(const std::uint8_t* in) {
+  return {in[0] / 2.55, in[1] - 128.0, in[2] - 128.0};
+}
+cmsCIELab lab_of_words(const std::uint16_t* in) {
+  return {in[0] * 100.0 / 0xff00, in[1] / 256.0 - 128, in[2] / 256.0 - 128};
+}
+
 bool transform_pixels(Image& image, cmsContext context, cmsHPROFILE from) {
   if (!from) return false;
   if (cmsGetColorSpace(from) == cmsSigGrayData)
@@ -159,17 +167,25 @@ void bring_inks_to_srgb(Image& image, const PictureBytes& profile) {
   }
 }
 
-void bring_lab_to_srgb(Image& image) {
+// In floating point: lcms' integers are up to 20 levels off where colours are saturated.
+void bring_lab_to_srgb(StoredPicture& picture) {
   const Context context(cmsCreateContext(nullptr, nullptr));
   const Profile lab(cmsCreateLab4ProfileTHR(context.get(), nullptr));
   const Profile srgb(cmsCreate_sRGBProfileTHR(context.get()));
-  constexpr cmsUInt32Number kLabAndAlpha =
-      COLORSPACE_SH(PT_Lab) | EXTRA_SH(1) | CHANNELS_SH(3) | BYTES_SH(1);
   const Transform transform(
-      cmsCreateTransformTHR(context.get(), lab.get(), kLabAndAlpha, srgb.get(), TYPE_RGBA_8,
-                            INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_COPY_ALPHA));
+      cmsCreateTransformTHR(context.get(), lab.get(), TYPE_Lab_DBL, srgb.get(), TYPE_RGBA_8,
+                            INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOOPTIMIZE));
   if (!transform) throw std::bad_alloc();
-  transform_rows(image, transform.get());
+  Image& image = picture.image;
+  std::vector<cmsCIELab> row(std::size_t(image.width_px));
+  for (int y = 0; y < image.height_px; ++y) {
+    check_cancelled();
+    for (std::size_t x = 0; x < row.size(); ++x)
+      row[x] = picture.wide_lab.empty()
+                   ? lab_of_bytes(image.pixel(int(x), y))
+                   : lab_of_words(&picture.wide_lab[3 * (std::size_t(y) * row.size() + x)]);
+    cmsDoTransform(transform.get(), row.data(), image.pixel(0, y), cmsUInt32Number(row.size()));
+  }
 }
 
 bool bring_to_srgb(Image& image, const std::array<std::uint8_t, 4>& cicp) {

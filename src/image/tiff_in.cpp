@@ -10,6 +10,7 @@
 #include <cstring>
 #include <memory>
 #include <string_view>
+#include <utility>
 
 #include "base/error.h"
 #include "base/math.h"
@@ -263,23 +264,27 @@ PictureBytes profile_of(TIFF* file) {
 
 using ByteOf = std::vector<std::uint8_t>;  // of each value that a sample may have
 
-// A colour's byte. Lab is stored as TIFF has it, with a sign, or as ICC does.
+// A value from the least on: the axes of TIFF's own Lab have a sign.
+std::size_t from_least(const TiffPixels& pixels, int color, std::size_t value) {
+  const bool has_sign = pixels.photometric == PHOTOMETRIC_CIELAB && color > 0;
+  return has_sign ? value ^ (std::size_t(1) << (pixels.bits - 1)) : value;
+}
+
+// A colour's byte.
 ByteOf byte_of(const TiffPixels& pixels, int color) {
-  const bool axis = pixels.is_lab() && color > 0;
-  const bool has_sign = axis && pixels.photometric == PHOTOMETRIC_CIELAB;
-  const std::size_t values = std::size_t(1) << pixels.bits;
-  ByteOf bytes(values);
-  for (std::size_t value = 0; value < values; ++value) {
-    const std::size_t from_least = has_sign ? value ^ (values / 2) : value;
-    std::size_t byte = from_least;
-    if (pixels.bits == 16) {
-      // ICC's old coding: 100 is 0xff00, and every axis has 256 steps to one of 8 bits.
-      const bool by_256 = axis || pixels.photometric == PHOTOMETRIC_ICCLAB;
-      byte = by_256 ? (from_least + 128) / 256 : (from_least + 128) / 257;
-    }
-    bytes[value] = std::uint8_t(std::min<std::size_t>(byte, 255));
+  ByteOf bytes(std::size_t(1) << pixels.bits);
+  for (std::size_t value = 0; value < bytes.size(); ++value) {
+    const std::size_t level = from_least(pixels, color, value);
+    bytes[value] = std::uint8_t(pixels.bits == 16 ? (level + 128) / 257 : level);
   }
   return bytes;
+}
+
+// Lab of 16 bits as StoredPicture::wide_lab has it.
+std::uint16_t wide_lab_of(const TiffPixels& pixels, int color, std::uint16_t value) {
+  const std::size_t level = from_least(pixels, color, value);
+  const bool is_full = pixels.photometric == PHOTOMETRIC_CIELAB && color == 0;  // 100 is 0xffff
+  return std::uint16_t(is_full ? (level * 0xff00 + 0x7fff) / 0xffff : level);
 }
 
 // Takes samples as they are stored to where they belong.
@@ -288,8 +293,11 @@ class SampleSink {
   SampleSink(const TiffPixels& pixels, StoredPicture& picture)
       : wide_(pixels.bits == 16), width_(pixels.width) {
     std::uint8_t* image = picture.image.rgba.data();
-    for (int color = 0; color < pixels.colors; ++color)
-      channels_.push_back({color, image + color, 4, byte_of(pixels, color)});
+    if (wide_ && pixels.is_lab())
+      take_wide_lab(pixels, picture);
+    else
+      for (int color = 0; color < pixels.colors; ++color)
+        channels_.push_back({color, image + color, 4, byte_of(pixels, color)});
     if (pixels.colors == 1)
       for (const int other : {1, 2}) channels_.push_back({0, image + other, 4, byte_of(pixels, 0)});
     const int alpha = pixels.alpha();
@@ -307,23 +315,29 @@ class SampleSink {
 
   // Whether any of the samples from `first` on, a run of them, is taken.
   bool takes(int first, int run) const {
-    return std::any_of(channels_.begin(), channels_.end(), [&](const Channel& channel) {
+    const auto taken = [&](const auto& channel) {
       return channel.sample >= first && channel.sample < first + run;
-    });
+    };
+    return std::any_of(channels_.begin(), channels_.end(), taken) ||
+           std::any_of(axes_.begin(), axes_.end(), taken);
   }
 
   // Of so many pixels of a row from (x, y) on, a run of samples each, the first of which is
   // `first`.
   void put(int x, int y, int count, int first, int run, const std::uint8_t* from) {
-    const std::size_t size = wide_ ? 2 : 1;
-    for (const Channel& channel : channels_) {
-      if (channel.sample < first || channel.sample >= first + run) continue;
-      const std::uint8_t* in = from + std::size_t(channel.sample - first) * size;
-      std::uint8_t* out = channel.out + std::size_t(channel.step) *
-                                            (std::size_t(y) * std::size_t(width_) + std::size_t(x));
-      for (int i = 0; i < count; ++i, in += std::size_t(run) * size, out += channel.step)
-        *out = channel.byte_of[value(in)];
-    }
+    const std::size_t at = std::size_t(y) * std::size_t(width_) + std::size_t(x);
+    const auto each = [&](const auto& channels, const auto& put_one) {
+      const std::size_t size = wide_ ? 2 : 1;
+      for (const auto& channel : channels) {
+        if (channel.sample < first || channel.sample >= first + run) continue;
+        const std::uint8_t* in = from + std::size_t(channel.sample - first) * size;
+        auto* out = channel.out + std::size_t(channel.step) * at;
+        for (int i = 0; i < count; ++i, in += std::size_t(run) * size, out += channel.step)
+          *out = put_one(channel, value(in));
+      }
+    };
+    each(channels_, [](const Channel& channel, std::size_t of) { return channel.byte_of[of]; });
+    each(axes_, [](const Axis& axis, std::size_t of) { return axis.word_of[of]; });
   }
 
  private:
@@ -333,6 +347,25 @@ class SampleSink {
     int step;           // from pixel to pixel
     ByteOf byte_of;
   };
+
+  // Of Lab with 16 bits.
+  struct Axis {
+    int sample;
+    std::uint16_t* out;
+    int step;
+    std::vector<std::uint16_t> word_of;  // each value that a sample may have
+  };
+
+  void take_wide_lab(const TiffPixels& pixels, StoredPicture& picture) {
+    picture.wide_lab.resize(picture.image.rgba.size() / 4 * 3);
+    for (int color = 0; color < 3; ++color) {
+      Axis axis{color, picture.wide_lab.data() + color, 3, {}};
+      axis.word_of.resize(std::size_t(1) << 16);
+      for (std::size_t of = 0; of < axis.word_of.size(); ++of)
+        axis.word_of[of] = wide_lab_of(pixels, color, std::uint16_t(of));
+      axes_.push_back(std::move(axis));
+    }
+  }
 
   std::size_t value(const std::uint8_t* in) const {
     if (!wide_) return *in;
@@ -344,6 +377,7 @@ class SampleSink {
   bool wide_;
   int width_;
   std::vector<Channel> channels_;
+  std::vector<Axis> axes_;
 };
 
 // Of a row or a tile.
@@ -429,6 +463,17 @@ Resolution tiff_resolution(const PictureBytes& bytes) {
 
 namespace {
 
+// Whether there are pages after this one; the same picture in small, or a mask for it, is none.
+bool goes_on(TIFF* file) {
+  while (TIFFReadDirectory(file)) {
+    check_cancelled();
+    std::uint32_t kind = 0;
+    TIFFGetFieldDefaulted(file, TIFFTAG_SUBFILETYPE, &kind);
+    if ((kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0) return true;
+  }
+  return false;
+}
+
 // What a pixel takes in the file at the least.
 double least_bytes_a_pixel(TIFF* file) {
   std::uint16_t bits = 0, samples = 0, compression = 0;
@@ -489,6 +534,7 @@ StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
     refuse_unknown_inks(name);
   if (picture.stored == Stored::kColors) picture.profile = profile_of(file.get());
   if (source.profile_lost && picture.stored != Stored::kLab) picture.profile_lost = true;
+  picture.has_more = goes_on(file.get());
   return picture;
 }
 
