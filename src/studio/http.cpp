@@ -13,6 +13,8 @@
 #include <thread>
 #include <utility>
 
+#include "studio/json.h"
+
 namespace hydrodip {
 namespace {
 
@@ -77,6 +79,18 @@ void send_file(httplib::Response& to, const HttpAnswer& answer) {
                                 std::fread(piece.data(), 1, piece.size(), file.get());
                             return count > 0 && sink.write(piece.data(), count);
                           });
+}
+
+// Of what no handler sees; an error of docs/studio-api.md.
+HttpAnswer plain_refusal(int status, const std::string& sentence) {
+  Json json;
+  json["error"] = {{"code", "bad-request"}, {"text", sentence}};
+  HttpAnswer answer;
+  answer.status = status;
+  answer.type = "application/json; charset=utf-8";
+  answer.headers = {{"Cache-Control", "no-store"}};
+  answer.body = text_of(json);
+  return answer;
 }
 
 void send(httplib::Response& to, const HttpAnswer& answer, bool and_close) {
@@ -152,7 +166,7 @@ struct HttpServer::Impl {
     using Handled = httplib::Server::HandlerResponse;
     HttpRequest request = request_of(from);
     if (from.path.size() > kLongestPath) {
-      send(to, {.status = 414, .body = "{}"}, true);
+      send(to, plain_refusal(414, "The address is too long."), true);
       return Handled::Handled;
     }
     if (const auto refusal = admit(request)) {
@@ -162,7 +176,7 @@ struct HttpServer::Impl {
     if (request.has_body && (from.method == "POST" || from.method == "PUT"))
       return Handled::Unhandled;
     if (request.has_body) {
-      send(to, {.status = 400, .body = "{}"}, true);
+      send(to, plain_refusal(400, "Such a request has no content."), true);
       return Handled::Handled;
     }
     request.read_body = [](const auto&) { return true; };
@@ -207,6 +221,12 @@ HttpServer::HttpServer(HttpHandler handler,
   server.set_pre_routing_handler([impl](const httplib::Request& from, httplib::Response& to) {
     return impl->before(from, to);
   });
+  // What cpp-httplib refuses by itself has no content.
+  server.set_error_handler(
+      httplib::Server::Handler([](const httplib::Request&, httplib::Response& to) {
+        if (to.body.empty() && !to.content_provider_)
+          send(to, plain_refusal(to.status, "The request cannot be read."), false);
+      }));
   const auto with_body = [impl](const httplib::Request& from, httplib::Response& to,
                                 const httplib::ContentReader& reader) {
     impl->with_body(from, to, reader);

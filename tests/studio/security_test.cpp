@@ -204,6 +204,30 @@ std::string bytes_of(const std::filesystem::path& file) {
   return {bytes.begin(), bytes.end()};
 }
 
+// Whoever refuses: the server itself, or the library below it.
+TEST_F(SecurityTest, EveryRefusalSaysWhat) {
+  const auto said = [&](const Reply& reply) {
+    const nlohmann::json json = reply.json();
+    ASSERT_TRUE(json.is_object() && json.contains("error")) << reply.status << " " << reply.body;
+    EXPECT_FALSE(json["error"]["code"].get<std::string>().empty());
+    EXPECT_FALSE(json["error"]["text"].get<std::string>().empty());
+  };
+  const auto send = [&](const std::string& method, const std::string& path,
+                        const std::string& body) {
+    return client.send(method, path, body, client.own_headers());
+  };
+  for (const Reply& reply :
+       {send("GET", "/api/hello?" + std::string(3000, 'x'), ""),
+        send("GET", "/api/" + std::string(3000, 'x'), ""), send("GET", "/api/hello", "content"),
+        send("GET", "/api/" + std::string(9000, 'x'), ""), send("NONSENSE", "/api/hello", ""),
+        send("GET", "no path", "")}) {
+    if (reply.status < 400) continue;
+    said(reply);
+  }
+  said(send("GET", "/api/" + std::string(3000, 'x'), ""));
+  said(send("GET", "/api/hello", "content"));
+}
+
 TEST_F(SecurityTest, AnArchiveUnpacksIntoTheJobAlone) {
   const std::string job = new_job(), at = "/api/jobs/" + job;
   make_zip(folder / "toy.zip", {{"../escaped.obj", "v 0 0 0\n"},
