@@ -24,6 +24,12 @@ struct Totals {
   int dips = 0, good = 0, failed = 0, not_judged = 0;
   int without_ink = 0;  // dips whose print does not say how much ink is laid
   DipUse use;
+  double judged_cost = 0;  // of the good and the failed ones
+
+  // With what failed; whether what is not judged is a piece is not known.
+  std::optional<double> cost_of_good_piece() const {
+    return good > 0 ? std::optional(judged_cost / good) : std::nullopt;
+  }
 };
 
 bool is_priced(const CostOptions& cost) {
@@ -31,10 +37,11 @@ bool is_priced(const CostOptions& cost) {
          cost.per_piece > 0;
 }
 
+bool is_judged(const DipRun& run) { return run.outcome == "good" || run.outcome == "failed"; }
+
 // A run that was given up before film lay on the water used none.
 bool used_film(const DipRun& run) {
-  return run.outcome == "good" || run.outcome == "failed" || run.outcome == "done" || run.soak_s ||
-         run.activator_g;
+  return is_judged(run) || run.outcome == "done" || run.soak_s || run.activator_g;
 }
 
 // Each by the print that it was dipped with, which may be none of today's.
@@ -68,6 +75,7 @@ Totals totals_of(const std::vector<CostedRun>& runs) {
       ++totals.without_ink;
     totals.use.activator_g += use.activator_g;
     totals.use.cost += use.cost;
+    if (is_judged(run)) totals.judged_cost += use.cost;
   }
   if (totals.without_ink == totals.dips) totals.use.ink_ml.reset();
   return totals;
@@ -136,8 +144,11 @@ std::string sum(const Totals& totals, const RigJob& job) {
   if (!is_priced(cost))
     return text + "no prices are set: --set cost.film_per_m2=..., or in a profile\n";
   text += fmt::format("cost: {}", money(totals.use.cost, cost));
-  if (totals.good > 0)
-    text += fmt::format("; a good piece: {}", money(totals.use.cost / totals.good, cost));
+  if (const auto piece = totals.cost_of_good_piece()) {
+    text += fmt::format("; a good piece: {}", money(*piece, cost));
+    if (totals.not_judged > 0)
+      text += fmt::format(" (without {} not judged)", dips_of(totals.not_judged));
+  }
   if (cost.ink_per_ml > 0 && totals.without_ink > 0)
     text += fmt::format("; without the ink of {}, of which the print does not say how much",
                         dips_of(totals.without_ink));
@@ -208,8 +219,7 @@ std::string json_of(const std::vector<CostedRun>& runs, const Totals& totals, co
                         {"dips_without_ink", totals.without_ink},
                         {"activator_g", totals.use.activator_g},
                         {"cost", totals.use.cost},
-                        {"cost_per_good_piece",
-                         totals.good > 0 ? Json(totals.use.cost / totals.good) : Json()}}}});
+                        {"cost_per_good_piece", or_null(totals.cost_of_good_piece())}}}});
 }
 
 // Those of one batch; empty: all.

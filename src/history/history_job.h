@@ -30,7 +30,7 @@ struct DipUse {
 DipUse use_of(const DipRun& run, const SheetUse& sheet, const CostOptions& cost);
 
 // Every dip with its readings; what was used; what a good piece costs, with those that failed
-// charged to it. Changes what the request says first.
+// charged to it, without those that nobody has judged. Changes what the request says first.
 JobResult history_job(const RigJob& job, const HistoryRequest& request, Clock& clock);
 
 }  // namespace hydrodip

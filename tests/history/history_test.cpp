@@ -306,5 +306,30 @@ TEST(HistoryJob, ChargesFailedPiecesToTheGoodOnes) {
   EXPECT_TRUE(contains(result.text, "3 dips: 2 good, 1 failed"));
 }
 
+// Tomorrow it may be good: then it pays for itself.
+TEST(HistoryJob, ChargesNoGoodPieceWithADipThatNobodyHasJudged) {
+  const TemporaryFolder folder;
+  RigJob job = priced_job();
+  job.folder = folder.path();
+  FixedClock clock;
+  const auto dip = [&](const std::string& outcome) {
+    HistoryRequest request;
+    request.add = true;
+    if (!outcome.empty()) request.fields = {{"outcome", outcome}};
+    return history_job(job, request, clock);
+  };
+  const auto totals_of = [](const JobResult& result) {
+    return nlohmann::json::parse(result.json)["totals"];
+  };
+  const double piece = totals_of(dip("good"))["cost_per_good_piece"];
+  const JobResult result = dip("");
+  EXPECT_NEAR(totals_of(result)["cost_per_good_piece"], piece, 1e-12);
+  EXPECT_NEAR(totals_of(result)["cost"], 2 * piece, 1e-12);
+  EXPECT_TRUE(contains(result.text, "a good piece: 3.35 (without 1 dip not judged)"))
+      << result.text;
+  EXPECT_NEAR(totals_of(dip("good"))["cost_per_good_piece"], piece, 1e-12);
+  EXPECT_NEAR(totals_of(dip("failed"))["cost_per_good_piece"], 1.5 * piece, 1e-12);
+}
+
 }  // namespace
 }  // namespace hydrodip
