@@ -185,17 +185,17 @@ void write_glb(const std::filesystem::path& path, const JobRecord& record, const
 ReportInk ink_amounts(const InkImage& inks, double limit) {
   ReportInk amounts;
   amounts.density_limit = limit;
-  float most = 0;
+  int most = 0;  // whole numbers, so that a sheet at the limit is not over it by rounding
   std::array<std::uint64_t, 4> sum{};
   CheckEvery check(1 << 16);
   for (std::size_t i = 0; i < inks.cmyk.size(); i += 4) {
     check();
     const std::uint8_t* laid = inks.cmyk.data() + i;
     if (is_blank(laid)) continue;
-    most = std::max(most, from_bytes(laid).density());
+    most = std::max(most, laid[0] + laid[1] + laid[2] + laid[3]);
     for (std::size_t k = 0; k < 4; ++k) sum[k] += laid[k];
   }
-  amounts.density_max = double(most);
+  amounts.density_max = most / 255.0;
   const double full = 255.0 * std::max(1.0, 0.25 * double(inks.cmyk.size()));
   for (std::size_t k = 0; k < 4; ++k) amounts.mean[k] = double(sum[k]) / full;
   return amounts;
