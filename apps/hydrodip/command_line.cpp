@@ -151,6 +151,7 @@ CommandLine parse_command(const Command& command, std::vector<std::string> argum
     throw InputError(fmt::format("{}; see {}", error.what(), usage(command)));
   }
   refuse_rest(*app, command, app->remaining());
+  refuse_two_values(*app);
   line.command = &command;
   return line;
 }
@@ -163,6 +164,7 @@ std::unique_ptr<CLI::App> command_options(const Command& command, Request& reque
   app->formatter(std::make_shared<HelpFormatter>(command));
   app->footer(command.details);
   command.declare(*app, request);
+  allow_repetition(*app);
   return app;
 }
 

@@ -24,7 +24,7 @@ constexpr const char* kArtworkGroup = "Artwork (one layer; more as [[artwork]] i
 constexpr const char* kFilmGroup = "Film and dip";
 constexpr const char* kConfigGroup = "Configuration";
 
-// An option that sets one parameter; the last one given counts.
+// An option that sets one parameter.
 void add_parameter_option(CLI::App& app, Request& request, const std::string& option,
                           const std::string& parameter, const std::string& value_name,
                           const std::string& group, const std::string& help) {
@@ -35,8 +35,7 @@ void add_parameter_option(CLI::App& app, Request& request, const std::string& op
          },
          help)
       ->group(group)
-      ->type_name(value_name)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+      ->type_name(value_name);
 }
 
 }  // namespace
@@ -80,6 +79,35 @@ std::filesystem::path profile_folder() {
   if (!home.is_absolute())
     if (const passwd* user = getpwuid(getuid())) home = user->pw_dir;
   return (configured.is_absolute() ? configured : home / ".config") / "hydrodip" / "profiles";
+}
+
+namespace {
+
+bool takes_one_value(const CLI::Option& option) {
+  return option.nonpositional() && option.get_items_expected_max() == 1;
+}
+
+}  // namespace
+
+void allow_repetition(CLI::App& app) {
+  for (CLI::Option* option : app.get_options({}))
+    if (takes_one_value(*option)) option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+void refuse_two_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    const std::vector<std::string>& values = option->results();
+    if (!takes_one_value(*option) || values.empty()) continue;
+    const auto other = std::ranges::find_if(
+        values, [&](const std::string& value) { return value != values.front(); });
+    if (other == values.end()) continue;
+    const std::string twice = fmt::format("{} is given twice, as '{}' and '{}'", option->get_name(),
+                                          values.front(), *other);
+    throw InputError(twice + (option->get_group() == kArtworkGroup
+                                  ? ": options give one layer of artwork; several stand as "
+                                    "[[artwork]] tables in a job file"
+                                  : "; give it once"));
+  }
 }
 
 void declare_model(CLI::App& app, Request& request) {
@@ -183,8 +211,7 @@ void declare_film(CLI::App& app, Request& request) {
          },
          "sheet of film, upright; -landscape turns it (default: a4)")
       ->group(kFilmGroup)
-      ->type_name("letter|a4|a3|WxH")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+      ->type_name("letter|a4|a3|WxH");
   app.add_option_function<std::string>(
          "--quality",
          [&request](const std::string& quality) {
@@ -192,8 +219,7 @@ void declare_film(CLI::App& app, Request& request) {
          },
          "draft: coarse and quick, without pictures; fine: 160,000 triangles, half the step")
       ->group(kFilmGroup)
-      ->type_name("draft|normal|fine")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+      ->type_name("draft|normal|fine");
 }
 
 namespace {
@@ -237,8 +263,7 @@ void declare_film_state(CLI::App& app, Request& request, const std::string& help
          "--film-state", [&request](const std::string& file) { take_film_state(request, file); },
          help)
       ->group(kFilmGroup)
-      ->type_name("FILE.json|FILE.toml")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+      ->type_name("FILE.json|FILE.toml");
 }
 
 void declare_film_and_dip(CLI::App& app, Request& request) {

@@ -83,6 +83,11 @@ void declare_sample(CLI::App& app, Request& request);
 void declare_folder(CLI::App& app, Request& request);
 void declare_studio(CLI::App& app, Request& request);
 
+// An option of one value may be there twice, if it says the same: CLI11 is to take both, and what
+// differs is refused after parsing, by an InputError that says how to mend it.
+void allow_repetition(CLI::App& app);
+void refuse_two_values(const CLI::App& app);
+
 // The person's folder of profiles: $XDG_CONFIG_HOME/hydrodip/profiles, or below ~/.config.
 std::filesystem::path profile_folder();
 // "1,2,3" as given to an option, from least to most numbers. Throws InputError.
