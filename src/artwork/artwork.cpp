@@ -181,6 +181,29 @@ bool hits(const Layer& layer, const TriangleMesh& mesh) {
   return false;
 }
 
+// print.dpi goes no higher.
+constexpr double kFinestPrint_dpi = 1200;
+
+// No size may be given so; a row of pixels has it by itself.
+bool is_line(const PictureFrame& frame) {
+  return frame.size_mm().maxCoeff() > 1000 * frame.size_mm().minCoeff();
+}
+
+// That a picture which is there once is thinner than a pixel, and how to mend it. Empty: it is not.
+std::string told_thin(const std::string& name, const Vec2& size_mm, Repeat repeat, double dpi) {
+  const double pixel_mm = kMmPerInch / dpi;
+  if (repeat != Repeat::kOnce || size_mm.minCoeff() >= pixel_mm) return "";
+  return fmt::format(
+      "{}: it is laid {:.3g} x {:.3g} mm, thinner than a printed pixel ({:.2g} mm); give it width "
+      "and height with --art-size W,H",
+      name, size_mm.x(), size_mm.y(), pixel_mm);
+}
+
+void refuse_thin(const ArtworkLayer& layer, const PictureFrame& frame, double dpi) {
+  const std::string thin = told_thin(name_of(layer), frame.size_mm(), frame.repeat(), dpi);
+  if (!thin.empty()) throw InputError(thin);
+}
+
 [[noreturn]] void refuse_miss(const ArtworkLayer& layer, const PosedObject& posed) {
   const ModelFrame frame(posed);
   std::string where = "the model has no surface there";
@@ -370,7 +393,11 @@ Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask&
   if (!layer.pixels.shows_anything())
     throw InputError(name_of(wanted) +
                      ": the picture is transparent everywhere; nothing would show");
-  if (layer.placement && !hits(layer, posed.mesh())) refuse_miss(wanted, posed);
+  if (is_line(layer.frame)) refuse_thin(wanted, layer.frame, kFinestPrint_dpi);
+  if (layer.placement && !hits(layer, posed.mesh())) {
+    refuse_thin(wanted, layer.frame, task.dpi);
+    refuse_miss(wanted, posed);
+  }
   return layer;
 }
 
@@ -384,6 +411,16 @@ std::string describe(const LaidLayer& layer) {
   for (std::size_t n = 0; n < layer.fonts.size(); ++n)
     text += (n == 0 ? ", set in " : ", ") + layer.fonts[n].name;
   return text;
+}
+
+std::string told_thin(const std::vector<LaidLayer>& layers, double dpi) {
+  std::string first;
+  for (const LaidLayer& laid : layers) {
+    const std::string thin = told_thin(laid.name, laid.size_mm, laid.layer.repeat, dpi);
+    if (thin.empty()) return "";
+    if (first.empty()) first = thin;
+  }
+  return first;
 }
 
 std::vector<PictureSource> read_pictures(const std::vector<ArtworkLayer>& layers) {

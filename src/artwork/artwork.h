@@ -39,6 +39,10 @@ struct LaidLayer {
 // "40.0 x 20.0 mm, stretched 0.93 to 1.00 times, set in DejaVu Sans Bold".
 std::string describe(const LaidLayer& layer);
 
+// Where nothing of artwork comes out: if every layer is thinner than a pixel of that resolution,
+// how large the first is and how to mend it. Else empty.
+std::string told_thin(const std::vector<LaidLayer>& layers, double dpi);
+
 struct Artwork {
   std::shared_ptr<const Paint> paint;
   std::vector<LaidLayer> layers;
@@ -46,8 +50,8 @@ struct Artwork {
 
 // Every layer laid on the object. Layers on the film show where a film coordinate is given
 // (Paint::color_on_film). Warns of pictures that wrap over themselves. Throws InputError for
-// artwork that lies nowhere on the object. Memory: the pictures, and a byte per triangle and layer;
-// with `wrap` some 60 bytes.
+// artwork that lies nowhere on the object, or is thinner than any printer's pixels. Memory: the
+// pictures, and a byte per triangle and layer; with `wrap` some 60 bytes.
 Artwork lay_artwork(ArtworkTask task, const PosedObject& posed, const RunContext& context);
 
 }  // namespace hydrodip

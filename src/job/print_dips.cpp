@@ -29,13 +29,14 @@ namespace hydrodip {
 namespace {
 
 void require_some_ink(const MadeDips& all) {
-  if (std::all_of(all.dips.begin(), all.dips.end(), [](const MadeDip& dip) { return dip.blank; }))
-    throw InputError(fmt::format(
-        "{}: all sheets would be blank: what the films reach of the model is white, transparent, "
-        "of "
-        "the object's own colour or lighter than it (object.base_color); check its texture and "
-        "colours",
-        all.config.model.string()));
+  if (!std::ranges::all_of(all.dips, &MadeDip::blank)) return;
+  const std::string thin = told_thin(all.prepared.artwork, all.config.design.dpi);
+  throw InputError(fmt::format(
+      "{}: all sheets would be blank: {}", all.config.model.string(),
+      !thin.empty() ? thin
+                    : "what the films reach of the model is white, transparent, of the object's "
+                      "own colour or lighter than it (object.base_color); check its texture and "
+                      "colours"));
 }
 
 // What the wet bench needs of one dip, whose inks are spent on it.

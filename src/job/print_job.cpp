@@ -66,10 +66,12 @@ std::string why_no_ink(const DippedObject& dipped, const Paint& paint) {
 void require_ink(const Designed& designed, const ReadyJob& job) {
   const auto& laid = designed.ink.ink.inking.inks.cmyk;
   if (std::any_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value != 0; })) return;
+  const std::string thin = told_thin(job.prepared.artwork, job.config.design.dpi);
   const bool has_film = designed.dipped.coverage.film_on_object_mm2 > 0;
   throw InputError(fmt::format("{}: the sheet would be blank. {}", job.config.model.string(),
-                               has_film ? why_no_ink(designed.dipped, *job.prepared.paint)
-                                        : why_no_film(designed.dipped, job.trajectory)));
+                               !has_film      ? why_no_film(designed.dipped, job.trajectory)
+                               : thin.empty() ? why_no_ink(designed.dipped, *job.prepared.paint)
+                                              : thin));
 }
 
 }  // namespace

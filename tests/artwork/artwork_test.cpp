@@ -356,6 +356,45 @@ TEST_F(Layers, WhatHitsNothingIsRefused) {
 }
 
 // A face without texture coordinates among others that have them shows nothing of the picture.
+// A row of pixels as wide as the object: no printer lays a line of a hundredth of a millimetre.
+TEST_F(Layers, LinesThinnerThanAnyPrintAreRefusedWithTheirSize) {
+  const PosedObject object = posed(box({0, 0, 0}, {60, 60, 5}));
+  const auto row = [](int width) {
+    return painted(width, 1, [](int, int) { return std::array{0, 0, 0, 255}; });
+  };
+  for (const int width : {4000, 32768})
+    for (const Projection projection : {Projection::kPlanar, Projection::kFilm}) {
+      ArtworkLayer layer = downward(picture(row(width)), 60);
+      layer.projection = projection;
+      try {
+        laid(object, {layer});
+        ADD_FAILURE() << width << " px were laid";
+      } catch (const InputError& error) {
+        const std::string said = error.what();
+        EXPECT_NE(said.find(width == 4000 ? "60 x 0.015 mm" : "60 x 0.00183 mm"), said.npos)
+            << said;
+        EXPECT_NE(said.find("--art-size W,H"), said.npos) << said;
+      }
+      // Repeated, it is all of the surface, and with a height of its own a band of it.
+      layer.repeat = Repeat::kTile;
+      EXPECT_NO_THROW(laid(object, {layer}));
+      layer.repeat = Repeat::kOnce;
+      layer.height_mm = 5;
+      EXPECT_NO_THROW(laid(object, {layer}));
+    }
+}
+
+// What prints at one resolution may not at another.
+TEST(ThinLayers, AreToldByTheResolution) {
+  LaidLayer line{.name = "line.png", .layer = {}, .size_mm = Vec2(60, 0.1), .fonts = {}};
+  LaidLayer wide{.name = "wide.png", .layer = {}, .size_mm = Vec2(60, 20), .fonts = {}};
+  EXPECT_EQ(told_thin({line}, 300), "");
+  EXPECT_NE(told_thin({line}, 72).find("line.png: it is laid 60 x 0.1 mm"), std::string::npos);
+  // There is more to print.
+  EXPECT_EQ(told_thin({line, wide}, 72), "");
+  EXPECT_EQ(told_thin({}, 72), "");
+}
+
 TEST_F(Layers, ByUvLieOnlyOnWhatHasThem) {
   Object object = with_materials(box({0, 0, 0}, {40, 40, 5}));
   object.uvs.assign(object.triangles.size(),

@@ -257,6 +257,20 @@ refused 'no texture coordinates' print plate.stl --art photo.png --projection uv
 refused 'nearest at 40.0,15.0,2.0' print plate.stl --art photo.png --art-at 90,15,2 -o nothing
 refused 'hits nothing' print plate.stl --art photo.png --art-at 90,15,2 --art-toward 0,0,1 \
   --art-size 10 -o nothing
+# Thinner than a pixel at 72 dpi, and between two rows of them; with or without several sheets.
+python3 - <<'PY' || exit 77
+import struct, zlib
+def chunk(kind, data):
+    return struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data))
+with open('line.png', 'wb') as out:
+    out.write(b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', 400, 1, 8, 2, 0, 0, 0)) +
+              chunk(b'IDAT', zlib.compress(b'\0' + b'\xc8\0\0' * 400)) + chunk(b'IEND', b''))
+PY
+for dips in 1 2; do
+  # shellcheck disable=SC2086
+  refused 'blank.*line.png: it is laid 40 x 0.1 mm, thinner than .*--art-size W,H' print plate.stl \
+    --art line.png --art-at 20,15.2,0 --art-size 40 --dips $dips $quick -o nothing --quiet
+done
 refused 'needs artwork' print plate.stl --art-size 10 -o nothing
 refused 'size_mm must be W or W,H' print plate.stl --art photo.png --art-size 10,0 -o nothing
 refused 'projection must be one of planar' print plate.stl --art photo.png --projection flat -o nothing
