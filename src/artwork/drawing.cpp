@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string_view>
 #include <utility>
 
 #include "artwork/fonts.h"
+#include "artwork/picture_marks.h"
 #include "base/error.h"
 #include "base/run_scope.h"
 #include "image/files.h"
@@ -18,6 +20,7 @@ namespace {
 
 struct Unref {
   void operator()(RsvgHandle* handle) const { g_object_unref(handle); }
+  void operator()(GInputStream* stream) const { g_object_unref(stream); }
   void operator()(GError* error) const { g_error_free(error); }
   void operator()(cairo_t* cairo) const { cairo_destroy(cairo); }
   void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
@@ -43,11 +46,20 @@ std::string message_of(GError* error) {
   return owned && owned->message ? owned->message : "no reason given";
 }
 
+// A single picture may have no more than 10 MB where libxml2 keeps to its limits, which are there
+// for what people give; what is made of that here may be larger.
+enum class XmlLimits { kKept, kNone };
+
 // Null with a reason.
-Owned<RsvgHandle> parse(std::string_view text, std::string& why) {
+Owned<RsvgHandle> parse(std::string_view text, std::string& why,
+                        XmlLimits limits = XmlLimits::kKept) {
   GError* error = nullptr;
-  Owned<RsvgHandle> handle(rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(text.data()),
-                                                     gsize(text.size()), &error));
+  const Owned<GInputStream> stream(
+      g_memory_input_stream_new_from_data(text.data(), gssize(text.size()), nullptr));
+  Owned<RsvgHandle> handle(rsvg_handle_new_from_stream_sync(
+      stream.get(), nullptr,
+      limits == XmlLimits::kKept ? RSVG_HANDLE_FLAGS_NONE : RSVG_HANDLE_FLAG_UNLIMITED, nullptr,
+      &error));
   if (!handle) why = message_of(error);
   return handle;
 }
@@ -192,7 +204,7 @@ bool shows_picture(const std::string& data) {
                              "href=\"{1}\"/>",
                              kSide_px, escaped(data)),
                  {0, 0, kSide_px, kSide_px}),
-      why);
+      why, XmlLimits::kNone);
   if (!handle) return false;
   const Owned<cairo_surface_t> surface = blank_surface(kSide_px, kSide_px);
   const Owned<cairo_t> cairo(cairo_create(surface.get()));
@@ -204,6 +216,57 @@ bool shows_picture(const std::string& data) {
   return std::any_of(begin, end, [](unsigned char byte) { return byte != 0; }) ||
          is_transparent_picture(data);
 }
+
+std::string data_of_png(const Image& image) {
+  struct Free {
+    void operator()(gchar* text) const { g_free(text); }
+  };
+  const std::vector<std::uint8_t> png = encode_png(image);
+  const std::unique_ptr<gchar, Free> coded(g_base64_encode(png.data(), png.size()));
+  return std::string("data:image/png;base64,") + coded.get();
+}
+
+// librsvg goes by pixels alone. Pictures whose files say more, as a colour profile, are read as
+// those are that are given by themselves, and stand in the drawing as plain PNG.
+class PicturesInDrawing {
+ public:
+  explicit PicturesInDrawing(std::string name) : name_(std::move(name)) {}
+
+  // Whether a picture is shown, or it was told why not.
+  bool shows(const std::string& data) {
+    ++count_;
+    if (instead_.contains(data)) return true;
+    const std::vector<std::uint8_t> bytes = bytes_behind(data);
+    return says_more_than_pixels(bytes) ? reads(data, bytes) : shows_picture(data);
+  }
+
+  // Of those that are read here: what stands in their place.
+  const std::map<std::string, std::string>& instead() const { return instead_; }
+
+ private:
+  bool reads(const std::string& data, const std::vector<std::uint8_t>& bytes) {
+    constexpr std::size_t kMostBytes = std::size_t(1) << 30U;
+    const std::string name = fmt::format("{}, picture {}", name_, count_);
+    std::string& made = instead_[data] = "data:,";
+    try {
+      made = data_of_png(decode_image(bytes, name));
+    } catch (const InputError& error) {
+      warn(fmt::format("{} It is not shown.", error.what()));
+      return true;
+    }
+    bytes_ += made.size();
+    if (bytes_ > kMostBytes)
+      throw InputError(
+          fmt::format("{}: the pictures in the drawing have more than {:.0f} MB; scale them down.",
+                      name_, double(kMostBytes) / 1e6));
+    return shows_picture(made);
+  }
+
+  std::string name_;
+  int count_ = 0;
+  std::size_t bytes_ = 0;
+  std::map<std::string, std::string> instead_;
+};
 
 }  // namespace
 
@@ -313,7 +376,13 @@ Drawing Drawing::from_svg(const std::vector<std::uint8_t>& bytes, const std::str
   if (!impl->handle)
     throw InputError(
         fmt::format("{}: damaged or truncated SVG drawing ({}); save it again.", name, why));
-  impl->contents = contents_of(text, shows_picture);
+  PicturesInDrawing pictures(name);
+  impl->contents = contents_of(text, [&](const std::string& data) { return pictures.shows(data); });
+  if (!pictures.instead().empty()) {
+    // Within the limits but for the pictures.
+    impl->handle = parse(with_pictures(text, pictures.instead()), why, XmlLimits::kNone);
+    if (!impl->handle) impl->refuse(why);
+  }
   if (impl->contents.has_text) require_fonts(name);
   impl->size = natural_size(impl->handle.get());
   if (!(impl->size.minCoeff() > 0) || !impl->size.allFinite())

@@ -2,6 +2,7 @@
 #include "artwork/svg_contents.h"
 
 #include <fmt/format.h>
+#include <libxml/tree.h>
 #include <libxml/xmlreader.h>
 #include <zlib.h>
 
@@ -20,9 +21,18 @@ namespace {
 
 constexpr std::size_t kLargest = std::size_t(1) << 28;
 
-struct FreeReader {
+constexpr int kOptions = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING;
+constexpr std::string_view kXlink = "http://www.w3.org/1999/xlink";
+
+struct Free {
   void operator()(xmlTextReader* reader) const { xmlFreeTextReader(reader); }
+  void operator()(xmlDoc* document) const { xmlFreeDoc(document); }
+  void operator()(xmlChar* text) const { xmlFree(text); }
 };
+
+int size_of(std::string_view svg) {
+  return int(std::min<std::size_t>(svg.size(), std::numeric_limits<int>::max()));
+}
 
 std::string_view text_of(const xmlChar* text) {
   return text ? std::string_view(reinterpret_cast<const char*>(text)) : std::string_view();
@@ -42,6 +52,8 @@ bool begins_with(std::string_view text, std::string_view lower_case) {
            return a == std::tolower(static_cast<unsigned char>(b));
          });
 }
+
+bool is_picture(std::string_view element) { return element == "image" || element == "feImage"; }
 
 // Elements of which librsvg follows the link, and that show something else without it.
 bool shows_its_link(std::string_view element) {
@@ -67,9 +79,7 @@ class ContentsReader {
  public:
   ContentsReader(std::string_view svg, const std::function<bool(const std::string&)>& shows)
       : shows_(shows),
-        reader_(xmlReaderForMemory(
-            svg.data(), int(std::min<std::size_t>(svg.size(), std::numeric_limits<int>::max())),
-            nullptr, nullptr, XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING)) {
+        reader_(xmlReaderForMemory(svg.data(), size_of(svg), nullptr, nullptr, kOptions)) {
     if (!reader_) throw std::bad_alloc();
   }
 
@@ -115,14 +125,13 @@ class ContentsReader {
       const bool is_plain = space.empty();
       if (text_of(xmlTextReaderConstLocalName(reader_.get())) != "href") {
         take_urls(value);
-      } else if (is_plain || (!has_plain_link && space == "http://www.w3.org/1999/xlink")) {
+      } else if (is_plain || (!has_plain_link && space == kXlink)) {
         link = trimmed(value);
         has_plain_link = is_plain;
       }
     }
     if (!shows_its_link(name)) return;
-    const bool is_picture = name == "image" || name == "feImage";
-    if (!is_picture || !begins_with(link, "data:"))
+    if (!is_picture(name) || !begins_with(link, "data:"))
       take_link(link);
     else if (!shows_(link))
       ++contents_.unreadable_pictures;
@@ -173,11 +182,29 @@ class ContentsReader {
   }
 
   const std::function<bool(const std::string&)>& shows_;
-  std::unique_ptr<xmlTextReader, FreeReader> reader_;
+  std::unique_ptr<xmlTextReader, Free> reader_;
   SvgContents contents_;
   std::set<std::string> known_;
   bool in_style_ = false;
 };
+
+// The attribute that librsvg goes by; null if there is none.
+xmlAttr* link_of(const xmlNode* element) {
+  xmlAttr* found = nullptr;
+  for (xmlAttr* attribute = element->properties; attribute; attribute = attribute->next) {
+    if (text_of(attribute->name) != "href") continue;
+    if (!attribute->ns) return attribute;
+    if (!found && text_of(attribute->ns->href) == kXlink) found = attribute;
+  }
+  return found;
+}
+
+// In the file's order, without going into what entities stand for.
+xmlNode* next_node(xmlNode* node) {
+  if (node->children && node->type == XML_ELEMENT_NODE) return node->children;
+  while (node && !node->next) node = node->parent;
+  return node ? node->next : nullptr;
+}
 
 bool is_packed(const std::vector<std::uint8_t>& bytes) {
   return bytes.size() > 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
@@ -225,6 +252,32 @@ bool has_root(std::string_view text) {
 SvgContents contents_of(std::string_view svg,
                         const std::function<bool(const std::string&)>& shows) {
   return ContentsReader(svg, shows).run();
+}
+
+std::string with_pictures(std::string_view svg, const std::map<std::string, std::string>& instead) {
+  const std::unique_ptr<xmlDoc, Free> document(
+      xmlReadMemory(svg.data(), size_of(svg), nullptr, nullptr, kOptions));
+  if (!document) throw std::bad_alloc();
+  CheckEvery check(1 << 10);
+  for (xmlNode* node = document->children; node; node = next_node(node)) {
+    check();
+    if (node->type != XML_ELEMENT_NODE || !is_picture(text_of(node->name))) continue;
+    xmlAttr* link = link_of(node);
+    if (!link) continue;
+    const std::unique_ptr<xmlChar, Free> value(
+        xmlNodeListGetString(document.get(), link->children, 1));
+    const auto other = instead.find(std::string(trimmed(text_of(value.get()))));
+    if (other != instead.end() &&
+        !xmlSetNsProp(node, link->ns, link->name,
+                      reinterpret_cast<const xmlChar*>(other->second.c_str())))
+      throw std::bad_alloc();
+  }
+  xmlChar* text = nullptr;
+  int size = 0;
+  xmlDocDumpMemory(document.get(), &text, &size);
+  const std::unique_ptr<xmlChar, Free> owned(text);
+  if (!text) throw std::bad_alloc();
+  return {reinterpret_cast<const char*>(text), std::size_t(size)};
 }
 
 bool looks_like_svg(const std::vector<std::uint8_t>& bytes) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,10 @@ struct SvgContents {
 
 // Of a drawing that is well-formed. shows: whether a picture in the file ("data:...") can be shown.
 SvgContents contents_of(std::string_view svg, const std::function<bool(const std::string&)>& shows);
+
+// The drawing with other pictures in it: of each link to one in the file ("data:...", as `shows` of
+// contents_of has it) what is to stand in its place. The drawing is well-formed.
+std::string with_pictures(std::string_view svg, const std::map<std::string, std::string>& instead);
 
 // Whether a file's first bytes are those of an SVG drawing, packed (.svgz) or not.
 bool looks_like_svg(const std::vector<std::uint8_t>& bytes);

@@ -1,6 +1,7 @@
 // Drawings and text: drawn in pieces as in one, as finely as the print, in fonts that are known.
 #include "artwork/drawing.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -9,8 +10,11 @@
 
 #include "artwork/fonts.h"
 #include "artwork/picture.h"
+#include "artwork/picture_marks.h"
 #include "artwork/tiled_image.h"
+#include "base/context.h"
 #include "base/error.h"
+#include "base/run_scope.h"
 #include "image/files.h"
 
 namespace hydrodip {
@@ -261,6 +265,163 @@ TEST(Drawing, CountsPicturesInItThatAreNotShown) {
   damaged[20] ^= 0x55U;
   EXPECT_EQ(unreadable("image/png;base64," + in_base64(damaged)), 1);
   EXPECT_EQ(unreadable("image/jp2;base64," + in_base64(bytes_of("\xff\x4f\xff\x51"))), 1);
+}
+
+// ---- pictures in drawings that say more than their pixels ----
+
+using Bytes = std::vector<std::uint8_t>;
+
+void put_big_endian(Bytes& out, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8)
+    out.push_back(std::uint8_t(value >> unsigned(shift)));
+}
+
+// With a chunk after the header.
+Bytes png_with(const Image& image, const std::string& name, const Bytes& data) {
+  constexpr std::ptrdiff_t kHeaderEnd = 33;
+  Bytes named = bytes_of(name), chunk, png = encode_png(image);
+  named.insert(named.end(), data.begin(), data.end());
+  put_big_endian(chunk, std::uint32_t(data.size()));
+  chunk.insert(chunk.end(), named.begin(), named.end());
+  put_big_endian(chunk, std::uint32_t(crc32(0, named.data(), uInt(named.size()))));
+  png.insert(png.begin() + kHeaderEnd, chunk.begin(), chunk.end());
+  return png;
+}
+
+// With a marker's data before all others.
+Bytes jpeg_with(const Image& image, int marker, const std::string& data) {
+  Bytes jpeg = encode_jpeg(image, 100);
+  const std::size_t length = data.size() + 2;
+  Bytes piece = {0xff, std::uint8_t(marker), std::uint8_t(length >> 8U), std::uint8_t(length)};
+  piece.insert(piece.end(), data.begin(), data.end());
+  jpeg.insert(jpeg.begin() + 2, piece.begin(), piece.end());
+  return jpeg;
+}
+
+// "Lies on its side."
+std::string turned_exif(char orientation) {
+  return std::string("MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0", 19) + orientation +
+         std::string("\0\0\0\0\0\0", 6);
+}
+
+// Four fields of 20 x 10 pixels.
+Image fields() {
+  Image image(40, 20);
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 40; ++x) {
+      std::uint8_t* pixel = image.pixel(x, y);
+      pixel[0] = x < 20 ? 200 : 60;
+      pixel[1] = y < 10 ? 180 : 80;
+      pixel[2] = 90;
+      pixel[3] = 255;
+    }
+  return image;
+}
+
+struct Shown {
+  Image image;
+  int unreadable = 0;
+  std::vector<std::string> warnings;
+};
+
+// As an SVG of the picture's own size shows it, a pixel for a pixel.
+Shown shown_in_drawing(const Bytes& file, int width, int height,
+                       const std::string& link = "xlink:href") {
+  const RunContext context;
+  const RunScope scope(context);
+  const Drawing drawing = Drawing::from_svg(
+      bytes_of(fmt::format("<s:svg xmlns:s='http://www.w3.org/2000/svg' "
+                           "xmlns:xlink='http://www.w3.org/1999/xlink' viewBox='0 0 {0} {1}'>"
+                           "<s:rect width='1' height='1'/><s:image width='{0}' height='{1}' "
+                           "preserveAspectRatio='none' {2}='data:image/x;base64,\n{3}'/></s:svg>",
+                           width, height, link, in_base64(file))),
+      "test.svg");
+  return {drawing.pixels(width, height), drawing.contents().unreadable_pictures,
+          context.warnings()};
+}
+
+TEST(PictureInADrawing, LooksAsItDoesByItself) {
+  const Bytes display_p3 = {12, 13, 0, 1};
+  const std::string exif = turned_exif(6);
+  for (const Bytes& file :
+       {png_with(fields(), "cICP", display_p3), png_with(fields(), "eXIf", bytes_of(exif)),
+        jpeg_with(fields(), 0xe1, std::string("Exif\0\0", 6) + exif)}) {
+    const Image alone = decode_image(file, "alone");
+    ASSERT_NE(alone.rgba, fields().rgba);
+    for (const char* link : {"xlink:href", "href"}) {
+      const Shown shown = shown_in_drawing(file, alone.width_px, alone.height_px, link);
+      EXPECT_TRUE(shown.warnings.empty());
+      EXPECT_EQ(shown.unreadable, 0);
+      // But for the corner, where something else could be seen.
+      int off = 0;
+      for (std::size_t i = 4; i < alone.rgba.size(); ++i)
+        off = std::max(off, std::abs(int(alone.rgba[i]) - int(shown.image.rgba[i])));
+      EXPECT_LE(off, 1) << link;
+    }
+  }
+}
+
+TEST(PictureInADrawing, WarnsAsItDoesByItself) {
+  const Shown shown = shown_in_drawing(
+      jpeg_with(fields(), 0xe2, std::string("ICC_PROFILE\0\1\1no profile", 24)), 40, 20);
+  ASSERT_EQ(shown.warnings.size(), 1U);
+  EXPECT_NE(shown.warnings[0].find("test.svg, picture 1: its colour profile is damaged"),
+            std::string::npos)
+      << shown.warnings[0];
+  EXPECT_NEAR(shown.image.pixel(30, 15)[0], 60, 3);
+}
+
+// Of a billion pixels in a small file nothing is unpacked.
+TEST(PictureInADrawing, ThatIsTooLargeIsNamedAndLeftOut) {
+  Bytes png = png_with(fields(), "cICP", {12, 13, 0, 1});
+  constexpr std::size_t kWidth = 16, kHeight = 20, kType = 12, kCheck = 29;
+  for (const std::size_t at : {kWidth, kHeight}) png[at + 2] = 0xf0;
+  Bytes check;
+  put_big_endian(check, std::uint32_t(crc32(0, png.data() + kType, uInt(kCheck - kType))));
+  std::copy(check.begin(), check.end(), png.begin() + kCheck);
+  const Shown shown = shown_in_drawing(png, 40, 20);
+  ASSERT_EQ(shown.warnings.size(), 1U);
+  EXPECT_TRUE(shown.warnings[0].starts_with("test.svg, picture 1: the image is "))
+      << shown.warnings[0];
+  EXPECT_NE(shown.warnings[0].find("It is not shown."), std::string::npos);
+  EXPECT_EQ(shown.image.pixel(30, 15)[3], 0);
+}
+
+// As plain PNG it has more than the 10 MB that an attribute may have in what people give.
+TEST(PictureInADrawing, MayGrowSlow) {
+  Image noise(1600, 1600);
+  std::uint32_t state = 1;
+  for (std::size_t i = 0; i < noise.rgba.size(); ++i) {
+    state = state * 1664525U + 1013904223U;
+    noise.rgba[i] = i % 4 == 3 ? 255 : std::uint8_t(state >> 24U);
+  }
+  Bytes jpeg = jpeg_with(noise, 0xe1, std::string("Exif\0\0", 6) + turned_exif(3));
+  ASSERT_LT(jpeg.size(), 7'000'000U);
+  ASSERT_GT(encode_png(noise).size(), 7'600'000U);
+  const Shown shown = shown_in_drawing(jpeg, 180, 180);
+  EXPECT_TRUE(shown.warnings.empty());
+  EXPECT_EQ(shown.image.pixel(90, 90)[3], 255);
+}
+
+TEST(PictureInADrawing, WithNothingToSayStaysAsItIs) {
+  EXPECT_FALSE(says_more_than_pixels(encode_png(fields())));
+  EXPECT_FALSE(says_more_than_pixels(encode_jpeg(fields(), 90)));
+  EXPECT_FALSE(says_more_than_pixels(
+      jpeg_with(fields(), 0xe1, std::string("Exif\0\0", 6) + turned_exif(1))));
+  EXPECT_TRUE(says_more_than_pixels(png_with(fields(), "iCCP", {1, 2, 3})));
+  EXPECT_FALSE(says_more_than_pixels({}));
+  const std::string svg =
+      "<svg xmlns='http://www.w3.org/2000/svg'><!-- data:b --><image "
+      "href='data:a'/><image href=' data:b '/><text>data:b</text></svg>";
+  const std::string other = with_pictures(svg, {{"data:b", "data:c"}});
+  EXPECT_NE(other.find("\"data:a\""), other.npos) << other;
+  EXPECT_NE(other.find("\"data:c\""), other.npos) << other;
+  EXPECT_NE(other.find("<!-- data:b -->"), other.npos) << other;
+  EXPECT_NE(other.find("<text>data:b</text>"), other.npos) << other;
+  // No cut of a file takes what is not there.
+  for (Bytes file : {png_with(fields(), "cICP", {12, 13, 0, 1}),
+                     jpeg_with(fields(), 0xe2, std::string("ICC_PROFILE\0\1\1no", 16))})
+    for (; !file.empty(); file.pop_back()) says_more_than_pixels(file);
 }
 
 std::vector<std::uint8_t> gzipped(const std::string& text) {
