@@ -189,6 +189,7 @@ void declare_orient(CLI::App& app, Request& request) {
   declare_output(app, request, "MODEL-orient");
   declare_reporting(app, request);
   declare_object(app, request);
+  declare_artwork(app, request);
   declare_film_and_dip(app, request);
   declare_configuration(app, request);
 }
@@ -205,6 +206,7 @@ void declare_plan(CLI::App& app, Request& request) {
   declare_output(app, request, "MODEL-plan");
   declare_reporting(app, request);
   declare_object(app, request);
+  declare_artwork(app, request);
   declare_film_and_dip(app, request);
   declare_dips(app, request);
   declare_configuration(app, request);

@@ -46,20 +46,14 @@ std::string message_of(GError* error) {
   return owned && owned->message ? owned->message : "no reason given";
 }
 
-// A single picture may have no more than 10 MB where libxml2 keeps to its limits, which are there
-// for what people give; what is made of that here may be larger.
-enum class XmlLimits { kKept, kNone };
-
 // Null with a reason.
-Owned<RsvgHandle> parse(std::string_view text, std::string& why,
-                        XmlLimits limits = XmlLimits::kKept) {
+Owned<RsvgHandle> parse(std::string_view text, std::string& why, bool is_limited) {
   GError* error = nullptr;
   const Owned<GInputStream> stream(
       g_memory_input_stream_new_from_data(text.data(), gssize(text.size()), nullptr));
   Owned<RsvgHandle> handle(rsvg_handle_new_from_stream_sync(
-      stream.get(), nullptr,
-      limits == XmlLimits::kKept ? RSVG_HANDLE_FLAGS_NONE : RSVG_HANDLE_FLAG_UNLIMITED, nullptr,
-      &error));
+      stream.get(), nullptr, is_limited ? RSVG_HANDLE_FLAGS_NONE : RSVG_HANDLE_FLAG_UNLIMITED,
+      nullptr, &error));
   if (!handle) why = message_of(error);
   return handle;
 }
@@ -183,7 +177,8 @@ bool is_transparent_picture(const std::string& data) {
     if (looks_like_svg(bytes)) {
       std::string ignored;
       const std::vector<std::uint8_t> svg = unpacked_svg(bytes, "a drawing in it");
-      return parse({reinterpret_cast<const char*>(svg.data()), svg.size()}, ignored) != nullptr;
+      const std::string_view text(reinterpret_cast<const char*>(svg.data()), svg.size());
+      return parse(text, ignored, true) != nullptr;
     }
     const Image image = decode_image(bytes, "a picture in it");
     double seen = 0;
@@ -204,7 +199,7 @@ bool shows_picture(const std::string& data) {
                              "href=\"{1}\"/>",
                              kSide_px, escaped(data)),
                  {0, 0, kSide_px, kSide_px}),
-      why, XmlLimits::kNone);
+      why, false);
   if (!handle) return false;
   const Owned<cairo_surface_t> surface = blank_surface(kSide_px, kSide_px);
   const Owned<cairo_t> cairo(cairo_create(surface.get()));
@@ -215,6 +210,18 @@ bool shows_picture(const std::string& data) {
   const unsigned char* end = begin + kSide_px * cairo_image_surface_get_stride(surface.get());
   return std::any_of(begin, end, [](unsigned char byte) { return byte != 0; }) ||
          is_transparent_picture(data);
+}
+
+// A drawing in the drawing that needs libxml2's limits, or may have one in it that does.
+bool may_multiply(const std::vector<std::uint8_t>& bytes) {
+  if (!looks_like_svg(bytes)) return false;
+  try {
+    const std::vector<std::uint8_t> svg = unpacked_svg(bytes, "a drawing in it");
+    const std::string_view text(reinterpret_cast<const char*>(svg.data()), svg.size());
+    return declares_entities(text) || text.find("svg+xml") != text.npos;
+  } catch (const InputError&) {
+    return true;
+  }
 }
 
 std::string data_of_png(const Image& image) {
@@ -237,6 +244,10 @@ class PicturesInDrawing {
     ++count_;
     if (instead_.contains(data)) return true;
     const std::vector<std::uint8_t> bytes = bytes_behind(data);
+    if (may_multiply(bytes)) {
+      instead_[data] = "data:,";
+      return false;
+    }
     return says_more_than_pixels(bytes) ? reads(data, bytes) : shows_picture(data);
   }
 
@@ -372,15 +383,16 @@ Drawing Drawing::from_svg(const std::vector<std::uint8_t>& bytes, const std::str
   const std::string_view text(reinterpret_cast<const char*>(svg.data()), svg.size());
   auto impl = std::make_unique<Impl>();
   impl->name = name;
-  impl->handle = parse(text, why);
+  impl->handle = parse(text, why, true);
+  if (!impl->handle && !declares_entities(text)) impl->handle = parse(text, why, false);
   if (!impl->handle)
     throw InputError(
         fmt::format("{}: damaged or truncated SVG drawing ({}); save it again.", name, why));
   PicturesInDrawing pictures(name);
   impl->contents = contents_of(text, [&](const std::string& data) { return pictures.shows(data); });
   if (!pictures.instead().empty()) {
-    // Within the limits but for the pictures.
-    impl->handle = parse(with_pictures(text, pictures.instead()), why, XmlLimits::kNone);
+    // Of what was within the limits, or needs none.
+    impl->handle = parse(with_pictures(text, pictures.instead()), why, false);
     if (!impl->handle) impl->refuse(why);
   }
   if (impl->contents.has_text) require_fonts(name);
@@ -404,7 +416,7 @@ Drawing Drawing::from_text(const std::string& text, const std::string& font,
   // Around the origin, so large that no line reaches its edge.
   constexpr double kRoom = 1000 * kFontSize;
   const RsvgRectangle whole{-kRoom, -kRoom, 2 * kRoom, 2 * kRoom};
-  const Owned<RsvgHandle> measured = parse(svg_around(element, whole), why);
+  const Owned<RsvgHandle> measured = parse(svg_around(element, whole), why, true);
   if (!measured) throw InputError(fmt::format("{} cannot be set: {}.", name, why));
   const RsvgRectangle viewport{0, 0, 2 * kRoom, 2 * kRoom};
   RsvgRectangle ink{}, logical{};
@@ -417,7 +429,7 @@ Drawing Drawing::from_text(const std::string& text, const std::string& font,
   ink = {ink.x - kTextPad, ink.y - kTextPad, ink.width + 2 * kTextPad, ink.height + 2 * kTextPad};
   auto impl = std::make_unique<Impl>();
   impl->name = name;
-  impl->handle = parse(svg_around(element, ink), why);
+  impl->handle = parse(svg_around(element, ink), why, true);
   if (!impl->handle) throw InputError(fmt::format("{} cannot be set: {}.", name, why));
   impl->size = {ink.width, ink.height};
   impl->is_text = true;

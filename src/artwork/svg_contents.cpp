@@ -21,7 +21,6 @@ namespace {
 
 constexpr std::size_t kLargest = std::size_t(1) << 28;
 
-constexpr int kOptions = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING;
 constexpr std::string_view kXlink = "http://www.w3.org/1999/xlink";
 
 struct Free {
@@ -32,6 +31,11 @@ struct Free {
 
 int size_of(std::string_view svg) {
   return int(std::min<std::size_t>(svg.size(), std::numeric_limits<int>::max()));
+}
+
+int options_for(std::string_view svg) {
+  return XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
+         (declares_entities(svg) ? 0 : XML_PARSE_HUGE);
 }
 
 std::string_view text_of(const xmlChar* text) {
@@ -79,7 +83,7 @@ class ContentsReader {
  public:
   ContentsReader(std::string_view svg, const std::function<bool(const std::string&)>& shows)
       : shows_(shows),
-        reader_(xmlReaderForMemory(svg.data(), size_of(svg), nullptr, nullptr, kOptions)) {
+        reader_(xmlReaderForMemory(svg.data(), size_of(svg), nullptr, nullptr, options_for(svg))) {
     if (!reader_) throw std::bad_alloc();
   }
 
@@ -249,6 +253,20 @@ bool has_root(std::string_view text) {
 
 }  // namespace
 
+bool declares_entities(std::string_view svg) {
+  // Two or four bytes a letter, too.
+  constexpr std::string_view kWord = "<!ENTITY";
+  std::size_t matched = 0;
+  CheckEvery check(1 << 20);
+  for (const char c : svg) {
+    check();
+    if (c == '\0') continue;
+    matched = c == kWord[matched] ? matched + 1 : c == kWord[0] ? 1 : 0;
+    if (matched == kWord.size()) return true;
+  }
+  return false;
+}
+
 SvgContents contents_of(std::string_view svg,
                         const std::function<bool(const std::string&)>& shows) {
   return ContentsReader(svg, shows).run();
@@ -256,7 +274,7 @@ SvgContents contents_of(std::string_view svg,
 
 std::string with_pictures(std::string_view svg, const std::map<std::string, std::string>& instead) {
   const std::unique_ptr<xmlDoc, Free> document(
-      xmlReadMemory(svg.data(), size_of(svg), nullptr, nullptr, kOptions));
+      xmlReadMemory(svg.data(), size_of(svg), nullptr, nullptr, options_for(svg)));
   if (!document) throw std::bad_alloc();
   CheckEvery check(1 << 10);
   for (xmlNode* node = document->children; node; node = next_node(node)) {

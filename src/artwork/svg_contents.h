@@ -18,6 +18,11 @@ struct SvgContents {
   int unreadable_pictures = 0;  // of those in the file
 };
 
+// libxml2 and librsvg take 10 MB for a piece of text, which large pictures exceed, so that entities
+// that stand for each other do not become gigabytes. A drawing that declares none needs no limits
+// beside that of unpacked_svg().
+bool declares_entities(std::string_view svg);
+
 // Of a drawing that is well-formed. shows: whether a picture in the file ("data:...") can be shown.
 SvgContents contents_of(std::string_view svg, const std::function<bool(const std::string&)>& shows);
 

@@ -105,9 +105,9 @@ std::string printing(const SearchOutput& output) {
     return fmt::format("print them all: hydrodip print {} -o {}\n", file, result);
   const bool has_uvs = !prepared.posed.object().uvs.empty();
   return fmt::format(
-      "print them all, with the picture that goes on the model: hydrodip print {} {} -o {}\n"
-      "with it here as well, dips are chosen by what it shows\n",
-      file, has_uvs ? "--texture IMG" : "--art IMG", result);
+      "print them all, with the picture that goes on the model: hydrodip print {1} {0} -o {2}\n"
+      "better say {0} to 'hydrodip plan' already: then dips are chosen by what it shows\n",
+      has_uvs ? "--texture IMG" : "--art IMG", file, result);
 }
 
 }  // namespace

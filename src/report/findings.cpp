@@ -14,7 +14,9 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kHardlyAPicture = 0.1;    // of it: a fragment
+constexpr double kMostOfAPicture = 0.5;    // of one on a side of the object: less is a fragment
+constexpr double kHardlyAPicture = 0.25;   // the same, of one that goes around it
+constexpr double kOneSide = 0.5;           // of the object's surface
 constexpr double kMuchTorn = 0.1;          // of the film that meets the object
 constexpr double kMuchAir = 0.02;          // of the object's surface
 constexpr double kSomeEscapes = 0.05;      // of a pocket
@@ -43,9 +45,11 @@ std::string after_dips(std::size_t dips) {
   return dips == 1 ? "after 1 dip" : fmt::format("after {} dips", dips);
 }
 
-Finding coverage_of_wanted(const ReportWanted& wanted) {
+// A picture on one side can be held down; of one that goes around no single dip brings all.
+Finding coverage_of_wanted(const ReportWanted& wanted, const Coverage& c) {
+  const bool goes_around = wanted.object_mm2 > kOneSide * c.object_mm2;
   const bool nearly_all = wanted.covered_share() >= kWholePicture;
-  const bool hardly = wanted.covered_share() < kHardlyAPicture;
+  const bool hardly = wanted.covered_share() < (goes_around ? kHardlyAPicture : kMostOfAPicture);
   Finding finding{"coverage",
                   nearly_all ? Concern::kNone
                   : hardly   ? Concern::kStop
@@ -63,7 +67,7 @@ Finding coverage_of_wanted(const ReportWanted& wanted) {
 
 Finding coverage(const Coverage& c, const std::optional<ReportWanted>& wanted, bool one_dip_only) {
   if (!(c.film_on_object_mm2 > 0)) return no_film(c);
-  if (wanted) return coverage_of_wanted(*wanted);
+  if (wanted) return coverage_of_wanted(*wanted, c);
   // Beside film that is lost, a share of what faces down would tell little.
   if (c.torn_mm2 > 0)
     return {"coverage",
@@ -390,7 +394,7 @@ Finding gamut(double share) {
 Finding coverage_of_dips(const Coverage& c, const std::optional<ReportWanted>& wanted,
                          std::size_t dips) {
   if (wanted) {
-    Finding finding = coverage_of_wanted(*wanted);
+    Finding finding = coverage_of_wanted(*wanted, c);
     finding.text =
         fmt::format("of what shall be printed gets film that holds {}.", after_dips(dips));
     if (!finding.advice.empty())

@@ -387,20 +387,56 @@ TEST(PictureInADrawing, ThatIsTooLargeIsNamedAndLeftOut) {
   EXPECT_EQ(shown.image.pixel(30, 15)[3], 0);
 }
 
-// As plain PNG it has more than the 10 MB that an attribute may have in what people give.
-TEST(PictureInADrawing, MayGrowSlow) {
-  Image noise(1600, 1600);
+Image noise(int side_px) {
+  Image noise(side_px, side_px);
   std::uint32_t state = 1;
   for (std::size_t i = 0; i < noise.rgba.size(); ++i) {
     state = state * 1664525U + 1013904223U;
     noise.rgba[i] = i % 4 == 3 ? 255 : std::uint8_t(state >> 24U);
   }
-  Bytes jpeg = jpeg_with(noise, 0xe1, std::string("Exif\0\0", 6) + turned_exif(3));
+  return noise;
+}
+
+// As plain PNG it has more than the 10 MB that an attribute may have otherwise.
+TEST(PictureInADrawing, MayGrowSlow) {
+  const Image image = noise(1600);
+  Bytes jpeg = jpeg_with(image, 0xe1, std::string("Exif\0\0", 6) + turned_exif(3));
   ASSERT_LT(jpeg.size(), 7'000'000U);
-  ASSERT_GT(encode_png(noise).size(), 7'600'000U);
+  ASSERT_GT(encode_png(image).size(), 7'600'000U);
   const Shown shown = shown_in_drawing(jpeg, 180, 180);
   EXPECT_TRUE(shown.warnings.empty());
   EXPECT_EQ(shown.image.pixel(90, 90)[3], 255);
+}
+
+// As a picture program's drawing of one photo is.
+TEST(PictureInADrawing, MayBeLargeSlow) {
+  const Image image = noise(1700);
+  const Shown shown = shown_in_drawing(encode_png(image), 1700, 1700);
+  EXPECT_TRUE(shown.warnings.empty());
+  EXPECT_EQ(shown.unreadable, 0);
+  EXPECT_TRUE(std::equal(image.rgba.begin() + 4, image.rgba.end(), shown.image.rgba.begin() + 4));
+}
+
+// Ten of ten of ten ...: a gigabyte, if anybody wrote it out. In one byte a letter, or in two.
+TEST(Drawing, EntitiesThatMultiplyAreRefused) {
+  std::string svg = "<!DOCTYPE svg [<!ENTITY a0 '0123456789'>";
+  for (int k = 1; k < 9; ++k) {
+    svg += "<!ENTITY a" + std::to_string(k) + " '";
+    for (int n = 0; n < 10; ++n) svg += "&a" + std::to_string(k - 1) + ";";
+    svg += "'>";
+  }
+  svg += "]><svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><text>&a8;</text></svg>";
+  std::string wide = "\xff\xfe";
+  for (const char c : svg) wide += std::string(1, c) + std::string(1, '\0');
+  for (const std::string& text : {svg, wide}) {
+    EXPECT_TRUE(declares_entities(text));
+    EXPECT_THROW(Drawing::from_svg({text.begin(), text.end()}, "test.svg"), InputError);
+  }
+  // In a drawing in the drawing, too.
+  const Shown shown = shown_in_drawing({svg.begin(), svg.end()}, 40, 20);
+  EXPECT_EQ(shown.unreadable, 1);
+  EXPECT_EQ(shown.image.pixel(30, 10)[3], 0);
+  EXPECT_FALSE(declares_entities("<svg><text>ENTITY &lt;!ENTIT</text></svg>"));
 }
 
 TEST(PictureInADrawing, WithNothingToSayStaysAsItIs) {

@@ -58,6 +58,17 @@ write_tetrahedron plain.obj
 # shellcheck disable=SC2086
 "$hydrodip" plan plain.obj $small --dips 1 --quality draft -o plain --quiet > said.txt || fail "plain: $?"
 grep -q '^print them all, with the picture .*: hydrodip print plain/plan.toml --art IMG -o plain-print$' said.txt || fail 'no word of the picture'
+# Dips are chosen by a picture that is given, and it is the plan's from then on.
+printf '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm"><rect width="9mm" height="9mm" fill="red"/></svg>' > picture.svg
+# shellcheck disable=SC2086
+"$hydrodip" plan plain.obj $small --dips 1 --quality draft --art picture.svg --art-toward 0,1,0 -o pictured --quiet > said.txt ||
+  fail "plan --art: $?"
+grep -q '^print them all: hydrodip print pictured/plan.toml -o plain-print$' said.txt || fail 'plan --art asks for a picture'
+grep -q '^\[\[artwork\]\]' pictured/plan.toml || fail 'plan.toml has lost its picture'
+# shellcheck disable=SC2086
+"$hydrodip" orient plain.obj $small --quality draft --art picture.svg --art-toward 0,1,0 -o toward --json --quiet > toward.json ||
+  fail "orient --art: $?"
+grep -q '"command": ".*--art picture.svg .*--art-toward 0,1,0' toward.json || fail 'orient loses the picture'
 "$hydrodip" print plan/plan.toml --dpi 72 --set print.samples=1 -o dips --quiet > dips.txt ||
   fail "print of a plan: $?"
 for file in dip-1/print.pdf dip-1/print.tif dip-1/report.json dip-1/run-sheet.pdf report.html report.json \

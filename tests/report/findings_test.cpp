@@ -197,9 +197,17 @@ TEST(Findings, OfSeveralDipsNoneIsMadeForNothing) {
 
 TEST(Findings, AFragmentOfThePictureIsNoDip) {
   Report report = good_report();
-  report.wanted = ReportWanted{200, 200, 100};
+  report.coverage->object_mm2 = 1000;
+  report.wanted = ReportWanted{200, 100, 100};
   EXPECT_EQ(concern_of(findings(report)), Concern::kCare);
+  report.wanted = ReportWanted{200, 98, 98};
+  EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
   report.wanted = ReportWanted{200, 12, 10};
+  EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
+  // Around the object: what a straight dip reaches of it at best is less than half.
+  report.wanted = ReportWanted{900, 300, 300};
+  EXPECT_EQ(concern_of(findings(report)), Concern::kCare);
+  report.wanted = ReportWanted{900, 220, 220};
   EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
 }
 
