@@ -164,7 +164,7 @@ std::unique_ptr<CLI::App> command_options(const Command& command, Request& reque
   app->formatter(std::make_shared<HelpFormatter>(command));
   app->footer(command.details);
   command.declare(*app, request);
-  allow_repetition(*app);
+  allow_same_value_twice(*app);
   return app;
 }
 

@@ -24,7 +24,10 @@ constexpr const char* kArtworkGroup = "Artwork (one layer; more as [[artwork]] i
 constexpr const char* kFilmGroup = "Film and dip";
 constexpr const char* kConfigGroup = "Configuration";
 
-// An option that sets one parameter.
+// Of options that scripts set for many commands and override for one.
+constexpr auto kLastCounts = CLI::MultiOptionPolicy::TakeLast;
+
+// An option that sets one parameter. A second layer of artwork does not override the first.
 void add_parameter_option(CLI::App& app, Request& request, const std::string& option,
                           const std::string& parameter, const std::string& value_name,
                           const std::string& group, const std::string& help) {
@@ -35,7 +38,8 @@ void add_parameter_option(CLI::App& app, Request& request, const std::string& op
          },
          help)
       ->group(group)
-      ->type_name(value_name);
+      ->type_name(value_name)
+      ->multi_option_policy(group == kArtworkGroup ? CLI::MultiOptionPolicy::Throw : kLastCounts);
 }
 
 }  // namespace
@@ -83,21 +87,22 @@ std::filesystem::path profile_folder() {
 
 namespace {
 
-bool takes_one_value(const CLI::Option& option) {
-  return option.nonpositional() && option.get_items_expected_max() == 1;
-}
+// Marks options whose values must not differ: then it does not matter which one is taken.
+constexpr auto kOneValue = CLI::MultiOptionPolicy::TakeFirst;
 
 }  // namespace
 
-void allow_repetition(CLI::App& app) {
+void allow_same_value_twice(CLI::App& app) {
   for (CLI::Option* option : app.get_options({}))
-    if (takes_one_value(*option)) option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    if (option->nonpositional() && option->get_items_expected_max() == 1 &&
+        option->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw)
+      option->multi_option_policy(kOneValue);
 }
 
 void refuse_two_values(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     const std::vector<std::string>& values = option->results();
-    if (!takes_one_value(*option) || values.empty()) continue;
+    if (option->get_multi_option_policy() != kOneValue || values.empty()) continue;
     const auto other = std::ranges::find_if(
         values, [&](const std::string& value) { return value != values.front(); });
     if (other == values.end()) continue;
@@ -211,7 +216,8 @@ void declare_film(CLI::App& app, Request& request) {
          },
          "sheet of film, upright; -landscape turns it (default: a4)")
       ->group(kFilmGroup)
-      ->type_name("letter|a4|a3|WxH");
+      ->type_name("letter|a4|a3|WxH")
+      ->multi_option_policy(kLastCounts);
   app.add_option_function<std::string>(
          "--quality",
          [&request](const std::string& quality) {
@@ -219,7 +225,8 @@ void declare_film(CLI::App& app, Request& request) {
          },
          "draft: coarse and quick, without pictures; fine: 160,000 triangles, half the step")
       ->group(kFilmGroup)
-      ->type_name("draft|normal|fine");
+      ->type_name("draft|normal|fine")
+      ->multi_option_policy(kLastCounts);
 }
 
 namespace {
@@ -263,7 +270,8 @@ void declare_film_state(CLI::App& app, Request& request, const std::string& help
          "--film-state", [&request](const std::string& file) { take_film_state(request, file); },
          help)
       ->group(kFilmGroup)
-      ->type_name("FILE.json|FILE.toml");
+      ->type_name("FILE.json|FILE.toml")
+      ->multi_option_policy(kLastCounts);
 }
 
 void declare_film_and_dip(CLI::App& app, Request& request) {

@@ -83,9 +83,9 @@ void declare_sample(CLI::App& app, Request& request);
 void declare_folder(CLI::App& app, Request& request);
 void declare_studio(CLI::App& app, Request& request);
 
-// An option of one value may be there twice, if it says the same: CLI11 is to take both, and what
-// differs is refused after parsing, by an InputError that says how to mend it.
-void allow_repetition(CLI::App& app);
+// Of options that the last one given does not override: CLI11 is to take the same value twice, and
+// two values are refused after parsing, by an InputError that says how to mend it.
+void allow_same_value_twice(CLI::App& app);
 void refuse_two_values(const CLI::App& app);
 
 // The person's folder of profiles: $XDG_CONFIG_HOME/hydrodip/profiles, or below ~/.config.

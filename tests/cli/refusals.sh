@@ -84,16 +84,15 @@ refused 'lists them' simulate tetra.obj --zzzzzzzz -o out
 refused 'unexpected argument' simulate tetra.obj other.obj -o out
 refused 'missing' simulate tetra.obj --size
 refused "did you mean 'sphere'?" sample spehre -o out
-# One of two values would be passed over; several layers are a matter of files.
-refused "--size is given twice, as '30' and '40'; give it once" simulate tetra.obj --size 30 --size 40 -o out
-refused "--film is given twice" simulate tetra.obj --film a4 --film=a3 -o out
+# One of two values would be passed over; several layers are a matter of files. What scripts set for
+# many commands is overridden by what follows.
 refused "--output is given twice, as 'out' and 'else'" simulate tetra.obj -o out -o else
 refused "as '1' and '2'; give it once" history inputs --run 1 --run 2
 refused "'a.png' and 'b.png': options give one layer of artwork; several stand as [[artwork]] tables in a job file" \
   print tetra.obj --art a.png --art b.png -o out
 refused 'one layer of artwork' print tetra.obj --art-text a --art-size 3 --art-text b -o out
-"$hydrodip" inspect colored.ply --size 30 --size 30 --set film.margin_mm=3 --set film.margin_mm=4 -o twice \
-  > /dev/null 2> "$work.err" || fail "the same size twice: $(cat "$work.err")"
+"$hydrodip" inspect colored.ply --size 20 --size 30 --film a4 --film a3 -o twice -o twice > /dev/null 2> "$work.err" ||
+  fail "the last size, and the same folder twice: $(cat "$work.err")"
 rm -rf twice "$work.err"
 for value in 5 1e9 nan inf many '' 800.5 0x320; do
   refused 'film.elements must be a whole number from 8' simulate tetra.obj \
