@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "camera/board.h"
 #include "camera/least_squares.h"
 #include "sheet/film_marks.h"
 
@@ -21,6 +22,8 @@ constexpr double kTogether_mm = 6, kLeastBase_mm = 60, kMostSwelling = 0.12;
 // Below what a corner is known to, scatter is chance.
 constexpr double kLeastScatter_mm = 0.005;
 constexpr double kTurned_deg = 45;
+// Beyond such deviations nobody can be told how to move a film.
+constexpr double kUnsure_mm = 0.5, kUnsure_deg = 0.5, kUnsureSwelling = 0.01;
 // No film shrinks or swells more.
 constexpr double kLeastSwelling = 0.985, kLargestSwelling = 1.07;
 
@@ -151,6 +154,47 @@ FilmPose pose_of(const std::vector<Pair>& pairs, const View& view, const FilmPla
   return pose;
 }
 
+std::size_t rim_marks(const std::vector<SeenMark>& seen) {
+  return std::size_t(std::count_if(seen.begin(), seen.end(), [](const SeenMark& mark) {
+    return strip_place(mark.id).strip >= 0;
+  }));
+}
+
+// Why a photo shows too little of the film.
+[[noreturn]] void refuse_few_marks(const GrayImage& photo, const std::string& name,
+                                   const std::vector<SeenMark>& seen, const FilmSearch& search,
+                                   const RunContext& context) {
+  const std::vector<SeenMark> back = find_marks(mirrored(photo), context);
+  if (pairs_of(back, search.marks).size() >= kLeastMarks) {
+    // The rim cannot lie upside down.
+    if (rim_marks(back) > rim_marks(seen))
+      throw InputError(fmt::format(
+          "{}: the photo is mirrored, film and rim alike: turn off the camera's mirroring and take "
+          "it again",
+          name));
+    throw InputError(fmt::format(
+        "{}: the film lies upside down: its marks are mirrored; lay a new one with the side up "
+        "that its margin says",
+        name));
+  }
+  throw InputError(fmt::format(
+      "{}: {} of the film's {} marks are to be seen, and 4 are needed; take the photo sharp, "
+      "from above and without glare, of film printed with print.marks=on",
+      name, pairs_of(seen, search.marks).size(), search.marks.size()));
+}
+
+void require_sure(const FilmPose& pose, const std::string& name) {
+  if (pose.shift_sigma_mm.maxCoeff() <= kUnsure_mm && pose.turn_sigma_deg <= kUnsure_deg &&
+      pose.swelling_sigma.maxCoeff() <= kUnsureSwelling)
+    return;
+  throw InputError(fmt::format(
+      "{}: tells where the film lies to {:.1f} x {:.1f} mm, {:.2f} degrees and {:.1f} % of "
+      "swelling only, too little to move it by ({:g} mm, {:g} degrees, {:g} %): take the photo "
+      "with the whole rim in it, from above, and measure the water's level well",
+      name, pose.shift_sigma_mm.x(), pose.shift_sigma_mm.y(), pose.turn_sigma_deg,
+      100 * pose.swelling_sigma.maxCoeff(), kUnsure_mm, kUnsure_deg, 100 * kUnsureSwelling));
+}
+
 }  // namespace
 
 Vec2 FilmPose::at(const Vec2& u) const {
@@ -166,17 +210,7 @@ FilmPose find_film(const GrayImage& photo, const std::string& name, const Tank& 
         name, photo.width_px, photo.height_px, tank.width_px, tank.height_px));
   const std::vector<SeenMark> seen = find_marks(photo, context);
   const std::vector<Pair> pairs = pairs_of(seen, search.marks);
-  if (pairs.size() < kLeastMarks) {
-    if (pairs_of(find_marks(mirrored(photo), context), search.marks).size() >= kLeastMarks)
-      throw InputError(fmt::format(
-          "{}: the film lies upside down: its marks are mirrored; lay a new one with the side up "
-          "that its margin says",
-          name));
-    throw InputError(fmt::format(
-        "{}: {} of the film's {} marks are to be seen, and 4 are needed; take the photo sharp, "
-        "from above and without glare, of film printed with print.marks=on",
-        name, pairs.size(), search.marks.size()));
-  }
+  if (pairs.size() < kLeastMarks) refuse_few_marks(photo, name, seen, search, context);
   const View view = view_of({name, seen}, tank, search.water_sigma_mm);
   const std::vector<Pair> together =
       belonging_together(pairs, points_of(pairs, view.values, tank.place));
@@ -202,6 +236,7 @@ FilmPose find_film(const GrayImage& photo, const std::string& name, const Tank& 
         "{}: the film's marks are {:.2f} mm off any evenly swollen sheet (--tolerance {:g}): it is "
         "creased or torn, or another job's; lay a new one",
         name, pose.unexplained_rms_mm, search.tolerance_mm));
+  require_sure(pose, name);
   return pose;
 }
 

@@ -39,8 +39,9 @@ struct FilmSearch {
 };
 
 // Finds film and rim in a photo of that tank. Throws InputError, a sentence with the photo's name:
-// of another size than the tank's photos, too few marks of film or rim, film that lies upside down
-// or turned by a quarter and more, or marks that do not fit the sheet.
+// of another size than the tank's photos, mirrored, too few marks of film or rim, a rim that is not
+// as it was calibrated, film that lies upside down or turned by a quarter and more, marks that do
+// not fit the sheet, or a pose that is known to no better than half a millimetre or degree.
 FilmPose find_film(const GrayImage& photo, const std::string& name, const Tank& tank,
                    const FilmSearch& search, const RunContext& context);
 

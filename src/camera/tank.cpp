@@ -24,6 +24,12 @@ constexpr std::size_t kLeastPhotos = 4;
 constexpr double kUsualFocal = 0.75;  // over the picture's longer side
 constexpr double kWorstFocal = 0.005;
 constexpr double kWorstFit_px = 1.5;
+// A photo of a rim that is as it was calibrated fits it so much worse than the calibration's own
+// at most, and even a blurred one so well.
+constexpr double kWorseThanCalibrated = 4, kBlurredFit_px = 0.3;
+// Calibrations know strips to a few hundredths of a millimetre; what is moved by less than this
+// moves the film by a third of it.
+constexpr double kMoved_mm = 0.3, kSure = 5;
 // Corners that lie so much farther off than most do not belong to what is fitted.
 constexpr double kAstray = 6, kAstray_px = 0.6;
 // From picture to picture a phone focuses anew, and its lens floats.
@@ -44,8 +50,11 @@ struct Bundle {
 
 std::map<int, std::vector<SeenMark>> by_strip(const SeenPhoto& photo) {
   std::map<int, std::vector<SeenMark>> strips;
+  std::map<int, int> times;
+  for (const SeenMark& mark : photo.marks) ++times[mark.id];
   for (const SeenMark& mark : photo.marks)
-    if (const int strip = strip_place(mark.id).strip; strip >= 0) strips[strip].push_back(mark);
+    if (const int strip = strip_place(mark.id).strip; strip >= 0 && times[mark.id] == 1)
+      strips[strip].push_back(mark);
   return strips;
 }
 
@@ -220,10 +229,181 @@ Pose tank_frame(const std::vector<Vec3>& corners, const Vec3& along) {
   return Pose::of(rotation, -(rotation * mean) - middle);
 }
 
+// Of a strip of which there is a second print in the photo, its number; -1: there is none.
+int strip_seen_twice(const std::vector<SeenMark>& marks) {
+  std::map<int, int> seen, twice;
+  for (const SeenMark& mark : marks)
+    if (++seen[mark.id] == 2) ++twice[strip_place(mark.id).strip];
+  // A single one may be a tag that was misread.
+  for (const auto& [strip, tags] : twice)
+    if (strip >= 0 && tags > 1) return strip;
+  return -1;
+}
+
+using ViewValues = Eigen::Matrix<double, View::kValues, 1>;
+
+// The point at that height, tank frame, that a pixel sees.
+Vec2 on_level(const ViewValues& values, const Vec2& px, double z_mm) {
+  const Pose pose = Pose::of(values.head<6>());
+  const Lens lens = Lens::of(values.segment<Lens::kValues>(6));
+  const Mat3 back = pose.rotation().transpose();
+  const Vec3 eye = -(back * pose.shift), ray = back * lens.ray(px);
+  return (eye + (z_mm - eye.z()) / ray.z() * ray).head<2>();
+}
+
+struct RimCorner {
+  int strip = 0;
+  Vec3 at = Vec3::Zero();  // as calibrated
+  Vec2 px = Vec2::Zero();
+};
+using RimCorners = std::vector<RimCorner>;
+
+// Two sides of the tank at least.
+bool reaches_around(const RimCorners& corners) {
+  if (corners.size() < kLeastBoardMarks) return false;
+  Mat2 spread = Mat2::Zero();
+  Vec2 mean = Vec2::Zero();
+  const auto count = double(corners.size());
+  for (const RimCorner& c : corners) mean += c.at.head<2>() / count;
+  for (const RimCorner& c : corners)
+    spread += (c.at.head<2>() - mean) * (c.at.head<2>() - mean).transpose() / count;
+  return eigenpairs(spread).values[0] > 400;
+}
+
+// Where a photo was taken, by what its corners tell and what was known before.
+class ViewFinder {
+ public:
+  ViewFinder(const Tank& tank, double water_sigma_mm)
+      : tank_(tank), water_sigma_mm_(water_sigma_mm) {
+    Eigen::Matrix<double, Lens::kValues, Lens::kValues> known = tank.lens_covariance;
+    known(0, 0) += std::pow(kRefocus * tank.lens.focal_px, 2);
+    known(1, 1) += kFloat_px * kFloat_px;
+    known(2, 2) += kFloat_px * kFloat_px;
+    // In units of its deviation, along axes in which it is independent.
+    const Eigenpairs axes = eigenpairs(known);
+    to_units_ = axes.values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal() *
+                axes.vectors.transpose();
+  }
+
+  Eigen::VectorXd start(const RimCorners& corners) const {
+    std::vector<Vec2> flat, seen;
+    for (const RimCorner& c : corners) {
+      flat.emplace_back(c.at.head<2>());
+      seen.emplace_back(tank_.lens.ray(c.px).head<2>());
+    }
+    Eigen::VectorXd values(View::kValues);
+    values << pose_of_plane(homography(flat, seen)).values(), tank_.lens.values(),
+        tank_.water_below_mm;
+    return values;
+  }
+
+  Fit fit(const RimCorners& corners, const Eigen::VectorXd& from) const {
+    return least_squares([&](const Eigen::VectorXd& v) { return residuals(v, corners); }, from);
+  }
+
+  // With what scatters more than a corner should.
+  static Eigen::MatrixXd covariance(const Fit& fit) {
+    const double freedom = double(fit.residuals.size() - fit.values.size());
+    return std::max(1.0, freedom > 0 ? fit.residuals.squaredNorm() / freedom : 1.0) *
+           fit.covariance;
+  }
+
+ private:
+  Eigen::VectorXd residuals(const Eigen::VectorXd& v, const RimCorners& corners) const {
+    const Pose pose = Pose::of(v.head<6>());
+    const Mat3 turn = pose.rotation();
+    const Lens lens = Lens::of(v.segment<Lens::kValues>(6));
+    const auto end = 2 * Eigen::Index(corners.size());
+    Eigen::VectorXd off(end + Lens::kValues + 1);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      Vec3 point = turn * corners[i].at + pose.shift;
+      point.z() = std::max(point.z(), 1.0);
+      off.segment<2>(2 * Eigen::Index(i)) = (lens.project(point) - corners[i].px) / kCorner_px;
+    }
+    off.segment(end, Lens::kValues) =
+        to_units_ * (v.segment(6, Lens::kValues) - tank_.lens.values());
+    off[end + Lens::kValues] = (v[View::kValues - 1] - tank_.water_below_mm) / water_sigma_mm_;
+    return off;
+  }
+
+  const Tank& tank_;
+  double water_sigma_mm_;
+  Eigen::MatrixXd to_units_;
+};
+
+// How far a strip, which moves as a whole, lies off its place, seen from there: per corner.
+Eigen::VectorXd strip_motion(const RimCorners& strip, const ViewValues& view) {
+  std::vector<Vec2> from, to;
+  for (const RimCorner& c : strip) {
+    from.emplace_back(c.at.head<2>());
+    to.push_back(on_level(view, c.px, c.at.z()));
+  }
+  const Planar move = planar_fit(from, to);
+  Eigen::VectorXd motion(2 * Eigen::Index(strip.size()));
+  for (std::size_t i = 0; i < from.size(); ++i)
+    motion.segment<2>(2 * Eigen::Index(i)) =
+        Eigen::Rotation2Dd(move.turn) * from[i] + Vec2(move.x, move.y) - from[i];
+  return motion;
+}
+
+struct MovedStrip {
+  int strip = 0;
+  double moved_mm = 0, sigma_mm = 0;  // of the corner that has moved farthest
+  double others_px = 0;               // what the rest of the rim then fits to
+};
+
+MovedStrip moved_against(const RimCorners& strip, const Fit& others, std::size_t other_corners) {
+  const ViewValues view = others.values;
+  const Eigen::MatrixXd covariance = ViewFinder::covariance(others);
+  const Eigen::VectorXd motion = strip_motion(strip, view);
+  MovedStrip moved{strip.front().strip, 0, 0, rms_px(others, other_corners)};
+  Eigen::Index farthest = 0;
+  for (Eigen::Index i = 0; i < motion.size(); i += 2)
+    if (motion.segment<2>(i).norm() > moved.moved_mm)
+      moved.moved_mm = motion.segment<2>(i).norm(), farthest = i;
+  Eigen::Matrix<double, 2, View::kValues> slope;
+  for (int k = 0; k < View::kValues; ++k) {
+    const double step = std::max(1e-9, 0.1 * std::sqrt(covariance(k, k)));
+    ViewValues more = view, less = view;
+    more[k] += step;
+    less[k] -= step;
+    slope.col(k) =
+        (strip_motion(strip, more) - strip_motion(strip, less)).segment<2>(farthest) / (2 * step);
+  }
+  moved.sigma_mm = std::sqrt(eigenpairs(Mat2(slope * covariance * slope.transpose())).values[1]);
+  return moved;
+}
+
+// The strip without which all others fit best: corner by corner one that has moved as a whole is
+// not found, as the view gives way to it.
+std::optional<MovedStrip> most_moved(const RimCorners& corners, const ViewFinder& finder,
+                                     const Eigen::VectorXd& from) {
+  std::map<int, RimCorners> strips;
+  for (const RimCorner& c : corners) strips[c.strip].push_back(c);
+  std::optional<MovedStrip> most;
+  for (const auto& [number, strip] : strips) {
+    RimCorners others;
+    for (const RimCorner& c : corners)
+      if (c.strip != number) others.push_back(c);
+    if (strip.size() < 3 || !reaches_around(others)) continue;
+    const MovedStrip moved = moved_against(strip, finder.fit(others, from), others.size());
+    if (!most || moved.others_px < most->others_px) most = moved;
+  }
+  return most;
+}
+
 }  // namespace
 
-Tank calibrate_tank(const std::vector<SeenPhoto>& photos, int width_px, int height_px,
+Tank calibrate_tank(const std::vector<SeenPhoto>& all_photos, int width_px, int height_px,
                     const RunContext& context) {
+  std::vector<SeenPhoto> photos;
+  for (const SeenPhoto& photo : all_photos)
+    if (const int twice = strip_seen_twice(photo.marks); twice < 0)
+      photos.push_back(photo);
+    else
+      context.warn(fmt::format(
+          "{}: shows strip {} of the board twice, and only one of the two can be meant; left out.",
+          photo.name, twice + 1));
   std::map<int, int> sightings;
   for (const SeenPhoto& photo : photos)
     for (const auto& [strip, marks] : by_strip(photo))
@@ -327,94 +507,63 @@ Tank calibrate_tank(const std::vector<SeenPhoto>& photos, int width_px, int heig
 }
 
 Vec2 View::on_water(const Eigen::Matrix<double, kValues, 1>& values, const Vec2& px) {
-  const Pose pose = Pose::of(values.head<6>());
-  const Lens lens = Lens::of(values.segment<Lens::kValues>(6));
-  const Mat3 back = pose.rotation().transpose();
-  const Vec3 eye = -(back * pose.shift), ray = back * lens.ray(px);
-  const double t = (-values[kValues - 1] - eye.z()) / ray.z();
-  return (eye + t * ray).head<2>();
+  return on_level(values, px, -values[kValues - 1]);
 }
 
 View view_of(const SeenPhoto& photo, const Tank& tank, double water_sigma_mm) {
-  std::vector<Vec2> px, flat, seen;
-  std::vector<Vec3> corner;
+  if (const int strip = strip_seen_twice(photo.marks); strip >= 0)
+    throw InputError(fmt::format(
+        "{}: strip {} of the board is to be seen twice: take the second print of it out of the "
+        "picture, and take the photo again",
+        photo.name, strip + 1));
+  std::map<int, int> times;
+  for (const SeenMark& mark : photo.marks) ++times[mark.id];
+  RimCorners corners;
   for (const SeenMark& mark : photo.marks) {
     const auto known = tank.corner_mm.find(mark.id);
-    if (known == tank.corner_mm.end()) continue;
-    corner.push_back(known->second);
-    px.push_back(mark.corner_px);
-    flat.push_back(known->second.head<2>());
-    seen.push_back(tank.lens.ray(mark.corner_px).head<2>());
+    if (known != tank.corner_mm.end() && times[mark.id] == 1)
+      corners.push_back({strip_place(mark.id).strip, known->second, mark.corner_px});
   }
-  Mat2 spread = Mat2::Zero();
-  Vec2 mean = Vec2::Zero();
-  for (const Vec2& p : flat) mean += p / double(flat.size());
-  for (const Vec2& p : flat) spread += (p - mean) * (p - mean).transpose() / double(flat.size());
-  const bool wide = flat.size() >= kLeastBoardMarks && eigenpairs(spread).values[0] > 400;
-  if (!wide)
+  if (!reaches_around(corners))
     throw InputError(fmt::format(
         "{}: too few marks of the tank's rim are to be seen ({}); take the photo so that strips on "
         "at least two sides of the tank are in it, sharp and without glare",
-        photo.name, px.size()));
+        photo.name, corners.size()));
 
-  Eigen::Matrix<double, Lens::kValues, Lens::kValues> known = tank.lens_covariance;
-  known(0, 0) += std::pow(kRefocus * tank.lens.focal_px, 2);
-  known(1, 1) += kFloat_px * kFloat_px;
-  known(2, 2) += kFloat_px * kFloat_px;
-  // In units of its deviation, along axes in which it is independent.
-  const Eigenpairs axes = eigenpairs(known);
-  const Eigen::MatrixXd to_units =
-      axes.values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal() *
-      axes.vectors.transpose();
-  const Eigen::VectorXd usual = tank.lens.values();
-  const auto residuals = [&](const Eigen::VectorXd& v, const std::vector<std::size_t>& used) {
-    const Pose pose = Pose::of(v.head<6>());
-    const Mat3 turn = pose.rotation();
-    const Lens lens = Lens::of(v.segment<Lens::kValues>(6));
-    const auto corners = 2 * Eigen::Index(used.size());
-    Eigen::VectorXd off(corners + Lens::kValues + 1);
-    for (std::size_t i = 0; i < used.size(); ++i) {
-      Vec3 point = turn * corner[used[i]] + pose.shift;
-      point.z() = std::max(point.z(), 1.0);
-      off.segment<2>(2 * Eigen::Index(i)) = (lens.project(point) - px[used[i]]) / kCorner_px;
-    }
-    off.segment(corners, Lens::kValues) = to_units * (v.segment(6, Lens::kValues) - usual);
-    off[corners + Lens::kValues] = (v[View::kValues - 1] - tank.water_below_mm) / water_sigma_mm;
-    return off;
-  };
-  Eigen::VectorXd start(View::kValues);
-  start << pose_of_plane(homography(flat, seen)).values(), usual, tank.water_below_mm;
-  std::vector<std::size_t> used(px.size());
-  for (std::size_t i = 0; i < used.size(); ++i) used[i] = i;
-  const auto fit_used = [&](const Eigen::VectorXd& from) {
-    return least_squares([&](const Eigen::VectorXd& v) { return residuals(v, used); }, from);
-  };
-  Fit fit = fit_used(start);
+  const ViewFinder finder(tank, water_sigma_mm);
+  Fit fit = finder.fit(corners, finder.start(corners));
+  const std::optional<MovedStrip> moved = most_moved(corners, finder, fit.values);
   std::vector<double> off;
-  for (std::size_t i = 0; i < used.size(); ++i)
+  for (std::size_t i = 0; i < corners.size(); ++i)
     off.push_back(kCorner_px * fit.residuals.segment<2>(2 * Eigen::Index(i)).norm());
-  const double limit = std::max(kAstray_px, kAstray * median(off));
-  std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < used.size(); ++i)
-    if (off[i] <= limit) kept.push_back(i);
-  if (kept.size() < used.size() && kept.size() >= kLeastBoardMarks) {
-    used = kept;
-    fit = fit_used(fit.values);
+  const double astray_px = std::max(kAstray_px, kAstray * median(off));
+  RimCorners kept;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (off[i] <= astray_px) kept.push_back(corners[i]);
+  if (kept.size() < corners.size() && kept.size() >= kLeastBoardMarks) {
+    corners = kept;
+    fit = finder.fit(corners, fit.values);
   }
 
   View view;
   view.values = fit.values;
-  view.rms_px = rms_px(fit, used.size());
-  view.board_marks = int(used.size());
-  if (!(view.rms_px < kWorstFit_px))
+  view.rms_px = rms_px(fit, corners.size());
+  view.board_marks = int(corners.size());
+  const double limit_px =
+      std::min(kWorstFit_px, std::max(kBlurredFit_px, kWorseThanCalibrated * tank.rms_px));
+  if (moved && moved->others_px <= limit_px &&
+      moved->moved_mm > std::max(kMoved_mm, kSure * moved->sigma_mm))
     throw InputError(fmt::format(
-        "{}: the rim's marks are {:.1f} px off where the calibration found them: a strip has "
-        "moved, or it is another camera or zoom; calibrate again with 'hydrodip register "
-        "--calibrate-camera'",
-        photo.name, view.rms_px));
-  const double freedom = double(fit.residuals.size() - fit.values.size());
-  const double scale = std::max(1.0, freedom > 0 ? fit.residuals.squaredNorm() / freedom : 1.0);
-  view.covariance = scale * fit.covariance;
+        "{}: strip {} of the rim has moved by {:.1f} mm since the calibration, as the others tell: "
+        "put it back, or calibrate again with 'hydrodip register --calibrate-camera'",
+        photo.name, moved->strip + 1, moved->moved_mm));
+  if (!(view.rms_px < limit_px))
+    throw InputError(fmt::format(
+        "{}: the rim's marks are {:.1f} px off where the calibration found them (to {:.2f} px): "
+        "strips have moved, or the photo is blurred, zoomed, scaled or another camera's; take it "
+        "again, or calibrate again with 'hydrodip register --calibrate-camera'",
+        photo.name, view.rms_px, tank.rms_px));
+  view.covariance = ViewFinder::covariance(fit);
   return view;
 }
 

@@ -56,8 +56,9 @@ struct View {
   static Vec2 on_water(const Eigen::Matrix<double, kValues, 1>& values, const Vec2& px);
 };
 
-// Throws InputError naming the photo: too few marks of the rim, or they do not lie where the
-// calibration found them. water_sigma_mm: how well the level is known.
+// Throws InputError naming the photo: too few marks of the rim, a strip that is to be seen twice,
+// one that has moved as a whole (by more than 0.3 mm, if the others can tell), or marks that fit
+// the rim much worse than the calibration's. water_sigma_mm: how well the level is known.
 View view_of(const SeenPhoto& photo, const Tank& tank, double water_sigma_mm);
 
 }  // namespace hydrodip

@@ -2,7 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
 
 #include "base/error.h"
 #include "camera/board.h"
@@ -97,6 +99,76 @@ TEST(Calibration, RefusesPhotosThatTellNothing) {
   EXPECT_THROW(calibrate_tank(alike, 4000, 3000, RunContext()), InputError);
 }
 
+// A photo of the rim in which some strips lie elsewhere than they were calibrated, by a lens that
+// focuses anew.
+SeenPhoto rim_photo(const std::map<int, Vec3>& moved_mm, std::mt19937& random) {
+  auto rim = synthetic_tank(false);
+  for (const auto& [strip, by] : moved_mm) rim.strip[std::size_t(strip)].shift += by;
+  std::normal_distribution<double> normal;
+  Lens lens = phone_lens();
+  lens.focal_px *= 1 + 0.002 * normal(random);
+  lens.center_px += 3 * Vec2(normal(random), normal(random));
+  return {"photo.jpg", rim.seen(lens, random_view(random), 0.1, random)};
+}
+
+std::string refusal(const SeenPhoto& photo, const Tank& tank) {
+  try {
+    view_of(photo, tank, 0.3);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(View, StripThatHasMovedIsNamedWithItsWay) {
+  const Tank tank = known_tank();
+  std::mt19937 random(21);
+  std::uniform_real_distribution<double> angle(0, 2 * std::numbers::pi);
+  for (int n = 0; n < 24; ++n) {
+    EXPECT_EQ(refusal(rim_photo({}, random), tank), "");
+    const int strip = n % 4;
+    const double by_mm = n < 12 ? 1 : 3, towards = angle(random);
+    const std::string told = refusal(
+        rim_photo({{strip, by_mm * Vec3(std::cos(towards), std::sin(towards), 0)}}, random), tank);
+    EXPECT_NE(told.find("strip " + std::to_string(strip + 1) + " of the rim has moved by"),
+              std::string::npos)
+        << told;
+    const std::size_t at = told.find("moved by ");
+    ASSERT_NE(at, std::string::npos) << told;
+    EXPECT_NEAR(std::stod(told.substr(at + 9)), by_mm, 0.25) << told;
+  }
+}
+
+TEST(View, StripsThatMovedTogetherAreRefused) {
+  const Tank tank = known_tank();
+  std::mt19937 random(22);
+  // Neither pair can tell that it was the other one.
+  const std::string told =
+      refusal(rim_photo({{1, Vec3(0, 2, 0)}, {3, Vec3(0, 2, 0)}}, random), tank);
+  EXPECT_NE(told.find("px off where the calibration found them"), std::string::npos) << told;
+}
+
+TEST(View, SecondPrintOfAStripIsNamed) {
+  const Tank tank = known_tank();
+  std::mt19937 random(23);
+  SeenPhoto photo = rim_photo({}, random);
+  const SeenPhoto other = rim_photo({{2, Vec3(60, 55, 0)}}, random);
+  for (const SeenMark& mark : other.marks)
+    if (strip_place(mark.id).strip == 2) photo.marks.push_back(mark);
+  const std::string told = refusal(photo, tank);
+  EXPECT_NE(told.find("strip 3 of the board is to be seen twice"), std::string::npos) << told;
+  // A calibration does without such a photo.
+  std::vector<SeenPhoto> photos = calibration_photos(0.03, 1);
+  photos.push_back(photo);
+  const Tank again = calibrate_tank(photos, 4000, 3000, RunContext());
+  EXPECT_EQ(again.rms_px, tank.rms_px);
+  // One tag that was misread is no strip.
+  photo = rim_photo({}, random);
+  photo.marks.push_back(photo.marks.front());
+  photo.marks.back().corner_px += Vec2(300, 200);
+  EXPECT_EQ(refusal(photo, tank), "");
+}
+
 // An A4 sheet on the water, as it lies in the truth's frame.
 struct Laid {
   Vec2 shift = Vec2::Zero();
@@ -149,7 +221,23 @@ TEST(SlowFilmPose, IsFoundInAPhoto) {
     EXPECT_LT(std::abs(pose.shift_mm[k] - laid.shift[k]), 4 * pose.shift_sigma_mm[k]);
     EXPECT_LT(std::abs(pose.swelling[k] - laid.swelling[k]), 4 * pose.swelling_sigma[k]);
   }
-  // Another job's sheet.
+  const auto told = [&](const GrayImage& photo) -> std::string {
+    try {
+      find_film(photo, "photo.jpg", tank, search, RunContext());
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  // In a mirrored photo the rim is mirrored, too: no reason to throw the film away.
+  const std::string mirrored_photo = told(mirrored(seen.photo));
+  EXPECT_NE(mirrored_photo.find("the photo is mirrored"), std::string::npos) << mirrored_photo;
+  // By a level that might be anywhere nobody can move a film.
+  search.water_sigma_mm = 30;
+  const std::string unsure = told(seen.photo);
+  EXPECT_NE(unsure.find("too little to move it by"), std::string::npos) << unsure;
+  search.water_sigma_mm = 0.1;
+  // A sheet of another size.
   search.marks = film_marks(215.9, 279.4, 10);
   EXPECT_THROW(find_film(seen.photo, "photo.jpg", tank, search, RunContext()), InputError);
 }
@@ -161,7 +249,8 @@ TEST(SlowFilmPose, ToldWhenItLiesUpsideDown) {
     find_film(seen.photo, "photo.jpg", tank, {film_marks(210, 297, 10)}, RunContext());
     FAIL() << "found";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("upside down"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("film lies upside down"), std::string::npos)
+        << error.what();
   }
 }
 
