@@ -1,6 +1,6 @@
 // A printer's Z axis under Marlin. Source: https://marlinfw.org/docs/gcode/ (G1, G28, M92, M110,
-// M112, M114, M115, M211, M410) and "Host requirements": one command, one `ok`; lines carry a
-// number and the XOR of their bytes, so that a garbled one is asked for again.
+// M112, M114, M115, M211, M220, M410, M420) and "Host requirements": one command, one `ok`; lines
+// carry a number and the XOR of their bytes, so that a garbled one is asked for again.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,6 +23,8 @@ constexpr double kLooksApart_s = 0.04;
 constexpr double kStartTimeout_s = 10;
 // While it homes, Marlin says "busy" every two seconds.
 constexpr double kBusyTimeout_s = 5;
+// Some move away from the end that they have found: by no more than this share of their travel.
+constexpr double kHomeShare = 0.1;
 
 std::string numbered(int number, const std::string& text) {
   const std::string body = fmt::format("N{} {}", number, text);
@@ -46,19 +48,26 @@ std::optional<double> number_after(const std::string& line, const std::string& l
 
 class MarlinStage : public Stage {
  public:
-  MarlinStage(Link& link, Clock& clock) : link_(link), clock_(clock), lines_(link, clock) {}
+  MarlinStage(Link& link, Clock& clock, const StageOptions& options)
+      : link_(link), clock_(clock), lines_(link, clock), down_(options.down) {}
 
   StageIdentity connect() override {
     wait_for_start();
     StageIdentity identity;
     identity.name = firmware_name(exchange("M115"));
+    // Before anything is asked that comes in the unit that somebody has left it in.
+    exchange("G21");
+    exchange("G90");
     steps_per_mm_ = find_number("M92", "M92", " Z");
     identity.step_mm = 1 / steps_per_mm_;
     identity.unsure_mm = kShown_mm;
     identity.min_mm = find_number("M211", "Min:", " Z");
     identity.max_mm = find_number("M211", "Max:", " Z");
-    exchange("G21");
-    exchange("G90");
+    min_mm_ = identity.min_mm;
+    max_mm_ = identity.max_mm;
+    // So that the first look tells whether it moves.
+    position_mm_ = read_position().value_or(0);
+    clock_.sleep(kLooksApart_s);
     connected_ = true;
     return identity;
   }
@@ -72,21 +81,30 @@ class MarlinStage : public Stage {
     state.homed = state.position_known = homed_;
     const bool changed = position && std::abs(*position - position_mm_) > 0.5 / steps_per_mm_;
     if (position) position_mm_ = *position;
-    state.position_mm = position_mm_;
-    const bool under_way = aimed_ && std::abs(*aimed_ - position_mm_) > 0.5 / steps_per_mm_;
+    const bool under_way =
+        aimed_ && std::abs(*aimed_ - position_mm_) > 0.5 / steps_per_mm_ + offset_error_mm();
+    const bool there = aimed_ && !changed && !under_way && offset_mm_ != 0;
+    state.position_mm = there ? *aimed_ : position_mm_;
     state.moving = changed || under_way || !position || (stopping_ && !has_come_to_rest());
     return state;
   }
 
   void start_homing() override {
-    link_.send(numbered(next_line_++, "G28 Z"));
-    homing_ = true;
+    homed_ = false;
+    homing_refused_.clear();
+    homing_asked_ = 0;
+    offset_mm_ = 0;
+    send_homing(next_line_++);
     aimed_.reset();
     stopping_.reset();
     heard_s_ = clock_.now_s();
   }
 
-  void set_speed(double mm_per_min) override { speed_mm_per_min_ = mm_per_min; }
+  // The printer's knob changes what share of it is driven, at any time.
+  void set_speed(double mm_per_min) override {
+    speed_mm_per_min_ = mm_per_min;
+    exchange("M220 S100");
+  }
 
   void aim(double position_mm) override {
     if (halted_) throw StageError(halted_state().fault);
@@ -151,6 +169,11 @@ class MarlinStage : public Stage {
   // An earlier line was lost for good: the printer still waits for its number.
   void renumber(int& number, int wanted) {
     if (number - wanted > kMostLinesLost || number < wanted) set_restarted(wanted);
+    if (!homing_ && wanted <= homing_number_) {
+      homed_ = false;
+      next_line_ = wanted;
+      throw StageError("the printer has not got the command to home: home it again");
+    }
     number = wanted;
     next_line_ = wanted + 1;
   }
@@ -169,6 +192,7 @@ class MarlinStage : public Stage {
     homed_ = homing_ = false;
     aimed_.reset();
     next_line_ = next;
+    homing_number_ = -1;
     throw StageError("the printer has started anew and forgotten its home: was its power cut?");
   }
 
@@ -223,22 +247,32 @@ class MarlinStage : public Stage {
         command));
   }
 
-  // The steppers' own count: the other figures of M114 tell where the last command leads.
+  // The steppers' own count: the other figures of M114 tell where the last command leads. They
+  // count from elsewhere if somebody has set an offset for the home (M206).
   std::optional<double> read_position() {
+    const auto steps = read_steps();
+    if (!steps) return {};
+    return *steps / steps_per_mm_ + offset_mm_;
+  }
+  std::optional<double> read_steps() {
     leads_to_.reset();
     for (const std::string& line : exchange("M114")) {
       const std::size_t count = line.find("Count");
       if (count == std::string::npos) continue;
       if (line.find("Z:") < count) leads_to_ = number_after(line, "Z:");
-      if (const auto steps = number_after(line, "Z:", count)) return *steps / steps_per_mm_;
+      if (const auto steps = number_after(line, "Z:", count)) return steps;
     }
     return {};
   }
 
+  // An offset is known by figures of two digits.
+  double offset_error_mm() const { return offset_mm_ != 0 ? kShown_mm : 0; }
+
   // After a stop nobody knows where it was going. Two looks within a moment see the same place even
   // if it moves.
   bool has_come_to_rest() {
-    const bool leads_away = leads_to_ && std::abs(*leads_to_ - position_mm_) > kShown_mm;
+    const bool leads_away =
+        leads_to_ && std::abs(*leads_to_ - position_mm_) > kShown_mm + offset_error_mm();
     const bool same = std::abs(position_mm_ - stopping_->seen_mm) <= 0.5 / steps_per_mm_;
     if (leads_away || !same) {
       stopping_ = {position_mm_, clock_.now_s()};
@@ -265,12 +299,34 @@ class MarlinStage : public Stage {
     return homed_ && aimed_ && leads_to_ && std::abs(*leads_to_ - *aimed_) > kShown_mm;
   }
 
+  void send_homing(int number) {
+    link_.send(numbered(number, "G28 Z"));
+    homing_ = true;
+    homing_number_ = number;
+    homing_again_ = false;
+    ++homing_asked_;
+  }
+
   StageState homing_state() {
     while (const auto line = lines_.line(clock_.now_s() + 0.05)) {
       refuse_errors(*line);
       heard_s_ = clock_.now_s();
+      if (const auto wanted = number_after(*line, "Resend:")) {
+        homing_again_ = *wanted <= homing_number_;
+        if (homing_again_) renumber(homing_number_, static_cast<int>(*wanted));
+      }
+      // Whatever it refuses or does not understand ends with ok all the same.
+      const std::size_t home = line->find("Home ");
+      if (home != std::string::npos && line->find(" First", home) != std::string::npos)
+        homing_refused_ = *line;
+      if (line->find("Unknown command") != std::string::npos) homing_again_ = true;
       if (!line->starts_with("ok")) continue;
+      if (homing_again_ && homing_asked_ < kAttempts) {
+        send_homing(homing_number_);
+        continue;
+      }
       homing_ = false;
+      require_home();
       homed_ = true;
       return state();
     }
@@ -281,6 +337,42 @@ class MarlinStage : public Stage {
     state.position_known = false;
     state.moving = true;
     return state;
+  }
+
+  // That it says ok does not mean that it is there.
+  void require_home() {
+    if (homing_again_) throw StageError("the printer has not got the command to home");
+    if (!homing_refused_.empty())
+      throw StageError(fmt::format(
+          "the printer has not homed Z ('{}'): only one that homes Z by itself and at the top can "
+          "carry an object, and Z_SAFE_HOMING is for those that home towards their bed",
+          homing_refused_));
+    // Levelling shifts Z by something else at every height.
+    exchange("M420 S0");
+    find_offset();
+    position_mm_ = read_position().value_or(position_mm_);
+    const double top_mm = down_ == StageDown::kPlus ? min_mm_ : max_mm_;
+    if (std::abs(position_mm_ - top_mm) <= kHomeShare * (max_mm_ - min_mm_)) return;
+    throw StageError(fmt::format(
+        "the printer's home is at {:.2f} mm, and the top of its travel at {:.2f} mm "
+        "(stage.down={}): it has homed towards its bed or not at all, or stage.down is wrong; it "
+        "must home Z away from the bath",
+        position_mm_, top_mm, down_ == StageDown::kPlus ? "plus" : "minus"));
+  }
+
+  // Where it stands still, figures and count are of one place. Answers may be garbled: two have to
+  // agree.
+  void find_offset() {
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      const auto steps = read_steps();
+      const auto shown_mm = leads_to_;
+      if (!steps || read_steps() != steps || leads_to_ != shown_mm) continue;
+      if (!shown_mm) return;
+      const double offset_mm = *shown_mm - *steps / steps_per_mm_;
+      if (std::abs(offset_mm) > kShown_mm) offset_mm_ = std::round(100 * offset_mm) / 100;
+      return;
+    }
+    throw StageError("the printer's answers to M114 do not agree, though it stands at its home");
   }
 
   StageState halted_state() const {
@@ -297,10 +389,16 @@ class MarlinStage : public Stage {
   int next_line_ = 0;
   double steps_per_mm_ = 1;
   double speed_mm_per_min_ = 60;
+  StageDown down_;
+  double min_mm_ = 0, max_mm_ = 0;
+  double offset_mm_ = 0;  // what the printer shows over what its steps come to
   double position_mm_ = 0;
   std::optional<double> aimed_;     // where it was sent; unknown after a stop
   std::optional<double> leads_to_;  // where it says that it goes
   bool connected_ = false, homing_ = false, homed_ = false, halted_ = false;
+  int homing_number_ = -1, homing_asked_ = 0;  // the line that was to home it, and how often
+  bool homing_again_ = false;                  // it was asked for once more
+  std::string homing_refused_;                 // why it has not homed, in its words
   double heard_s_ = 0;
   // After a stop: where it was seen, and since when there.
   struct Stopping {
@@ -312,8 +410,8 @@ class MarlinStage : public Stage {
 
 }  // namespace
 
-std::unique_ptr<Stage> marlin_stage(Link& link, Clock& clock) {
-  return std::make_unique<MarlinStage>(link, clock);
+std::unique_ptr<Stage> marlin_stage(Link& link, Clock& clock, const StageOptions& options) {
+  return std::make_unique<MarlinStage>(link, clock, options);
 }
 
 }  // namespace hydrodip

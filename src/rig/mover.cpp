@@ -25,7 +25,8 @@ constexpr double kLeashSteps = 8;
 
 // The stop of a movement that was under way: why, and how it ended.
 std::string with_rest(const std::string& phase, const std::string& why, const Rest& rest) {
-  return fmt::format("{}: {}. {}", phase, why, rest.sentence());
+  const bool ended = why.ends_with('.') || why.ends_with('?') || why.ends_with('!');
+  return fmt::format("{}: {}{} {}", phase, why, ended ? "" : ".", rest.sentence());
 }
 
 }  // namespace

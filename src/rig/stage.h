@@ -49,7 +49,7 @@ class Stage {
 inline constexpr double kReplyTimeout_s = 0.3;
 
 std::unique_ptr<Stage> zaber_stage(Link& link, Clock& clock, const StageOptions& options);
-std::unique_ptr<Stage> marlin_stage(Link& link, Clock& clock);
+std::unique_ptr<Stage> marlin_stage(Link& link, Clock& clock, const StageOptions& options);
 std::unique_ptr<Stage> make_stage(Link& link, Clock& clock, const StageOptions& options);
 
 }  // namespace hydrodip

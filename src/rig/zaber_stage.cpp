@@ -158,7 +158,7 @@ std::unique_ptr<Stage> zaber_stage(Link& link, Clock& clock, const StageOptions&
 }
 
 std::unique_ptr<Stage> make_stage(Link& link, Clock& clock, const StageOptions& options) {
-  if (options.driver == StageDriver::kMarlin) return marlin_stage(link, clock);
+  if (options.driver == StageDriver::kMarlin) return marlin_stage(link, clock, options);
   return zaber_stage(link, clock, options);
 }
 

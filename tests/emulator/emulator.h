@@ -147,7 +147,15 @@ class Emulator {
 
 // Zaber A-LST0750B-E01 as the ASCII protocol manual describes it.
 std::unique_ptr<Emulator> zaber_emulator(unsigned seed = 1, bool homed = false);
+// How a printer is built, and what others have left it in.
+struct MarlinHabits {
+  double home_mm = 0;           // where it counts its home: 0 or, if it counts upward to it, 200
+  double home_offset_mm = 0;    // M206: what it shows over what its steps come to
+  double feed_percent = 100;    // M220
+  bool inches = false;          // G20
+  bool wants_xy_first = false;  // Z_SAFE_HOMING: does not home Z alone, and says ok
+};
 // A printer under Marlin 2 with 200 mm of Z.
-std::unique_ptr<Emulator> marlin_emulator(unsigned seed = 1);
+std::unique_ptr<Emulator> marlin_emulator(unsigned seed = 1, const MarlinHabits& habits = {});
 
 }  // namespace hydrodip

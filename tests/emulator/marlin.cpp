@@ -14,7 +14,7 @@ constexpr double kZMax_mm = 200;
 
 class MarlinEmulator : public Emulator {
  public:
-  explicit MarlinEmulator(unsigned seed) : Emulator(seed) {
+  MarlinEmulator(unsigned seed, const MarlinHabits& habits) : Emulator(seed), habits_(habits) {
     step_mm_ = 1 / kStepsPerMm;
     axis_.position = axis_.target = 30 * kStepsPerMm;
     count_from_here();
@@ -36,7 +36,7 @@ class MarlinEmulator : public Emulator {
 
   void tick() override {
     if (was_homing_ && !homing_) {
-      reply("X:0.00 Y:0.00 Z:0.00 E:0.00 Count X:0 Y:0 Z:0");
+      reply(place());
       reply("ok");
       std::deque<std::string> lines;
       lines.swap(waiting_);
@@ -54,6 +54,8 @@ class MarlinEmulator : public Emulator {
   void on_power_cut() override {
     Emulator::on_power_cut();
     killed_ = was_homing_ = false;
+    habits_.inches = false;
+    habits_.feed_percent = 100;
     last_number_ = -1;
     waiting_.clear();
     if (strength(FaultKind::kBlink) == 0) reply("start");
@@ -99,8 +101,22 @@ class MarlinEmulator : public Emulator {
     return at == std::string::npos ? otherwise : std::atof(text.c_str() + at + 1);
   }
 
+  double unit_mm() const { return habits_.inches ? 25.4 : 1; }
+  // Where its steps put it; before it has homed it counts from where it was switched on.
+  double native_mm(double count) const { return count * step_mm_ + (homed_ ? habits_.home_mm : 0); }
+  double shown(double native_mm) const { return (native_mm + habits_.home_offset_mm) / unit_mm(); }
+  std::string place() const {
+    return fmt::format("X:0.00 Y:0.00 Z:{:.2f} E:0.00 Count X:0 Y:0 Z:{}",
+                       shown(native_mm(axis_.target - axis_.position + count())),
+                       std::lround(native_mm(count()) * kStepsPerMm));
+  }
+
   void execute(const std::string& text) {
     if (text.rfind("G28", 0) == 0) {
+      if (habits_.wants_xy_first) {
+        reply("echo:Home XY First");
+        return reply("ok");
+      }
       axis_.top_speed = 20 * kStepsPerMm;
       busy_s_ = now_s_;
       was_homing_ = true;
@@ -109,31 +125,37 @@ class MarlinEmulator : public Emulator {
     }
     if (text.rfind("G1 ", 0) == 0) {
       begin_move();
-      axis_.top_speed = value(text, 'F', 600) / 60 * kStepsPerMm;
-      aim_at(kStepsPerMm * std::clamp(value(text, 'Z', step_mm_ * count()), 0.0, kZMax_mm));
+      axis_.top_speed =
+          value(text, 'F', 600) * unit_mm() * habits_.feed_percent / 100 / 60 * kStepsPerMm;
+      const double z_mm = value(text, 'Z', shown(native_mm(count()))) * unit_mm();
+      aim_at(kStepsPerMm *
+             (std::clamp(z_mm - habits_.home_offset_mm, 0.0, kZMax_mm) - native_mm(0)));
     } else if (text == "M410") {
       axis_.stop();
     } else if (text == "M114") {
-      reply(fmt::format("X:0.00 Y:0.00 Z:{:.2f} E:0.00 Count X:0 Y:0 Z:{}",
-                        (axis_.target - axis_.position + count()) * step_mm_,
-                        std::lround(count())));
+      reply(place());
     } else if (text == "M115") {
       reply(
           "FIRMWARE_NAME:Marlin 2.1.2 SOURCE_CODE_URL:github.com/MarlinFirmware/Marlin "
           "PROTOCOL_VERSION:1.0 MACHINE_TYPE:3D Printer EXTRUDER_COUNT:1");
     } else if (text == "M92") {
-      reply("  M92 X80.00 Y80.00 Z400.00 E93.00");
+      reply(fmt::format("  M92 X80.00 Y80.00 Z{:.2f} E93.00", kStepsPerMm * unit_mm()));
     } else if (text == "M211") {
       const double surplus_mm = strength(FaultKind::kShortTravel);
       reply(fmt::format(
           "Soft endstops: On  Min:  X0.00 Y0.00 Z{:.2f}   Max:  X200.00 Y200.00 Z{:.2f}",
-          -surplus_mm, kZMax_mm + surplus_mm));
-    } else if (text != "G90" && text != "G21" && text.rfind("M110", 0) != 0) {
+          shown(-surplus_mm), shown(kZMax_mm + surplus_mm)));
+    } else if (text == "G21") {
+      habits_.inches = false;
+    } else if (text.rfind("M220 S", 0) == 0) {
+      habits_.feed_percent = value(text, 'S', 100);
+    } else if (text != "G90" && text.rfind("M110", 0) != 0) {
       reply("echo:Unknown command: \"" + text + "\"");
     }
     reply("ok");
   }
 
+  MarlinHabits habits_;
   bool killed_ = false, was_homing_ = false;
   int last_number_ = -1;
   double busy_s_ = 0;
@@ -142,8 +164,8 @@ class MarlinEmulator : public Emulator {
 
 }  // namespace
 
-std::unique_ptr<Emulator> marlin_emulator(unsigned seed) {
-  return std::make_unique<MarlinEmulator>(seed);
+std::unique_ptr<Emulator> marlin_emulator(unsigned seed, const MarlinHabits& habits) {
+  return std::make_unique<MarlinEmulator>(seed, habits);
 }
 
 }  // namespace hydrodip

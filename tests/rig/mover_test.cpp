@@ -206,7 +206,7 @@ TEST(MarlinStage, NeverStandsWhileItGoesOn) {
   // Slower than anybody sees in a while, but it says where it goes; or a step in every few looks.
   for (const auto& [steps_per_s, tells_its_goal] : {std::pair{0.5, true}, {200.0, false}}) {
     DeafPrinter printer(steps_per_s, tells_its_goal);
-    const auto stage = marlin_stage(printer, printer);
+    const auto stage = marlin_stage(printer, printer, {});
     stage->connect();
     stage->state();
     printer.sleep(4);
@@ -221,12 +221,102 @@ TEST(MarlinStage, NeverStandsWhileItGoesOn) {
 
 TEST(MarlinStage, AHaltedPrinterIsNotSentOn) {
   DeafPrinter printer(0, false);
-  const auto stage = marlin_stage(printer, printer);
+  const auto stage = marlin_stage(printer, printer, {});
   stage->connect();
   stage->halt();
   EXPECT_THROW(stage->aim(50), StageError);
   EXPECT_EQ(printer.sent_on, 0);
   EXPECT_FALSE(stage->state().fault.empty());
+}
+
+// What others have left a printer in does not matter.
+TEST(MarlinStage, DipsTrulyWhateverItWasLeftIn) {
+  for (const MarlinHabits& habits :
+       {MarlinHabits{.feed_percent = 90}, MarlinHabits{.feed_percent = 160},
+        MarlinHabits{.inches = true}, MarlinHabits{.home_offset_mm = -2},
+        MarlinHabits{.home_offset_mm = 3.4567}}) {
+    VirtualBench bench(habits);
+    const Outcome outcome = run_dip(bench, {});
+    EXPECT_TRUE(outcome.finished) << outcome.message;
+    EXPECT_NEAR(bench.emulator->measured_speed_mm_per_min(22, 36), 300, 3);
+    // As the printer counts; what it shows ends two digits after the point.
+    double lowest_mm = 0, told_mm = 0;
+    for (const TracePoint& point : outcome.trace) told_mm = std::max(told_mm, point.reported_mm);
+    Mover mover(*bench.stage, bench.clock, bench.context);
+    mover.allow_motion();
+    mover.home();
+    mover.move_to("dip", 40, 900, false);
+    lowest_mm = bench.emulator->position_mm();
+    EXPECT_NEAR(lowest_mm, 40 - habits.home_offset_mm, 0.006);
+    EXPECT_NEAR(told_mm, 40, 0.006);
+  }
+}
+
+TEST(MarlinStage, StopsWhereItShowsAnotherPlaceThanItsStepsComeTo) {
+  VirtualBench bench(MarlinHabits{.home_offset_mm = 3.4567});
+  bench.clock.at(8, [&] { bench.context.cancel(); });
+  const Outcome outcome = run_dip(bench, {20, 40, 60});
+  EXPECT_FALSE(outcome.finished);
+  ASSERT_TRUE(outcome.rest);
+  EXPECT_TRUE(outcome.rest->confirmed) << outcome.message;
+  EXPECT_NEAR(outcome.rest->position_mm, bench.emulator->position_mm() + 3.4567, 0.006);
+}
+
+TEST(MarlinStage, HomingThatDidNotHappenIsNoHome) {
+  VirtualBench bench(MarlinHabits{.wants_xy_first = true});
+  const double place_mm = bench.emulator->position_mm();
+  const Outcome outcome = run_dip(bench, {});
+  EXPECT_NE(outcome.message.find("has not homed Z ('echo:Home XY First')"), std::string::npos)
+      << outcome.message;
+  EXPECT_FALSE(bench.stage->state().homed);
+  EXPECT_EQ(bench.emulator->position_mm(), place_mm);
+  EXPECT_FALSE(bench.emulator->moved_unhomed());
+}
+
+TEST(MarlinStage, HomeIsAtTheTop) {
+  // Counts upward to its top.
+  VirtualBench good(MarlinHabits{.home_mm = 200}, StageDown::kMinus);
+  good.emulator->stand_at(-30);
+  const Outcome outcome = run_dip(good, {180, 160, 300});
+  EXPECT_TRUE(outcome.finished) << outcome.message;
+  EXPECT_NEAR(good.emulator->position_mm(), -20, 0.003);
+  // Towards its bed.
+  for (const auto& [home_mm, down] : {std::pair{0., StageDown::kMinus}, {200., StageDown::kPlus}}) {
+    VirtualBench bench(MarlinHabits{.home_mm = home_mm}, down);
+    const Outcome refused = run_dip(bench, {});
+    EXPECT_NE(refused.message.find("it must home Z away from the bath"), std::string::npos)
+        << refused.message;
+    EXPECT_FALSE(bench.stage->state().homed);
+  }
+}
+
+TEST(MarlinStage, HomingThatWasGarbledIsAskedForAgain) {
+  VirtualBench bench(Machine::kMarlin);
+  bench.stage->connect();
+  bench.emulator->add({FaultKind::kGarbleCommands, bench.clock.now_s(), 1, 0.002});
+  bench.stage->start_homing();
+  StageState state;
+  do {
+    bench.clock.sleep(0.1);
+    state = bench.stage->state();
+  } while (state.moving);
+  EXPECT_TRUE(state.homed);
+  EXPECT_TRUE(bench.emulator->homed());
+  EXPECT_EQ(bench.emulator->position_mm(), 0);
+}
+
+TEST_P(BothMachines, StandsStillAtTheFirstLook) {
+  VirtualBench bench(GetParam());
+  Mover mover(*bench.stage, bench.clock, bench.context);
+  EXPECT_FALSE(mover.state().moving);
+}
+
+// Reasons that end as a question need no full stop.
+TEST(MarlinStage, AnErrorIsASentence) {
+  VirtualBench bench(Machine::kMarlin);
+  bench.emulator->add({FaultKind::kBlink, 12, 1, 0.01});
+  const Outcome outcome = run_dip(bench, {20, 120, 60});
+  EXPECT_NE(outcome.message.find("was its power cut? "), std::string::npos) << outcome.message;
 }
 
 // Two wrong bits in a command looked right, and sent it 0.005 mm further than promised.

@@ -97,14 +97,21 @@ enum class Machine { kZaber, kMarlin };
 
 struct VirtualBench {
   explicit VirtualBench(Machine machine, unsigned seed = 1)
-      : emulator(machine == Machine::kZaber ? zaber_emulator(seed) : marlin_emulator(seed)),
+      : VirtualBench(machine == Machine::kZaber ? zaber_emulator(seed) : marlin_emulator(seed),
+                     options_of(machine)) {}
+  // A printer of that kind.
+  explicit VirtualBench(const MarlinHabits& habits, StageDown down = StageDown::kPlus)
+      : VirtualBench(marlin_emulator(1, habits), options_of(Machine::kMarlin, down)) {}
+  VirtualBench(std::unique_ptr<Emulator> machine, const StageOptions& how)
+      : emulator(std::move(machine)),
         clock(*emulator),
         link(open_serial(emulator->port(), 115200, clock), clock),
-        options(options_of(machine)),
+        options(how),
         stage(make_stage(link, clock, options)) {}
 
-  static StageOptions options_of(Machine machine) {
+  static StageOptions options_of(Machine machine, StageDown down = StageDown::kPlus) {
     StageOptions options;
+    options.down = down;
     if (machine == Machine::kMarlin) options.driver = StageDriver::kMarlin;
     return options;
   }
