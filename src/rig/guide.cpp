@@ -58,7 +58,7 @@ class Guide {
     const std::string done = fmt::format("{}", fmt::join(kept, ", "));
     const std::string answer = person_.ask(fmt::format(
         "{} was broken off with this done: {}. Keep that? yes or no: ", broken.name, done));
-    if (answer != "yes") return;
+    if (answer != "yes") return record_.note("not taken up", {{"from", broken.name}});
     done_ = kept;
     record_.note("taken up", {{"from", broken.name}, {"done", done}});
     for (const std::string& step : kept) record_.note("step kept", {{"step", step}});

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -42,6 +43,47 @@ std::string speed_row(const std::optional<SpeedCheck>& speed) {
       "commanded and reported position: {:.3f} mm.</p>\n",
       speed->measured_mm_per_min, speed->commanded_mm_per_min, speed->error_percent(),
       speed->largest_deviation_mm);
+}
+
+struct PastRun {
+  std::vector<std::string> steps;
+  bool finished = true;
+  // Nothing became of what was prepared before it: it ended before it had asked whether to keep
+  // that, or only moved the stage about.
+  bool says_nothing = false;
+};
+
+PastRun past_run(const std::filesystem::path& folder) {
+  PastRun run;
+  std::ifstream log(folder / "log.jsonl");
+  if (!log) return run;
+  run.finished = false;
+  std::string action, ended_at = "start";
+  bool decided = false;
+  for (std::string line; std::getline(log, line);) {
+    const Json entry = parsed_json<Json>(line);
+    if (!entry.is_object() || !entry.contains("event") || !entry["event"].is_string()) continue;
+    const auto text = [&](const char* key) {
+      return entry.contains(key) && entry[key].is_string() ? entry[key].get<std::string>() : "";
+    };
+    const std::string event = entry["event"];
+    if (event == "start") action = text("action");
+    if (event == "taken up" || event == "not taken up") decided = true;
+    if ((event == "step done" || event == "step kept") && !text("step").empty())
+      run.steps.push_back(text("step"));
+    if (event == "end") {
+      ended_at = text("step");
+      run.finished = text("outcome") == "done";
+    }
+  }
+  if (action.empty()) {
+    run.says_nothing = !run.finished && !decided && run.steps.empty() && ended_at == "start";
+  } else {
+    // 'rig stage', which nobody takes up again; a dip uses up film and object.
+    run.finished = true;
+    run.says_nothing = action != "dip";
+  }
+  return run;
 }
 
 }  // namespace
@@ -103,24 +145,16 @@ std::vector<std::string> RunRecord::finish(const Trace& trace) {
 }
 
 BrokenRun last_broken_run(const RigJob& job) {
-  BrokenRun run;
   std::error_code ignored;
-  for (int number = 1; std::filesystem::exists(job.folder / run_name(number), ignored); ++number)
-    run.name = run_name(number);
-  std::ifstream log(job.folder / run.name / "log.jsonl");
-  bool finished = run.name.empty() || !log;
-  for (std::string line; std::getline(log, line);) {
-    const Json entry = parsed_json<Json>(line);
-    if (!entry.is_object() || !entry.contains("event") || !entry["event"].is_string()) continue;
-    const bool is_done = entry["event"] == "step done" || entry["event"] == "step kept";
-    if (is_done && entry.contains("step") && entry["step"].is_string())
-      run.steps.push_back(entry["step"]);
-    // Only guided runs can be taken up again.
-    if (entry["event"] == "end")
-      finished =
-          !entry.contains("guided") || (entry.contains("outcome") && entry["outcome"] == "done");
+  int number = 0;
+  while (std::filesystem::exists(job.folder / run_name(number + 1), ignored)) ++number;
+  for (; number > 0; --number) {
+    PastRun run = past_run(job.folder / run_name(number));
+    if (run.says_nothing) continue;
+    if (run.finished) return {};
+    return {run_name(number), std::move(run.steps)};
   }
-  return finished ? BrokenRun{} : run;
+  return {};
 }
 
 }  // namespace hydrodip

@@ -41,7 +41,8 @@ class RunRecord {
 };
 
 // Of the last run, if it was broken off: the steps that it had done, or kept of one before. Empty
-// otherwise.
+// otherwise. Runs that ended before they had asked whether to keep them, and those of 'rig stage'
+// that dipped nothing, are passed over.
 struct BrokenRun {
   std::string name;  // "rig-3"
   std::vector<std::string> steps;

@@ -386,6 +386,45 @@ TEST_F(GuideTest, ARunIsTakenUpTwice) {
   EXPECT_EQ(log(3).back()["outcome"], "done");
 }
 
+// Whoever ends the program at the question has not said that film and object are gone, nor has who
+// only moves the stage.
+TEST_F(GuideTest, WhatIsPreparedOutlivesRunsThatDidNothingWithIt) {
+  GuidedBench first;
+  first.clock.at(60, [&] { first.context.cancel(); });
+  EXPECT_THROW(rig_guide(job(""), first.bench, first.context), Cancelled);
+  GuidedBench second;
+  second.person.on_ask = [&](const std::string& question) {
+    if (contains(question, "Keep that?")) throw Cancelled();
+  };
+  EXPECT_THROW(rig_guide(job(""), second.bench, second.context), Cancelled);
+  EXPECT_EQ(last_broken_run(job("")).name, "rig-1");
+  GuidedBench stage;
+  stage.bench.yes_given = true;
+  RigJob with_stage = job(stage.emulator->port());
+  rig_stage({"approach"}, &with_stage, with_stage.config.stage, stage.bench, stage.context);
+  EXPECT_EQ(last_broken_run(job("")).name, "rig-1");
+  // Said to be gone, it is not offered again, however that run ended.
+  GuidedBench third;
+  third.person.take_up = "no";
+  third.person.on_ask = [&](const std::string& question) {
+    if (contains(question, "film is ready")) throw Cancelled();
+  };
+  EXPECT_THROW(rig_guide(job(""), third.bench, third.context), Cancelled);
+  EXPECT_TRUE(last_broken_run(job("")).steps.empty());
+}
+
+TEST_F(GuideTest, FilmThatAStageDippedIsNotOfferedAgain) {
+  GuidedBench first;
+  first.clock.at(60, [&] { first.context.cancel(); });
+  EXPECT_THROW(rig_guide(job(""), first.bench, first.context), Cancelled);
+  GuidedBench stage;
+  stage.bench.yes_given = true;
+  RigJob with_stage = job(stage.emulator->port());
+  with_stage.config.stage.water_mm = 100;
+  rig_stage({"dip"}, &with_stage, with_stage.config.stage, stage.bench, stage.context);
+  EXPECT_TRUE(last_broken_run(job("")).steps.empty());
+}
+
 TEST_F(GuideTest, TheActivatorFollowsTheFilmsArea) {
   const auto with_film = [&](double width, double height) {
     write_report({{"film.width_mm", {{"value", width}}}, {"film.height_mm", {{"value", height}}}});
