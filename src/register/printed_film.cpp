@@ -141,6 +141,7 @@ PrintedFilm read_printed_film(const RigJob& job, const RunContext& context) {
   ObjectOptions object = job.config.object;
   object.artwork.clear();
   object.load.texture.clear();
+  require_model(job);
   const PreparedObject prepared = prepare_object(job.config.model, object, context.quiet());
   auto dipped = std::make_shared<const DippedFilm>(
       read_film(job.folder / "film.ply", film, job.config.design.dip.material));

@@ -402,6 +402,7 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
   bare.artwork.clear();
   bare.load.texture.clear();
   context.progress("cutting the socket", 0);
+  require_model(job);
   const PreparedObject prepared = prepare_object(job.config.model, bare, context.quiet());
   TriangleMesh object = prepared.posed.mesh();
   const Eigen::Isometry3d in_bath = hanging_pose(job);

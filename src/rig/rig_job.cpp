@@ -102,6 +102,28 @@ std::string title_of(const Json& report) {
   return "";
 }
 
+// A path is as it was typed where the print ran: here, or in a folder above the job's. Of several
+// files the one that was printed from, if its hash is known.
+std::filesystem::path found_file(const std::filesystem::path& typed, const std::string& sha256,
+                                 const std::filesystem::path& job_folder) {
+  if (typed.empty() || typed.is_absolute()) return typed;
+  std::error_code ignored;
+  std::vector<std::filesystem::path> there;
+  const auto look = [&](const std::filesystem::path& file) {
+    if (std::filesystem::is_regular_file(file, ignored)) there.push_back(file);
+  };
+  look(typed);
+  std::filesystem::path folder = std::filesystem::weakly_canonical(job_folder, ignored);
+  while (folder.has_relative_path()) {
+    folder = folder.parent_path();
+    look(folder / typed);
+  }
+  if (there.size() > 1 && !sha256.empty())
+    for (const std::filesystem::path& file : there)
+      if (sha256_hex(read_file(file)) == sha256) return file;
+  return there.empty() ? typed : there.front();
+}
+
 // `correction`: that it was printed with.
 void find_inputs(const Json& report, const std::filesystem::path& correction, RigJob& job) {
   if (!report.contains("inputs") || !report["inputs"].is_array()) return;
@@ -109,12 +131,17 @@ void find_inputs(const Json& report, const std::filesystem::path& correction, Ri
     if (!input.is_object()) continue;
     const std::string role = text_of(input, "role"), path = text_of(input, "path");
     if (role == "model") {
-      job.config.model = path;
       job.model_sha256 = text_of(input, "sha256");
+      job.config.model = found_file(path, job.model_sha256, job.folder);
     }
-    if (role == "correction" && path == correction)
+    if (role == "correction" && path == correction) {
       job.correction_sha256 = text_of(input, "sha256");
-    if (role == "settings") job.settings_files.emplace_back(path);
+      // Unless today's settings name another one.
+      if (job.config.correction == correction)
+        job.config.correction = found_file(path, job.correction_sha256, job.folder);
+    }
+    if (role == "settings")
+      job.settings_files.push_back(found_file(path, text_of(input, "sha256"), job.folder));
   }
 }
 
@@ -280,6 +307,17 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
     for (const Json& warning : report["warnings"])
       if (warning.is_string()) job.warnings.push_back(warning);
   return job;
+}
+
+void require_model(const RigJob& job) {
+  std::error_code ignored;
+  if (job.config.model.empty() || std::filesystem::exists(job.config.model, ignored)) return;
+  throw InputError(
+      fmt::format("{}: the model that the job in {} was printed from is {}; put it back{}",
+                  job.config.model.string(), job.folder.string(),
+                  job.config.model.is_absolute() ? "not there any more"
+                                                 : "neither here nor in a folder above the job's",
+                  job.config.model.is_absolute() ? "" : ", or work where 'hydrodip print' ran"));
 }
 
 Activator activator_for(const JobConfig& config) {

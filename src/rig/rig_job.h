@@ -50,6 +50,10 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
 // The same of a report.json's text. Nothing if it is none of a dip.
 std::optional<SheetUse> sheet_use(const std::string& report);
 
+// Throws InputError if config.model is not there. Paths of a print are relative to where it ran;
+// load_rig_job looks for them there, if that is here or a folder above the job's.
+void require_model(const RigJob& job);
+
 // Where the object hangs as it first touches the water: in the bath, from the posed-object frame.
 Eigen::Isometry3d hanging_pose(const RigJob& job);
 // With one digit, never as -0.0.

@@ -73,6 +73,35 @@ TEST_F(RunSheetTest, SaysTheJobsFigures) {
     EXPECT_NE(text.find(figure), std::string::npos) << figure << "\n" << text;
 }
 
+// Printed with paths as they are typed in the folder above the job's; seen from anywhere.
+TEST_F(RunSheetTest, FindsTheModelFromAnotherFolder) {
+  const fs::path job = folder_ / "job";
+  fs::create_directories(job);
+  fs::create_directories(folder_ / "models");
+  fs::copy_file(folder_ / "model.obj", folder_ / "models" / "pyramid.obj");
+  nlohmann::json report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  report["inputs"][0]["path"] = "models/pyramid.obj";
+  write_file(job / "report.json", report.dump());
+  const RigJob found = load_rig_job(job, {});
+  EXPECT_NO_THROW(require_model(found));
+  EXPECT_TRUE(fs::equivalent(found.config.model, folder_ / "models" / "pyramid.obj"));
+  // Another model of that name, nearer by, is not the one.
+  fs::create_directories(job / "models");
+  write_file(job / "models" / "pyramid.obj", std::string("another"));
+  EXPECT_TRUE(
+      fs::equivalent(load_rig_job(job, {}).config.model, folder_ / "models" / "pyramid.obj"));
+  fs::remove_all(job / "models");
+  fs::remove_all(folder_ / "models");
+  try {
+    require_model(load_rig_job(job, {}));
+    FAIL() << "there is no model";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("models/pyramid.obj: the model that the job in"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 // A rolled dip: by hand along the rows, never by a stage that only lowers.
 TEST_F(RunSheetTest, AWayThatTurnsStandsOnItRowByRow) {
   nlohmann::json report = nlohmann::json::parse(read_file(folder_ / "report.json"));
