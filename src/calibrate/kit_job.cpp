@@ -127,11 +127,14 @@ void write_instructions(const std::filesystem::path& path, const JobConfig& conf
                           board.about_square ? "the dark square" : "the corner"),
               {"Depth reached, mm"});
   }
-  page.task(
-      fmt::format("Water {:g} to {:g} °C; film soaks {:g} to {:g} s until it lies flat; activator "
-                  "{:.2f} ± {:.2f} g; wait {:g} s; then dip. Exactly as in the jobs to come.",
-                  process.water_min_c, process.water_max_c, process.soak_min_s, process.soak_max_s,
-                  activator.mass_g, activator.tolerance_g, process.activator_wait_s));
+  page.task(fmt::format(
+      "Water {} °C; film soaks {} s until it lies flat; {}; then dip. Exactly as in "
+      "the jobs to come.",
+      span_in_words(process.water_min_c, process.water_max_c),
+      span_in_words(process.soak_min_s, process.soak_max_s),
+      activator.mass_g > 0
+          ? fmt::format("activator {}; wait {:g} s", in_words(activator), process.activator_wait_s)
+          : "no activator"));
   page.task(
       "Film swells on the water, by two or three percent as a rule, and is calibrated wrongly if "
       "nobody says so. Before the activator, find out by how much: a photo for 'hydrodip register' "

@@ -380,23 +380,24 @@ std::string pieces_of(const Nest& nest, std::size_t part) {
 std::string bench_figures(const JobConfig& sheet) {
   const ProcessOptions& process = sheet.process;
   return fmt::format(
-      "<p>Each: water {:g} to {:g} °C; film on the water, ink side {}, {:g} to {:g} s until it "
-      "lies "
-      "flat; activator; wait {:g} s; dip at {:g} mm/min; hold {:g} s at least; clear the water; "
-      "lift "
-      "at {:g} mm/min; rinse; dry {:g} to {:g} h.</p>",
-      process.water_min_c, process.water_max_c,
-      sheet.print.ink_side == InkSide::kUp ? "up" : "down", process.soak_min_s, process.soak_max_s,
-      process.activator_wait_s, process.speed_mm_per_min, process.dwell_s, process.lift_mm_per_min,
-      process.dry_min_h, process.dry_max_h);
+      "<p>Each: water {} °C; film on the water, ink side {}, {} s until it lies flat; {}dip at "
+      "{:g} mm/min; hold {:g} s at least; clear the water; lift at {:g} mm/min; rinse; dry{}.</p>",
+      span_in_words(process.water_min_c, process.water_max_c),
+      sheet.print.ink_side == InkSide::kUp ? "up" : "down",
+      span_in_words(process.soak_min_s, process.soak_max_s),
+      process.activator_g > 0 ? fmt::format("activator; wait {:g} s; ", process.activator_wait_s)
+                              : "",
+      process.speed_mm_per_min, process.dwell_s, process.lift_mm_per_min,
+      process.dry_max_h > 0 ? " " + span_in_words(process.dry_min_h, process.dry_max_h) + " h"
+                            : "");
 }
 
 std::string how_to_dip(const Part& part, const ProcessOptions& process) {
   const Activator activator = activator_for(process, part.film());
   const PoseOptions& pose = part.job.config.object.pose;
-  return fmt::format("It hangs {} ({}), {:.1f} mm deep at the end. Activator {:.2f} ± {:.2f} g.",
+  return fmt::format("It hangs {} ({}), {:.1f} mm deep at the end. Activator: {}.",
                      describe_hold(pose, way_up(part.job.config)), hold_options(pose),
-                     part.job.trajectory.depth_mm(), activator.mass_g, activator.tolerance_g);
+                     part.job.trajectory.depth_mm(), in_words(activator));
 }
 
 // On the sheet as it is printed, which is mirrored if its ink goes down onto the water.

@@ -37,7 +37,7 @@ class Guide {
     step("water warm", [&] { check_water("before"); });
     step("film laid", [&] { lay_film(); });
     if (!find_camera(job_.folder).empty()) step("registered", [&] { locate_film(); });
-    step("activated", [&] { spray(); });
+    if (activator_for(job_.config).mass_g > 0) step("activated", [&] { spray(); });
     step("dipped", [&] { dip(); });
     step("lifted", [&] { lift(); });
     step("water still warm", [&] { check_water("after"); });
@@ -118,8 +118,9 @@ class Guide {
   }
 
   void check_water(const std::string& when) {
-    person_.say(fmt::format("\nWATER. {:g} to {:g} C, {:.1f} l.", process_.water_min_c,
-                            process_.water_max_c, bath_litres(job_.config.bath)));
+    person_.say(fmt::format("\nWATER. {} C, {:.1f} l.",
+                            span_in_words(process_.water_min_c, process_.water_max_c),
+                            bath_litres(job_.config.bath)));
     for (;;) {
       const double water_c = ask_number("Temperature in C: ", kHottest_c);
       const bool right = water_c >= process_.water_min_c && water_c <= process_.water_max_c;
@@ -212,9 +213,11 @@ class Guide {
   }
 
   void dip() {
-    const double left_s = sprayed_s_ + process_.activator_wait_s - bench_.clock.now_s();
-    if (left_s > 0) wait("activator works", left_s, left_s, "");
-    record_.note("activator worked", {{"seconds", bench_.clock.now_s() - sprayed_s_}});
+    if (sprayed_s_) {
+      const double left_s = *sprayed_s_ + process_.activator_wait_s - bench_.clock.now_s();
+      if (left_s > 0) wait("activator works", left_s, left_s, "");
+      record_.note("activator worked", {{"seconds", bench_.clock.now_s() - *sprayed_s_}});
+    }
     person_.say("\nDIP.");
     if (stage_)
       dip_with_stage();
@@ -273,9 +276,10 @@ class Guide {
 
   void dry() {
     person_.say(
-        fmt::format("\nRINSE until nothing is slippery. DRY for {:g} to {:g} h; a clear coat "
-                    "if you like.",
-                    process_.dry_min_h, process_.dry_max_h));
+        fmt::format("\nRINSE until nothing is slippery. DRY{}; a clear coat if you like.",
+                    process_.dry_max_h > 0
+                        ? " for " + span_in_words(process_.dry_min_h, process_.dry_max_h) + " h"
+                        : ""));
     const std::string notes = person_.ask("Notes for the log, or Enter: ");
     if (!notes.empty()) record_.note("notes", {{"text", notes}});
   }
@@ -328,7 +332,7 @@ class Guide {
   std::optional<double> water_mm_;
   std::vector<std::string> done_;
   std::string step_ = "start";
-  double sprayed_s_ = 0;
+  std::optional<double> sprayed_s_;
 };
 
 }  // namespace

@@ -121,8 +121,11 @@ class RunSheet {
   std::string fitted(std::string words, double width_mm, double size_pt,
                      PdfFont font = PdfFont::kRegular) const {
     if (page_.width_of(words, size_pt, font) <= width_mm) return words;
-    while (!words.empty() && page_.width_of(words + "...", size_pt, font) > width_mm)
+    const auto within_a_letter = [](char c) { return (c & 0xC0) == 0x80; };
+    while (!words.empty() && page_.width_of(words + "...", size_pt, font) > width_mm) {
+      while (words.size() > 1 && within_a_letter(words.back())) words.pop_back();
       words.pop_back();
+    }
     return words + "...";
   }
 
@@ -228,23 +231,26 @@ class RunSheet {
     const JobConfig& config = job_.config;
     const Activator activator = activator_for(config);
     const std::vector<PlannedMove> plan = plan_dip(job_);
-    return {
-        {"Film", fmt::format("{:g} x {:g} mm, ink side {}", config.design.film.width_mm,
-                             config.design.film.height_mm, ink_side())},
-        {"Tape", fmt::format("{:g} mm all around, no slits", tape_mm(config))},
-        {"Water", fmt::format("{:g} to {:g} °C, {:.1f} l", process_.water_min_c,
-                              process_.water_max_c, bath_litres(config.bath))},
-        {"Soak", fmt::format("{:g} to {:g} s", process_.soak_min_s, process_.soak_max_s)},
-        {"Activator", fmt::format("{:.2f} ± {:.2f} g", activator.mass_g, activator.tolerance_g)},
-        {"Then wait", fmt::format("{:g} s", process_.activator_wait_s)},
-        {"Depth", fmt::format("{:.2f} mm from the water", job_.depth_mm)},
-        {"Speed", fmt::format("{:g} mm/min", process_.speed_mm_per_min)},
-        {"Dip takes",
-         fmt::format("{:.1f} s in the water", 60 * in_water_mm(job_) / process_.speed_mm_per_min)},
-        {"Then hold", fmt::format("{:g} s at least", process_.dwell_s)},
-        {"Lift",
-         fmt::format("{:g} mm/min, {:.1f} s", process_.lift_mm_per_min, plan.back().seconds)},
-        {"Dry", fmt::format("{:g} to {:g} h", process_.dry_min_h, process_.dry_max_h)}};
+    return {{"Film", fmt::format("{:g} x {:g} mm, ink side {}", config.design.film.width_mm,
+                                 config.design.film.height_mm, ink_side())},
+            {"Tape", fmt::format("{:g} mm all around, no slits", tape_mm(config))},
+            {"Water", fmt::format("{} °C, {:.1f} l",
+                                  span_in_words(process_.water_min_c, process_.water_max_c),
+                                  bath_litres(config.bath))},
+            {"Soak", span_in_words(process_.soak_min_s, process_.soak_max_s) + " s"},
+            {"Activator", in_words(activator)},
+            {"Then wait",
+             activator.mass_g > 0 ? fmt::format("{:g} s", process_.activator_wait_s) : "-"},
+            {"Depth", fmt::format("{:.2f} mm from the water", job_.depth_mm)},
+            {"Speed", fmt::format("{:g} mm/min", process_.speed_mm_per_min)},
+            {"Dip takes", fmt::format("{:.1f} s in the water",
+                                      60 * in_water_mm(job_) / process_.speed_mm_per_min)},
+            {"Then hold", fmt::format("{:g} s at least", process_.dwell_s)},
+            {"Lift",
+             fmt::format("{:g} mm/min, {:.1f} s", process_.lift_mm_per_min, plan.back().seconds)},
+            {"Dry", process_.dry_max_h > 0
+                        ? span_in_words(process_.dry_min_h, process_.dry_max_h) + " h"
+                        : "-"}};
   }
 
   // For whoever sets up the stage, or dips by hand.
@@ -309,8 +315,9 @@ class RunSheet {
     if (!moves_aside(job_))
       page_.task("Stage homed; water level found without film on the water; object lifted clear.",
                  {"Level, mm"});
-    page_.task(fmt::format("Water {:g} to {:g} °C, {:.1f} l.", process_.water_min_c,
-                           process_.water_max_c, bath_litres(config.bath)),
+    page_.task(fmt::format("Water {} °C, {:.1f} l.",
+                           span_in_words(process_.water_min_c, process_.water_max_c),
+                           bath_litres(config.bath)),
                {"Measured, °C"});
     page_.heading("Film");
     page_.task(
@@ -318,14 +325,17 @@ class RunSheet {
                     "top. Start the clock.",
                     ink_side()),
         {"Time"});
-    page_.task(fmt::format("Wait {:g} to {:g} s until it lies flat again.", process_.soak_min_s,
-                           process_.soak_max_s),
+    page_.task(fmt::format("Wait {} s until it lies flat again.",
+                           span_in_words(process_.soak_min_s, process_.soak_max_s)),
                {"Flat after, s"});
-    page_.task(fmt::format("Mask on. Spray {:.2f} g of activator, {:.2f} to {:.2f} g, evenly.",
-                           activator.mass_g, activator.mass_g - activator.tolerance_g,
-                           activator.mass_g + activator.tolerance_g),
-               {"Gun before, g", "Gun after, g", "Used, g"});
-    page_.task(fmt::format("Wait {:g} s.", process_.activator_wait_s));
+    if (activator.mass_g > 0) {
+      page_.task(
+          fmt::format("Mask on. Spray {:.2f} g of activator, {:.2f} to {:.2f} g, evenly.",
+                      activator.mass_g, std::max(0.0, activator.mass_g - activator.tolerance_g),
+                      activator.mass_g + activator.tolerance_g),
+          {"Gun before, g", "Gun after, g", "Used, g"});
+      page_.task(fmt::format("Wait {:g} s.", process_.activator_wait_s));
+    }
     page_.heading("Dip");
     page_.task(fmt::format("{} at {:g} mm/min, {:.2f} mm deep: {:.1f} s from the first touch.",
                            moves_aside(job_) ? "Along the way in" : "Straight down",
@@ -336,11 +346,14 @@ class RunSheet {
     page_.task(fmt::format("Lift at {:g} mm/min.", process_.lift_mm_per_min),
                {"Time", "Water, °C"});
     page_.task("Rinse until nothing is slippery.");
-    page_.task(fmt::format("Dry for {:g} to {:g} h; {}.", process_.dry_min_h, process_.dry_max_h,
-                           job_.next_dip > 0
-                               ? fmt::format("then dip {}, by its own run sheet", job_.next_dip)
-                               : std::string("clear coat if wanted")),
-               {"Dry at"});
+    const std::string dry =
+        process_.dry_max_h > 0
+            ? "Dry for " + span_in_words(process_.dry_min_h, process_.dry_max_h) + " h; "
+            : "Let it dry; ";
+    page_.task(
+        dry + (job_.next_dip > 0 ? fmt::format("then dip {}, by its own run sheet.", job_.next_dip)
+                                 : std::string("clear coat if wanted.")),
+        {"Dry at"});
   }
 
   void draw_notes() {
@@ -359,10 +372,24 @@ class RunSheet {
   const RunContext& context_;
 };
 
+// What a name loses where letters other than Latin ones become question marks.
+void warn_of_letters(const std::string& what, const std::string& name, const RunContext& context) {
+  const std::string shown = to_winansi(name);
+  if (std::count(shown.begin(), shown.end(), '?') == std::count(name.begin(), name.end(), '?'))
+    return;
+  context.warn(fmt::format(
+      "{} '{}' stands on the run sheet as '{}': its letters are Latin ones only; write it by hand, "
+      "or choose a name in Latin letters.",
+      what, name, shown));
+}
+
 }  // namespace
 
 JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
                     const std::filesystem::path& file, const RunContext& context) {
+  warn_of_letters("the title", job.title, context);
+  warn_of_letters("the batch", job.batch, context);
+  warn_of_letters("the piece", job.label, context);
   const PaperSize paper = choose_paper(paper_name, job.config.design.film);
   const std::filesystem::path path = file.empty() ? job.folder / "run-sheet.pdf" : file;
   const std::vector<PosePicture> pictures = pose_pictures(

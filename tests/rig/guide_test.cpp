@@ -425,6 +425,16 @@ TEST_F(GuideTest, FilmThatAStageDippedIsNotOfferedAgain) {
   EXPECT_TRUE(last_broken_run(job("")).steps.empty());
 }
 
+TEST_F(GuideTest, WithoutActivatorNothingIsSprayedOrWaitedFor) {
+  write_report({{"process.activator_g", {{"value", 0}}}});
+  GuidedBench guided;
+  rig_guide(job(""), guided.bench, guided.context);
+  EXPECT_EQ(guided.person.said.find("ACTIVATOR"), std::string::npos) << guided.person.said;
+  EXPECT_EQ(guided.person.times_asked("Spray"), 0);
+  EXPECT_EQ(find(log(), "activator"), nullptr);
+  EXPECT_EQ(log().back()["outcome"], "done");
+}
+
 TEST_F(GuideTest, TheActivatorFollowsTheFilmsArea) {
   const auto with_film = [&](double width, double height) {
     write_report({{"film.width_mm", {{"value", width}}}, {"film.height_mm", {{"value", height}}}});

@@ -73,6 +73,40 @@ TEST_F(RunSheetTest, SaysTheJobsFigures) {
     EXPECT_NE(text.find(figure), std::string::npos) << figure << "\n" << text;
 }
 
+TEST_F(RunSheetTest, WhatIsNothingIsNotAskedFor) {
+  nlohmann::json report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  auto& parameters = report["parameters"];
+  parameters["process.activator_g"] = {{"value", 0}};
+  parameters["process.soak_max_s"] = {{"value", 63}};
+  parameters["process.dry_min_h"] = parameters["process.dry_max_h"] = {{"value", 0}};
+  write_file(folder_ / "report.json", report.dump());
+  rig_sheet(load_rig_job(folder_, {}), "", "", context_);
+  std::string text = read_back("pdftotext -layout");
+  for (const char* no : {"Spray", "Gun", "63 to 63", "0 to 0", "0.00 g"})
+    EXPECT_EQ(text.find(no), std::string::npos) << no << "\n" << text;
+  EXPECT_NE(text.find("Wait 63 s until"), std::string::npos) << text;
+  // Nobody sprays less than nothing.
+  parameters["process.activator_g"] = {{"value", 0.3}};
+  write_file(folder_ / "report.json", report.dump());
+  rig_sheet(load_rig_job(folder_, {}), "", "", context_);
+  text = read_back("pdftotext -layout");
+  EXPECT_NE(text.find("Spray 0.30 g of activator, 0.00 to 0.80 g"), std::string::npos) << text;
+}
+
+TEST_F(RunSheetTest, LettersThatItLacksAreToldOf) {
+  RigJob job = load_rig_job(folder_, {});
+  job.batch = "Größe M?";
+  rig_sheet(job, "", "", context_);
+  EXPECT_TRUE(context_.warnings().empty());
+  job.batch = "\u4e00\u4e8c";
+  rig_sheet(job, "", "", context_);
+  const std::vector<std::string> warnings = context_.warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("batch '\u4e00\u4e8c' stands on the run sheet as '\?\?'"),
+            std::string::npos)
+      << warnings[0];
+}
+
 // Printed with paths as they are typed in the folder above the job's; seen from anywhere.
 TEST_F(RunSheetTest, FindsTheModelFromAnotherFolder) {
   const fs::path job = folder_ / "job";
