@@ -405,8 +405,10 @@ JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
   JobResult result;
   result.folder = output.folder();
   result.files = {path.filename().string()};
-  result.text = output.told_replaced() + fmt::format("wrote {}\n", path.string());
-  result.json = json_answer("rig sheet", {{"file", path.string()}});
+  for (const std::string& warning : context.warnings()) result.text += "warning: " + warning + "\n";
+  result.text += output.told_replaced() + fmt::format("wrote {}\n", path.string());
+  result.json =
+      json_answer("rig sheet", {{"file", path.string()}, {"warnings", context.warnings()}});
   return result;
 }
 
