@@ -54,22 +54,21 @@ double worst_excess_mm(const std::vector<RoomFit>& list) {
   return worst;
 }
 
-FilmChoice try_film(double size_mm, const Room& room, FilmOptions film, const BathOptions& bath,
+FilmChoice try_film(const Room& room, FilmOptions film, const BathOptions& bath,
                     const std::string& name, double width_mm, double height_mm) {
   film.width_mm = width_mm;
   film.height_mm = height_mm;
-  return {name, width_mm, height_mm, worst_excess_mm(film_fits(size_mm, room, film)),
+  return {name, width_mm, height_mm, worst_excess_mm(film_fits(room, film)),
           sheet_fits_bath(film, bath)};
 }
 
-std::vector<FilmChoice> film_choices(double size_mm, const Room& room, const FilmOptions& film,
+std::vector<FilmChoice> film_choices(const Room& room, const FilmOptions& film,
                                      const BathOptions& bath) {
   std::vector<FilmChoice> list;
   for (const FilmFormat& format : film_formats()) {
+    list.push_back(try_film(room, film, bath, format.name, format.width_mm, format.height_mm));
     list.push_back(
-        try_film(size_mm, room, film, bath, format.name, format.width_mm, format.height_mm));
-    list.push_back(try_film(size_mm, room, film, bath, format.name + "-landscape", format.height_mm,
-                            format.width_mm));
+        try_film(room, film, bath, format.name + "-landscape", format.height_mm, format.width_mm));
   }
   return list;
 }
@@ -243,7 +242,7 @@ JobResult inspect_job(const JobConfig& given, const RunContext& context) {
                               room.depth_mm,
                               direction_at,
                               fits(prepared.posed.size_mm(), room, film, config.bath),
-                              film_choices(prepared.posed.size_mm(), room, film, config.bath),
+                              film_choices(room, film, config.bath),
                               dip_angles(mesh, direction_at),
                               context.warnings()};
   JobResult result;

@@ -17,6 +17,8 @@ constexpr double kFitTolerance_mm = 1e-6;
 // Film needs room to stretch between the object and the tape.
 constexpr double kComfortableClearance_mm = 5;
 
+constexpr const char *kBath = "the bath", *kDeep = "deep in the water";
+
 // A path is looked at so often.
 constexpr int kPathParts = 24;
 
@@ -62,10 +64,10 @@ bool goes_with_size(const TriangleMesh& posed, const Travel& travel) {
   });
 }
 
-// "--size 71 or less": the largest extent at which the object would just fit, as far as it is
+// "--size 71 or less": the largest extent at which the object would fit well, as far as it is
 // known.
-std::string shrunk_size(double size_mm, const Room& room, double needed_mm, double available_mm) {
-  const double size = std::floor(size_mm * available_mm / needed_mm);
+std::string shrunk_size(double size_mm, const Room& room, double share) {
+  const double size = std::floor(size_mm * share + kFitTolerance_mm);
   if (size < 1) return "--size";
   switch (room.shrinks) {
     case Room::Shrinks::kWhole:
@@ -79,23 +81,6 @@ std::string shrunk_size(double size_mm, const Room& room, double needed_mm, doub
   return "--size";
 }
 
-RoomFit film_fit(double size_mm, const Room& room, const std::string& what, double needed_mm,
-                 double available_mm) {
-  const std::string remedy =
-      fmt::format("shrink it with {}, turn it with --rotate, or take a larger --film",
-                  shrunk_size(size_mm, room, needed_mm, available_mm));
-  return {what, "the free film inside the taped rim", needed_mm, available_mm, remedy};
-}
-
-RoomFit bath_fit(double size_mm, const Room& room, const std::string& what, double needed_mm,
-                 double available_mm, const std::string& parameter) {
-  const std::string remedy = fmt::format(
-      "shrink it with {}, turn it with --rotate or --down, or give the size of your bath with "
-      "--set {}=...",
-      shrunk_size(size_mm, room, needed_mm, available_mm), parameter);
-  return {what, "the bath", needed_mm, available_mm, remedy};
-}
-
 // The bath lies under the sheet with its longer side along the sheet's longer side.
 Vec2 bath_along_film(const FilmOptions& film, const BathOptions& bath) {
   const double longer = std::max(bath.width_mm, bath.height_mm);
@@ -103,48 +88,56 @@ Vec2 bath_along_film(const FilmOptions& film, const BathOptions& bath) {
   return film.width_mm > film.height_mm ? Vec2(longer, shorter) : Vec2(shorter, longer);
 }
 
-void add_film_fits(std::vector<RoomFit>& list, double size_mm, const Room& footprint,
-                   const FilmOptions& film) {
-  if (film.shape == FilmShape::kDisc) {
-    const double diameter = std::min(film.width_mm, film.height_mm) - 2 * film.margin_mm;
-    list.push_back(film_fit(size_mm, footprint, "across", 2 * footprint.radius_mm, diameter));
-    return;
-  }
-  list.push_back(film_fit(size_mm, footprint, "wide (x)", 2 * footprint.half_width_mm,
-                          film.width_mm - 2 * film.margin_mm));
-  list.push_back(film_fit(size_mm, footprint, "long (y)", 2 * footprint.half_height_mm,
-                          film.height_mm - 2 * film.margin_mm));
+// What a sheet would have to be like for the object to fit well, as far as the bath has room for
+// it.
+std::string larger_film(const Room& room, FilmOptions film, const BathOptions& tank) {
+  const double beside_mm = 2 * (film.margin_mm + kComfortableClearance_mm);
+  const bool disc = film.shape == FilmShape::kDisc;
+  film.width_mm = 2 * (disc ? room.radius_mm : room.half_width_mm) + beside_mm;
+  film.height_mm = 2 * (disc ? room.radius_mm : room.half_height_mm) + beside_mm;
+  const double longer = std::max(film.width_mm, film.height_mm);
+  const double shorter = std::min(film.width_mm, film.height_mm);
+  const double bath_longer = std::max(tank.width_mm, tank.height_mm);
+  const double bath_shorter = std::min(tank.width_mm, tank.height_mm);
+  if (longer > bath_longer || shorter > bath_shorter)
+    return "take a larger --film in a larger bath (bath.width_mm, bath.height_mm)";
+  return fmt::format("take a larger --film (the bath has room for {:g} x {:g} mm)", bath_shorter,
+                     bath_longer);
 }
 
-void add_bath_fits(std::vector<RoomFit>& list, double size_mm, const Room& footprint,
-                   const FilmOptions& film, const BathOptions& tank) {
+std::vector<RoomFit> room_in_film(const Room& footprint, const FilmOptions& film) {
+  const auto fit = [](const char* what, double needed_mm, double available_mm) {
+    return RoomFit{.what = what,
+                   .room = "the free film inside the taped rim",
+                   .needed_mm = needed_mm,
+                   .available_mm = available_mm,
+                   .remedy = "",
+                   .comfort_mm = 2 * kComfortableClearance_mm};
+  };
+  if (film.shape == FilmShape::kDisc)
+    return {fit("across", 2 * footprint.radius_mm,
+                std::min(film.width_mm, film.height_mm) - 2 * film.margin_mm)};
+  return {
+      fit("wide (x)", 2 * footprint.half_width_mm, film.width_mm - 2 * film.margin_mm),
+      fit("long (y)", 2 * footprint.half_height_mm, film.height_mm - 2 * film.margin_mm),
+  };
+}
+
+// With the parameter that says it, as their remedy.
+std::vector<RoomFit> room_in_bath(const Room& footprint, const FilmOptions& film,
+                                  const BathOptions& tank) {
   const Vec2 bath = bath_along_film(film, tank);
   const bool x_by_width = (film.width_mm > film.height_mm) == (tank.width_mm >= tank.height_mm);
   const char *of_x = "bath.width_mm", *of_y = "bath.height_mm";
   if (!x_by_width) std::swap(of_x, of_y);
-  list.push_back(
-      bath_fit(size_mm, footprint, "wide (x)", 2 * footprint.half_width_mm, bath.x(), of_x));
-  list.push_back(
-      bath_fit(size_mm, footprint, "long (y)", 2 * footprint.half_height_mm, bath.y(), of_y));
-  RoomFit depth = bath_fit(size_mm, footprint, "deep in the water", footprint.depth_mm,
-                           tank.depth_mm, "bath.depth_mm");
-  depth.remedy = "dip less of it with --depth, " + depth.remedy;
-  list.push_back(depth);
-}
-
-void warn_if_sheet_exceeds_bath(const FilmOptions& film, const BathOptions& tank,
-                                const RunContext& context) {
-  if (sheet_fits_bath(film, tank)) return;
-  const Vec2 bath = bath_along_film(film, tank);
-  context.warn(fmt::format(
-      "The film of {} by {} is larger than the bath of {} by {}: cut it, or give the size of your "
-      "bath (bath.width_mm, bath.height_mm).",
-      mm(film.width_mm), mm(film.height_mm), mm(bath.x()), mm(bath.y())));
+  return {{"wide (x)", kBath, 2 * footprint.half_width_mm, bath.x(), of_x},
+          {"long (y)", kBath, 2 * footprint.half_height_mm, bath.y(), of_y},
+          {kDeep, kBath, footprint.depth_mm, tank.depth_mm, "bath.depth_mm"}};
 }
 
 void warn_if_tight(const std::vector<RoomFit>& list, const RunContext& context) {
   for (const RoomFit& fit : list) {
-    if (fit.room == "the bath" || -fit.excess_mm() >= 2 * kComfortableClearance_mm) continue;
+    if (-fit.excess_mm() >= fit.comfort_mm - kFitTolerance_mm) continue;
     context.warn(fmt::format(
         "Only {} of free film is left beside the object where it is {} {}: the film there will "
         "stretch strongly; a larger --film helps.",
@@ -176,22 +169,54 @@ Room room_of(const TriangleMesh& posed, const Trajectory& trajectory) {
   return room;
 }
 
-std::vector<RoomFit> film_fits(double size_mm, const Room& room, const FilmOptions& film) {
-  std::vector<RoomFit> list;
-  add_film_fits(list, size_mm, room, film);
-  return list;
+bool fits_well(const std::vector<RoomFit>& list) {
+  return std::ranges::all_of(list, [](const RoomFit& fit) {
+    return fit.excess_mm() + fit.comfort_mm <= kFitTolerance_mm;
+  });
+}
+
+double shrinking_to_fit(const std::vector<RoomFit>& list) {
+  double share = 1;
+  for (const RoomFit& fit : list)
+    if (fit.needed_mm > 0)
+      share = std::min(share, (fit.available_mm - fit.comfort_mm) / fit.needed_mm);
+  return std::max(0.0, share);
+}
+
+std::vector<RoomFit> film_fits(const Room& room, const FilmOptions& film) {
+  return room_in_film(room, film);
 }
 
 std::vector<RoomFit> fits(double size_mm, const Room& room, const FilmOptions& film,
                           const BathOptions& bath) {
-  std::vector<RoomFit> list = film_fits(size_mm, room, film);
-  add_bath_fits(list, size_mm, room, film, bath);
+  std::vector<RoomFit> list = room_in_film(room, film);
+  for (RoomFit& fit : room_in_bath(room, film, bath)) list.push_back(std::move(fit));
+  const std::string shrink = "shrink it with " + shrunk_size(size_mm, room, shrinking_to_fit(list));
+  for (RoomFit& fit : list) {
+    if (fit.room != kBath)
+      fit.remedy =
+          fmt::format("{}, turn it with --rotate, or {}", shrink, larger_film(room, film, bath));
+    else
+      fit.remedy = fmt::format(
+          "{}{}, turn it with --rotate or --down, or give the size of your bath with --set {}=...",
+          fit.what == kDeep ? "dip less of it with --depth, " : "", shrink, fit.remedy);
+  }
   return list;
 }
 
 bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath) {
   const Vec2 room = bath_along_film(film, bath);
   return film.width_mm <= room.x() && film.height_mm <= room.y();
+}
+
+void warn_if_sheet_exceeds_bath(const FilmOptions& film, const BathOptions& tank,
+                                const RunContext& context) {
+  if (sheet_fits_bath(film, tank)) return;
+  const Vec2 bath = bath_along_film(film, tank);
+  context.warn(fmt::format(
+      "The film of {} by {} is larger than the bath of {} by {}: cut it, or give the size of your "
+      "bath (bath.width_mm, bath.height_mm).",
+      mm(film.width_mm), mm(film.height_mm), mm(bath.x()), mm(bath.y())));
 }
 
 void require_fit(double size_mm, const Room& room, const FilmOptions& film, const BathOptions& bath,

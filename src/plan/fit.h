@@ -26,7 +26,13 @@ struct RoomFit {
   double available_mm = 0;
   std::string remedy;  // "shrink it with --size 71, ..."
   double excess_mm() const { return needed_mm - available_mm; }
+  double comfort_mm = 0;  // so much should be left of it: film needs room to stretch
 };
+
+// Whether all fit, with what should be left.
+bool fits_well(const std::vector<RoomFit>& list);
+// How much smaller an object would have to be for that, if all of it grew smaller alike; at most 1.
+double shrinking_to_fit(const std::vector<RoomFit>& list);
 
 // What the part of an object that gets wet takes in the bath, on all of its way.
 struct Room {
@@ -41,16 +47,18 @@ struct Room {
 Room room_of(const TriangleMesh& posed, const Trajectory& trajectory);
 Room room_of(const TriangleMesh& posed, double depth_mm);  // straight down
 
-// Every direction in which it has to fit the film. `size_mm`, here and below: the object's own
-// largest extent (PosedObject::size_mm), of which remedies speak.
-std::vector<RoomFit> film_fits(double size_mm, const Room& room, const FilmOptions& film);
+// Every direction in which it has to fit the film; without remedies.
+std::vector<RoomFit> film_fits(const Room& room, const FilmOptions& film);
 
-// Film first, then the bath.
+// Film first, then the bath. `size_mm`, here and below: the object's own largest extent
+// (PosedObject::size_mm), of which remedies speak.
 std::vector<RoomFit> fits(double size_mm, const Room& room, const FilmOptions& film,
                           const BathOptions& bath);
 
 // Whether the whole sheet, margin included, lies flat in the bath.
 bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath);
+void warn_if_sheet_exceeds_bath(const FilmOptions& film, const BathOptions& bath,
+                                const RunContext& context);
 
 // Throws InputError for the first that does not fit, saying by how much and how to mend it. Warns
 // about a sheet larger than the bath and about little film around the object.

@@ -13,7 +13,6 @@ namespace hydrodip {
 namespace {
 
 constexpr double kTolerance_mm = 1e-6;
-constexpr double kBesides_mm = 10;  // on both sides together
 constexpr int kMostGuesses = 12;
 // Film torn up to that share of what lies on the object at that depth is none for a hand.
 constexpr double kMayTear = 0.003;
@@ -22,15 +21,6 @@ std::vector<RoomFit> fits_of(const JobConfig& config, const TriangleMesh& posed,
                              const FilmOptions& film) {
   const Trajectory way = make_trajectory(config.design.trajectory, posed.positions);
   return fits(posed.bounds().size().maxCoeff(), room_of(posed, way), film, config.bath);
-}
-
-// With film left beside the object to stretch.
-double comfort_mm(const RoomFit& fit) { return fit.room == "the bath" ? 0 : kBesides_mm; }
-
-bool all_fit(const std::vector<RoomFit>& list) {
-  return std::all_of(list.begin(), list.end(), [](const RoomFit& fit) {
-    return fit.excess_mm() + comfort_mm(fit) <= kTolerance_mm;
-  });
 }
 
 std::string shown_name(std::string name) {
@@ -53,21 +43,12 @@ void add_film(Json& list, const JobConfig& config, const TriangleMesh& posed) {
       FilmOptions film = config.design.film;
       film.width_mm = lying ? format.height_mm : format.width_mm;
       film.height_mm = lying ? format.width_mm : format.height_mm;
-      if (!sheet_fits_bath(film, config.bath) || !all_fit(fits_of(config, posed, film))) continue;
+      if (!sheet_fits_bath(film, config.bath) || !fits_well(fits_of(config, posed, film))) continue;
       list.push_back(
           mend(fmt::format("Choose {}{}", shown_name(format.name), lying ? ", lying" : ""),
                {{"film", {{"width_mm", film.width_mm}, {"height_mm", film.height_mm}}}}));
       return;
     }
-}
-
-// How much smaller it would have to be for the tightest of them, if all of it grew smaller alike.
-double tightest(const std::vector<RoomFit>& list) {
-  double ratio = 1;
-  for (const RoomFit& fit : list)
-    if (fit.needed_mm > 0)
-      ratio = std::min(ratio, (fit.available_mm - comfort_mm(fit)) / fit.needed_mm);
-  return ratio;
 }
 
 TriangleMesh shrunk(TriangleMesh posed, double share) {
@@ -82,8 +63,8 @@ double fitting_size(const JobConfig& config, const PosedObject& posed) {
   for (int guess = 0; guess < kMostGuesses && size >= 1; ++guess) {
     const TriangleMesh mesh = shrunk(posed.mesh(), size / posed.size_mm());
     const std::vector<RoomFit> list = fits_of(config, mesh, config.design.film);
-    if (all_fit(list)) return size;
-    size = std::floor(size * std::max(0.0, tightest(list)));
+    if (fits_well(list)) return size;
+    size = std::floor(size * shrinking_to_fit(list) + kTolerance_mm);
   }
   return 0;
 }
@@ -101,7 +82,7 @@ void add_depth(Json& list, const JobConfig& config, const TriangleMesh& posed) {
     if (!fit.what.starts_with("deep") || fit.excess_mm() <= kTolerance_mm || depth < 1) continue;
     JobConfig mended = config;
     mended.design.trajectory.depth_mm = depth;
-    if (all_fit(fits_of(mended, posed, config.design.film)))
+    if (fits_well(fits_of(mended, posed, config.design.film)))
       list.push_back(
           mend(fmt::format("Dip {:.0f} mm only", depth), {{"dip", {{"depth_mm", depth}}}}));
   }

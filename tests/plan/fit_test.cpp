@@ -43,7 +43,46 @@ TEST(Fit, SaysByHowMuchAndHowToMend) {
   room.film = {100, 300, FilmShape::kRectangle, 10, 1000};
   const std::string message = fit_error(funnel(), room);
   EXPECT_TRUE(contains(message, "100 mm wide (x), 20 mm more than the 80 mm")) << message;
-  EXPECT_TRUE(contains(message, "--size 80 or less")) << message;
+  EXPECT_TRUE(contains(message, "--size 70 or less")) << message;
+}
+
+// Neither the next refusal nor the warning of little film comes of what is proposed.
+TEST(Fit, TheSizeThatIsToldFitsInEveryDirectionWithFilmLeft) {
+  TriangleMesh object = funnel();
+  for (Vec3& p : object.positions) p.y() *= 2.4;  // 100 x 240 mm
+  const FilmOptions film{100, 200, FilmShape::kRectangle, 10, 1000};
+  const BathOptions bath{370, 270, 30};  // too shallow besides
+  const auto made = [&](double size_mm) {
+    TriangleMesh sized = object;
+    for (Vec3& p : sized.positions) p *= size_mm / 240;
+    RunContext context;
+    std::string error;
+    try {
+      require_fit(size_mm, room_of(sized, 1000), film, bath, context);
+    } catch (const InputError& refused) {
+      error = refused.what();
+    }
+    return std::pair(error, context.warnings().size());
+  };
+  double size_mm = 0;
+  const std::string refused = made(240).first;
+  const std::size_t told = refused.find("--size ");
+  ASSERT_NE(told, std::string::npos) << refused;
+  ASSERT_EQ(std::sscanf(refused.c_str() + told, "--size %lf or less", &size_mm), 1) << refused;
+  EXPECT_EQ(made(size_mm), std::pair(std::string(), std::size_t(0)));
+  EXPECT_NE(made(size_mm + 1), std::pair(std::string(), std::size_t(0)));
+}
+
+// Of film that the bath has no room for that is said.
+TEST(Fit, ALargerFilmIsProposedWithTheBathItNeeds) {
+  Room room;
+  room.film = {100, 300, FilmShape::kRectangle, 10, 1000};
+  const std::string roomy = fit_error(funnel(), room);
+  EXPECT_TRUE(contains(roomy, "take a larger --film (the bath has room for 270 x 370 mm)"))
+      << roomy;
+  room.bath = {370, 125, 150};
+  const std::string narrow = fit_error(funnel(), room);
+  EXPECT_TRUE(contains(narrow, "take a larger --film in a larger bath (bath.width_mm")) << narrow;
 }
 
 TEST(Fit, OnlyTheWetPartCounts) {
@@ -128,7 +167,8 @@ TEST(Fit, TheSizeAndDepthThatAreToldFit) {
             2)
       << refused;
   EXPECT_EQ(error_at(size_mm, depth_mm), "") << refused;
-  EXPECT_NE(error_at(size_mm + 2, depth_mm * (size_mm + 2) / size_mm), "");
+  // Up to the tape it is 10 mm more than to where film is left beside it.
+  EXPECT_NE(error_at(size_mm + 22, depth_mm * (size_mm + 22) / size_mm), "");
 }
 
 // A size is the object's own, however it hangs.
@@ -145,7 +185,8 @@ TEST(Fit, TheSizeThatIsToldFits) {
     }
     return std::string();
   };
-  EXPECT_TRUE(contains(error_at(60), "--size 42 or less")) << error_at(60);  // 60 / sqrt(2)
+  EXPECT_TRUE(contains(error_at(60), "--size 35 or less")) << error_at(60);  // 50 / sqrt(2)
+  EXPECT_EQ(error_at(35), "");
   EXPECT_EQ(error_at(42), "");
   EXPECT_NE(error_at(43), "");
 }
