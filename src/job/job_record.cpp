@@ -244,7 +244,7 @@ JobResult describe_result(const Report& report, const std::filesystem::path& fol
   result.text = headline(concern) + ". " + verdict_of(report) + "\n";
   if (!report.better_way.empty())
     result.text += "Better: " + report.better_way + "\n";
-  else if (result.do_not_dip)
+  else if (result.do_not_dip && !is_inside_out(report))
     result.text += report.dips.empty()
                        ? fmt::format(
                              "hydrodip orient looks for better ways to hold it; --rotate "

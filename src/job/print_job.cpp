@@ -26,12 +26,12 @@ namespace hydrodip {
 namespace {
 
 // Why no film lies on the object.
-std::string why_no_film(const DippedObject& dipped, const Trajectory& trajectory) {
+std::string why_no_film(const DippedObject& dipped, const Trajectory& trajectory, bool inside_out) {
   const Room wet = room_of(dipped.posed.mesh(), trajectory);
   const double wide_mm = 2 * std::min(wet.half_width_mm, wet.half_height_mm);
   const double cell_mm = dipped.film->mesh().cell_mm;
-  if (dipped.coverage.torn_mm2 > 0 || wide_mm > 2 * cell_mm)
-    return no_film_verdict(dipped.coverage);
+  if (inside_out || dipped.coverage.torn_mm2 > 0 || wide_mm > 2 * cell_mm)
+    return no_film_verdict(dipped.coverage, inside_out);
   return fmt::format(
       "What comes into the water of the object is {:.2g} mm wide, and the film's triangles are "
       "{:.2g} mm: raise film.elements, take a smaller --film, or dip deeper (--depth).",
@@ -68,10 +68,11 @@ void require_ink(const Designed& designed, const ReadyJob& job) {
   if (std::any_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value != 0; })) return;
   const std::string thin = told_thin(job.prepared.artwork, job.config.design.dpi);
   const bool has_film = designed.dipped.coverage.film_on_object_mm2 > 0;
-  throw InputError(fmt::format("{}: the sheet would be blank. {}", job.config.model.string(),
-                               !has_film      ? why_no_film(designed.dipped, job.trajectory)
-                               : thin.empty() ? why_no_ink(designed.dipped, *job.prepared.paint)
-                                              : thin));
+  throw InputError(fmt::format(
+      "{}: the sheet would be blank. {}", job.config.model.string(),
+      !has_film      ? why_no_film(designed.dipped, job.trajectory, job.prepared.health.inside_out)
+      : thin.empty() ? why_no_ink(designed.dipped, *job.prepared.paint)
+                     : thin));
 }
 
 }  // namespace

@@ -88,8 +88,8 @@ SearchResult find_holds(const JobConfig& config, const PreparedObject& prepared,
     throw InputError(fmt::format(
         "{}: no way to hold it was found in which whole film comes to lie on it{}",
         config.model.string(),
-        prepared.health.volume_mm3 < 0
-            ? ": its faces look inwards; turn their normals round in the program that made it"
+        prepared.health.inside_out
+            ? fmt::format(": {}; {}", kLooksInwards, kTurnNormals)
             : "; use a smaller object, or film that bears more (material.tear_stretch)"));
   return found;
 }

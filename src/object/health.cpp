@@ -15,6 +15,9 @@ namespace hydrodip {
 
 namespace {
 
+// Of a surface whose area is more than that in one direction there is no inside.
+constexpr double kSheet = 0.9;
+
 void count_edges(const Object& object, const std::vector<TriangleSide>& sides, MeshHealth& health) {
   DisjointSets rims(object.positions.size());
   for_each_edge(sides, [&](std::size_t begin, std::size_t end) {
@@ -41,15 +44,23 @@ long count_shells(const Object& object) {
 }
 
 void measure_mesh(const Object& object, MeshHealth& health) {
-  const Vec3 origin = object.bounds().center();
+  const Box3 box = object.bounds();
+  const Vec3 origin = box.center();
+  Vec3 directed_mm2 = Vec3::Zero();  // 0 of a closed surface
   for (std::size_t f = 0; f < object.triangles.size(); ++f) {
     const Triangle& t = object.triangles[f];
     const Vec3& a = object.positions[std::size_t(t[0])];
-    health.area_mm2 += 0.5 * (object.positions[std::size_t(t[1])] - a)
-                                 .cross(object.positions[std::size_t(t[2])] - a)
-                                 .norm();
+    const Vec3 area =
+        0.5 *
+        (object.positions[std::size_t(t[1])] - a).cross(object.positions[std::size_t(t[2])] - a);
+    directed_mm2 += area;
+    health.area_mm2 += area.norm();
     health.volume_mm3 += volume6(object, f, origin) / 6;
   }
+  // The volume of what is open depends on the origin: it is sure if all of the box agree.
+  if (!health.closed())
+    health.inside_out = directed_mm2.norm() < kSheet * health.area_mm2 &&
+                        health.volume_mm3 + directed_mm2.cwiseAbs().dot(box.size()) / 6 < 0;
   health.vertices = long(object.positions.size());
   health.triangles = long(object.triangles.size());
 }
@@ -84,6 +95,11 @@ std::vector<std::string> MeshHealth::findings() const {
     out.push_back(fmt::format("The surface has {} ({}); it is dipped as it is, open.",
                               counted(holes, "hole", "holes"),
                               counted(boundary_edges, "open edge", "open edges")));
+  }
+  if (inside_out) {
+    out.push_back(
+        fmt::format("The surface is open and {}, so that no film stays on its outside: {}.",
+                    kLooksInwards, kTurnNormals));
   }
   if (nonmanifold_edges > 0) {
     out.push_back(

@@ -8,6 +8,10 @@
 
 namespace hydrodip {
 
+// What is told of a mesh that is inside out, and what mends it.
+inline constexpr const char* kLooksInwards = "its faces look inwards";
+inline constexpr const char* kTurnNormals = "turn their normals round in the program that made it";
+
 struct MeshHealth {
   long vertices = 0;
   long triangles = 0;           // after repair
@@ -23,6 +27,8 @@ struct MeshHealth {
   bool closed() const { return boundary_edges == 0 && nonmanifold_edges == 0; }
   double volume_mm3 = 0;  // signed volume after orientation
   double area_mm2 = 0;
+  // An open shell, not a mere sheet, whose faces look inwards as a whole, wherever its holes are.
+  bool inside_out = false;
 
   // One sentence per finding, empty for a clean mesh.
   std::vector<std::string> findings() const;

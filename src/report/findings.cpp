@@ -27,9 +27,12 @@ constexpr double kMostlyTorn = 0.75;       // the same, of all of several dips
 constexpr double kHardlyAnything = 0.002;  // of the surface: a dip not worth its sheet
 constexpr double kFarOff_mm = 3;           // from there on a picture is not on the object
 
-Finding no_film(const Coverage& c) {
+Finding no_film(const Coverage& c, bool inside_out) {
   Finding finding{"coverage", Concern::kStop, "Coverage", "0 %", "", ""};
-  if (c.torn_mm2 > 0) {
+  if (inside_out) {
+    finding.text = fmt::format("No film stays on the object: {}.", kLooksInwards);
+    finding.advice = fmt::format("To mend it, {}.", kTurnNormals);
+  } else if (c.torn_mm2 > 0) {
     finding.text = "All film that meets the object tears.";
     finding.advice =
         "Turn a flatter side down with --rotate or --down, or use a film that bears "
@@ -65,9 +68,11 @@ Finding coverage_of_wanted(const ReportWanted& wanted, const Coverage& c) {
   return finding;
 }
 
-Finding coverage(const Coverage& c, const std::optional<ReportWanted>& wanted, bool one_dip_only) {
-  if (!(c.film_on_object_mm2 > 0)) return no_film(c);
-  if (wanted) return coverage_of_wanted(*wanted, c);
+Finding coverage(const Report& report) {
+  const Coverage& c = *report.coverage;
+  const bool one_dip_only = report.one_dip_only;
+  if (!(c.film_on_object_mm2 > 0)) return no_film(c, is_inside_out(report));
+  if (report.wanted) return coverage_of_wanted(*report.wanted, c);
   // Beside film that is lost, a share of what faces down would tell little.
   if (c.torn_mm2 > 0)
     return {"coverage",
@@ -441,7 +446,7 @@ std::vector<Finding> findings(const Report& report) {
     const Coverage& c = *report.coverage;
     const bool several = !report.dips.empty() && c.film_on_object_mm2 > 0;
     list.push_back(several ? coverage_of_dips(c, report.wanted, report.dips.size())
-                           : coverage(c, report.wanted, report.one_dip_only));
+                           : coverage(report));
     if (!report.better_way.empty())
       list.push_back({"better_way", Concern::kNone, "Better", "", report.better_way + ".", ""});
     add_idle_dips(report.dips, list);

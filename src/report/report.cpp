@@ -16,8 +16,9 @@ bool has_wanted(const Report& report) { return report.wanted && report.wanted->c
 std::string short_film_part(const Report& report) {
   const Coverage& coverage = *report.coverage;
   if (!has_wanted(report) && !(coverage.film_on_object_mm2 > 0))
-    return coverage.torn_mm2 > 0 ? "all film that meets the object tears"
-                                 : "no film lies on the object";
+    return is_inside_out(report)   ? std::string("no film stays on the object: ") + kLooksInwards
+           : coverage.torn_mm2 > 0 ? "all film that meets the object tears"
+                                   : "no film lies on the object";
   if (!has_wanted(report) && !(coverage.torn_mm2 > 0))
     return fmt::format(
         "{:.0f} % of the downward side covered, stretched up to {:.2f} times, no tears",
@@ -47,7 +48,14 @@ ReportInput describe_input(const std::string& role, const std::filesystem::path&
   return {role, path.string(), sha256_hex(bytes), bytes.size()};
 }
 
-std::string no_film_verdict(const Coverage& coverage) {
+bool is_inside_out(const Report& report) {
+  return report.mesh && report.mesh->inside_out && report.coverage &&
+         !(report.coverage->film_on_object_mm2 > 0);
+}
+
+std::string no_film_verdict(const Coverage& coverage, bool inside_out) {
+  if (inside_out)
+    return fmt::format("No film stays on the object: {}; {}.", kLooksInwards, kTurnNormals);
   return coverage.torn_mm2 > 0
              ? "No film stays on the object: all that meets it tears; turn a flatter side down "
                "with --rotate or --down."
@@ -128,7 +136,7 @@ std::string whole_film_part(const Report& report, Concern concern) {
 
 std::string plain_verdict(const Report& report) {
   const Coverage& c = *report.coverage;
-  if (!(c.film_on_object_mm2 > 0)) return no_film_verdict(c);
+  if (!(c.film_on_object_mm2 > 0)) return no_film_verdict(c, is_inside_out(report));
   if (report.equilibrium.unconverged_steps > 0) return unknown_verdict(report.equilibrium);
   const std::vector<Finding> list = findings(report);
   std::string text = covered_part(report) + lost_part(report);

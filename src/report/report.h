@@ -165,8 +165,11 @@ struct Report {
   std::uint64_t peak_memory_bytes = 0;  // 0: unknown
 };
 
-// Where no film stays on the object: why, and how to mend it.
-std::string no_film_verdict(const Coverage& coverage);
+// Whether that is why no film stays on the object.
+bool is_inside_out(const Report& report);
+
+// Where no film stays on the object: why, and how to mend it. `inside_out`: as MeshHealth's.
+std::string no_film_verdict(const Coverage& coverage, bool inside_out);
 
 // Some words of it, for a caption or a band: what forbids the dip besides the film, if anything
 // does, and what becomes of the film. Of a report that has its coverage.

@@ -170,6 +170,29 @@ grep -q '^Better: ' strict.txt || fail 'no better way is quoted'
 "$hydrodip" $strict --set plan.suggest=off -o lax --quiet > lax.txt || fail 'without --strict'
 ! grep -q '^Better' lax.txt || fail 'a better way is looked for all the same'
 grep -q 'hydrodip orient looks for' lax.txt || fail 'who is not told a better way is not told who knows one'
+# An open shell whose faces look inwards is said to be that, whoever finds no film on it.
+python3 - <<'PY'
+corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+faces = [(0, 2, 1), (1, 2, 3), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
+with open('tray.obj', 'w') as file:
+    for x, y, z in corners:
+        file.write(f'v {40 * x} {40 * y} {10 * z}\n')
+    for a, b, c in faces:
+        file.write(f'f {a + 1} {c + 1} {b + 1}\n')
+PY
+tray="tray.obj $small --quiet"
+mend='faces look inwards.*turn their normals round in the program that made it'
+# shellcheck disable=SC2086
+"$hydrodip" inspect $tray | grep -q "^warning: .*$mend" || fail 'inspect does not see that faces look inwards'
+# shellcheck disable=SC2086
+"$hydrodip" simulate $tray -o tray > tray.txt || fail "simulate of a tray: $?"
+grep -q "^Do not dip it like this. No film stays on the object: its $mend" tray.txt || fail 'simulate does not know why no film stays'
+! grep -q 'hydrodip orient' tray.txt || fail 'turning is said to mend normals'
+for command in "print --art picture.svg" orient; do
+  # shellcheck disable=SC2086
+  refused "$mend" $command $tray -o tray
+done
+
 # shellcheck disable=SC2086
 "$hydrodip" $strict --quality draft -o draft --quiet > draft.txt || fail 'a draft'
 ! grep -q '^Better' draft.txt || fail 'a draft looks for a better way'

@@ -216,6 +216,57 @@ TEST(Health, BoxesThatShareAnEdge) {
   EXPECT_NEAR(health.volume_mm3, 16, 1e-12);  // each was turned outward by itself
 }
 
+// One of its sides is missing.
+Object tray(const Vec3& size, bool inward) {
+  Object object;
+  add_box(object, Vec3::Zero(), 1, inward);
+  object.triangles.erase(object.triangles.begin() + 2, object.triangles.begin() + 4);
+  object.material_of.pop_back();
+  object.material_of.pop_back();
+  for (Vec3& p : object.positions) p = p.cwiseProduct(size) + Vec3(300, -200, 100);
+  return object;
+}
+
+TEST(Health, AnOpenShellThatLooksInwardsIsInsideOut) {
+  for (const Vec3& size : {Vec3(1, 1, 1), Vec3(75, 151, 10), Vec3(10, 10, 90)}) {
+    Object object = tray(size, true);
+    const MeshHealth health = check_and_repair(object);
+    EXPECT_TRUE(health.inside_out) << size;
+    const std::vector<std::string> findings = health.findings();
+    EXPECT_TRUE(std::any_of(findings.begin(), findings.end(), [](const std::string& finding) {
+      return finding.find(kLooksInwards) != std::string::npos &&
+             finding.find(kTurnNormals) != std::string::npos;
+    }));
+    object = tray(size, false);
+    EXPECT_FALSE(check_and_repair(object).inside_out) << size;
+  }
+  Object closed;
+  add_box(closed, Vec3::Zero(), 2, true);
+  EXPECT_FALSE(check_and_repair(closed).inside_out);  // it is turned outward
+}
+
+// A relief has no inside, whichever of its sides is meant.
+TEST(Health, ASheetIsNotInsideOut) {
+  for (const double height : {0.0, 2.0, -2.0})
+    for (const bool down : {false, true}) {
+      Object object;
+      constexpr int kCells = 12;
+      for (int j = 0; j <= kCells; ++j)
+        for (int i = 0; i <= kCells; ++i)
+          object.positions.emplace_back(
+              5 * i, 5 * j, height * std::sin(M_PI * i / kCells) * std::sin(M_PI * j / kCells));
+      for (int j = 0; j < kCells; ++j)
+        for (int i = 0; i < kCells; ++i) {
+          const int a = j * (kCells + 1) + i, b = a + 1, c = a + kCells + 1, d = c + 1;
+          object.triangles.push_back(down ? Triangle{a, d, b} : Triangle{a, b, d});
+          object.triangles.push_back(down ? Triangle{a, c, d} : Triangle{a, d, c});
+        }
+      object.material_of.assign(object.triangles.size(), 0);
+      object.materials.emplace_back();
+      EXPECT_FALSE(check_and_repair(object).inside_out) << height << " " << down;
+    }
+}
+
 TEST(Health, MoebiusStripIsReported) {
   Object object;
   constexpr int kSegments = 12;

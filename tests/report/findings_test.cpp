@@ -152,6 +152,22 @@ TEST(Findings, WithoutFilmOnTheObjectNothingElseMatters) {
   EXPECT_NE(list[0].advice.find("--down"), std::string::npos);
 }
 
+// Turning it would help nothing, so that is not what is advised.
+TEST(Findings, WhereNoFilmStaysOnWhatLooksInwardsThatIsSaid) {
+  Report report = good_report();
+  report.coverage->film_on_object_mm2 = 0;
+  report.coverage->torn_mm2 = 500;
+  report.mesh = MeshHealth{.boundary_edges = 4, .inside_out = true};
+  const std::vector<Finding> list = findings(report);
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_NE(list[0].text.find(kLooksInwards), std::string::npos);
+  EXPECT_NE(list[0].advice.find(kTurnNormals), std::string::npos);
+  EXPECT_EQ(verdict_of(report),
+            "No film stays on the object: its faces look inwards; turn their normals round in the "
+            "program that made it.");
+  EXPECT_NE(short_verdict(report).find(kLooksInwards), std::string::npos);
+}
+
 // The map's slope is the stretch: a millimetre beside on the film is that much on the object.
 TEST(Findings, RegistrationErrorGrowsWithStretch) {
   const std::vector<Finding> list = findings(good_report());
