@@ -8,6 +8,7 @@
 #include "base/json_text.h"
 #include "dip/travel.h"
 #include "job/logo.h"
+#include "job/ways.h"
 #include "report/findings.h"
 #include "settings/artwork_tables.h"
 #include "settings/params.h"
@@ -222,6 +223,8 @@ Report make_report(const JobRecord& record) {
   report.mesh = record.prepared.health;
   report.tear_stretch = record.config.design.dip.material.tear_stretch;
   report.finished_image = !record.config.film_image.empty();
+  report.found_best = is_best_found(record.config);
+  report.has_artwork = !record.config.object.artwork.empty();
   report.one_dip_only = record.prepared.paint->depends_on_film();
   if (record.command == "print") report.bleed_mm = record.config.design.inverse.bleed_mm;
   report.figures = figures(record.dipped());
@@ -244,6 +247,8 @@ JobResult describe_result(const Report& report, const std::filesystem::path& fol
   result.text = headline(concern) + ". " + verdict_of(report) + "\n";
   if (!report.better_way.empty())
     result.text += "Better: " + report.better_way + "\n";
+  else if (report.found_best && result.do_not_dip)
+    result.text += beyond_best_dip(report) + "\n";
   else if (result.do_not_dip && !is_inside_out(report))
     result.text += report.dips.empty()
                        ? fmt::format(

@@ -24,15 +24,20 @@ constexpr double kBytesPerPixel = 24;
 // How long film's rim is over the side of a square as large: ragged film of several pieces.
 constexpr double kRimOverSide = 16;
 
-void warn_if_tiny(const TriangleMesh& mesh, const RunContext& context) {
+// Below that a model whose unit nobody told may well be one in inches.
+constexpr double kMaybeInches_mm = 15;
+
+void warn_if_tiny(const TriangleMesh& mesh, bool size_is_told, const RunContext& context) {
   const double largest_mm = mesh.bounds().size().maxCoeff();
-  if (!(largest_mm < kTiny_mm)) return;
+  const bool tiny = largest_mm < kTiny_mm;
+  if (!tiny && (size_is_told || !(largest_mm < kMaybeInches_mm))) return;
   std::string length = fmt::format("{:.2f}", largest_mm);
   length.erase(length.find_last_not_of('0') + 1);
   if (length.back() == '.') length.pop_back();
-  context.warn(fmt::format(
-      "The object's largest extent is {} mm: if that is not meant, say its --units or --size.",
-      length));
+  context.warn(fmt::format("The object's largest extent is {} mm: {}.", length,
+                           tiny ? "if that is not meant, say its --units or --size"
+                                : fmt::format("if it is in inches, it is {:.0f} mm with --units in",
+                                              largest_mm * kMmPerInch)));
 }
 
 // Files of models keep seven digits of a coordinate, or are read so.
@@ -81,7 +86,7 @@ PreparedObject prepare_object(const std::filesystem::path& model, const ObjectOp
   const double scale = result.posed.scale();
   result.health.area_mm2 *= scale * scale;
   result.health.volume_mm3 *= scale * scale * scale;
-  warn_if_tiny(result.posed.mesh(), context);
+  warn_if_tiny(result.posed.mesh(), loaded.units_are_told || options.pose.size_mm > 0, context);
   warn_if_far(*object, scale, context);
   context.progress("loading", 1);
   if (options.artwork.empty()) return result;

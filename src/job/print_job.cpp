@@ -116,8 +116,8 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   record.wanted = wanted_coverage(dipped, *job.prepared.paint);
   const Report first_look = make_report(record);
   if (config.plan.suggest && concern_of(findings(first_look)) == Concern::kStop)
-    record.better_way =
-        times.measure("find", [&] { return better_way(config, job.prepared, dipped, context); });
+    record.better_way = times.measure(
+        "find", [&] { return better_way(config, job.prepared, dipped, record.wanted, context); });
   const SheetOptions sheet = sheet_of(config, job.prepared.posed, first_look);
   Inking& laid = made.designed.ink.ink.inking;
   record.laid = ink_amounts(laid.inks, config.design.inking.limit);

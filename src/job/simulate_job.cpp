@@ -249,8 +249,9 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
     record.laid = ink_amounts(printed.inks, config.design.inking.limit);
   const Report first_look = make_report(record);
   if (config.plan.suggest && concern_of(findings(first_look)) == Concern::kStop)
-    record.better_way = times.measure(
-        "find", [&] { return better_way(config, job.prepared, made.dipped, context); });
+    record.better_way = times.measure("find", [&] {
+      return better_way(config, job.prepared, made.dipped, record.wanted, context);
+    });
   if (command == "print")
     times.measure("sheet", [&] {
       write_given_sheet(folder, std::move(printed), job.printer,

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "image/files.h"
+#include "job/wanted.h"
 #include "report/shares.h"
 
 namespace hydrodip {
@@ -31,6 +32,38 @@ std::shared_ptr<const Paint> importance_paint(const std::filesystem::path& file,
   object->materials.assign(1, Material{.name = "importance", .texture = 0});
   object->material_of.assign(object->triangles.size(), 0);
   return model_paint(object);
+}
+
+// Of what shall be printed; nothing where that is everywhere, or unknown.
+std::optional<double> wanted_share(const Trial& trial, const Targets& targets,
+                                   const std::vector<std::uint8_t>& is_wanted) {
+  if (is_wanted.size() != targets.list.size() || trial.worth.size() != is_wanted.size())
+    return std::nullopt;
+  double wanted = 0, covered = 0;
+  for (std::size_t i = 0; i < is_wanted.size(); ++i) {
+    if (!is_wanted[i]) continue;
+    wanted += targets.list[i].area;
+    covered += trial.worth[i] > 0 ? targets.list[i].area : 0;
+  }
+  return Coverage::share(covered, wanted);
+}
+
+// "about 97 % of what shall be printed covered (now 86 %), about 1.5 % torn (now 23 %)": the
+// measures of the verdict, which is of the job's own film with its ink, and not of a trial's.
+std::string compared(const TrialFigures& trial, std::optional<double> trial_wanted,
+                     const Coverage& now, const std::optional<ReportWanted>& now_wanted) {
+  const bool by_wanted = trial_wanted && now_wanted;
+  return fmt::format("about {} of {} covered (now {}), about {} of the film torn (now {})",
+                     percent(by_wanted ? *trial_wanted : trial.covered_share),
+                     by_wanted ? "what shall be printed" : "the surface",
+                     percent(by_wanted ? now_wanted->covered_share() : now.covered_share()),
+                     trial.torn_share > kHardlyTorn ? percent(trial.torn_share) : "0 %",
+                     now.torn_share() > kHardlyTorn ? percent(now.torn_share()) : "0 %");
+}
+
+std::string told_air(const TrialFigures& figures) {
+  if (figures.air_mm2 < kSomeAir_mm2) return "";
+  return fmt::format(", {:.0f} mm2 under trapped air", figures.air_mm2);
 }
 
 bool lays_film(const Trial& trial) { return trial.depth_mm > 0 && trial.figures.covered_share > 0; }
@@ -128,20 +161,25 @@ void find_what_is_asked(JobConfig& config, PreparedObject& prepared, const RunCo
   context.log("found: " + describe_trial(*found, way_up(config)));
   hold(config.object, prepared, found->pose);
   if (config.plan.find_depth) config.design.trajectory.depth_mm = found->depth_mm;
+  config.plan.found_pose = config.plan.find_pose;
+  config.plan.found_depth = config.plan.find_depth;
   config.plan.find_pose = config.plan.find_depth = false;
   prepared.posed = PosedObject(prepared.posed.shared_object(), config.object.pose);
 }
 
+bool is_best_found(const JobConfig& config) {
+  return config.plan.found_pose &&
+         (config.plan.found_depth || !config.design.trajectory.path.empty());
+}
+
 std::string describe_trial(const Trial& trial, ModelSide up) {
   const TrialFigures& figures = trial.figures;
-  std::string text =
+  const std::string text =
       fmt::format("{}, {:.4g} mm deep: {} of the surface covered, {}",
                   describe_hold(trial.pose, up), trial.depth_mm, percent(figures.covered_share),
                   figures.torn_share > kHardlyTorn ? percent(figures.torn_share) + " torn"
                                                    : std::string("nothing torn"));
-  if (figures.air_mm2 >= kSomeAir_mm2)
-    text += fmt::format(", {:.0f} mm2 under trapped air", figures.air_mm2);
-  return text;
+  return text + told_air(figures);
 }
 
 std::string trial_options(const Trial& trial) {
@@ -172,7 +210,12 @@ std::string artwork_options(const JobConfig& config, const PreparedObject& prepa
 }
 
 std::string better_way(const JobConfig& config, const PreparedObject& prepared,
-                       const DippedObject& dipped, const RunContext& context) {
+                       const DippedObject& dipped, const std::optional<ReportWanted>& wanted,
+                       const RunContext& context) {
+  // A short search finds nothing better than the long one did, and turning mends no normals.
+  if (is_best_found(config) ||
+      (prepared.health.inside_out && !(dipped.coverage.film_on_object_mm2 > 0)))
+    return "";
   const Targets targets = job_targets(config, prepared, context);
   TrialTask task = job_trials(config, prepared, targets);
   task.depth_mm = 0;
@@ -181,8 +224,12 @@ std::string better_way(const JobConfig& config, const PreparedObject& prepared,
     const Trial best = search_holds(task, config.object.pose, quick_search(), context).best.front();
     if (!lays_film(best) || best.figures.score < made.figures.score + kWorthSaying) return "";
     if (is_held_so(best, made)) return "";
-    return fmt::format("{}, as blank film ({}{})", describe_trial(best, way_up(config)),
-                       trial_options(best), artwork_options(config, prepared, context));
+    const std::optional<double> share =
+        wanted_share(best, targets, wanted_at(targets, *prepared.paint));
+    return fmt::format(
+        "{}, {:.4g} mm deep: {}{}, as blank film ({}{})", describe_hold(best.pose, way_up(config)),
+        best.depth_mm, compared(best.figures, share, dipped.coverage, wanted),
+        told_air(best.figures), trial_options(best), artwork_options(config, prepared, context));
   } catch (const InputError&) {
     return "";  // it fits in no other way
   }

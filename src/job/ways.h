@@ -1,10 +1,12 @@
 // How the pipelines look for ways to dip their object.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "job/prepare.h"
 #include "plan/search.h"
+#include "report/report.h"
 #include "settings/config.h"
 
 namespace hydrodip {
@@ -31,6 +33,9 @@ ModelSide way_up(const JobConfig& config);
 // configuration and on the object.
 void find_what_is_asked(JobConfig& config, PreparedObject& prepared, const RunContext& context);
 
+// Whether that was the best way to hold it, as deep as is best.
+bool is_best_found(const JobConfig& config);
+
 // "lying on its -x side, 16 mm deep: 24 % of the surface covered, nothing torn"
 std::string describe_trial(const Trial& trial, ModelSide up);
 // "--rotate 0,90,0 --depth 16"
@@ -40,9 +45,10 @@ std::string trial_options(const Trial& trial);
 std::string artwork_options(const JobConfig& config, const PreparedObject& prepared,
                             const RunContext& context);
 
-// The best way that a short search finds, in words with its options; empty if it is no better than
-// the dip that was made.
+// The best way that a short search finds, in words with its options, beside the figures of the dip
+// that was made; empty if it is no better. `wanted`: that dip's.
 std::string better_way(const JobConfig& config, const PreparedObject& prepared,
-                       const DippedObject& dipped, const RunContext& context);
+                       const DippedObject& dipped, const std::optional<ReportWanted>& wanted,
+                       const RunContext& context);
 
 }  // namespace hydrodip

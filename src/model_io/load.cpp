@@ -29,7 +29,7 @@ struct Format {
   const char* extension;
   ModelFile (*read)(const ModelInput& input);
   bool keeps_polygons = false;  // quads stay quads
-  const char* unit = "mm";      // where neither the user nor the file says
+  const char* unit = "";        // where neither the user nor the file says; "": mm is a guess
 };
 
 constexpr Format kFormats[] = {
@@ -429,11 +429,13 @@ LoadedObject load_object(const fs::path& path, const LoadOptions& options,
   try {
     ObjectMaker(path.string(), file, materials, only_texture != nullptr, loaded.object, context)
         .make();
-    const Unit unit = unit_for(options.units, file.units, format);
+    const std::string file_units = file.units;
+    const Unit unit = unit_for(options.units, file_units, format);
     if (file.y_up) turn_y_up(loaded.object);
     file = {};
     scale_to_mm(loaded.object, unit.mm);
     loaded.units = unit.name;
+    loaded.units_are_told = !options.units.empty() || !file_units.empty() || *format.unit != 0;
     loaded.health = check_and_repair(loaded.object);
   } catch (const std::bad_alloc&) {
     throw InputError(

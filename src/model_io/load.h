@@ -37,6 +37,7 @@ struct LoadedObject {
   // Why pictures and material libraries that the model refers to are not shown: one sentence each,
   // also among the context's warnings.
   std::vector<std::string> picture_problems;
+  bool units_are_told = true;  // by the options, the file or its format: no guess
 };
 
 // Reads OBJ (+MTL, textures), PLY, STL, OFF, 3MF, glTF, GLB. Scales to millimetres, checks and

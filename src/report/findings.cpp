@@ -49,7 +49,8 @@ std::string after_dips(std::size_t dips) {
 }
 
 // A picture on one side can be held down; of one that goes around no single dip brings all.
-Finding coverage_of_wanted(const ReportWanted& wanted, const Coverage& c) {
+Finding coverage_of_wanted(const ReportWanted& wanted, const Coverage& c,
+                           const std::string& beyond_best) {
   const bool goes_around = wanted.object_mm2 > kOneSide * c.object_mm2;
   const bool nearly_all = wanted.covered_share() >= kWholePicture;
   const bool hardly = wanted.covered_share() < (goes_around ? kHardlyAPicture : kMostOfAPicture);
@@ -62,9 +63,10 @@ Finding coverage_of_wanted(const ReportWanted& wanted, const Coverage& c) {
                   "of what shall be printed gets film that holds.",
                   ""};
   if (!nearly_all)
-    finding.advice =
-        "Hold what shall be printed down (--rotate auto finds how), or give the rest other dips "
-        "(--dips).";
+    finding.advice = !beyond_best.empty()
+                         ? beyond_best
+                         : "Hold what shall be printed down (--rotate auto finds how), or give the "
+                           "rest other dips (--dips).";
   return finding;
 }
 
@@ -72,19 +74,21 @@ Finding coverage(const Report& report) {
   const Coverage& c = *report.coverage;
   const bool one_dip_only = report.one_dip_only;
   if (!(c.film_on_object_mm2 > 0)) return no_film(c, is_inside_out(report));
-  if (report.wanted) return coverage_of_wanted(*report.wanted, c);
+  if (report.wanted) return coverage_of_wanted(*report.wanted, c, beyond_best_dip(report));
   // Beside film that is lost, a share of what faces down would tell little.
   if (c.torn_mm2 > 0)
-    return {"coverage",
-            Concern::kCare,
-            "Coverage",
-            percent(c.covered_share()),
-            "of the object gets film that holds.",
-            one_dip_only
-                ? "What stays bare shows the object's own colour: paint the object to match "
-                  "(object.base_color), or hold it another way (--rotate auto)."
-                : "What stays bare shows the object's own colour: give it other dips, turned "
-                  "(--dips)."};
+    return {
+        "coverage",
+        Concern::kCare,
+        "Coverage",
+        percent(c.covered_share()),
+        "of the object gets film that holds.",
+        one_dip_only
+            ? "What stays bare shows the object's own colour: paint the object to match "
+              "(object.base_color)" +
+                  std::string(report.found_best ? "." : ", or hold it another way (--rotate auto).")
+            : "What stays bare shows the object's own colour: give it other dips, turned "
+              "(--dips)."};
   const bool nearly_all = c.covered_downward_share() >= kNearlyAll;
   Finding finding{"coverage", nearly_all ? Concern::kNone : Concern::kCare,
                   "Coverage", percent(c.covered_downward_share()),
@@ -399,7 +403,7 @@ Finding gamut(double share) {
 Finding coverage_of_dips(const Coverage& c, const std::optional<ReportWanted>& wanted,
                          std::size_t dips) {
   if (wanted) {
-    Finding finding = coverage_of_wanted(*wanted, c);
+    Finding finding = coverage_of_wanted(*wanted, c, "");
     finding.text =
         fmt::format("of what shall be printed gets film that holds {}.", after_dips(dips));
     if (!finding.advice.empty())
@@ -439,6 +443,18 @@ Finding warning(const std::string& sentence) {
 }
 
 }  // namespace
+
+std::string beyond_best_dip(const Report& report) {
+  if (!report.found_best) return "";
+  const std::string dips = report.one_dip_only ? "" : "give the rest other dips (--dips 2)";
+  const std::string picture =
+      report.has_artwork ? "make the picture smaller (--art-size) or put it elsewhere (--art-at)"
+                         : "";
+  return fmt::format(
+      "This is the best single dip that was found: {}{}{}.", dips,
+      dips.empty() || picture.empty() ? "" : ", or ",
+      dips.empty() && picture.empty() ? "make the object smaller (--size)" : picture);
+}
 
 std::vector<Finding> findings(const Report& report) {
   std::vector<Finding> list;

@@ -23,6 +23,10 @@ struct Finding {
 // far as the report knows about them.
 std::vector<Finding> findings(const Report& report);
 
+// What helps where the best single dip that was found is not good enough; empty: whether it is the
+// best one is not known.
+std::string beyond_best_dip(const Report& report);
+
 // Of them, the first that is a reason not to dip besides what becomes of the film (tears, stretch,
 // coverage); null: there is none.
 const Finding* first_obstacle(const std::vector<Finding>& findings);

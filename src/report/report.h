@@ -159,6 +159,8 @@ struct Report {
   double bleed_mm = 0;
   bool finished_image = false;  // is printed as it is, wherever film holds or not
   bool one_dip_only = false;    // what lies on the film belongs to one
+  bool found_best = false;      // the best way to hold it was looked for, and this is it
+  bool has_artwork = false;
   std::vector<ReportFigure> figures;
   std::vector<std::string> warnings;
   std::vector<ReportOutput> outputs;

@@ -164,12 +164,23 @@ strict="simulate samples/sphere.obj --film 120x120 --set film.elements=2000 --se
 "$hydrodip" $strict --strict -o strict --quiet > strict.txt
 [ $? -eq 4 ] || fail '--strict does not exit with 4'
 grep -q '^Do not dip it like this' strict.txt || fail 'the headline does not come first'
-grep -q '^Better: ' strict.txt || fail 'no better way is quoted'
+grep -q '^Better: .*about .* of the surface covered (now .*torn (now ' strict.txt || fail 'no better way is quoted beside what it betters'
 [ -s strict/report.json ] || fail 'strict writes nothing'
 # shellcheck disable=SC2086
 "$hydrodip" $strict --set plan.suggest=off -o lax --quiet > lax.txt || fail 'without --strict'
 ! grep -q '^Better' lax.txt || fail 'a better way is looked for all the same'
 grep -q 'hydrodip orient looks for' lax.txt || fail 'who is not told a better way is not told who knows one'
+# Of a picture on top the verdict speaks of what shall be printed, and so does what betters it.
+# shellcheck disable=SC2086
+"$hydrodip" $strict --art picture.svg --art-toward 0,0,1 -o above --quiet > above.txt || fail "a picture above: $?"
+grep -q '^Better: .*about .* of what shall be printed covered (now 0.0 %)' above.txt || fail 'what is better is told in another measure'
+# Who looked for the best way is not sent to look for it.
+# shellcheck disable=SC2086
+"$hydrodip" $strict --set material.tear_stretch=1.02 --rotate auto --depth auto -o best --quiet > best.txt || fail "the best: $?"
+if grep -q '^Do not dip it like this' best.txt; then
+  grep -q '^This is the best single dip that was found: .*--dips 2' best.txt || fail 'nothing is said to help beyond the best dip'
+  ! grep -q 'rotate auto' best.txt || fail 'who looked for the best way is sent to look for it'
+fi
 # An open shell whose faces look inwards is said to be that, whoever finds no film on it.
 python3 - <<'PY'
 corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]

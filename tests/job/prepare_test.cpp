@@ -68,6 +68,37 @@ TEST(Size, IsAskedForWhereItIsLikelyMeantOtherwise) {
   EXPECT_NO_THROW(require_size(cube(1.7), said, "part.stl"));
 }
 
+// Model programs that work in inches write files of millimetres' size without a word of it.
+TEST(PrepareObject, SaysHowLargeASmallModelIsInInches) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "hydrodip_prepare_inches";
+  std::filesystem::create_directories(folder);
+  Object box = make_sample("box");  // 40 mm
+  for (Vec3& p : box.positions) p *= 0.15;
+  write_sample("inches", box, folder);
+  const auto hinted = [&](const std::filesystem::path& file, const std::string& units,
+                          double size_mm) {
+    ObjectOptions options;
+    options.load.units = units;
+    options.pose.size_mm = size_mm;
+    const RunContext context;
+    prepare_object(file, options, context);
+    for (const std::string& warning : context.warnings())
+      if (contains(warning, "if it is in inches, it is 152 mm with --units in")) return true;
+    return false;
+  };
+  EXPECT_TRUE(hinted(folder / "inches.obj", "", 0));
+  EXPECT_FALSE(hinted(folder / "inches.obj", "mm", 0));
+  EXPECT_FALSE(hinted(folder / "inches.obj", "", 6));
+  for (Vec3& p : box.positions) p *= 2.6;  // 15.6 mm
+  write_sample("small", box, folder);
+  const RunContext context;
+  prepare_object(folder / "small.obj", {}, context);
+  for (const std::string& warning : context.warnings())
+    EXPECT_FALSE(contains(warning, "--units")) << warning;
+  std::filesystem::remove_all(folder);
+}
+
 TEST(PrepareObject, SaysWhereCoordinatesAreRounded) {
   ObjectOptions options;
   options.load.units = "mm";

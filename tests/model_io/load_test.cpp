@@ -255,6 +255,7 @@ TEST(Load, ThreeMfUnitsTransformsAndColours) {
   for (const auto& [unit, mm] : units) {
     const LoadedObject loaded = load(folder.write("a.3mf", fixtures::threemf(unit)));
     expect_squares(loaded, mm);
+    EXPECT_TRUE(loaded.units_are_told);  // millimetres where it is left out
     expect_color(color_near(loaded.object, 0.5 * mm, 0.5 * mm), 1, 0, 0);
     expect_color(color_near(loaded.object, 1.5 * mm, 0.5 * mm), 0, 0, 1);
   }
@@ -267,6 +268,7 @@ TEST(Load, GlbTexturesMaterialsNodesAndMetres) {
   ModelFolder folder;
   const LoadedObject loaded = load(folder.write("a.glb", fixtures::glb()));
   EXPECT_EQ(loaded.units, "m");
+  EXPECT_TRUE(loaded.units_are_told);
   expect_squares(loaded, 1000);
   // UVs run to 2: the left square shows the picture four times.
   for (const double x : {0.0, 500.0}) {

@@ -350,6 +350,24 @@ TEST(Findings, SeveralDipsAreJudgedTogether) {
   EXPECT_EQ(json["seams"]["error_mean_off_ciede2000"], 3.5);
 }
 
+// Who looked for the best way is not sent to look for it.
+TEST(Findings, BeyondTheBestWayThatWasFoundOtherThingsHelp) {
+  Report report = good_report();
+  report.wanted = ReportWanted{500, 400, 300};
+  EXPECT_EQ(beyond_best_dip(report), "");
+  EXPECT_NE(find(findings(report), "coverage")->advice.find("--rotate auto"), std::string::npos);
+  report.found_best = report.has_artwork = true;
+  const std::string advice = find(findings(report), "coverage")->advice;
+  EXPECT_EQ(advice.find("--rotate"), std::string::npos) << advice;
+  EXPECT_NE(advice.find("best single dip"), std::string::npos) << advice;
+  EXPECT_NE(advice.find("--dips 2"), std::string::npos) << advice;
+  EXPECT_NE(advice.find("--art-size"), std::string::npos) << advice;
+  report.one_dip_only = true;
+  EXPECT_EQ(beyond_best_dip(report).find("--dips"), std::string::npos);
+  report.has_artwork = false;
+  EXPECT_NE(beyond_best_dip(report).find("--size"), std::string::npos);
+}
+
 TEST(Findings, TheBetterWayIsQuoted) {
   Report report = good_report();
   report.better_way = "lying on its -x side";
