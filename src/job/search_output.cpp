@@ -11,6 +11,7 @@ namespace {
 PreparedObject prepared_in_size(const JobConfig& config, const RunContext& context) {
   PreparedObject prepared = prepare_object(config.model, config.object, context);
   require_size(prepared.posed, config.object, config.model);
+  warn_if_sheet_exceeds_bath(config.design.film, config.bath, context);
   return prepared;
 }
 

@@ -31,6 +31,11 @@ grep -q '^Good to dip\|^Can be dipped\|^Do not dip' said.txt || fail 'print does
   --quiet > /dev/null || fail 'rotate auto'
 cmp auto/print.png out/print.png || fail 'auto is not the first of orient'
 
+# Where print warns of a sheet larger than the bath, so does who looks for ways.
+"$hydrodip" orient colored.ply --film a3 --set film.elements=800 --set dip.step_mm=1 --quality draft \
+  --set preview.pictures=off -o large --quiet > said.txt || fail "orient on a3: $?"
+grep -q '^warning: The film of .* is larger than the bath' said.txt || fail 'orient is silent about a film larger than the bath'
+
 # Several dips: the plan is a job; the job and its parts print; the same bytes from anywhere.
 # shellcheck disable=SC2086
 "$hydrodip" plan colored.ply $small --dips 2 -o plan --json > plan.json || fail "plan: $?"
