@@ -2,6 +2,9 @@
 
 import json
 import os
+import pathlib
+import re
+import textwrap
 import unittest
 
 import numpy as np
@@ -11,6 +14,13 @@ from common import QUICK, QUICK_OPTIONS, InFolder, run, textured_cone
 
 DESIGN = dict(QUICK, dpi=72, print_samples=1)
 DESIGN_OPTIONS = QUICK_OPTIONS + "--dpi 72 --set print.samples=1".split()
+
+
+def write_stl(name, corners):
+    rows = np.zeros(len(corners), np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")]))
+    rows["corners"] = corners
+    with open(name, "wb") as file:
+        file.write(bytes(80) + np.uint32(len(rows)).tobytes() + rows.tobytes())
 
 
 def read(*path):
@@ -175,6 +185,25 @@ class Arguments(InFolder):
         bare = hydrodip.Mesh(textured_cone().vertices, textured_cone().faces)
         made = hydrodip.design(bare, artwork=[{"image": "art.png", "size_mm": [20, 20]}], **DESIGN)
         self.assertGreater(made.film_image[..., 3].max(), 0)
+
+    def test_artwork_as_the_documentation_puts_it_on(self):
+        from hydrodip import _core
+
+        page = (pathlib.Path(__file__).parents[2] / "docs" / "python.md").read_text()
+        section = re.search(r"^## Artwork\n(.*?)^## ", page, re.S | re.M)[1]
+        example = textwrap.dedent("\n".join(line for line in section.splitlines() if line.startswith("    ")))
+        picture = np.zeros((8, 8, 3), np.uint8)
+        picture[:, :4] = (255, 0, 0)
+        _core.write_png("photo.png", picture)
+        run("sample", "sphere", "-o", ".")
+        sphere = hydrodip.Mesh.load("sphere.obj")
+        write_stl("part.stl", sphere.vertices[sphere.faces] * 40 / np.ptp(sphere.vertices, axis=0).max())
+        said = {"hydrodip": hydrodip}
+        exec(example, said)
+        inked = said["made"].film_image[said["made"].film_image[..., 3] > 0]
+        self.assertGreater(len(inked), 0)
+        self.assertTrue((inked[:, 0] > 200).any() and (inked[:, 0] < 60).any(), "both halves of the picture")
+        self.assertEqual({"print.pdf", "print.png", "print.tif"} - set(os.listdir("sheet")), set())
 
     def test_every_parameter_is_a_keyword(self):
         import inspect
