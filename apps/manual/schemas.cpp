@@ -87,9 +87,16 @@ Json file_schema(const Parameter& p) {
   return schema;
 }
 
+// Of what the program writes: keys that a later version adds are no mistake of its reader.
+Json open_object(Json properties) {
+  return {{"type", "object"}, {"properties", std::move(properties)}};
+}
+
+// Of what people write: an editor shows a mistyped name.
 Json closed_object(Json properties) {
-  return {
-      {"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+  Json object = open_object(std::move(properties));
+  object["additionalProperties"] = false;
+  return object;
 }
 
 std::vector<std::string> words_of(const std::string& list) {
@@ -202,7 +209,7 @@ std::string job_schema() {
 std::string parameters_schema() {
   Json properties = Json::object();
   for (const Parameter& p : parameters()) {
-    Json entry = closed_object(
+    Json entry = open_object(
         {{"value", value_schema(p)},
          {"unit", {{"const", p.unit}}},
          {"changed", {{"type", "boolean"}, {"description", "differs from the default"}}}});
@@ -213,7 +220,7 @@ std::string parameters_schema() {
   Json schema = {{"$schema", kDraft},
                  {"$id", "parameters.schema.json"},
                  {"title", "Every parameter of a job, as report.json has it"}};
-  schema.update(closed_object(std::move(properties)));
+  schema.update(open_object(std::move(properties)));
   // Artwork, dips and parts are there by number.
   schema["patternProperties"] = {{R"(^(artwork|dip|part)\[[0-9]+\]\.)", Json::object()}};
   return json_text(schema);

@@ -1,6 +1,9 @@
 """validate.py SCHEMAS PATH...: every report.json, plan.json, orient.json, nest.json, plan.toml and
-profile.toml in the folders given, and the job files given, against its schema. Says how many of each
-there were.
+profile.toml in the folders given, and the job files given, against its schema. *.KIND.printed.json is
+what a command printed with --json. Says how many of each there were.
+
+To readers the schemas of what the program writes leave further keys open, as new ones may come. Here
+a key that no schema has is a mistake.
 
 validate.py --refuses SCHEMAS FILE...: each of these has to be refused; a schema that takes anything
 would pass as well."""
@@ -21,6 +24,30 @@ KINDS = {"report.json": "report", "plan.json": "plan", "orient.json": "orient", 
          "correction.json": "correction",
          "plan.toml": "job", "profile.toml": "job", "truth.toml": "job"}
 
+# Where what is unknown is refused: an editor shows a mistyped name.
+TYPED_BY_PEOPLE = {"job.schema.json"}
+
+
+def closed(schema):
+    """The same schema with nothing allowed that it does not name."""
+    if isinstance(schema, list):
+        return [closed(item) for item in schema]
+    if not isinstance(schema, dict):
+        return schema
+    result = {key: closed(value) for key, value in schema.items()}
+    if isinstance(schema.get("properties"), dict) and "type" in schema:
+        result.setdefault("additionalProperties", False)
+    return result
+
+
+def is_open(schema):
+    """Whether who reads with this schema, as it is installed, may meet a later version's files."""
+    if isinstance(schema, list):
+        return all(map(is_open, schema))
+    if not isinstance(schema, dict):
+        return True
+    return schema.get("additionalProperties") is not False and all(map(is_open, schema.values()))
+
 
 def validators(folder):
     schemas = {p.name: json.loads(p.read_text()) for p in folder.glob("*.schema.json")}
@@ -28,6 +55,9 @@ def validators(folder):
         jsonschema.Draft202012Validator.check_schema(schema)
         if schema["$id"] != name:
             sys.exit(f"{name}: its $id is {schema['$id']}")
+        if name not in TYPED_BY_PEOPLE and not is_open(schema):
+            sys.exit(f"{name}: takes no keys but today's; docs/guide/files.md says that new ones may come")
+    schemas = {name: closed(schema) for name, schema in schemas.items()}
     made = {}
     for name, schema in schemas.items():
         resolver = jsonschema.RefResolver("", schema, store=schemas)
@@ -42,6 +72,8 @@ def read(path):
 
 
 def kind_of(path, given):
+    if path.name.endswith(".printed.json"):
+        return path.name.split(".")[-3]
     return KINDS.get(path.name, "job" if path == given else None)
 
 
