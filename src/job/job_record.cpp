@@ -205,6 +205,7 @@ Report make_report(const JobRecord& record) {
   report.command_line = record.config.command_line;
   report.title = record.config.print.job_name;
   report.for_customer = record.config.report.for_customer;
+  report.draft = is_draft(record.config.design);
   report.equilibrium = equilibrium_of(record.dipped().statistics, record.ink);
   report.better_way = record.better_way;
   report.inputs = record.inputs;

@@ -43,12 +43,19 @@ double figure_or(const Report& report, const std::string& key, double otherwise)
   return otherwise;
 }
 
-Finding colors_point(const Report& report) {
+// Whether places stay bare for torn film where something is wanted, as far as shares tell.
+bool has_gaps(const Report& report) {
+  if (!(report.coverage->torn_mm2 > 0)) return false;
+  return report.wanted ? report.wanted->missed_share() >= 1 - kWholePicture
+                       : report.coverage->covered_share() < kWholePicture;
+}
+
+Finding colors_point(const Report& report, bool has_picture) {
   const ReportColors& colors = *report.colors;
   const bool plain = colors.error_most_of > kPlainDifference;
   Finding point{"colors", plain ? Concern::kCare : Concern::kNone, "Colours", "", "", ""};
-  point.text = plain ? "In places they differ visibly from what you asked for; compare the two "
-                       "pictures."
+  point.text = plain ? "In places they differ visibly from what you asked for" +
+                           std::string(has_picture ? "; compare the two pictures." : ".")
                      : "Close to what you asked for.";
   const double beyond = figure_or(report, "out_of_gamut_share", 0);
   if (beyond > kMuchOutOfGamut)
@@ -85,10 +92,13 @@ std::string title_of(const Report& report) {
 
 }  // namespace
 
-std::string customer_headline(Concern concern) {
-  if (concern == Concern::kNone) return "This is how it will look";
-  return concern == Concern::kCare ? "This is how it will look; a few things differ"
-                                   : "It cannot be made well like this";
+std::string customer_headline(const Report& report, Concern concern) {
+  const std::string differs = concern == Concern::kCare ? "; a few things differ" : "";
+  const bool cannot = concern == Concern::kStop;
+  if (report.draft)
+    return std::string("Draft, not final: ") +
+           (cannot ? "it could not be made well like this" : "a first estimate") + differs;
+  return cannot ? "It cannot be made well like this" : "This is how it will look" + differs;
 }
 
 std::string customer_verdict(const Report& report) {
@@ -100,16 +110,21 @@ std::string customer_verdict(const Report& report) {
   return fmt::format("{} of the object gets colour.", share);
 }
 
-std::vector<Finding> customer_points(const Report& report) {
+std::vector<Finding> customer_points(const Report& report, bool has_picture) {
   std::vector<Finding> list;
+  if (report.draft)
+    list.push_back({"draft", Concern::kCare, "Draft", "",
+                    "All of this is roughly calculated. The final page may say otherwise; please "
+                    "wait for it before you agree.",
+                    ""});
   if (!report.coverage) return list;
   const Coverage& c = *report.coverage;
   list.push_back(coverage_point(report));
   if (!(c.covered_mm2 > 0)) return list;
-  if (c.torn_mm2 > 0)
+  if (has_gaps(report))
     list.push_back({"gaps", Concern::kCare, "Gaps", "",
-                    "Where the film cannot follow the shape, places stay bare, as the picture "
-                    "shows.",
+                    "Where the film cannot follow the shape, places stay bare" +
+                        std::string(has_picture ? ", as the picture shows." : "."),
                     ""});
   if (c.doubtful_mm2 > kLittleDoubt * c.covered_mm2 && c.doubtful_share() >= kSomePercent)
     list.push_back({"doubtful", Concern::kCare, "Doubtful", whole_percent(c.doubtful_share()),
@@ -120,7 +135,7 @@ std::vector<Finding> customer_points(const Report& report) {
   if (c.area_ratio_max > kPale)
     list.push_back({"pale", Concern::kCare, "Paler places", "",
                     "Where the film stretches most, colours come out a little paler.", ""});
-  if (report.colors) list.push_back(colors_point(report));
+  if (report.colors) list.push_back(colors_point(report, has_picture));
   if (report.seams && report.seams->length_mm > 0)
     list.push_back({"seams",
                     report.seams->error_mean > kPlainDifference ? Concern::kCare : Concern::kNone,
@@ -134,7 +149,8 @@ std::vector<Finding> customer_points(const Report& report) {
 }
 
 std::string customer_html(const Report& report, const ReportPictures& pictures) {
-  const std::vector<Finding> points = customer_points(report);
+  const bool has_picture = !pictures.preview_png.empty() || has_view(pictures);
+  const std::vector<Finding> points = customer_points(report, has_picture);
   // What the workshop would not dip is nothing to be promised.
   const Concern concern =
       concern_of(findings(report)) == Concern::kStop ? Concern::kStop : concern_of(points);
@@ -142,7 +158,7 @@ std::string customer_html(const Report& report, const ReportPictures& pictures) 
   html += "<header>\n" + html_logo(pictures) + "<h1>" + html_escaped(title_of(report)) +
           "</h1>\n</header>\n";
   if (report.coverage)
-    html += html_verdict(concern, customer_headline(concern), customer_verdict(report));
+    html += html_verdict(concern, customer_headline(report, concern), customer_verdict(report));
   html += html_preview(pictures);
   html += html_cards(points);
   html += facts(report);

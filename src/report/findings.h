@@ -38,12 +38,13 @@ Concern concern_of(const std::vector<Finding>& findings);
 std::string headline(Concern concern);
 
 // What somebody who ordered the piece has to know of it: how much of the picture comes out, what
-// stays bare, becomes paler or another colour, and how far it may be off. Nothing of the workshop.
-std::vector<Finding> customer_points(const Report& report);
+// stays bare, becomes paler or another colour, how far it may be off, and that it is a draft.
+// Nothing of the workshop. `has_picture`: there is one beside it to point to.
+std::vector<Finding> customer_points(const Report& report, bool has_picture);
 // And in a sentence; of a report that has its coverage.
 std::string customer_verdict(const Report& report);
 // "This is how it will look", ...
-std::string customer_headline(Concern concern);
+std::string customer_headline(const Report& report, Concern concern);
 
 // "none", "care", "stop"
 std::string concern_name(Concern concern);

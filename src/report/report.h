@@ -136,6 +136,7 @@ struct Report {
   std::vector<std::string> command_line;  // may be empty
   std::string title;                      // the job's name; empty: the first input's file name
   bool for_customer = false;              // whose page it is; see report_html()
+  bool draft = false;                     // coarse: not to be dipped through
 
   std::vector<ReportInput> inputs;
   std::vector<ReportParameter> parameters;

@@ -141,6 +141,39 @@ TEST(Report, ACustomerReadsNothingOfTheWorkshop) {
   EXPECT_NE(words.find("It cannot be made well like this"), std::string::npos);
 }
 
+std::string customers_page(Report report, const ReportPictures& pictures) {
+  report.for_customer = true;
+  return report_html(report, pictures);
+}
+
+TEST(Report, ACustomerReadsOfGapsOnlyWherePictureIsLost) {
+  Report report = bad_report();
+  const auto tells_gaps = [&] {
+    return customers_page(report, {{1}, {}}).find("places stay bare") != std::string::npos;
+  };
+  EXPECT_TRUE(tells_gaps());
+  report.wanted = ReportWanted{100, 100, 100};
+  EXPECT_FALSE(tells_gaps()) << "film tears, but where nothing is printed";
+  EXPECT_NE(customers_page(report, {}).find("100 % of your picture comes out"), std::string::npos);
+  report.wanted->covered_mm2 = 90;
+  EXPECT_TRUE(tells_gaps());
+}
+
+TEST(Report, ACustomersDraftSaysSoAndPointsToNoPictureThatIsNotThere) {
+  Report report = bad_report();
+  const std::string with = customers_page(report, {{1}, {}});
+  EXPECT_NE(with.find("as the picture shows"), std::string::npos);
+  EXPECT_NE(with.find("compare the two pictures"), std::string::npos);
+  EXPECT_EQ(with.find("raft"), std::string::npos);
+  report.draft = true;
+  const std::string draft = customers_page(report, {});
+  for (const char* words : {"as the picture shows", "two pictures", "This is how it will look"})
+    EXPECT_EQ(draft.find(words), std::string::npos) << words;
+  EXPECT_NE(draft.find("Draft, not final"), std::string::npos);
+  report.coverage->torn_mm2 = report.coverage->doubtful_mm2 = 0;
+  EXPECT_NE(customers_page(report, {}).find("Draft, not final"), std::string::npos);
+}
+
 // What a page does not show it does not name.
 TEST(Report, FindingsSayWhereOnThePageTheyAreSeen) {
   Report report = bad_report();
