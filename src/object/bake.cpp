@@ -6,13 +6,12 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "base/parallel.h"
 #include "base/run_scope.h"
-#include "object/flat_pieces.h"
+#include "object/charts.h"
 
 namespace hydrodip {
 namespace {
@@ -20,16 +19,16 @@ namespace {
 constexpr int kLeastSide_px = 2, kMostSide_px = 4096;
 // Around a patch its colours go on for such a part of it: smaller copies of a texture (mipmaps) and
 // JPEG mix texels, and its neighbours there are not its neighbours on the surface. As drawn eight
-// pixels wide or more it stays free of them.
-constexpr int kMarginOfSide = 16, kLeastWithMargin_px = 8;
-// So far from it the nearest point of a piece is looked for.
+// pixels wide or more it stays free of them, if it has the room.
+constexpr int kMarginOfSide = 16, kLeastWithMargin_px = 4;
+// So far from it the nearest point of a chart is looked for.
 constexpr int kNearest_px = 4;
 constexpr std::size_t kMostLookedAt = 16;
-// In finer meshes triangles are about as small as texels, flat or not.
-constexpr std::size_t kMostForPieces = 200000;
+constexpr double kFiner = 1.189207;  // the fourth root of 2
 
 int margin_of(int side_px) {
-  return side_px < kLeastWithMargin_px ? 0 : std::max(1, side_px / kMarginOfSide);
+  if (side_px < kLeastWithMargin_px) return 0;
+  return std::max(side_px < 16 ? 1 : 2, side_px / kMarginOfSide);
 }
 
 // The plane of a triangle, with its longest side along x.
@@ -60,7 +59,7 @@ class Plane {
   Vec3 origin_ = Vec3::Zero(), along_ = Vec3::Zero(), across_ = Vec3::Zero();
 };
 
-// A flat piece of the surface and its place in the texture. What bounds it runs through the centres
+// A chart of the surface and its place in the texture. What bounds it runs through the centres
 // of texels, so that bilinear sampling inside never leaves it.
 struct Patch {
   std::size_t first = 0, count = 0;  // of Patches::triangles; the plane is the first one's
@@ -123,24 +122,14 @@ void bound(const TriangleMesh& mesh, const std::vector<std::size_t>& triangles, 
 
 Patches patches_of(const TriangleMesh& mesh) {
   Patches patches;
-  if (mesh.triangles.size() <= kMostForPieces) {
-    for (const std::vector<std::size_t>& piece : flat_pieces(mesh)) {
-      Patch patch;
-      patch.first = patches.triangles.size();
-      patch.count = piece.size();
-      patches.list.push_back(patch);
-      patches.triangles.insert(patches.triangles.end(), piece.begin(), piece.end());
-    }
-  } else {
-    patches.triangles.resize(mesh.triangles.size());
-    std::iota(patches.triangles.begin(), patches.triangles.end(), std::size_t(0));
-    patches.list.resize(mesh.triangles.size());
-    for (std::size_t t = 0; t < patches.list.size(); ++t) {
-      patches.list[t].first = t;
-      patches.list[t].count = 1;
-    }
+  for (const std::vector<std::size_t>& chart : charts(mesh)) {
+    Patch patch;
+    patch.first = patches.triangles.size();
+    patch.count = chart.size();
+    patches.list.push_back(patch);
+    patches.triangles.insert(patches.triangles.end(), chart.begin(), chart.end());
   }
-  parallel_for(patches.list.size(), 256, [&](std::size_t begin, std::size_t end) {
+  parallel_for(patches.list.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) bound(mesh, patches.triangles, patches.list[n]);
   });
   return patches;
@@ -312,6 +301,30 @@ class Filling {
   Image& texture_;
 };
 
+// What no patch covers gets the mean of what they do: the smallest copies mix it in.
+void fill_rest(Image& texture) {
+  std::array<std::uint64_t, 4> sum{};
+  std::uint64_t count = 0;
+  const auto each = [&](const auto& visit) {
+    CheckEvery check(1 << 16);
+    for (std::size_t i = 0; i < texture.rgba.size(); i += 4) {
+      check();
+      visit(texture.rgba.data() + i);
+    }
+  };
+  each([&](const std::uint8_t* p) {
+    if (p[3] == 0) return;
+    for (std::size_t k = 0; k < 4; ++k) sum[k] += p[k];
+    ++count;
+  });
+  if (count == 0) return;
+  std::array<std::uint8_t, 4> mean{};
+  for (std::size_t k = 0; k < 4; ++k) mean[k] = std::uint8_t((sum[k] + count / 2) / count);
+  each([&](std::uint8_t* p) {
+    if (p[3] == 0) std::copy(mean.begin(), mean.end(), p);
+  });
+}
+
 // v runs up, rows run down.
 void tell_corners(const TriangleMesh& mesh, const Patches& patches, const Patch& patch, int side_px,
                   std::vector<CornerUv>& uvs) {
@@ -351,8 +364,8 @@ Object baked(const TriangleMesh& mesh, const Paint& paint, int most_px) {
   for (const Patch& patch : patches.list) total_mm2 += patch.size_mm.prod();
   double density = total_mm2 > 0 ? 2 * most_px / std::sqrt(total_mm2) : 1;
   std::uint64_t texels = std::numeric_limits<std::uint64_t>::max();
-  for (int smaller = 0; double(texels) > double(most_px) * most_px && smaller < 48; ++smaller) {
-    density /= std::numbers::sqrt2;
+  for (int smaller = 0; double(texels) > double(most_px) * most_px && smaller < 96; ++smaller) {
+    density /= kFiner;
     size_patches(patches.list, density);
     texels = lay_out(patches.list);
   }
@@ -368,12 +381,13 @@ Object baked(const TriangleMesh& mesh, const Paint& paint, int most_px) {
   auto texture = std::make_shared<Image>(side_px, side_px);
   object.uvs.resize(mesh.triangles.size());
   const Filling filling(mesh, paint, patches, *texture);
-  parallel_for(patches.list.size(), 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(patches.list.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       filling.fill(patches.list[n]);
       tell_corners(mesh, patches, patches.list[n], side_px, object.uvs);
     }
   });
+  fill_rest(*texture);
   object.textures.push_back(std::move(texture));
   object.materials[0].texture = 0;
   return object;

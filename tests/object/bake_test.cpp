@@ -40,11 +40,33 @@ TriangleMesh square(int n) {
   return mesh;
 }
 
-// So that no two neighbours lie in a plane.
 TriangleMesh crumpled(TriangleMesh mesh) {
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
     mesh.positions[v].z() = 0.2 * std::fmod(0.618034 * double(v * v % 1009), 1) /
                             std::sqrt(double(mesh.positions.size()));
+  return mesh;
+}
+
+// Each triangle by itself, with corners of its own.
+TriangleMesh apart(const TriangleMesh& mesh) {
+  TriangleMesh result;
+  for (const Triangle& triangle : mesh.triangles) {
+    const auto first = std::int32_t(result.positions.size());
+    for (const std::int32_t v : triangle)
+      result.positions.push_back(mesh.positions[std::size_t(v)]);
+    result.triangles.push_back({first, first + 1, first + 2});
+  }
+  return result;
+}
+
+// A dome, (0, 0) to (1, 1) seen from above, in 2 n^2 triangles that all face another way.
+TriangleMesh dome(int n) {
+  TriangleMesh mesh = square(n);
+  mesh.triangles.pop_back();
+  for (Vec3& p : mesh.positions) {
+    const double x = p.x() - 0.5, y = p.y() - 0.5;
+    p.z() = std::sqrt(1 - x * x - y * y);
+  }
   return mesh;
 }
 
@@ -68,6 +90,7 @@ void shows_the_paint_everywhere(const TriangleMesh& mesh) {
 TEST(Bake, ShowsThePaintEverywhere) {
   shows_the_paint_everywhere(square(9));
   shows_the_paint_everywhere(crumpled(square(9)));
+  shows_the_paint_everywhere(apart(crumpled(square(9))));
 }
 
 // A disc of triangles round its middle, each 95 times as long as wide, as CAD programs give a
@@ -126,7 +149,7 @@ class MosaicPaint : public Paint {
 
 // As viewers do that draw a large texture small.
 TEST(Bake, ASmallerCopyOfTheTextureKeepsTrianglesApart) {
-  const TriangleMesh mesh = crumpled(square(5));
+  const TriangleMesh mesh = apart(crumpled(square(5)));
   const MosaicPaint paint;
   Object object = painted_object(mesh, paint, 1024);
   const Image& whole = *object.textures.at(0);
@@ -142,8 +165,40 @@ TEST(Bake, ASmallerCopyOfTheTextureKeepsTrianglesApart) {
     }
 }
 
+// Viewers draw a texture small from smaller copies of it, and at the rims of triangles they sample
+// next to them.
+TEST(Bake, FineMeshesLookAsWantedFromAnyDistance) {
+  const TriangleMesh mesh = dome(100);
+  const GradientPaint paint(mesh);
+  Object object = painted_object(mesh, paint, 1024);
+  ASSERT_FALSE(object.textures.empty());
+  const Image whole = *object.textures.at(0);
+  for (int smaller = 1; smaller <= 16; smaller *= 2) {
+    object.textures[0] = std::make_shared<const Image>(
+        resize(whole, whole.width_px / smaller, whole.height_px / smaller));
+    double worst = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (const auto& [u, v] :
+           {std::pair(0.0, 0.0), {1.0, 0.0}, {0.0, 1.0}, {0.7, 0.6}, {-0.2, 0.5}, {0.5, -0.2}}) {
+        const SurfacePoint point{int(t), u, v};
+        const LinearColor wanted = paint.color_at(point);
+        const LinearColor shown = color_at(object, point, {0, 0, 0, 1});
+        worst = std::max(
+            {worst, double(std::abs(shown.r - wanted.r)), double(std::abs(shown.g - wanted.g))});
+      }
+    EXPECT_LT(worst, 0.015 * smaller) << smaller;
+  }
+}
+
+TEST(Bake, NoTexelIsLeftBlank) {
+  const TriangleMesh mesh = dome(9);
+  const Object object = painted_object(mesh, GradientPaint(mesh), 512);
+  const Image& texture = *object.textures.at(0);
+  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) ASSERT_EQ(texture.rgba[i], 255) << i;
+}
+
 TEST(Bake, TrianglesSmallerThanTexelsHaveTheirColorsAtTheCorners) {
-  const TriangleMesh mesh = crumpled(square(60));
+  const TriangleMesh mesh = apart(crumpled(square(60)));
   const GradientPaint paint(mesh);
   const Object object = painted_object(mesh, paint, 64);
   EXPECT_TRUE(object.textures.empty());
