@@ -58,7 +58,7 @@ TEST(Fit, TheSizeThatIsToldFitsInEveryDirectionWithFilmLeft) {
     RunContext context;
     std::string error;
     try {
-      require_fit(size_mm, room_of(sized, 1000), film, bath, context);
+      require_fit(size_mm, room_of(sized, sized.bounds().max.z()), film, bath, context);
     } catch (const InputError& refused) {
       error = refused.what();
     }
