@@ -104,9 +104,9 @@ struct DipEntry {
 
 // What is looked for, and how several dips share the object.
 struct PlanOptions {
-  bool find_pose = false;            // object.rotate_deg = auto
-  bool find_depth = false;           // dip.depth_mm = auto
-  bool found_pose = false;           // was left to be found, and is; likewise:
+  bool find_pose = false;   // object.rotate_deg = auto
+  bool find_depth = false;  // dip.depth_mm = auto
+  bool found_pose = false;  // was left to be found, and is; likewise:
   bool found_depth = false;
   int dips = 0;                      // how many to plan; 0: as many as the job names, or one
   double overlap_mm = 2;             // how wide neighbouring dips fade into each other
