@@ -98,7 +98,11 @@ done
   fail "the stores differ"
 
 # Cancelled half-way.
-timeout --foreground -s INT 4 "$hydrodip" calibrate scans/sphere-scan.obj -o cancelled --quiet > cancelled.txt 2>&1
+"$hydrodip" calibrate scans/sphere-scan.obj -o cancelled --quiet > cancelled.txt 2>&1 &
+job=$!
+while [ ! -s cancelled/simulations.jsonl ] && kill -0 "$job" 2> /dev/null; do sleep 0.1; done
+kill -s INT "$job"
+wait "$job"
 grep -q 'cancelled; what was simulated is kept' cancelled.txt || fail "cancelled: $(cat cancelled.txt)"
 
 # Two shards and their merger.
