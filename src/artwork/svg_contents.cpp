@@ -83,13 +83,14 @@ class ContentsReader {
  public:
   ContentsReader(std::string_view svg, const std::function<bool(const std::string&)>& shows)
       : shows_(shows),
-        reader_(xmlReaderForMemory(svg.data(), size_of(svg), nullptr, nullptr, options_for(svg))) {
-    if (!reader_) throw std::bad_alloc();
+        document_(xmlReadMemory(svg.data(), size_of(svg), nullptr, nullptr, options_for(svg))),
+        reader_(document_ ? xmlReaderWalker(document_.get()) : nullptr) {
+    if (document_ && !reader_) throw std::bad_alloc();
   }
 
   SvgContents run() {
     CheckEvery check(1 << 10);
-    while (xmlTextReaderRead(reader_.get()) == 1) {
+    while (reader_ && xmlTextReaderRead(reader_.get()) == 1) {
       check();
       take_node();
     }
@@ -186,6 +187,8 @@ class ContentsReader {
   }
 
   const std::function<bool(const std::string&)>& shows_;
+  // A reader of its own goes over a large picture again for every 512 bytes of it.
+  std::unique_ptr<xmlDoc, Free> document_;
   std::unique_ptr<xmlTextReader, Free> reader_;
   SvgContents contents_;
   std::set<std::string> known_;
