@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <iterator>
 #include <set>
+
+#include "settings/dip_tables.h"
 
 namespace hydrodip {
 namespace {
