@@ -23,19 +23,6 @@ std::size_t big_endian(Bytes bytes) {
   return value;
 }
 
-bool png_says_more(Bytes bytes) {
-  constexpr std::size_t kSignature = 8, kAround = 12;  // length, name, checksum
-  for (bytes = bytes.subspan(kSignature); bytes.size() >= kAround;) {
-    const std::size_t length = big_endian(bytes.first(4));
-    if (length > bytes.size() - kAround) return false;
-    const Bytes name = bytes.subspan(4, 4), data = bytes.subspan(8, length);
-    if (begins(name, "iCCP") || begins(name, "cICP")) return true;
-    if (begins(name, "eXIf") && exif_orientation(data) != 1) return true;
-    bytes = bytes.subspan(kAround + length);
-  }
-  return false;
-}
-
 // C0 to CF but tables and extensions, whose data have the number of channels as their sixth byte.
 bool begins_frame(int marker) {
   return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
@@ -64,8 +51,8 @@ bool jpeg_says_more(Bytes bytes) {
 }  // namespace
 
 bool says_more_than_pixels(const std::vector<std::uint8_t>& bytes) {
-  if (begins(bytes, "\x89PNG\r\n\x1a\n")) return png_says_more(bytes);
-  if (begins(bytes, "\xff\xd8\xff")) return jpeg_says_more(bytes);
+  if (is_png(bytes)) return png_says_more(bytes);
+  if (is_jpeg(bytes)) return jpeg_says_more(bytes);
   return begins(bytes, "RIFF") || begins(bytes, std::string_view("II*\0", 4)) ||
          begins(bytes, std::string_view("MM\0*", 4)) || begins(bytes, "GIF8") ||
          begins(bytes, "BM");

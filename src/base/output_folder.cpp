@@ -85,8 +85,8 @@ void clear_abandoned(const fs::path& folder) {
   for (fs::directory_iterator it(folder, ignored), end; !ignored && it != end;
        it.increment(ignored)) {
     const std::string name = it->path().filename().string();
-    if (!fs::is_directory(it->symlink_status(ignored))) continue;
-    if (name.starts_with(kStagingPrefix) && name.size() == std::strlen(kStagingPrefix) + 6)
+    if (name.starts_with(kStagingPrefix) && name.size() == std::strlen(kStagingPrefix) + 6 &&
+        fs::is_directory(it->symlink_status(ignored)))
       found.push_back(it->path());
   }
   for (const fs::path& staging : found) {

@@ -50,6 +50,8 @@ StoredPicture decode_tga(const PictureBytes& bytes, const std::string& name);
 // By their marks.
 bool is_png(const PictureBytes& bytes);
 bool is_jpeg(const PictureBytes& bytes);
+// Whether a PNG has a profile, cICP or an orientation.
+bool png_says_more(const PictureBytes& bytes);
 bool looks_like_tga(const PictureBytes& bytes);  // the format has no mark
 
 // The orientation that EXIF data states (from "II" or "MM" on), 1 if none.

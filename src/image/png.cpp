@@ -291,6 +291,15 @@ StoredPicture decode_png(const Bytes& bytes, const std::string& name) {
   return picture;
 }
 
+bool png_says_more(const Bytes& bytes) {
+  bool more = false;
+  for_each_chunk(bytes, [&](std::string_view type, std::span<const std::uint8_t> data) {
+    more = type == "iCCP" || type == "cICP" || (type == "eXIf" && exif_orientation(data) != 1);
+    return !more;
+  });
+  return more;
+}
+
 Resolution png_resolution(const Bytes& bytes) {
   Resolution found;
   for_each_chunk(bytes, [&](std::string_view type, std::span<const std::uint8_t> data) {

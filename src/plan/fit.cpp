@@ -105,24 +105,6 @@ std::string larger_film(const Room& room, FilmOptions film, const BathOptions& t
                      bath_longer);
 }
 
-std::vector<RoomFit> room_in_film(const Room& footprint, const FilmOptions& film) {
-  const auto fit = [](const char* what, double needed_mm, double available_mm) {
-    return RoomFit{.what = what,
-                   .room = "the free film inside the taped rim",
-                   .needed_mm = needed_mm,
-                   .available_mm = available_mm,
-                   .remedy = "",
-                   .comfort_mm = 2 * kComfortableClearance_mm};
-  };
-  if (film.shape == FilmShape::kDisc)
-    return {fit("across", 2 * footprint.radius_mm,
-                std::min(film.width_mm, film.height_mm) - 2 * film.margin_mm)};
-  return {
-      fit("wide (x)", 2 * footprint.half_width_mm, film.width_mm - 2 * film.margin_mm),
-      fit("long (y)", 2 * footprint.half_height_mm, film.height_mm - 2 * film.margin_mm),
-  };
-}
-
 // With the parameter that says it, as their remedy.
 std::vector<RoomFit> room_in_bath(const Room& footprint, const FilmOptions& film,
                                   const BathOptions& tank) {
@@ -184,12 +166,26 @@ double shrinking_to_fit(const std::vector<RoomFit>& list) {
 }
 
 std::vector<RoomFit> film_fits(const Room& room, const FilmOptions& film) {
-  return room_in_film(room, film);
+  const auto fit = [](const char* what, double needed_mm, double available_mm) {
+    return RoomFit{.what = what,
+                   .room = "the free film inside the taped rim",
+                   .needed_mm = needed_mm,
+                   .available_mm = available_mm,
+                   .remedy = "",
+                   .comfort_mm = 2 * kComfortableClearance_mm};
+  };
+  if (film.shape == FilmShape::kDisc)
+    return {fit("across", 2 * room.radius_mm,
+                std::min(film.width_mm, film.height_mm) - 2 * film.margin_mm)};
+  return {
+      fit("wide (x)", 2 * room.half_width_mm, film.width_mm - 2 * film.margin_mm),
+      fit("long (y)", 2 * room.half_height_mm, film.height_mm - 2 * film.margin_mm),
+  };
 }
 
 std::vector<RoomFit> fits(double size_mm, const Room& room, const FilmOptions& film,
                           const BathOptions& bath) {
-  std::vector<RoomFit> list = room_in_film(room, film);
+  std::vector<RoomFit> list = film_fits(room, film);
   for (RoomFit& fit : room_in_bath(room, film, bath)) list.push_back(std::move(fit));
   const std::string shrink = "shrink it with " + shrunk_size(size_mm, room, shrinking_to_fit(list));
   for (RoomFit& fit : list) {

@@ -21,6 +21,7 @@
 #include "settings/profiles.h"
 #include "settings/settings.h"
 #include "studio/document.h"
+#include "studio/json_answers.h"
 #include "studio/page_assets.h"
 #include "studio/zip.h"
 
@@ -34,23 +35,6 @@ constexpr auto kUnwatched = std::chrono::minutes(2);
 constexpr auto kWrongPassword = std::chrono::milliseconds(700);
 
 // ---- answers ----
-
-HttpAnswer json_answer(const Json& json, int status = 200) {
-  HttpAnswer answer;
-  answer.status = status;
-  answer.type = "application/json; charset=utf-8";
-  answer.headers = {{"Cache-Control", "no-store"}};
-  answer.body = text_of(json);
-  return answer;
-}
-
-HttpAnswer error_answer(const ApiError& error) {
-  Json inner = {{"code", error.code}, {"text", error.what()}};
-  if (!error.field.empty()) inner["field"] = error.field;
-  Json json;
-  json["error"] = inner;
-  return json_answer(json, error.status);
-}
 
 ApiError not_found() { return {404, "not-found", "There is nothing of that name here."}; }
 
@@ -414,8 +398,7 @@ std::shared_ptr<OpenJob> Api::job(const std::string& name) {
   const std::lock_guard lock(mutex_);
   const auto known = jobs_.find(name);
   if (known != jobs_.end()) return known->second;
-  if (!store_.has(name))
-    throw ApiError(404, "not-found", "There is no such job any more; begin a new one.");
+  if (!store_.has(name)) throw no_such_job();
   return jobs_[name] = std::make_shared<OpenJob>(store_, name, run_, numbers_);
 }
 

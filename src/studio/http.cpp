@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "studio/json.h"
+#include "studio/json_answers.h"
 
 namespace hydrodip {
 namespace {
@@ -81,16 +81,9 @@ void send_file(httplib::Response& to, const HttpAnswer& answer) {
                           });
 }
 
-// Of what no handler sees; an error of docs/studio-api.md.
+// Of what no handler sees.
 HttpAnswer plain_refusal(int status, const std::string& sentence) {
-  Json json;
-  json["error"] = {{"code", "bad-request"}, {"text", sentence}};
-  HttpAnswer answer;
-  answer.status = status;
-  answer.type = "application/json; charset=utf-8";
-  answer.headers = {{"Cache-Control", "no-store"}};
-  answer.body = text_of(json);
-  return answer;
+  return error_answer({status, "bad-request", sentence});
 }
 
 void send(httplib::Response& to, const HttpAnswer& answer, bool and_close) {

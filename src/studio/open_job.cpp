@@ -34,8 +34,6 @@ FolderLock held(const JobStore& store, const std::string& job) {
   return lock;
 }
 
-ApiError gone() { return {404, "not-found", "There is no such job any more; begin a new one."}; }
-
 bool is_job_file(const std::filesystem::path& file) { return file.extension() == ".toml"; }
 
 }  // namespace
@@ -147,7 +145,7 @@ void OpenJob::ask(bool live) {
 
 // With the lock.
 void OpenJob::autosave() const {
-  if (let_go_) throw gone();
+  if (let_go_) throw no_such_job();
   const Json state = {{"version", 1},
                       {"name", name_of_job(document_)},
                       {"where", where_.string()},
@@ -450,7 +448,7 @@ std::filesystem::path OpenJob::file(const std::string& name) const {
 std::shared_ptr<EventStream> OpenJob::connect(const std::string& client) {
   const Json tasks = tasks_->list();
   const std::lock_guard lock(mutex_);
-  if (let_go_) throw gone();
+  if (let_go_) throw no_such_job();
   auto stream = tabs_.connect(client);
   stream->push("hello", {{"run", run_},
                          {"client", client},
@@ -646,7 +644,7 @@ std::string OpenJob::start_task(const Json& request) {
   task.address = address() + "/tasks";
   task.uploads = files_.uploads();
   const std::lock_guard lock(mutex_);
-  if (let_go_) throw gone();
+  if (let_go_) throw no_such_job();
   task.config = checked(document_);
   task.revision = revision_;
   if (task.config.model.empty())

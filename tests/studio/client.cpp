@@ -69,6 +69,15 @@ void read_head(const std::string& head, Reply& reply) {
   }
 }
 
+// Of a request, to the blank line.
+std::string head_of(const Client& client, const std::string& method, const std::string& path,
+                    std::map<std::string, std::string> headers) {
+  headers.emplace("Host", "127.0.0.1:" + std::to_string(client.port()));
+  std::string text = method + " " + path + " HTTP/1.1\r\n";
+  for (const auto& [name, value] : headers) text += name + ": " + value + "\r\n";
+  return text + "\r\n";
+}
+
 }  // namespace
 
 std::string Reply::code() const {
@@ -85,12 +94,9 @@ Reply Client::send(const std::string& method, const std::string& path, const std
   Reply reply;
   const int handle = connected(port_);
   if (handle < 0) return reply;
-  headers.try_emplace("Host", "127.0.0.1:" + std::to_string(port_));
   headers.try_emplace("Connection", "close");
   if (!body.empty()) headers.try_emplace("Content-Length", std::to_string(body.size()));
-  std::string text = method + " " + path + " HTTP/1.1\r\n";
-  for (const auto& [name, value] : headers) text += name + ": " + value + "\r\n";
-  text += "\r\n";
+  std::string text = head_of(*this, method, path, std::move(headers));
   if (pause_ms > 0) {
     write_all(handle, std::exchange(text, ""));
     std::this_thread::sleep_for(std::chrono::milliseconds(pause_ms));
@@ -115,11 +121,9 @@ Reply Client::send(const std::string& method, const std::string& path, const std
 
 EndlessUpload::EndlessUpload(const Client& client, const std::string& path)
     : socket_(connected(client.port())) {
-  std::string text = "PUT " + path + " HTTP/1.1\r\nContent-Length: 100000000\r\n";
   auto headers = client.own_headers();
-  headers["Host"] = "127.0.0.1:" + std::to_string(client.port());
-  for (const auto& [name, value] : headers) text += name + ": " + value + "\r\n";
-  write_all(socket_, text + "\r\n");
+  headers["Content-Length"] = "100000000";
+  write_all(socket_, head_of(client, "PUT", path, std::move(headers)));
   thread_ = std::thread([this] {
     while (!ends_ && ::send(socket_, "x", 1, MSG_NOSIGNAL) == 1)
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -133,11 +137,7 @@ EndlessUpload::~EndlessUpload() {
 }
 
 Events::Events(const Client& client, const std::string& path) : socket_(connected(client.port())) {
-  std::string text = "GET " + path + " HTTP/1.1\r\n";
-  auto headers = client.own_headers();
-  headers["Host"] = "127.0.0.1:" + std::to_string(client.port());
-  for (const auto& [name, value] : headers) text += name + ": " + value + "\r\n";
-  write_all(socket_, text + "\r\n");
+  write_all(socket_, head_of(client, "GET", path, client.own_headers()));
   // From here on the tab is one that the job knows.
   while (buffer_.find("\r\n\r\n") == std::string::npos && read_some(socket_, buffer_, kAnswer_ms)) {
   }
