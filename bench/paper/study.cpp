@@ -6,8 +6,8 @@
 #include "image/resize.h"
 #include "ink/stiffness.h"
 #include "render/canvas.h"
+#include "render/lit_view.h"
 #include "render/normals.h"
-#include "render/studio.h"
 #include "render/text.h"
 
 namespace hydrodip::paper {
@@ -22,8 +22,9 @@ ViewPair pictures_of(const PosedObject& object, const Appearance& look, int size
                      const RunContext& context) {
   const TriangleMesh& mesh = object.mesh();
   const std::vector<CornerNormals> normals = corner_normals(mesh.positions, mesh.triangles);
-  const Studio studio{mesh, object.surface(), normals, true, 0.5};
-  return LitView(studio, frame_object(mesh, kEye, 1, 0.9), size_px, size_px, context).show(look);
+  const LitObject lit{mesh, object.surface(), normals};
+  return LitView(lit, frame_object(mesh, kEye, 1, 0.9), size_px, size_px, context)
+      .show(look, {normals, 0.5});
 }
 
 DippedObject dip_film(const PosedObject& object, const SharedFilmMesh& film, const DipOptions& dip,
@@ -82,9 +83,7 @@ Image panels(const std::vector<Panel>& list, int columns) {
   const int rows = (int(list.size()) + columns - 1) / columns;
   Image page = blank_page(columns * width + (columns + 1) * kGap_px,
                           rows * (height + kTitle_px) + (rows + 1) * kGap_px);
-  TextStyle style;
-  style.size_px = 13;
-  style.color = kTitleInk;
+  const TextStyle style = text_style(13, kTitleInk);
   for (std::size_t i = 0; i < list.size(); ++i) {
     const int column = int(i) % columns, row = int(i) / columns;
     const int x = kGap_px + column * (width + kGap_px);

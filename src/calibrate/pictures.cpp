@@ -29,13 +29,6 @@ const ColorRamp& error_ramp() {
   return ramp;
 }
 
-TextStyle style(double size_px, const LinearColor& color = kLabelInk) {
-  TextStyle result;
-  result.size_px = size_px;
-  result.color = color;
-  return result;
-}
-
 // ---- the error over the parameters ----
 
 struct Axis {
@@ -107,22 +100,22 @@ void draw_surface(Image& page, int left, int top, const std::array<Axis, 3>& axe
       if (!std::isnan(v) && size >= 7)
         draw_centered(page, fmt::format("{:.3f}", v), 0.5 * (column(i) + column(i + 1)),
                       0.5 * (row(j) + row(j + 1)) + 0.5 * size,
-                      style(size, t > 0.55 ? kWhite : kTitleInk));
+                      text_style(size, t > 0.55 ? kWhite : kTitleInk));
     }
   const int bi = best % width, bj = best / width;
   outline(page, column(bi), row(bj + 1), column(bi + 1), row(bj), 3, kMark);
   for (int i = 0; i < width; ++i)
     draw_centered(page, fmt::format("{:g}", across.values[std::size_t(i)]),
-                  0.5 * (column(i) + column(i + 1)), y1 + 26, style(13));
+                  0.5 * (column(i) + column(i + 1)), y1 + 26, text_style(13, kLabelInk));
   for (int j = 0; j < height; ++j) {
     const std::string label = fmt::format("{:g}", up.values[std::size_t(j)]);
-    draw_text(page, label, x0 - 10 - text_width_px(label, style(13)),
-              0.5 * (row(j) + row(j + 1)) + 6, style(13));
+    draw_text(page, label, x0 - 10 - text_width_px(label, text_style(13, kLabelInk)),
+              0.5 * (row(j) + row(j + 1)) + 6, text_style(13, kLabelInk));
   }
   draw_centered(page, across.name + fmt::format(", found {:.3g}", value_of(answer, x)),
-                0.5 * (x0 + left + kSurfacePanel), y1 + 60, style(16, kTitleInk));
+                0.5 * (x0 + left + kSurfacePanel), y1 + 60, text_style(16, kTitleInk));
   draw_text(page, up.name + fmt::format(", found {:.3g}", value_of(answer, y)), left + 4, top - 14,
-            style(16, kTitleInk));
+            text_style(16, kTitleInk));
 }
 
 // ---- how well pairs of parameters are known ----
@@ -195,12 +188,14 @@ void draw_region(Image& page, int left, int top, const Answer& answer, int x, in
   fill(page, column(from_x), y1 + 3, column(to_x), y1 + 3 + kBar, kMark);
   fill(page, x0 - 3 - kBar, row(to_y), x0 - 3, row(from_y), kMark);
   for (const double share : {0.0, 0.5, 1.0}) {
-    draw_centered(page, label_of(x, across.at(share)), column(share), y1 + 30, style(13));
+    draw_centered(page, label_of(x, across.at(share)), column(share), y1 + 30,
+                  text_style(13, kLabelInk));
     const std::string text = label_of(y, up.at(share));
-    draw_text(page, text, x0 - 14 - text_width_px(text, style(13)), row(share) + 6, style(13));
+    draw_text(page, text, x0 - 14 - text_width_px(text, text_style(13, kLabelInk)), row(share) + 6,
+              text_style(13, kLabelInk));
   }
-  draw_centered(page, kAxisNames[x], x0 + 0.5 * kSide, y1 + 60, style(16, kTitleInk));
-  draw_text(page, kAxisNames[y], left + 4, top - 14, style(16, kTitleInk));
+  draw_centered(page, kAxisNames[x], x0 + 0.5 * kSide, y1 + 60, text_style(16, kTitleInk));
+  draw_text(page, kAxisNames[y], left + 4, top - 14, text_style(16, kTitleInk));
 }
 
 // ---- the error over the film ----
@@ -271,8 +266,9 @@ void draw_map(Image& page, int left, int top, const ErrorMap& map, const Box2& b
                 pixel(*map.warped[std::size_t(error.length.to)]), diagonal ? 1.6 : 4.5,
                 error_ramp().at(std::abs(error.error_mm) / end_mm));
     }
-  draw_centered(page, map.title, left + 0.5 * kMapPanel, top - 16, style(19, kTitleInk));
-  draw_centered(page, map.figure, left + 0.5 * kMapPanel, top + kMapPanel + 26, style(15));
+  draw_centered(page, map.title, left + 0.5 * kMapPanel, top - 16, text_style(19, kTitleInk));
+  draw_centered(page, map.figure, left + 0.5 * kMapPanel, top + kMapPanel + 26,
+                text_style(15, kLabelInk));
 }
 
 void draw_scale(Image& page, int y, double end_mm) {
@@ -281,9 +277,9 @@ void draw_scale(Image& page, int y, double end_mm) {
     fill(page, x0 + x, y, x0 + x + 1, y + 22, error_ramp().at((x + 0.5) / width));
   for (int k = 0; k <= 4; ++k)
     draw_centered(page, fmt::format("{:g}", 0.25 * k * end_mm), x0 + 0.25 * k * width, y + 46,
-                  style(14));
+                  text_style(14, kLabelInk));
   draw_centered(page, "error of a length on the film, mm (thick: edges, thin: diagonals)",
-                0.5 * page.width_px, y - 12, style(15));
+                0.5 * page.width_px, y - 12, text_style(15, kLabelInk));
 }
 
 }  // namespace
@@ -296,13 +292,13 @@ Image draw_error_surface(const GridSearchOptions& options, const std::vector<Gri
   Image page = blank_page(2 * kMargin + 3 * kSurfacePanel + 2 * kGap,
                           kHeader + 30 + kSurfacePanel + kFooter);
   draw_centered(page, "Eq. 4 of all scans, mm: over two parameters, the third at its best",
-                0.5 * page.width_px, 40, style(22, kTitleInk));
+                0.5 * page.width_px, 40, text_style(22, kTitleInk));
   int left = kMargin;
   for (const auto& [x, y] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)}) {
     draw_surface(page, left, kHeader + 30, axes, x, y, profile(grid, axes, x, y), answer);
     left += kSurfacePanel + kGap;
   }
-  const TextStyle small = style(15);
+  const TextStyle small = text_style(15, kLabelInk);
   draw_centered(page, fit_text(caption, small, page.width_px - 2.0 * kMargin), 0.5 * page.width_px,
                 page.height_px - 24, small);
   return page;
@@ -321,13 +317,13 @@ Image draw_joint_regions(const Answer& answer, const std::string& caption) {
                 pairs.empty()
                     ? "Fewer than two parameters were looked for"
                     : "Where two parameters can be together, by noise alone: dark 50 %, blue 95 %",
-                0.5 * page.width_px, 40, style(22, kTitleInk));
+                0.5 * page.width_px, 40, text_style(22, kTitleInk));
   int left = kMargin;
   for (const auto& [x, y] : pairs) {
     draw_region(page, left, kHeader + 30, answer, x, y);
     left += kSurfacePanel + kGap;
   }
-  const TextStyle small = style(15);
+  const TextStyle small = text_style(15, kLabelInk);
   const std::string words =
       "Red bars: 95 % of each by itself, with what simulations add. " + caption;
   draw_centered(page, fit_text(words, small, page.width_px - 2.0 * kMargin), 0.5 * page.width_px,
@@ -348,7 +344,7 @@ Image draw_error_maps(const std::vector<std::vector<ErrorMap>>& rows, const std:
       draw_map(page, kMargin + int(c) * (kMapPanel + kGap), 60 + int(r) * kRow, rows[r][c], box,
                end_mm);
   draw_scale(page, 30 + int(rows.size()) * kRow + 34, end_mm);
-  const TextStyle small = style(15);
+  const TextStyle small = text_style(15, kLabelInk);
   draw_centered(page, fit_text(caption, small, page.width_px - 2.0 * kMargin), 0.5 * page.width_px,
                 page.height_px - 24, small);
   return page;

@@ -18,13 +18,6 @@ constexpr LinearColor kSheet{1, 1, 1, 1}, kEdge{0.35F, 0.36F, 0.4F, 1},
     kTape{0.82F, 0.83F, 0.85F, 1};
 constexpr LinearColor kInk{0.55F, 0.02F, 0.02F, 1};
 
-TextStyle style(double size_px, const LinearColor& color) {
-  TextStyle result;
-  result.size_px = size_px;
-  result.color = color;
-  return result;
-}
-
 // A line so many pixels wide, its edges softened.
 void draw_stroke(Image& page, const Vec2& from, const Vec2& to, double width_px) {
   const Vec2 way = to - from;
@@ -93,7 +86,7 @@ Image draw_arrow_map(double width_mm, double height_mm, double margin_mm,
   const int page_width = std::max(width + 2 * kMargin_px, 560);
   Image page =
       blank_page(page_width, kHeader_px + height + int(kLine_px * (double(lines.size()) + 6.5)));
-  draw_centered(page, title, 0.5 * page_width, 40, style(22, kTitleInk));
+  draw_centered(page, title, 0.5 * page_width, 40, text_style(22, kTitleInk));
   const int left = (page_width - width) / 2;
   fill(page, left - 1, kHeader_px - 1, left + width + 1, kHeader_px + height + 1, kEdge);
   fill(page, left, kHeader_px, left + width, kHeader_px + height, kTape);
@@ -114,14 +107,15 @@ Image draw_arrow_map(double width_mm, double height_mm, double margin_mm,
     const double length = shown * longer * scale;
     const double end = 0.5 * page_width - 60;
     draw_stroke(page, {end - length, y - 5}, {end, y - 5}, 2);
-    draw_centered(page, fmt::format("{:g} mm", shown), 0.5 * page_width, y, style(16, kLabelInk));
+    draw_centered(page, fmt::format("{:g} mm", shown), 0.5 * page_width, y,
+                  text_style(16, kLabelInk));
     y += kLine_px;
     draw_centered(page, fmt::format("arrows are drawn {:.2g} times as long as true", longer),
-                  0.5 * page_width, y, style(16, kLabelInk));
+                  0.5 * page_width, y, text_style(16, kLabelInk));
     y += kLine_px;
   }
   for (const std::string& line : lines) {
-    draw_centered(page, line, 0.5 * page_width, y, style(16, kLabelInk));
+    draw_centered(page, line, 0.5 * page_width, y, text_style(16, kLabelInk));
     y += kLine_px;
   }
   return page;

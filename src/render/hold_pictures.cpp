@@ -2,13 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/run_scope.h"
 #include "render/canvas.h"
+#include "render/lit_view.h"
 #include "render/normals.h"
-#include "render/studio.h"
 #include "render/view.h"
 
 namespace hydrodip {
@@ -65,8 +64,8 @@ Image picture(const HoldPicture& hold, bool from_below, int width_px, int height
   appearance.predicted = appearance.wanted;
   const Vec3 direction = from_below ? Vec3(-Vec3::UnitZ()) : Vec3(0.25, -0.22, 1).normalized();
   const Camera camera = frame_object(mesh, direction, double(width_px) / height_px, 0.82);
-  const Studio studio{mesh, surface, normals};
-  return LitView(studio, camera, width_px, height_px, context).show(appearance).wanted;
+  const LitObject lit{mesh, surface, normals};
+  return LitView(lit, camera, width_px, height_px, context).show(appearance).wanted;
 }
 
 }  // namespace
@@ -79,11 +78,7 @@ Image render_holds(const std::vector<HoldPicture>& holds, int width_px, const Ru
   const int width = layout.width, margin = layout.margin, header = layout.header, row = layout.row,
             cell_width = layout.cell_width, cell_height = layout.cell_height;
   Image page = blank_page(width, std::max(8, int(holds.size()) * row));
-  TextStyle title, line;
-  title.size_px = 25 * unit;
-  title.color = kTitleInk;
-  line.size_px = 19 * unit;
-  line.color = kLabelInk;
+  const TextStyle title = text_style(25 * unit, kTitleInk), line = text_style(19 * unit, kLabelInk);
   const double room = width - 2.0 * margin;
   for (std::size_t i = 0; i < holds.size(); ++i) {
     context.progress(stage, double(i) / double(holds.size()));

@@ -10,7 +10,7 @@
 #include "base/run_scope.h"
 #include "render/canvas.h"
 #include "render/color_ramp.h"
-#include "render/studio.h"
+#include "render/lit_view.h"
 
 namespace hydrodip {
 namespace {
@@ -59,10 +59,7 @@ MapLayout make_layout(const ViewLayout& views, const MapOptions& options) {
 }
 
 TextStyle style(const MapLayout& layout, double size, const LinearColor& color) {
-  TextStyle result;
-  result.size_px = size * layout.unit;
-  result.color = color;
-  return result;
+  return text_style(size * layout.unit, color);
 }
 
 void draw_title(Image& page, const MapLayout& layout, const std::string& text, double center_px) {
@@ -375,9 +372,8 @@ Image render_angle_map(const TriangleMesh& object, const Surface& surface,
     context.progress(activity, 0.1 + 0.45 * i);
     const Camera camera = frame_object(object, directions[std::size_t(i)],
                                        double(layout.cell_width) / height, 0.80, options.standing);
-    const LitView view({object, surface, normals, true, kFlatness}, camera, layout.cell_width,
-                       height, context);
-    const ViewPair pair = view.show(appearance_in(scene, camera, layout));
+    const LitView view({object, surface, normals}, camera, layout.cell_width, height, context);
+    const ViewPair pair = view.show(appearance_in(scene, camera, layout), {normals, kFlatness});
     paste(page, pair.wanted, layout.cell_x(i), layout.header);
   }
   draw_title(page, layout, "dipping angle, from two sides", 0.5 * layout.width);

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "base/run_scope.h"
 #include "render/canvas.h"
-#include "render/studio.h"
+#include "render/lit_view.h"
 #include "render/text.h"
 #include "render/view.h"
 
@@ -27,17 +26,13 @@ struct PageLayout {
 };
 
 void write_labels(Image& page, const PageLayout& layout, const PreviewPair& pair) {
-  TextStyle title;
-  title.size_px = 25 * layout.views.unit;
-  title.color = kTitleInk;
+  const TextStyle title = text_style(25 * layout.views.unit, kTitleInk);
   for (std::size_t i = 0; i < 2; ++i) {
     const double center = layout.views.margin + 0.5 * layout.views.cell_width +
                           double(i) * (layout.views.cell_width + layout.views.gap);
     draw_centered(page, pair.titles[i], center, layout.header - 31 * layout.views.unit, title);
   }
-  TextStyle line;
-  line.size_px = 19 * layout.views.unit;
-  line.color = kLabelInk;
+  const TextStyle line = text_style(19 * layout.views.unit, kLabelInk);
   const double room = layout.views.width - 2.0 * layout.views.margin;
   const std::string shown = fit_text(pair.caption, line, room);
   draw_centered(page, shown, 0.5 * layout.views.width, layout.height - 35 * layout.views.unit,

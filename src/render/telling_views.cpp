@@ -37,13 +37,13 @@ TellingViews::TellingViews(const TriangleMesh& object, const Surface& surface,
       layout_(object, directions_, width_px, standing),
       normals_(corner_normals(object.positions, object.triangles)) {
   const RunScope scope(context);
-  const Studio studio{object, surface, normals_};
+  const LitObject lit{object, surface, normals_};
   for (std::size_t i = 0; i < 2; ++i) {
     const int height = layout_.cell_height[i];
     cameras_[i] =
         frame_object(object, directions_[i], double(layout_.cell_width) / height, kFill, standing);
     views_[i] =
-        std::make_unique<const LitView>(studio, cameras_[i], layout_.cell_width, height, context);
+        std::make_unique<const LitView>(lit, cameras_[i], layout_.cell_width, height, context);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/context.h"
-#include "render/studio.h"
+#include "render/lit_view.h"
 
 namespace hydrodip {
 

@@ -13,6 +13,14 @@ struct TextStyle {
   LinearColor color{0, 0, 0, 1};
 };
 
+// Of the usual weight.
+inline TextStyle text_style(double size_px, const LinearColor& color) {
+  TextStyle style;
+  style.size_px = size_px;
+  style.color = color;
+  return style;
+}
+
 // Width of a line of text in pixels. Text is UTF-8; characters without a glyph show as a box.
 double text_width_px(const std::string& text, const TextStyle& style);
 

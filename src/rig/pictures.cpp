@@ -6,7 +6,7 @@
 #include "object/append.h"
 #include "object/bake.h"
 #include "object/surface.h"
-#include "render/studio.h"
+#include "render/lit_view.h"
 #include "report/report.h"
 
 namespace hydrodip {
@@ -63,9 +63,9 @@ Image render(const Object& object, const View& view, int width_px, int height_px
     return color_at(object, point, {1, 1, 1, 1});
   };
   appearance.predicted = appearance.wanted;
-  const Studio studio{object, surface, normals};
+  const LitObject lit{object, surface, normals};
   const Camera camera = frame_object(object, view.direction, double(width_px) / height_px, 0.85);
-  return LitView(studio, camera, width_px, height_px, context).show(appearance).wanted;
+  return LitView(lit, camera, width_px, height_px, context).show(appearance).wanted;
 }
 
 }  // namespace

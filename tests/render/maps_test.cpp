@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "laid_film.h"
-#include "render/studio.h"
+#include "render/lit_view.h"
 
 namespace hydrodip {
 namespace {
@@ -76,8 +76,8 @@ void for_ball_pixels(const Scene& scene, const Camera& camera, const Image& imag
 ViewPair render(const Scene& scene, const Camera& camera) {
   const Appearance appearance = map_appearance(scene.maps, camera, 2);
   RunContext context;
-  const Studio studio{scene.ball, scene.surface, scene.normals, false, 0.6};
-  return LitView(studio, camera, 200, 200, context).show(appearance);
+  return LitView({scene.ball, scene.surface, scene.normals}, camera, 200, 200, context)
+      .show(appearance, {scene.normals, 0.6, false});
 }
 
 // Although facets are tilted by more than a degree; mesh normals are least true where three cube
