@@ -1,22 +1,9 @@
 #include "session/node_store.h"
 
-#include <bit>
 #include <chrono>
 #include <utility>
 
 namespace hydrodip {
-
-ContentKey& ContentKey::add(double value) {
-  const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // -0 is 0
-  for (int byte = 0; byte < 8; ++byte) text_ += char((bits >> (8 * byte)) & 0xff);
-  return *this;
-}
-
-ContentKey& ContentKey::add(const std::string& text) {
-  add(double(text.size()));
-  text_ += text;
-  return *this;
-}
 
 std::size_t NodeStore::bytes() const {
   const std::lock_guard lock(mutex_);
@@ -28,14 +15,24 @@ std::size_t NodeStore::computed() const {
   return computed_;
 }
 
+std::shared_ptr<const void> NodeStore::find(const std::string& key) {
+  const std::lock_guard lock(mutex_);
+  return found(key);
+}
+
+// Under the lock.
+std::shared_ptr<const void> NodeStore::found(const std::string& key) {
+  const auto place = by_key_.find(key);
+  if (place == by_key_.end()) return nullptr;
+  nodes_.splice(nodes_.begin(), nodes_, place->second);
+  return place->second->value;
+}
+
 std::shared_ptr<const void> NodeStore::begin(const std::string& key, const RunContext& context) {
   constexpr auto kLook = std::chrono::milliseconds(5);
   std::unique_lock lock(mutex_);
   while (true) {
-    if (const auto found = by_key_.find(key); found != by_key_.end()) {
-      nodes_.splice(nodes_.begin(), nodes_, found->second);
-      return found->second->value;
-    }
+    if (const auto known = found(key)) return known;
     if (computing_.insert(key).second) return nullptr;
     context.check_cancelled();
     ended_.wait_for(lock, kLook);

@@ -7,30 +7,12 @@
 #include <mutex>
 #include <set>
 #include <string>
-#include <type_traits>
 #include <unordered_map>
 
 #include "base/context.h"
+#include "session/content_key.h"
 
 namespace hydrodip {
-
-// What a value depends on, as text that differs where anything in it does.
-class ContentKey {
- public:
-  explicit ContentKey(const std::string& kind) { add(kind); }
-
-  ContentKey& add(double value);
-  ContentKey& add(const std::string& text);
-  template <class Enum>
-  requires std::is_enum_v<Enum> || std::is_integral_v<Enum> ContentKey& add(Enum value) {
-    return add(double(value));
-  }
-
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
 
 // Keeps values up to so many bytes in all; those asked for longest ago go first. A value that is
 // still held by somebody lives on for them. For any number of threads: who asks for what another
@@ -51,6 +33,12 @@ class NodeStore {
     auto value = std::make_shared<const Value>(make());
     keep(key.text(), value, bytes(*value));
     return value;
+  }
+
+  // The value of the key; null if it is not known or is only being computed.
+  template <class Value>
+  std::shared_ptr<const Value> known(const ContentKey& key) {
+    return std::static_pointer_cast<const Value>(find(key.text()));
   }
 
   std::size_t bytes() const;
@@ -76,6 +64,8 @@ class NodeStore {
     const std::string key_;
   };
 
+  std::shared_ptr<const void> find(const std::string& key);
+  std::shared_ptr<const void> found(const std::string& key);
   // The known value; or null, and the caller is to compute it.
   std::shared_ptr<const void> begin(const std::string& key, const RunContext& context);
   void keep(const std::string& key, std::shared_ptr<const void> value, std::size_t bytes);

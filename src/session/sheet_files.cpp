@@ -1,6 +1,6 @@
 #include "session/sheet_files.h"
+#include "ink/discoloration.h"
 
-#include <filesystem>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -14,7 +14,6 @@ namespace hydrodip {
 void write_sheet_files(OutputFolder& folder, InkImage inks, const PixelSet& printed,
                        const Printer& printer, const SheetOptions& options,
                        const RunContext& context, const std::string& inside) {
-  RunContext job = context;
   const std::string activity = "writing the sheet";
   const ColorModel& model = *printer.model;
   const bool pdf_of_inks = printer.options.color == PrintColor::kCmyk;
@@ -22,7 +21,7 @@ void write_sheet_files(OutputFolder& folder, InkImage inks, const PixelSet& prin
   const auto png = folder.path(inside + "print.png"), tiff = folder.path(inside + "print.tif"),
              pdf = folder.path(inside + "print.pdf");
   const auto write_pdf = [&](const Picture& picture, const std::vector<std::uint8_t>& profile) {
-    write_print_pdf(pdf, picture, profile, options, job);
+    write_print_pdf(pdf, picture, profile, options, context);
   };
 
   std::vector<std::function<void()>> of_inks{

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/output_folder.h"
-#include "ink/discoloration.h"
+#include "image/pixel_set.h"
 #include "ink/printer.h"
 #include "sheet/sheet.h"
 

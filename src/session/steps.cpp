@@ -1,5 +1,4 @@
 // The steps of the public library, each in terms of the rooms that do the work.
-#include <cmath>
 #include <utility>
 
 #include "artwork/artwork.h"
@@ -49,8 +48,7 @@ void require_sound(const Object& object) {
 Model load(const std::filesystem::path& file, const LoadOptions& options,
            const RunContext& context) {
   const RunScope scope(context);
-  RunContext job = context;
-  LoadedObject loaded = load_object(file, options, job);
+  LoadedObject loaded = load_object(file, options, context);
   return {std::make_shared<const Object>(std::move(loaded.object)), loaded.health,
           std::move(loaded.units), std::move(loaded.files)};
 }
@@ -89,19 +87,17 @@ PosedObject pose(const Model& model, const PoseOptions& options) {
 DippedObject simulate(const PosedObject& posed, const SimulationOptions& options,
                       const RunContext& context, const DipObserver& observe) {
   const RunScope scope(context);
-  RunContext job = context;
   Timings timings;
   return dip_object(posed, std::make_shared<const FilmMesh>(make_film_mesh(options.film)),
                     make_trajectory(options.trajectory, posed.mesh().positions), options.dip,
-                    timings, job, observe, {.options = options.air, .found = {}});
+                    timings, context, observe, {.options = options.air, .found = {}});
 }
 
 Designed design(const PosedObject& posed, const Paint& paint, const DesignOptions& options,
                 const Printer& printer, const RunContext& context, const Allotment& allotment) {
   const RunScope scope(context);
-  RunContext job = context;
   Timings timings;
-  return design({posed, paint, allotment, *printer.model, options}, timings, job);
+  return design({posed, paint, allotment, *printer.model, options}, timings, context);
 }
 
 Coat coat_of(const Designed& made, bool is_first, const ColorModel& model) {
@@ -125,7 +121,6 @@ Finish finish(std::shared_ptr<const Paint> paint, const std::vector<Designed>& d
 Image render(const Finish& finish, int width_px, const RunContext& context) {
   if (finish.coats().empty()) throw InputError("a finish without coats has nothing to show");
   const RunScope scope(context);
-  RunContext job = context;
   const DippedObject& dipped = finish.coats().front().dipped;
   PreviewOptions options;
   options.width_px = width_px;
@@ -133,7 +128,7 @@ Image render(const Finish& finish, int width_px, const RunContext& context) {
   std::vector<PreviewPair> pairs(1);
   pairs[0].shown = appearance_of(finish);
   return render_previews(dipped.posed.mesh(), dipped.posed.surface(), *dipped.film, pairs, options,
-                         job)
+                         context)
       .front();
 }
 

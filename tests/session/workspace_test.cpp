@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <latch>
 #include <limits>
+#include <mutex>
 #include <thread>
 
 #include "base/error.h"
@@ -193,6 +195,11 @@ TEST_F(WorkspaceTest, ANewerRequestCancelsTheOlder) {
   project_.design.film.elements = 40000;
   project_.design.dip.step_mm = 0.01;
   const RunContext older = workspace_.newest();
+  std::latch dipping(1);
+  std::once_flag told;
+  older.on_progress([&](const std::string& activity, double) {
+    if (activity == "dipping") std::call_once(told, [&] { dipping.count_down(); });
+  });
   std::atomic<bool> cancelled = false;
   std::thread request([&] {
     try {
@@ -201,7 +208,7 @@ TEST_F(WorkspaceTest, ANewerRequestCancelsTheOlder) {
       cancelled = true;
     }
   });
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  dipping.wait();
   const RunContext newer = workspace_.newest();
   request.join();
   EXPECT_TRUE(cancelled);
