@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/run_scope.h"
@@ -73,113 +75,165 @@ double distance_to(const SurfaceNodes& nodes, const Target& node, double reach,
   return least;
 }
 
-}  // namespace
+using NodePairs = std::vector<std::array<std::int32_t, 2>>;
 
-SharedSurface::SharedSurface(const SeamTask& task, const RunContext& context) {
-  const RunScope scope(context);
-  const std::string stage = "laying the seams";
-  context.progress(stage, 0);
-  auto data = std::make_shared<Data>();
-  data->nodes = task.nodes;
-  data->worth = task.worth;
-  data->overlap = task.overlap_mm / task.scale;
+// Per node, and of films per dip and node.
+struct NodeMeasures {
+  std::vector<Vec3> color;                   // CIELAB
+  std::vector<double> exposed;               // share of the half space above
+  std::vector<std::vector<float>> depth_in;  // from the film's border: 0 to 1 at kBorder_mm
+  std::vector<std::vector<float>> inside;    // as SharedSurface::Data::inside
+};
+
+double far_enough(const SurfaceNodes& nodes) {
+  Box3 box;
+  for (const Target& node : nodes.nodes()) box.add(node.position);
+  return box.empty() ? 1.0 : 2 * box.size().norm();
+}
+
+NodeMeasures measure_nodes(const SeamTask& task) {
   const SurfaceNodes& nodes = *task.nodes;
   const std::size_t count = nodes.nodes().size(), dips = task.worth.size();
-  const double spacing_mm = task.scale * nodes.spacing();
   const double border = kBorder_mm / task.scale, fade_in = kFadeIn_mm / task.scale;
-  const double extent = [&] {
-    Box3 box;
-    for (const Target& node : nodes.nodes()) box.add(node.position);
-    return box.empty() ? 1.0 : 2 * box.size().norm();
-  }();
-
-  const std::vector<std::array<std::int32_t, 2>> pairs = nodes.neighbors();
-  std::vector<Vec3> color(count);
-  std::vector<double> seen(count), hollow(count, 0), detail(count, 0), degree(count, 0);
-  const Vec3 bare = to_cielab(task.paint.base());
-  data->inside.assign(dips, std::vector<float>(count, 0));
-  std::vector<std::vector<float>> depth_in(dips, std::vector<float>(count, 0));
+  const double extent = far_enough(nodes);
+  const std::vector<std::vector<float>> none(dips, std::vector<float>(count, 0));
+  NodeMeasures all{std::vector<Vec3>(count), std::vector<double>(count), none, none};
   parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
     std::vector<std::int32_t> close;
     for (std::size_t i = begin; i < end; ++i) {
       check_cancelled();
       const Target& node = nodes.nodes()[i];
-      color[i] = to_cielab(task.paint.color_at(node.point));
-      seen[i] = exposure(task.surface, node, nodes.spacing(), extent);
+      all.color[i] = to_cielab(task.paint.color_at(node.point));
+      all.exposed[i] = exposure(task.surface, node, nodes.spacing(), extent);
       for (std::size_t k = 0; k < dips; ++k) {
         if (!(task.worth[k][i] > 0)) continue;
         const double to_border = distance_to(
             nodes, node, border, close, [&](std::size_t j) { return !(task.worth[k][j] > 0); });
-        depth_in[k][i] = float(to_border / border);
-        data->inside[k][i] = float(std::clamp(to_border / fade_in, 0.05, 1.0));
+        all.depth_in[k][i] = float(to_border / border);
+        all.inside[k][i] = float(std::clamp(to_border / fade_in, 0.05, 1.0));
       }
     }
   });
-  context.progress(stage, 0.3);
+  return all;
+}
+
+// How much a seam through each node would show.
+std::vector<double> how_seen(const SeamTask& task, const NodeMeasures& of, const NodePairs& pairs) {
+  const SurfaceNodes& nodes = *task.nodes;
+  const std::size_t count = nodes.nodes().size();
+  std::vector<double> hollow(count, 0), detail(count, 0), degree(count, 0);
   for (const auto& [a, b] : pairs) {
     const Target &p = nodes.nodes()[std::size_t(a)], &q = nodes.nodes()[std::size_t(b)];
     const Vec3 way = (q.position - p.position).normalized();
     hollow[std::size_t(a)] += way.dot(p.normal);
     hollow[std::size_t(b)] -= way.dot(q.normal);
-    const double difference = (color[std::size_t(a)] - color[std::size_t(b)]).norm();
+    const double difference = (of.color[std::size_t(a)] - of.color[std::size_t(b)]).norm();
     for (const std::int32_t v : {a, b}) {
       detail[std::size_t(v)] = std::max(detail[std::size_t(v)], difference);
       degree[std::size_t(v)] += 1;
     }
   }
+  const Vec3 bare = to_cielab(task.paint.base());
   const bool painted = task.paint.says_anything();
+  std::vector<double> seen(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const double ink = painted ? std::min(1.0, (color[i] - bare).norm() / kFullColor) : 1;
+    const double ink = painted ? std::min(1.0, (of.color[i] - bare).norm() / kFullColor) : 1;
     const double fine = std::min(1.0, detail[i] / kFullDetail);
     const double hollowness = degree[i] > 0 ? 2 * hollow[i] / degree[i] : 0;
-    seen[i] = std::max(0.1, seen[i]) * (kAlwaysSeen + kInkSeen * ink + kDetailSeen * fine) *
+    seen[i] = std::max(0.1, of.exposed[i]) * (kAlwaysSeen + kInkSeen * ink + kDetailSeen * fine) *
               std::clamp(1 - hollowness, kHollowSeen, 1.0);
   }
+  return seen;
+}
 
-  std::vector<std::int32_t> costs(count * dips);
-  std::vector<std::uint8_t> start(count, 0);
+// What each node costs as each dip's part, and the dip that is cheapest.
+struct DipCosts {
+  std::vector<std::int32_t> costs;  // node by node
+  std::vector<std::uint8_t> cheapest;
+};
+
+DipCosts dip_costs(const SeamTask& task, const NodeMeasures& of) {
+  const std::size_t count = task.nodes->nodes().size(), dips = task.worth.size();
+  DipCosts all{std::vector<std::int32_t>(count * dips), std::vector<std::uint8_t>(count, 0)};
   for (std::size_t i = 0; i < count; ++i) {
-    const double area_mm2 = task.scale * task.scale * nodes.nodes()[i].area;
-    bool any = false;
-    for (std::size_t k = 0; k < dips; ++k) any = any || task.worth[k][i] > 0;
+    const double area_mm2 = task.scale * task.scale * task.nodes->nodes()[i].area;
+    const bool any = std::any_of(task.worth.begin(), task.worth.end(),
+                                 [&](const std::vector<float>& worth) { return worth[i] > 0; });
+    std::int32_t* costs = all.costs.data() + i * dips;
     for (std::size_t k = 0; k < dips; ++k) {
       double cost = any ? kLeftBare : 0;
       if (task.worth[k][i] > 0)
-        cost =
-            kPoorFilm * (1 - double(task.worth[k][i])) + kPoorBorder * (1 - double(depth_in[k][i]));
-      costs[i * dips + k] = std::int32_t(std::min(1e9, std::round(kUnit * area_mm2 * cost)));
-      if (costs[i * dips + k] < costs[i * dips + start[i]]) start[i] = std::uint8_t(k);
+        cost = kPoorFilm * (1 - double(task.worth[k][i])) +
+               kPoorBorder * (1 - double(of.depth_in[k][i]));
+      costs[k] = std::int32_t(std::min(1e9, std::round(kUnit * area_mm2 * cost)));
+      if (costs[k] < costs[all.cheapest[i]]) all.cheapest[i] = std::uint8_t(k);
     }
   }
+  return all;
+}
+
+std::vector<LabelEdge> seam_costs(const NodePairs& pairs, const std::vector<double>& seen,
+                                  double spacing_mm) {
   std::vector<LabelEdge> edges;
   edges.reserve(pairs.size());
   for (const auto& [a, b] : pairs)
     edges.push_back({a, b,
                      std::int32_t(std::round(kUnit * spacing_mm / kPairsAcross * 0.5 *
                                              (seen[std::size_t(a)] + seen[std::size_t(b)])))});
-  context.progress(stage, 0.4);
-  data->dip_of = best_labels(int(dips), costs, edges, std::move(start));
-  context.progress(stage, 0.9);
+  return edges;
+}
 
-  std::size_t cut = 0;
-  for (const LabelEdge& edge : edges)
-    cut += data->dip_of[std::size_t(edge.a)] != data->dip_of[std::size_t(edge.b)] ? 1 : 0;
-  data->seam_mm = double(cut) * spacing_mm / kPairsAcross;
-  data->at_seam.assign(count, 0);
-  const double reach = data->overlap + 2 * nodes.spacing();
-  parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
+double length_mm(const std::vector<LabelEdge>& edges, const std::vector<std::uint8_t>& dip_of,
+                 double spacing_mm) {
+  const auto cut = std::count_if(edges.begin(), edges.end(), [&](const LabelEdge& edge) {
+    return dip_of[std::size_t(edge.a)] != dip_of[std::size_t(edge.b)];
+  });
+  return double(cut) * spacing_mm / kPairsAcross;
+}
+
+// Nodes that have one of another dip within reach.
+std::vector<std::uint8_t> near_seams(const SurfaceNodes& nodes,
+                                     const std::vector<std::uint8_t>& dip_of, double reach) {
+  std::vector<std::uint8_t> at_seam(dip_of.size(), 0);
+  parallel_for(dip_of.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<std::int32_t> close;
     for (std::size_t i = begin; i < end; ++i) {
       check_cancelled();
       const Target& node = nodes.nodes()[i];
       nodes.near(node.position, node.normal, reach, close);
-      data->at_seam[i] = std::any_of(close.begin(), close.end(), [&](std::int32_t j) {
-        return data->dip_of[std::size_t(j)] != data->dip_of[i];
-      });
+      at_seam[i] = std::any_of(close.begin(), close.end(),
+                               [&](std::int32_t j) { return dip_of[std::size_t(j)] != dip_of[i]; });
     }
   });
+  return at_seam;
+}
+
+}  // namespace
+
+SharedSurface::SharedSurface(const SeamTask& task, const RunContext& context) {
+  const RunScope scope(context);
+  const std::string activity = "laying the seams";
+  context.progress(activity, 0);
+  NodeMeasures measured = measure_nodes(task);
+  context.progress(activity, 0.3);
+  const double spacing_mm = task.scale * task.nodes->spacing();
+  const NodePairs pairs = task.nodes->neighbors();
+  const std::vector<LabelEdge> edges =
+      seam_costs(pairs, how_seen(task, measured, pairs), spacing_mm);
+  DipCosts costs = dip_costs(task, measured);
+  context.progress(activity, 0.4);
+
+  auto data = std::make_shared<Data>();
+  data->nodes = task.nodes;
+  data->worth = task.worth;
+  data->overlap = task.overlap_mm / task.scale;
+  data->inside = std::move(measured.inside);
+  data->dip_of = best_labels(int(task.worth.size()), costs.costs, edges, std::move(costs.cheapest));
+  context.progress(activity, 0.9);
+  data->seam_mm = length_mm(edges, data->dip_of, spacing_mm);
+  data->at_seam = near_seams(*task.nodes, data->dip_of, data->overlap + 2 * task.nodes->spacing());
   data_ = std::move(data);
-  context.progress(stage, 1);
+  context.progress(activity, 1);
 }
 
 std::vector<float> SharedSurface::shares_at(const Vec3& position, const Vec3& normal) const {
