@@ -65,19 +65,14 @@ Finding colors_point(const Report& report, bool has_picture) {
   return point;
 }
 
-std::string row(const std::string& label, const std::string& value) {
-  return fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td></tr>\n",
-                     html_escaped(label), html_escaped(value));
-}
-
 std::string facts(const Report& report) {
   std::string rows;
   for (const ReportFigure& f : report.figures)
     if (const auto* size = std::get_if<std::array<double, 3>>(&f.value);
         size && f.key == "model_size_mm")
-      rows += row("Size",
-                  fmt::format("{:.0f} x {:.0f} x {:.0f} mm", (*size)[0], (*size)[1], (*size)[2]));
-  if (!report.dips.empty()) rows += row("Coats of colour", std::to_string(report.dips.size()));
+      rows += html_row(
+          "Size", fmt::format("{:.0f} x {:.0f} x {:.0f} mm", (*size)[0], (*size)[1], (*size)[2]));
+  if (!report.dips.empty()) rows += html_row("Coats of colour", std::to_string(report.dips.size()));
   if (rows.empty()) return "";
   return "<section>\n<h2>The piece</h2>\n<div class=\"card\"><table>\n" + rows +
          "</table></div>\n</section>\n";
@@ -92,13 +87,14 @@ std::string title_of(const Report& report) {
 
 }  // namespace
 
-std::string customer_headline(const Report& report, Concern concern) {
+std::string customer_headline(const Report& report, Concern concern, bool has_picture) {
   const std::string differs = concern == Concern::kCare ? "; a few things differ" : "";
   const bool cannot = concern == Concern::kStop;
   if (report.draft)
     return std::string("Draft, not final: ") +
            (cannot ? "it could not be made well like this" : "a first estimate") + differs;
-  return cannot ? "It cannot be made well like this" : "This is how it will look" + differs;
+  if (cannot) return "It cannot be made well like this";
+  return (has_picture ? "This is how it will look" : "It can be made") + differs;
 }
 
 std::string customer_verdict(const Report& report) {
@@ -158,7 +154,8 @@ std::string customer_html(const Report& report, const ReportPictures& pictures) 
   html += "<header>\n" + html_logo(pictures) + "<h1>" + html_escaped(title_of(report)) +
           "</h1>\n</header>\n";
   if (report.coverage)
-    html += html_verdict(concern, customer_headline(report, concern), customer_verdict(report));
+    html += html_verdict(concern, customer_headline(report, concern, has_picture),
+                         customer_verdict(report));
   html += html_preview(pictures);
   html += html_cards(points);
   html += facts(report);

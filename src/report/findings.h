@@ -44,7 +44,7 @@ std::vector<Finding> customer_points(const Report& report, bool has_picture);
 // And in a sentence; of a report that has its coverage.
 std::string customer_verdict(const Report& report);
 // "This is how it will look", ...
-std::string customer_headline(const Report& report, Concern concern);
+std::string customer_headline(const Report& report, Concern concern, bool has_picture);
 
 // "none", "care", "stop"
 std::string concern_name(Concern concern);

@@ -79,6 +79,11 @@ std::string html_verdict(Concern concern, const std::string& headline,
       concern_name(concern), headline, html_escaped(sentence));
 }
 
+std::string html_row(const std::string& label, const std::string& value) {
+  return fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td></tr>\n",
+                     html_escaped(label), html_escaped(value));
+}
+
 std::string html_cards(const std::vector<Finding>& findings) {
   if (findings.empty()) return "";
   std::string html = "<ul class=\"findings\">\n";

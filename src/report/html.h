@@ -26,6 +26,7 @@ std::string html_logo(const ReportPictures& pictures);
 // The still picture; the viewer (viewer/main.js) builds itself in there and takes its place.
 std::string html_preview(const ReportPictures& pictures);
 std::string html_verdict(Concern concern, const std::string& headline, const std::string& sentence);
+std::string html_row(const std::string& label, const std::string& value);  // of a table
 std::string html_cards(const std::vector<Finding>& findings);
 
 // report_html() for the person who ordered the piece.

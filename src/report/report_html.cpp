@@ -185,11 +185,6 @@ std::string dips(const Report& report, const ReportPictures& pictures) {
                     "</section>\n");
 }
 
-std::string row(const std::string& label, const std::string& value) {
-  return fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td></tr>\n",
-                     html_escaped(label), html_escaped(value));
-}
-
 std::string outputs(const Report& report) {
   std::string rows;
   for (const ReportOutput& output : report.outputs) {
@@ -205,17 +200,17 @@ std::string coverage(const Report& report) {
   const auto area = [](double mm2) { return with_unit(shown(mm2), "mm2"); };
   return section(
       "Coverage and stretch",
-      row("Surface of the object", area(c.object_mm2)) +
-          row("of it facing down, within the dip", area(c.downward_mm2)) +
-          row("Covered by film", area(c.covered_mm2)) +
-          row("of it facing down", area(c.covered_downward_mm2)) +
-          row("May tear, or lie elsewhere", area(c.doubtful_mm2)) +
-          row("Flat film that lies on the object", area(c.film_on_object_mm2)) +
-          row("Flat film that tears", area(c.torn_mm2)) +
-          row("Stretch, mean", with_unit(fmt::format("{:.3f}", c.stretch_mean), "times")) +
-          row("Stretch, largest", with_unit(fmt::format("{:.3f}", c.stretch_max), "times")) +
-          row("Area, mean", with_unit(fmt::format("{:.3f}", c.area_ratio_mean), "times")) +
-          row("Area, largest", with_unit(fmt::format("{:.3f}", c.area_ratio_max), "times")));
+      html_row("Surface of the object", area(c.object_mm2)) +
+          html_row("of it facing down, within the dip", area(c.downward_mm2)) +
+          html_row("Covered by film", area(c.covered_mm2)) +
+          html_row("of it facing down", area(c.covered_downward_mm2)) +
+          html_row("May tear, or lie elsewhere", area(c.doubtful_mm2)) +
+          html_row("Flat film that lies on the object", area(c.film_on_object_mm2)) +
+          html_row("Flat film that tears", area(c.torn_mm2)) +
+          html_row("Stretch, mean", with_unit(fmt::format("{:.3f}", c.stretch_mean), "times")) +
+          html_row("Stretch, largest", with_unit(fmt::format("{:.3f}", c.stretch_max), "times")) +
+          html_row("Area, mean", with_unit(fmt::format("{:.3f}", c.area_ratio_mean), "times")) +
+          html_row("Area, largest", with_unit(fmt::format("{:.3f}", c.area_ratio_max), "times")));
 }
 
 std::string angles(const Report& report) {
@@ -224,32 +219,33 @@ std::string angles(const Report& report) {
   std::string rows;
   for (int bin = 0; bin < DipAngles::kBins; ++bin) {
     const double area = a.area_mm2[std::size_t(bin)];
-    rows +=
-        row(fmt::format("{} to {}\u00b0", 10 * bin, 10 * (bin + 1)), with_unit(shown(area), "mm2"));
+    rows += html_row(fmt::format("{} to {}\u00b0", 10 * bin, 10 * (bin + 1)),
+                     with_unit(shown(area), "mm2"));
   }
   return section(
       "Dipping angle of what faces down",
-      rows + row(fmt::format("Steeper than {:.0f}\u00b0", kDipAngleLimit_deg),
-                 fmt::format("{} ({:.1f}\u00a0%)", with_unit(shown(a.over_limit_mm2), "mm2"),
-                             100 * a.over_limit_share())));
+      rows + html_row(fmt::format("Steeper than {:.0f}\u00b0", kDipAngleLimit_deg),
+                      fmt::format("{} ({:.1f}\u00a0%)", with_unit(shown(a.over_limit_mm2), "mm2"),
+                                  100 * a.over_limit_share())));
 }
 
 std::string mesh(const Report& report) {
   if (!report.mesh) return "";
   const MeshHealth& m = *report.mesh;
   const auto count = [](const std::string& label, long number) {
-    return number == 0 ? "" : row(label, shown(double(number)));
+    return number == 0 ? "" : html_row(label, shown(double(number)));
   };
-  std::string rows =
-      row("Triangles", shown(double(m.triangles))) + row("Vertices", shown(double(m.vertices))) +
-      row("Shells", shown(double(m.shells))) + row("Closed surface", m.closed() ? "yes" : "no") +
-      row("Surface", with_unit(shown(m.area_mm2), "mm2")) +
-      row("Volume", with_unit(shown(m.volume_mm3), "mm3")) +
-      count("Degenerate triangles removed", m.degenerate_removed) +
-      count("Duplicate triangles removed", m.duplicates_removed) +
-      count("Triangles turned over", m.flipped) + count("Holes", m.holes) +
-      count("Edges along holes", m.boundary_edges) +
-      count("Edges with more than two triangles", m.nonmanifold_edges);
+  std::string rows = html_row("Triangles", shown(double(m.triangles))) +
+                     html_row("Vertices", shown(double(m.vertices))) +
+                     html_row("Shells", shown(double(m.shells))) +
+                     html_row("Closed surface", m.closed() ? "yes" : "no") +
+                     html_row("Surface", with_unit(shown(m.area_mm2), "mm2")) +
+                     html_row("Volume", with_unit(shown(m.volume_mm3), "mm3")) +
+                     count("Degenerate triangles removed", m.degenerate_removed) +
+                     count("Duplicate triangles removed", m.duplicates_removed) +
+                     count("Triangles turned over", m.flipped) + count("Holes", m.holes) +
+                     count("Edges along holes", m.boundary_edges) +
+                     count("Edges with more than two triangles", m.nonmanifold_edges);
   for (const std::string& finding : m.findings()) {
     rows += fmt::format("<tr><td colspan=\"2\">{}</td></tr>\n", html_escaped(finding));
   }

@@ -174,6 +174,14 @@ TEST(Report, ACustomersDraftSaysSoAndPointsToNoPictureThatIsNotThere) {
   EXPECT_NE(customers_page(report, {}).find("Draft, not final"), std::string::npos);
 }
 
+TEST(Report, ACustomersPageWithoutAPicturePromisesNoLook) {
+  const Report report = full_report();
+  EXPECT_NE(customers_page(report, {{1}, {}}).find("This is how it will look"), std::string::npos);
+  const std::string without = customers_page(report, {});
+  EXPECT_EQ(without.find("how it will look"), std::string::npos);
+  EXPECT_NE(without.find("It can be made"), std::string::npos);
+}
+
 // What a page does not show it does not name.
 TEST(Report, FindingsSayWhereOnThePageTheyAreSeen) {
   Report report = bad_report();
