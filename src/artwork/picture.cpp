@@ -31,16 +31,6 @@ double share_within(const Vec2& size_px, const Drawing::Limits& limits) {
                    std::sqrt(limits.pixels / std::max(1.0, size_px.prod()))});
 }
 
-// Sixteen bits would hold it too, but sums of four are floats anyway.
-void add_texel(const std::uint8_t* pixel, float weight, const std::array<float, 256>& decode,
-               LinearColor& sum) {
-  const float alpha = weight * float(pixel[3]) * (1.0F / 255.0F);
-  sum.r += alpha * decode[pixel[0]];
-  sum.g += alpha * decode[pixel[1]];
-  sum.b += alpha * decode[pixel[2]];
-  sum.a += alpha;
-}
-
 // A position in a picture's width or height, counted from 0 to 1, as the repetition shows it.
 double repeated(double t, Repeat repeat) {
   if (repeat == Repeat::kTile) return t - std::floor(t);
@@ -79,10 +69,10 @@ LinearColor sampled(const Source& image, int width_px, int height_px, const Pict
   const Pair y = pair_at(repeated(t.y(), repeat), height_px, repeat);
   const std::array<float, 256>& decode = srgb8_table();
   LinearColor sum{0, 0, 0, 0};
-  add_texel(image.pixel(x.first, y.first), (1 - x.weight) * (1 - y.weight), decode, sum);
-  add_texel(image.pixel(x.second, y.first), x.weight * (1 - y.weight), decode, sum);
-  add_texel(image.pixel(x.first, y.second), (1 - x.weight) * y.weight, decode, sum);
-  add_texel(image.pixel(x.second, y.second), x.weight * y.weight, decode, sum);
+  add_pixel(image.pixel(x.first, y.first), (1 - x.weight) * (1 - y.weight), decode, sum);
+  add_pixel(image.pixel(x.second, y.first), x.weight * (1 - y.weight), decode, sum);
+  add_pixel(image.pixel(x.first, y.second), (1 - x.weight) * y.weight, decode, sum);
+  add_pixel(image.pixel(x.second, y.second), x.weight * y.weight, decode, sum);
   return sum;
 }
 

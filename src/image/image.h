@@ -24,6 +24,16 @@ float linear_to_srgb(float linear);
 float srgb8_to_linear(std::uint8_t encoded);
 // That table, for loops that decode many pixels.
 const std::array<float, 256>& srgb8_table();
+// Adds a pixel's share of a mean in linear light; premultiplied, so that a colour hidden under
+// transparent pixels does not show. `decode` is srgb8_table().
+inline void add_pixel(const std::uint8_t* pixel, float weight, const std::array<float, 256>& decode,
+                      LinearColor& sum) {
+  const float alpha = weight * float(pixel[3]) * (1.0F / 255.0F);
+  sum.r += alpha * decode[pixel[0]];
+  sum.g += alpha * decode[pixel[1]];
+  sum.b += alpha * decode[pixel[2]];
+  sum.a += alpha;
+}
 // Rounds to the nearest byte; clamps.
 std::uint8_t linear_to_srgb8(float linear);
 

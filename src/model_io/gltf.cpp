@@ -150,8 +150,7 @@ class GltfReader {
     int channel = 0;
     if (base) {
       std::array<float, 4> factor{1, 1, 1, 1};
-      material.states_color =
-          data_.numbers(*base, old ? "diffuseFactor" : "baseColorFactor", factor);
+      data_.numbers(*base, old ? "diffuseFactor" : "baseColorFactor", factor);
       material.base_color = {unit(factor[0]), unit(factor[1]), unit(factor[2]), unit(factor[3])};
       if (material.alpha == Alpha::kOpaque) material.base_color.a = 1;
       material.texture_tint = material.base_color;

@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "base/run_scope.h"
 #include "base/unicode.h"
 #include "image/files.h"
@@ -240,7 +239,7 @@ class Materials {
     if (source) {
       material.name = source->name;
       material.base_color = source->base_color;
-      material.states_color = source->states_color;
+      material.color_is_default = source->color_is_default;
     }
     if (with_picture && only_texture_) {
       material.texture = 0;

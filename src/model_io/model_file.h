@@ -34,7 +34,7 @@ struct FilePicture {
 struct FileMaterial {
   std::string name;
   LinearColor base_color{1, 1, 1, 1};
-  bool states_color = false;             // the file gives a colour, not just a default
+  bool color_is_default = false;         // base_color is the format's, not the file's
   LinearColor texture_tint{1, 1, 1, 1};  // takes base_color's place where the picture is shown
   int picture = -1;                      // into ModelFile::pictures
   Alpha alpha = Alpha::kBlend;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 
 #include "model_io/text.h"
@@ -151,7 +150,7 @@ MtlMaterial meaning_of(const MtlLines& lines, Oddities& odd) {
   MtlMaterial out;
   FileMaterial& material = out.material;
   material.name = lines.name;
-  material.states_color = lines.has_kd;
+  material.color_is_default = !lines.has_kd;
   material.base_color =
       linear_from_srgb(lines.kd[0], lines.kd[1], lines.kd[2], alpha_of(lines, odd));
   out.picture = lines.picture;

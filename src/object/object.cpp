@@ -54,17 +54,6 @@ TexelPair texels(float coordinate, int size, Wrap wrap) {
   return pair;
 }
 
-// Adds a texel, premultiplied so that the colour hidden under transparent texels does not show.
-void add_texel(const Image& image, int x, int y, float weight, const std::array<float, 256>& decode,
-               LinearColor& sum) {
-  const std::uint8_t* pixel = image.pixel(x, y);
-  const float alpha = weight * float(pixel[3]) * (1.0f / 255.0f);
-  sum.r += alpha * decode[pixel[0]];
-  sum.g += alpha * decode[pixel[1]];
-  sum.b += alpha * decode[pixel[2]];
-  sum.a += alpha;
-}
-
 // Premultiplied, in linear light.
 LinearColor sample(const Image& image, const Material& material, const Eigen::Vector2f& uv) {
   const std::array<float, 256>& decode = srgb8_table();
@@ -74,10 +63,10 @@ LinearColor sample(const Image& image, const Material& material, const Eigen::Ve
   const int low = image.height_px - 1 - row.first;
   const int high = image.height_px - 1 - row.second;
   LinearColor sum{0, 0, 0, 0};
-  add_texel(image, x.first, low, (1 - x.weight) * (1 - row.weight), decode, sum);
-  add_texel(image, x.second, low, x.weight * (1 - row.weight), decode, sum);
-  add_texel(image, x.first, high, (1 - x.weight) * row.weight, decode, sum);
-  add_texel(image, x.second, high, x.weight * row.weight, decode, sum);
+  add_pixel(image.pixel(x.first, low), (1 - x.weight) * (1 - row.weight), decode, sum);
+  add_pixel(image.pixel(x.second, low), x.weight * (1 - row.weight), decode, sum);
+  add_pixel(image.pixel(x.first, high), (1 - x.weight) * row.weight, decode, sum);
+  add_pixel(image.pixel(x.second, high), x.weight * row.weight, decode, sum);
   return sum;
 }
 
@@ -129,7 +118,7 @@ bool Object::has_appearance() const {
   const bool white = color->r >= 1 && color->g >= 1 && color->b >= 1;
   if (white || !(color->a > 0)) return false;
   return std::any_of(material_of.begin(), material_of.end(),
-                     [&](int index) { return materials[std::size_t(index)].states_color; });
+                     [&](int index) { return !materials[std::size_t(index)].color_is_default; });
 }
 
 Box3 TriangleMesh::bounds() const {

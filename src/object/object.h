@@ -20,7 +20,8 @@ struct Material {
   int texture = -1;                    // index into Object::textures, -1: none
   Wrap wrap_u = Wrap::kRepeat;
   Wrap wrap_v = Wrap::kRepeat;
-  bool states_color = false;  // base_color is the file's word, not a default
+  // base_color is what its file format says of materials that state none: it asks for nothing.
+  bool color_is_default = false;
 };
 
 // Per-triangle-corner texture coordinates keep seams sharp: two triangles that share an edge need

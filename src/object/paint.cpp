@@ -8,20 +8,21 @@ namespace {
 class ModelPaint : public Paint {
  public:
   ModelPaint(std::shared_ptr<const Object> object, const LinearColor& base)
-      : Paint(base), object_(std::move(object)), says_anything_(object_->has_appearance()) {}
+      : Paint(base), object_(std::move(object)), says_anything_(object_->has_appearance()) {
+    // A model that says nothing may still carry its format's grey.
+    const auto color = object_->one_color();
+    is_as_object_ = says_anything_ || (is_white(base) && color && is_white(*color));
+  }
 
   LinearColor color_at(const SurfacePoint& point) const override {
     return says_anything_ ? hydrodip::color_at(*object_, point, base()) : base();
   }
   bool says_anything() const override { return says_anything_; }
-  // A model that says nothing is white as an object, whatever colour it is made in.
-  const Object* as_object() const override {
-    return says_anything_ || is_white(base()) ? object_.get() : nullptr;
-  }
+  const Object* as_object() const override { return is_as_object_ ? object_.get() : nullptr; }
 
  private:
   std::shared_ptr<const Object> object_;
-  bool says_anything_;
+  bool says_anything_, is_as_object_ = false;
 };
 
 }  // namespace

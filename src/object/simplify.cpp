@@ -1,10 +1,8 @@
 #include "object/simplify.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <unordered_map>
-#include <utility>
 
 #include "base/run_scope.h"
 

@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <mutex>
 #include <new>
 #include <stdexcept>
-#include <string>
 #include <thread>
 
 #include "base/error.h"

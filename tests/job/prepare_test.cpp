@@ -205,7 +205,6 @@ TEST(Appearance, OfOneColourNamesThePictureThatIsMissing) {
   for (Material& material : object.materials) {
     material.texture = -1;
     material.base_color = {0.5F, 0, 0, 1};
-    material.states_color = true;
   }
   EXPECT_NO_THROW(require_appearance(object, {}, "box.obj"));
   try {

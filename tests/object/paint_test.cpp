@@ -37,10 +37,23 @@ TEST(ModelPaint, AModelThatSaysNothingIsWantedBare) {
   EXPECT_NEAR(seen.b, kGrey.b, 0.01F);
 }
 
+// The grey of an MTL that states no colour was printed where a pixel showed one triangle, and white
+// where it showed two.
+TEST(ModelPaint, AFormatsDefaultColourIsNowhereWanted) {
+  auto object = std::make_shared<Object>(*plain_sphere());
+  object->materials[0].base_color = {0.3F, 0.3F, 0.3F, 1};
+  object->materials[0].color_is_default = true;
+  const auto paint = model_paint(object);
+  EXPECT_FALSE(paint->says_anything());
+  EXPECT_EQ(rgb(paint->color_at({0, 0.3, 0.3})), (std::array<float, 3>{1, 1, 1}));
+  EXPECT_EQ(paint->as_object(), nullptr);
+  object->materials[0].color_is_default = false;
+  EXPECT_TRUE(model_paint(object)->says_anything());
+}
+
 TEST(ModelPaint, WhatAModelStatesIsWantedOnAnyObject) {
   auto object = std::make_shared<Object>(*plain_sphere());
   object->materials[0].base_color = {0.9F, 0.1F, 0.1F, 1};
-  object->materials[0].states_color = true;
   const auto paint = model_paint(object, kGrey);
   EXPECT_TRUE(paint->says_anything());
   EXPECT_EQ(rgb(paint->color_at({0, 0.3, 0.3})), (std::array<float, 3>{0.9F, 0.1F, 0.1F}));
