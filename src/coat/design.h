@@ -2,7 +2,6 @@
 // again until the film stays where it is (paper section 3.4).
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "coat/dipped_object.h"

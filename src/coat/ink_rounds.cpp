@@ -20,8 +20,9 @@ constexpr int kFreeRounds = 2;
 constexpr int kMixed = 4;
 // All four inks at once make film so many times as stiff as one alone.
 constexpr double kMostInks = 4;
-// From there on so many rounds have to bring the change below this share: an acceleration that has
-// just begun may take two that do not.
+// From there on so many rounds have to bring the change below this share of the least so far: an
+// acceleration that has just begun may take two that do not, and film that comes up at an edge of
+// the object may lie to one side of it in one round, and to the other in the next.
 constexpr int kPatience = 3;
 constexpr double kLeastProgress = 0.5;
 // While ink and film settle, the film image need only be as fine as stiffness can tell: several
@@ -179,12 +180,20 @@ double InkRounds::change(int rounds_ago) const {
   return number() > rounds_ago ? rounds_.rbegin()[rounds_ago].change_mm : 0;
 }
 
+// Of the rounds from so many ago to before so many.
+double InkRounds::least_change(int from_ago, int to_ago) const {
+  double least = change(from_ago);
+  for (int ago = from_ago; ago < to_ago; ++ago) least = std::min(least, change(ago));
+  return least;
+}
+
 Outcome InkRounds::outcome() const {
   if (before_ && change(0) < options_.settled_mm) return Outcome::kSettled;
   if (number() >= options_.rounds_max) return Outcome::kUnsettled;
   // What does not settle costs a dip each round.
   const bool stands =
-      number() > kFreeRounds + kPatience && change(0) > kLeastProgress * change(kPatience);
+      number() > kFreeRounds + kPatience &&
+      least_change(0, kPatience) > kLeastProgress * least_change(kPatience, number() - 1);
   return stands ? Outcome::kUnsettled : Outcome::kGoesOn;
 }
 
@@ -204,8 +213,11 @@ void InkRounds::stiffen() {
   } else if (number() > kFreeRounds) {
     // What lets go besides, in any round, does in all that follow: no film comes and goes.
     std::vector<double>& told = dip_options_.tears_at_mm;
+    const std::vector<double> before = told;
     for (std::size_t t = 0; t < told.size(); ++t)
       told[t] = std::min(told[t], dipped_->film->torn_at_mm[t]);
+    // Film that tears otherwise answers its ink otherwise: earlier rounds tell nothing of it.
+    if (told != before) mixer_ = FixedPoint(kMixed);
   }
   std::vector<double> modulus = timings_.measure("stiffness", [&] { return this->modulus(); });
   dip_options_.modulus = dip_options_.modulus.empty() ? modulus : mixed(modulus);

@@ -54,6 +54,7 @@ class InkRounds {
  private:
   int number() const { return int(rounds_.size()); }
   double change(int rounds_ago) const;
+  double least_change(int from_ago, int to_ago) const;
   std::vector<double> modulus() const;
   bool dip();
   // As wanted_last; without `all` only within the outline that is kept.

@@ -2,6 +2,8 @@
 // rounds settles what else takes longer.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "coat/design.h"
 #include "samples/samples.h"
 
@@ -149,6 +151,22 @@ TEST(InkRound, PrintsTheAreaOfTheSlabInSquareMillimetres) {
     const double least_mm = 40 - 2 * box.dipped.film->mesh().cell_mm;
     EXPECT_GT(box.ink.rounds[0].printed_mm2, least_mm * least_mm) << dpi;
     EXPECT_LT(box.ink.rounds[0].printed_mm2, 40 * 40 + 4 * 40 * 0.5) << dpi;
+  }
+}
+
+// The paper's measure, on samples that go under as a whole: each round's film by less than 1e-4 mm
+// from the one before, the ink being changed less than seven times. At the pyramid's edges film may
+// take the one side once and then the other.
+TEST(InkRoundsSlow, OfTheSamplesSettle) {
+  for (const auto& [sample, most] :
+       {std::pair{"sphere", 7}, std::pair{"ellipsoid", 7}, std::pair{"pyramid", 8}}) {
+    DesignOptions options;
+    options.film.width_mm = 215.9;
+    options.film.height_mm = 279.4;
+    const Designed made = designed(sample, options);
+    EXPECT_TRUE(made.ink.settled) << sample;
+    EXPECT_LT(made.ink.rounds.back().change_mm, 1e-4) << sample;
+    EXPECT_LE(int(made.ink.rounds.size()), most) << sample;
   }
 }
 
