@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <latch>
 #include <optional>
 #include <thread>
 
@@ -29,10 +31,13 @@ TEST(FolderLock, WaitsForWhoeverHasIt) {
   const TemporaryFolder folder;
   std::optional<FolderLock> first(folder.path());
   std::atomic<bool> let_go = false;
+  std::latch begun(1);
   std::thread other([&] {
+    begun.count_down();
     EXPECT_EQ(FolderLock::waited_for(folder.path()).state(), State::kHeld);
     EXPECT_TRUE(let_go);
   });
+  begun.wait();
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   let_go = true;
   first.reset();

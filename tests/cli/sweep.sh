@@ -16,11 +16,15 @@ grep -q '^24 runs, about' said.txt || fail "sweep plan: $(cat said.txt)"
 one=$!
 "$hydrodip" sweep run s --shard 2/2 --quiet --threads 1 > two.txt &
 two=$!
-sleep 0.3
+for _ in $(seq 2000); do
+  [ "$(ls s/claims 2> /dev/null | wc -l)" -lt 2 ] || break
+  sleep 0.005
+done
 kill -9 "$one"
 wait "$two" || fail 'sweep run --shard'
 wait "$one" 2> /dev/null
 "$hydrodip" sweep run s --quiet > rest.txt || fail 'sweep run after a kill'
+grep -q '^0 done' rest.txt && fail 'the kill came too late to leave anything'
 [ "$(ls s/runs | wc -l)" -eq 24 ] || fail 'not every run is done'
 [ -z "$(ls s/claims)" ] || fail 'a claim was left'
 "$hydrodip" sweep run s --quiet | grep -q '^0 done, 0 failed, 24 were done before' || fail 'done again'

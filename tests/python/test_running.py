@@ -43,7 +43,7 @@ class Running(unittest.TestCase):
 
     def interrupted(self):
         begun = threading.Event()
-        sent = []
+        sent, returned = [], []
 
         def send():
             begun.wait()
@@ -58,7 +58,9 @@ class Running(unittest.TestCase):
                 hydrodip.simulate(
                     textured_cone(), **LONG,
                     progress=lambda what, share: begun.set() if what == "dipping" else None)
+                returned.append(True)
                 time.sleep(10)  # were the interrupt late
+            self.assertEqual(returned, [])
             return time.perf_counter() - sent[0]
         finally:
             begun.set()
