@@ -1,5 +1,4 @@
 // Polygons cut into triangles, and the health of whatever mesh comes of it.
-#include <algorithm>
 #include <cmath>
 
 #include "model.h"

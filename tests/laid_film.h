@@ -3,9 +3,7 @@
 #pragma once
 
 #include <cmath>
-#include <filesystem>
 #include <numbers>
-#include <string>
 
 #include "film/film.h"
 #include "object/object.h"

@@ -12,10 +12,8 @@
 #include <numbers>
 
 #include "base/file.h"
-#include "base/memory.h"
 #include "image/files.h"
 #include "job/jobs.h"
-#include "settings/settings.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "base/run_scope.h"
-#include "calibrate/landings.h"
 #include "coloured_scan.h"
 #include "scan/dark_squares.h"
 

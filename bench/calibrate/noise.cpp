@@ -10,11 +10,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <memory>
 
 #include "base/run_scope.h"
-#include "calibrate/resolution.h"
 #include "calibrate/search.h"
 #include "calibrate/synthetic.h"
 #include "scan/read_scan.h"

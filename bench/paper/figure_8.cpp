@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 
 #include "calibrate/checkerboard_dip.h"
 #include "calibrate/resolution.h"

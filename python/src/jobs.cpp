@@ -8,7 +8,6 @@
 #include "base/run_scope.h"
 #include "bindings.h"
 #include "calibrate/calibrate.h"
-#include "job/dip_plan.h"
 #include "job/jobs.h"
 #include "job/print_dips.h"
 #include "material.h"

@@ -2,10 +2,8 @@
 // below alone. docs/model.md, "Trapped air".
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "air/section.h"

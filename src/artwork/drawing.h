@@ -9,7 +9,6 @@
 
 #include "artwork/svg_contents.h"
 #include "artwork/tiled_image.h"
-#include "base/math.h"
 #include "image/image.h"
 
 namespace hydrodip {

@@ -10,7 +10,6 @@
 #include "artwork/geodesic.h"
 #include "artwork/placement.h"
 #include "artwork/projector.h"
-#include "base/error.h"
 #include "base/filled.h"
 
 namespace hydrodip {

@@ -1,6 +1,7 @@
 #include "base/context.h"
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
 #include <utility>
 

@@ -2,7 +2,6 @@
 // the processor's threads. It holds no global state, so several jobs can run in one process.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>

@@ -42,6 +42,22 @@ class Meeting {
   int missing_;
 };
 
+// Whether that many threads can run beside this one at once.
+bool can_start_threads(int count) {
+  std::vector<std::thread> threads;
+  Meeting meeting(count + 1);
+  bool all = true;
+  try {
+    threads.reserve(std::size_t(count));
+    for (int i = 0; i < count; ++i) threads.emplace_back([&] { meeting.come(); });
+  } catch (const std::exception&) {
+    all = false;
+  }
+  meeting.dissolve();
+  for (std::thread& thread : threads) thread.join();
+  return all;
+}
+
 // A loop in which every thread of the processor's takes part.
 struct Roll : ChunkLoop {
   explicit Roll(int threads) : ChunkLoop{&Roll::answer, std::size_t(threads)}, meeting(threads) {}
@@ -71,21 +87,6 @@ int secure_threads() {
 }
 
 }  // namespace
-
-bool can_start_threads(int count) {
-  std::vector<std::thread> threads;
-  Meeting meeting(count + 1);
-  bool all = true;
-  try {
-    threads.reserve(std::size_t(count));
-    for (int i = 0; i < count; ++i) threads.emplace_back([&] { meeting.come(); });
-  } catch (const std::exception&) {
-    all = false;
-  }
-  meeting.dissolve();
-  for (std::thread& thread : threads) thread.join();
-  return all;
-}
 
 int threads_in_supply() {
   static const int threads = secure_threads();

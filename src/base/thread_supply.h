@@ -3,9 +3,6 @@
 
 namespace hydrodip {
 
-// Whether that many threads can run beside this one at once.
-bool can_start_threads(int count);
-
 // How many threads parallel loops of this process may use: those that the processor runs at once,
 // or one where limits on processes, threads or memory allow no more. TBB's threads are there when
 // this has been called once; one that could not be started later would end the process, or leave

@@ -16,7 +16,6 @@
 #include "calibrate/search.h"
 #include "calibrate/tear_limit.h"
 #include "image/files.h"
-#include "job/prepare.h"
 
 namespace hydrodip {
 namespace {

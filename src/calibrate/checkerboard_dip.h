@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/printed_board.h"
 #include "object/surface.h"
+#include "scan/board.h"
 #include "scan/registration.h"
 #include "settings/config.h"
 #include "transfer/film_map.h"

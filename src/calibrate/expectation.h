@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "base/context.h"
-#include "calibrate/fit.h"
+#include "calibrate/checkerboard_dip.h"
+#include "coat/design.h"
 
 namespace hydrodip {
 

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
 #include "calibrate/rounded_pyramid.h"
 #include "calibrate/tear_limit.h"
 #include "samples/samples.h"

@@ -1,8 +1,6 @@
 // The calibration shapes to print: watertight, standing on their mount, with a hole for it.
 #pragma once
 
-#include <string>
-
 #include "calibrate/checkerboard_dip.h"
 #include "object/object.h"
 

@@ -7,7 +7,6 @@
 
 #include "base/shard.h"
 #include "calibrate/fit.h"
-#include "calibrate/resolution.h"
 #include "calibrate/simulations.h"
 #include "calibrate/stiffness_table.h"
 #include "calibrate/subject.h"

@@ -8,7 +8,6 @@
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "calibrate/calibrate.h"
-#include "calibrate/landings.h"
 #include "calibrate/resolution.h"
 #include "calibrate/synthetic.h"
 #include "scan/read_scan.h"

@@ -1,7 +1,6 @@
 #include "calibrate/synthetic.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>

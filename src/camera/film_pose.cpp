@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "camera/board.h"
 #include "camera/least_squares.h"
-#include "sheet/film_marks.h"
 
 namespace hydrodip {
 namespace {

@@ -2,7 +2,6 @@
 // shapes and equilibrium of its triangles, and how it slides there.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>

@@ -7,7 +7,6 @@
 // modulus; ink multiplies it.
 #pragma once
 
-#include <array>
 #include <memory>
 
 #include "base/math.h"

@@ -2,7 +2,6 @@
 // energy, along the directions of a LinearSolver, with line search where it needs one.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "base/context.h"

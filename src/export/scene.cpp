@@ -7,7 +7,6 @@
 #include "base/run_scope.h"
 #include "export/packer.h"
 #include "export/scene_object.h"
-#include "image/files.h"
 #include "image/resize.h"
 
 namespace hydrodip {

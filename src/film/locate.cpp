@@ -1,7 +1,6 @@
 #include "film/locate.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace hydrodip {
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <string_view>
 
-#include "base/error.h"
 #include "base/run_scope.h"
 #include "image/decoders.h"
 

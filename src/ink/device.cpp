@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "image/to_byte.h"
 #include "ink/color_model.h"

@@ -2,7 +2,6 @@
 // more (paper section 3.4, and what it leaves open: the gamut).
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "base/context.h"

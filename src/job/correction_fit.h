@@ -1,8 +1,6 @@
 // Whether a correction belongs to the dip that it is to correct.
 #pragma once
 
-#include <string>
-
 #include "object/posed_object.h"
 #include "settings/config.h"
 #include "settings/correction_file.h"

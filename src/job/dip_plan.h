@@ -5,8 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "job/ways.h"
-#include "plan/choice.h"
+#include "coat/dipped_object.h"
+#include "job/prepare.h"
+#include "plan/trial.h"
+#include "settings/config.h"
 
 namespace hydrodip {
 

@@ -9,7 +9,6 @@
 
 #include "export/scene.h"
 #include "image/files.h"
-#include "job/output.h"
 #include "job/wanted.h"
 #include "job/ways.h"
 #include "object/bake.h"

@@ -8,6 +8,7 @@
 #include "job/output.h"
 #include "job/wanted.h"
 #include "job/ways.h"
+#include "plan/hold.h"
 #include "report/findings.h"
 
 namespace hydrodip {
@@ -152,25 +153,6 @@ std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& sha
   return list;
 }
 
-}  // namespace
-
-Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishCheck& check,
-                 const JobRecord& record) {
-  Report report = make_report(record);
-  const Brought brought = brought_by(all, shared);
-  report.coverage = coverage_together(all, brought);
-  report.wanted = brought.wanted;
-  report.angles.reset();
-  report.figures = {model_size(all.prepared.posed)};
-  report.rounds.clear();
-  report.dips = report_dips(all, shared, brought);
-  report.colors = check.colors();
-  report.seams = ReportSeams{check.films_meet() ? shared.seam_mm() : 0, all.config.plan.overlap_mm,
-                             check.seam_error(), FinishCheck::kOff_mm, check.seam_error_off()};
-  report.outputs = outputs_of(all);
-  return report;
-}
-
 std::vector<ReportOutput> outputs_of(const MadeDips& all) {
   std::vector<ReportOutput> list;
   const char* side = all.config.print.ink_side == InkSide::kUp ? "up" : "down";
@@ -189,6 +171,25 @@ std::vector<ReportOutput> outputs_of(const MadeDips& all) {
   list.push_back({"report.html", "everything about this job, for people"});
   list.push_back({"report.json", "the same for programs"});
   return list;
+}
+
+}  // namespace
+
+Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishCheck& check,
+                 const JobRecord& record) {
+  Report report = make_report(record);
+  const Brought brought = brought_by(all, shared);
+  report.coverage = coverage_together(all, brought);
+  report.wanted = brought.wanted;
+  report.angles.reset();
+  report.figures = {model_size(all.prepared.posed)};
+  report.rounds.clear();
+  report.dips = report_dips(all, shared, brought);
+  report.colors = check.colors();
+  report.seams = ReportSeams{check.films_meet() ? shared.seam_mm() : 0, all.config.plan.overlap_mm,
+                             check.seam_error(), FinishCheck::kOff_mm, check.seam_error_off()};
+  report.outputs = outputs_of(all);
+  return report;
 }
 
 std::vector<std::string> file_names(const MadeDips& all) {

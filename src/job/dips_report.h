@@ -16,7 +16,6 @@ namespace hydrodip {
 Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishCheck& check,
                  const JobRecord& record);
 
-std::vector<ReportOutput> outputs_of(const MadeDips& all);
 // Every file, dip by dip: "dip-1/print.pdf".
 std::vector<std::string> file_names(const MadeDips& all);
 

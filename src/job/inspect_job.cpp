@@ -15,7 +15,6 @@
 #include "job/print_dips.h"
 #include "job/ways.h"
 #include "object/dip_angles.h"
-#include "object/surface.h"
 #include "render/maps.h"
 #include "report/report.h"
 #include "settings/settings.h"

@@ -14,7 +14,6 @@
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "hydrodip/hydrodip.h"
-#include "image/files.h"
 #include "job/computed.h"
 #include "job/job_record.h"
 #include "job/jobs.h"

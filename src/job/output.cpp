@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
-#include <utility>
 
 #include "base/file.h"
 #include "base/run_scope.h"
@@ -180,6 +179,11 @@ void write_glb(const std::filesystem::path& path, const JobRecord& record, const
                     raster.height_mm, record.paint().base(), record.config.preview_texture_px);
 }
 
+// That some jobs have and others, as drafts, have not.
+std::vector<std::string> pictures_of_jobs() {
+  return {"preview.png", "maps.png", "gamut.png", "dips.png"};
+}
+
 }  // namespace
 
 ReportInk ink_amounts(const InkImage& inks, double limit) {
@@ -272,10 +276,6 @@ std::string told_earlier_jig(const OutputFolder& folder) {
 
 std::vector<std::string> files_of_dip() {
   return {"print.pdf", "print.png", "print.tif", "film.ply", "preview.glb", "report.json"};
-}
-
-std::vector<std::string> pictures_of_jobs() {
-  return {"preview.png", "maps.png", "gamut.png", "dips.png"};
 }
 
 std::vector<std::string> prints() {

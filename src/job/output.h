@@ -37,9 +37,6 @@ std::string told_earlier_jig(const OutputFolder& folder);
 // What a job of several dips writes into the folder of each.
 std::vector<std::string> files_of_dip();
 
-// Pictures that some jobs have and others, as drafts, have not.
-std::vector<std::string> pictures_of_jobs();
-
 // What prints of another number of dips put into the same folder, for OutputFolder::supersede():
 // nobody shall print a sheet of an earlier job, or take its pictures for those of this one. 0: a
 // single dip, in no folder of its own.

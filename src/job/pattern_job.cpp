@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "artwork/artwork.h"
 #include "artwork/projector.h"
@@ -11,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/run_scope.h"
 #include "coat/flat_film.h"
+#include "hydrodip/hydrodip.h"
 #include "job/jobs.h"
 #include "job/prepare.h"
 #include "job/print_dips.h"
@@ -39,10 +39,8 @@ ArtworkLayer tile_layer(const PatternRequest& request) {
 DippedObject trial_dip(const JobConfig& config, const PreparedObject& prepared, bool fine,
                        const RunContext& context) {
   const DesignOptions options = fine ? config.design : draft_of(config.design);
-  Timings timings;
-  return dip_object(prepared.posed, std::make_shared<const FilmMesh>(make_film_mesh(options.film)),
-                    make_trajectory(options.trajectory, prepared.posed.mesh().positions),
-                    options.dip, timings, context, {}, {.options = options.air, .found = {}});
+  return simulate(prepared.posed, {options.film, options.trajectory, options.dip, options.air},
+                  context);
 }
 
 std::vector<Vec3> posed_spots(const PatternRequest& request, const PosedObject& posed) {

@@ -7,7 +7,6 @@
 
 #include "artwork/artwork.h"
 #include "base/context.h"
-#include "model_io/load.h"
 #include "object/paint.h"
 #include "object/posed_object.h"
 #include "settings/config.h"

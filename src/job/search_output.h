@@ -8,7 +8,8 @@
 
 #include "base/output_folder.h"
 #include "job/jobs.h"
-#include "job/ways.h"
+#include "job/prepare.h"
+#include "plan/targets.h"
 
 namespace hydrodip {
 

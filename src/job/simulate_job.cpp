@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -15,7 +14,6 @@
 #include "job/job_record.h"
 #include "job/jobs.h"
 #include "job/output.h"
-#include "job/prepare.h"
 #include "job/print_dips.h"
 #include "job/sheet_of.h"
 #include "job/wanted.h"

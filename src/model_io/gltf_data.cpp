@@ -4,7 +4,6 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <iterator>

@@ -7,7 +7,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include "base/error.h"
 #include "base/unicode.h"
 #include "model_io/model_file.h"
 #include "model_io/mtl.h"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 
-#include "base/error.h"
 #include "model_io/model_file.h"
 #include "model_io/text.h"
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstring>
 
-#include "base/error.h"
 #include "model_io/model_file.h"
 #include "model_io/text.h"
 

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "plan/search.h"
+#include "plan/targets.h"
+#include "plan/trial.h"
 
 namespace hydrodip {
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "film/film.h"
-#include "object/object.h"
 #include "object/pose.h"
 
 namespace hydrodip {

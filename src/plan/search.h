@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "base/context.h"
-#include "plan/hold.h"
 #include "plan/trial.h"
 
 namespace hydrodip {

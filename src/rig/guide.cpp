@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "base/error.h"
 #include "base/parse_double.h"
 #include "rig/finish_run.h"
 #include "rig/registration_file.h"

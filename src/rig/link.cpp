@@ -1,7 +1,5 @@
 #include "rig/link.h"
 
-#include <algorithm>
-
 namespace hydrodip {
 
 // Noise without line ends must not fill the memory.

@@ -5,7 +5,6 @@
 #include <array>
 #include <charconv>
 #include <sstream>
-#include <vector>
 
 namespace hydrodip {
 namespace {

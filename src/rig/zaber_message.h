@@ -10,7 +10,6 @@
 // the first character and the colon, and the checksum itself, 0 modulo 256.
 #pragma once
 
-#include <optional>
 #include <string>
 
 namespace hydrodip {

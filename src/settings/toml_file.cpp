@@ -29,7 +29,6 @@ constexpr void check(bool holds) {
 #include <utility>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "base/json_text.h"
 #include "base/small_file.h"
 #include "base/unicode.h"

@@ -341,6 +341,11 @@ void require_known_way(const JobConfig& job, std::size_t dip) {
            is_one_of_several ? Json({orient_mend()}) : auto_mends());
 }
 
+// Of what the workspace makes.
+Quality quality_of(LookQuality quality) {
+  return quality == LookQuality::kNormal ? Quality::kNormal : Quality::kDraft;
+}
+
 }  // namespace
 
 JobConfig config_of_dip(const JobConfig& config, std::size_t dip) {
@@ -360,10 +365,6 @@ JobConfig config_of_dip(const JobConfig& config, std::size_t dip) {
   if (!entry.correction.empty())
     own.design.film.correction = read_correction_field(entry.correction);
   return own;
-}
-
-Quality quality_of(LookQuality quality) {
-  return quality == LookQuality::kNormal ? Quality::kNormal : Quality::kDraft;
 }
 
 Project project_of(const JobConfig& config, LookQuality quality) {

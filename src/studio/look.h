@@ -36,8 +36,6 @@ enum class LookQuality { kSketch, kDraft, kNormal };
 
 // As the workspace takes it; the picture of what is not normal is coarser too.
 Project project_of(const JobConfig& config, LookQuality quality);
-// Of what the workspace makes of that.
-Quality quality_of(LookQuality quality);
 
 struct Look {
   JobConfig config;  // of this dip

@@ -1,7 +1,6 @@
 // What would help: changes of the document that a button makes. docs/studio-api.md, MEND.
 #pragma once
 
-#include "coat/dipped_object.h"
 #include "settings/config.h"
 #include "studio/json.h"
 

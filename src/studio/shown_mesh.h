@@ -9,7 +9,6 @@
 
 #include "export/scene_object.h"
 #include "hydrodip/hydrodip.h"
-#include "studio/json.h"
 
 namespace hydrodip {
 

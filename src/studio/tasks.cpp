@@ -6,12 +6,10 @@
 #include <chrono>
 #include <cmath>
 #include <new>
-#include <optional>
 #include <thread>
 #include <utility>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "image/files.h"
 #include "job/dip_plan.h"
 #include "job/job_progress.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/context.h"
-#include "settings/settings.h"
+#include "settings/config.h"
 
 namespace hydrodip {
 

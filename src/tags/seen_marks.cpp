@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <tuple>
 
@@ -99,7 +98,7 @@ std::optional<SeenMark> mark_beside(const GrayImage& image, const SeenTag& tag) 
   if (!corner || (*corner - guess).norm() > kAstray_cells * std::max(cell_px, cell_down_px) ||
       !is_checker(image, tag.to_px, cells, *corner))
     return std::nullopt;
-  return SeenMark{tag.id, *corner, apply(tag.to_px, Vec2::Zero()), 0.5 * (cell_px + cell_down_px)};
+  return SeenMark{tag.id, *corner, 0.5 * (cell_px + cell_down_px)};
 }
 
 }  // namespace

@@ -25,7 +25,6 @@ GrayImage mirrored(const GrayImage& image);  // left and right exchanged
 struct SeenMark {
   int id = 0;
   Vec2 corner_px = Vec2::Zero();  // pixel centres at +0.5; y down
-  Vec2 tag_px = Vec2::Zero();     // the tag's middle
   double cell_px = 0;             // of the tag, on average
 };
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "base/blank_pages.h"
 #include "base/parallel.h"

@@ -8,8 +8,6 @@
 #include <memory>
 #include <numbers>
 
-#include "artwork/artwork.h"
-#include "artwork/placement.h"
 #include "object/posed_object.h"
 
 namespace hydrodip {

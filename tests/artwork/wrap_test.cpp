@@ -4,7 +4,6 @@
 #include <random>
 
 #include "artwork/geodesic.h"
-#include "base/error.h"
 #include "shapes.h"
 
 namespace hydrodip {

@@ -6,7 +6,6 @@
 #include "calibrate/kit_shapes.h"
 #include "calibrate/rounded_pyramid.h"
 #include "object/health.h"
-#include "samples/samples.h"
 #include "scans.h"
 
 namespace hydrodip {

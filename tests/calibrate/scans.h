@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "calibrate/resolution.h"
 #include "calibrate/search.h"

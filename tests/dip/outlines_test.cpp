@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "base/error.h"
 #include "exact/shapes.h"
 
 namespace hydrodip {

@@ -8,7 +8,6 @@
 
 #include "export/packer.h"
 #include "export/scene_object.h"
-#include "image/files.h"
 #include "laid_film.h"
 
 namespace hydrodip {

@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include <algorithm>
-
 #include "base/parallel.h"
 
 namespace hydrodip {

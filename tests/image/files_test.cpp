@@ -8,7 +8,6 @@
 #include <jpeglib.h>
 
 #include <cstdlib>
-#include <cstring>
 #include <random>
 
 #include "base/error.h"

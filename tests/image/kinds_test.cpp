@@ -7,12 +7,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <functional>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "image/files.h"
 #include "temporary_folder.h"
 

@@ -2,7 +2,6 @@
 // where they look.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <exception>

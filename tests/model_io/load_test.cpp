@@ -11,8 +11,6 @@
 #include <random>
 
 #include "base/error.h"
-#include "base/file.h"
-#include "image/files.h"
 #include "model_io/model_files.h"
 
 namespace hydrodip {

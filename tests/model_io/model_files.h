@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "image/image.h"
 #include "temporary_folder.h"
 
 namespace hydrodip::fixtures {

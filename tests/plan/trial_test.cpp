@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "coat/design.h"
 #include "dip/zoo_shapes.h"
 #include "plan/choice.h"
 #include "plan/search.h"

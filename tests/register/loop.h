@@ -3,10 +3,8 @@
 #pragma once
 
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include "dip/dip.h"

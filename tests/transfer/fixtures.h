@@ -6,8 +6,8 @@
 
 #include "exact/dipping.h"
 #include "object/object.h"
+#include "object/paint.h"
 #include "transfer/film_map.h"
-#include "transfer/raster.h"
 
 namespace hydrodip::fixtures {
 
