@@ -50,6 +50,7 @@ struct Brought {
   // Of what shall be printed, if that is not everywhere.
   std::optional<ReportWanted> wanted;
   std::vector<double> gained_wanted;  // per dip, a share of it
+  ReportWanted everywhere;            // the same of the whole surface
 };
 
 bool is_reached_by_any(const MadeDips& all, const Target& node) {
@@ -68,8 +69,10 @@ Brought brought_by(const MadeDips& all, const SharedSurface& shared) {
   ReportWanted wanted;
   std::vector<double> gained_wanted_mm2(all.dips.size(), 0);
   double doubtful_mm2 = 0;
+  const double scale = all.prepared.posed.scale();
   for (std::size_t i = 0; i < targets.list.size(); ++i) {
     const Target& node = targets.list[i];
+    const double real_mm2 = scale * scale * node.area;
     const std::vector<float> shares = shared.shares_at(node.position, node.normal);
     float brought = 0, in_doubt = 0;
     for (std::size_t k = 0; k < all.dips.size(); ++k) {
@@ -82,18 +85,19 @@ Brought brought_by(const MadeDips& all, const SharedSurface& shared) {
       if (shares[k] > 0 && lies_in_doubt(all.dips[k], node)) in_doubt += shares[k];
     }
     if (in_doubt >= kMuchOfTheInk) doubtful_mm2 += node.area;
-    if (is_wanted.empty() || !is_wanted[i]) continue;
-    wanted.object_mm2 += node.area;
-    if (brought >= kMuchOfTheInk) wanted.covered_mm2 += node.area;
-    if (brought >= kMuchOfTheInk || is_reached_by_any(all, node)) wanted.reached_mm2 += node.area;
+    const bool covered = brought >= kMuchOfTheInk;
+    const bool reached = covered || is_reached_by_any(all, node);
+    for (ReportWanted* sum : {&result.everywhere, &wanted}) {
+      if (sum == &wanted && (is_wanted.empty() || !is_wanted[i])) continue;
+      sum->object_mm2 += real_mm2;
+      sum->covered_mm2 += covered ? real_mm2 : 0;
+      sum->reached_mm2 += reached ? real_mm2 : 0;
+    }
   }
   result.doubtful_share = doubtful_mm2 / targets.area;
   if (is_wanted.empty()) return result;
   for (const double mm2 : gained_wanted_mm2)
-    result.gained_wanted.push_back(mm2 / wanted.object_mm2);
-  const double scale = all.prepared.posed.scale();
-  for (double* mm2 : {&wanted.object_mm2, &wanted.covered_mm2, &wanted.reached_mm2})
-    *mm2 *= scale * scale;
+    result.gained_wanted.push_back(mm2 * scale * scale / wanted.object_mm2);
   result.wanted = wanted;
   return result;
 }
@@ -181,6 +185,7 @@ Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishC
   const Brought brought = brought_by(all, shared);
   report.coverage = coverage_together(all, brought);
   report.wanted = brought.wanted;
+  if (all.dips.size() > 1) report.together = brought.everywhere;
   report.angles.reset();
   report.figures = {model_size(all.prepared.posed)};
   report.rounds.clear();

@@ -22,7 +22,6 @@ constexpr double kSomeEscapes = 0.05;      // of a pocket
 constexpr double kFewWrinkles = 0.01;      // of the film on the object
 constexpr double kNearLimit = 0.9;         // of the tear stretch
 constexpr double kMuchSteep = 0.1;         // of what faces down
-constexpr double kMostlyTorn = 0.75;       // the same, of all of several dips
 constexpr double kHardlyAnything = 0.002;  // of the surface: a dip not worth its sheet
 constexpr double kFarOff_mm = 3;           // from there on a picture is not on the object
 
@@ -101,49 +100,58 @@ Finding coverage(const Report& report) {
   return finding;
 }
 
-// Torn film is a loss where something shall be printed.
-bool much_is_lost(const Coverage& c, const std::optional<ReportWanted>& wanted) {
-  return c.torn_share() > kMuchTorn && (!wanted || wanted->missed_share() > kMuchTorn);
+// Torn film is a loss where something shall be printed and no dip brings it.
+bool much_is_lost(const Coverage& c, const std::optional<double>& missed) {
+  return c.torn_share() > kMuchTorn && (!missed || *missed > kMuchTorn);
 }
 
-Finding tears(const Coverage& c, const std::optional<ReportWanted>& wanted, bool finished_image) {
+Finding tears(const Report& report) {
+  const Coverage& c = *report.coverage;
   if (!(c.torn_mm2 > 0))
     return {"tears", Concern::kNone, "Tears", "none", "The film holds everywhere.", ""};
-  if (wanted && wanted->missed_share() < 1 - kWholePicture)
+  if (report.wanted && report.wanted->missed_share() < 1 - kWholePicture)
     return {"tears",
             Concern::kCare,
             "Tears",
             percent(c.torn_share()),
             "of the film that meets the object tears, where nothing shall be printed.",
             "Take torn film off the water and the object before it dries."};
-  const bool much = much_is_lost(c, wanted);
+  const bool much = much_is_lost(c, missed_share(report));
   return {"tears",
           much ? Concern::kStop : Concern::kCare,
           "Tears",
           percent(c.torn_share()),
-          finished_image ? "of the film that meets the object tears; what the image has there is "
-                           "lost."
-                         : "of the film that meets the object tears; nothing is printed there.",
+          report.finished_image
+              ? "of the film that meets the object tears; what the image has there is lost."
+              : "of the film that meets the object tears; nothing is printed there.",
           "Turn steep sides down (--rotate, --down), dip less deep (--depth) and the rest in "
           "another turn, or use a film that bears more."};
 }
 
 bool is_of_several(const Report& report) { return report.dips.size() > 1 || report.dip_of > 1; }
 
-// No dip inks what it tears, and another one may bring what belongs there: what stays bare is the
-// coverage's matter, unless of all films together little is left.
+// No dip inks what it tears, and another one may bring what belongs there: all are judged by what
+// none brings, and each by itself not at all.
 Finding tears_of_several(const Report& report) {
   const Coverage& c = *report.coverage;
-  if (!(c.torn_mm2 > 0)) return tears(c, std::nullopt, false);
-  const bool mostly = !report.dips.empty() && c.torn_share() > kMostlyTorn;
+  const std::optional<double> missed = missed_share(report);
+  if (!(c.torn_mm2 > 0)) return tears(report);
+  const bool lost = !report.dips.empty() && much_is_lost(c, missed);
+  std::string text =
+      "of the film that meets the object tears. Nothing is printed on it; what no other dip "
+      "brings there stays bare";
+  if (!report.dips.empty() && missed)
+    text += fmt::format(": {} of {} that comes to a film", percent(*missed),
+                        report.wanted ? "what shall be printed" : "the surface");
   return {"tears",
-          mostly ? Concern::kStop : Concern::kCare,
+          lost ? Concern::kStop : Concern::kCare,
           "Tears",
           percent(c.torn_share()),
-          "of the film that meets the object tears. Nothing is printed on it; what no other dip "
-          "brings there stays bare.",
-          mostly ? "Turn steep sides down or dip less deep: 'hydrodip plan' looks for ways."
-                 : "Take torn film off the water and the object before it dries."};
+          text + ".",
+          lost
+              ? "Turn steep sides down or dip less deep ('hydrodip plan' looks for ways), or use a "
+                "film that bears more."
+              : "Take torn film off the water and the object before it dries."};
 }
 
 // A sheet, a bath and an afternoon for nothing.
@@ -468,8 +476,7 @@ std::vector<Finding> findings(const Report& report) {
     add_obstacles(report.dips, list);
     if (report.seams && report.seams->length_mm > 0) list.push_back(seams(*report.seams));
     if (c.film_on_object_mm2 > 0) {
-      list.push_back(is_of_several(report) ? tears_of_several(report)
-                                           : tears(c, report.wanted, report.finished_image));
+      list.push_back(is_of_several(report) ? tears_of_several(report) : tears(report));
       add_doubtful(c, list);
       list.push_back(stretch(c, report.tear_stretch));
       add_slack_film(c, list);

@@ -48,6 +48,12 @@ ReportInput describe_input(const std::string& role, const std::filesystem::path&
   return {role, path.string(), sha256_hex(bytes), bytes.size()};
 }
 
+std::optional<double> missed_share(const Report& report) {
+  if (report.wanted) return report.wanted->missed_share();
+  if (report.together) return report.together->missed_share();
+  return std::nullopt;
+}
+
 bool is_inside_out(const Report& report) {
   return report.mesh && report.mesh->inside_out && report.coverage &&
          !(report.coverage->film_on_object_mm2 > 0);

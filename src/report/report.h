@@ -154,6 +154,8 @@ struct Report {
   std::optional<ReportColors> colors;
   int dip_number = 0, dip_of = 0;  // of one among several dips; 0: it is the only one
   std::vector<ReportDip> dips;     // several; `coverage` is then that of all together
+  // Of several dips: like `wanted`, of the whole surface, whatever shall be printed on it.
+  std::optional<ReportWanted> together;
   std::optional<ReportSeams> seams;
   std::string better_way;   // how else to dip it; empty: unknown, or there is none
   double tear_stretch = 0;  // the film's limit; 0: it never tears
@@ -167,6 +169,10 @@ struct Report {
   std::vector<ReportOutput> outputs;
   std::uint64_t peak_memory_bytes = 0;  // 0: unknown
 };
+
+// Of what comes to the film, of several dips to that of any, and shall be printed: what gets no
+// film that holds. Nothing where that is not known.
+std::optional<double> missed_share(const Report& report);
 
 // Whether that is why no film stays on the object.
 bool is_inside_out(const Report& report);

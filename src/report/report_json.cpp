@@ -249,6 +249,7 @@ std::string report_json(const Report& report) {
     json["wanted"] = {{"object_mm2", number(report.wanted->object_mm2)},
                       {"covered_mm2", number(report.wanted->covered_mm2)},
                       {"covered_share", number(report.wanted->covered_share())}};
+  if (const auto missed = missed_share(report)) json["missed_share"] = number(*missed);
   if (!report.way_in.empty()) json["way_in"] = way_json(report.way_in);
   if (report.air) json["air"] = air_json(*report.air);
   if (report.coverage) json["short_verdict"] = short_verdict(report);

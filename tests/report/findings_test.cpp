@@ -192,6 +192,7 @@ TEST(Findings, OfSeveralDipsNoneIsMadeForNothing) {
   Report report = good_report();
   report.coverage->film_on_object_mm2 = 1000;
   report.coverage->torn_mm2 = 1500;  // 60 % of what meets the object
+  report.together = ReportWanted{2000, 1000, 960};
   report.dips.resize(2);
   report.dips[0].gained_share = 0.3;
   report.dips[1].gained_share = 0.1;
@@ -207,8 +208,26 @@ TEST(Findings, OfSeveralDipsNoneIsMadeForNothing) {
   EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
   report.dips[1].gained_wanted_share = 0.05;
   EXPECT_EQ(concern_of(findings(report)), Concern::kCare);
-  report.coverage->torn_mm2 = 4000;  // 80 %
-  EXPECT_EQ(find(findings(report), "tears")->concern, Concern::kStop);
+}
+
+// By the rule of one dip: what no film brings counts, and if that is not known, the torn film.
+TEST(Findings, TornFilmOfSeveralDipsIsAStopWhereNoOtherBringsWhatIsLost) {
+  Report report = good_report();
+  report.coverage->torn_mm2 = 1100;  // 55 %
+  report.dips.resize(2);
+  for (ReportDip& dip : report.dips) dip.gained_share = 0.3;
+  EXPECT_EQ(concern(report, "tears"), Concern::kStop);
+  report.together = ReportWanted{2000, 1500, 1200};
+  EXPECT_EQ(concern(report, "tears"), Concern::kStop);
+  EXPECT_NE(find(findings(report), "tears")->text.find("20 % of the surface"), std::string::npos);
+  EXPECT_DOUBLE_EQ(nlohmann::json::parse(report_json(report))["missed_share"], 0.2);
+  report.together = ReportWanted{2000, 1500, 1450};
+  EXPECT_EQ(concern(report, "tears"), Concern::kCare);
+  report.together = ReportWanted{2000, 1500, 1200};
+  report.wanted = ReportWanted{500, 500, 490};  // what tears is not of the picture
+  EXPECT_EQ(concern(report, "tears"), Concern::kCare);
+  report.wanted = ReportWanted{500, 500, 400};
+  EXPECT_EQ(concern(report, "tears"), Concern::kStop);
 }
 
 TEST(Findings, AFragmentOfThePictureIsNoDip) {
