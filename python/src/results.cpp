@@ -44,7 +44,8 @@ Report report_of(const Design& d, const RunContext& context) {
   JobRecord record{"print", d.job->config,    d.job->prepared,
                    inputs,  *d.finish,        times,
                    context, &d.designed->ink, d.job->printer.model->name()};
-  record.wanted = wanted_coverage(d.dipped, d.finish->paint());
+  record.wanted = wanted_coverage(d.dipped, d.finish->paint(),
+                                  doubtful_stretch(d.job->config.design.dip.material));
   return make_report(record);
 }
 

@@ -18,13 +18,10 @@ namespace {
 // another dip's ink was meant to be is blank there.
 constexpr float kMuchOfTheInk = 0.5F;
 
-// Whether film of a dip lies there of which nobody knows whether it holds, or where.
 bool lies_in_doubt(const MadeDip& dip, const Target& node) {
   const Target hung = in_pose(node, dip.posed);
-  const auto hold = dip.made.dipped.map->hold_at(hung.position, hung.normal);
-  const DoubtfulStretch doubtful = doubtful_stretch(dip.config.design.dip.material);
-  return hold && !hold->let_go && hold->stretch < doubtful.to &&
-         (hold->stretch > doubtful.from || hold->moved_mm > kMoved_mm);
+  return is_in_doubt(dip.made.dipped.map->hold_at(hung.position, hung.normal),
+                     doubtful_stretch(dip.config.design.dip.material));
 }
 
 // Why a dip is not to be made, whatever the others bring.
@@ -92,6 +89,7 @@ Brought brought_by(const MadeDips& all, const SharedSurface& shared) {
       sum->object_mm2 += real_mm2;
       sum->covered_mm2 += covered ? real_mm2 : 0;
       sum->reached_mm2 += reached ? real_mm2 : 0;
+      sum->doubtful_mm2 += covered && in_doubt >= kMuchOfTheInk ? real_mm2 : 0;
     }
   }
   result.doubtful_share = doubtful_mm2 / targets.area;

@@ -210,7 +210,8 @@ MadePart make_part(const Part& part, Timings& timings, const RunContext& context
   JobRecord record{"print", job.config,         job.prepared,
                    inputs,  made.finish,        timings,
                    silent,  &made.designed.ink, job.printer.model->name()};
-  record.wanted = wanted_coverage(made.designed.dipped, *job.prepared.paint);
+  record.wanted = wanted_coverage(made.designed.dipped, *job.prepared.paint,
+                                  doubtful_stretch(job.config.design.dip.material));
   Report report = make_report(record);
   return {std::move(made), std::move(report)};
 }

@@ -40,7 +40,7 @@ std::string why_no_film(const DippedObject& dipped, const Trajectory& trajectory
 
 // What film lies on the object, and yet there is no ink on it.
 std::string why_no_ink(const DippedObject& dipped, const Paint& paint) {
-  const std::optional<ReportWanted> wanted = wanted_coverage(dipped, paint);
+  const std::optional<ReportWanted> wanted = wanted_coverage(dipped, paint, {});
   if (!wanted)
     return "What the film reaches of the model is white, transparent, of the object's own colour "
            "or lighter than it (object.base_color); check its texture and colours, which side "
@@ -113,7 +113,8 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   JobRecord record{"print", config,      job.prepared,
                    inputs,  made.finish, times,
                    context, &ink,        job.printer.model->name()};
-  record.wanted = wanted_coverage(dipped, *job.prepared.paint);
+  record.wanted =
+      wanted_coverage(dipped, *job.prepared.paint, doubtful_stretch(config.design.dip.material));
   const Report first_look = make_report(record);
   if (config.plan.suggest && concern_of(findings(first_look)) == Concern::kStop)
     record.better_way = times.measure(

@@ -242,7 +242,8 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
                    inputs,  made.finish, times,
                    context, nullptr,     job.printer.model->name()};
   if (config.film_image.empty())
-    record.wanted = wanted_coverage(made.dipped, *job.prepared.paint);
+    record.wanted = wanted_coverage(made.dipped, *job.prepared.paint,
+                                    doubtful_stretch(config.design.dip.material));
   else
     record.laid = ink_amounts(printed.inks, config.design.inking.limit);
   const Report first_look = make_report(record);

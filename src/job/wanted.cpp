@@ -31,21 +31,28 @@ bool faces_film(const DippedObject& dipped, const Target& at) {
   return direction && at.normal.dot(*direction) > 0;
 }
 
+bool is_in_doubt(const std::optional<FilmMap::Hold>& hold, const DoubtfulStretch& doubtful) {
+  return hold && !hold->let_go && hold->stretch < doubtful.to &&
+         (hold->stretch > doubtful.from || hold->moved_mm > kMoved_mm);
+}
+
 std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Paint& paint,
-                                            int points) {
+                                            const DoubtfulStretch& doubtful, int points) {
   if (!paint.says_anything() || paint.depends_on_film()) return std::nullopt;
   const Targets targets = spread_targets(dipped.posed.mesh(), points);
   const std::vector<std::uint8_t> is_wanted = wanted_at(targets, paint);
   if (is_wanted.empty()) return std::nullopt;
   struct Seen {
-    bool reached = false, covered = false;
+    bool reached = false, covered = false, in_doubt = false;
   };
   std::vector<Seen> seen(targets.list.size());
   parallel_for(seen.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!is_wanted[i]) continue;
       const Target& at = targets.list[i];
-      seen[i].covered = dipped.map->to_film(at.position, at.normal).has_value();
+      const FilmMap::Lying lying = dipped.map->lying_at(at.position, at.normal);
+      seen[i].covered = lying.film.has_value();
+      seen[i].in_doubt = seen[i].covered && is_in_doubt(lying.hold, doubtful);
       seen[i].reached = seen[i].covered || faces_film(dipped, at);
     }
   });
@@ -55,6 +62,7 @@ std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Pa
     wanted.object_mm2 += is_wanted[i] ? area : 0;
     wanted.reached_mm2 += seen[i].reached ? area : 0;
     wanted.covered_mm2 += seen[i].covered ? area : 0;
+    wanted.doubtful_mm2 += seen[i].in_doubt ? area : 0;
   }
   return wanted;
 }

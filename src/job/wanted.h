@@ -9,6 +9,8 @@
 #include "object/paint.h"
 #include "plan/targets.h"
 #include "report/report.h"
+#include "transfer/coverage.h"
+#include "transfer/film_map.h"
 
 namespace hydrodip {
 
@@ -16,13 +18,16 @@ inline constexpr int kWantedPoints = 20000;
 
 // Looked at in about so many points of the surface. Nothing where the paint says nothing, goes by
 // the film (what has no film shows nothing of it), or wants colour all over the object: coverage
-// says it then.
+// says it then. `doubtful`: of the film's material.
 std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Paint& paint,
+                                            const DoubtfulStretch& doubtful,
                                             int points = kWantedPoints);
 
 // 1 where something shall be printed. Empty where the paint says nothing of it, or wants colour all
 // over the object.
 std::vector<std::uint8_t> wanted_at(const Targets& targets, const Paint& paint);
+// Whether film lies there of which nobody knows whether it holds, or where.
+bool is_in_doubt(const std::optional<FilmMap::Hold>& hold, const DoubtfulStretch& doubtful);
 // Whether a place comes into the water and faces down: a dip gets there then, whether or not film
 // comes to lie. In the posed-object frame.
 bool faces_film(const DippedObject& dipped, const Target& at);

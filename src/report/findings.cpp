@@ -58,7 +58,7 @@ Finding coverage_of_wanted(const ReportWanted& wanted, const Coverage& c,
                              : Concern::kCare,
                   "Coverage",
                   percent(wanted.covered_share()),
-                  "of what shall be printed gets film that holds.",
+                  "of what shall be printed gets film that holds" + only_perhaps(wanted) + ".",
                   ""};
   if (!nearly_all)
     finding.advice = !beyond_best.empty()
@@ -290,7 +290,8 @@ Finding steepness(const DipAngles& angles) {
 }
 
 // Where torn film is lost, the rest may still be known; where it is not, nothing is promised.
-void add_doubtful(const Coverage& c, std::vector<Finding>& list) {
+void add_doubtful(const Coverage& c, const std::optional<ReportWanted>& wanted,
+                  std::vector<Finding>& list) {
   if (!(c.doubtful_mm2 > 0)) return;
   Finding finding{"doubtful",
                   Concern::kNone,
@@ -299,7 +300,13 @@ void add_doubtful(const Coverage& c, std::vector<Finding>& list) {
                   "of the object gets film that may tear after all, or whose place depends on how "
                   "torn film falls.",
                   ""};
-  if (c.doubtful_mm2 > kLittleDoubt * c.covered_mm2) {
+  if (wanted && wanted->covered_mm2 > 0)
+    finding.text += wanted->doubtful_mm2 > 0
+                        ? fmt::format(" Of what shall be printed and gets film it is {}.",
+                                      percent(wanted->doubtful_share()))
+                        : " Nothing of what shall be printed lies there.";
+  if (c.doubtful_mm2 > kLittleDoubt * c.covered_mm2 ||
+      (wanted && wanted->doubtful_share() > kLittleDoubt)) {
     finding.concern = Concern::kCare;
     finding.advice =
         "Let nothing that matters lie there. How much your film bears a test dip tells "
@@ -411,8 +418,8 @@ Finding coverage_of_dips(const Coverage& c, const std::optional<ReportWanted>& w
                          std::size_t dips) {
   if (wanted) {
     Finding finding = coverage_of_wanted(*wanted, c, "");
-    finding.text =
-        fmt::format("of what shall be printed gets film that holds {}.", after_dips(dips));
+    finding.text = fmt::format("of what shall be printed gets film that holds {}{}.",
+                               after_dips(dips), only_perhaps(wanted));
     if (!finding.advice.empty())
       finding.advice = "Plan more dips (--dips): 'hydrodip plan' says how much each one adds.";
     return finding;
@@ -477,7 +484,7 @@ std::vector<Finding> findings(const Report& report) {
     if (report.seams && report.seams->length_mm > 0) list.push_back(seams(*report.seams));
     if (c.film_on_object_mm2 > 0) {
       list.push_back(is_of_several(report) ? tears_of_several(report) : tears(report));
-      add_doubtful(c, list);
+      add_doubtful(c, report.wanted, list);
       list.push_back(stretch(c, report.tear_stretch));
       add_slack_film(c, list);
       if (report.air) add_air(*report.air, c, list);

@@ -26,9 +26,10 @@ std::string short_film_part(const Report& report) {
   std::string text =
       has_wanted(report)
           ? fmt::format(
-                "{:.0f} % of what shall be printed covered, {:.1f} % of the film that "
+                "{:.0f} % of what shall be printed covered{}, {:.1f} % of the film that "
                 "meets the object torn",
-                100 * report.wanted->covered_share(), 100 * coverage.torn_share())
+                100 * report.wanted->covered_share(), only_perhaps(report.wanted),
+                100 * coverage.torn_share())
           : fmt::format("{:.0f} % of the object covered, {:.1f} % of the film that meets it torn",
                         100 * coverage.covered_share(), 100 * coverage.torn_share());
   if (coverage.stretch_max > kMostStretch)
@@ -52,6 +53,11 @@ std::optional<double> missed_share(const Report& report) {
   if (report.wanted) return report.wanted->missed_share();
   if (report.together) return report.together->missed_share();
   return std::nullopt;
+}
+
+std::string only_perhaps(const std::optional<ReportWanted>& wanted) {
+  if (!wanted || wanted->doubtful_share() < kSomeDoubt) return "";
+  return fmt::format(", {} of it only perhaps", percent(wanted->doubtful_share()));
 }
 
 bool is_inside_out(const Report& report) {
@@ -91,8 +97,8 @@ std::string unknown_verdict(const ReportEquilibrium& equilibrium) {
 std::string covered_part(const Report& report) {
   const Coverage& c = *report.coverage;
   if (has_wanted(report))
-    return fmt::format("The film covers {} of what shall be printed",
-                       percent(report.wanted->covered_share()));
+    return fmt::format("The film covers {} of what shall be printed{}",
+                       percent(report.wanted->covered_share()), only_perhaps(report.wanted));
   if (c.torn_mm2 > 0)
     return fmt::format("Where it holds, the film covers {} of the object",
                        percent(c.covered_share()));
@@ -153,13 +159,14 @@ std::string plain_verdict(const Report& report) {
 std::string several_dips_verdict(const Report& report) {
   const Coverage& c = *report.coverage;
   const std::size_t dips = report.dips.size();
-  return fmt::format("{} {}; {}", dips == 1 ? "1 dip covers" : fmt::format("{} dips cover", dips),
-                     has_wanted(report)
-                         ? percent(report.wanted->covered_share()) + " of what shall be printed"
-                         : percent(c.covered_share()) + " of the object",
-                     c.torn_mm2 > 0 ? fmt::format("{} of the film that meets it tears.",
-                                                  percent(c.torn_share()))
-                                    : "nothing tears.") +
+  return fmt::format(
+             "{} {}; {}", dips == 1 ? "1 dip covers" : fmt::format("{} dips cover", dips),
+             has_wanted(report) ? percent(report.wanted->covered_share()) +
+                                      " of what shall be printed" + only_perhaps(report.wanted)
+                                : percent(c.covered_share()) + " of the object",
+             c.torn_mm2 > 0
+                 ? fmt::format("{} of the film that meets it tears.", percent(c.torn_share()))
+                 : "nothing tears.") +
          obstacle(findings(report));
 }
 

@@ -87,6 +87,9 @@ struct ReportWanted {
   double object_mm2 = 0;
   double reached_mm2 = 0;  // of it: comes into the water and faces down
   double covered_mm2 = 0;  // of it: gets whole film
+  // Of that: film that may tear after all, or lie elsewhere; see Coverage::doubtful_mm2.
+  double doubtful_mm2 = 0;
+  double doubtful_share() const { return Coverage::share(doubtful_mm2, covered_mm2); }
   double covered_share() const { return Coverage::share(covered_mm2, object_mm2); }
   double missed_share() const { return Coverage::share(reached_mm2 - covered_mm2, reached_mm2); }
 };
@@ -173,6 +176,10 @@ struct Report {
 // Of what comes to the film, of several dips to that of any, and shall be printed: what gets no
 // film that holds. Nothing where that is not known.
 std::optional<double> missed_share(const Report& report);
+
+// ", 57 % of it only perhaps": how much of what shall be printed and gets film is doubtful; empty
+// where that is little.
+std::string only_perhaps(const std::optional<ReportWanted>& wanted);
 
 // Whether that is why no film stays on the object.
 bool is_inside_out(const Report& report);

@@ -248,7 +248,9 @@ std::string report_json(const Report& report) {
   if (report.wanted)
     json["wanted"] = {{"object_mm2", number(report.wanted->object_mm2)},
                       {"covered_mm2", number(report.wanted->covered_mm2)},
-                      {"covered_share", number(report.wanted->covered_share())}};
+                      {"covered_share", number(report.wanted->covered_share())},
+                      {"doubtful_mm2", number(report.wanted->doubtful_mm2)},
+                      {"doubtful_share", number(report.wanted->doubtful_share())}};
   if (const auto missed = missed_share(report)) json["missed_share"] = number(*missed);
   if (!report.way_in.empty()) json["way_in"] = way_json(report.way_in);
   if (report.air) json["air"] = air_json(*report.air);

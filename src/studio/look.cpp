@@ -247,9 +247,9 @@ Report report_of(const Look& look, const RunContext& context) {
   const Timings times;
   JobRecord record{"print", look.config, prepared,        inputs, finish,
                    times,   words,       &look.made->ink, "",     ""};
-  record.wanted =
-      wanted_coverage(look.made->dipped, *look.paint,
-                      look.quality == LookQuality::kSketch ? kSketchPoints : kWantedPoints);
+  record.wanted = wanted_coverage(
+      look.made->dipped, *look.paint, doubtful_stretch(look.config.design.dip.material),
+      look.quality == LookQuality::kSketch ? kSketchPoints : kWantedPoints);
   return make_report(record);
 }
 

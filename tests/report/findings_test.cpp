@@ -143,6 +143,25 @@ TEST(Findings, DoubtfulFilmIsNamed) {
   EXPECT_EQ(concern(report, "doubtful"), Concern::kCare);
 }
 
+// A picture that lies where film may tear is not promised, however little of the object that is.
+TEST(Findings, WhatOfThePictureIsDoubtfulIsTold) {
+  Report report = good_report();
+  report.coverage->doubtful_mm2 = 5;
+  report.wanted = ReportWanted{100, 100, 100};
+  EXPECT_EQ(concern(report, "doubtful"), Concern::kNone);
+  EXPECT_EQ(verdict_of(report).find("perhaps"), std::string::npos);
+  report.wanted->doubtful_mm2 = 57;
+  EXPECT_EQ(concern(report, "doubtful"), Concern::kCare);
+  const std::vector<Finding> list = findings(report);
+  EXPECT_NE(find(list, "doubtful")->text.find("57 %"), std::string::npos);
+  EXPECT_NE(find(list, "coverage")->text.find(", 57 % of it only perhaps."), std::string::npos);
+  EXPECT_NE(verdict_of(report).find("100 % of what shall be printed, 57 % of it only perhaps"),
+            std::string::npos);
+  EXPECT_DOUBLE_EQ(nlohmann::json::parse(report_json(report))["wanted"]["doubtful_share"], 0.57);
+  report.dips.resize(2);
+  EXPECT_NE(verdict_of(report).find("57 % of it only perhaps"), std::string::npos);
+}
+
 TEST(Findings, WithoutFilmOnTheObjectNothingElseMatters) {
   Report report = good_report();
   report.coverage->film_on_object_mm2 = 0;
