@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/blank_pages.h"
+#include "base/plain_number.h"
 #include "base/run_scope.h"
 #include "coat/ink_rounds.h"
 #include "image/blank_image.h"
@@ -105,9 +106,9 @@ class Settling {
           "no equilibrium; turn steep sides down or dip less, then print anew");
     else if (outcome != Outcome::kSettled && result_.rounds.size() > 1)
       context_.warn(fmt::format(
-          "after {} rounds the ink still moves the film by {:.2g} mm on average (settled: {:g} "
+          "after {} rounds the ink still moves the film by {} mm on average (settled: {:g} "
           "mm); {}",
-          result_.rounds.size(), result_.last_change_mm(), options().settled_mm,
+          result_.rounds.size(), plain_number(result_.last_change_mm()), options().settled_mm,
           int(result_.rounds.size()) >= options().rounds_max
               ? "raise ink.rounds_max, or film.elements if it does not help"
               : "more rounds would not bring it down: turn steep sides down, dip less deep, or "

@@ -11,6 +11,7 @@
 #include "base/awake_threads.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/plain_number.h"
 #include "dip/measure.h"
 #include "dip/scheme.h"
 #include "dip/tear_doubt.h"
@@ -275,9 +276,9 @@ DipResult dip_floating(const SharedFilmMesh& mesh, const std::vector<Vec3>& posi
   context.progress("dipping", 1);
   statistics.steps = statistics.steps_at_mm.empty() ? looks : int(statistics.steps_at_mm.size());
   if (statistics.unconverged_steps > 0)
-    context.warn(fmt::format("in {} of {} steps the film's equilibrium was found only to {:.2g} mm",
+    context.warn(fmt::format("in {} of {} steps the film's equilibrium was found only to {} mm",
                              statistics.unconverged_steps, statistics.steps,
-                             statistics.largest_residual_mm));
+                             plain_number(statistics.largest_residual_mm)));
   DippedFilm dipped = measured(mesh, state, options, surface);
   if (state.moment.moved) dipped.depth_mm = deepest(state.moment, positions);
   if (!options.moved_mm.empty())

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/plain_number.h"
 #include "base/run_scope.h"
 #include "render/canvas.h"
 #include "render/color_ramp.h"
@@ -386,12 +387,11 @@ Image render_angle_map(const TriangleMesh& object, const Surface& surface,
 }
 
 std::string map_caption(const DipAngles& angles, const Coverage* coverage) {
-  std::string text =
-      fmt::format("{:.1f} % of the surface that faces down is steeper than {:.0f}\u00b0",
-                  100 * angles.over_limit_share(), kDipAngleLimit_deg);
+  std::string text = fmt::format("{} of the surface that faces down is steeper than {:.0f}\u00b0",
+                                 percent(angles.over_limit_share()), kDipAngleLimit_deg);
   if (coverage && coverage->torn_mm2 > 0)
-    text += fmt::format("; {:.1f} % of the film that meets the object is torn",
-                        100 * coverage->torn_share());
+    text += fmt::format("; {} of the film that meets the object is torn",
+                        percent(coverage->torn_share()));
   else if (coverage)
     text += "; no film is torn";
   return text;

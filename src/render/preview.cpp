@@ -34,9 +34,13 @@ void write_labels(Image& page, const PageLayout& layout, const PreviewPair& pair
   }
   const TextStyle line = text_style(19 * layout.views.unit, kLabelInk);
   const double room = layout.views.width - 2.0 * layout.views.margin;
-  const std::string shown = fit_text(pair.caption, line, room);
-  draw_centered(page, shown, 0.5 * layout.views.width, layout.height - 35 * layout.views.unit,
-                line);
+  const std::vector<std::string> lines = fit_lines(pair.caption, line, room, 2);
+  double above = lines.size() > 1 ? 50 : 35;
+  for (const std::string& shown : lines) {
+    draw_centered(page, shown, 0.5 * layout.views.width, layout.height - above * layout.views.unit,
+                  line);
+    above -= 32;
+  }
 }
 
 // Fills in whatever appearance is absent.

@@ -24,7 +24,7 @@ struct PreviewOptions {
 struct PreviewPair {
   Appearance shown;  // what is absent is the bare object
   std::array<std::string, 2> titles = {"wanted", "predicted"};
-  std::string caption;  // one line under the picture, e.g. the verdict
+  std::string caption;  // under the picture, in two lines at most, e.g. the verdict
   // On the left, instead of what is wanted, what the first pair has on the right.
   bool left_is_firsts_right = false;
 };

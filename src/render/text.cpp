@@ -323,4 +323,21 @@ std::string fit_text(const std::string& text, const TextStyle& style, double max
   return "";
 }
 
+std::vector<std::string> fit_lines(const std::string& text, const TextStyle& style,
+                                   double max_width_px, std::size_t most) {
+  std::vector<std::string> lines;
+  std::string rest = text;
+  while (lines.size() + 1 < most && text_width_px(rest, style) > max_width_px) {
+    std::size_t end = rest.rfind(' ');
+    while (end != std::string::npos && end > 0 &&
+           text_width_px(rest.substr(0, end), style) > max_width_px)
+      end = rest.rfind(' ', end - 1);
+    if (end == std::string::npos || end == 0) break;
+    lines.push_back(rest.substr(0, end));
+    rest = rest.substr(end + 1);
+  }
+  lines.push_back(fit_text(rest, style, max_width_px));
+  return lines;
+}
+
 }  // namespace hydrodip

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "image/image.h"
 
@@ -31,5 +32,9 @@ void draw_text(Image& image, const std::string& text, double x_px, double y_px,
 
 // The text cut at its end, with three dots, so that it is no wider than max_width.
 std::string fit_text(const std::string& text, const TextStyle& style, double max_width_px);
+
+// The text in lines of whole words no wider than that, at most so many; the last is cut.
+std::vector<std::string> fit_lines(const std::string& text, const TextStyle& style,
+                                   double max_width_px, std::size_t most);
 
 }  // namespace hydrodip

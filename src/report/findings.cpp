@@ -180,6 +180,13 @@ void add_obstacles(const std::vector<ReportDip>& dips, std::vector<Finding>& lis
                       obstacle->text, obstacle->advice});
 }
 
+// Rounded before it is written: -0.3 is not "-0".
+std::string place(const Vec3& p) {
+  const auto whole = [](double value) { return std::round(value) + 0.0; };
+  return fmt::format("({:.0f}, {:.0f}, {:.0f}) mm of the posed object", whole(p.x()), whole(p.y()),
+                     whole(p.z()));
+}
+
 // Pressed together, or lifted out of the water on the way: only where there is any worth naming.
 void add_slack_film(const Coverage& c, std::vector<Finding>& list) {
   if (c.wrinkled_mm2 > kFewWrinkles * c.covered_mm2)
@@ -191,15 +198,11 @@ void add_slack_film(const Coverage& c, std::vector<Finding>& list) {
   if (c.lifted_mm2 > 0)
     list.push_back(
         {"lifted", Concern::kCare, "Lifted out", fmt::format("{:.0f} mm2", c.lifted_mm2),
-         fmt::format("of film comes out of the water again on the way, around ({:.0f}, {:.0f}, "
-                     "{:.0f}) mm of the posed object; it may peel off or drain there.",
-                     c.lifted_at.x(), c.lifted_at.y(), c.lifted_at.z()),
+         fmt::format("of film comes out of the water again on the way, around {}; it may peel off "
+                     "or drain there.",
+                     place(c.lifted_at)),
          "Turn the object about an edge that is outside of the water line, or lower it while it "
          "turns."});
-}
-
-std::string place(const Vec3& p) {
-  return fmt::format("({:.0f}, {:.0f}, {:.0f}) mm of the posed object", p.x(), p.y(), p.z());
 }
 
 std::string let_out(const AirPocket& pocket) {
@@ -215,8 +218,8 @@ void add_air(const TrappedAir& air, const Coverage& c, std::vector<Finding>& lis
   if (air.area_mm2() > 0) {
     const AirPocket& pocket = air.pockets.front();
     const bool much = air.area_mm2() > kMuchAir * c.object_mm2;
-    std::string text = fmt::format("of the surface stays dry: {:.2g} ml of air cannot get out",
-                                   air.volume_mm3() / 1000);
+    std::string text = fmt::format("of the surface stays dry: {} ml of air cannot get out",
+                                   plain_number(air.volume_mm3() / 1000));
     text += air.pockets.size() == 1 ? fmt::format(" from below {}.", place(pocket.top))
                                     : fmt::format(" of {} hollows; the largest reaches up to {}.",
                                                   air.pockets.size(), place(pocket.top));
@@ -320,8 +323,8 @@ Finding equilibrium(const ReportEquilibrium& e) {
           Concern::kStop,
           "Not computed",
           fmt::format("{} of {} steps", e.unconverged_steps, e.steps),
-          fmt::format("found no equilibrium of the film: its place is known to {:.2g} mm only.",
-                      e.residual_mm),
+          fmt::format("found no equilibrium of the film: its place is known to {} mm only.",
+                      plain_number(e.residual_mm)),
           "Turn steep sides and deep recesses away, dip less deep, or let the film tear "
           "(material.tear_stretch)."};
 }
@@ -380,16 +383,19 @@ Finding ink(const ReportInk& ink) {
 }
 
 Finding colors(const ReportColors& colors) {
+  const auto difference = [](double value) {
+    return value > 0 && value < 0.05 ? std::string("under 0.1") : fmt::format("{:.1f}", value);
+  };
   const bool plain = colors.error_most_of > kPlainDifference;
   Finding finding{"colors",
                   plain ? Concern::kCare : Concern::kNone,
                   "Colour error",
-                  fmt::format("{:.1f}", colors.error_mean),
+                  difference(colors.error_mean),
                   "",
                   ""};
   finding.text = fmt::format(
-      "on average where film lies (CIEDE2000; 1 is just visible); 95 % of it is within {:.1f}.",
-      colors.error_most_of);
+      "on average where film lies (CIEDE2000; 1 is just visible); on 95 % of it no more than {}.",
+      colors.error_most_of < 0.05 ? "0.1" : difference(colors.error_most_of));
   if (plain) finding.advice = "Where it is above 5 the difference is plain to see.";
   return finding;
 }

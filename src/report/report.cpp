@@ -20,18 +20,16 @@ std::string short_film_part(const Report& report) {
            : coverage.torn_mm2 > 0 ? "all film that meets the object tears"
                                    : "no film lies on the object";
   if (!has_wanted(report) && !(coverage.torn_mm2 > 0))
-    return fmt::format(
-        "{:.0f} % of the downward side covered, stretched up to {:.2f} times, no tears",
-        100 * coverage.covered_downward_share(), coverage.stretch_max);
+    return fmt::format("{} of the downward side covered, stretched up to {:.2f} times, no tears",
+                       percent(coverage.covered_downward_share()), coverage.stretch_max);
   std::string text =
       has_wanted(report)
           ? fmt::format(
-                "{:.0f} % of what shall be printed covered{}, {:.1f} % of the film that "
-                "meets the object torn",
-                100 * report.wanted->covered_share(), only_perhaps(report.wanted),
-                100 * coverage.torn_share())
-          : fmt::format("{:.0f} % of the object covered, {:.1f} % of the film that meets it torn",
-                        100 * coverage.covered_share(), 100 * coverage.torn_share());
+                "{} of what shall be printed covered{}, {} of the film that meets the object torn",
+                percent(report.wanted->covered_share()), only_perhaps(report.wanted),
+                percent(coverage.torn_share()))
+          : fmt::format("{} of the object covered, {} of the film that meets it torn",
+                        percent(coverage.covered_share()), percent(coverage.torn_share()));
   if (coverage.stretch_max > kMostStretch)
     text += fmt::format(", the rest stretched up to {:.2f} times", coverage.stretch_max);
   return text;
@@ -93,16 +91,19 @@ std::string unknown_verdict(const ReportEquilibrium& equilibrium) {
       equilibrium.unconverged_steps, equilibrium.steps);
 }
 
-// What gets film.
+// What gets film, or would if it bore it.
 std::string covered_part(const Report& report) {
   const Coverage& c = *report.coverage;
+  const bool breaks = c.stretch_max > kMostStretch;
+  const char* covers = breaks ? "would cover" : "covers";
   if (has_wanted(report))
-    return fmt::format("The film covers {} of what shall be printed{}",
+    return fmt::format("The film {} {} of what shall be printed{}", covers,
                        percent(report.wanted->covered_share()), only_perhaps(report.wanted));
   if (c.torn_mm2 > 0)
-    return fmt::format("Where it holds, the film covers {} of the object",
+    return fmt::format("{} film {} {} of the object",
+                       breaks ? "If the rest of it held, the" : "Where it holds, the", covers,
                        percent(c.covered_share()));
-  return fmt::format("The film covers {} of the surface that faces down ({} of all)",
+  return fmt::format("The film {} {} of the surface that faces down ({} of all)", covers,
                      percent(c.covered_downward_share()), percent(c.covered_share()));
 }
 
@@ -111,10 +112,8 @@ std::string lost_part(const Report& report) {
   const Coverage& c = *report.coverage;
   const std::string lost = percent(c.torn_share());
   if (c.stretch_max > kMostStretch)
-    return fmt::format(
-        "; it would be stretched {:.2f} times, and no film bears more than {:g}: do "
-        "not dip it like this.",
-        c.stretch_max, kMostStretch);
+    return fmt::format("; it would be stretched {:.2f} times, and no film bears more than {:g}.",
+                       c.stretch_max, kMostStretch);
   if (!(c.torn_mm2 > 0)) return fmt::format(" and stretches up to {:.2f} times", c.stretch_max);
   if (!(report.tear_stretch > 0))
     return fmt::format("; {} of what meets the object folds over and is lost.", lost);

@@ -7,6 +7,7 @@
 #include "report/findings.h"
 #include "report/html.h"
 #include "report/report.h"
+#include "report/shares.h"
 
 namespace hydrodip {
 namespace {
@@ -164,7 +165,6 @@ std::string dips(const Report& report, const ReportPictures& pictures) {
   std::string rows =
       "<tr><th scope=\"row\">Dip</th><td>held</td><td class=\"number\">depth</td><td "
       "class=\"number\">prints</td><td class=\"number\">covered after it</td></tr>\n";
-  const auto percent = [](double share) { return fmt::format("{:.1f}\u00a0%", 100 * share); };
   for (std::size_t k = 0; k < report.dips.size(); ++k) {
     const ReportDip& dip = report.dips[k];
     rows += fmt::format(
@@ -222,11 +222,10 @@ std::string angles(const Report& report) {
     rows += html_row(fmt::format("{} to {}\u00b0", 10 * bin, 10 * (bin + 1)),
                      with_unit(shown(area), "mm2"));
   }
-  return section(
-      "Dipping angle of what faces down",
-      rows + html_row(fmt::format("Steeper than {:.0f}\u00b0", kDipAngleLimit_deg),
-                      fmt::format("{} ({:.1f}\u00a0%)", with_unit(shown(a.over_limit_mm2), "mm2"),
-                                  100 * a.over_limit_share())));
+  return section("Dipping angle of what faces down",
+                 rows + html_row(fmt::format("Steeper than {:.0f}\u00b0", kDipAngleLimit_deg),
+                                 fmt::format("{} ({})", with_unit(shown(a.over_limit_mm2), "mm2"),
+                                             percent(a.over_limit_share()))));
 }
 
 std::string mesh(const Report& report) {

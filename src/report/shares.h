@@ -2,7 +2,7 @@
 // findings and what a customer reads.
 #pragma once
 
-#include <string>
+#include "base/plain_number.h"
 
 namespace hydrodip {
 
@@ -15,10 +15,7 @@ constexpr double kMuchOutOfGamut = 0.02;  // of the covered surface
 constexpr double kPale = 1.3;             // area ratio from which paling shows
 constexpr double kPlainDifference = 5;    // CIEDE2000: plain to see
 constexpr double kUsualMiss_mm = 1;       // how far off a dip usually lands
-
-constexpr double kSomeDoubt = 0.05;  // of what shall be printed and gets film: the verdict says it
-
-// "under 0.1 %", "2.1 %", "47 %".
-std::string percent(double share);
+// Of what shall be printed and gets film: the verdict says it.
+constexpr double kSomeDoubt = 0.05;
 
 }  // namespace hydrodip

@@ -159,6 +159,13 @@ TEST(Text, FitsWithDots) {
   EXPECT_LE(text_width_px(cut, style), 300);
   EXPECT_EQ(cut.substr(cut.size() - 3), "...");
   EXPECT_EQ(fit_text("short", style, 300), "short");
+  const std::vector<std::string> lines =
+      fit_lines("one two three four", style, text_width_px("one two three", style) + 1, 2);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0], "one two three");
+  EXPECT_EQ(lines[1], "four");
+  EXPECT_EQ(fit_lines("short", style, 300, 2).size(), 1U);
+  EXPECT_LE(text_width_px(fit_lines(text, style, 300, 2).back(), style), 300);
 }
 
 TEST(Text, AnyBytesAreDrawnWithinThePicture) {

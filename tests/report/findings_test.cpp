@@ -84,7 +84,9 @@ TEST(Findings, WhatNoFilmBearsIsAStop) {
   EXPECT_NE(concern_of(findings(report)), Concern::kStop);
   report.coverage->stretch_max = 25.96;
   EXPECT_EQ(concern(report, "stretch"), Concern::kStop);
-  EXPECT_EQ(verdict_of(report).find("dip it like this."), verdict_of(report).find("do not ") + 7);
+  // The headline says not to.
+  EXPECT_EQ(verdict_of(report).find("dip it like this"), std::string::npos);
+  EXPECT_EQ(verdict_of(report).find("covers"), std::string::npos);
   // Nor is that left out where film is lost as well, or only a picture is wanted.
   report.coverage->torn_mm2 = 1;
   EXPECT_NE(verdict_of(report).find("25.96"), std::string::npos);
@@ -301,6 +303,30 @@ TEST(Findings, FilmThatNeverTearsFolds) {
   report.coverage->torn_mm2 = 20;
   EXPECT_EQ(verdict_of(report).find("tears"), std::string::npos);
   EXPECT_NE(verdict_of(report).find("folds"), std::string::npos);
+}
+
+TEST(Findings, NumbersInSentencesAreForPeople) {
+  Report report = good_report();
+  TrappedAir air;
+  air.pockets.resize(1);
+  air.pockets[0].area_mm2 = 608;
+  air.pockets[0].volume_mm3 = 284e3;
+  air.pockets[0].top = Vec3(-0.4, -1, 4);
+  report.air = std::make_shared<const TrappedAir>(air);
+  report.equilibrium = {600, 1, 1600, 0};
+  report.colors = ReportColors{0.1, 0.04};
+  const std::vector<Finding> list = findings(report);
+  EXPECT_NE(find(list, "air")->text.find("284 ml"), std::string::npos);
+  EXPECT_NE(find(list, "air")->text.find("(0, -1, 4) mm"), std::string::npos);
+  EXPECT_NE(find(list, "equilibrium")->text.find("1600 mm"), std::string::npos);
+  EXPECT_NE(find(list, "colors")->text.find("no more than 0.1."), std::string::npos);
+  // Of both, what stands in a caption and in a sentence.
+  report.coverage->torn_mm2 = 90;  // 9.09 % of what meets the object
+  report.coverage->covered_mm2 = 178;
+  for (const std::string& told : {short_verdict(report), verdict_of(report)}) {
+    EXPECT_NE(told.find("8.9 % of the object"), std::string::npos) << told;
+    EXPECT_NE(told.find("9.1 % of "), std::string::npos) << told;
+  }
 }
 
 // All together are no better than one that is not to be made.

@@ -1,0 +1,14 @@
+// Numbers in sentences for people: rounded alike wherever they stand, and never with an exponent.
+#pragma once
+
+#include <string>
+
+namespace hydrodip {
+
+// "0 %", "under 0.1 %", "2.1 %", "47 %".
+std::string percent(double share);
+
+// To about two digits: "under 0.01", "0.24", "2.4", "280".
+std::string plain_number(double value);
+
+}  // namespace hydrodip
