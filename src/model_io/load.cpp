@@ -45,6 +45,9 @@ const Format& format_of(const fs::path& path) {
   const std::string extension = lower(path.extension().string());
   for (const Format& known : kFormats)
     if (extension == known.extension) return known;
+  std::error_code none;
+  if (fs::is_directory(path, none))
+    throw InputError(fmt::format("{}: it is a folder; name the model file in it.", path.string()));
   throw InputError(
       fmt::format("{}: unknown kind of model file '{}'; give OBJ, PLY, STL, OFF, 3MF, glTF or GLB.",
                   path.string(), extension));

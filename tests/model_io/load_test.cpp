@@ -363,6 +363,8 @@ TEST(LoadRefuses, MissingEmptyAndUnknownFiles) {
   ModelFolder folder;
   EXPECT_NE(refusal((folder / "none.obj")).find("none.obj"), std::string::npos);
   EXPECT_NE(refusal(folder.write("a.xyz", std::string("1 2 3"))).find(".xyz"), std::string::npos);
+  std::filesystem::create_directory(folder / "models");
+  EXPECT_NE(refusal(folder / "models").find("it is a folder"), std::string::npos);
   for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off", "a.3mf", "a.gltf", "a.glb"}) {
     EXPECT_NE(refusal(folder.write(name, std::string())).find("empty"), std::string::npos) << name;
   }
