@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/output_folder.h"
+#include "base/plain_number.h"
 #include "base/run_scope.h"
 #include "coat/film_paint.h"
 #include "job/computed.h"
@@ -25,17 +26,31 @@
 namespace hydrodip {
 namespace {
 
+constexpr double kFlat_mm = 0.01;
+
 // Why no film lies on the object.
-std::string why_no_film(const DippedObject& dipped, const Trajectory& trajectory, bool inside_out) {
+std::string why_no_film(const DippedObject& dipped, const Trajectory& trajectory,
+                        const JobConfig& config, bool inside_out) {
+  // What is flat as it is held only touches the film.
+  const double high_mm = dipped.posed.mesh().bounds().max.z();
+  if (!inside_out && trajectory.is_straight_down() && high_mm < kFlat_mm) {
+    const double asked_mm = config.design.trajectory.depth_mm;
+    return fmt::format(
+        "The object is flat as it is held, {} mm high, and goes no deeper than that{}: it only "
+        "touches the film. Tilt it (dip.tilt_deg=20, or --rotate 0,20,0), or give it a way of its "
+        "own (--path).",
+        plain_number(high_mm),
+        asked_mm > kFlat_mm ? fmt::format(" (the depth of {:g} mm was cut to it)", asked_mm) : "");
+  }
   const Room wet = room_of(dipped.posed.mesh(), trajectory);
   const double wide_mm = 2 * std::min(wet.half_width_mm, wet.half_height_mm);
   const double cell_mm = dipped.film->mesh().cell_mm;
   if (inside_out || dipped.coverage.torn_mm2 > 0 || wide_mm > 2 * cell_mm)
     return no_film_verdict(dipped.coverage, inside_out);
   return fmt::format(
-      "What comes into the water of the object is {:.2g} mm wide, and the film's triangles are "
-      "{:.2g} mm: raise film.elements, take a smaller --film, or dip deeper (--depth).",
-      wide_mm, cell_mm);
+      "What comes into the water of the object is {} mm wide, and the film's triangles are "
+      "{} mm: raise film.elements, take a smaller --film, or dip deeper (--depth).",
+      plain_number(wide_mm), plain_number(cell_mm));
 }
 
 // What film lies on the object, and yet there is no ink on it.
@@ -68,11 +83,11 @@ void require_ink(const Designed& designed, const ReadyJob& job) {
   if (std::any_of(laid.begin(), laid.end(), [](std::uint8_t value) { return value != 0; })) return;
   const std::string thin = told_thin(job.prepared.artwork, job.config.design.dpi);
   const bool has_film = designed.dipped.coverage.film_on_object_mm2 > 0;
-  throw InputError(fmt::format(
-      "{}: the sheet would be blank. {}", job.config.model.string(),
-      !has_film      ? why_no_film(designed.dipped, job.trajectory, job.prepared.health.inside_out)
-      : thin.empty() ? why_no_ink(designed.dipped, *job.prepared.paint)
-                     : thin));
+  throw InputError(fmt::format("{}: the sheet would be blank. {}", job.config.model.string(),
+                               !has_film ? why_no_film(designed.dipped, job.trajectory, job.config,
+                                                       job.prepared.health.inside_out)
+                               : thin.empty() ? why_no_ink(designed.dipped, *job.prepared.paint)
+                                              : thin));
 }
 
 }  // namespace

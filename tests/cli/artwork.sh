@@ -271,6 +271,11 @@ for dips in 1 2; do
   refused 'blank.*line.png: it is laid 40 x 0.1 mm, thinner than .*--art-size W,H' print plate.stl \
     --art line.png --art-at 20,15.2,0 --art-size 40 --dips $dips $quick -o nothing --quiet
 done
+# Flat as it is held: however deep was asked for, it only touches the film.
+printf 'v 0 0 0\nv 40 0 0\nv 40 30 0\nv 0 30 0\nf 1 2 3 4\n' > flat.obj
+# shellcheck disable=SC2086
+refused 'blank.*flat as it is held.*the depth of 5 mm was cut.*[Tt]ilt' print flat.obj --art photo.png --down +z \
+  --depth 5 $quick -o nothing --quiet
 refused 'needs artwork' print plate.stl --art-size 10 -o nothing
 refused 'size_mm must be W or W,H' print plate.stl --art photo.png --art-size 10,0 -o nothing
 refused 'projection must be one of planar' print plate.stl --art photo.png --projection flat -o nothing
