@@ -82,10 +82,10 @@ class Guide {
   }
 
   void prepare_film() {
-    person_.say(fmt::format(
-        "\nFILM. Print print.pdf at 100 % (check its 100 mm ruler). Tape {:g} mm around the edge. "
-        "Peel the backing off.",
-        tape_mm(job_.config)));
+    const double ruler = ruler_mm(job_.config);
+    person_.say(fmt::format("\nFILM. Print print.pdf at 100 %{}. {}. Peel the backing off.",
+                            ruler > 0 ? fmt::format(" (check its {:g} mm ruler)", ruler) : "",
+                            taping(job_.config)));
     person_.ask("Enter when the film is ready: ");
   }
 

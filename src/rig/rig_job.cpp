@@ -17,6 +17,7 @@
 #include "report/report.h"
 #include "settings/params.h"
 #include "sheet/film_marks.h"
+#include "sheet/marks.h"
 
 namespace hydrodip {
 namespace {
@@ -200,6 +201,16 @@ PlannedMove travel(const std::string& phase, double from_mm, double to_mm, doubl
 double tape_mm(const JobConfig& config) {
   const FilmOptions& film = config.design.film;
   return tape_mm(film.width_mm, film.height_mm, film.margin_mm, config.print.camera_marks);
+}
+
+std::string taping(const JobConfig& config) {
+  const double tape = tape_mm(config);
+  return tape > 0 ? fmt::format("Tape {:g} mm around all four edges", tape)
+                  : "No tape: the sheet has no margin for it";
+}
+
+double ruler_mm(const JobConfig& config) {
+  return ruler_mm(config.design.film.width_mm, config.design.film.margin_mm);
 }
 
 std::optional<SheetUse> sheet_use(const std::string& report) {

@@ -70,6 +70,9 @@ void require_lowering_only(const RigJob& job);
 Activator activator_for(const JobConfig& config);
 double bath_litres(const BathOptions& bath);
 double tape_mm(const JobConfig& config);  // of the sheet's edge, all around
+// "Tape 3 mm around all four edges": what is to be done with them.
+std::string taping(const JobConfig& config);
+double ruler_mm(const JobConfig& config);  // of the ruler in the sheet's margin; 0: it has none
 
 // The stage position at which the object's lowest point meets the water: stage.water_mm, else what
 // was found last and saved in the folder.

@@ -202,9 +202,10 @@ class RunSheet {
     page_.y = corner.y() - 0.5;
     page_.paragraph(
         x, width,
-        fmt::format("Seen from above; grey: {:g} mm of tape. The edge marked 'this edge "
-                    "left' lies to the left.",
-                    tape_mm(job_.config)),
+        (tape_mm(job_.config) > 0
+             ? fmt::format("Seen from above; grey: {:g} mm of tape.", tape_mm(job_.config))
+             : std::string("Seen from above.")) +
+            (film.margin_mm > 0 ? " The edge marked 'this edge left' lies to the left." : ""),
         kSmall_pt, PdfFont::kRegular, 0.25);
   }
 
@@ -230,26 +231,28 @@ class RunSheet {
     const JobConfig& config = job_.config;
     const Activator activator = activator_for(config);
     const std::vector<PlannedMove> plan = plan_dip(job_);
-    return {{"Film", fmt::format("{:g} x {:g} mm, ink side {}", config.design.film.width_mm,
-                                 config.design.film.height_mm, ink_side())},
-            {"Tape", fmt::format("{:g} mm all around, no slits", tape_mm(config))},
-            {"Water", fmt::format("{} °C, {:.1f} l",
-                                  span_in_words(process_.water_min_c, process_.water_max_c),
-                                  bath_litres(config.bath))},
-            {"Soak", span_in_words(process_.soak_min_s, process_.soak_max_s) + " s"},
-            {"Activator", in_words(activator)},
-            {"Then wait",
-             activator.mass_g > 0 ? fmt::format("{:g} s", process_.activator_wait_s) : "-"},
-            {"Depth", fmt::format("{:.2f} mm from the water", job_.depth_mm)},
-            {"Speed", fmt::format("{:g} mm/min", process_.speed_mm_per_min)},
-            {"Dip takes", fmt::format("{:.1f} s in the water",
-                                      60 * in_water_mm(job_) / process_.speed_mm_per_min)},
-            {"Then hold", fmt::format("{:g} s at least", process_.dwell_s)},
-            {"Lift",
-             fmt::format("{:g} mm/min, {:.1f} s", process_.lift_mm_per_min, plan.back().seconds)},
-            {"Dry", process_.dry_max_h > 0
-                        ? span_in_words(process_.dry_min_h, process_.dry_max_h) + " h"
-                        : "-"}};
+    return {
+        {"Film", fmt::format("{:g} x {:g} mm, ink side {}", config.design.film.width_mm,
+                             config.design.film.height_mm, ink_side())},
+        {"Tape", tape_mm(config) > 0 ? fmt::format("{:g} mm all around, no slits", tape_mm(config))
+                                     : std::string("none: the sheet has no margin")},
+        {"Water",
+         fmt::format("{} °C, {:.1f} l", span_in_words(process_.water_min_c, process_.water_max_c),
+                     bath_litres(config.bath))},
+        {"Soak", span_in_words(process_.soak_min_s, process_.soak_max_s) + " s"},
+        {"Activator", in_words(activator)},
+        {"Then wait",
+         activator.mass_g > 0 ? fmt::format("{:g} s", process_.activator_wait_s) : "-"},
+        {"Depth", fmt::format("{:.2f} mm from the water", job_.depth_mm)},
+        {"Speed", fmt::format("{:g} mm/min", process_.speed_mm_per_min)},
+        {"Dip takes",
+         fmt::format("{:.1f} s in the water", 60 * in_water_mm(job_) / process_.speed_mm_per_min)},
+        {"Then hold", fmt::format("{:g} s at least", process_.dwell_s)},
+        {"Lift",
+         fmt::format("{:g} mm/min, {:.1f} s", process_.lift_mm_per_min, plan.back().seconds)},
+        {"Dry", process_.dry_max_h > 0
+                    ? span_in_words(process_.dry_min_h, process_.dry_max_h) + " h"
+                    : "-"}};
   }
 
   // For whoever sets up the stage, or dips by hand.
@@ -298,12 +301,18 @@ class RunSheet {
     const JobConfig& config = job_.config;
     const Activator activator = activator_for(config);
     page_.heading("Before");
-    page_.task("Print print.pdf at 100 %, no scaling; measure the 100 mm ruler in its margin.",
-               {"Ruler, mm"});
-    page_.task(
-        fmt::format("Tape {:g} mm around all four edges, flat and without gaps; no slits. "
-                    "Take the protective layer off the film.",
-                    tape_mm(config)));
+    if (const double ruler = ruler_mm(config); ruler > 0)
+      page_.task(
+          fmt::format(
+              "Print print.pdf at 100 %, no scaling; measure the {:g} mm ruler in its margin.",
+              ruler),
+          {"Ruler, mm"});
+    else
+      page_.task(
+          "Print print.pdf at 100 %, no scaling; it has no ruler: measure its picture against "
+          "print.png's size.");
+    page_.task(taping(config) + (tape_mm(config) > 0 ? ", flat and without gaps; no slits." : ".") +
+               " Take the protective layer off the film.");
     page_.task(
         job_.earlier_dips > 0
             ? fmt::format("Object dry from dip {}, its coat untouched; hung as on page 1, over "

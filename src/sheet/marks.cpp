@@ -21,6 +21,7 @@ constexpr double kLabelPt = 5;
 constexpr double kLeastLabelPt = 3.5;
 constexpr double kCapHeight = 0.72;  // of the font size: Helvetica's capitals and digits
 constexpr double kRulerMm = 100;
+constexpr double kShortestRulerMm = 10;
 constexpr double kRulerRoomMm = 25;  // what a full ruler leaves free of the sheet's width
 constexpr double kLeastNamePt = 6;   // a long job name is shortened rather than made smaller
 constexpr std::size_t kLongestName = 300;
@@ -34,6 +35,10 @@ struct Slot {
   bool align_end;           // ... or, on the right edge, from its top
   bool taken = false;
 };
+
+double longest_ruler(double width_mm) {
+  return std::min(kRulerMm, 10 * std::floor((width_mm - kRulerRoomMm + 1e-9) / 10));
+}
 
 class MarkMaker {
  public:
@@ -88,9 +93,7 @@ class MarkMaker {
   void line(const Vec2& from, const Vec2& to) { marks_.lines.push_back({from, to}); }
 
   // The ruler hangs from a line just below the free film; its middle is the sheet's middle.
-  double ruler_length() const {
-    return std::min(kRulerMm, 10 * std::floor((width_ - kRulerRoomMm + 1e-9) / 10));
-  }
+  double ruler_length() const { return longest_ruler(width_); }
   double ruler_y() const { return margin_ - 0.7 * scale_; }
   double tick_length(int mm) const {
     return scale_ * (mm % 10 == 0 ? 2.6 : mm % 5 == 0 ? 1.9 : 1.2);
@@ -103,7 +106,7 @@ class MarkMaker {
 
   void ruler() {
     const int length = static_cast<int>(ruler_length());
-    if (length < 10) {
+    if (length < kShortestRulerMm) {
       marks_.warnings.push_back(fmt::format(
           "A sheet {:g} mm wide has no room for a ruler; check the print's size yourself.",
           width_));
@@ -155,7 +158,7 @@ class MarkMaker {
     const double clear = edge_clearance();
     const double gap = 2 * scale_;
     const double ruler_half =
-        ruler_length() < 10
+        ruler_length() < kShortestRulerMm
             ? gap
             : 0.5 * ruler_length() + 2 * gap + (has_labels() ? length_of("0 mm", label_size()) : 0);
     const double x = 0.5 * width_;
@@ -260,7 +263,8 @@ class MarkMaker {
         place("Print at 100 %", {kRightLower, kLeftLower});
     const double length = ruler_length();
     std::string film = fmt::format("Film {:.4g} x {:.4g} mm", width_, height_);
-    if (length >= 10 && length < kRulerMm) film += fmt::format(", ruler {:g} mm", length);
+    if (length >= kShortestRulerMm && length < kRulerMm)
+      film += fmt::format(", ruler {:g} mm", length);
     place(film, {kBottomLeft, kLeftLower, kRightLower});
   }
 
@@ -325,6 +329,11 @@ class MarkMaker {
 };
 
 }  // namespace
+
+double ruler_mm(double width_mm, double margin_mm) {
+  const double length = longest_ruler(width_mm);
+  return margin_mm < kLeastMarginMm || length < kShortestRulerMm ? 0 : length;
+}
 
 Marks make_marks(const SheetOptions& options, const TextWidth& text_width) {
   return MarkMaker(options, text_width).make();

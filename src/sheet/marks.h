@@ -55,4 +55,7 @@ using TextWidth = std::function<double(const std::string& text)>;
 // not fit are left out, with a warning if they matter.
 Marks make_marks(const SheetOptions& options, const TextWidth& text_width);
 
+// The length of the ruler that a sheet of that width has in such a margin; 0: it has none.
+double ruler_mm(double width_mm, double margin_mm);
+
 }  // namespace hydrodip

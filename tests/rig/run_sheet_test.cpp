@@ -93,6 +93,23 @@ TEST_F(RunSheetTest, WhatIsNothingIsNotAskedFor) {
   EXPECT_NE(text.find("Spray 0.30 g of activator, 0.00 to 0.80 g"), std::string::npos) << text;
 }
 
+// What is to be measured and taped is what the sheet has.
+TEST_F(RunSheetTest, TheRulerAndTheTapeAreTheSheetsOwn) {
+  nlohmann::json report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  rig_sheet(load_rig_job(folder_, {}), "", "", context_);
+  EXPECT_NE(read_back("pdftotext -layout").find("the 100 mm ruler"), std::string::npos);
+  report["parameters"]["film.width_mm"] = {{"value", 120}};
+  write_file(folder_ / "report.json", report.dump());
+  rig_sheet(load_rig_job(folder_, {}), "", "", context_);
+  EXPECT_NE(read_back("pdftotext -layout").find("the 90 mm ruler"), std::string::npos);
+  report["parameters"]["film.margin_mm"] = {{"value", 0}};
+  write_file(folder_ / "report.json", report.dump());
+  rig_sheet(load_rig_job(folder_, {}), "", "", context_);
+  const std::string text = read_back("pdftotext -layout");
+  for (const char* no : {"mm ruler", "Ruler, mm", "Tape 0", " 0 mm all around", "0 mm of tape"})
+    EXPECT_EQ(text.find(no), std::string::npos) << no << "\n" << text;
+}
+
 TEST_F(RunSheetTest, LettersThatItLacksAreToldOf) {
   RigJob job = load_rig_job(folder_, {});
   job.batch = "Größe M?";

@@ -183,6 +183,7 @@ TEST(Marks, NarrowSheetsHaveAShorterRulerThatSaysSo) {
     const Marks marks = make_marks(options, half_em);
     const std::vector<double> x = ruler_ticks(marks, options);
     ASSERT_EQ(x.size(), std::size_t(length) + 1) << width;
+    EXPECT_EQ(ruler_mm(width, 10), length);
     EXPECT_NEAR(x.back() - x.front(), length, 1e-12);
     EXPECT_NE(find_text(marks, std::to_string(length) + " mm"), nullptr) << width;
     EXPECT_EQ(find_text(marks, "ruler " + std::to_string(length)) != nullptr, length < 100);
