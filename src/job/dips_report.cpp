@@ -150,7 +150,8 @@ std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& sha
                     dip.made.dipped.coverage.torn_share(),
                     obstacle_of(dip, all.dips.size()),
                     brought.wanted ? std::optional(brought.gained_wanted[k]) : std::nullopt,
-                    dip.blank});
+                    dip.blank,
+                    dip.trial.path});
   }
   return list;
 }

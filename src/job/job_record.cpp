@@ -12,6 +12,7 @@
 #include "report/findings.h"
 #include "settings/artwork_tables.h"
 #include "settings/params.h"
+#include "settings/path_file.h"
 
 namespace hydrodip {
 namespace {
@@ -160,7 +161,8 @@ std::vector<ReportInput> describe_inputs(const JobConfig& config, const Prepared
   if (!printer.profile_file.empty())
     inputs.push_back({"printer profile", printer.profile_file.string(),
                       sha256_hex(printer.profile_bytes), printer.profile_bytes.size()});
-  for (const auto& file : config.settings_files) inputs.push_back(describe_input("settings", file));
+  for (const auto& file : config.settings_files)
+    inputs.push_back(describe_input(is_path_file(file) ? "path" : "settings", file));
   if (!config.report.logo.empty()) {
     inputs.push_back(describe_input("logo", config.report.logo));
     logo_png(config.report.logo);  // what is wrong with it is said before all the work

@@ -24,7 +24,7 @@ namespace hydrodip {
 inline constexpr int kReportSchemaVersion = 1;
 
 struct ReportInput {
-  std::string role;  // "model", "texture", "settings", "film image", "correction"
+  std::string role;  // "model", "texture", "settings", "path", "film image", "correction"
   std::string path;  // as given
   std::string sha256;
   std::uint64_t bytes = 0;
@@ -113,7 +113,8 @@ struct ReportDip {
   std::optional<ReportObstacle> obstacle;
   // Like gained_share, of what shall be printed, if that is not everywhere.
   std::optional<double> gained_wanted_share;
-  bool blank = false;  // its sheet has no ink
+  bool blank = false;          // its sheet has no ink
+  std::vector<Keyframe> path;  // its way in; empty: straight down
 };
 
 // Where several dips meet.

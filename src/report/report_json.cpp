@@ -196,9 +196,15 @@ Json dips_json(const Report& report) {
                     {"gained_share", number(dip.gained_share)},
                     {"covered_share", number(dip.covered_share)},
                     {"torn_share", number(dip.torn_share)}});
-  for (std::size_t k = 0; k < report.dips.size(); ++k)
+  for (std::size_t k = 0; k < report.dips.size(); ++k) {
+    Json path = Json::array();
+    for (const Keyframe& key : report.dips[k].path)
+      path.push_back({number(key.lower_mm), number(key.shift_x_mm), number(key.shift_y_mm),
+                      number(key.turn_x_deg), number(key.turn_y_deg), number(key.turn_z_deg)});
+    list[k]["path"] = std::move(path);
     if (const auto& share = report.dips[k].gained_wanted_share)
       list[k]["gained_wanted_share"] = number(*share);
+  }
   return list;
 }
 

@@ -56,6 +56,14 @@ Keyframe keyframe_of(const std::vector<std::string_view>& cells, const std::stri
 
 }  // namespace
 
+bool is_path_file(const std::filesystem::path& file) {
+  const std::vector<std::uint8_t> bytes = read_file(file);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  for (const std::string_view line : split(text, '\n'))
+    if (!line.empty() && line[0] != '#') return line == kHeader;
+  return false;
+}
+
 std::vector<Keyframe> path_of_rows(const std::string& text, const std::string& origin) {
   std::vector<Keyframe> keyframes;
   for (const std::string_view row : split(text, ';'))

@@ -14,6 +14,9 @@ namespace hydrodip {
 // and line.
 std::vector<Keyframe> read_path(const std::filesystem::path& file);
 
+// Whether a file begins as one of those does; no configuration does.
+bool is_path_file(const std::filesystem::path& file);
+
 // The same rows in one line, "0,0,0,0,0,0; 20,6,0,0,10,0", as reports have them.
 std::vector<Keyframe> path_of_rows(const std::string& text, const std::string& origin);
 std::string rows_of(const std::vector<Keyframe>& keyframes);

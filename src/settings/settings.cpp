@@ -150,6 +150,19 @@ void forget_tables_before(JobConfig& config, const std::vector<Setting>& file) {
   if (has("dip[")) config.dips.clear();
 }
 
+// The files that ways into the water came from are in the configuration as rows only.
+void keep_path_files(JobConfig& config, const std::vector<Setting>& all) {
+  const auto keep = [&](const std::string& name, const std::vector<Keyframe>& path) {
+    const Setting* last = last_given(all, name);
+    const auto* text = last ? std::get_if<std::string>(&last->value) : nullptr;
+    if (!path.empty() && text && text->find(';') == std::string::npos)
+      config.settings_files.emplace_back(*text);
+  };
+  keep("path", config.design.trajectory.path);
+  for (std::size_t k = 0; k < config.dips.size(); ++k)
+    keep(fmt::format("dip[{}].path", k + 1), config.dips[k].path);
+}
+
 }  // namespace
 
 void apply_sources(JobConfig& config, const SettingSources& sources) {
@@ -175,6 +188,7 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
   add(sources.options);
   add(sources.sets);
   settle(config, all);
+  keep_path_files(config, all);
 }
 
 void settle(JobConfig& config, const std::vector<Setting>& given) {

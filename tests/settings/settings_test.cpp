@@ -1,4 +1,5 @@
 #include "settings/settings.h"
+#include "settings/path_file.h"
 
 #include <gtest/gtest.h>
 
@@ -364,6 +365,29 @@ TEST_F(Settings, PathsInAFileAreRelativeToIt) {
   EXPECT_EQ(config.object.load.texture, folder_ / "skin.png");
   EXPECT_EQ(from_toml("object.texture = '/abs/skin.png'").object.load.texture, "/abs/skin.png");
   EXPECT_TRUE(from_toml("object.texture = ''").object.load.texture.empty());
+}
+
+// A report names every file that a job was made from; of a path none but the rows is left.
+TEST_F(Settings, FilesOfPathsAreRemembered) {
+  const std::string header = "lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_z_deg\n";
+  const auto way = file("# tilted\n\n" + header + "0,0,0,0,0,0\n5,0,0,0,0,0\n", "way.csv");
+  const auto other = file(header + "0,0,0,0,0,0\n6,0,0,0,0,0\n", "other.csv");
+  SettingSources sources;
+  const auto job = file("path = 'other.csv'\n");
+  sources.configs = {job};
+  sources.options = {{"path", way.string(), false, "", "--path"}};
+  using Files = std::vector<std::filesystem::path>;
+  EXPECT_EQ(configured("model.obj", sources).settings_files, (Files{job, way}));
+  EXPECT_TRUE(is_path_file(way));
+  EXPECT_FALSE(is_path_file(job));
+  sources.options.clear();
+  EXPECT_EQ(configured("model.obj", sources).settings_files, (Files{job, other}));
+  const auto dips = file("[[dip]]\ndown = '-z'\n[[dip]]\npath = 'way.csv'\n", "dips.toml");
+  sources.configs = {dips};
+  EXPECT_EQ(configured("model.obj", sources).settings_files, (Files{dips, way}));
+  const auto rows = file("path = [[0,0,0,0,0,0], [5,0,0,0,0,0]]\n", "rows.toml");
+  sources.configs = {rows};
+  EXPECT_EQ(configured("model.obj", sources).settings_files, Files{rows});
 }
 
 TEST_F(Settings, SetNeedsNameAndValue) {
