@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 
 namespace hydrodip {
 namespace {
@@ -33,20 +34,44 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 std::string last_part(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
+// "depth" of "depth_mm".
+std::string without_unit(const std::string& name) {
+  for (const char* unit : {"_mm_per_min", "_mm", "_mm2", "_deg", "_px", "_s", "_h", "_c", "_g"})
+    if (name.size() > std::string_view(unit).size() && name.ends_with(unit))
+      return name.substr(0, name.size() - std::string_view(unit).size());
+  return name;
+}
+
+// In half edits: 1 for one name with another unit or none, a little more if its group differs, too.
+std::size_t distance_between(const std::string& wanted, const std::string& candidate) {
+  std::size_t distance = 2 * edit_distance(wanted, candidate);
+  const bool grouped = wanted.find('.') != std::string::npos;
+  const std::string last = last_part(candidate);
+  if (!grouped && candidate.find('.') != std::string::npos)
+    distance = std::min(distance, 2 * edit_distance(wanted, last));
+  // Cut short, as in 'depth' for 'depth_mm'.
+  if (wanted.size() >= kLeastOfName && (candidate.starts_with(wanted) || last.starts_with(wanted)))
+    distance = std::min<std::size_t>(distance, 2);
+  const std::string bare = without_unit(last_part(wanted)), core = without_unit(last);
+  if (bare == core && core.size() >= kLeastOfName)
+    distance = std::min<std::size_t>(
+        distance,
+        !grouped || candidate.starts_with(wanted.substr(0, wanted.rfind('.') + 1)) ? 1 : 2);
+  // With a word before it, as in 'art_size' for 'size_mm'.
+  if (core.size() >= kLeastOfName && bare.ends_with("_" + core))
+    distance = std::min<std::size_t>(distance, 2);
+  return distance;
+}
+
 }  // namespace
 
 std::string nearest_name(const std::string& name, const std::vector<std::string>& known) {
   if (name.empty() || name.size() > kLongestName) return "";
   const std::string wanted = lower(name);
   std::string best;
-  std::size_t best_distance = 1 + std::max<std::size_t>(1, wanted.size() / 3);
+  std::size_t best_distance = 2 * (1 + std::max<std::size_t>(1, wanted.size() / 3));
   for (const std::string& candidate : known) {
-    std::size_t distance = edit_distance(wanted, lower(candidate));
-    if (wanted.find('.') == std::string::npos && candidate.find('.') != std::string::npos)
-      distance = std::min(distance, edit_distance(wanted, lower(last_part(candidate))));
-    // Cut short, as in 'depth' for 'depth_mm'.
-    if (wanted.size() >= kLeastOfName && lower(candidate).rfind(wanted, 0) == 0)
-      distance = std::min<std::size_t>(distance, 1);
+    const std::size_t distance = distance_between(wanted, lower(candidate));
     if (distance < best_distance) {
       best_distance = distance;
       best = candidate;

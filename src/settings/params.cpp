@@ -212,7 +212,9 @@ const Parameter& find_parameter(const std::string& name, const std::string& orig
     if (p.name == name) return p;
     names.push_back(p.name);
   }
-  const std::string hint = did_you_mean(name, names);
+  // Another word for it, which no letters tell.
+  const bool resolution = name.substr(name.rfind('.') + 1) == "resolution";
+  const std::string hint = resolution ? "; did you mean 'print.dpi'?" : did_you_mean(name, names);
   std::string brief = name.substr(0, 100);
   std::replace(brief.begin(), brief.end(), '\0', '?');  // a sentence would end there
   throw InputError(fmt::format("{}: unknown parameter '{}'{}", origin, brief,

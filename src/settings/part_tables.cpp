@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/nearest_name.h"
 #include "base/parse_double.h"
 #include "settings/table_key.h"
 
@@ -51,8 +52,8 @@ bool apply_part_setting(JobConfig& config, const Setting& setting) {
   } else if (at->key == "count") {
     part.count = count_of(setting);
   } else {
-    throw InputError(fmt::format("{}: unknown '{}': a part has a job and a count", setting.origin,
-                                 setting.name));
+    throw InputError(fmt::format("{}: unknown '{}': a part has a job and a count{}", setting.origin,
+                                 setting.name, did_you_mean(at->key, {"job", "count"})));
   }
   return true;
 }

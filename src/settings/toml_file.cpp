@@ -30,6 +30,7 @@ constexpr void check(bool holds) {
 
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/nearest_name.h"
 #include "base/small_file.h"
 #include "base/unicode.h"
 #include "settings/artwork_tables.h"
@@ -144,16 +145,46 @@ class SettingReader {
     return static_cast<std::size_t>(first - ends.begin()) + 1;
   }
 
+  // Of a group with values each of them is looked at; in an empty one nothing is.
+  void require_known_group(const std::string& name, const toml::table& group,
+                           const toml::source_position& at) const {
+    const std::string origin = fmt::format("{}:{}", file_.string(), at.line);
+    if (name == kArtworkTables || name == kPartTables)
+      throw InputError(fmt::format("{}: write [[{}]] with two brackets on each side, once for each",
+                                   origin, name));
+    if (!group.empty()) return;
+    std::vector<std::string> groups = {"dips"};
+    for (const Parameter& p : parameters()) {
+      const std::string group_name = p.name.substr(0, p.name.find('.'));
+      if (p.name.starts_with(known_name(name + "."))) return;
+      if (group_name != p.name && groups.back() != group_name) groups.push_back(group_name);
+    }
+    if (name == "dips") return;
+    throw InputError(
+        fmt::format("{}: unknown group '{}'{}", origin, name, did_you_mean(name, groups)));
+  }
+
+  void require_known_table(const std::string& name, const toml::source_position& at,
+                           const toml::node& node) const {
+    const std::string hint = did_you_mean(name, {kArtworkTables, kPartTables, kDipTables});
+    if (node.is_array_of_tables() && !hint.empty())
+      throw InputError(
+          fmt::format("{}:{}: unknown table '{}'{}", file_.string(), at.line, name, hint));
+  }
+
   void collect(const toml::table& table, const std::string& prefix) {
     for (const auto& [key, node] : table) {
       const std::string name = prefix + std::string(key.str());
-      if (const toml::table* inner = node.as_table())
+      if (const toml::table* inner = node.as_table()) {
+        require_known_group(name, *inner, key.source().begin);
         collect(*inner, name + ".");
-      else if ((name == kArtworkTables || name == kPartTables || name == kDipTables) &&
-               node.is_array_of_tables())
+      } else if ((name == kArtworkTables || name == kPartTables || name == kDipTables) &&
+                 node.is_array_of_tables())
         collect_tables(*node.as_array(), name);
-      else
+      else {
+        require_known_table(name, key.source().begin, node);
         add(name, key.source().begin, node);
+      }
     }
   }
 

@@ -25,6 +25,18 @@ TEST(NearestName, FindsTheLastPartAlone) {
   EXPECT_EQ(nearest_name("step_mn", kNames), "dip.step_mm");
 }
 
+TEST(NearestName, UnitsAndGroupsDoNotMatter) {
+  const std::vector<std::string> names = {"dip.tilt_toward_deg", "dip.tilt_deg", "film.margin_mm",
+                                          "process.speed_mm_per_min", "dip.depth_mm"};
+  EXPECT_EQ(nearest_name("depth", names), "dip.depth_mm");
+  EXPECT_EQ(nearest_name("tilt", names), "dip.tilt_deg");
+  EXPECT_EQ(nearest_name("margin", names), "film.margin_mm");
+  EXPECT_EQ(nearest_name("margin_cm", names), "film.margin_mm");
+  EXPECT_EQ(nearest_name("speed", names), "process.speed_mm_per_min");
+  EXPECT_EQ(nearest_name("object.depth", names), "dip.depth_mm");
+  EXPECT_EQ(nearest_name("art_size", {"turn_deg", "size_mm"}), "size_mm");
+}
+
 TEST(NearestName, SaysNothingWhenNothingIsNear) {
   EXPECT_EQ(nearest_name("colour", kNames), "");
   EXPECT_EQ(nearest_name("", kNames), "");

@@ -1,5 +1,4 @@
 #include "settings/settings.h"
-#include "settings/path_file.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,7 @@
 
 #include "base/error.h"
 #include "contains.h"
+#include "settings/path_file.h"
 
 namespace hydrodip {
 namespace {
@@ -123,6 +123,28 @@ TEST_F(Settings, UnknownNamesSayTheNearestOneAndWhereTheyStand) {
   const std::string message = toml_error("\n[film]\nelemnts = 5\n");
   EXPECT_TRUE(contains(message, "job.toml:3: unknown parameter 'film.elemnts'")) << message;
   EXPECT_TRUE(contains(toml_error("[[film]]\nwidth_mm = 3\n"), "unknown parameter 'film'"));
+}
+
+TEST_F(Settings, UnknownNamesWithoutGroupOrUnitFindTheirs) {
+  for (const auto& [given, meant] : {std::pair("depth", "dip.depth_mm"),
+                                     {"tilt", "dip.tilt_deg"},
+                                     {"margin", "film.margin_mm"},
+                                     {"dip.margin", "film.margin_mm"},
+                                     {"print.resolution", "print.dpi"}})
+    EXPECT_TRUE(
+        contains(set_error(std::string(given) + "=5"), std::string("did you mean '") + meant + "'"))
+        << set_error(std::string(given) + "=5");
+  EXPECT_TRUE(contains(toml_error("[[artwork]]\nart_size = 5\n"), "did you mean 'size_mm'"));
+  EXPECT_TRUE(contains(toml_error("[[artworks]]\nimage = 'a.png'\n"), "did you mean 'artwork'"));
+  EXPECT_TRUE(contains(toml_error("[artwork]\nimage = 'a.png'\n"), "[[artwork]]"));
+}
+
+TEST_F(Settings, UnknownGroupsAreRefusedEvenIfEmpty) {
+  EXPECT_EQ(toml_error("\n[objekt]\n"),
+            (folder_ / "job.toml").string() + ":2: unknown group 'objekt'; did you mean 'object'?");
+  EXPECT_TRUE(contains(toml_error("[film.foo]\n"), "unknown group 'film.foo'"));
+  for (const char* known : {"[film]\n", "[dips]\n", "[dip]\n", "[object]\n[run]\n"})
+    EXPECT_EQ(toml_error(known), "accepted") << known;
 }
 
 TEST_F(Settings, TablesAreNumbered) {
