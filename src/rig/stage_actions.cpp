@@ -26,7 +26,9 @@ using Json = nlohmann::ordered_json;
 JobResult answer(const std::string& action, const std::string& text, const Json& members) {
   JobResult result;
   result.text = text;
-  result.json = json_answer("rig " + action, members);
+  Json all = {{"action", action}};
+  all.update(members);
+  result.json = json_answer("rig stage", all);
   return result;
 }
 
@@ -40,6 +42,23 @@ Json state_json(const StageOptions& stage, const StageState& state) {
           {"homed", state.homed},
           {"moving", state.moving},
           {"fault", state.fault}};
+}
+
+// As describe_plan() tells them; null: it stands still, or the water level is not known.
+Json movements_json(const RigJob& job, std::optional<double> water_mm) {
+  const auto position = [&](double height_mm) {
+    return water_mm ? Json(stage_position_mm(job.config.stage, *water_mm, height_mm)) : Json();
+  };
+  Json list = Json::array();
+  for (const PlannedMove& move : plan_dip(job))
+    list.push_back({{"phase", move.phase},
+                    {"from_mm", move.from_height_mm},
+                    {"to_mm", move.to_height_mm},
+                    {"mm_per_min", move.mm_per_min > 0 ? Json(move.mm_per_min) : Json()},
+                    {"seconds", move.seconds},
+                    {"from_position_mm", position(move.from_height_mm)},
+                    {"to_position_mm", position(move.to_height_mm)}});
+  return list;
 }
 
 bool needs_job(const std::string& action) {
@@ -138,7 +157,9 @@ JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOpt
     if (!job) return told(action.action, fmt::format("{}: nothing was moved\n", action.action));
     const std::optional<double> water_mm = known_water_level_mm(*job);
     if (water_mm) require_within_travel(*job, *water_mm);
-    return told(action.action, describe_plan(*job, water_mm) + "Nothing was moved.\n");
+    const std::string text = describe_plan(*job, water_mm) + "Nothing was moved.\n";
+    return answer(action.action, text,
+                  {{"movements", movements_json(*job, water_mm)}, {"text", text}});
   }
   if (action.action == "status") return status(stage, bench, context);
   if (action.action == "dip" || action.action == "retract") require_level(*job);
@@ -153,7 +174,7 @@ JobResult rig_stage(const StageAction& action, const RigJob* job, const StageOpt
   RunRecord record(*job, bench.clock);
   record.note("start", {{"job", job->title}, {"action", action.action}});
   JobResult result = finish_run(
-      record, "rig " + action.action,
+      record, "rig stage",
       [&] {
         session.emplace(stage, bench, &record, context);
         perform(*session, action, job);

@@ -31,6 +31,17 @@ expect 2 '--port' rig stage status
 expect 2 'no-such-port' rig stage status --port /dev/no-such-port
 expect 2 'not a serial port' rig stage status --port job/report.json
 expect 0 'Nothing was moved' rig stage dip job --dry-run
+"$hydrodip" rig stage dip job --dry-run --json --set stage.water_mm=400 > plan.json || fail 'the plan as JSON'
+python3 - plan.json << 'PY' || fail "the plan as JSON: $(cat plan.json)"
+import json, sys
+plan = json.load(open(sys.argv[1]))
+assert plan['command'] == 'rig stage' and plan['action'] == 'dip', plan
+assert [move['phase'] for move in plan['movements']] == ['approach', 'dip', 'dwell', 'retract']
+dip, dwell = plan['movements'][1:3]
+assert dip['from_mm'] > 0 > dip['to_mm'] and abs(dip['from_position_mm'] - 400) == dip['from_mm'], dip
+assert abs(dip['seconds'] - 60 * (dip['from_mm'] - dip['to_mm']) / dip['mm_per_min']) < 1e-9, dip
+assert dwell['mm_per_min'] is None and dwell['from_mm'] == dwell['to_mm'], dwell
+PY
 expect 3 'beyond the stage' rig stage dip job --dry-run --set stage.travel_mm=750 --set stage.water_mm=749.9
 expect 0 'Nothing was moved' rig stage dip job --dry-run --set stage.travel_mm=750 --set stage.water_mm=400
 
