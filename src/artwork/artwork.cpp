@@ -58,6 +58,9 @@ class LayeredPaint : public Paint {
                        [](const Layer& layer) { return !layer.placement; });
   }
   bool says_anything() const override { return true; }
+  bool shows(std::size_t layer, const SurfacePoint& point) const {
+    return shown(layers_[layer], point, nullptr).a >= kNothing;
+  }
 
  private:
   // From the top down to the first layer that hides all below, and back up again.
@@ -435,10 +438,16 @@ Artwork lay_artwork(ArtworkTask task, const PosedObject& posed, const RunContext
   Artwork artwork;
   for (std::size_t n = 0; n < task.layers.size(); ++n) {
     context.progress("laying artwork", double(n) / double(task.layers.size()));
-    LaidLayer laid{.name = name_of(task.layers[n]), .layer = {}, .fonts = task.pictures[n].fonts()};
+    LaidLayer laid{.name = name_of(task.layers[n]),
+                   .layer = {},
+                   .fonts = task.pictures[n].fonts(),
+                   .shows = {}};
     Layer layer = lay(task.layers[n], task.pictures[n], task, paint->posed(), laid, context);
     laid.size_mm = layer.frame.size_mm();
     context.log(laid.name + ": " + describe(laid));
+    if (layer.placement)
+      laid.shows = [paint = std::shared_ptr<const LayeredPaint>(paint),
+                    n](const SurfacePoint& point) { return paint->shows(n, point); };
     artwork.layers.push_back(std::move(laid));
     paint->add(std::move(layer));
   }

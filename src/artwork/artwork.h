@@ -1,6 +1,7 @@
 // Layers of artwork over the colours that an object has: a paint like any other.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ struct LaidLayer {
   // Wrapped: lengths on the surface over the picture's.
   double stretch_least = 1, stretch_most = 1;
   std::vector<FontUse> fonts;  // of a text
+  // Whether anything of it shows at a point of the object, if nothing lies above it. Safe to ask
+  // from many threads; empty: it is laid on the film.
+  std::function<bool(const SurfacePoint&)> shows;
 };
 
 // "40.0 x 20.0 mm, stretched 0.93 to 1.00 times, set in DejaVu Sans Bold".

@@ -20,6 +20,7 @@
 #include "job/logo.h"
 #include "job/output.h"
 #include "job/sheet_of.h"
+#include "job/wanted.h"
 #include "object/bake.h"
 #include "report/findings.h"
 #include "session/sheet_files.h"
@@ -121,6 +122,15 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   const SharedSurface shared = divide(all, printer, times, context);
   const Finish finish = make_dips(all, shared, printer, times, context);
   require_some_ink(all);
+  warn_of_dry_layers(
+      prepared.artwork, all.nodes->targets(),
+      [&](const Target& at) {
+        return std::any_of(all.dips.begin(), all.dips.end(), [&](const MadeDip& dip) {
+          const Target hung = in_pose(at, dip.posed);
+          return bool(dip.made.dipped.map->to_film(hung.position, hung.normal));
+        });
+      },
+      context);
   times.measure("sheet", [&] {
     for (MadeDip& dip : all.dips) write_dip(folder, dip, all, inputs, printer, times, context);
   });

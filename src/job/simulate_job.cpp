@@ -241,11 +241,17 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
   JobRecord record{command, config,      job.prepared,
                    inputs,  made.finish, times,
                    context, nullptr,     job.printer.model->name()};
-  if (config.film_image.empty())
+  if (config.film_image.empty()) {
+    if (!job.prepared.artwork.empty())
+      warn_of_dry_layers(
+          job.prepared.artwork, spread_targets(job.prepared.posed.mesh(), kWantedPoints),
+          [&](const Target& at) { return bool(made.dipped.map->to_film(at.position, at.normal)); },
+          context);
     record.wanted = wanted_coverage(made.dipped, *job.prepared.paint,
                                     doubtful_stretch(config.design.dip.material));
-  else
+  } else {
     record.laid = ink_amounts(printed.inks, config.design.inking.limit);
+  }
   const Report first_look = make_report(record);
   if (config.plan.suggest && concern_of(findings(first_look)) == Concern::kStop)
     record.better_way = times.measure("find", [&] {

@@ -1,5 +1,7 @@
 #include "job/wanted.h"
 
+#include <fmt/format.h>
+
 #include "base/parallel.h"
 #include "image/color_difference.h"
 
@@ -9,6 +11,8 @@ namespace {
 // From so far from the bare object's colour on (CIELAB) there is something to print.
 constexpr double kPrinted = 2;
 constexpr double kNearlyEverywhere = 0.95;
+// Of a layer of artwork: with less film it is as good as lost.
+constexpr double kHardlyAny = 0.05;
 
 }  // namespace
 
@@ -65,6 +69,30 @@ std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Pa
     wanted.doubtful_mm2 += seen[i].in_doubt ? area : 0;
   }
   return wanted;
+}
+
+void warn_of_dry_layers(const std::vector<LaidLayer>& layers, const Targets& targets,
+                        const std::function<bool(const Target&)>& gets_film,
+                        const RunContext& context) {
+  std::vector<std::uint8_t> shows(targets.list.size());
+  for (const LaidLayer& layer : layers) {
+    if (!layer.shows) continue;
+    parallel_for(shows.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) shows[i] = layer.shows(targets.list[i].point);
+    });
+    double shown_mm2 = 0, covered_mm2 = 0;
+    for (std::size_t i = 0; i < shows.size(); ++i) {
+      if (!shows[i]) continue;
+      shown_mm2 += targets.list[i].area;
+      if (gets_film(targets.list[i])) covered_mm2 += targets.list[i].area;
+    }
+    // So small that it lies between the points: unknown.
+    if (!(shown_mm2 > 0) || covered_mm2 > kHardlyAny * shown_mm2) continue;
+    context.warn(fmt::format(
+        "{}: this artwork gets {} film that holds; turn it down (--down, --rotate), dip deeper "
+        "(--depth), move it (--art-at), or give it a dip of its own (--dips).",
+        layer.name, covered_mm2 > 0 ? "hardly any" : "no"));
+  }
 }
 
 }  // namespace hydrodip

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
+#include "artwork/artwork.h"
+#include "base/context.h"
 #include "coat/dipped_object.h"
 #include "object/paint.h"
 #include "plan/targets.h"
@@ -26,6 +29,10 @@ std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Pa
 // 1 where something shall be printed. Empty where the paint says nothing of it, or wants colour all
 // over the object.
 std::vector<std::uint8_t> wanted_at(const Targets& targets, const Paint& paint);
+// Warns of each layer of artwork that gets no film, or hardly any, as far as that many places tell.
+void warn_of_dry_layers(const std::vector<LaidLayer>& layers, const Targets& targets,
+                        const std::function<bool(const Target&)>& gets_film,
+                        const RunContext& context);
 // Whether film lies there of which nobody knows whether it holds, or where.
 bool is_in_doubt(const std::optional<FilmMap::Hold>& hold, const DoubtfulStretch& doubtful);
 // Whether a place comes into the water and faces down: a dip gets there then, whether or not film

@@ -55,6 +55,17 @@ if command -v convert > /dev/null; then
   case $left in *'#0000FF'* | *'#0000FE'* | *'#0101FF'* | *blue*) ;; *) fail "left of the film: $left" ;; esac
 fi
 
+# A layer that lies on the dry side, beside one that does not, and on a model with a picture of its own.
+printf '[object]\nfile = "plate.stl"\n[[artwork]]\nimage = "photo.png"\n[[artwork]]\nimage = "logo.svg"
+toward = [0, 0, -1]\nup = [0, 1, 0]\nat_mm = [20, 15, 5]\nsize_mm = 20\n' > dry.toml
+# shellcheck disable=SC2086
+"$hydrodip" print dry.toml $quick -o dry --quiet > dry.txt || fail "a dry layer: $?"
+grep -q '^warning: logo.svg: this artwork gets no film' dry.txt || fail "a dry layer is not named: $(cat dry.txt)"
+! grep -q 'photo.png: this artwork' dry.txt || fail 'a wet layer is said to be dry'
+# shellcheck disable=SC2086
+"$hydrodip" print samples/box.obj --art logo.svg --art-toward 0,0,-1 --art-size 10 $quick -o dry --quiet > dry.txt
+grep -q '^warning: logo.svg: this artwork gets no film' dry.txt || fail 'a dry layer over a texture is not named'
+
 # Layers in a file beside its pictures, one more by options, and the same bytes from elsewhere.
 mkdir jobs
 cp logo.svg jobs/
