@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <new>
+#include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -266,7 +268,13 @@ std::string Tasks::start(TaskRequest request) {
   request.address += "/" + name;
   tasks_.push_back(std::make_unique<Task>(name, std::move(request)));
   Task& task = *tasks_.back();
-  task.thread = std::thread([this, &task] { run(task); });
+  try {
+    task.thread = std::thread([this, &task] { run(task); });
+  } catch (const std::system_error&) {
+    tasks_.pop_back();
+    throw ApiError(500, "failed",
+                   "This machine has no room for more work now; end other programs and try again.");
+  }
   return name;
 }
 

@@ -34,7 +34,8 @@ class Tasks {
   Tasks(const Tasks&) = delete;
   Tasks& operator=(const Tasks&) = delete;
 
-  // Its name. Throws ApiError busy if one of that kind is running.
+  // Its name. Throws ApiError: busy if one of that kind is running, failed if the machine can begin
+  // no thread.
   std::string start(TaskRequest request);
   // False: there is no such task.
   bool cancel(const std::string& task);

@@ -1,4 +1,8 @@
 #include <gtest/gtest.h>
+#include <pthread.h>
+
+#include <chrono>
+#include <thread>
 
 #include "base/context.h"
 #include "base/error.h"
@@ -95,6 +99,47 @@ TEST(SampleShelf, PlacesWhatTheSampleIsAndKeepsNothingOfOtherBuilds) {
   RunContext cancelled;
   cancelled.cancel();
   EXPECT_NO_THROW(shelf.fill(cancelled));
+}
+
+// While it lives, this process can begin no thread: none has so much room.
+class NoThreads {
+ public:
+  NoThreads() {
+    ::pthread_getattr_default_np(&before_);
+    pthread_attr_t huge;
+    ::pthread_attr_init(&huge);
+    ::pthread_attr_setstacksize(&huge, std::size_t(1) << 47U);
+    ::pthread_setattr_default_np(&huge);
+    ::pthread_attr_destroy(&huge);
+  }
+  ~NoThreads() {
+    ::pthread_setattr_default_np(&before_);
+    ::pthread_attr_destroy(&before_);
+  }
+  NoThreads(const NoThreads&) = delete;
+  NoThreads& operator=(const NoThreads&) = delete;
+
+ private:
+  pthread_attr_t before_;
+};
+
+// A machine that has no thread left refuses a task, and nothing of it is kept.
+TEST(Tasks, OneThatCannotBeginIsNone) {
+  const TemporaryFolder folder;
+  Tasks tasks([](const Json&) {});
+  TaskRequest print;
+  print.kind = "print";
+  print.job = folder / "missing.toml";
+  print.folder = folder / "print";
+  {
+    const NoThreads none;
+    EXPECT_THROW(tasks.start(print), ApiError);
+  }
+  EXPECT_FALSE(tasks.any_running());
+  EXPECT_TRUE(tasks.list().empty());
+  EXPECT_NO_THROW(tasks.start(print));
+  while (tasks.any_running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_EQ(tasks.list().at(0)["state"], "failed");
 }
 
 TEST(RunFile, ALaterRunFindsOnlyWhatAKilledOneLeft) {
