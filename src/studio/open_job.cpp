@@ -316,29 +316,30 @@ Json OpenJob::save(const std::string& name) {
   }
   const std::string stem = file_name_of(name_of_job(document_));
   // The studio's own files follow the job's name.
-  if (where_.parent_path() == files_.uploads() && where_.stem() != stem) {
-    std::error_code ignored;
-    std::filesystem::remove(where_, ignored);
-    where_.clear();
-  }
-  if (where_.empty()) {
+  const bool moves = where_.parent_path() == files_.uploads() && where_.stem() != stem;
+  const std::filesystem::path before = where_;
+  std::filesystem::path file = before;
+  std::error_code ignored;
+  if (before.empty() || moves) {
     // Beside the model that was named on the command line; what was dropped here stays here.
     const std::filesystem::path folder = origin_.empty() ? files_.uploads() : origin_.parent_path();
-    where_ = folder / (stem + ".toml");
-    std::error_code ignored;
-    for (int number = 2; std::filesystem::exists(where_, ignored); ++number)
-      where_ = folder / fmt::format("{}-{}.toml", stem, number);
+    file = folder / (stem + ".toml");
+    for (int number = 2; file != before && std::filesystem::exists(file, ignored); ++number)
+      file = folder / fmt::format("{}-{}.toml", stem, number);
   }
   try {
     JobConfig config = config_;
-    if (!lies_in(where_, files_.uploads()))
-      bring_along(config, files_.uploads(), where_.parent_path());
-    write_whole(where_, job_file(config, where_.parent_path(), machine_names()));
+    if (!lies_in(file, files_.uploads()))
+      bring_along(config, files_.uploads(), file.parent_path());
+    write_whole(file, job_file(config, file.parent_path(), machine_names()));
   } catch (const InputError& error) {
     throw ApiError(422, "bad-file", error.what());
   }
+  where_ = file;
   tell_saved();
   autosave();
+  // Last, so that whatever fails before leaves a file where the job says that it is.
+  if (moves && before != where_) std::filesystem::remove(before, ignored);
   return {{"saved_revision", saved_revision_}, {"where", shown_path(where_)}};
 }
 

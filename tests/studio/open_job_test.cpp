@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <string>
 
+#include "base/file.h"
 #include "studio/api_error.h"
 #include "temporary_folder.h"
 
@@ -29,6 +35,27 @@ class OpenJobTest : public testing::Test {
   JobStore store{folder.path()};
   std::string name;
   std::shared_ptr<std::atomic<long>> numbers = std::make_shared<std::atomic<long>>(0);
+};
+
+// While it lives, this process can write nothing, as where a disk is full.
+class FullDisk {
+ public:
+  FullDisk() {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit none = before_;
+    none.rlim_cur = 0;
+    ::setrlimit(RLIMIT_FSIZE, &none);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  void (*const signal_)(int) = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before_ = {};
 };
 
 std::string code_of(const std::function<void()>& what) {
@@ -83,6 +110,32 @@ TEST_F(OpenJobTest, OneThatIsForgottenTakesNothingMore) {
   EXPECT_EQ(code_of([&] { job->put(turned()); }), "not-found");
   EXPECT_EQ(code_of([&] { job->start_task({{"kind", "print"}}); }), "not-found");
   EXPECT_FALSE(std::filesystem::exists(store.home(name)));
+}
+
+// What was saved is there until it is saved again.
+TEST_F(OpenJobTest, ANewNameOnAFullDiskLosesNoFile) {
+  const auto job = open();
+  job->save("first");
+  const std::filesystem::path files = store.home(name) / "files";
+  ASSERT_TRUE(std::filesystem::exists(files / "first.toml"));
+  {
+    const FullDisk full;
+    EXPECT_NE(code_of([&] { job->save("second"); }), "");
+  }
+  EXPECT_TRUE(std::filesystem::exists(files / "first.toml"));
+  EXPECT_TRUE(job->describe()["where"].get<std::string>().ends_with("first.toml"));
+  EXPECT_TRUE(job->save("second")["where"].get<std::string>().ends_with("second.toml"));
+  EXPECT_TRUE(std::filesystem::exists(files / "second.toml"));
+  EXPECT_FALSE(std::filesystem::exists(files / "first.toml"));
+}
+
+// A job file in the folder that another has the name of keeps its own.
+TEST_F(OpenJobTest, SavedAgainItKeepsTheNameThatItGot) {
+  const auto job = open();
+  const std::filesystem::path files = store.home(name) / "files";
+  write_file(files / "job.toml", "another");
+  for (int time = 0; time < 3; ++time)
+    EXPECT_TRUE(job->save("job")["where"].get<std::string>().ends_with("job-2.toml"));
 }
 
 }  // namespace
