@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <vector>
 
 extern char** environ;
 
@@ -13,6 +14,25 @@ namespace hydrodip {
 namespace {
 
 constexpr const char* kOpener = "xdg-open";
+
+// Whether it was found and ended well.
+bool run_quietly(std::vector<std::string> words) {
+  posix_spawn_file_actions_t quiet;
+  posix_spawn_file_actions_init(&quiet);
+  for (const int descriptor : {0, 1, 2}) {
+    posix_spawn_file_actions_addopen(&quiet, descriptor, "/dev/null", O_RDWR, 0);
+  }
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_t child = -1;
+  const int refused =
+      posix_spawnp(&child, arguments[0], &quiet, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&quiet);
+  int status = 0;
+  return refused == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) &&
+         WEXITSTATUS(status) == 0;
+}
 
 }  // namespace
 
@@ -24,20 +44,11 @@ bool has_screen() {
   return false;
 }
 
-bool open_in_browser(const std::string& what) {
-  posix_spawn_file_actions_t quiet;
-  posix_spawn_file_actions_init(&quiet);
-  for (const int descriptor : {0, 1, 2}) {
-    posix_spawn_file_actions_addopen(&quiet, descriptor, "/dev/null", O_RDWR, 0);
-  }
-  std::string opener = kOpener, address = what;
-  char* arguments[] = {opener.data(), address.data(), nullptr};
-  pid_t child = -1;
-  const int refused = posix_spawnp(&child, kOpener, &quiet, nullptr, arguments, environ);
-  posix_spawn_file_actions_destroy(&quiet);
-  int status = 0;
-  return refused == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) &&
-         WEXITSTATUS(status) == 0;
+bool open_in_browser(const std::string& what) { return run_quietly({kOpener, what}); }
+
+// The shell ends at once; what it began is nobody's child here, and ignores Ctrl-C.
+void begin_in_browser(const std::string& what) {
+  run_quietly({"sh", "-c", R"("$0" "$1" &)", kOpener, what});
 }
 
 }  // namespace hydrodip

@@ -145,7 +145,7 @@ JobResult studio_job(const StudioOptions& options, const RunContext& context) {
       password.empty() ? fmt::format("http://{}:{}/?token={}", shown, server.port(), token)
                        : fmt::format("http://{}:{}/", shown, server.port());
   if (options.announce) options.announce(address);
-  if (options.browser && has_screen()) open_in_browser(address);
+  if (options.browser && has_screen()) begin_in_browser(address);
 
   auto tidied = std::chrono::steady_clock::now();
   while (!context.cancelled()) {

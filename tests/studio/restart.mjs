@@ -2,7 +2,7 @@
 // open, and their work. Ended with Ctrl-C, it forgets its token. Usage: node restart.mjs HYDRODIP
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
@@ -11,8 +11,10 @@ const folder = mkdtempSync(join(tmpdir(), 'hydrodip-studio-'));
 const env = { ...process.env, XDG_DATA_HOME: folder };
 
 // Its address, once it serves.
-function start(...options) {
-  const child = spawn(program, ['studio', '--no-browser', ...options], { env });
+const start = (...options) => begin(env, '--no-browser', ...options);
+
+function begin(env, ...options) {
+  const child = spawn(program, ['studio', ...options], { env });
   child.ended = new Promise((resolve) => child.on('exit', (code, signal) => resolve({ code, signal })));
   child.address = new Promise((resolve, reject) => {
     let text = '';
@@ -79,6 +81,29 @@ try {
   const ends = page(await third.address, await cookie(await third.address));
   assert.equal((await ends('POST', '/api/quit', {})).status, 200);
   assert.deepEqual(await third.ended, { code: 0, signal: null });
+
+  // Without a desktop the opener is the browser itself: it stays until a person closes it.
+  const bin = join(folder, 'bin');
+  mkdirSync(bin);
+  const file = (name) => join(folder, name);
+  const opener = `#!/bin/sh
+echo "$1" > ${file('opening')} && mv ${file('opening')} ${file('opened')}
+for tenth in $(seq 300); do
+  [ ! -e ${file('closed')} ] || exit
+  sleep 0.1
+done
+touch ${file('gave-up')}
+`;
+  writeFileSync(join(bin, 'xdg-open'), opener, { mode: 0o755 });
+  const seen = begin({ ...env, DISPLAY: ':7', PATH: `${bin}:${env.PATH}` });
+  const shown = await seen.address;
+  while (!existsSync(file('opened'))) await new Promise((done) => setTimeout(done, 20));
+  assert.equal(readFileSync(file('opened'), 'utf8').trim(), shown.href);
+  const quits = page(shown, await cookie(shown));
+  assert.equal((await quits('POST', '/api/quit', {})).status, 200);
+  assert.deepEqual(await seen.ended, { code: 0, signal: null });
+  assert.ok(!existsSync(file('gave-up')), 'it ends while the browser is open');
+  writeFileSync(file('closed'), '');
 
   const open = start('--listen', '0.0.0.0');
   await assert.rejects(open.address);
