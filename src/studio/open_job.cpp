@@ -646,6 +646,7 @@ std::string OpenJob::start_task(const Json& request) {
   task.uploads = files_.uploads();
   const std::lock_guard lock(mutex_);
   if (let_go_) throw no_such_job();
+  tasks_->require_free(kind);  // before the job file is written that a running print reads
   task.config = checked(document_);
   task.revision = revision_;
   if (task.config.model.empty())

@@ -259,11 +259,21 @@ Tasks::~Tasks() {
   for (const auto& task : tasks_) task->thread.join();
 }
 
+// With the lock.
+void Tasks::require_none_running(const std::string& kind) const {
+  for (const auto& task : tasks_)
+    if (task->state == "running" && task->request.kind == kind)
+      throw ApiError(409, "busy", "That is being done already; cancel it first.");
+}
+
+void Tasks::require_free(const std::string& kind) const {
+  const std::lock_guard lock(mutex_);
+  require_none_running(kind);
+}
+
 std::string Tasks::start(TaskRequest request) {
   const std::lock_guard lock(mutex_);
-  for (const auto& task : tasks_)
-    if (task->state == "running" && task->request.kind == request.kind)
-      throw ApiError(409, "busy", "That is being done already; cancel it first.");
+  require_none_running(request.kind);
   std::string name = fmt::format("t{}", ++number_);
   request.address += "/" + name;
   tasks_.push_back(std::make_unique<Task>(name, std::move(request)));

@@ -34,8 +34,9 @@ class Tasks {
   Tasks(const Tasks&) = delete;
   Tasks& operator=(const Tasks&) = delete;
 
-  // Its name. Throws ApiError: busy if one of that kind is running, failed if the machine can begin
-  // no thread.
+  // Throws ApiError busy if one of that kind is running.
+  void require_free(const std::string& kind) const;
+  // Its name. Throws ApiError: busy as above; failed if the machine can begin no thread.
   std::string start(TaskRequest request);
   // False: there is no such task.
   bool cancel(const std::string& task);
@@ -48,6 +49,7 @@ class Tasks {
  private:
   struct Task;
 
+  void require_none_running(const std::string& kind) const;
   void run(Task& task);
   Json json_of(const Task& task) const;
   void change(Task& task, const std::function<void()>& how, bool always);

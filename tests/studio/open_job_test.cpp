@@ -18,6 +18,18 @@
 namespace hydrodip {
 namespace {
 
+const std::string kTetrahedron =
+    "solid a\n"
+    "facet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 40 0\nvertex 40 0 "
+    "0\nendloop\nendfacet\n"
+    "facet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 40 0 0\nvertex 0 0 "
+    "20\nendloop\nendfacet\n"
+    "facet normal -1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 20\nvertex 0 40 "
+    "0\nendloop\nendfacet\n"
+    "facet normal 1 1 1\nouter loop\nvertex 40 0 0\nvertex 0 40 0\nvertex 0 0 "
+    "20\nendloop\nendfacet\n"
+    "endsolid\n";
+
 class OpenJobTest : public testing::Test {
  protected:
   std::unique_ptr<OpenJob> open() {
@@ -136,6 +148,25 @@ TEST_F(OpenJobTest, SavedAgainItKeepsTheNameThatItGot) {
   write_file(files / "job.toml", "another");
   for (int time = 0; time < 3; ++time)
     EXPECT_TRUE(job->save("job")["where"].get<std::string>().ends_with("job-2.toml"));
+}
+
+// What the running print reads and tells the hash of is its own.
+TEST_F(OpenJobTest, ASecondPrintChangesNothingOfTheFirst) {
+  const auto job = open();
+  write_file(store.home(name) / "files/part.stl", kTetrahedron);
+  OpenJob::Change change;
+  change.client = "c1";
+  change.document = {{"object", {{"file", "part.stl"}}},
+                     {"film", {{"elements", 640000}}},
+                     {"dip", {{"step_mm", 0.02}}}};
+  job->put(change);
+  const std::string task = job->start_task({{"kind", "print"}});
+  const auto printed = read_file(store.home(name) / "job.toml");
+  change.document["object"]["size_mm"] = 33;
+  job->put(change);
+  EXPECT_EQ(code_of([&] { job->start_task({{"kind", "print"}}); }), "busy");
+  EXPECT_TRUE(read_file(store.home(name) / "job.toml") == printed);
+  job->cancel_task(task);
 }
 
 }  // namespace
