@@ -12,12 +12,12 @@ constexpr std::size_t kMostTabs = 12;
 }  // namespace
 
 std::shared_ptr<EventStream> Tabs::connect(const std::string& client) {
-  if (tabs_.size() >= kMostTabs)
-    throw ApiError(503, "busy", "The job is open in too many tabs; close some.");
-  auto stream = std::make_shared<EventStream>();
   for (const Tab& tab : tabs_)
     if (tab.client == client) tab.stream->close();
   std::erase_if(tabs_, [&](const Tab& tab) { return tab.client == client; });
+  if (tabs_.size() >= kMostTabs)
+    throw ApiError(503, "busy", "The job is open in too many tabs; close some.");
+  auto stream = std::make_shared<EventStream>();
   tabs_.push_back({client, stream});
   none_since_.reset();
   if (pen_.empty()) pen_ = client;

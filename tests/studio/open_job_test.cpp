@@ -169,5 +169,13 @@ TEST_F(OpenJobTest, ASecondPrintChangesNothingOfTheFirst) {
   job->cancel_task(task);
 }
 
+// A tab that comes again, as after a lost line, takes the place that it had.
+TEST_F(OpenJobTest, TheLastTabMayComeAgain) {
+  const auto job = open();
+  for (int tab = 1; tab <= 12; ++tab) job->connect("c" + std::to_string(tab));
+  EXPECT_EQ(code_of([&] { job->connect("c12"); }), "");
+  EXPECT_EQ(code_of([&] { job->connect("c13"); }), "busy");
+}
+
 }  // namespace
 }  // namespace hydrodip
