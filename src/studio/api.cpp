@@ -285,6 +285,8 @@ HttpAnswer Api::answer(HttpRequest& request) {
     answer = error_answer(error);
   } catch (const InputError& error) {
     answer = error_answer({422, "bad-file", in_plain_words(error.what())});
+  } catch (const Cancelled&) {
+    answer = error_answer({500, "failed", "The job was closed before that was done."});
   } catch (const std::bad_alloc&) {
     answer = error_answer({500, "failed", "There is not enough memory for this."});
   } catch (const std::exception& error) {

@@ -23,12 +23,13 @@ namespace {
 constexpr std::size_t kLongestFileName = 120;
 
 // The files that the model itself names, as they are now; none of one that cannot be read.
-std::vector<std::filesystem::path> parts_of_model(const JobConfig& config) {
+std::vector<std::filesystem::path> parts_of_model(const JobConfig& config,
+                                                  const RunContext& context) {
   if (config.model.empty()) return {};
   LoadOptions own = config.object.load;
   own.texture.clear();
   try {
-    std::vector<std::filesystem::path> files = load(config.model, own, RunContext()).files;
+    std::vector<std::filesystem::path> files = load(config.model, own, context.quiet()).files;
     std::erase(files, config.model);
     return files;
   } catch (const InputError&) {
@@ -36,8 +37,8 @@ std::vector<std::filesystem::path> parts_of_model(const JobConfig& config) {
   }
 }
 
-std::vector<std::filesystem::path> with_parts(const JobConfig& config) {
-  std::vector<std::filesystem::path> files = parts_of_model(config);
+std::vector<std::filesystem::path> with_parts(const JobConfig& config, const RunContext& context) {
+  std::vector<std::filesystem::path> files = parts_of_model(config, context);
   files.insert(files.begin(), config.model);
   return files;
 }
@@ -93,11 +94,11 @@ std::string file_name_of(const std::string& job_name) {
 }
 
 void bring_along(JobConfig& config, const std::filesystem::path& uploads,
-                 const std::filesystem::path& folder) {
+                 const std::filesystem::path& folder, const RunContext& context) {
   const auto is_uploaded = [&](const std::filesystem::path& file) {
     return lies_in(file, uploads);
   };
-  if (is_uploaded(config.model)) config.model = copy_together(with_parts(config), folder);
+  if (is_uploaded(config.model)) config.model = copy_together(with_parts(config, context), folder);
   each_side_file(config, [&](std::filesystem::path& file) {
     if (!is_uploaded(file)) return;
     std::filesystem::path to = folder / file.filename();
@@ -109,7 +110,8 @@ void bring_along(JobConfig& config, const std::filesystem::path& uploads,
 }
 
 std::filesystem::path pack_job(JobConfig config, const std::vector<std::string>& parameters,
-                               const std::string& name, const std::filesystem::path& folder) {
+                               const std::string& name, const std::filesystem::path& folder,
+                               const RunContext& context) {
   std::error_code ignored;
   std::filesystem::remove_all(folder, ignored);
   std::filesystem::create_directories(folder, ignored);
@@ -124,7 +126,7 @@ std::filesystem::path pack_job(JobConfig config, const std::vector<std::string>&
     files.emplace_back(inner, file);
     file = folder / inner;
   };
-  for (const std::filesystem::path& file : parts_of_model(config)) {
+  for (const std::filesystem::path& file : parts_of_model(config, context)) {
     // A model may name any file: only what can be a part of one goes along.
     if (file == config.object.load.texture || kind_of_file(file.string()) == "unknown") continue;
     std::string inner = file.lexically_relative(config.model.parent_path()).string();

@@ -73,6 +73,7 @@ OpenJob::OpenJob(JobStore store, std::string job, std::string run,
 }
 
 OpenJob::~OpenJob() {
+  work_.cancel();
   live_.reset();
   tasks_.reset();
 }
@@ -264,7 +265,7 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
         LoadOptions own;
         own.confined_to = files_.uploads();
         lock.unlock();
-        const Model read = load(path, own, RunContext());
+        const Model read = load(path, own, work_.quiet());
         lock.lock();
         // Meanwhile the job was anybody's.
         tabs_.require_pen(client);
@@ -330,7 +331,7 @@ Json OpenJob::save(const std::string& name) {
   try {
     JobConfig config = config_;
     if (!lies_in(file, files_.uploads()))
-      bring_along(config, files_.uploads(), file.parent_path());
+      bring_along(config, files_.uploads(), file.parent_path(), work_);
     write_whole(file, job_file(config, file.parent_path(), machine_names()));
   } catch (const InputError& error) {
     throw ApiError(422, "bad-file", error.what());
@@ -387,7 +388,7 @@ std::filesystem::path OpenJob::pack() const {
   }
   // Whoever fetches an earlier archive still has that.
   const std::filesystem::path made =
-      pack_job(std::move(config), of_the_run, name, home_ / "packed");
+      pack_job(std::move(config), of_the_run, name, home_ / "packed", work_);
   std::filesystem::path archive = home_ / "job.zip";
   std::error_code error;
   std::filesystem::rename(made, archive, error);
@@ -482,6 +483,7 @@ std::optional<std::chrono::steady_clock::time_point> OpenJob::idle_since() const
 }
 
 void OpenJob::say_goodbye(const std::string& text) {
+  work_.cancel();  // before the lock, which may be held for it
   const std::lock_guard lock(mutex_);
   tabs_.close(text);
   autosave_if_possible();
@@ -491,6 +493,7 @@ bool OpenJob::let_go() {
   const std::lock_guard lock(mutex_);
   if (!tabs_.none() || tasks_->any_running()) return false;
   let_go_ = true;
+  work_.cancel();
   return true;
 }
 
@@ -501,7 +504,7 @@ bool OpenJob::has_given(const std::string& id) const { return ids_.has_given(id)
 std::string OpenJob::show_mesh(const Model& model, const Object& object) {
   std::string id = ids_.mesh();
   auto made = std::make_shared<const ShownMesh>(
-      shown_mesh(model, object, id, address() + "/meshes/" + id, RunContext()));
+      shown_mesh(model, object, id, address() + "/meshes/" + id, work_.quiet()));
   const std::lock_guard lock(mutex_);
   shown_.add_mesh(id, std::move(made));
   return id;
@@ -572,7 +575,7 @@ void OpenJob::show_look(long revision, const Look& look, double took_s) {
   result.dip = look.dip;
   result.made = look.made;
   result.bundle = std::make_shared<const std::vector<std::uint8_t>>(
-      result_bundle(look, {{"result", result.id}, {"revision", revision}}, RunContext()));
+      result_bundle(look, {{"result", result.id}, {"revision", revision}}, work_.quiet()));
   result.event = {{"revision", revision},
                   {"quality", look.quality == LookQuality::kNormal ? "normal" : "draft"},
                   {"dip", look.dip},

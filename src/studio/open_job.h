@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/context.h"
 #include "studio/dropped_files.h"
 #include "studio/event_stream.h"
 #include "studio/job_files.h"
@@ -83,8 +84,10 @@ class OpenJob {
   void take_pen(const std::string& client);
   // Since when nobody has looked at it and nothing is done; nothing: it is in use.
   std::optional<std::chrono::steady_clock::time_point> idle_since() const;
+  // Ends all lines, and work for it throws Cancelled.
   void say_goodbye(const std::string& text);
-  // From now on nothing of it is kept, and nobody can connect. False: it is in use.
+  // From now on nothing of it is kept, nobody can connect, and work for it throws Cancelled. False:
+  // it is in use.
   bool let_go();
 
   // ---- what was computed ----
@@ -124,6 +127,7 @@ class OpenJob {
   void show_finish(const Model& model, const DipsTogether& look);
   LiveSinks sinks();
 
+  const RunContext work_;  // all that is done for it besides tasks and what Live computes
   const JobStore store_;
   const std::string job_, run_;
   const std::filesystem::path home_;

@@ -54,7 +54,7 @@ Json head_of(const Model& model, const Object& object, const ShownObject& shown,
 
 const ShownPicture& ShownTexture::picture() const {
   std::call_once(once_, [&] {
-    const RunScope scope{RunContext()};
+    const RunScope scope(context_);
     picture_ = shown_picture(shrink_to(*image_, kTextureSide_px), kJpegQuality);
     image_.reset();
   });
@@ -83,7 +83,7 @@ ShownMesh shown_mesh(const Model& model, const Object& object, const std::string
   bundle.add("index", shown.indices, 1);
   ShownMesh mesh{bundle.finish(), {}};
   for (const auto& texture : object.textures)
-    mesh.textures.push_back(std::make_shared<const ShownTexture>(texture));
+    mesh.textures.push_back(std::make_shared<const ShownTexture>(texture, context));
   return mesh;
 }
 

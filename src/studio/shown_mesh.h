@@ -5,8 +5,10 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/context.h"
 #include "export/scene_object.h"
 #include "hydrodip/hydrodip.h"
 
@@ -15,11 +17,14 @@ namespace hydrodip {
 // A texture, packed when a page asks for it: on that request's thread. For any number of threads.
 class ShownTexture {
  public:
-  explicit ShownTexture(std::shared_ptr<const Image> image) : image_(std::move(image)) {}
+  ShownTexture(std::shared_ptr<const Image> image, RunContext context)
+      : context_(std::move(context)), image_(std::move(image)) {}
 
+  // Throws Cancelled.
   const ShownPicture& picture() const;
 
  private:
+  const RunContext context_;
   mutable std::once_flag once_;
   mutable std::shared_ptr<const Image> image_;  // until then
   mutable ShownPicture picture_;
@@ -31,7 +36,8 @@ struct ShownMesh {
 };
 
 // `object`: the model's own, or one painted anew with the same triangles. `address`: of this mesh
-// for the page. Models of very many triangles are simplified for the eye.
+// for the page. Models of very many triangles are simplified for the eye. `context`: of its
+// textures too, whenever they are packed.
 ShownMesh shown_mesh(const Model& model, const Object& object, const std::string& id,
                      const std::string& address, const RunContext& context);
 

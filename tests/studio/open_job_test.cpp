@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "studio/api_error.h"
 #include "temporary_folder.h"
@@ -167,6 +168,28 @@ TEST_F(OpenJobTest, ASecondPrintChangesNothingOfTheFirst) {
   EXPECT_EQ(code_of([&] { job->start_task({{"kind", "print"}}); }), "busy");
   EXPECT_TRUE(read_file(store.home(name) / "job.toml") == printed);
   job->cancel_task(task);
+}
+
+// A large model that is read when the program ends does not hold it up.
+TEST_F(OpenJobTest, WorkForOneThatIsOverIsCancelled) {
+  for (const bool forgotten : {false, true}) {
+    const auto job = open();
+    for (const char* file : {"part.stl", "toy.mtl"})
+      write_file(store.home(name) / "files" / file, kTetrahedron);
+    OpenJob::Change change;
+    change.client = "c1";
+    change.document["object"]["file"] = "part.stl";
+    job->put(change);
+    EXPECT_NO_THROW(job->pack());
+    EXPECT_NO_THROW(job->adopt({"part.stl", "toy.mtl"}, "c1"));
+    if (forgotten) {
+      ASSERT_TRUE(job->let_go());
+    } else {
+      job->say_goodbye("over");
+    }
+    EXPECT_THROW(job->pack(), Cancelled);
+    EXPECT_THROW(job->adopt({"part.stl", "toy.mtl"}, "c1"), Cancelled);
+  }
 }
 
 // A tab that comes again, as after a lost line, takes the place that it had.

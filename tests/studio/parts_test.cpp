@@ -2,11 +2,13 @@
 #include <pthread.h>
 
 #include <chrono>
+#include <memory>
 #include <thread>
 
 #include "base/context.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "image/image.h"
 #include "report/plain_words.h"
 #include "samples/samples.h"
 #include "studio/api_error.h"
@@ -16,6 +18,7 @@
 #include "studio/event_stream.h"
 #include "studio/run_file.h"
 #include "studio/sample_shelf.h"
+#include "studio/shown_mesh.h"
 #include "studio/tasks.h"
 #include "temporary_folder.h"
 
@@ -140,6 +143,15 @@ TEST(Tasks, OneThatCannotBeginIsNone) {
   EXPECT_NO_THROW(tasks.start(print));
   while (tasks.any_running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_EQ(tasks.list().at(0)["state"], "failed");
+}
+
+// Textures are packed when a page asks, which may be when the job's time is over.
+TEST(ShownTexture, IsOfTheJob) {
+  const auto image = std::make_shared<const Image>(8, 8);
+  RunContext job;
+  EXPECT_FALSE(ShownTexture(image, job).picture().bytes.empty());
+  job.cancel();
+  EXPECT_THROW(ShownTexture(image, job).picture(), Cancelled);
 }
 
 TEST(RunFile, ALaterRunFindsOnlyWhatAKilledOneLeft) {
