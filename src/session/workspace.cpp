@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "artwork/artwork.h"
 #include "base/file.h"
 #include "base/run_scope.h"
 #include "object/simplify.h"
@@ -64,7 +65,15 @@ std::size_t bytes_of(const Designed& made) {
 
 struct SharedPaint {
   std::shared_ptr<const Paint> paint;
+  std::vector<LaidSize> laid = {};
 };
+
+SharedPaint shared(Artwork artwork) {
+  SharedPaint paint{std::move(artwork.paint)};
+  for (const LaidLayer& layer : artwork.layers)
+    paint.laid.push_back({layer.size_mm, layer.stretch_least, layer.stretch_most});
+  return paint;
+}
 
 // Its pictures are not known here; a guess.
 std::size_t bytes_of(const SharedPaint&) { return std::size_t(16) << 20U; }
@@ -203,8 +212,11 @@ struct Workspace::Impl {
                                   SharedPaint{paint_of(*loaded.value, project.base)})};
     for (const ArtworkLayer& layer : project.artwork) add(key, layer);
     return node<SharedPaint>(std::move(key), context, [&] {
-      return SharedPaint{paint_with(*loaded.value, *hanging.value, project.artwork, project.base,
-                                    options.dpi, options.inverse.samples_per_axis, context)};
+      const RunScope scope(context);
+      return shared(lay_artwork(
+          {project.artwork, read_pictures(project.artwork), paint_of(*loaded.value, project.base),
+           loaded.value->health.closed(), options.dpi, options.inverse.samples_per_axis},
+          *hanging.value, context));
     });
   }
 
@@ -272,6 +284,11 @@ std::shared_ptr<const PosedObject> Workspace::posed(const Project& project,
 std::shared_ptr<const Paint> Workspace::paint(const Project& project, Quality quality,
                                               const RunContext& context) {
   return impl_->paint(project, quality, context).value->paint;
+}
+
+std::vector<LaidSize> Workspace::laid(const Project& project, Quality quality,
+                                      const RunContext& context) {
+  return impl_->paint(project, quality, context).value->laid;
 }
 
 std::shared_ptr<const DippedObject> Workspace::dipped(const Project& project, Quality quality,

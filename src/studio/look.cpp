@@ -400,6 +400,7 @@ Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Lo
     require_sensible_size(look.config, posed->mesh());
     require_room(look.config, *posed, context);
     look.paint = workspace.paint(project, quality_of(quality), context);
+    look.artwork = workspace.laid(project, quality_of(quality), context);
     look.made = workspace.designed(project, quality_of(quality), context);
     look.paint = paint_as_dipped(look.paint, look.made->dipped);
     look.warnings = known;
@@ -497,6 +498,9 @@ std::vector<std::uint8_t> result_bundle(const Look& look, Json head, const RunCo
   head["findings"] = findings_json(look, list);
   head["figures"] = figures_json(look);
   head["artwork"] = Json::array();
+  for (const LaidSize& laid : look.artwork)
+    head["artwork"].push_back({{"size_mm", {laid.size_mm.x(), laid.size_mm.y()}},
+                               {"stretch", {laid.stretch_least, laid.stretch_most}}});
   head["warnings"] = Json::array();
   for (const std::string& warning : look.warnings)
     head["warnings"].push_back(in_plain_words(warning));

@@ -43,6 +43,7 @@ struct Look {
   LookQuality quality = LookQuality::kDraft;
   std::shared_ptr<const Model> model;
   std::shared_ptr<const Paint> paint;
+  std::vector<LaidSize> artwork;  // each layer as it was laid
   std::shared_ptr<const Designed> made;
   std::vector<std::string> warnings;
 };

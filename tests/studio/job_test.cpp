@@ -571,6 +571,32 @@ TEST_F(JobTest, AModelAndAPictureBecomeAJob) {
   EXPECT_EQ(client->put(at(job, "/files/part.stl"), kTetrahedron).json()["file"], "part-2.stl");
 }
 
+// A logo that is twice as wide as high. On a flat face it has the size that was said; wrapped
+// around a sphere, circles around its middle are shorter there than on paper, and no way is longer.
+TEST_F(JobTest, HowArtworkWasLaidIsTold) {
+  const std::string job = sample("sphere");
+  const std::string svg =
+      "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='10'>"
+      "<rect width='20' height='10' fill='red'/></svg>";
+  ASSERT_EQ(client->put(at(job, "/files/logo.svg"), svg).status, 201);
+  json document = quick(describe(job)["document"]);
+  document["artwork"] = {{{"image", "logo.svg"}, {"size_mm", 12}},
+                         {{"image", "logo.svg"}, {"projection", "wrap"}, {"size_mm", 20}}};
+  const long revision = put(job, document).json()["revision"];
+  Events events(*client, at(job, "/events?client=c1"));
+  const auto told = events.next("result", [&](const json& e) { return e["revision"] == revision; });
+  ASSERT_TRUE(told);
+  const ReadBundle result(
+      client->get(at(job, "/results/" + told->data["result"].get<std::string>())).body);
+  const json laid = result.head["artwork"];
+  ASSERT_EQ(laid.size(), 2U) << laid;
+  EXPECT_EQ(laid[0]["size_mm"], json({12, 6}));
+  EXPECT_EQ(laid[0]["stretch"], json({1, 1}));
+  EXPECT_EQ(laid[1]["size_mm"], json({20, 10}));
+  EXPECT_LT(laid[1]["stretch"][0], 0.995);
+  EXPECT_NEAR(laid[1]["stretch"][1], 1, 0.02);
+}
+
 // Its own picture is named like the model or like a texture, in whatever letters.
 TEST_F(JobTest, APictureThatIsNamedLikeTheModelIsItsTexture) {
   const std::string job = client->post("/api/jobs").json()["job"];

@@ -157,7 +157,7 @@ export const t = {
     move: (name: string) => `Move ${name}`,
     scale: (name: string) => `Width of ${name}`,
     rotate: (name: string) => `Turn ${name}`,
-    laid: (w: number, h: number) => `${w.toFixed(0)} × ${h.toFixed(0)} mm on the object`,
+    laid: (w: number, h: number, onFilm: boolean) => `${w.toFixed(0)} × ${h.toFixed(0)} mm on the ${onFilm ? 'film' : 'object'}`,
     stretched: (low: number, high: number) => `stretched ${low.toFixed(2)} to ${high.toFixed(2)} times`,
     roundHint: 'It lies around the object, its middle where the object goes in first. Give it a centre (under More) to move it by hand.',
     patternHint: 'Drag the pattern on the sheet or on the object.',

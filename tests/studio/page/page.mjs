@@ -705,6 +705,7 @@ test('layers: projection, width in figures, text on top, order, removal by key',
   await laidOn.selectOption('wrap');
   await type(dome, 'layer-width', 18);
   await until('the width', async () => (await documentOf(dome)).artwork[0].size_mm?.[0] === 18 || (await documentOf(dome)).artwork[0].size_mm === 18);
+  await until('how it was laid', async () => /^18 × \d+ mm on the object, stretched 0\.\d+ to \d\.\d+ times$/.test(await dome.locator('[data-name="laid"]').textContent()));
   await dome.click('[data-name="add-text"]');
   await until('a text', async () => (await documentOf(dome)).artwork.length === 2);
   const { size_mm } = (await documentOf(dome)).artwork[1];

@@ -388,7 +388,7 @@ function LayerForm() {
       <NumberField name="layer-turn" label={t.artwork.turn} unit="°" step={5} min={-3600} max={3600} value={entry.turn_deg ?? 0} onChange={(next, live) => set({ turn_deg: next || undefined }, live, t.undo.layerTurn)} />
       <SelectField name="repeat" label={t.artwork.repeat} value={entry.repeat ?? 'once'} options={Object.entries(t.artwork.repeats)} onChange={(repeat) => set({ repeat: repeat === 'once' ? undefined : (repeat as Layer['repeat']) })} />
       <NumberField name="opacity" label={t.artwork.opacity} unit="%" step={5} min={0} max={100} value={100 * (entry.opacity ?? 1)} onChange={(next, live) => set({ opacity: next === null || next === 100 ? undefined : next / 100 }, live)} />
-      {laid && laid.size_mm && <p class="soft">{t.artwork.laid(...laid.size_mm)}{laid.stretch && laid.stretch[0] !== laid.stretch[1] ? `, ${t.artwork.stretched(...laid.stretch)}` : ''}</p>}
+      {laid && <p class="soft" data-name="laid">{t.artwork.laid(...laid.size_mm, onFilm)}{laid.stretch[0] !== laid.stretch[1] ? `, ${t.artwork.stretched(...laid.stretch)}` : ''}</p>}
       {onFilm && <p class="soft">{t.artwork.patternHint}</p>}
       {isRound(projection) && !center && <p class="soft">{t.artwork.roundHint}</p>}
       <details>
