@@ -39,7 +39,6 @@ HttpRequest request_of(const httplib::Request& from) {
   request.path = from.path;
   for (const auto& [key, value] : from.params) request.query.emplace(key, value);
   request.header = [&from](const std::string& name) { return from.get_header_value(name); };
-  request.remote = from.remote_addr;
   const bool chunked = from.has_header("Transfer-Encoding");
   if (from.has_header("Content-Length"))
     request.body_bytes = from.get_header_value<std::uint64_t>("Content-Length");

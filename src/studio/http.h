@@ -18,7 +18,6 @@ struct HttpRequest {
   std::string path;    // decoded, without the query
   std::map<std::string, std::string> query;
   std::function<std::string(const std::string& name)> header;  // "" if there is none
-  std::string remote;                                          // the other side's address
   bool has_body = false;
   std::optional<std::uint64_t> body_bytes;  // as the request says
   // The body, piece by piece as it comes; `take` says whether it goes on. False if the body did not

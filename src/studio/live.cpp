@@ -143,7 +143,7 @@ void Live::show_model(const Turn& turn) {
   shown_paint_.reset();
   shows_artwork_ = false;
   model_warnings_ = reading.warnings();
-  sinks_.model(turn.request.revision, model, model_warnings_);
+  sinks_.model(turn.request.revision, model);
 }
 
 void Live::show_look(const Turn& turn, LookQuality quality) {

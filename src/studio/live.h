@@ -33,8 +33,7 @@ struct LiveRequest {
 
 // Called on Live's own thread.
 struct LiveSinks {
-  std::function<void(long revision, std::shared_ptr<const Model>, const std::vector<std::string>&)>
-      model;
+  std::function<void(long revision, std::shared_ptr<const Model>)> model;
   // What artwork makes of the model's colours.
   std::function<void(long revision, const Model&, const Object& painted)> painted;
   std::function<void(long revision, const Look&, double took_s)> look;

@@ -523,8 +523,7 @@ void OpenJob::tell_held(const std::string& event, const Json& data) {
 // Of the live results' thread.
 LiveSinks OpenJob::sinks() {
   LiveSinks sinks;
-  sinks.model = [this](long revision, const std::shared_ptr<const Model>& model,
-                       const std::vector<std::string>&) {
+  sinks.model = [this](long revision, const std::shared_ptr<const Model>& model) {
     const std::string id = show_mesh(*model, *model->object);
     const std::lock_guard lock(mutex_);
     shown_.set_model_mesh(id);
