@@ -140,10 +140,10 @@ export interface Adopted {
   text: string;
 }
 
-export interface DocumentAnswer {
+export interface AdoptAnswer {
   revision: number;
-  document?: JobDocument;
-  adopted?: Adopted[];
+  document: JobDocument;
+  adopted: Adopted[];
 }
 
 export interface Problem {
@@ -415,10 +415,9 @@ export const api = {
     (await (
       await ask(`/api/jobs/${part(job)}/files/${name.split('/').map(part).join('/')}`, { method: 'PUT', body: file })
     ).json()) as { file: string; kind: JobFile['kind'] },
-  adopt: (job: string, files: string[], at_mm: Numbers | null, client: string) =>
-    json<DocumentAnswer>(`/api/jobs/${part(job)}/adopt`, 'POST', { files, at_mm, client }),
+  adopt: (job: string, files: string[], client: string) => json<AdoptAnswer>(`/api/jobs/${part(job)}/adopt`, 'POST', { files, client }),
   put: (job: string, body: { client: string; base: number; document: JobDocument; live: boolean; dip: number }) =>
-    json<DocumentAnswer>(`/api/jobs/${part(job)}/document`, 'PUT', body),
+    json<{ revision: number }>(`/api/jobs/${part(job)}/document`, 'PUT', body),
   save: (job: string) => json<{ where: string; saved_revision: number }>(`/api/jobs/${part(job)}/save`, 'POST', {}),
   pen: (job: string, client: string) => json<unknown>(`/api/jobs/${part(job)}/pen`, 'POST', { client }),
   thumbnail: (job: string, png: Blob) => ask(`/api/jobs/${part(job)}/thumbnail`, { method: 'PUT', body: png }),

@@ -2,7 +2,7 @@
 // signals here; the document is only ever replaced, never changed.
 import { batch, computed, signal } from '@preact/signals';
 import { api, ApiError, Unreachable } from './api.ts';
-import type { DipFrames, DocumentAnswer, Finish, JobFile, JobState, MeshData, Problem, Result, Task, TaskKind } from './api.ts';
+import type { AdoptAnswer, DipFrames, Finish, JobFile, JobState, MeshData, Problem, Result, Task, TaskKind } from './api.ts';
 import { dipCount, equal, layersOf, withLayer, type JobDocument, type Patch, type Vec3 } from './document.ts';
 import { t } from './strings.ts';
 
@@ -230,7 +230,6 @@ export class Job {
       const answer = await api.put(this.id, { client: this.client, base: this.revision.value, document, live, dip: this.dip.value });
       this.revision.value = Math.max(this.revision.value, answer.revision);
       if (!this.next && this.document.value === document) {
-        if (answer.document) this.document.value = answer.document;
         if (!live) this.acknowledged();
       }
     } catch (error) {
@@ -289,7 +288,7 @@ export class Job {
         names.push((await api.upload(this.id, file, name)).file);
       }
       const before = this.document.value;
-      const answer: DocumentAnswer = await this.alone(() => api.adopt(this.id, names, null, this.client));
+      const answer = await this.alone(() => api.adopt(this.id, names, this.client));
       this.adopted(before, answer, at_mm);
     } catch (error) {
       this.complain(error);
@@ -330,9 +329,9 @@ export class Job {
     }
   }
 
-  private adopted(before: JobDocument, answer: DocumentAnswer, at_mm: Vec3 | null): void {
+  private adopted(before: JobDocument, answer: AdoptAnswer, at_mm: Vec3 | null): void {
     this.revision.value = Math.max(this.revision.value, answer.revision);
-    if (answer.document && !equal(before, answer.document)) {
+    if (!equal(before, answer.document)) {
       this.past.value = [...this.past.value, { document: before, label: t.undo.files }];
       this.future.value = [];
       const layers = layersOf(before).length;
@@ -340,7 +339,7 @@ export class Job {
       if (placed) this.take(withLayer(answer.document, layers, { at_mm }));
       else this.takeAdopted(answer.document);
     }
-    const unused = (answer.adopted ?? []).filter((file) => file.as === 'unused');
+    const unused = answer.adopted.filter((file) => file.as === 'unused');
     if (unused.length) {
       this.notice.value = { kind: 'error', text: unused.map((file) => file.text || t.notice.unused(file.file)).join(' ') };
     }
