@@ -521,7 +521,8 @@ HttpAnswer Api::read_job(const Parts& parts, OpenJob& job) {
         files.emplace_back(entry->path().lexically_relative(folder).string(), entry->path());
     if (files.empty()) throw not_found();
     std::sort(files.begin(), files.end());
-    const std::filesystem::path archive = job.thumbnail().parent_path() / (parts[4] + ".zip");
+    // A later print writes over the files of an earlier one: one archive is enough.
+    const std::filesystem::path archive = job.thumbnail().parent_path() / "print.zip";
     pack_zip(archive, files);
     return file_answer(archive, job.name() + "-print.zip");
   }

@@ -644,6 +644,7 @@ std::string OpenJob::start_task(const Json& request) {
     throw ApiError(400, "bad-request", "A task is print, orient or plan.");
   TaskRequest task;
   task.kind = kind;
+  task.name = ids_.task();
   task.address = address() + "/tasks";
   task.uploads = files_.uploads();
   const std::lock_guard lock(mutex_);
@@ -681,7 +682,9 @@ std::string OpenJob::start_task(const Json& request) {
   }
   std::error_code ignored;
   std::filesystem::create_directories(task.folder.parent_path(), ignored);
-  return tasks_->start(std::move(task));
+  std::string name = task.name;
+  tasks_->start(std::move(task));
+  return name;
 }
 
 void OpenJob::cancel_task(const std::string& task) {

@@ -28,6 +28,7 @@ class ShownIds {
   std::string mesh() { return next('m'); }
   std::string result() { return next('r'); }
   std::string finish() { return next('f'); }
+  std::string task() { return next('t'); }
   // For what has no address but must be unlike all others.
   long number() { return ++*numbers_; }
   // Whether it is one of this run's.

@@ -238,10 +238,9 @@ Json do_task(const TaskRequest& request, const RunContext& context) {
 // ---- tasks ----
 
 struct Tasks::Task {
-  Task(std::string its_name, TaskRequest its_request)
-      : name(std::move(its_name)), request(std::move(its_request)), progress(request.kind) {}
+  explicit Task(TaskRequest its_request)
+      : request(std::move(its_request)), progress(request.kind) {}
 
-  const std::string name;
   const TaskRequest request;
   RunContext context;
   JobProgress progress;
@@ -271,12 +270,11 @@ void Tasks::require_free(const std::string& kind) const {
   require_none_running(kind);
 }
 
-std::string Tasks::start(TaskRequest request) {
+void Tasks::start(TaskRequest request) {
   const std::lock_guard lock(mutex_);
   require_none_running(request.kind);
-  std::string name = fmt::format("t{}", ++number_);
-  request.address += "/" + name;
-  tasks_.push_back(std::make_unique<Task>(name, std::move(request)));
+  request.address += "/" + request.name;
+  tasks_.push_back(std::make_unique<Task>(std::move(request)));
   Task& task = *tasks_.back();
   try {
     task.thread = std::thread([this, &task] { run(task); });
@@ -285,7 +283,6 @@ std::string Tasks::start(TaskRequest request) {
     throw ApiError(500, "failed",
                    "This machine has no room for more work now; end other programs and try again.");
   }
-  return name;
 }
 
 void Tasks::change(Task& task, const std::function<void()>& how, bool always) {
@@ -347,7 +344,7 @@ Json Tasks::json_of(const Task& task) const {
   const double elapsed =
       running ? std::chrono::duration<double>(Steady::now() - task.begun).count() : task.took_s;
   const double left = running ? task.progress.left_s(elapsed) : -1;
-  return {{"task", task.name},
+  return {{"task", task.request.name},
           {"kind", task.request.kind},
           {"state", task.state},
           {"revision", task.request.revision},
@@ -362,7 +359,7 @@ Json Tasks::json_of(const Task& task) const {
 bool Tasks::cancel(const std::string& name) {
   const std::lock_guard lock(mutex_);
   for (const auto& task : tasks_)
-    if (task->name == name) {
+    if (task->request.name == name) {
       task->context.cancel();
       return true;
     }
@@ -384,7 +381,7 @@ Json Tasks::list() const {
 std::filesystem::path Tasks::folder(const std::string& name) const {
   const std::lock_guard lock(mutex_);
   for (const auto& task : tasks_)
-    if (task->name == name) return task->request.folder;
+    if (task->request.name == name) return task->request.folder;
   return {};
 }
 

@@ -15,6 +15,7 @@
 namespace hydrodip {
 
 struct TaskRequest {
+  std::string name;  // unlike any other's
   std::string kind;  // "print"
   long revision = 0;
   JobConfig config;               // of orient and plan: as it is
@@ -36,8 +37,8 @@ class Tasks {
 
   // Throws ApiError busy if one of that kind is running.
   void require_free(const std::string& kind) const;
-  // Its name. Throws ApiError: busy as above; failed if the machine can begin no thread.
-  std::string start(TaskRequest request);
+  // Throws ApiError: busy as above; failed if the machine can begin no thread.
+  void start(TaskRequest request);
   // False: there is no such task.
   bool cancel(const std::string& task);
   // TASKs of docs/studio-api.md: the last of each kind.
@@ -57,7 +58,6 @@ class Tasks {
   const std::function<void(const Json&)> tell_;
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<Task>> tasks_;
-  int number_ = 0;
 };
 
 }  // namespace hydrodip

@@ -35,6 +35,9 @@ class OpenJobTest : public testing::Test {
  protected:
   std::unique_ptr<OpenJob> open() {
     name = store.create();
+    return open_again();
+  }
+  std::unique_ptr<OpenJob> open_again() {
     return std::make_unique<OpenJob>(store, name, "run-1", numbers);
   }
   static OpenJob::Change turned() {
@@ -168,6 +171,20 @@ TEST_F(OpenJobTest, ASecondPrintChangesNothingOfTheFirst) {
   EXPECT_EQ(code_of([&] { job->start_task({{"kind", "print"}}); }), "busy");
   EXPECT_TRUE(read_file(store.home(name) / "job.toml") == printed);
   job->cancel_task(task);
+}
+
+// A page that saw the job before it was let go knows a task by its name.
+TEST_F(OpenJobTest, NoTwoTasksOfARunHaveOneName) {
+  auto job = open();
+  write_file(store.home(name) / "files/part.stl", kTetrahedron);
+  OpenJob::Change change;
+  change.client = "c1";
+  change.document["object"]["file"] = "part.stl";
+  job->put(change);
+  const std::string first = job->start_task({{"kind", "print"}});
+  job.reset();
+  job = open_again();
+  EXPECT_NE(job->start_task({{"kind", "print"}}), first);
 }
 
 // A large model that is read when the program ends does not hold it up.

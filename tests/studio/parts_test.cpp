@@ -131,6 +131,7 @@ TEST(Tasks, OneThatCannotBeginIsNone) {
   const TemporaryFolder folder;
   Tasks tasks([](const Json&) {});
   TaskRequest print;
+  print.name = "t1";
   print.kind = "print";
   print.job = folder / "missing.toml";
   print.folder = folder / "print";
