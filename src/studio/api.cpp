@@ -210,7 +210,7 @@ std::filesystem::path known_profile(const std::filesystem::path& folder, const s
   std::filesystem::path file = profile_path(folder, name);
   std::error_code ignored;
   if (folder.empty() || !std::filesystem::is_regular_file(file, ignored))
-    throw ApiError(404, "not-found", "There is no such preset any more.");
+    throw ApiError(404, "not-found", "There is no such profile any more.");
   return file;
 }
 

@@ -1031,7 +1031,7 @@ TEST_F(JobTest, DipsArePutTogetherWhenTheHandRests) {
   }
 }
 
-TEST_F(JobTest, APresetIsAProfileOfThePersonsOwn) {
+TEST_F(JobTest, SettingsAreKeptAsAProfileOfThePersonsOwn) {
   const std::string job = sample("pyramid");
   json document = quick(describe(job)["document"]);
   document["film"]["margin_mm"] = 13;

@@ -295,7 +295,7 @@ export class Job {
     }
   }
 
-  // What a preset sets.
+  // What a profile sets.
   async profile(name: string): Promise<Patch | null> {
     try {
       return await api.profile(this.id, name);
@@ -305,12 +305,12 @@ export class Job {
     }
   }
 
-  // Keeps what the job has for film, printer and bath under that name; all presets' names.
+  // Keeps what the job has for film, printer and bath under that name; all profiles' names.
   async saveProfile(name: string): Promise<string[] | null> {
     try {
       await this.arrived();
       const names = await api.saveProfile(this.id, name);
-      this.notice.value = { kind: 'info', text: t.notice.preset(name) };
+      this.notice.value = { kind: 'info', text: t.notice.profile(name) };
       return names;
     } catch (error) {
       this.complain(error);

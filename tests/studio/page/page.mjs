@@ -387,18 +387,18 @@ test('the sheet is chosen from presets, and can be turned', async () => {
   await sameAs(toy, first);
 });
 
-test('what is set for film and printer is kept as a preset, and taken again', async () => {
+test('what is set for film and printer is kept as a profile, and taken again', async () => {
   const first = await documentOf(toy);
   await type(toy, 'film-margin_mm', 14);
-  assert.deepEqual(await toy.locator('[name="preset"] option').allTextContents(), ['none yet']);
-  await toy.click('[data-name="keep-preset"]');
-  await toy.fill('[name="preset-name"]', 'our film');
-  await toy.locator('[name="preset-name"]').press('Enter');
-  await toy.locator('[name="preset"] option', { hasText: /^our-film$/ }).waitFor({ state: 'attached' });
+  assert.deepEqual(await toy.locator('[name="profile"] option').allTextContents(), ['none yet']);
+  await toy.click('[data-name="keep-profile"]');
+  await toy.fill('[name="profile-name"]', 'our film');
+  await toy.locator('[name="profile-name"]').press('Enter');
+  await toy.locator('[name="profile"] option', { hasText: /^our-film$/ }).waitFor({ state: 'attached' });
   await type(toy, 'film-margin_mm', 9);
   await kept(toy);
-  await toy.selectOption('[name="preset"]', 'our-film');
-  await until('the preset', async () => (await documentOf(toy)).film?.margin_mm === 14);
+  await toy.selectOption('[name="profile"]', 'our-film');
+  await until('the profile', async () => (await documentOf(toy)).film?.margin_mm === 14);
   for (let k = 0; k < 3; ++k) await undo(toy);
   await sameAs(toy, first);
 });

@@ -583,7 +583,7 @@ function FilmStep() {
   );
   return (
     <>
-      <Presets />
+      <Profiles />
       <Group>
         <div class="row">
           <SelectField
@@ -619,13 +619,13 @@ function FilmStep() {
 const takeFocus = (element: HTMLElement | null): void => element?.focus();
 
 // The person's own profiles of film, printer and bath.
-function Presets() {
+function Profiles() {
   const open = job.value!;
   const name = useSignal<string | null>(null);
   const { profiles } = hello.value!;
   const choose = async (chosen: string): Promise<void> => {
     const patch = chosen && (await open.profile(chosen));
-    if (patch) change((document) => patched(document, patch), t.film.preset);
+    if (patch) change((document) => patched(document, patch), t.film.profile);
   };
   const keep = async (): Promise<void> => {
     const given = name.value?.trim().replace(/\s+/g, '-') ?? '';
@@ -636,15 +636,15 @@ function Presets() {
   return (
     <Group>
       <div class="row">
-        <SelectField name="preset" label={t.film.preset} value="" options={[['', profiles.length ? t.film.choosePreset : t.film.noPreset], ...profiles.map((p) => [p, p] as const)]} onChange={(chosen) => void choose(chosen)} />
-        <Button name="keep-preset" label={t.film.keepPreset} icon="plus" iconOnly changes expanded={name.value !== null} onClick={() => (name.value = name.value === null ? '' : null)} />
+        <SelectField name="profile" label={t.film.profile} value="" options={[['', profiles.length ? t.film.chooseProfile : t.film.noProfile], ...profiles.map((p) => [p, p] as const)]} onChange={(chosen) => void choose(chosen)} />
+        <Button name="keep-profile" label={t.film.keepProfile} icon="plus" iconOnly changes expanded={name.value !== null} onClick={() => (name.value = name.value === null ? '' : null)} />
       </div>
       {name.value !== null && (
         <form class="row" onSubmit={(event) => {
           event.preventDefault();
           void keep();
         }}>
-          <input class="wide" name="preset-name" aria-label={t.film.presetName} placeholder={t.film.presetName} value={name.value} ref={takeFocus} onInput={(event) => (name.value = event.currentTarget.value)} />
+          <input class="wide" name="profile-name" aria-label={t.film.profileName} placeholder={t.film.profileName} value={name.value} ref={takeFocus} onInput={(event) => (name.value = event.currentTarget.value)} />
           <button type="submit" class="button main" disabled={!name.value.trim()}>{t.film.keep}</button>
         </form>
       )}
