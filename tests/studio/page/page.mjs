@@ -723,6 +723,26 @@ test('layers: projection, width in figures, text on top, order, removal by key',
   await picture(dome, 'layers');
 });
 
+test('names as long as they come leave the fields where they are', async () => {
+  const long = 'a very long name that somebody gave to a picture '.repeat(3).trim();
+  writeFileSync(join(work, `${long}.png`), readFileSync(join(work, 'logo.png')));
+  await dome.setInputFiles('[name="add-picture"]', join(work, `${long}.png`));
+  await dome.waitForSelector(`[data-layer][title="${long}.png"]`);
+  const name = (await documentOf(dome)).name;
+  await type(dome, 'job-name', long);
+  const beyond = () => dome.evaluate(() => [...document.querySelectorAll('.steps, .steps *, .top > *')].filter((e) => {
+    if (e.closest('.hidden, option')) return false;
+    const edge = e.closest('.steps')?.getBoundingClientRect().right ?? innerWidth;
+    return e.getBoundingClientRect().right > edge + 1 || (e.matches('.steps') && e.scrollWidth > e.clientWidth);
+  }).map((e) => e.outerHTML.slice(0, 100)));
+  assert.deepEqual(await beyond(), []);
+  await picture(dome, 'long-names');
+  await blur(dome);
+  await undo(dome);
+  await undo(dome);
+  await until('the old name', async () => (await documentOf(dome)).name === name);
+});
+
 test('a pattern of the film is slid on the sheet', async () => {
   await dome.setInputFiles('[name="add-pattern"]', join(work, 'tile.png'));
   await until('a pattern', async () => (await documentOf(dome)).artwork.at(-1).projection === 'film');

@@ -43,7 +43,7 @@ export function Start() {
             <li key={entry.job}>
               <button type="button" data-recent={entry.job} onClick={() => void openJob(entry.job)}>
                 {entry.thumbnail ? <img src={entry.thumbnail} alt="" loading="lazy" /> : <span class="blank" aria-hidden="true" />}
-                <b>{entry.name || t.top.untitled}</b>
+                <b title={entry.name}>{entry.name || t.top.untitled}</b>
                 <small>
                   {new Date(entry.changed).toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' })}
                   {entry.recovered ? ` · ${t.start.recovered}` : entry.unsaved ? ` · ${t.start.unsaved}` : ''}

@@ -42,7 +42,7 @@ function Step({ name, number }: { name: StepName; number: number }) {
         <button type="button" aria-expanded={open} aria-controls={`step-${name}`} data-step={name} onClick={() => goToStep(name)}>
           <span class="number" aria-hidden="true">{number}</span>
           <span class="name">{t.steps[name]}</span>
-          <span class="summary">{summaryOf(name)}</span>
+          <span class="summary" title={summaryOf(name)}>{summaryOf(name)}</span>
         </button>
       </h2>
       {open && <div class="body" id={`step-${name}`}>{BODIES[name]()}</div>}
@@ -112,7 +112,7 @@ function ModelStep() {
     <>
       <Group>
         <div class="row">
-          <span class="filename" title={document.object.file}><Icon name="file" /> {document.object.file}</span>
+          <span class="filename" title={document.object.file}><Icon name="file" /><span>{document.object.file}</span></span>
           <Button name="reload" label={t.model.reload} icon="reload" iconOnly kind="quiet" onClick={() => void open.reload()} />
           <Files name="open-model" label={t.model.replace} accept={accept} many onFiles={(files) => void addFiles(files)} />
         </div>
@@ -331,7 +331,7 @@ function LayerRow({ entry, at, last }: { entry: Layer; at: number; last: number 
   };
   return (
     <li class={chosen ? 'layer chosen' : 'layer'}>
-      <button type="button" class="pick" aria-pressed={chosen} data-layer={at} onClick={() => (layer.value = chosen ? null : at)}>
+      <button type="button" class="pick" aria-pressed={chosen} data-layer={at} title={name} onClick={() => (layer.value = chosen ? null : at)}>
         {entry.image ? <img src={api.fileUrl(job.value!.id, entry.image)} alt="" loading="lazy" /> : <span class="letter" aria-hidden="true"><Icon name="text" /></span>}
         <span>{name}</span>
       </button>

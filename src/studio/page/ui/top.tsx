@@ -108,9 +108,10 @@ function Name() {
       <input
         aria-label={t.top.name}
         name="job-name"
+        title={nameOf()}
         value={typed.value ?? nameOf()}
         disabled={!open.mayChange.value || narrow.value}
-        size={Math.max(6, Math.min(28, (typed.value ?? nameOf()).length))}
+        size={Math.max(6, Math.min(60, (typed.value ?? nameOf()).length))}
         onInput={(event) => (typed.value = event.currentTarget.value)}
         onBlur={settle}
         onKeyDown={(event) => {
