@@ -480,6 +480,51 @@ test('the verdict opens what it rests on', async () => {
   assert.equal(await toy.locator('.panel').count(), 0);
 });
 
+const focused = (page) => page.evaluate(() => {
+  const at = document.activeElement;
+  return at.getAttribute('name') ?? at.dataset.name ?? at.className;
+});
+// What has the focus, by its name, or its class if it has none.
+const focusAt = (page, name) => until(`the focus at ${name}`, async () => (await focused(page)) === name, 10).catch(async () => assert.equal(await focused(page), name));
+
+test('a panel takes the focus and gives it back; what is left hands it on', async () => {
+  await toy.locator('.verdict').press('Enter');
+  await focusAt(toy, 'panel verdict-panel');
+  await toy.keyboard.press('Tab');
+  await focusAt(toy, 'close-panel');
+  await toy.keyboard.press('Escape');
+  await until('the verdict', async () => /^verdict/.test(await focused(toy)));
+  await toy.locator('[data-name="save"]').press('Enter');
+  await focusAt(toy, 'save-name');
+  await toy.keyboard.type('r'); // is typed, and no tool; over the old name, as that is selected
+  assert.equal(await toy.inputValue('[name="save-name"]'), 'r');
+  await toy.keyboard.press('Escape');
+  await focusAt(toy, 'save');
+  await toy.locator('[data-name="keys"]').press('Enter');
+  await focusAt(toy, 'panel right keys');
+  await toy.keyboard.press('Escape');
+  await focusAt(toy, 'keys');
+  await toy.keyboard.press('1');
+  await toy.locator('[data-name="orient"]').focus();
+  await toy.keyboard.press('2');
+  await until('the step', () => toy.evaluate(() => document.activeElement.dataset.step === 'artwork'));
+});
+
+test('a new text is typed at once, over the words that stand there', async () => {
+  const first = await documentOf(toy);
+  await toy.locator('[data-name="add-text"]').press('Enter');
+  await focusAt(toy, 'words');
+  await toy.keyboard.type('Form 12');
+  assert.equal(await toy.inputValue('[name="words"]'), 'Form 12');
+  assert.equal(await toy.getAttribute('.work', 'data-step'), 'artwork');
+  await blur(toy);
+  await until('the text', async () => (await documentOf(toy)).artwork?.[0]?.text === 'Form 12');
+  await toy.locator('[aria-label="Remove: Form 12"]').press('Enter');
+  await focusAt(toy, 'add-text');
+  for (let k = 0; k < 3; ++k) await undo(toy);
+  await sameAs(toy, first);
+});
+
 test('Tab shows the sheet large while the view has the focus', async () => {
   const at = await middleOf(toy, '.canvas-box canvas');
   await toy.mouse.click(at.x - 200, at.y);

@@ -1,14 +1,15 @@
 // The window: what there is when nothing is open, and when a job is.
-import { useEffect } from 'preact/hooks';
+import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import { addFiles, bigSheet, dropping, failure, hello, job, layer, narrow, panel, step } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button } from './fields.tsx';
+import { takeFocus } from './focus.ts';
 import { listenToKeys } from './keys.ts';
 import { Side } from './side.tsx';
 import { Start } from './start.tsx';
 import { Steps } from './steps.tsx';
 import { keepThumbnail } from './thumbnail.ts';
-import { TopBar } from './top.tsx';
+import { nameOf, TopBar } from './top.tsx';
 import { Center, droppedAt } from './view.tsx';
 
 export function App() {
@@ -26,15 +27,17 @@ export function App() {
 }
 
 function Work() {
+  const work = useRef<HTMLDivElement>(null);
+  useLayoutEffect(() => takeFocus(work.current), []); // what had it is gone with the page of jobs
   return (
-    <div class={bigSheet.value ? 'work big-sheet' : 'work'} data-job={job.value!.id} data-step={step.value} data-panel={panel.value} data-layer={layer.value}>
+    <main ref={work} tabIndex={-1} aria-label={nameOf()} class={bigSheet.value ? 'work big-sheet' : 'work'} data-job={job.value!.id} data-step={step.value} data-panel={panel.value} data-layer={layer.value}>
       <TopBar />
       <Banner />
       {!narrow.value && <Steps />}
       <Center />
       <Side />
       <Notice />
-    </div>
+    </main>
   );
 }
 

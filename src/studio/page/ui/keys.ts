@@ -2,13 +2,10 @@
 import { batch } from '@preact/signals';
 import { layersOf } from '../document.ts';
 import { bigSheet, chooseTool, goToStep, job, layer, panel, readOnly, stage, STEPS, tool } from '../studio.ts';
+import { focusOn } from './focus.ts';
 import { removeLayer } from './steps.tsx';
 import { askPrint, askSave } from './top.tsx';
 import { playDip } from './view.tsx';
-
-const focusOn = (selector: string): void => {
-  requestAnimationFrame(() => document.querySelector<HTMLElement>(selector)?.focus());
-};
 
 const PLAIN: Record<string, () => void> = {
   r: () => chooseTool('turn'),
@@ -71,13 +68,13 @@ function pressed(event: KeyboardEvent): void {
   const target = event.target as HTMLElement;
   if (key === 'Tab') {
     // Only where a pointer put the focus into the view: else it leads on, as everywhere.
-    const back = bigSheet.value && target === document.body;
+    const back = bigSheet.value && target.matches('body, .work');
     if (event.shiftKey || !(back || target.dataset['byPointer'])) return;
     event.preventDefault();
     bigSheet.value = !bigSheet.value;
     return;
   }
-  if (key === ' ' && target.closest('button, summary, [role=button], input, label')) return;
+  if (key === ' ' && target.closest('button, summary, [role=button], input, label, .panel')) return;
   const action = PLAIN[key];
   if (!action) return;
   event.preventDefault();

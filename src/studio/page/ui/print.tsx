@@ -7,7 +7,7 @@ import { Button } from './fields.tsx';
 import { Icon } from './icons.tsx';
 import { Progress, taskOf } from './progress.tsx';
 import { CONCERN_ICON } from './side.tsx';
-import { PanelHead } from './top.tsx';
+import { Panel, PanelHead } from './top.tsx';
 
 // What people need at the printer and the bath comes first.
 const FIRST = /(^|\/)(print\.pdf|run-?sheet\.(pdf|html)|report\.html)$/;
@@ -21,7 +21,7 @@ export function PrintPanel() {
   }, [task?.task, task?.state]);
   const again = <Button name="print-again" label={t.print.again} changes onClick={() => void open.start('print')} />;
   return (
-    <section class="panel right print" aria-label={t.print.title} aria-live="polite">
+    <Panel button='[data-name="print"]' kind="right print" label={t.print.title}>
       <PanelHead title={t.print.title} />
       {task?.state === 'running' && <Progress task={task} title={t.print.running} />}
       {task?.state === 'cancelled' && <p>{t.print.cancelled}</p>}
@@ -31,7 +31,7 @@ export function PrintPanel() {
       {result && open.draft.value === false && task!.revision < (open.result.value?.revision ?? 0) && (
         <div class="row wrap"><p class="soft">{t.print.changed}</p>{again}</div>
       )}
-    </section>
+    </Panel>
   );
 }
 

@@ -13,6 +13,7 @@ import {
 } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button, CheckField, ColorField, Files, NumberField, SegmentsField, SelectField, TextField } from './fields.tsx';
+import { focusIfLost, focusOn, takeFocus, useFocusHandedTo } from './focus.ts';
 import { frameOf } from './handles.tsx';
 import { Icon } from './icons.tsx';
 import { Progress, taskOf } from './progress.tsx';
@@ -45,9 +46,14 @@ function Step({ name, number }: { name: StepName; number: number }) {
           <span class="summary" title={summaryOf(name)}>{summaryOf(name)}</span>
         </button>
       </h2>
-      {open && <div class="body" id={`step-${name}`}>{BODIES[name]()}</div>}
+      {open && <StepBody name={name} />}
     </li>
   );
+}
+
+function StepBody({ name }: { name: StepName }) {
+  const box = useFocusHandedTo(() => `button[data-step="${step.value}"]`);
+  return <div class="body" id={`step-${name}`} ref={box}>{BODIES[name]()}</div>;
 }
 
 function depthText(document: JobDocument, dip: number): string {
@@ -300,7 +306,10 @@ function ArtworkStep() {
       <Group>
         <div class="row wrap">
           <Files name="add-picture" label={t.artwork.picture} icon="picture" accept={pictures} many {...full} onFiles={(files) => void addFiles(files)} />
-          <Button name="add-text" label={t.artwork.text} icon="text" changes {...full} onClick={() => add(textThatFits())} />
+          <Button name="add-text" label={t.artwork.text} icon="text" changes {...full} onClick={() => {
+            add(textThatFits());
+            focusOn('[name="words"]');
+          }} />
           <Files name="add-pattern" label={t.artwork.pattern} icon="pattern" accept={pictures} {...full} onFiles={(files) => void addPattern(files)} />
         </div>
         {layers.length === 0 && <p class="soft">{t.artwork.none}</p>}
@@ -328,6 +337,7 @@ function LayerRow({ entry, at, last }: { entry: Layer; at: number; last: number 
   const move = (to: number): void => {
     change((document) => withLayerMoved(document, at, to), t.undo.layerOrder);
     layer.value = to;
+    focusOn(`[data-name="${to > at ? 'up' : 'down'}-${to}"]`, `[data-layer="${to}"]`);
   };
   return (
     <li class={chosen ? 'layer chosen' : 'layer'}>
@@ -335,8 +345,8 @@ function LayerRow({ entry, at, last }: { entry: Layer; at: number; last: number 
         {entry.image ? <img src={api.fileUrl(job.value!.id, entry.image)} alt="" loading="lazy" /> : <span class="letter" aria-hidden="true"><Icon name="text" /></span>}
         <span>{name}</span>
       </button>
-      <Button label={`${t.artwork.up}: ${name}`} icon="up" iconOnly kind="quiet" changes disabled={at === last} onClick={() => move(at + 1)} />
-      <Button label={`${t.artwork.down}: ${name}`} icon="down" iconOnly kind="quiet" changes disabled={at === 0} onClick={() => move(at - 1)} />
+      <Button name={`up-${at}`} label={`${t.artwork.up}: ${name}`} icon="up" iconOnly kind="quiet" changes disabled={at === last} onClick={() => move(at + 1)} />
+      <Button name={`down-${at}`} label={`${t.artwork.down}: ${name}`} icon="down" iconOnly kind="quiet" changes disabled={at === 0} onClick={() => move(at - 1)} />
       <Button label={`${t.artwork.remove}: ${name}`} icon="trash" iconOnly kind="quiet" changes onClick={() => removeLayer(at)} />
     </li>
   );
@@ -345,6 +355,7 @@ function LayerRow({ entry, at, last }: { entry: Layer; at: number; last: number 
 export function removeLayer(at: number): void {
   change((document) => withoutLayer(document, at), t.undo.layerRemove);
   layer.value = null;
+  focusIfLost('[data-layer]', '[data-name="add-text"]');
 }
 
 function LayerForm() {
@@ -525,7 +536,10 @@ function DipRow({ at }: { at: number }) {
       </button>
       <Button label={`${t.dips.lock}: ${t.dips.dip(at + 1)}`} icon={dip.locked ? 'lock' : 'unlock'} iconOnly kind="quiet" pressed={dip.locked ?? false} changes
         onClick={() => change((document) => withDip(document, at, { locked: !dip.locked }), t.undo.dipLock)} />
-      <Button label={t.dips.remove(at + 1)} icon="trash" iconOnly kind="quiet" changes onClick={() => change((document) => withoutDip(document, at), t.undo.dipRemove)} />
+      <Button label={t.dips.remove(at + 1)} icon="trash" iconOnly kind="quiet" changes onClick={() => {
+        change((document) => withoutDip(document, at), t.undo.dipRemove);
+        focusIfLost('[data-dip]', '[data-name="add-dip"]');
+      }} />
     </li>
   );
 }
@@ -615,8 +629,6 @@ function FilmStep() {
     </>
   );
 }
-
-const takeFocus = (element: HTMLElement | null): void => element?.focus();
 
 // The person's own profiles of film, printer and bath.
 function Profiles() {

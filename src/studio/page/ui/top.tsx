@@ -1,16 +1,18 @@
 // The bar above: what is worked on, whether it is kept, and the verdict.
 import { useSignal } from '@preact/signals';
+import type { ComponentChildren } from 'preact';
 import { useEffect } from 'preact/hooks';
 import { api, type Concern } from '../api.ts';
-import { change, goToStart, job, narrow, panel, printToShow, type Panel } from '../studio.ts';
+import { change, goToStart, job, narrow, panel, printToShow, type Panel as PanelName } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button, TextField } from './fields.tsx';
+import { usePanelFocus } from './focus.ts';
 import { Icon } from './icons.tsx';
 import { PrintPanel } from './print.tsx';
 import { taskOf } from './progress.tsx';
 import { CONCERN_ICON, FindingCard, sorted } from './side.tsx';
 
-const toggle = (name: Panel): void => {
+const toggle = (name: PanelName): void => {
   panel.value = panel.value === name ? 'none' : name;
 };
 
@@ -174,15 +176,20 @@ function VerdictPanel() {
   const finish = job.value!.wholeFinish.value;
   const verdict = finish?.verdict ?? result?.verdict;
   return (
-    <section class="panel verdict-panel" aria-label={t.verdict.restsOn}>
+    <Panel button=".verdict" kind="verdict-panel" label={t.verdict.restsOn}>
       <PanelHead title={verdict?.headline ?? t.verdict.waiting} />
       {verdict && <p>{verdict.text}</p>}
       {finish && <ul class="findings">{sorted(finish.findings).map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} />)}</ul>}
       {finish && <h3>{t.findings.ofDip(job.value!.dip.value + 1)}</h3>}
       <ul class="findings">{sorted(result?.findings ?? []).map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} />)}</ul>
       {result && result.warnings.length > 0 && <ul class="notes">{result.warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>}
-    </section>
+    </Panel>
   );
+}
+
+export function Panel({ button, kind, label, children }: { button: string; kind: string; label: string; children: ComponentChildren }) {
+  const own = usePanelFocus(button);
+  return <section ref={own} tabIndex={-1} class={`panel ${kind}`} aria-label={label}>{children}</section>;
 }
 
 export function PanelHead({ title }: { title: string }) {
@@ -198,32 +205,35 @@ function SavePanel() {
   const open = job.value!;
   const name = useSignal(nameOf());
   return (
-    <section class="panel right" aria-label={t.save.title}>
+    <Panel button='[data-name="save"]' kind="right" label={t.save.title}>
       <PanelHead title={t.save.title} />
       <p class="soft">{open.where.value ? t.save.where(open.where.value) : t.save.new}</p>
-      <TextField name="save-name" label={t.save.name} value={name.value} onChange={(next) => (name.value = next)} />
+      <form class="group" onSubmit={(event) => {
+        event.preventDefault();
+        panel.value = 'none';
+        rename(name.value);
+        void open.save();
+      }}>
+        <TextField name="save-name" label={t.save.name} value={name.value} onChange={(next) => (name.value = next)} />
+        <button type="submit" class="button main" data-name="save-now"><span>{t.save.button}</span></button>
+      </form>
       <div class="row wrap">
-        <Button name="save-now" label={t.save.button} kind="main" onClick={() => {
-          panel.value = 'none';
-          rename(name.value);
-          void open.save();
-        }} />
         <a class="button plain" href={api.tomlUrl(open.id)} download><Icon name="download" /><span>{t.top.jobFile}</span></a>
         <a class="button plain" href={api.zipUrl(open.id)} download><Icon name="download" /><span>{t.top.jobZip}</span></a>
       </div>
-    </section>
+    </Panel>
   );
 }
 
 function KeysPanel() {
   return (
-    <section class="panel right keys" aria-label={t.keys.title}>
+    <Panel button='[data-name="keys"]' kind="right keys" label={t.keys.title}>
       <PanelHead title={t.keys.title} />
       <dl>
         {t.keys.list.map(([key, what]) => (
           <div key={key}><dt>{key.split(', ').map((k) => <kbd key={k}>{k}</kbd>)}</dt><dd>{what}</dd></div>
         ))}
       </dl>
-    </section>
+    </Panel>
   );
 }
