@@ -512,11 +512,16 @@ test('a panel takes the focus and gives it back; what is left hands it on', asyn
 
 test('a new text is typed at once, over the words that stand there', async () => {
   const first = await documentOf(toy);
+  await blur(toy);
+  await toy.keyboard.press('2');
   await toy.locator('[data-name="add-text"]').press('Enter');
   await focusAt(toy, 'words');
+  const before = await resultOf(toy);
   await toy.keyboard.type('Form 12');
   assert.equal(await toy.inputValue('[name="words"]'), 'Form 12');
   assert.equal(await toy.getAttribute('.work', 'data-step'), 'artwork');
+  await toy.waitForSelector('[aria-label="Remove: Form 12"]'); // shown before the field is left
+  await until('a draft of it', async () => (await toy.getAttribute('.verdict', 'data-draft')) === 'true' && (await resultOf(toy)) !== before);
   await blur(toy);
   await until('the text', async () => (await documentOf(toy)).artwork?.[0]?.text === 'Form 12');
   await toy.locator('[aria-label="Remove: Form 12"]').press('Enter');

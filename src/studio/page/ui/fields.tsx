@@ -2,7 +2,7 @@
 // left or Enter is pressed; the arrow keys count at once.
 import { useSignal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
-import { useId } from 'preact/hooks';
+import { useEffect, useId, useRef } from 'preact/hooks';
 import { readOnly } from '../studio.ts';
 import { Icon, type IconName } from './icons.tsx';
 
@@ -126,26 +126,48 @@ export function SelectField({ label, value, options, name, hideLabel, always, ba
   );
 }
 
-export function TextField({ label, value, name, rows, onChange }: { label: string; value: string; name?: string; rows?: number; onChange: (value: string) => void }) {
+const PAUSE_MS = 250;
+
+interface TextProps {
+  label: string;
+  value: string;
+  name?: string;
+  rows?: number;
+  live?: boolean; // shown as it is typed, after a short pause
+  onChange: (value: string, live: boolean) => void;
+}
+
+export function TextField({ label, value, name, rows, live, onChange }: TextProps) {
   const id = useId();
   const typed = useSignal<string | null>(null);
+  const pause = useRef(0);
   const settle = (): void => {
+    clearTimeout(pause.current);
     if (typed.value === null) return;
     const text = typed.value;
     typed.value = null;
-    onChange(text);
+    onChange(text, false);
   };
+  const type = (text: string): void => {
+    typed.value = text;
+    clearTimeout(pause.current);
+    if (live) pause.current = window.setTimeout(() => latest.current.onChange(text, true), PAUSE_MS);
+  };
+  // What was typed counts too where the field goes away with it.
+  const latest = useRef({ settle, onChange });
+  latest.current = { settle, onChange };
+  useEffect(() => () => latest.current.settle(), []);
   const common = { id, name, disabled: readOnly.value, value: typed.value ?? value, onBlur: settle };
   return (
     <div class="field">
       <label for={id}>{label}</label>
       {rows ? (
-        <textarea {...common} rows={rows} onInput={(event) => (typed.value = event.currentTarget.value)} />
+        <textarea {...common} rows={rows} onInput={(event) => type(event.currentTarget.value)} />
       ) : (
         <input
           {...common}
           type="text"
-          onInput={(event) => (typed.value = event.currentTarget.value)}
+          onInput={(event) => type(event.currentTarget.value)}
           onKeyDown={(event) => event.key === 'Enter' && settle()}
         />
       )}

@@ -373,7 +373,7 @@ function LayerForm() {
     <section class="group" aria-label={layerName(entry)}>
       {entry.text !== undefined && (
         <>
-          <TextField name="words" label={t.artwork.words} value={entry.text} rows={2} onChange={(text) => set({ text })} />
+          <TextField name="words" label={t.artwork.words} value={entry.text} rows={2} live onChange={(text, live) => set({ text }, live)} />
           <TextField name="font" label={t.artwork.font} value={entry.font ?? ''} onChange={(font) => set({ font: font || undefined })} />
           <ColorField name="text-color" label={t.artwork.color} value={entry.text_color ?? '#000000'} onChange={(text_color, live) => set({ text_color }, live)} />
         </>
