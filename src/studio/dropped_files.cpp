@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "artwork/artwork.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "model_io/text.h"
@@ -45,6 +46,7 @@ std::string DroppedFiles::keep(const std::filesystem::path& whole, const std::st
   std::filesystem::rename(whole, file, error);
   if (error) throw ApiError(500, "failed", "The file cannot be kept; free some space.");
   if (name != wanted) wanted_[name] = wanted;
+  fresh_.insert(name);
   return name;
 }
 
@@ -68,13 +70,24 @@ std::vector<std::string> DroppedFiles::take_in(const std::vector<std::string>& k
       std::filesystem::create_directories(to.parent_path(), error);
       std::filesystem::rename(file, to, error);
       if (error) throw ApiError(500, "failed", "The files cannot be kept; free some space.");
+      if (fresh_.erase(name) > 0) fresh_.insert(names.back());
     }
     wanted_.erase(name);
   }
   return names;
 }
 
-void DroppedFiles::unpack(const std::string& archive, std::vector<std::string>& names) const {
+void DroppedFiles::refuse(const std::vector<std::string>& names) {
+  std::error_code ignored;
+  for (const std::string& name : names)
+    if (fresh_.erase(name) > 0) std::filesystem::remove(files_.uploads() / name, ignored);
+}
+
+void DroppedFiles::accept(const std::vector<std::string>& names) {
+  for (const std::string& name : names) fresh_.erase(name);
+}
+
+void DroppedFiles::unpack(const std::string& archive, std::vector<std::string>& names) {
   const std::filesystem::path file = files_.find(archive);
   const std::uintmax_t most_bytes = room_left();
   const auto is_wanted = [](const std::string& inner) {
@@ -90,6 +103,7 @@ void DroppedFiles::unpack(const std::string& archive, std::vector<std::string>& 
     unpack_zip(file, most_bytes, [&](const std::string& inner) -> std::filesystem::path {
       if (!is_wanted(inner) || files_.has(folder + inner)) return {};
       names.push_back(folder + inner);
+      fresh_.insert(names.back());
       return files_.uploads() / names.back();
     });
   } catch (const InputError& error) {
@@ -97,6 +111,38 @@ void DroppedFiles::unpack(const std::string& archive, std::vector<std::string>& 
   }
   std::error_code ignored;
   std::filesystem::remove(file, ignored);
+  fresh_.erase(archive);
+}
+
+UnreadFiles DroppedFiles::unread(const std::vector<std::string>& names) const {
+  UnreadFiles files;
+  files.uploads = files_.uploads();
+  for (const std::string& name : names) {
+    const std::string kind = kind_of_file(name);
+    // Whose pictures lie beside it is told by the model alone.
+    if (kind == "model" && files.model.empty() && (names.size() > 1 || fresh_.contains(name)))
+      files.model = files_.find(name);
+    if (kind == "picture" && fresh_.contains(name)) files.pictures.push_back(files_.find(name));
+  }
+  return files;
+}
+
+Model UnreadFiles::read(const RunContext& context) const {
+  LoadOptions own;
+  own.confined_to = uploads;
+  Model read;
+  if (!model.empty()) read = load(model, own, context);
+  for (const std::filesystem::path& picture : pictures) {
+    const bool is_own = std::any_of(read.files.begin(), read.files.end(), [&](const auto& file) {
+      std::error_code ignored;
+      return std::filesystem::equivalent(file, picture, ignored);
+    });
+    if (is_own) continue;
+    ArtworkLayer layer;
+    layer.image = picture;
+    read_pictures({layer});
+  }
+  return read;
 }
 
 std::string texture_for(const Model& model, const std::string& name,

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "base/context.h"
 #include "hydrodip/hydrodip.h"
 #include "studio/api_error.h"
 #include "studio/job_files.h"
@@ -15,6 +17,18 @@ namespace hydrodip {
 
 inline constexpr std::uintmax_t kMostFileBytes = std::uintmax_t(512) << 20U;
 inline constexpr std::uintmax_t kMostJobBytes = std::uintmax_t(2) << 30U;
+
+// A model and pictures as they were dropped.
+struct UnreadFiles {
+  std::filesystem::path model;  // may be empty
+  std::vector<std::filesystem::path> pictures;
+  std::filesystem::path uploads;  // nothing is read but what lies there
+
+  bool empty() const { return model.empty() && pictures.empty(); }
+  // The model; pictures that are not its own are looked at only. Throws InputError for the first
+  // file that is broken, and Cancelled. Without any lock.
+  Model read(const RunContext& context) const;
+};
 
 // With its owner's lock. Throws ApiError.
 class DroppedFiles {
@@ -29,13 +43,19 @@ class DroppedFiles {
   // The names of what was dropped at once; archives are unpacked. What meets files of the same
   // names gets a folder of its own, in which every file has the name by which the others know it.
   std::vector<std::string> take_in(const std::vector<std::string>& kept);
+  // Those of the names that were never in the document before are deleted, or are from now on.
+  void refuse(const std::vector<std::string>& names);
+  void accept(const std::vector<std::string>& names);
+  // What nobody has read yet of what take_in() gave.
+  UnreadFiles unread(const std::vector<std::string>& names) const;
 
  private:
   std::uintmax_t room_left() const;
-  void unpack(const std::string& archive, std::vector<std::string>& names) const;
+  void unpack(const std::string& archive, std::vector<std::string>& names);
 
   const JobFiles& files_;
   std::map<std::string, std::string> wanted_;  // of files that got another name than they had
+  std::set<std::string> fresh_;                // dropped, and not in the document yet
 };
 
 // The picture that a model with texture coordinates and without colours must mean: the only one of

@@ -252,27 +252,24 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
     return found == names.end() ? std::string() : *found;
   };
   std::set<std::string> taken;
+  std::string texture;
   try {
     if (const std::string job = first("job"); !job.empty()) {
       document = adopt_job_file(job);
       note(job, "job", "");
       taken.insert(names.begin(), names.end());
-    } else if (const std::string model = first("model"); !model.empty()) {
-      std::string texture;
-      // Reading it tells which pictures are its own.
-      if (names.size() > 1) {
-        const std::filesystem::path path = files_.find(model);
-        LoadOptions own;
-        own.confined_to = files_.uploads();
-        lock.unlock();
-        const Model read = load(path, own, work_.quiet());
-        lock.lock();
-        // Meanwhile the job was anybody's.
-        tabs_.require_pen(client);
-        document = document_;
-        for (const auto& file : read.files) taken.insert(files_.grant(file));
-        texture = texture_for(read, model, names);
-      }
+    } else if (const UnreadFiles unread = dropped_.unread(names); !unread.empty()) {
+      // What is broken must not take the place of what was good.
+      lock.unlock();
+      const Model read = unread.read(work_.quiet());
+      lock.lock();
+      // Meanwhile the job was anybody's.
+      tabs_.require_pen(client);
+      document = document_;
+      for (const auto& file : read.files) taken.insert(files_.grant(file));
+      if (read.object) texture = texture_for(read, first("model"), names);
+    }
+    if (const std::string model = first("model"); !model.empty() && first("job").empty()) {
       document["object"]["file"] = model;
       document["object"].erase("texture");
       if (!texture.empty()) document["object"]["texture"] = texture;
@@ -294,9 +291,12 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
       }
     }
   } catch (const InputError& error) {
+    if (!lock) lock.lock();
+    dropped_.refuse(names);
     throw bad_file(error.what(), files_);
   }
   accept(document, checked(document), client, false, 0, true);
+  dropped_.accept(names);
   tabs_.tell("files", files_event());
   return {{"revision", revision_}, {"document", document_}, {"adopted", adopted}};
 }

@@ -667,17 +667,34 @@ TEST_F(JobTest, AJobThatCannotBeBegunLeavesNothing) {
 TEST_F(JobTest, ABadFileIsCalledByItsNameAlone) {
   const std::string job = client->post("/api/jobs").json()["job"];
   ASSERT_EQ(client->put(at(job, "/files/part.stl"), "no model").status, 201);
-  const Reply adopted = client->post(at(job, "/adopt"), R"({"files": ["part.stl"]})");
-  ASSERT_EQ(adopted.status, 200) << adopted.body;
-  const long revision = adopted.json()["revision"];
-  Events events(*client, at(job, "/events?client=c1"));
-  // The new job's own problem, that it has no model yet, may be told first.
-  const auto problem =
-      events.next("problem", [&](const json& e) { return e["revision"] == revision; });
-  ASSERT_TRUE(problem);
-  const std::string text = problem->data["text"];
+  const Reply refused = client->post(at(job, "/adopt"), R"({"files": ["part.stl"]})");
+  ASSERT_EQ(refused.status, 422) << refused.body;
+  const std::string text = refused.json()["error"]["text"];
   EXPECT_TRUE(text.starts_with("part.stl: ")) << text;
   EXPECT_EQ(text.find(folder.path().string()), std::string::npos) << text;
+}
+
+// What is no model or picture takes no good one's place, nor its name.
+TEST_F(JobTest, ABrokenFileLeavesTheJobAsItWas) {
+  const std::string job = client->post("/api/jobs").json()["job"];
+  ASSERT_EQ(client->put(at(job, "/files/part.stl"), kTetrahedron).status, 201);
+  ASSERT_EQ(client->post(at(job, "/adopt"), R"({"files": ["part.stl"]})").status, 200);
+  const auto is_now = [&] {
+    const json now = describe(job);
+    return json{now["document"], now["revision"], now["files"]};
+  };
+  const json before = is_now();
+  for (const std::string name : {"notes.stl", "broken.png", "broken.svg"}) {
+    ASSERT_EQ(client->put(at(job, "/files/" + name), "Notes.").json()["file"], name);
+    const Reply refused = client->post(at(job, "/adopt"), json{{"files", {name}}}.dump());
+    EXPECT_EQ(refused.status, 422) << refused.body;
+    EXPECT_EQ(refused.json()["error"]["code"], "bad-file");
+    EXPECT_EQ(is_now(), before) << name;
+  }
+  // Nor does a known file go if somebody asks for it again.
+  std::ofstream(folder.path() / "jobs" / job / "files/part.stl") << "Notes.";
+  client->post(at(job, "/adopt"), R"({"files": ["part.stl"]})");
+  EXPECT_EQ(client->get(at(job, "/files/part.stl")).status, 200);
 }
 
 // It looks well dip by dip: that it cannot be printed has to be said before the print says so.

@@ -102,10 +102,14 @@ export class Job {
 
   async open(): Promise<void> {
     await this.load();
+    this.listen();
+  }
+
+  listen(): void {
     if (!this.closed) this.connect();
   }
 
-  private async load(): Promise<JobState> {
+  async load(): Promise<JobState> {
     const state: JobState = await api.job(this.id);
     this.where.value = state.where;
     this.files.value = state.files;

@@ -17,6 +17,8 @@ export const t = {
     drop: 'Drop a model here, with its picture',
     dropMore: (models: string, pictures: string) => `Models: ${models}. Pictures: ${pictures}. Or a zip, or a job file.`,
     choose: 'Choose files',
+    arriving: 'Reading it…',
+    nothingOfIt: 'Nothing could be made of it.',
     samples: 'Or try a sample',
     recent: 'Recent jobs',
     unsaved: 'not saved',

@@ -33,6 +33,7 @@ export const pointed = signal<{ hit: Hit | null; u: [number, number] | null }>({
 export const drawn = signal(0); // counts pictures of the 3D view, for what has to follow them
 export const printToShow = signal(''); // task: a print whose end nobody has seen yet
 export const dropping = signal(false);
+export const arriving = signal(false); // files, of which a job is begun
 export const narrow = signal(false);
 export const stage: { current: Stage | null } = { current: null };
 
@@ -154,11 +155,41 @@ export async function openJob(id: string): Promise<Job | null> {
     job.value = null;
     return null;
   }
+  return shown(next);
+}
+
+function shown(next: Job): Job {
   failure.value = '';
   job.value = next;
-  const hash = `#job=${encodeURIComponent(id)}`;
+  const hash = `#job=${encodeURIComponent(next.id)}`;
   if (location.hash !== hash) history.pushState(null, '', hash);
   return next;
+}
+
+const isBegun = ({ object, artwork }: JobDocument): boolean => !!object?.file || !!artwork?.length;
+
+// A job of these files. Where nothing comes of them there is none: the page says why, and stays.
+async function beginWith(files: readonly File[]): Promise<void> {
+  failure.value = '';
+  arriving.value = true;
+  try {
+    const { job: id } = await api.create({});
+    const next = new Job(id, CLIENT);
+    await next.load();
+    await next.add(files, null);
+    if (isBegun(next.document.value)) {
+      resetView();
+      shown(next).listen();
+    } else {
+      next.close();
+      failure.value = next.notice.value?.text ?? t.start.nothingOfIt;
+      await api.forget(id);
+    }
+  } catch (error) {
+    failure.value ||= error instanceof Error ? error.message : String(error);
+  } finally {
+    arriving.value = false;
+  }
 }
 
 function complain(text: string): void {
@@ -198,6 +229,8 @@ export async function goToStart(): Promise<void> {
   recent.value = await api.recent().catch(() => recent.value);
 }
 
+let arrival: Promise<void> = Promise.resolve(); // what is dropped meanwhile comes after it
+
 // The number of the last layer that came of them, if one did.
 export async function addFiles(given: readonly File[], at_mm: Vec3 | null = null): Promise<number | null> {
   const most = hello.value?.limits.file_bytes ?? Infinity;
@@ -205,10 +238,12 @@ export async function addFiles(given: readonly File[], at_mm: Vec3 | null = null
   const large = given.find((file) => file.size > most);
   if (large) complain(t.notice.tooLarge(large.name, most));
   if (!files.length) return null;
-  const open = job.value ?? (await createJob());
+  const before = layersOf(job.value?.document.value ?? {}).length;
+  const take = (): Promise<void> => (job.value ? job.value.add(files, at_mm) : beginWith(files));
+  arrival = arrival.then(take, take);
+  await arrival;
+  const open = job.value;
   if (!open) return null;
-  const before = layersOf(open.document.value).length;
-  await open.add(files, at_mm);
   const now = layersOf(open.document.value).length;
   if (now <= before) return null;
   layer.value = now - 1;

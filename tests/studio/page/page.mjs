@@ -122,6 +122,7 @@ domeStl(join(work, 'dome.stl'));
 bellStl(join(work, 'bell.stl'));
 writeFileSync(join(work, 'broken.png'), 'This is no picture.');
 writeFileSync(join(work, 'notes.mtl'), 'newmtl none');
+for (const name of ['notes.stl', 'notes.docx']) writeFileSync(join(work, name), 'Notes.');
 
 const program = new Program(hydrodip);
 await program.start();
@@ -161,6 +162,26 @@ test('the empty page: what this is, samples, a place to drop things', async () =
   assert.equal(await toy.locator('.sample').count(), 3);
   assert.match(toy.url(), /^http:\/\/127\.0\.0\.1:\d+\/$/); // the token has left the address
   await widePicture(toy, 'start');
+});
+
+const dropOn = async (page, selector, file) => {
+  const data = readFileSync(join(work, file)).toString('base64');
+  await page.evaluate(async ([on, name, text]) => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], name));
+    for (const kind of ['dragenter', 'dragover', 'drop']) document.querySelector(on).dispatchEvent(new DragEvent(kind, { bubbles: true, cancelable: true, dataTransfer: transfer }));
+  }, [selector, file, data]);
+};
+
+test('what is no model or picture begins no job', async () => {
+  for (const [file, why] of [['notes.stl', /^notes\.stl: .*STL/], ['broken.png', /^broken\.png: /], ['notes.mtl', /does not know/], ['notes.docx', /knows/]]) {
+    await dropOn(toy, '.dropzone', file);
+    await until(`why not ${file}`, async () => why.test((await toy.locator('.start .bad').allTextContents()).join()));
+    assert.equal(jobOf(toy), null);
+  }
+  await toy.reload();
+  await toy.waitForSelector('.dropzone');
+  assert.equal(await toy.locator('.recent li').count(), 0);
 });
 
 test('a sample opens with one click: object over its film, the sheet, a verdict', async () => {
@@ -840,14 +861,15 @@ test('no more layers and dips than a job may have', async () => {
   await full.close();
 });
 
-test('a broken picture is a sentence, and nothing is lost', async () => {
+test('a broken picture or model is a sentence, and the job is as before', async () => {
   const first = await documentOf(dome);
-  await dome.setInputFiles('[name="add-picture"]', join(work, 'broken.png'));
-  await until('a sentence', async () => (await dome.locator('.notice.error').count()) + (await dome.locator('[data-finding="problem"]').count()) > 0);
-  if (JSON.stringify(await documentOf(dome)) !== JSON.stringify(first)) await undo(dome);
-  await sameAs(dome, first);
-  const close = dome.locator('[data-name="close-notice"]');
-  if (await close.count()) await close.click();
+  for (const file of ['broken.png', 'notes.stl']) {
+    await dropOn(dome, '.work', file);
+    await dome.waitForFunction((name) => document.querySelector('.notice.error')?.textContent.startsWith(`${name}: `), file);
+    assert.deepEqual(await documentOf(dome), first);
+    await dome.click('[data-name="close-notice"]');
+  }
+  assert.equal(await dome.locator('[data-finding="problem"]').count(), 0);
 });
 
 // ---- Print and save ----

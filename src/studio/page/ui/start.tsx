@@ -1,6 +1,6 @@
 // The empty page: a large place to drop things, samples, and what was worked on before.
 import { api } from '../api.ts';
-import { addFiles, createJob, failure, hello, openJob, recent } from '../studio.ts';
+import { addFiles, arriving, createJob, failure, hello, openJob, recent } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button, Files } from './fields.tsx';
 import { SampleDrawing } from './samples.tsx';
@@ -19,7 +19,7 @@ export function Start() {
       </header>
       {failure.value && <p class="bad" role="alert">{failure.value}</p>}
       <section class="dropzone" data-name="dropzone">
-        <p class="large">{t.start.drop}</p>
+        <p class="large" role="status">{arriving.value ? t.start.arriving : t.start.drop}</p>
         <p class="soft">{t.start.dropMore(model_types.join(', '), picture_types.join(', '))}</p>
         <Files name="choose" label={t.start.choose} icon="file" kind="main" many onFiles={(files) => void addFiles(files)} />
       </section>
