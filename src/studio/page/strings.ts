@@ -85,6 +85,12 @@ export const t = {
     sheet: (name: string, dpi: number) => `${name}, ${dpi} dpi`,
   },
 
+  fields: {
+    number: (unit: string | undefined) => `Write a number${unit ? ` of ${{ '°': 'degrees', '%': 'percent' }[unit] ?? unit}` : ''}, like 12.5.`,
+    atLeast: (least: string, unit: string | undefined) => `At least ${least}${unit ? ` ${unit}` : ''}.`,
+    atMost: (most: string, unit: string | undefined) => `At most ${most}${unit ? ` ${unit}` : ''}.`,
+  },
+
   model: {
     open: 'Open a model',
     replace: 'Replace',
@@ -104,6 +110,7 @@ export const t = {
     depth: 'Depth',
     depthWhole: 'whole',
     depthHelp: 'How deep it goes in; empty or 0: the whole object',
+    depthMost: (mm: number) => `The object is ${+mm.toFixed(1)} mm tall; empty: all of it.`,
     shift: 'Shifted over the film',
     ownWay: 'its own way',
     ownWayHelp: 'It goes in on a way of its own, as the job file has it, which says how deep and where.',

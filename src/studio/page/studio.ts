@@ -72,8 +72,8 @@ export function change(edit: (document: JobDocument) => JobDocument, label: stri
   else open.commit(next, label);
 }
 
-// A shifted way has to say how deep the whole object is, to a tenth of a millimetre.
-function wholeDepth(of: Pose): number {
+// A shifted way has to say how deep the whole object is, to a tenth of a millimetre. 0: not known yet.
+export function wholeDepth(of: Pose): number {
   const mesh = job.value?.mesh.value;
   return mesh ? Math.floor(10 * heightOf(mesh.position, turnOf(of), scale.value)) / 10 : 0;
 }

@@ -224,11 +224,43 @@ test('numbers do not jump while they are typed, and count on Enter', async () =>
   assert.equal(await field.getAttribute('aria-invalid'), 'true');
   await field.press('Escape');
   assert.equal(await field.inputValue(), '12.5');
+  await field.fill(' 12.5 °');
+  assert.equal(await field.getAttribute('aria-invalid'), 'false');
+  await field.press('Enter');
+  assert.equal(await field.inputValue(), '12.5');
   await blur(toy);
   await undo(toy);
   await sameAs(toy, first);
   await redo(toy);
   await until('the turn again', async () => (await documentOf(toy)).object.rotate_deg?.[2] === 12.5);
+  await undo(toy);
+  await sameAs(toy, first);
+});
+
+test('a number that cannot count is told why, and stays until it is mended or left', async () => {
+  const first = await documentOf(toy);
+  const tall = (await toy.textContent('.fact b')).match(/(\d+) mm/)[1];
+  for (const [name, text, why] of [
+    ['size', 'abc', 'Write a number of mm, like 12.5.'], ['size', '1.234,5', 'Write a number of mm, like 12.5.'], ['size', '-5', 'At least 0.1 mm.'],
+    ['size', '99999', 'At most 5000 mm.'], ['depth', '-4', 'At least 0 mm.'], ['depth', '999', `The object is ${tall} mm tall; empty: all of it.`],
+    ['depth', '3 pt', 'Write a number of mm, like 12.5.'], ['turn-x', '1e9', 'At most 3600 °.'],
+  ]) {
+    const field = toy.locator(`input[name="${name}"]`);
+    const held = await field.inputValue();
+    await field.fill(text);
+    await field.press('Enter');
+    assert.equal(await toy.textContent('.why'), why);
+    assert.equal(await field.getAttribute('aria-invalid'), 'true');
+    assert.equal(await field.inputValue(), text);
+    await picture(toy, `number-${name}`);
+    await field.blur();
+    assert.equal(await field.inputValue(), held);
+    assert.equal(await toy.locator('.why').count(), 0);
+  }
+  assert.deepEqual(await documentOf(toy), first);
+  await type(toy, 'size', '2in');
+  await until('two inches', async () => (await documentOf(toy)).object.size_mm === 50.8);
+  await blur(toy);
   await undo(toy);
   await sameAs(toy, first);
 });
@@ -366,14 +398,13 @@ test('the water line is a handle for the depth; while it moves, drafts follow', 
 
 test('the depth is one figure: in its field, at the water line and in the step\'s line', async () => {
   const first = await documentOf(toy);
-  await type(toy, 'depth', 900);
-  await until('the depth is kept', async () => (await documentOf(toy)).dip?.depth_mm === 900);
   const said = async () => [
     await toy.inputValue('input[name="depth"]'), await toy.textContent('[data-name="depth-handle"] span'), await toy.textContent('[data-step="dips"] .summary'),
   ];
-  await until('it is the whole object', async () => JSON.stringify(await said()) === JSON.stringify(['', 'whole', 'one, whole object']));
   await type(toy, 'depth', 7.3);
   await until('one figure', async () => JSON.stringify(await said()) === JSON.stringify(['7.3', '7.3 mm', 'one, 7.3 mm deep']));
+  await type(toy, 'size', 5); // less tall than that
+  await until('it is the whole object', async () => JSON.stringify(await said()) === JSON.stringify(['', 'whole', 'one, whole object']));
   await blur(toy);
   await undo(toy);
   await undo(toy);

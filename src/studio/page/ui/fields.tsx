@@ -1,9 +1,10 @@
 // Form fields. A number's text is the user's while it is being typed: it never jumps, and counts when it is
-// left or Enter is pressed; the arrow keys count at once.
+// left or Enter is pressed; the arrow keys count at once. What cannot count is told, and gone when the field is left.
 import { useSignal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect, useId, useRef } from 'preact/hooks';
 import { readOnly } from '../studio.ts';
+import { t } from '../strings.ts';
 import { Icon, type IconName } from './icons.tsx';
 
 const shown = (value: number): string => String(+value.toFixed(3));
@@ -16,6 +17,7 @@ interface NumberProps {
   max?: number;
   step?: number;
   empty?: string; // what no number means
+  tooMuch?: string; // in place of the plain limit
   hint?: string;
   name?: string;
   inline?: boolean;
@@ -23,38 +25,61 @@ interface NumberProps {
   onChange: (value: number | null, live: boolean) => void;
 }
 
-export function NumberField({ label, value, unit, min, max, step = 1, empty, hint, name, inline, disabled, onChange }: NumberProps) {
+// In the field's unit, that may stand there, or a length in another; undefined: no number.
+function numberIn(text: string, unit: string | undefined): number | undefined {
+  const [, figures = '', given = ''] = text.trim().match(/^([-+]?[\d.,]+(?:e[-+]?\d+)?)\s*(\D*)$/i) ?? [];
+  const number = Number(figures.replace(',', '.') || NaN);
+  if (!Number.isFinite(number)) return undefined;
+  const of = given.toLowerCase();
+  if (of === '' || of === unit?.toLowerCase() || (unit === '°' && of === 'deg')) return number;
+  const [from, to] = [LENGTHS_MM[of], LENGTHS_MM[unit ?? '']];
+  return from && to ? Math.round((number * from * 1000) / to) / 1000 : undefined;
+}
+
+const LENGTHS_MM: Record<string, number> = { mm: 1, cm: 10, m: 1000, in: 25.4, '"': 25.4, '″': 25.4 };
+
+export function NumberField({ label, value, unit, min, max, step = 1, empty, tooMuch, hint, name, inline, disabled, onChange }: NumberProps) {
   const id = useId();
   const typed = useSignal<string | null>(null);
-  const bad = useSignal(false);
+  const why = useSignal(''); // what is typed cannot count
   const stepping = useSignal(false);
   const held = value === null ? '' : shown(value);
   const limited = (number: number): number => Math.min(max ?? Infinity, Math.max(min ?? -Infinity, number));
   const read = (text: string): number | null | undefined => {
-    const plain = text.trim().replace(',', '.');
-    if (plain === '') return empty === undefined ? undefined : null;
-    const number = Number(plain);
-    return Number.isFinite(number) ? number : undefined;
+    if (text.trim() === '') return empty === undefined ? undefined : null;
+    return numberIn(text, unit);
+  };
+  const fault = (text: string): string => {
+    const number = read(text);
+    if (number === undefined) return t.fields.number(unit);
+    if (number === null || number === limited(number)) return '';
+    if (number < limited(number)) return t.fields.atLeast(shown(min!), unit);
+    return tooMuch ?? t.fields.atMost(shown(max!), unit);
+  };
+  const forget = (): void => {
+    typed.value = null;
+    why.value = '';
   };
   const settle = (): void => {
     stepping.value = false;
-    if (typed.value === null) return;
+    if (typed.value === null || (why.value = fault(typed.value))) return;
     const number = read(typed.value);
-    typed.value = null;
-    bad.value = false;
-    if (number === undefined) return;
-    onChange(number === null ? null : limited(number), false);
+    forget();
+    if (number !== undefined) onChange(number, false);
+  };
+  const leave = (): void => {
+    settle();
+    forget();
   };
   const type = (text: string): void => {
     typed.value = text;
-    const number = read(text);
-    bad.value = number === undefined || (typeof number === 'number' && number !== limited(number));
+    why.value = fault(text);
   };
   const nudge = (by: number): void => {
     const from = read(typed.value ?? held) ?? 0;
     const next = limited(Math.round((from + by) * 1000) / 1000);
     typed.value = shown(next);
-    bad.value = false;
+    why.value = '';
     stepping.value = true;
     onChange(next, true);
   };
@@ -75,14 +100,14 @@ export function NumberField({ label, value, unit, min, max, step = 1, empty, hin
           disabled={disabled || readOnly.value}
           placeholder={empty}
           value={typed.value ?? held}
-          aria-invalid={bad.value}
+          aria-invalid={why.value !== ''}
+          aria-describedby={why.value ? `${id}-why` : undefined}
           onInput={(event) => type(event.currentTarget.value)}
-          onBlur={settle}
+          onBlur={leave}
           onKeyDown={(event) => {
             if (event.key === 'Enter') settle();
             else if (event.key === 'Escape' && typed.value !== null) {
-              typed.value = null;
-              bad.value = false;
+              forget();
               event.stopPropagation();
             } else if (event.key === 'ArrowUp' || event.key === 'ArrowDown') {
               event.preventDefault();
@@ -95,6 +120,7 @@ export function NumberField({ label, value, unit, min, max, step = 1, empty, hin
         />
         {shownUnit && <span class="unit" aria-hidden="true">{shownUnit}</span>}
       </span>
+      {why.value && <span class="why" id={`${id}-why`} role="alert">{why.value}</span>}
     </div>
   );
 }

@@ -9,7 +9,7 @@ import {
 } from '../document.ts';
 import {
   addFiles, allDips, applyPatch, change, changePose, chooseOverlay, chooseTool, defaults, drawn, goStraightDown, goToStep, hello, job, layer, overlay, ownWay, pose, poseOfDip, readOnly, showView, stage, step,
-  STEPS, tool, value, type StepName,
+  STEPS, tool, value, wholeDepth, type StepName,
 } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button, CheckField, ColorField, Files, NumberField, SegmentsField, SelectField, TextField } from './fields.tsx';
@@ -167,6 +167,7 @@ const AXES = ['x', 'y', 'z'] as const;
 
 function PoseFields() {
   const now = pose.value;
+  const height = wholeDepth(now);
   return (
     <Group title={t.model.pose}>
       <SelectField
@@ -198,7 +199,8 @@ function PoseFields() {
         label={t.model.depth}
         unit="mm"
         min={0}
-        max={5000}
+        max={height || 5000}
+        tooMuch={height ? t.model.depthMost(height) : undefined}
         empty={ownWay.value ? t.model.ownWay : t.model.depthWhole}
         hint={t.model.depthHelp}
         disabled={ownWay.value}
