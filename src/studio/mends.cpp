@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
 
 #include "plan/fit.h"
 #include "settings/settings.h"
@@ -87,10 +90,54 @@ void add_depth(Json& list, const JobConfig& config, const TriangleMesh& posed) {
   }
 }
 
+bool has_room(const JobConfig& config, const TriangleMesh& posed) {
+  return std::ranges::all_of(fits_of(config, posed, config.design.film),
+                             [](const RoomFit& fit) { return fit.excess_mm() <= kTolerance_mm; });
+}
+
+// The same straight down into the middle, if it only goes down beside it.
+std::optional<JobConfig> unshifted(const JobConfig& config) {
+  const std::vector<Keyframe>& way = config.design.trajectory.path;
+  const auto is_shifted_alike = [&](const Keyframe& key) {
+    return key.shift_x_mm == way.front().shift_x_mm && key.shift_y_mm == way.front().shift_y_mm &&
+           key.turn_x_deg == 0 && key.turn_y_deg == 0 && key.turn_z_deg == 0;
+  };
+  if (way.empty() || !std::ranges::all_of(way, is_shifted_alike)) return std::nullopt;
+  JobConfig mended = config;
+  mended.design.trajectory.path.clear();
+  mended.design.trajectory.depth_mm = way.back().lower_mm;
+  return mended;
+}
+
+// Whether it has no room only as it is shifted too far.
+bool hangs_beside(const JobConfig& config, const TriangleMesh& posed) {
+  const auto middle = unshifted(config);
+  return middle && has_room(*middle, posed) && !has_room(config, posed);
+}
+
+void add_middle(Json& list, const JobConfig& config) {
+  list.push_back(mend(
+      "Back over the middle",
+      {{"path", nullptr}, {"dip", {{"depth_mm", config.design.trajectory.path.back().lower_mm}}}}));
+}
+
+std::string shift_of(const JobConfig& config) {
+  const Keyframe& key = config.design.trajectory.path.front();
+  std::string text;
+  for (const auto& [mm, axis] : {std::pair(key.shift_x_mm, "x"), std::pair(key.shift_y_mm, "y")})
+    if (mm != 0) text += fmt::format("{}{:g} mm ({})", text.empty() ? "" : " and ", mm, axis);
+  return text;
+}
+
 }  // namespace
 
 Json room_mends(const JobConfig& config, const PosedObject& posed) {
   Json list = Json::array();
+  if (hangs_beside(config, posed.mesh())) {
+    add_middle(list, config);
+    add_film(list, config, posed.mesh());
+    return list;
+  }
   add_film(list, config, posed.mesh());
   add_depth(list, config, posed.mesh());
   add_size(list, config, posed);
@@ -98,10 +145,15 @@ Json room_mends(const JobConfig& config, const PosedObject& posed) {
 }
 
 std::string misfit(const JobConfig& config, const TriangleMesh& posed) {
-  for (const RoomFit& fit : fits_of(config, posed, config.design.film))
-    if (fit.excess_mm() > kTolerance_mm)
-      return fmt::format("Too large: {:.0f} mm {}, and {} has {:.0f} mm.", fit.needed_mm, fit.what,
-                         fit.room, fit.available_mm);
+  for (const RoomFit& fit : fits_of(config, posed, config.design.film)) {
+    if (fit.excess_mm() <= kTolerance_mm) continue;
+    if (hangs_beside(config, posed))
+      return fmt::format(
+          "Shifted by {} it reaches beyond {}, which ends {:.0f} mm from its middle.",
+          shift_of(config), fit.room, fit.available_mm / 2);
+    return fmt::format("Too large: {:.0f} mm {}, and {} has {:.0f} mm.", fit.needed_mm, fit.what,
+                       fit.room, fit.available_mm);
+  }
   return "";
 }
 

@@ -6,7 +6,8 @@
 
 namespace hydrodip {
 
-// For an object that does not fit film or bath: a larger sheet, a smaller object, less depth.
+// For an object that does not fit film or bath: a larger sheet, a smaller object, less depth; no
+// shift, if that is all.
 Json room_mends(const JobConfig& config, const PosedObject& posed);
 
 // How it does not fit, in one sentence; empty if it does.

@@ -56,5 +56,24 @@ TEST_F(Misfit, APathIsOfferedNoDepth) {
   EXPECT_TRUE(mend_of("dip").is_null());
 }
 
+// What hangs beside the film is not too large for it.
+TEST_F(Misfit, WhatIsShiftedTooFarIsOfferedTheMiddle) {
+  config.object.pose = {};
+  config.design.film.width_mm = config.design.film.height_mm = 150;  // 65 mm free from the middle
+  config.design.trajectory.path = {{.shift_x_mm = 500}, {.lower_mm = 10, .shift_x_mm = 500}};
+  EXPECT_EQ(
+      misfit(config, posed().mesh()),
+      "Shifted by 500 mm (x) it reaches beyond the free film inside the taped rim, which ends "
+      "65 mm from its middle.");
+  EXPECT_EQ(mend_of("path")["patch"], Json::parse(R"({"path": null, "dip": {"depth_mm": 10.0}})"));
+  EXPECT_TRUE(mend_of("object").is_null());
+  config.design.trajectory.path = {};
+  EXPECT_EQ(misfit(config, posed().mesh()), "");
+  // One that is too large besides is that.
+  config.design.film.width_mm = 20;
+  config.design.trajectory.path = {{.shift_y_mm = 500}, {.lower_mm = 10, .shift_y_mm = 500}};
+  EXPECT_TRUE(misfit(config, posed().mesh()).starts_with("Too large: "));
+}
+
 }  // namespace
 }  // namespace hydrodip
