@@ -93,6 +93,7 @@ export class Job {
   private meshTurn = 0;
   private finishTurn = 0;
   private resultTurn = 0;
+  private madeOf = new Map<string, JobDocument>(); // by task
   private shownTurns = new Map<number, number>(); // by dip: of the result that is shown
 
   constructor(
@@ -115,10 +116,8 @@ export class Job {
     this.files.value = state.files;
     this.revision.value = state.revision;
     if (state.revision <= state.saved_revision) this.savedDocument.value = state.document;
-    const tasks = new Map<TaskKind, Task>();
-    for (const task of state.tasks) tasks.set(task.kind, task);
-    this.tasks.value = tasks;
     this.document.value = state.document;
+    this.takeTasks(state);
     // The program refines what was shown last.
     if (!this.loaded.value) this.dip.value = Math.min(state.dip, dipCount(state.document) - 1);
     this.loaded.value = true;
@@ -499,6 +498,7 @@ export class Job {
     try {
       const state = await api.job(this.id);
       this.revision.value = state.revision;
+      this.takeTasks(state); // what an earlier run has made is gone
       if (!equal(state.document, this.document.value) && this.pen.value) this.send(false);
       else this.acknowledged();
       this.agreeOnDip(state.dip);
@@ -609,7 +609,23 @@ export class Job {
     this.problem.value = problem;
   }
 
+  private takeTasks(state: JobState): void {
+    this.tasks.value = new Map(state.tasks.map((task) => [task.kind, task]));
+    for (const task of state.tasks) this.noteWhatItIsOf(task);
+  }
+
+  private noteWhatItIsOf(task: Task): void {
+    if (task.revision === this.revision.value && !this.unsent.value && !this.madeOf.has(task.task)) this.madeOf.set(task.task, this.document.value);
+  }
+
+  // Whether nothing has changed since it was begun, as far as that is known here.
+  isOfNow(task: Task): boolean {
+    const document = this.madeOf.get(task.task);
+    return document !== undefined && equal(document, this.document.value);
+  }
+
   private takeTask(task: Task): void {
+    this.noteWhatItIsOf(task);
     const known = this.tasks.value.get(task.kind);
     if (known && known.task === task.task && known.state !== 'running' && task.state === 'running') return;
     this.tasks.value = new Map(this.tasks.value).set(task.kind, task);

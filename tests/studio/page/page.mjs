@@ -935,6 +935,22 @@ test('print: progress, cancel, then the sheet and the run sheet', async () => {
   await dome.waitForSelector('[data-file="print.pdf"]', { timeout: 5000 }); // no second print
   await says('^Print$');
   await picture(dome, 'printed');
+  // Its files are to be had again as long as nothing has changed; and so that something has not.
+  const printed = () => dome.getAttribute('[data-file="print.pdf"]', 'href');
+  const first = await printed();
+  await dome.keyboard.press('Escape');
+  await says('^Printed$');
+  await dome.keyboard.press('1');
+  await type(dome, 'turn-z', 3);
+  await says('^Print$');
+  await blur(dome);
+  await undo(dome);
+  await kept(dome);
+  await says('^Printed$');
+  await dome.click('[data-name="print"]');
+  await dome.waitForSelector('[data-name="print-again"]');
+  assert.equal(await printed(), first);
+  assert.doesNotMatch(await dome.textContent('.panel.print'), /has changed/);
   const url = await dome.getAttribute('[data-file="print.pdf"]', 'href');
   const head = await dome.evaluate(async (path) => new TextDecoder().decode((await (await fetch(path)).arrayBuffer()).slice(0, 5)), url);
   assert.equal(head, '%PDF-');
@@ -974,7 +990,10 @@ test('Ctrl+S saves, and the name is the file\'s', async () => {
 test('a second tab is told, and may take over', async () => {
   const second = await session.page({ context: dome.context(), address: dome.url() });
   await second.waitForSelector('[data-name="take-pen"]');
-  assert.ok(await second.locator('[data-name="print"]').isDisabled());
+  await second.click('[data-name="print"]'); // to see what was printed
+  await second.waitForSelector('[data-file="print.pdf"]');
+  assert.ok(await second.locator('[data-name="print-again"]').isDisabled());
+  await second.keyboard.press('Escape');
   await second.click('[data-name="take-pen"]');
   await second.waitForFunction(() => !document.querySelector('.banner'));
   await dome.waitForSelector('[data-name="take-pen"]');

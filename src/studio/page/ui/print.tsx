@@ -23,14 +23,14 @@ export function PrintPanel() {
   return (
     <Panel button='[data-name="print"]' kind="right print" label={t.print.title}>
       <PanelHead title={t.print.title} />
+      {/* Said when it changes, and not at every step. */}
+      <p class="hidden" role="status">{task && t.print.state[task.state]}</p>
       {task?.state === 'running' && <Progress task={task} title={t.print.running} />}
       {task?.state === 'cancelled' && <p>{t.print.cancelled}</p>}
       {task?.state === 'failed' && <p class="bad"><b>{t.print.failed}.</b> {task.error?.text}</p>}
       {task && (task.state === 'cancelled' || task.state === 'failed') && <div class="row">{again}</div>}
       {result && <Printed result={result} />}
-      {result && open.draft.value === false && task!.revision < (open.result.value?.revision ?? 0) && (
-        <div class="row wrap"><p class="soft">{t.print.changed}</p>{again}</div>
-      )}
+      {result && <div class="row wrap">{!open.isOfNow(task!) && <p class="soft">{t.print.changed}</p>}{again}</div>}
     </Panel>
   );
 }

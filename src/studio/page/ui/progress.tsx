@@ -12,7 +12,7 @@ export function Progress({ task, title }: { task: Task; title: string }) {
     <div class="progress" data-task={task.kind}>
       <p>
         <b>{title}</b>
-        <Button label={t.print.cancel} name={`cancel-${task.kind}`} kind="quiet" onClick={() => void job.value?.cancel(task)} />
+        <Button label={t.print.cancel} name={`cancel-${task.kind}`} kind="quiet" changes onClick={() => void job.value?.cancel(task)} />
       </p>
       <div class="bar" role="progressbar" aria-label={title} aria-valuenow={done} aria-valuemin={0} aria-valuemax={100}>
         <i style={{ width: `${done}%` }} />

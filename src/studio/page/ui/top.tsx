@@ -3,7 +3,7 @@ import { useSignal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect } from 'preact/hooks';
 import { api, type Concern } from '../api.ts';
-import { change, goToStart, job, narrow, panel, printToShow, type Panel as PanelName } from '../studio.ts';
+import { change, goToStart, job, narrow, panel, printToShow, readOnly, type Panel as PanelName } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button, TextField } from './fields.tsx';
 import { usePanelFocus } from './focus.ts';
@@ -19,10 +19,18 @@ const toggle = (name: PanelName): void => {
 export function askPrint(): void {
   const open = job.value;
   if (!open) return;
+  const task = taskOf('print');
+  if (readOnly.value && !task) return;
   panel.value = 'print';
-  const task = open.tasks.value.get('print');
-  // One that goes on, or has ended unseen, is shown first.
-  if (task?.state !== 'running' && (!task || task.task !== printToShow.value)) void open.start('print');
+  // One that goes on, has ended unseen, or would only be made again is shown.
+  const stands = task && (task.state === 'running' || task.task === printToShow.value || isPrinted());
+  if (!stands && !readOnly.value) void open.start('print');
+}
+
+// Whether the job's files lie ready as it is now.
+function isPrinted(): boolean {
+  const task = taskOf('print');
+  return task?.state === 'done' && job.value!.isOfNow(task);
 }
 
 export function askSave(): void {
@@ -77,13 +85,15 @@ function PrintButton() {
   useEffect(() => {
     if (task && state === 'running') printToShow.value = task.task;
   }, [task?.task, state]);
-  const ended = task !== null && task.task === printToShow.value && panel.value !== 'print';
+  const shut = panel.value !== 'print';
+  const ended = task !== null && task.task === printToShow.value && shut;
   let label: string = t.top.print;
   if (task && state === 'running') label = t.top.printing(task.fraction);
   else if (ended && state === 'done') label = t.top.printed;
   else if (ended && state === 'failed') label = t.top.notPrinted;
+  else if (shut && isPrinted()) label = t.top.filesReady;
   return (
-    <Button name="print" label={label} kind="main" changes disabled={!open.document.value.object?.file} expanded={panel.value === 'print'} onClick={() => (panel.value === 'print' ? toggle('print') : askPrint())} />
+    <Button name="print" label={label} kind="main" disabled={!open.document.value.object?.file || (readOnly.value && !task)} expanded={panel.value === 'print'} onClick={() => (panel.value === 'print' ? toggle('print') : askPrint())} />
   );
 }
 
