@@ -34,7 +34,7 @@ export interface WholeFinish extends Finish {
   byDip: MeshData;
 }
 
-export type Link = 'connecting' | 'open' | 'lost' | 'ended';
+export type Link = 'connecting' | 'open' | 'lost' | 'ended' | 'shut'; // shut: it runs, and does not know this page
 
 const kept = (job: string): string => `hydrodip-studio:${job}`;
 
@@ -218,7 +218,7 @@ export class Job {
   }
 
   private async flush(): Promise<void> {
-    if (this.sending || !this.next || this.link.value === 'lost' || this.link.value === 'ended') return;
+    if (this.sending || !this.next || ['lost', 'ended', 'shut'].includes(this.link.value)) return;
     this.sending = true;
     await this.busy;
     const live = this.next?.live ?? true;
@@ -509,7 +509,7 @@ export class Job {
 
   private lose(): void {
     if (this.closed) return;
-    if (this.link.value !== 'ended') this.link.value = 'lost';
+    if (this.link.value !== 'ended' && this.link.value !== 'shut') this.link.value = 'lost';
     this.working.value = null;
     this.later();
   }
@@ -517,9 +517,19 @@ export class Job {
   private later(): void {
     clearTimeout(this.retry);
     this.events?.close();
-    this.retry = window.setTimeout(() => {
-      if (!this.closed) this.connect();
-    }, RETRY_MS);
+    this.retry = window.setTimeout(() => void this.again(), RETRY_MS);
+  }
+
+  // A stream of events does not tell why there is none.
+  private async again(): Promise<void> {
+    try {
+      await api.recent();
+    } catch (error) {
+      if (this.closed) return;
+      if (error instanceof ApiError && error.code === 'no-token') this.link.value = 'shut';
+      return this.later();
+    }
+    if (!this.closed) this.connect();
   }
 
   private changedElsewhere({ revision, document, client }: { revision: number; document: JobDocument; client: string }): void {

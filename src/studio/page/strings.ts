@@ -310,7 +310,8 @@ export const t = {
 
   link: {
     lost: 'hydrodip is not answering. Your work is kept here; this page goes on by itself once it runs again.',
-    ended: 'hydrodip was ended. Your work is kept; start it again to go on.',
+    ended: 'hydrodip was ended. Your work is kept: start it again, and go on at the address that it prints.',
+    shut: 'hydrodip was started anew and no longer knows this page. Your work is kept: open the address that it printed.',
     other: 'This job is open in another tab. Here you can look at it.',
     take: 'Work here instead',
     narrow: 'On a small screen you can look; to change things use a larger one.',

@@ -1017,6 +1017,22 @@ test('the program is killed and started again: the page goes on, nothing is lost
   await newResult(dome, '');
 });
 
+test('the program is ended and started anew: the page sends people to the address that it printed', async () => {
+  const port = new URL(program.address).port;
+  session.mayFail = true;
+  await program.end('SIGTERM');
+  await dome.waitForFunction(() => /was ended/.test(document.querySelector('.banner.stop')?.textContent ?? ''));
+  await program.start('--port', port);
+  await dome.waitForFunction(() => /open the address that it printed/.test(document.querySelector('.banner.stop')?.textContent ?? ''));
+  session.mayFail = false;
+  const hash = new URL(dome.url()).hash;
+  const anew = await session.page({ context: dome.context(), address: program.address });
+  await dome.waitForFunction(() => !document.querySelector('.banner.stop')); // it is known again
+  await anew.close();
+  assert.equal(new URL(dome.url()).hash, hash);
+  await newResult(dome, '');
+});
+
 test('a closed tab: the job is among the recent ones, as it was', async () => {
   const document = await documentOf(dome);
   const context = dome.context();

@@ -44,7 +44,7 @@ function Work() {
 function Banner() {
   const open = job.value!;
   const link = open.link.value;
-  if (link === 'lost' || link === 'ended') return <p class="banner stop" role="alert">{link === 'lost' ? t.link.lost : t.link.ended}</p>;
+  if (link === 'lost' || link === 'ended' || link === 'shut') return <p class="banner stop" role="alert">{t.link[link]}</p>;
   if (!open.pen.value) {
     return (
       <p class="banner" role="status">
