@@ -996,10 +996,9 @@ test('a second tab is told, and may take over', async () => {
   await second.keyboard.press('Escape');
   await second.click('[data-name="take-pen"]');
   await second.waitForFunction(() => !document.querySelector('.banner'));
-  await dome.waitForSelector('[data-name="take-pen"]');
-  await second.close();
   await dome.click('[data-name="take-pen"]');
   await dome.waitForFunction(() => !document.querySelector('.banner'));
+  await second.close();
 });
 
 test('the program is killed and started again: the page goes on, nothing is lost', async () => {
@@ -1068,6 +1067,37 @@ test('every control has a name for the ear, and the order of focus is that of th
     order.push(await dome.evaluate(() => (document.activeElement.closest('.top') ? 'top' : document.activeElement.closest('.steps') ? 'steps' : 'other')));
   }
   assert.ok(order.indexOf('top') === 0 && order.includes('steps') && order.lastIndexOf('top') < order.indexOf('steps'), order.join(' '));
+});
+
+test('what a finger has to meet is 40 px large; no name is had twice; the verdict is told whole', async () => {
+  const context = await session.browser.newContext({ viewport: { width: 820, height: 1180 }, hasTouch: true, reducedMotion: 'reduce' });
+  const tablet = await session.page({ context });
+  await openQuick(tablet, 'box', { artwork: [{ text: 'Form', size_mm: 12 }] });
+  assert.ok(await tablet.evaluate(() => matchMedia('(pointer: coarse)').matches));
+  for (const step of ['1', '2', '3', '4']) {
+    await blur(tablet);
+    await tablet.keyboard.press(step);
+    if (step === '2') {
+      await tablet.click('[data-layer="0"]');
+      await tablet.click('details summary');
+    }
+    const small = await tablet.evaluate(() => [...document.querySelectorAll('button, .button, select, input:not([type=checkbox], .hidden), textarea, summary')]
+      .filter((e) => e.checkVisibility() && !e.matches('.jobname input, .verdict') && e.getBoundingClientRect().height < 40 && !e.closest('.inset')).map((e) => e.outerHTML.slice(0, 100)));
+    assert.deepEqual(small, []);
+    await picture(tablet, `tablet-${step}`);
+  }
+  const names = await tablet.locator('[data-name="show"]').evaluateAll((buttons) => buttons.map((b) => b.getAttribute('aria-label')));
+  assert.equal(new Set(names).size, names.length, names.join(', '));
+  const cut = () => tablet.evaluate(() => {
+    const said = document.querySelector('.verdict .sentence');
+    return said.scrollHeight - said.clientHeight;
+  });
+  assert.ok((await cut()) <= 1);
+  await tablet.setViewportSize({ width: 1024, height: 768 });
+  assert.ok((await cut()) <= 1);
+  assert.match(await tablet.locator('[name="level"]').or(tablet.locator('.divider')).first().evaluate((e) => e.value ?? e.ariaValueNow), /^-?\d+(\.\d{1,2})?$/);
+  await picture(tablet, 'tablet-wide');
+  await context.close();
 });
 
 test('? lists the keys', async () => {

@@ -19,6 +19,7 @@ interface NumberProps {
   empty?: string; // what no number means
   tooMuch?: string; // in place of the plain limit
   hint?: string;
+  unitElsewhere?: boolean; // it is shown with what several fields are about
   name?: string;
   inline?: boolean;
   disabled?: boolean;
@@ -38,7 +39,7 @@ function numberIn(text: string, unit: string | undefined): number | undefined {
 
 const LENGTHS_MM: Record<string, number> = { mm: 1, cm: 10, m: 1000, in: 25.4, '"': 25.4, '″': 25.4 };
 
-export function NumberField({ label, value, unit, min, max, step = 1, empty, tooMuch, hint, name, inline, disabled, onChange }: NumberProps) {
+export function NumberField({ label, value, unit, min, max, step = 1, empty, tooMuch, hint, unitElsewhere, name, inline, disabled, onChange }: NumberProps) {
   const id = useId();
   const typed = useSignal<string | null>(null);
   const why = useSignal(''); // what is typed cannot count
@@ -85,7 +86,7 @@ export function NumberField({ label, value, unit, min, max, step = 1, empty, too
   };
   // "whole mm" says nothing.
   const wordy = (typed.value ?? held) === '' && empty !== undefined && !Number.isFinite(Number(empty));
-  const shownUnit = wordy ? undefined : unit;
+  const shownUnit = wordy || unitElsewhere ? undefined : unit;
   return (
     <div class={inline ? 'field inline' : 'field'}>
       <label for={id} title={hint}>{label}</label>
@@ -230,6 +231,7 @@ export function CheckField({ label, checked, name, always, onChange }: { label: 
 
 interface ButtonProps {
   label: string; // for the eye and the ear
+  spoken?: string; // for the ear, where the eye sees more than the label
   icon?: IconName;
   iconOnly?: boolean;
   kind?: 'main' | 'mend' | 'plain' | 'quiet';
@@ -243,14 +245,14 @@ interface ButtonProps {
   children?: ComponentChildren;
 }
 
-export function Button({ label, icon, iconOnly, kind = 'plain', pressed, disabled, changes, title, name, expanded, onClick, children }: ButtonProps) {
+export function Button({ label, spoken, icon, iconOnly, kind = 'plain', pressed, disabled, changes, title, name, expanded, onClick, children }: ButtonProps) {
   return (
     <button
       type="button"
       class={`button ${kind}${iconOnly ? ' icon-only' : ''}`}
       aria-pressed={pressed}
       aria-expanded={expanded}
-      aria-label={iconOnly ? label : undefined}
+      aria-label={iconOnly ? label : spoken}
       title={title ?? (iconOnly ? label : undefined)}
       data-name={name}
       disabled={disabled || (changes && readOnly.value)}

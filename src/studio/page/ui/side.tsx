@@ -61,7 +61,7 @@ export function FindingCard({ finding }: { finding: Finding }) {
       {(finding.overlay || finding.at_mm || finding.mends.length > 0) && (
         <div class="row wrap">
           {(finding.overlay || finding.at_mm) && (
-            <Button name="show" label={t.verdict.show} title={t.verdict.showLong(finding.title)} icon="eye" onClick={() => showFinding(finding)} />
+            <Button name="show" label={t.verdict.show} spoken={t.verdict.showLong(finding.title)} title={t.verdict.showLong(finding.title)} icon="eye" onClick={() => showFinding(finding)} />
           )}
           <Mends mends={finding.mends} />
         </div>

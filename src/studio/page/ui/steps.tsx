@@ -407,7 +407,7 @@ function LayerForm() {
       <details>
         <summary>{t.artwork.more}</summary>
         <fieldset class={onFilm ? 'triple two' : 'triple'}>
-          <legend>{onFilm ? t.artwork.onFilm : t.artwork.at}</legend>
+          <legend>{onFilm ? t.artwork.onFilm : t.artwork.at}, mm</legend>
           {AXES.slice(0, onFilm ? 2 : 3).map((axis, k) => (
             <NumberField
               key={axis}
@@ -415,6 +415,7 @@ function LayerForm() {
               name={`at-${axis}`}
               label={axis}
               unit="mm"
+              unitElsewhere
               empty="–"
               value={center ? center[k]! : null}
               onChange={(next, live) => {

@@ -331,6 +331,8 @@ function DipBar() {
   drawn.value;
   const now = level.value;
   const travel = Math.max(1, whole);
+  const step = travel < 20 ? 0.01 : 0.1; // so that its value is a figure that can be read out
+  const [first, last] = [-Math.ceil((0.08 * travel) / step), Math.ceil(travel / step)].map((n) => +(n * step).toFixed(2)) as [number, number];
   const say = now < 0 ? t.stage.over : t.stage.at(Math.min(now, travel), stage.current?.attachedArea() ?? null);
   return (
     <div class="bottombar dipbar">
@@ -340,12 +342,12 @@ function DipBar() {
         name="level"
         aria-label={t.stage.level}
         aria-valuetext={say}
-        min={-0.08 * travel}
-        max={travel}
-        step="any"
-        value={now < 0 ? -0.08 * travel : now}
+        min={first}
+        max={last}
+        step={step}
+        value={now < 0 ? first : +now.toFixed(2)}
         onInput={(event) => {
-          const to = Number(event.currentTarget.value);
+          const to = Math.min(travel, Number(event.currentTarget.value));
           batch(() => {
             playing.value = false;
             tool.value = 'none';
