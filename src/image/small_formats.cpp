@@ -158,15 +158,16 @@ class BmpReader {
     return {masks_[0].of(value), masks_[1].of(value), masks_[2].of(value), masks_[3].of(value)};
   }
 
-  // Pairs of a count and a colour; 0 begins a command. What no run covers is black.
+  // Pairs of a count and a colour; 0 begins a command. What no run covers is black, and what leads
+  // out of the picture stays at its edge, however far it leads.
   void read_runs() {
     for (std::size_t i = 3; i < image_.rgba.size(); i += 4) image_.rgba[i] = 255;
     const int per_byte = int(8 / bits_);
     int x = 0, row = 0;
     const auto put = [&](std::uint32_t byte, int which) {
       const std::size_t entry = per_byte == 1 ? byte : which % 2 == 0 ? byte >> 4 : byte & 15;
-      if (x < image_.width_px && row < image_.height_px)
-        std::copy_n(palette_[entry].data(), 4, pixel(x, row));
+      if (x >= image_.width_px || row >= image_.height_px) return;
+      std::copy_n(palette_[entry].data(), 4, pixel(x, row));
       ++x;
     };
     CheckEvery check(1 << 12);
@@ -178,12 +179,12 @@ class BmpReader {
         for (int i = 0; i < count; ++i) put(std::uint32_t(value), i);
       } else if (value == 0) {
         x = 0;
-        ++row;
+        row = std::min(row + 1, image_.height_px);
       } else if (value == 1) {
         return;
       } else if (value == 2) {
-        x += int(numbers_.at(at, 1));
-        row += int(numbers_.at(at + 1, 1));
+        x = std::min(x + int(numbers_.at(at, 1)), image_.width_px);
+        row = std::min(row + int(numbers_.at(at + 1, 1)), image_.height_px);
         at += 2;
       } else {
         const std::size_t packed =

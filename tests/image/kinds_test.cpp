@@ -115,6 +115,22 @@ TEST(Bmp, OfEveryDepth) {
   expect_four(decode_image(bmp(4, 2, 0, palette16, {0x23, 0, 0, 0, 0x01, 0, 0, 0}), "a.bmp"));
 }
 
+// Of steps to the right and up that come to more than an int holds, and a run behind them.
+TEST(Bmp, NoRunLeavesThePicture) {
+  Bytes palette(4 * 256, 255);
+  std::fill_n(palette.begin(), 4, std::uint8_t(0));
+  for (const Bytes& step : {Bytes{0, 2, 255, 0}, Bytes{0, 2, 0, 255}, Bytes{255, 1}}) {
+    const std::size_t enough = (std::size_t(1) << 31U) / 255 + 2;
+    Bytes data;
+    data.reserve(step.size() * enough + 4);
+    for (std::size_t i = 0; i < enough; ++i) data.insert(data.end(), step.begin(), step.end());
+    data.insert(data.end(), {1, 1, 0, 1});
+    const Image image = decode_image(bmp(8, 2, 1, palette, data), "a.bmp");
+    EXPECT_EQ(at(image, 0, 0), (Rgba{0, 0, 0, 255}));
+    EXPECT_EQ(at(image, 1, 1), step[0] == 255 ? kWhite : (Rgba{0, 0, 0, 255}));
+  }
+}
+
 TEST(Tga, PlainAndInRunsFromEitherEdge) {
   Bytes plain = {0, 0,  2, 0,   0, 0, 0,   0,   0,   0, 0, 0,   2, 0,   2,
                  0, 24, 0, 255, 0, 0, 255, 255, 255, 0, 0, 255, 0, 255, 0};
