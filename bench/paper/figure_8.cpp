@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "calibrate/checkerboard_dip.h"
+#include "calibrate/printed_board.h"
 #include "calibrate/resolution.h"
 #include "figures.h"
 #include "image/files.h"

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/parse_double.h"
 #include "calibrate/board_lines.h"
+#include "calibrate/printed_board.h"
 #include "calibrate/rounded_pyramid.h"
 #include "ink/stiffness.h"
 #include "job/prepare.h"

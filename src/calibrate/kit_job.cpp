@@ -13,6 +13,7 @@
 #include "calibrate/checkerboard_dip.h"
 #include "calibrate/expectation.h"
 #include "calibrate/kit_shapes.h"
+#include "calibrate/printed_board.h"
 #include "calibrate/tear_limit.h"
 #include "export/stl.h"
 #include "ink/color_model.h"

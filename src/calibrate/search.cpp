@@ -1,4 +1,5 @@
 #include "calibrate/search.h"
+#include "calibrate/resolution.h"
 
 #include <fmt/format.h>
 

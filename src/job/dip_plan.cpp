@@ -9,6 +9,9 @@
 #include "base/error.h"
 #include "dip/tear_doubt.h"
 #include "job/dips_side_by_side.h"
+#include "job/ways.h"
+#include "plan/choice.h"
+#include "plan/search.h"
 #include "settings/correction_file.h"
 
 namespace hydrodip {

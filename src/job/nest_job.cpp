@@ -24,6 +24,7 @@
 #include "job/wanted.h"
 #include "job/ways.h"
 #include "plan/fit.h"
+#include "plan/hold.h"
 #include "plan/sheet_packing.h"
 #include "render/preview.h"
 #include "report/findings.h"

@@ -7,6 +7,7 @@
 #include "job/command_text.h"
 #include "job/print_dips.h"
 #include "job/search_output.h"
+#include "plan/hold.h"
 #include "render/hold_pictures.h"
 #include "transfer/film_map.h"
 

@@ -8,6 +8,8 @@
 #include "base/shell_word.h"
 #include "job/dip_plan.h"
 #include "job/search_output.h"
+#include "plan/choice.h"
+#include "plan/hold.h"
 #include "render/hold_pictures.h"
 #include "settings/job_file.h"
 

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "image/files.h"
 #include "job/wanted.h"
+#include "plan/hold.h"
 #include "report/shares.h"
 
 namespace hydrodip {

@@ -8,6 +8,8 @@
 
 #include "base/parallel.h"
 #include "base/run_scope.h"
+#include "plan/hold.h"
+#include "plan/search.h"
 
 namespace hydrodip {
 namespace {

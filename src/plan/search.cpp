@@ -1,4 +1,5 @@
 #include "plan/search.h"
+#include "plan/hold.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,5 @@
 #include "sweep/sweep_plan.h"
+#include "settings/settings.h"
 
 #include <fmt/format.h>
 
