@@ -380,19 +380,22 @@ void warn_of_one_color(const Object& object, const RunContext& context) {
 
 }  // namespace
 
-PolygonMesh load_polygons(const fs::path& path) {
+PolygonMesh load_polygons(const fs::path& path, const RunContext& context) {
+  const RunScope scope(context);
   const Format& format = format_of(path);
   if (!format.keeps_polygons)
     throw InputError(
         fmt::format("{}: quads are read from OBJ and PLY files; export the mesh as one of them",
                     path.string()));
   ModelFolder folder(path);
-  RunContext unheard;
-  const ModelFile file = read_model(path, format, folder, unheard);
+  const ModelFile file = read_model(path, format, folder, context.quiet());
+  context.check_cancelled();
   PolygonMesh mesh;
   std::map<std::array<double, 3>, std::int32_t> index;
   std::size_t begin = 0;
+  CheckEvery check(1 << 12);
   for (const std::uint32_t end : file.face_end) {
+    check();
     std::vector<std::int32_t> corners;
     for (; begin < end; ++begin) {
       const Vec3& p = file.positions[std::size_t(file.corners[begin])];

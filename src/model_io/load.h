@@ -55,7 +55,8 @@ struct PolygonMesh {
   std::vector<std::vector<std::int32_t>> faces;  // three corners or more
 };
 
-// Reads OBJ and PLY; nothing but positions and faces. Throws InputError as load_object.
-PolygonMesh load_polygons(const std::filesystem::path& path);
+// Reads OBJ and PLY; nothing but positions and faces. Warns of nothing. Throws InputError as
+// load_object.
+PolygonMesh load_polygons(const std::filesystem::path& path, const RunContext& context);
 
 }  // namespace hydrodip

@@ -250,9 +250,9 @@ Scan read_corners(const std::filesystem::path& file, const ScanOptions& options,
 Scan read_scan(const std::filesystem::path& file, const ScanOptions& options,
                const RunContext& context) {
   const ScanKind kind = kind_of(file);
-  if (kind == ScanKind::kTable) return read_scan(file, options);
+  if (kind == ScanKind::kTable) return read_corner_scan(file, options, context);
   if (kind == ScanKind::kPolygons) {
-    const PolygonMesh mesh = load_polygons(file);
+    const PolygonMesh mesh = load_polygons(file, context);
     if (has_quads(mesh))
       return read_corners(file, options, [&](auto) { return read_quads(file, mesh); });
   }
@@ -265,7 +265,8 @@ Scan read_scan(const std::filesystem::path& file, const ScanOptions& options,
   return scan;
 }
 
-Scan read_scan(const std::filesystem::path& file, const ScanOptions& options) {
+Scan read_corner_scan(const std::filesystem::path& file, const ScanOptions& options,
+                      const RunContext& context) {
   find_unit(options.units);
   switch (kind_of(file)) {
     case ScanKind::kTable:
@@ -273,7 +274,7 @@ Scan read_scan(const std::filesystem::path& file, const ScanOptions& options) {
                           [&](std::string_view text) { return read_table(file, text); });
     case ScanKind::kPolygons:
       return read_corners(file, options,
-                          [&](auto) { return read_quads(file, load_polygons(file)); });
+                          [&](auto) { return read_quads(file, load_polygons(file, context)); });
     case ScanKind::kOther:
       break;
   }

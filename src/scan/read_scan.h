@@ -26,7 +26,8 @@ struct Scan {
 // commas, semicolons, blanks or tabs between; other lines must begin with '#' or name the columns.
 // Throws InputError for what is no grid of at least 4 corners, and where the corners' distances say
 // that the unit is wrong.
-Scan read_scan(const std::filesystem::path& file, const ScanOptions& options);
+Scan read_corner_scan(const std::filesystem::path& file, const ScanOptions& options,
+                      const RunContext& context);
 
 // The same, and also scans with their colours, in any format of models that has such: triangles
 // with a texture or coloured vertices, on which the corners of dark squares are found (of a board

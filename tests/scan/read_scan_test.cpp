@@ -22,11 +22,15 @@ class ReadScanTest : public testing::Test {
   // What is said about a file.
   std::string complaint(const std::filesystem::path& path, const ScanOptions& options = {}) const {
     try {
-      read_scan(path, options);
+      read(path, options);
     } catch (const InputError& error) {
       return error.what();
     }
     return "";
+  }
+
+  static Scan read(const std::filesystem::path& path, const ScanOptions& options = {}) {
+    return read_corner_scan(path, options, RunContext());
   }
 
   TemporaryFolder folder_;
@@ -46,7 +50,7 @@ CornerGrid bent_board(int columns, int rows, double mm = 1) {
 TEST_F(ReadScanTest, TablesComeBackAsTheyWere) {
   const CornerGrid board = bent_board(5, 4);
   write_scan_table(folder_ / "a.csv", board, "a comment");
-  const Scan scan = read_scan(folder_ / "a.csv", {});
+  const Scan scan = read(folder_ / "a.csv");
   ASSERT_EQ(scan.grid.position.size(), board.position.size());
   for (std::size_t c = 0; c < board.position.size(); ++c) {
     EXPECT_LT((scan.grid.position[c] - board.position[c]).norm(), 1e-6);
@@ -58,7 +62,7 @@ TEST_F(ReadScanTest, TablesComeBackAsTheyWere) {
 TEST_F(ReadScanTest, QuadsHaveTheSameLengthsAsTheTable) {
   const CornerGrid board = bent_board(6, 5);
   write_scan_quads(folder_ / "a.obj", board, kSyntheticMark);
-  const Scan scan = read_scan(folder_ / "a.obj", {});
+  const Scan scan = read(folder_ / "a.obj");
   EXPECT_TRUE(scan.synthetic);
   EXPECT_EQ(scan.grid.position.size(), 30u);
   double sum = 0, expected = 0;
@@ -77,18 +81,17 @@ TEST_F(ReadScanTest, SeparatorsAndHeadingsAreFree) {
   const char* text =
       "# corners\r\nColumn; Row; X; Y; Z\r\n0; 0; 0; 0; 0\r\n1; 0; 5; 0; 0\r\n0; 1; 0; 5; 0\r\n"
       "-1; 0; -5; 0; 1e-1\r\n";
-  EXPECT_EQ(read_scan(file("a.csv", text), {}).grid.position.size(), 4u);
-  EXPECT_EQ(read_scan(file("a.txt", "0 0 0 0 0\n1\t0 5 0 0\n0 1 0 5 0\n1 1 5 5 0"), {})
-                .grid.position.size(),
+  EXPECT_EQ(read(file("a.csv", text)).grid.position.size(), 4u);
+  EXPECT_EQ(read(file("a.txt", "0 0 0 0 0\n1\t0 5 0 0\n0 1 0 5 0\n1 1 5 5 0")).grid.position.size(),
             4u);
 }
 
 // What a German spreadsheet writes, in Windows' Unicode too: the same numbers.
 TEST_F(ReadScanTest, DecimalCommasBetweenSemicolonsOrTabs) {
   const std::vector<Vec3> points =
-      read_scan(file("a.csv",
-                     "0,0,0.5,-1.25,0\n1,0,5.5,-1.25,1e-1\n0,1,0.5,3.75,0\n1,1,5.5,3.75,-0.25\n"),
-                {})
+      read(file("a.csv",
+                "0,0,0.5,-1.25,0\n1,0,5.5,-1.25,1e-1\n0,1,0.5,3.75,0\n1,1,5.5,3.75,-0.25\n"),
+           {})
           .grid.position;
   const std::string semicolons =
       "Spalte;Zeile;x;y;z\r\n0;0;0,5;-1,25;0\r\n1;0;5,5;-1,25;1e-1\r\n0;1;0,5;3,75;0\r\n"
@@ -97,7 +100,7 @@ TEST_F(ReadScanTest, DecimalCommasBetweenSemicolonsOrTabs) {
   std::replace(tabs.begin(), tabs.end(), ';', '\t');
   for (const char c : semicolons) utf16 += {c, '\0'};
   for (const std::string& text : {semicolons, tabs, utf16})
-    EXPECT_EQ(read_scan(file("b.csv", text), {}).grid.position, points) << text;
+    EXPECT_EQ(read(file("b.csv", text)).grid.position, points) << text;
 }
 
 TEST_F(ReadScanTest, AWrongUnitIsNamed) {
@@ -112,7 +115,7 @@ TEST_F(ReadScanTest, AWrongUnitIsNamed) {
     EXPECT_NE(complaint(folder_ / name).find(std::string("--scan-units ") + wrong.unit),
               std::string::npos)
         << complaint(folder_ / name);
-    const Scan scan = read_scan(folder_ / name, {.units = wrong.unit});
+    const Scan scan = read(folder_ / name, {.units = wrong.unit});
     EXPECT_NEAR((scan.grid.position[0] - scan.grid.position[1]).norm(), 5, 0.6);
   }
   write_scan_table(folder_ / "mm.csv", bent_board(4, 4), "scan");
@@ -148,12 +151,21 @@ TEST_F(ReadScanTest, BrokenFilesAreRefused) {
   EXPECT_NE(complaint(file("b.csv", "0,0,1,1,1\n1,0,1,1,1\n0,1,1,1,1\n1,1,1,1,1\n")), "");
 }
 
+// A scanner's mesh may have millions of faces.
+TEST_F(ReadScanTest, EndsWhenTheJobIsCancelled) {
+  write_scan_quads(folder_ / "a.obj", bent_board(6, 5), "scan");
+  RunContext job;
+  job.cancel();
+  EXPECT_THROW(read_corner_scan(folder_ / "a.obj", {}, job), Cancelled);
+  EXPECT_THROW(read_scan(folder_ / "a.obj", {}, job), Cancelled);
+}
+
 TEST_F(ReadScanTest, MirroringTwiceIsNothing) {
   const CornerGrid board = bent_board(5, 4);
   CornerGrid mirror = board;
   for (Vec3& p : mirror.position) p.x() = -p.x();
   write_scan_table(folder_ / "a.csv", mirror, "mirrored");
-  const Scan scan = read_scan(folder_ / "a.csv", {.mirrored = true});
+  const Scan scan = read(folder_ / "a.csv", {.mirrored = true});
   for (std::size_t c = 0; c < board.position.size(); ++c)
     EXPECT_LT((scan.grid.position[c] - board.position[c]).norm(), 1e-6);
 }
