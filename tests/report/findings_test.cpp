@@ -321,6 +321,7 @@ TEST(Findings, NumbersInSentencesAreForPeople) {
   EXPECT_NE(find(list, "equilibrium")->text.find("1600 mm"), std::string::npos);
   EXPECT_NE(find(list, "colors")->text.find("no more than 0.1."), std::string::npos);
   // Of both, what stands in a caption and in a sentence.
+  report.equilibrium = {};
   report.coverage->torn_mm2 = 90;  // 9.09 % of what meets the object
   report.coverage->covered_mm2 = 178;
   for (const std::string& told : {short_verdict(report), verdict_of(report)}) {
