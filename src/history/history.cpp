@@ -107,21 +107,30 @@ RunFields fields_of(const DipRun& run) {
 
 struct History::Database {
   explicit Database(const fs::path& path) : file(path) {
-    if (sqlite3_open(file.string().c_str(), &handle) != SQLITE_OK) fail();
-    sqlite3_busy_timeout(handle, kPatience_ms);
+    sqlite3* opened = nullptr;
+    const int result = sqlite3_open(file.string().c_str(), &opened);
+    handle.reset(opened);
+    if (result != SQLITE_OK) fail();
+    sqlite3_busy_timeout(handle.get(), kPatience_ms);
+    require_known_version();
     execute(kSchema);
-    const auto version = query("SELECT schema_version FROM hydrodip");
-    if (version.empty() || version.front().front() != "1")
-      throw InputError(fmt::format("{}: made by a newer hydrodip; use that one", file.string()));
   }
-  ~Database() { sqlite3_close(handle); }
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
+  // Before anything is written into the file. A process that is just making it may not have noted
+  // the version yet.
+  void require_known_version() const {
+    if (query("SELECT name FROM sqlite_master WHERE name = 'hydrodip'").empty()) return;
+    const auto version = query("SELECT schema_version FROM hydrodip");
+    if (!version.empty() && version.front().front() != "1")
+      throw InputError(fmt::format("{}: made by a newer hydrodip; use that one", file.string()));
+  }
+
   [[noreturn]] void fail() const {
     throw InputError(fmt::format("{}: the history cannot be read or written ({}); {}",
-                                 file.string(), sqlite3_errmsg(handle),
-                                 way_out(sqlite3_errcode(handle))));
+                                 file.string(), sqlite3_errmsg(handle.get()),
+                                 way_out(sqlite3_errcode(handle.get()))));
   }
 
   static const char* way_out(int code) {
@@ -145,13 +154,13 @@ struct History::Database {
   }
 
   void execute(const char* sql) const {
-    if (sqlite3_exec(handle, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+    if (sqlite3_exec(handle.get(), sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
   }
 
   using Row = std::vector<std::string>;
   std::vector<Row> query(const char* sql, const std::vector<std::string>& values = {}) const {
     sqlite3_stmt* statement = nullptr;
-    if (sqlite3_prepare_v2(handle, sql, -1, &statement, nullptr) != SQLITE_OK) fail();
+    if (sqlite3_prepare_v2(handle.get(), sql, -1, &statement, nullptr) != SQLITE_OK) fail();
     const std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> owner(statement, sqlite3_finalize);
     for (std::size_t i = 0; i < values.size(); ++i)
       sqlite3_bind_text(statement, int(i) + 1, values[i].data(), int(values[i].size()),
@@ -177,7 +186,7 @@ struct History::Database {
     try {
       work();
     } catch (...) {
-      sqlite3_exec(handle, "ROLLBACK", nullptr, nullptr, nullptr);
+      sqlite3_exec(handle.get(), "ROLLBACK", nullptr, nullptr, nullptr);
       throw;
     }
     execute("COMMIT");
@@ -192,7 +201,7 @@ struct History::Database {
   }
 
   fs::path file;
-  sqlite3* handle = nullptr;
+  std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle{nullptr, sqlite3_close};
 };
 
 History::History(const fs::path& job_folder, bool only_look) : folder_(job_folder) {

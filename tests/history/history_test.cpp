@@ -1,7 +1,9 @@
 #include "history/history.h"
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
@@ -126,6 +128,32 @@ TEST(History, SaysWhatIsWrongWithItsFile) {
   write_file(job / "history.sqlite", std::string(5000, 'x'));
   EXPECT_TRUE(contains(refusal([&] { History history(job.path()); }), "history.sqlite"));
   EXPECT_NE(refusal([&] { History history(job / "nowhere"); }), "");
+}
+
+// Files that this process has open under that name.
+long open_as(const fs::path& file) {
+  const fs::directory_iterator all("/proc/self/fd");
+  return std::count_if(begin(all), end(all), [&](const fs::directory_entry& entry) {
+    std::error_code gone;
+    return fs::read_symlink(entry.path(), gone) == file;
+  });
+}
+
+TEST(History, AFileOfANewerProgramStaysAsItIs) {
+  const TemporaryFolder job;
+  const fs::path file = fs::canonical(job.path()) / "history.sqlite";
+  sqlite3* newer = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &newer), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(newer,
+                         "CREATE TABLE hydrodip (schema_version INTEGER NOT NULL);"
+                         "INSERT INTO hydrodip VALUES (2)",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(newer);
+  const auto before = read_file(file);
+  EXPECT_TRUE(contains(refusal([&] { History history(job.path()); }), "newer hydrodip"));
+  EXPECT_EQ(read_file(file), before);
+  EXPECT_EQ(open_as(file), 0);
 }
 
 TEST(History, KeepsTheReportThatARunWasMadeBy) {
