@@ -25,6 +25,8 @@ constexpr double kStartTimeout_s = 10;
 constexpr double kBusyTimeout_s = 5;
 // Some move away from the end that they have found: by no more than this share of their travel.
 constexpr double kHomeShare = 0.1;
+// No axis has others.
+constexpr double kLeastStepsPerMm = 0.01, kMostStepsPerMm = 1e6, kFurthest_mm = 1e5;
 
 std::string numbered(int number, const std::string& text) {
   const std::string body = fmt::format("N{} {}", number, text);
@@ -33,7 +35,7 @@ std::string numbered(int number, const std::string& text) {
   return fmt::format("{}*{}\n", body, sum);
 }
 
-// The number after `label` in `line`, from `begin` on.
+// The finite number after `label` in `line`, from `begin` on.
 std::optional<double> number_after(const std::string& line, const std::string& label,
                                    std::size_t begin = 0) {
   const std::size_t at = line.find(label, begin);
@@ -42,8 +44,20 @@ std::optional<double> number_after(const std::string& line, const std::string& l
   while (first < line.data() + line.size() && *first == ' ') ++first;
   double value = 0;
   const auto [end, error] = parse_double(first, line.data() + line.size(), value);
-  if (error != std::errc()) return {};
+  if (error != std::errc() || !std::isfinite(value)) return {};
   return value;
+}
+
+constexpr int kUnreadable = -1;
+
+// Of a line that asks for another one again, that one's number, or kUnreadable.
+std::optional<int> asked_again(const std::string& line) {
+  constexpr double kMostLines = 1e9;
+  constexpr const char* kLabel = "Resend:";
+  if (line.find(kLabel) == std::string::npos) return {};
+  const double wanted = number_after(line, kLabel).value_or(kUnreadable);
+  const bool is_number = wanted >= 0 && wanted <= kMostLines && wanted == std::floor(wanted);
+  return is_number ? int(wanted) : kUnreadable;
 }
 
 class MarlinStage : public Stage {
@@ -59,12 +73,20 @@ class MarlinStage : public Stage {
     exchange("G21");
     exchange("G90");
     steps_per_mm_ = find_number("M92", "M92", " Z");
+    if (!(steps_per_mm_ >= kLeastStepsPerMm && steps_per_mm_ <= kMostStepsPerMm))
+      throw StageError(fmt::format(
+          "the printer says that its Z axis makes {:g} steps per mm: set it right there (M92)",
+          steps_per_mm_));
     identity.step_mm = 1 / steps_per_mm_;
     identity.unsure_mm = kShown_mm;
     identity.min_mm = find_number("M211", "Min:", " Z");
     identity.max_mm = find_number("M211", "Max:", " Z");
     min_mm_ = identity.min_mm;
     max_mm_ = identity.max_mm;
+    if (!(min_mm_ < max_mm_ && min_mm_ >= -kFurthest_mm && max_mm_ <= kFurthest_mm))
+      throw StageError(fmt::format(
+          "the printer says that its Z axis goes from {:g} to {:g} mm: set its travel there (M211)",
+          min_mm_, max_mm_));
     // So that the first look tells whether it moves.
     position_mm_ = read_position().value_or(0);
     clock_.sleep(kLooksApart_s);
@@ -140,6 +162,7 @@ class MarlinStage : public Stage {
   // The lines before the `ok`. A repeated line is executed once: Marlin counts them.
   std::vector<std::string> exchange(const std::string& text) {
     int number = next_line_++;
+    std::string unreadable;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       link_.send(numbered(number, text));
       const double deadline_s = clock_.now_s() + kReplyTimeout_s / kAttempts;
@@ -150,10 +173,13 @@ class MarlinStage : public Stage {
           if (!repeat) return answer;
           break;
         }
-        if (const auto wanted = number_after(*line, "Resend:")) {
+        if (const auto wanted = asked_again(*line)) {
           executed = *wanted == number + 1;
           repeat = !executed;
-          if (repeat) renumber(number, static_cast<int>(*wanted));
+          if (*wanted == kUnreadable)
+            unreadable = *line;
+          else if (repeat)
+            renumber(number, *wanted);
           continue;
         }
         refuse_errors(*line);
@@ -161,6 +187,11 @@ class MarlinStage : public Stage {
       }
       if (executed) return answer;
     }
+    if (!unreadable.empty())
+      throw LinkError(fmt::format(
+          "the printer asks for a line again and does not say which ('{}'): check cable, power and "
+          "stage.baud",
+          unreadable));
     throw LinkError(fmt::format(
         "the printer did not answer '{}' within {:g} s: check cable, power and stage.baud", text,
         kReplyTimeout_s));
@@ -311,9 +342,9 @@ class MarlinStage : public Stage {
     while (const auto line = lines_.line(clock_.now_s() + 0.05)) {
       refuse_errors(*line);
       heard_s_ = clock_.now_s();
-      if (const auto wanted = number_after(*line, "Resend:")) {
+      if (const auto wanted = asked_again(*line)) {
         homing_again_ = *wanted <= homing_number_;
-        if (homing_again_) renumber(homing_number_, static_cast<int>(*wanted));
+        if (homing_again_ && *wanted != kUnreadable) renumber(homing_number_, *wanted);
       }
       // Whatever it refuses or does not understand ends with ok all the same.
       const std::size_t home = line->find("Home ");

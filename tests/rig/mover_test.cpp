@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 
+#include "contains.h"
 #include "session.h"
 
 namespace hydrodip {
@@ -162,6 +166,15 @@ TEST(ZaberStage, OverheatedBeforeTheStartMovesNothing) {
   EXPECT_EQ(bench.emulator->position_mm(), place_mm);
 }
 
+std::string stage_error(const std::function<void()>& action) {
+  try {
+    action();
+    return "";
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
 // A printer that says ok to its stop and goes on, as when two wrong bits made another command of
 // it.
 class DeafPrinter : public Link, public Clock {
@@ -180,8 +193,9 @@ class DeafPrinter : public Link, public Clock {
     const auto says = [&](const char* command) { return bytes.find(command) != std::string::npos; };
     const long steps = std::lround(12000 + now_s_ * steps_per_s_);
     if (says("M115")) answer_ += "FIRMWARE_NAME:deaf SOURCE_CODE\n";
-    if (says("M92")) answer_ += "M92 X80.00 Z400.00\n";
-    if (says("M211")) answer_ += "Min: X0.00 Z0.00 Max: X200.00 Z200.00\n";
+    if (says("M92")) answer_ += "M92 X80.00 Z" + steps_per_mm + "\n";
+    if (says("M211")) answer_ += "Min: X0.00 Z0.00 Max: X200.00 Z" + top_mm + "\n";
+    if (asks_again_for) answer_ += "Resend: " + *asks_again_for + "\n";
     if (says("M114"))
       answer_ += fmt::format("X:0.00 Y:0.00 Z:{:.2f} E:0.00 Count X:0 Y:0 Z:{}\n",
                              tells_its_goal_ ? 150.0 : double(steps) / 400, steps);
@@ -194,6 +208,8 @@ class DeafPrinter : public Link, public Clock {
   }
 
   int sent_on = 0;
+  std::string steps_per_mm = "400.00", top_mm = "200.00";
+  std::optional<std::string> asks_again_for;
 
  private:
   double steps_per_s_;
@@ -201,6 +217,35 @@ class DeafPrinter : public Link, public Clock {
   double now_s_ = 0;
   std::string answer_;
 };
+
+// What no printer means, if a link or a wrong setting makes it say so.
+TEST(MarlinStage, NumbersThatCannotBeAreRefused) {
+  for (const char* steps : {"0.00", "-400.00", "nan", "inf", "1e300"}) {
+    DeafPrinter printer(0, false);
+    printer.steps_per_mm = steps;
+    const auto stage = marlin_stage(printer, printer, {});
+    EXPECT_TRUE(contains(stage_error([&] { stage->connect(); }), "M92")) << steps;
+  }
+  for (const char* top : {"0.00", "-5.00", "inf", "1e300"}) {
+    DeafPrinter printer(0, false);
+    printer.top_mm = top;
+    const auto stage = marlin_stage(printer, printer, {});
+    EXPECT_TRUE(contains(stage_error([&] { stage->connect(); }), "M211")) << top;
+  }
+  for (const char* line : {"1e30", "-3", "1.5", "nan", "", "99999999999"}) {
+    DeafPrinter printer(0, false);
+    const auto stage = marlin_stage(printer, printer, {});
+    stage->connect();
+    printer.asks_again_for = line;
+    EXPECT_TRUE(contains(stage_error([&] { stage->set_speed(100); }), "Resend")) << line;
+    stage->start_homing();
+    EXPECT_TRUE(contains(stage_error([&] {
+                           while (stage->state().moving) printer.sleep(0.1);
+                         }),
+                         "has not got the command to home"))
+        << line;
+  }
+}
 
 TEST(MarlinStage, NeverStandsWhileItGoesOn) {
   // Slower than anybody sees in a while, but it says where it goes; or a step in every few looks.
