@@ -12,7 +12,8 @@ namespace hydrodip {
 
 // Unpacks every file with a plain name (job_files.h) by `place`, which says where it goes, or
 // nothing: it is left out. Folders, links and hidden files are left out. Throws InputError for what
-// is no archive, or unpacks to more than `most_bytes` or to more than some hundred times itself.
+// is no archive, or unpacks to more than `most_bytes` or to more than some hundred times itself;
+// nothing of it is left then.
 void unpack_zip(const std::filesystem::path& archive, std::uintmax_t most_bytes,
                 const std::function<std::filesystem::path(const std::string& name)>& place);
 

@@ -4,8 +4,12 @@
 
 #include <fstream>
 
+#include "base/error.h"
 #include "base/file.h"
+#include "full_disk.h"
+#include "refusal.h"
 #include "studio/served.h"
+#include "studio/zip.h"
 
 namespace hydrodip {
 namespace {
@@ -246,6 +250,27 @@ TEST_F(SecurityTest, AnArchiveUnpacksIntoTheJobAlone) {
        std::filesystem::recursive_directory_iterator(folder / "jobs" / job / "files"))
     if (entry.is_regular_file()) files.push_back(entry.path().filename().string());
   EXPECT_EQ(files, std::vector<std::string>{"toy.obj"});
+}
+
+// The last bytes of a small file go out as it is closed.
+TEST(Zip, OfAnArchiveThatDoesNotUnpackNothingStays) {
+  const TemporaryFolder folder;
+  make_zip(folder / "toy.zip", {{"kept/a.obj", "v 0 0 0\n"}, {"b.obj", std::string(3000, 'v')}});
+  std::filesystem::create_directory(folder / "files");
+  const auto unpack = [&] {
+    unpack_zip(folder / "toy.zip", 1U << 20U,
+               [&](const std::string& name) { return folder / "files" / name; });
+  };
+  {
+    const FullDisk disk(1000);
+    EXPECT_NE(refusal(unpack), "");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "files"));
+  unpack();
+  EXPECT_EQ(bytes_of(folder / "files/b.obj"), std::string(3000, 'v'));
+  // What was there is not unpacked over, and stays.
+  EXPECT_NE(refusal(unpack), "");
+  EXPECT_EQ(bytes_of(folder / "files/kept/a.obj"), "v 0 0 0\n");
 }
 
 TEST_F(SecurityTest, AnArchiveThatBlowsUpIsRefused) {
