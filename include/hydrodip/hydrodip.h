@@ -110,10 +110,10 @@ void write_sheet(const std::filesystem::path& folder, const Designed& designed,
                  const Printer& printer, const SheetOptions& options,
                  const RunContext& context = {});
 
-// Any picture as PNG.
+// Any picture as PNG; the file appears whole or not at all.
 void write_png(const std::filesystem::path& file, const Image& image);
 
-// Binary PLY of the film after the dip.
+// Binary PLY of the film after the dip; the file appears whole or not at all.
 void write_film(const std::filesystem::path& file, const DippedFilm& film);
 
 }  // namespace hydrodip

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 #include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -39,6 +40,76 @@ std::string reason(int error) { return std::generic_category().message(error); }
   throw InputError(fmt::format("{}: cannot be written ({}); choose another folder or free space.",
                                path.string(), reason(error)));
 }
+
+void put(std::FILE* file, const std::filesystem::path& path, const void* data, std::size_t size) {
+  for (std::size_t begin = 0; begin < size; begin += kPiece) {
+    check_cancelled();
+    const std::size_t count = std::min(kPiece, size - begin);
+    if (std::fwrite(static_cast<const char*>(data) + begin, 1, count, file) != count)
+      refuse_write(path, errno);
+  }
+}
+
+// Where links lead, whether or not there is anything.
+std::filesystem::path behind_links(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;  // as many as the system follows
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(path, error); ++i) {
+    const std::filesystem::path to = std::filesystem::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / to;
+  }
+  return path;
+}
+
+// A file beside the one that it is to become; it goes again unless it does.
+class Part {
+ public:
+  // `path`: as the user calls the target.
+  Part(const std::filesystem::path& target, const std::filesystem::path& path) : path_(path) {
+    int descriptor = -1;
+    // Short, as the target's own name may be as long as names can be.
+    for (int number = 0; descriptor < 0; ++number) {
+      part_ = target.parent_path() / fmt::format(".hydrodip-{}-{}.part", ::getpid(), number);
+      descriptor = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor < 0 && errno != EEXIST) refuse_write(path_, errno);
+    }
+    file_.reset(::fdopen(descriptor, "wb"));
+  }
+  ~Part() {
+    if (!part_.empty()) ::unlink(part_.c_str());
+  }
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+
+  std::FILE* file() const { return file_.get(); }
+
+  void become(const std::filesystem::path& target, ExistingFile existing) {
+    if (std::fflush(file_.get()) != 0) refuse_write(path_, errno);
+    // EINVAL: of a file system that has nothing to wait for.
+    if (::fsync(::fileno(file_.get())) != 0 && errno != EINVAL) refuse_write(path_, errno);
+    if (std::fclose(file_.release()) != 0) refuse_write(path_, errno);
+    if (move(target, existing) != 0) refuse_write(path_, errno);
+    part_.clear();
+  }
+
+ private:
+  int move(const std::filesystem::path& target, ExistingFile existing) const {
+    if (existing == ExistingFile::kReplaced) return std::rename(part_.c_str(), target.c_str());
+    const int result =
+        ::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE);
+    if (result == 0 || (errno != EINVAL && errno != ENOSYS)) return result;
+    // The file system cannot look and move at once.
+    std::error_code ignored;
+    if (!std::filesystem::exists(target, ignored))
+      return std::rename(part_.c_str(), target.c_str());
+    errno = EEXIST;
+    return -1;
+  }
+
+  std::filesystem::path path_, part_;
+  File file_;
+};
 
 class Descriptor {
  public:
@@ -110,18 +181,33 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path) {
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size) {
   File file(std::fopen(path.c_str(), "wb"));
   if (!file) refuse_write(path, errno);
-  for (std::size_t begin = 0; begin < size; begin += kPiece) {
-    check_cancelled();
-    const std::size_t count = std::min(kPiece, size - begin);
-    if (std::fwrite(static_cast<const char*>(data) + begin, 1, count, file.get()) != count)
-      refuse_write(path, errno);
-  }
+  put(file.get(), path, data, size);
   // A full disk may only show when the last buffer goes out.
   if (std::fclose(file.release()) != 0) refuse_write(path, errno);
 }
 
 void write_file(const std::filesystem::path& path, const std::string& text) {
   write_file(path, text.data(), text.size());
+}
+
+void write_whole(const std::filesystem::path& path, const void* data, std::size_t size,
+                 ExistingFile existing) {
+  const std::filesystem::path target = behind_links(path);
+  struct stat there = {};
+  const bool is_there = ::stat(target.c_str(), &there) == 0;
+  if (is_there && existing == ExistingFile::kKept) refuse_write(path, EEXIST);
+  if (is_there && S_ISDIR(there.st_mode)) refuse_write(path, EISDIR);
+  if (is_there && !S_ISREG(there.st_mode)) return write_file(path, data, size);
+  // A new file would take the place of one that is protected.
+  if (is_there && ::access(target.c_str(), W_OK) != 0) refuse_write(path, errno);
+  Part part(target, path);
+  if (is_there) ::fchmod(::fileno(part.file()), there.st_mode & 07777);
+  put(part.file(), path, data, size);
+  part.become(target, existing);
+}
+
+void write_whole(const std::filesystem::path& path, const std::string& text) {
+  write_whole(path, text.data(), text.size());
 }
 
 bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder) {

@@ -53,7 +53,7 @@ void add_vertex(Bytes& out, const DippedFilm& film, std::size_t v) {
 
 }  // namespace
 
-void write_film_ply(const std::filesystem::path& path, const DippedFilm& film) {
+std::vector<std::uint8_t> film_ply(const DippedFilm& film) {
   Bytes out;
   out.add(ply_header(film));
   for (std::size_t v = 0; v < film.position.size(); ++v) add_vertex(out, film, v);
@@ -61,7 +61,12 @@ void write_film_ply(const std::filesystem::path& path, const DippedFilm& film) {
     out.add_u8(3);
     for (const std::int32_t v : triangle) out.add_u32(static_cast<std::uint32_t>(v));
   }
-  write_file(path, out.data().data(), out.size());
+  return out.data();
+}
+
+void write_film_ply(const std::filesystem::path& path, const DippedFilm& film) {
+  const std::vector<std::uint8_t> bytes = film_ply(film);
+  write_file(path, bytes.data(), bytes.size());
 }
 
 }  // namespace hydrodip

@@ -350,7 +350,7 @@ std::optional<double> known_water_level_mm(const RigJob& job) {
 }
 
 void save_water_level(const RigJob& job, double position_mm) {
-  write_file(job.folder / kLevelFile, json_line({{"water_mm", position_mm}}) + "\n");
+  write_whole(job.folder / kLevelFile, json_line({{"water_mm", position_mm}}) + "\n");
 }
 
 double in_water_mm(const RigJob& job) {

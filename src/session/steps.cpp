@@ -144,11 +144,12 @@ void write_sheet(const std::filesystem::path& folder, const Designed& designed,
 
 void write_png(const std::filesystem::path& file, const Image& image) {
   const std::vector<std::uint8_t> png = encode_png(image);
-  write_file(file, png.data(), png.size());
+  write_whole(file, png.data(), png.size());
 }
 
 void write_film(const std::filesystem::path& file, const DippedFilm& film) {
-  write_film_ply(file, film);
+  const std::vector<std::uint8_t> ply = film_ply(film);
+  write_whole(file, ply.data(), ply.size());
 }
 
 }  // namespace hydrodip

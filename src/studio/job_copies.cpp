@@ -14,7 +14,6 @@
 #include "settings/job_file.h"
 #include "studio/document.h"
 #include "studio/job_files.h"
-#include "studio/job_store.h"
 #include "studio/zip.h"
 
 namespace hydrodip {
@@ -54,7 +53,7 @@ void copy_to(const std::filesystem::path& file, const std::filesystem::path& to)
   if (std::filesystem::exists(to, ignored)) return;
   std::filesystem::create_directories(to.parent_path(), ignored);
   const std::vector<std::uint8_t> bytes = read_file(file);
-  write_file(to, bytes.data(), bytes.size());
+  write_whole(to, bytes.data(), bytes.size(), ExistingFile::kKept);
 }
 
 // Files that name each other, as they lie to each other; into the folder, or if other ones of their

@@ -81,16 +81,6 @@ std::filesystem::path studio_folder() {
   return folder;
 }
 
-void write_whole(const std::filesystem::path& file, const std::string& text) {
-  std::filesystem::path next = file;
-  next += ".new";
-  write_file(next, text);
-  std::error_code error;
-  std::filesystem::rename(next, file, error);
-  if (error)
-    throw InputError(fmt::format("{}: cannot be written ({})", file.string(), error.message()));
-}
-
 std::string JobStore::create() const {
   std::string job = random_hex(8);
   std::error_code error;

@@ -17,9 +17,6 @@ std::string shown_path(const std::filesystem::path& path);
 // The person's own folder for such things; made if needed. Throws InputError.
 std::filesystem::path studio_folder();
 
-// Appears whole, or the file stays as it was. Throws InputError.
-void write_whole(const std::filesystem::path& file, const std::string& text);
-
 // In a job's folder: a picture for the list of recent jobs.
 inline constexpr const char* kThumbnail = "thumbnail.png";
 

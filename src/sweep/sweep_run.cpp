@@ -146,14 +146,7 @@ void write_outcome(const fs::path& folder, const SweepRun& run, const SweepOutco
     json["report"] = independent_of_place(outcome.report, folder);
   else
     json["error"] = outcome.error;
-  // Under its final name when it is whole. Only who holds the claim writes it.
-  const fs::path unfinished = folder / "work" / (run.id + ".json");
-  write_file(unfinished, json_line(json) + "\n");
-  std::error_code error;
-  fs::rename(unfinished, outcome_file(folder, run.id), error);
-  if (error)
-    throw InputError(fmt::format("{}: cannot be written ({})",
-                                 outcome_file(folder, run.id).string(), error.message()));
+  write_whole(outcome_file(folder, run.id), json_line(json) + "\n");
 }
 
 // Of no run is it the fault.

@@ -39,6 +39,62 @@ TEST(File, WhatIsWrittenIsRead) {
   EXPECT_TRUE(read_file(path).empty());
 }
 
+std::string text_in(const std::filesystem::path& path) {
+  const auto bytes = read_file(path);
+  return {bytes.begin(), bytes.end()};
+}
+
+std::size_t entries_of(const std::filesystem::path& folder) {
+  return std::size_t(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST(WholeFile, TakesTheOldOnesPlaceAndPermissions) {
+  const TemporaryFolder folder;
+  write_whole(folder / "file", "old");
+  std::filesystem::create_symlink("file", folder / "link");
+  const auto mode = std::filesystem::perms::owner_read | std::filesystem::perms::owner_write;
+  std::filesystem::permissions(folder / "file", mode);
+  write_whole(folder / "link", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(text_in(folder / "file"), "new");
+  EXPECT_EQ(std::filesystem::status(folder / "file").permissions(), mode);
+  EXPECT_EQ(entries_of(folder.path()), 2U);
+  const std::string long_name(255, 'n');
+  write_whole(folder / long_name, "long");
+  EXPECT_EQ(text_in(folder / long_name), "long");
+}
+
+TEST(WholeFile, LeavesNothingWhereItEndsEarly) {
+  const TemporaryFolder folder;
+  write_whole(folder / "file", "old");
+  const std::string text(std::size_t(3) << 20U, 'x');
+  {
+    const RunContext context;
+    const RunScope scope(context);
+    context.cancel_at_check(2);
+    EXPECT_THROW(write_whole(folder / "file", text), Cancelled);
+  }
+  EXPECT_EQ(text_in(folder / "file"), "old");
+  EXPECT_EQ(entries_of(folder.path()), 1U);
+}
+
+TEST(WholeFile, IsRefusedWhereItMayNotBe) {
+  const TemporaryFolder folder;
+  write_whole(folder / "file", "old");
+  EXPECT_TRUE(contains(
+      refusal([&] { write_whole(folder / "file", "new", 3, ExistingFile::kKept); }), "file"));
+  EXPECT_EQ(text_in(folder / "file"), "old");
+  write_whole(folder / "other", "new", 3, ExistingFile::kKept);
+  EXPECT_EQ(text_in(folder / "other"), "new");
+  EXPECT_NE(refusal([&] { write_whole(folder.path(), "text"); }), "");
+  EXPECT_NE(refusal([&] { write_whole(folder / "none/file", "text"); }), "");
+  EXPECT_EQ(entries_of(folder.path()), 2U);
+  if (std::filesystem::exists("/dev/full")) {
+    EXPECT_NE(refusal([&] { write_whole("/dev/full", std::string(100000, 'x')); }), "");
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+  }
+}
+
 TEST(File, PipesAreReadToTheirEnd) {
   const TemporaryFolder folder;
   const std::filesystem::path pipe = folder / "pipe";

@@ -2,7 +2,10 @@
 
 #include <limits>
 
+#include "base/file.h"
+#include "full_disk.h"
 #include "hydrodip/hydrodip.h"
+#include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
@@ -63,6 +66,18 @@ TEST(Simulate, ShowsEveryStep) {
   });
   EXPECT_EQ(steps, 5);
   EXPECT_EQ(last, 5);
+}
+
+TEST(Write, AnEarlierFileStaysUntilTheNewOneIsWhole) {
+  const TemporaryFolder folder;
+  write_file(folder / "a.png", "earlier");
+  {
+    const FullDisk disk(20);
+    EXPECT_THROW(write_png(folder / "a.png", Image(64, 64)), InputError);
+    EXPECT_THROW(write_png(folder / "b.png", Image(64, 64)), InputError);
+  }
+  EXPECT_EQ(read_file(folder / "a.png").size(), 7U);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
 TEST(Render, AnEmptyFinishIsRefused) {
