@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -111,29 +110,25 @@ bool SimulationKey::operator<(const SimulationKey& other) const {
 SimulationStore::SimulationStore(const std::filesystem::path& file,
                                  const std::vector<std::filesystem::path>& others)
     : file_(file) {
-  descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (descriptor_ < 0)
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor < 0)
     refuse(file,
            fmt::format("the store of simulations cannot be opened ({})", std::strerror(errno)));
-  try {
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
-      refuse(file, "another calibration is writing to it; wait for it, or choose another folder");
-    drop_torn_line();
-    read(file);
-    for (const auto& other : others) read(other);
-  } catch (...) {
-    ::close(descriptor_);
-    throw;
-  }
+  lock_ = FileLock(descriptor, file);
+  if (lock_.state() == FileLock::State::kTaken)
+    refuse(file, "another calibration is writing to it; wait for it, or choose another folder");
+  if (lock_.state() == FileLock::State::kGone)
+    refuse(file, "it was removed just now; calibrate again");
+  drop_torn_line();
+  read(file);
+  for (const auto& other : others) read(other);
 }
-
-SimulationStore::~SimulationStore() { ::close(descriptor_); }
 
 void SimulationStore::drop_torn_line() {
   const std::vector<std::uint8_t> bytes = read_file(file_);
   std::size_t whole = bytes.size();
   while (whole > 0 && bytes[whole - 1] != '\n') --whole;
-  if (whole < bytes.size() && ::ftruncate(descriptor_, off_t(whole)) != 0)
+  if (whole < bytes.size() && ::ftruncate(lock_.descriptor(), off_t(whole)) != 0)
     refuse(file_, fmt::format("cannot be written ({})", std::strerror(errno)));
 }
 
@@ -165,6 +160,10 @@ void SimulationStore::read(const std::filesystem::path& file) {
 
 std::vector<std::string> SimulationStore::oddities(const std::vector<std::string>& subjects) const {
   std::vector<std::string> sentences;
+  if (lock_.state() == FileLock::State::kNone)
+    sentences.push_back(
+        fmt::format("{}: its file system has no locks; see that no other calibration writes to it.",
+                    file_.string()));
   for (const FileRead& about : read_) {
     if (!about.damaged.empty())
       sentences.push_back(fmt::format(
@@ -200,14 +199,14 @@ void SimulationStore::add(const SimulationKey& key, const SimulationResult& resu
   const std::string line = line_of(key, result);
   std::size_t written = 0;
   while (written < line.size()) {
-    const ssize_t count = ::write(descriptor_, line.data() + written, line.size() - written);
+    const ssize_t count = ::write(lock_.descriptor(), line.data() + written, line.size() - written);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0)
       refuse(file_, fmt::format("a result cannot be kept ({}); free space and run it again",
                                 std::strerror(errno)));
     written += std::size_t(count);
   }
-  ::fdatasync(descriptor_);
+  ::fdatasync(lock_.descriptor());
   results_.try_emplace(key, result);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_lock.h"
 #include "calibrate/landings.h"
 
 namespace hydrodip {
@@ -24,14 +25,14 @@ using SimulationResult = std::optional<Landings>;
 
 // Text, a line of JSON per simulation, so that stores merge by putting one behind the other. A line
 // cut short by a kill or a crash is dropped when the store is opened, other damaged lines are
-// passed over. Only one process at a time may write.
+// passed over. Only one process at a time may write; where the file system has no locks, oddities()
+// says so.
 class SimulationStore {
  public:
   // Opens or makes the file, and reads others beside it, which stay as they are. Throws InputError
   // if it cannot be read or written, has no line that a store has, or another process has it open.
   SimulationStore(const std::filesystem::path& file,
                   const std::vector<std::filesystem::path>& others);
-  ~SimulationStore();
   SimulationStore(const SimulationStore&) = delete;
   SimulationStore& operator=(const SimulationStore&) = delete;
 
@@ -49,7 +50,7 @@ class SimulationStore {
   void drop_torn_line();
 
   std::filesystem::path file_;
-  int descriptor_ = -1;
+  FileLock lock_;
   struct FileRead {
     std::filesystem::path file;
     std::vector<std::size_t> damaged;               // lines

@@ -1,7 +1,6 @@
 #include "studio/run_file.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include "studio/json.h"
@@ -24,33 +23,34 @@ RunFile::Run run_in(int file) {
 
 }  // namespace
 
-RunFile::RunFile(const std::filesystem::path& folder) : file_(folder / "run.json") {
-  lock_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (lock_ < 0) return;
-  if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) {
-    earlier_ = run_in(lock_);
-    return;
-  }
-  another_ = run_in(lock_);
-  ::close(lock_);
-  lock_ = -1;
+RunFile::RunFile(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "run.json";
+  lock_ = FileLock(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600), file);
+  if (is_ours())
+    earlier_ = run_in(lock_.descriptor());
+  else if (lock_.state() == FileLock::State::kTaken)
+    another_ = run_in(lock_.descriptor());
 }
 
 RunFile::~RunFile() {
-  if (lock_ < 0) return;
+  if (!is_ours()) return;
   // Emptied and not removed: another run may just be waiting for this very file.
-  if (::ftruncate(lock_, 0) != 0) {
+  if (::ftruncate(lock_.descriptor(), 0) != 0) {
     // It will be taken for that of a killed run; the next one then has the same token.
   }
-  ::close(lock_);
+}
+
+bool RunFile::is_ours() const {
+  return lock_.state() == FileLock::State::kHeld || lock_.state() == FileLock::State::kNone;
 }
 
 void RunFile::keep(int port, const std::string& token) {
-  if (lock_ < 0) return;
+  if (!is_ours()) return;
   const std::string text = text_of(Json{{"port", port}, {"token", token}});
-  if (::ftruncate(lock_, 0) != 0 ||
-      ::pwrite(lock_, text.data(), text.size(), 0) != ssize_t(text.size()))
-    static_cast<void>(::ftruncate(lock_, 0) == 0);
+  const int file = lock_.descriptor();
+  if (::ftruncate(file, 0) != 0 ||
+      ::pwrite(file, text.data(), text.size(), 0) != ssize_t(text.size()))
+    static_cast<void>(::ftruncate(file, 0) == 0);
 }
 
 }  // namespace hydrodip

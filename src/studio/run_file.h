@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <string>
 
+#include "base/file_lock.h"
+
 namespace hydrodip {
 
-// Held by one run at a time; others have none.
+// Held by one run at a time; others have none. Where the file system has no locks each has it.
 class RunFile {
  public:
   explicit RunFile(const std::filesystem::path& folder);
@@ -28,8 +30,9 @@ class RunFile {
   void keep(int port, const std::string& token);
 
  private:
-  std::filesystem::path file_;
-  int lock_ = -1;
+  bool is_ours() const;
+
+  FileLock lock_;
   Run earlier_, another_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_lock.h"
 #include "base/json_nesting.h"
 #include "base/json_text.h"
 #include "job/jobs.h"
@@ -32,31 +32,38 @@ fs::path outcome_file(const fs::path& folder, const std::string& id) {
   return folder / "runs" / (id + ".json");
 }
 
-// Held while a run is done. The lock goes with the process, however it ends.
+// Held while a run is done.
 class Claim {
  public:
   Claim(const fs::path& folder, const std::string& id) : file_(folder / "claims" / id) {
-    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor_ < 0)
-      throw InputError(
-          fmt::format("{}: cannot be written; the sweep's folder has to be writable by whoever "
-                      "runs it",
-                      file_.string()));
-    held_ = ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+    lock_ = locked();
+    // Whoever had it has just removed it.
+    for (int tries = 0; tries < 10 && lock_.state() == FileLock::State::kGone; ++tries)
+      lock_ = locked();
   }
   ~Claim() {
-    if (held_) ::unlink(file_.c_str());
-    ::close(descriptor_);
+    if (held()) ::unlink(file_.c_str());
   }
   Claim(const Claim&) = delete;
   Claim& operator=(const Claim&) = delete;
 
-  bool held() const { return held_; }
+  bool held() const { return lock_.state() != FileLock::State::kTaken; }
+  // Another may hold it as well.
+  bool is_unlocked() const { return held() && lock_.state() != FileLock::State::kHeld; }
 
  private:
+  FileLock locked() const {
+    const int descriptor = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0)
+      throw InputError(
+          fmt::format("{}: cannot be written; the sweep's folder has to be writable by whoever "
+                      "runs it",
+                      file_.string()));
+    return {descriptor, file_};
+  }
+
   fs::path file_;
-  int descriptor_ = -1;
-  bool held_ = false;
+  FileLock lock_;
 };
 
 // However they came about: in this call, another, or when the sweep was planned.
@@ -244,6 +251,7 @@ SweepDone run_sweep(const fs::path& folder, const SweepPlan& plan, const SweepWo
   fs::create_directories(folder / "runs", error);
   fs::create_directories(folder / "work", error);
   std::atomic<int> done = 0, failed = 0, before = 0, elsewhere = 0, changed = 0;
+  std::atomic<bool> told_of_locks = false;
   std::mutex mutex;
   std::string what_changed;
   std::map<std::string, int> by_others;
@@ -264,6 +272,11 @@ SweepDone run_sweep(const fs::path& folder, const SweepPlan& plan, const SweepWo
         return;
       }
       const Claim claim(folder, run->id);
+      if (claim.is_unlocked() && !told_of_locks.exchange(true))
+        context.warn(fmt::format(
+            "{}: its file system has no locks, so that nobody sees which runs another 'hydrodip "
+            "sweep run' is at: let one at a time work there, or give each its --shard.",
+            folder.string()));
       if (!claim.held() || !is_pending_now(read_outcome(folder, run->id))) {
         ++elsewhere;
         return;

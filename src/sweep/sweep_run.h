@@ -47,7 +47,8 @@ std::string told_versions(const std::map<std::string, int>& runs_by_version);
 
 // Does the runs that have no outcome yet, each on one thread, side by side on the context's. No run
 // is done twice, whoever else is at it: a lock on FOLDER/claims/ID tells, and goes with its
-// process. Throws InputError if the folder cannot be written to or its disk is full, Cancelled.
+// process. Where the file system has no locks a warning says so. Throws InputError if the folder
+// cannot be written to or its disk is full, Cancelled.
 SweepDone run_sweep(const std::filesystem::path& folder, const SweepPlan& plan,
                     const SweepWork& work, const RunContext& context);
 

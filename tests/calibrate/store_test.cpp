@@ -8,6 +8,8 @@
 #include <string>
 
 #include "base/error.h"
+#include "contains.h"
+#include "no_locks.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {
@@ -90,6 +92,15 @@ TEST_F(StoreTest, StoresMergeByFileAndByConcatenation) {
 TEST_F(StoreTest, OnlyOneMayWrite) {
   const SimulationStore store(file_, {});
   EXPECT_THROW(SimulationStore(file_, {}), InputError);
+}
+
+TEST_F(StoreTest, IsKeptWhereTheFileSystemHasNoLocks) {
+  const NoLocks here;
+  SimulationStore store(file_, {});
+  store.add(key(0.1), result(1));
+  ASSERT_EQ(store.oddities({"abc"}).size(), 1u);
+  EXPECT_TRUE(contains(store.oddities({"abc"})[0], "no locks"));
+  EXPECT_EQ(SimulationStore(file_, {}).size(), 1u);
 }
 
 TEST_F(StoreTest, RefusesOtherFiles) {

@@ -15,6 +15,7 @@
 #include "contains.h"
 #include "image/files.h"
 #include "job/jobs.h"
+#include "no_locks.h"
 #include "refusal.h"
 #include "sweep/scripts.h"
 #include "sweep/sweep_jobs.h"
@@ -401,6 +402,17 @@ TEST_F(SweepTest, WhatIsDoneIsNotDoneAgain) {
   EXPECT_EQ(fs::last_write_time(sweep() / "runs" / (made.runs[1].id + ".json")), before);
   EXPECT_TRUE(fs::is_empty(sweep() / "claims"));
   EXPECT_TRUE(fs::is_empty(sweep() / "work"));
+}
+
+TEST_F(SweepTest, RunsAreDoneWhereTheFileSystemHasNoLocks) {
+  const SweepPlan made = plan(head_ + "[vary]\n\"film.margin_mm\" = [10, 12]\n");
+  const NoLocks here;
+  const SweepDone done = run_sweep(sweep(), made, {}, context_);
+  EXPECT_EQ(done.done, 2);
+  EXPECT_EQ(done.elsewhere, 0);
+  ASSERT_EQ(context_.warnings().size(), 1U);
+  EXPECT_TRUE(contains(context_.warnings()[0], "no locks"));
+  EXPECT_TRUE(fs::is_empty(sweep() / "claims"));
 }
 
 // A newer program may come to other numbers, and an id says nothing of it.
