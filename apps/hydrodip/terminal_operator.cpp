@@ -7,18 +7,13 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "harmless.h"
 
 namespace hydrodip {
 namespace {
 
 constexpr double kPoll_s = 0.1;
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 }  // namespace
 
@@ -72,7 +67,7 @@ bool TerminalOperator::read_some(double seconds) {
 bool TerminalOperator::take_line(std::string& line) {
   const std::size_t end = typed_.find('\n');
   if (end == std::string::npos) return false;
-  line = trimmed(typed_.substr(0, end));
+  line = trimmed(std::string_view(typed_).substr(0, end));
   typed_.erase(0, end + 1);
   return true;
 }

@@ -4,34 +4,24 @@
 #include <algorithm>
 #include <cctype>
 #include <memory>
+#include <string_view>
 
+#include "base/text.h"
 #include "command_line.h"
 #include "commands.h"
 
 namespace hydrodip {
 namespace {
 
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == at)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
-
-bool has_capital(const std::string& text) {
+bool has_capital(std::string_view text) {
   return std::any_of(text.begin(), text.end(),
                      [](unsigned char c) { return std::isupper(c) != 0; });
 }
 
 // "MM|auto": capitals stand for what the user has to say, "0..1" for a range, "#rrggbb" for a
 // pattern; all else is a word to be typed as it stands.
-bool is_word(const std::string& text) {
-  return !text.empty() && !has_capital(text) && text.find("..") == std::string::npos &&
-         text[0] != '#';
+bool is_word(std::string_view text) {
+  return !text.empty() && !has_capital(text) && text.find("..") == text.npos && text[0] != '#';
 }
 
 // Of models: those of model_io, and jobs.
@@ -52,15 +42,15 @@ ValueText value_of(const std::string& shown) {
     value.kind = ValueKind::kFile;
   } else if (shown.starts_with("FILE.") || shown.find("|FILE.") != std::string::npos) {
     value.kind = ValueKind::kFile;
-    for (const std::string& part : split(shown, '|')) {
+    for (const std::string_view part : split(shown, '|')) {
       if (part.starts_with("FILE."))
-        value.extensions.push_back(part.substr(5));
+        value.extensions.emplace_back(part.substr(5));
       else
         value.profiles = value.profiles || part == "NAME";
     }
   } else {
-    for (const std::string& part : split(shown, '|'))
-      if (is_word(part)) value.words.push_back(part);
+    for (const std::string_view part : split(shown, '|'))
+      if (is_word(part)) value.words.emplace_back(part);
     if (!value.words.empty()) value.kind = ValueKind::kWords;
   }
   return value;

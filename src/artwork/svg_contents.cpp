@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/run_scope.h"
+#include "base/text.h"
 
 namespace hydrodip {
 namespace {
@@ -40,14 +41,6 @@ int options_for(std::string_view svg) {
 
 std::string_view text_of(const xmlChar* text) {
   return text ? std::string_view(reinterpret_cast<const char*>(text)) : std::string_view();
-}
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
 }
 
 bool begins_with(std::string_view text, std::string_view lower_case) {

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/parse_double.h"
+#include "base/text.h"
 #include "calibrate/calibrate.h"
 
 namespace hydrodip {
@@ -13,20 +15,9 @@ constexpr std::size_t kMostValues = 1000;
 // A last step that misses the end by rounding still reaches it.
 constexpr double kSlack = 1e-6;
 
-bool parse(const std::string& text, double& value) {
+bool parse(std::string_view text, double& value) {
   const auto [end, error] = parse_double(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-}
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
 }
 
 // To so many digits that 0.1 + 0.2 is 0.3.
@@ -60,7 +51,7 @@ std::vector<double> parse_range(const std::string& text, const std::string& opti
         text, why));
   };
   std::vector<double> values;
-  const std::vector<std::string> parts = split(text, ':');
+  const std::vector<std::string_view> parts = split(text, ':');
   if (parts.size() == 3) {
     double from = 0, to = 0, step = 0;
     const bool times = !parts[2].empty() && parts[2].front() == 'x';
@@ -73,7 +64,7 @@ std::vector<double> parse_range(const std::string& text, const std::string& opti
       refuse(times ? "its factor has to be above 1" : "its step has to be above 0");
     values = times ? multiplied(from, to, step) : stepped(from, to, step);
   } else if (parts.size() == 1) {
-    for (const std::string& part : split(text, ',')) {
+    for (const std::string_view part : split(text, ',')) {
       double value = 0;
       if (!parse(part, value)) refuse("not numbers");
       if (!values.empty() && !(value > values.back())) refuse("values have to rise");

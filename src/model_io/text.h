@@ -8,12 +8,9 @@
 #include <string_view>
 
 #include "base/parse_double.h"
+#include "base/text.h"
 
 namespace hydrodip {
-
-inline bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
-}
 
 // Takes the next blank-separated word off the front; empty at the end.
 inline std::string_view take_word(std::string_view& rest) {
@@ -33,12 +30,6 @@ inline std::string_view take_line(std::string_view& rest) {
   const bool both = rest.substr(line.size(), 2) == "\r\n";
   rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + (both ? 2 : 1));
   return line;
-}
-
-inline std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
 }
 
 // Without the byte order mark that some editors put before UTF-8.

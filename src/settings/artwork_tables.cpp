@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "base/parse_double.h"
+#include "base/text.h"
 #include "settings/table_key.h"
 
 namespace hydrodip {
@@ -28,23 +29,15 @@ struct Key {
 
 // ---- values ----
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 std::optional<Numbers> parse_list(const std::string& text) {
   Numbers values;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    std::string part = trimmed(text.substr(begin, end - begin));
-    if (part.size() > 1 && part[0] == '+' && part[1] != '-') part.erase(0, 1);
+  for (std::string_view part : split(text, ',')) {
+    part = trimmed(part);
+    if (part.size() > 1 && part[0] == '+' && part[1] != '-') part.remove_prefix(1);
     double value = 0;
     const auto [rest, error] = parse_double(part.data(), part.data() + part.size(), value);
     if (error != std::errc() || rest != part.data() + part.size()) return {};
     values.push_back(value);
-    begin = end + 1;
   }
   return values;
 }

@@ -11,6 +11,7 @@
 #include "base/json_text.h"
 #include "base/nearest_name.h"
 #include "base/parse_double.h"
+#include "base/text.h"
 #include "settings/artwork_tables.h"
 #include "settings/dip_tables.h"
 #include "settings/part_tables.h"
@@ -20,15 +21,9 @@
 namespace hydrodip {
 namespace {
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 // The whole text as a finite number.
 std::optional<double> parse_number(const std::string& untrimmed) {
-  std::string text = trimmed(untrimmed);
+  std::string text(trimmed(untrimmed));
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.erase(0, 1);
   double value = 0;
   const auto [end, error] = parse_double(text.data(), text.data() + text.size(), value);

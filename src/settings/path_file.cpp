@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
@@ -10,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/parse_double.h"
+#include "base/text.h"
 
 namespace hydrodip {
 namespace {
@@ -20,20 +20,9 @@ constexpr std::size_t kMostKeyframes = 10000;
 constexpr std::size_t kLargestFile = 1 << 21;
 constexpr double kFurthest_mm = 5000, kMostTurn_deg = 3600;
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const auto first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return "";
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
-std::vector<std::string_view> split(std::string_view text, char at) {
-  std::vector<std::string_view> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(at, begin), text.size());
-    parts.push_back(trimmed(text.substr(begin, end - begin)));
-    begin = end + 1;
-  }
+std::vector<std::string_view> trimmed_parts(std::string_view text, char at) {
+  std::vector<std::string_view> parts = split(text, at);
+  for (std::string_view& part : parts) part = trimmed(part);
   return parts;
 }
 
@@ -66,8 +55,8 @@ bool is_path_file(const std::filesystem::path& file) {
 
 std::vector<Keyframe> path_of_rows(const std::string& text, const std::string& origin) {
   std::vector<Keyframe> keyframes;
-  for (const std::string_view row : split(text, ';'))
-    if (!row.empty()) keyframes.push_back(keyframe_of(split(row, ','), origin));
+  for (const std::string_view row : trimmed_parts(text, ';'))
+    if (!row.empty()) keyframes.push_back(keyframe_of(trimmed_parts(row, ','), origin));
   check_path(keyframes, origin);
   return keyframes;
 }
@@ -111,11 +100,11 @@ std::vector<Keyframe> read_path(const std::filesystem::path& file) {
   std::vector<Keyframe> keyframes;
   bool header = false;
   int line_number = 0;
-  for (const std::string_view line : split(text, '\n')) {
+  for (const std::string_view line : trimmed_parts(text, '\n')) {
     ++line_number;
     if (line.empty() || line[0] == '#') continue;
     const std::string origin = fmt::format("{}:{}", file.string(), line_number);
-    const std::vector<std::string_view> cells = split(line, ',');
+    const std::vector<std::string_view> cells = trimmed_parts(line, ',');
     if (!header) {
       if (cells != split(kHeader, ','))
         throw InputError(fmt::format("{}: a path begins with the line {}", origin, kHeader));
