@@ -11,6 +11,7 @@
 #include "base/nearest_name.h"
 #include "base/parse_double.h"
 #include "base/text.h"
+#include "settings/hex_color.h"
 #include "settings/table_key.h"
 
 namespace hydrodip {
@@ -182,20 +183,11 @@ Key text_color() {
   return {{"text_color", "", "a colour such as #ffcc00", "of text"},
           [](ArtworkLayer& layer, const Setting& setting) {
             const auto hex = text_of(setting);
-            if (!hex || hex->size() != 7 || (*hex)[0] != '#' ||
-                hex->find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
-              return false;
-            const auto channel = [&](std::size_t at) {
-              return srgb8_to_linear(std::uint8_t(std::stoi(hex->substr(at, 2), nullptr, 16)));
-            };
-            layer.text_color = {channel(1), channel(3), channel(5), 1};
-            return true;
+            const auto color = hex ? parse_color(*hex) : std::nullopt;
+            if (color) layer.text_color = *color;
+            return color.has_value();
           },
-          [](const ArtworkLayer& layer) {
-            const LinearColor& c = layer.text_color;
-            return fmt::format("#{:02x}{:02x}{:02x}", linear_to_srgb8(c.r), linear_to_srgb8(c.g),
-                               linear_to_srgb8(c.b));
-          }};
+          [](const ArtworkLayer& layer) { return hex_of(layer.text_color); }};
 }
 
 const std::vector<Key>& keys() {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "settings/dip_tables.h"
+#include "settings/hex_color.h"
 #include "settings/params.h"
 #include "settings/path_file.h"
 
@@ -62,21 +63,13 @@ Parameter text(std::string name, ParameterType type, Access<std::string> access,
   return p;
 }
 
-// In files and options sRGB, "#rrggbb"; inside linear light.
+// Inside linear light.
 Parameter color(std::string name, Access<LinearColor> access, std::string help) {
   Parameter p{
       std::move(name), "", ParameterType::kColor, 0, 0, "", "", {}, std::move(help), {}, {}};
-  p.get = [access](const JobConfig& c) {
-    const LinearColor& color = read(access, c);
-    return ParameterValue(fmt::format("#{:02x}{:02x}{:02x}", linear_to_srgb8(color.r),
-                                      linear_to_srgb8(color.g), linear_to_srgb8(color.b)));
-  };
+  p.get = [access](const JobConfig& c) { return ParameterValue(hex_of(read(access, c))); };
   p.set = [access](JobConfig& c, const ParameterValue& v) {
-    const auto& hex = std::get<std::string>(v);
-    const auto channel = [&](std::size_t at) {
-      return srgb8_to_linear(std::uint8_t(std::stoi(hex.substr(at, 2), nullptr, 16)));
-    };
-    access(c) = {channel(1), channel(3), channel(5), 1};
+    access(c) = parse_color(std::get<std::string>(v)).value();
   };
   return p;
 }

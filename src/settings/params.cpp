@@ -14,6 +14,7 @@
 #include "base/text.h"
 #include "settings/artwork_tables.h"
 #include "settings/dip_tables.h"
+#include "settings/hex_color.h"
 #include "settings/part_tables.h"
 #include "settings/path_file.h"
 #include "settings/table_key.h"
@@ -41,11 +42,6 @@ std::optional<std::vector<double>> parse_numbers(const std::string& text) {
     begin = end + 1;
   }
   return values;
-}
-
-bool is_color(const std::string& text) {
-  return text.size() == 7 && text[0] == '#' &&
-         text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
 }
 
 std::string with_unit(const std::string& text, const Parameter& p) {
@@ -146,7 +142,7 @@ std::string checked_text(const Parameter& p, const Setting& setting) {
   if (p.type == ParameterType::kChoice &&
       std::find(p.choices.begin(), p.choices.end(), *text) == p.choices.end())
     refuse(p, setting);
-  if (p.type == ParameterType::kColor && !is_color(*text)) refuse(p, setting);
+  if (p.type == ParameterType::kColor && !parse_color(*text)) refuse(p, setting);
   return *text;
 }
 
