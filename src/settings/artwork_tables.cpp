@@ -20,6 +20,7 @@ namespace {
 constexpr double kLeastSize_mm = 0.01, kLongest_mm = 1e5, kMostAspect = 1000;
 
 using Numbers = std::vector<double>;
+using Kind = LayerKey::Kind;
 
 struct Key {
   LayerKey key;
@@ -70,7 +71,7 @@ std::string written(const Vec3& v) { return fmt::format("{},{},{}", v.x(), v.y()
 
 Key number(const char* name, const char* unit, double min, double max, double ArtworkLayer::*member,
            const char* help) {
-  return {{name, unit, fmt::format("a number from {} to {}", min, max), help},
+  return {{name, unit, fmt::format("a number from {} to {}", min, max), help, Kind::kNumbers},
           [=](ArtworkLayer& layer, const Setting& setting) {
             const auto values = numbers_of(setting);
             if (!values || values->size() != 1 || !((*values)[0] >= min && (*values)[0] <= max))
@@ -83,7 +84,8 @@ Key number(const char* name, const char* unit, double min, double max, double Ar
 
 Key vector(const char* name, const char* unit, std::optional<Vec3> ArtworkLayer::*member,
            const char* help) {
-  return {{name, unit, fmt::format("three numbers X,Y,Z, none beyond {:g}", kLongest_mm), help},
+  return {{name, unit, fmt::format("three numbers X,Y,Z, none beyond {:g}", kLongest_mm), help,
+           Kind::kNumbers},
           [=](ArtworkLayer& layer, const Setting& setting) {
             const auto values = numbers_of(setting);
             if (!values || values->size() != 3) return false;
@@ -101,7 +103,8 @@ Key size() {
   return {
       {"size_mm", "mm", fmt::format("W or W,H, each from {:g} to {:g}", kLeastSize_mm, kLongest_mm),
        "width and height on the surface; one figure keeps the picture's shape; default: as "
-       "large as fits"},
+       "large as fits",
+       Kind::kNumbers},
       [](ArtworkLayer& layer, const Setting& setting) {
         const auto values = numbers_of(setting);
         if (!values || values->empty() || values->size() > 2) return false;
@@ -131,7 +134,7 @@ Key choice(const char* name, Names<Enum> names, Enum ArtworkLayer::*member, cons
   std::string all;
   for (const auto& [label, value] : names)
     all += (all.empty() ? "one of " : ", ") + std::string(label);
-  return {{name, "", all, help},
+  return {{name, "", all, help, Kind::kText},
           [=](ArtworkLayer& layer, const Setting& setting) {
             const auto text = text_of(setting);
             for (const auto& [label, value] : names)
@@ -149,7 +152,7 @@ Key choice(const char* name, Names<Enum> names, Enum ArtworkLayer::*member, cons
 }
 
 Key text(const char* name, std::string ArtworkLayer::*member, const char* help) {
-  return {{name, "", "text", help},
+  return {{name, "", "text", help, Kind::kText},
           [=](ArtworkLayer& layer, const Setting& setting) {
             const auto value = text_of(setting);
             if (value) layer.*member = *value;
@@ -159,7 +162,8 @@ Key text(const char* name, std::string ArtworkLayer::*member, const char* help) 
 }
 
 Key image() {
-  return {{"image", "", "a file name", "PNG, JPEG, WebP, TIFF, SVG, ...; in a file: beside it"},
+  return {{"image", "", "a file name", "PNG, JPEG, WebP, TIFF, SVG, ...; in a file: beside it",
+           Kind::kPath},
           [](ArtworkLayer& layer, const Setting& setting) {
             const auto value = text_of(setting);
             if (value) layer.image = *value;
@@ -169,18 +173,19 @@ Key image() {
 }
 
 Key through() {
-  return {{"through", "", "true or false", "also onto what lies behind the first surface"},
-          [](ArtworkLayer& layer, const Setting& setting) {
-            const auto value = text_of(setting);
-            if (!value || (*value != "true" && *value != "false")) return false;
-            layer.through = *value == "true";
-            return true;
-          },
-          [](const ArtworkLayer& layer) { return std::string(layer.through ? "true" : "false"); }};
+  return {
+      {"through", "", "true or false", "also onto what lies behind the first surface", Kind::kFlag},
+      [](ArtworkLayer& layer, const Setting& setting) {
+        const auto value = text_of(setting);
+        if (!value || (*value != "true" && *value != "false")) return false;
+        layer.through = *value == "true";
+        return true;
+      },
+      [](const ArtworkLayer& layer) { return std::string(layer.through ? "true" : "false"); }};
 }
 
 Key text_color() {
-  return {{"text_color", "", "a colour such as #ffcc00", "of text"},
+  return {{"text_color", "", "a colour such as #ffcc00", "of text", Kind::kText},
           [](ArtworkLayer& layer, const Setting& setting) {
             const auto hex = text_of(setting);
             const auto color = hex ? parse_color(*hex) : std::nullopt;
@@ -239,6 +244,11 @@ std::string key_of(const std::string& name) {
   return at ? at->key : "";
 }
 
+bool is_of_kind(const std::string& name, Kind kind) {
+  return std::any_of(keys().begin(), keys().end(),
+                     [&](const Key& key) { return key.key.name == name && key.key.kind == kind; });
+}
+
 const Key& find_key(const std::string& name, const Setting& setting) {
   std::vector<std::string> names;
   for (const Key& key : keys()) {
@@ -281,8 +291,8 @@ bool apply_artwork_setting(JobConfig& config, const Setting& setting) {
   return true;
 }
 
-bool is_artwork_path(const std::string& name) { return key_of(name) == "image"; }
-bool is_artwork_switch(const std::string& name) { return key_of(name) == "through"; }
+bool is_artwork_path(const std::string& name) { return is_of_kind(key_of(name), Kind::kPath); }
+bool is_artwork_switch(const std::string& name) { return is_of_kind(key_of(name), Kind::kFlag); }
 
 const std::vector<LayerKey>& layer_keys() {
   static const std::vector<LayerKey> list = [] {

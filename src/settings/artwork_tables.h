@@ -27,6 +27,9 @@ struct LayerKey {
   std::string unit;
   std::string range;  // what it has to be
   std::string help;   // one line
+  // How files have its value.
+  enum class Kind { kPath, kText, kFlag, kNumbers };
+  Kind kind = Kind::kText;
 };
 const std::vector<LayerKey>& layer_keys();
 

@@ -48,12 +48,18 @@ std::string value_text(const Parameter& p, const ParameterValue& value,
 }
 
 // A layer's value, which is text, as TOML has it.
-std::string layer_value_text(const std::string& key, const std::string& value,
+std::string layer_value_text(LayerKey::Kind kind, const std::string& value,
                              const std::filesystem::path& folder) {
-  static const std::vector<std::string> texts = {"text",       "font",   "text_color",
-                                                 "projection", "repeat", "blend"};
-  if (key == "image") return quoted(from_folder(value, folder));
-  if (std::find(texts.begin(), texts.end(), key) != texts.end()) return quoted(value);
+  switch (kind) {
+    case LayerKey::Kind::kPath:
+      return quoted(from_folder(value, folder));
+    case LayerKey::Kind::kText:
+      return quoted(value);
+    case LayerKey::Kind::kFlag:
+      return value;
+    case LayerKey::Kind::kNumbers:
+      break;
+  }
   return value.find(',') == std::string::npos ? value : "[" + value + "]";
 }
 
@@ -65,9 +71,9 @@ std::string artwork_tables_toml(const std::vector<ArtworkLayer>& layers,
     text += "\n[[artwork]]\n";
     const std::vector<std::string> values = layer_values(layer);
     for (std::size_t k = 0; k < values.size(); ++k) {
-      const std::string& key = layer_keys()[k].name;
+      const LayerKey& key = layer_keys()[k];
       if (values[k] != usual[k])
-        text += fmt::format("{} = {}\n", key, layer_value_text(key, values[k], folder));
+        text += fmt::format("{} = {}\n", key.name, layer_value_text(key.kind, values[k], folder));
     }
   }
   return text;

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/parse_double.h"
+#include "base/text.h"
 #include "settings/artwork_tables.h"
 #include "settings/params.h"
 #include "settings/settings.h"
@@ -153,32 +154,34 @@ Json json_of(const Parameter& p, const ParameterValue& value, JobFiles& files) {
 
 Json numbers_of(const std::string& text) {
   Json list = Json::array();
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
+  for (const std::string_view part : split(text, ',')) {
     double number = 0;
-    parse_double(text.data() + begin, text.data() + end, number);
+    parse_double(part.data(), part.data() + part.size(), number);
     list.push_back(number);
-    begin = end + 1;
   }
   return list.size() == 1 ? list.front() : list;
 }
 
+Json json_of(LayerKey::Kind kind, const std::string& value, JobFiles& files) {
+  switch (kind) {
+    case LayerKey::Kind::kPath:
+      return files.grant(value);
+    case LayerKey::Kind::kText:
+      return value;
+    case LayerKey::Kind::kFlag:
+      return value == "true";
+    case LayerKey::Kind::kNumbers:
+      break;
+  }
+  return numbers_of(value);
+}
+
 Json layer_json(const ArtworkLayer& layer, JobFiles& files) {
-  static const std::vector<std::string> kTexts = {"text",       "font",   "text_color",
-                                                  "projection", "repeat", "blend"};
   Json json = Json::object();
   const std::vector<std::string> values = layer_values(layer), usual = layer_values({});
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const std::string& key = layer_keys()[k].name;
-    if (values[k] == usual[k]) continue;
-    if (key == "image")
-      json[key] = files.grant(values[k]);
-    else if (key == "through")
-      json[key] = values[k] == "true";
-    else if (std::find(kTexts.begin(), kTexts.end(), key) != kTexts.end())
-      json[key] = values[k];
-    else
-      json[key] = numbers_of(values[k]);
+    const LayerKey& key = layer_keys()[k];
+    if (values[k] != usual[k]) json[key.name] = json_of(key.kind, values[k], files);
   }
   return json;
 }
