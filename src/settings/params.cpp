@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "base/json_text.h"
@@ -195,6 +196,19 @@ std::string plain_value(const ParameterValue& value) {
   return fmt::format("{},{},{}", v[0], v[1], v[2]);
 }
 
+// Where letters alone do not tell it: other words, and names that several groups have.
+std::string usually_meant(const std::string& name) {
+  static const std::vector<std::pair<std::string, std::string>> meant = {
+      {"depth", "dip.depth_mm"},
+      {"width", "film.width_mm"},
+      {"height", "film.height_mm"},
+      {"resolution", "print.dpi"},
+      {"print.resolution", "print.dpi"}};
+  for (const auto& [word, parameter] : meant)
+    if (name == word) return parameter;
+  return "";
+}
+
 }  // namespace
 
 const Parameter& find_parameter(const std::string& name, const std::string& origin) {
@@ -203,9 +217,9 @@ const Parameter& find_parameter(const std::string& name, const std::string& orig
     if (p.name == name) return p;
     names.push_back(p.name);
   }
-  // Another word for it, which no letters tell.
-  const bool resolution = name.substr(name.rfind('.') + 1) == "resolution";
-  const std::string hint = resolution ? "; did you mean 'print.dpi'?" : did_you_mean(name, names);
+  const std::string meant = usually_meant(name);
+  const std::string hint =
+      meant.empty() ? did_you_mean(name, names) : "; did you mean '" + meant + "'?";
   std::string brief = name.substr(0, 100);
   std::replace(brief.begin(), brief.end(), '\0', '?');  // a sentence would end there
   throw InputError(fmt::format("{}: unknown parameter '{}'{}", origin, brief,
