@@ -386,8 +386,10 @@ TEST_F(Layers, LinesThinnerThanAnyPrintAreRefusedWithTheirSize) {
 
 // What prints at one resolution may not at another.
 TEST(ThinLayers, AreToldByTheResolution) {
-  LaidLayer line{.name = "line.png", .layer = {}, .size_mm = Vec2(60, 0.1), .fonts = {}};
-  LaidLayer wide{.name = "wide.png", .layer = {}, .size_mm = Vec2(60, 20), .fonts = {}};
+  LaidLayer line{
+      .name = "line.png", .layer = {}, .size_mm = Vec2(60, 0.1), .fonts = {}, .shows = {}};
+  LaidLayer wide{
+      .name = "wide.png", .layer = {}, .size_mm = Vec2(60, 20), .fonts = {}, .shows = {}};
   EXPECT_EQ(told_thin({line}, 300), "");
   EXPECT_NE(told_thin({line}, 72).find("line.png: it is laid 60 x 0.1 mm"), std::string::npos);
   // There is more to print.

@@ -270,7 +270,7 @@ std::vector<SeenMark> SyntheticTank::seen(const Lens& lens, const Pose& camera, 
     for (const MarkPlace& mark : strip_marks(k)) {
       const Vec3 at = camera * (strip[std::size_t(k)] * Vec3(mark.corner.x(), mark.corner.y(), 0));
       const Vec2 px = lens.project(at) + Vec2(noise(random), noise(random));
-      marks.push_back({mark.id, px, px, 8});
+      marks.push_back({mark.id, px, 8});
     }
   return marks;
 }
