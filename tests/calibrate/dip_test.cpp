@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "calibrate/kit_shapes.h"
+#include "calibrate/printed_board.h"
 #include "calibrate/rounded_pyramid.h"
 #include "object/health.h"
 #include "scans.h"

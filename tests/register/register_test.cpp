@@ -145,7 +145,7 @@ TEST(TrueSize, IsReadOffAScanHoweverTheSheetLay) {
     const Vec2 p = printed(truth, mark.corner);
     const Vec2 turned(std::cos(kTurn) * p.x() - std::sin(kTurn) * p.y(),
                       std::sin(kTurn) * p.x() + std::cos(kTurn) * p.y());
-    seen.push_back({mark.id, kDpi / 25.4 * Vec2(turned.x() + 140, 160 - turned.y()), {}, 10});
+    seen.push_back({mark.id, kDpi / 25.4 * Vec2(turned.x() + 140, 160 - turned.y()), 10});
   }
   const PrinterScale found = scale_by(seen, kDpi, sheet, "scan.png");
   EXPECT_NEAR(found.x, truth.x, 1e-9);
