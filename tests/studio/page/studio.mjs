@@ -102,6 +102,13 @@ export class Session {
     return page;
   }
 
+  // What the console says of refusals that a test has asked for is no complaint. Waits until it has.
+  async forgive(status, count) {
+    const asked = new RegExp(`the server responded with a status of ${status} `);
+    await until(`${count} refusals on the console`, async () => this.complaints.filter((text) => asked.test(text)).length >= count);
+    this.complaints = this.complaints.filter((text) => !asked.test(text));
+  }
+
   async close() {
     await this.browser.close();
   }
