@@ -246,7 +246,7 @@ TEST(PreviewGlb, TakesMaterialNamesOfAnyLetters) {
 
 TEST(PreviewGlb, APlainModelHasNoVariants) {
   Object ball = two_coloured_ball(4);
-  ball.materials.resize(1);
+  ball.materials = {Material{}};
   ball.material_of.assign(ball.triangles.size(), 0);
   const TemporaryFolder folder;
   write_preview_glb(folder / "p.glb", ball, surface_of(ball), film_under_ball(), gradient_sheet(),

@@ -235,7 +235,7 @@ TEST(Maps, CaptionNamesBothShares) {
   Coverage coverage;
   coverage.film_on_object_mm2 = 90;
   EXPECT_EQ(map_caption(angles, nullptr),
-            "25.0 % of the surface that faces down is steeper than 45\u00b0");
+            "25 % of the surface that faces down is steeper than 45\u00b0");
   EXPECT_NE(map_caption(angles, &coverage).find("no film is torn"), std::string::npos);
   coverage.torn_mm2 = 10;
   EXPECT_NE(map_caption(angles, &coverage).find("10 %"), std::string::npos);

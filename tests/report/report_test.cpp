@@ -175,7 +175,11 @@ TEST(Report, ACustomersDraftSaysSoAndPointsToNoPictureThatIsNotThere) {
 }
 
 TEST(Report, ACustomersPageWithoutAPicturePromisesNoLook) {
-  const Report report = full_report();
+  Report report = full_report();
+  Coverage& c = *report.coverage;
+  c.object_mm2 = c.downward_mm2 = c.covered_mm2 = c.covered_downward_mm2 = 1000;
+  c.film_on_object_mm2 = 900;
+  c.stretch_max = c.area_ratio_max = 1.1;
   EXPECT_NE(customers_page(report, {{1}, {}}).find("This is how it will look"), std::string::npos);
   const std::string without = customers_page(report, {});
   EXPECT_EQ(without.find("how it will look"), std::string::npos);
