@@ -87,6 +87,10 @@ PreviewPair reach_pair(const JobRecord& record, const SheetRaster& raster) {
   return pair;
 }
 
+// Film whose place is known to half of what is promised shows as it is, or ink would look paler
+// than it will be; from there to where nothing is printed it fades.
+double fading_mm(double moved_mm) { return std::max(0.0, 4 * moved_mm - 2 * kMoved_mm); }
+
 // What is predicted, where what is doubtful fades from where film surely holds to where nothing is
 // printed.
 Appearance fading(const Appearance& shown, const JobRecord& record) {
@@ -100,7 +104,7 @@ Appearance fading(const Appearance& shown, const JobRecord& record) {
     const FilmMap::Lying lying = map->lying_at(position, normal);
     const LinearColor color = finish.color_with_film(point, lying.film);
     if (!lying.hold || !lying.hold->whole) return color;
-    const auto left = float(1 - doubtful.of(lying.hold->stretch, 2 * lying.hold->moved_mm));
+    const auto left = float(1 - doubtful.of(lying.hold->stretch, fading_mm(lying.hold->moved_mm)));
     return LinearColor{base.r + left * (color.r - base.r), base.g + left * (color.g - base.g),
                        base.b + left * (color.b - base.b), 1};
   };
