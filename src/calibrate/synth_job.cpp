@@ -8,6 +8,7 @@
 #include "base/output_folder.h"
 #include "base/run_scope.h"
 #include "calibrate/calibrate.h"
+#include "calibrate/checkerboard_dip.h"
 #include "calibrate/resolution.h"
 #include "calibrate/synthetic.h"
 #include "scan/read_scan.h"

@@ -7,7 +7,9 @@
 #include "job/command_text.h"
 #include "job/print_dips.h"
 #include "job/search_output.h"
+#include "job/ways.h"
 #include "plan/hold.h"
+#include "plan/trial.h"
 #include "render/hold_pictures.h"
 #include "transfer/film_map.h"
 

@@ -8,6 +8,7 @@
 #include "base/shell_word.h"
 #include "job/dip_plan.h"
 #include "job/search_output.h"
+#include "job/ways.h"
 #include "plan/choice.h"
 #include "plan/hold.h"
 #include "render/hold_pictures.h"

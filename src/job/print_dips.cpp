@@ -21,6 +21,7 @@
 #include "job/output.h"
 #include "job/sheet_of.h"
 #include "job/wanted.h"
+#include "job/ways.h"
 #include "object/bake.h"
 #include "report/findings.h"
 #include "session/sheet_files.h"
