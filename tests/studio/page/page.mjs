@@ -1025,10 +1025,10 @@ test('the program is ended and started anew: the page sends people to the addres
   await dome.waitForFunction(() => /was ended/.test(document.querySelector('.banner.stop')?.textContent ?? ''));
   await program.start('--port', port);
   await dome.waitForFunction(() => /open the address that it printed/.test(document.querySelector('.banner.stop')?.textContent ?? ''));
-  session.mayFail = false;
   const hash = new URL(dome.url()).hash;
   const anew = await session.page({ context: dome.context(), address: program.address });
   await dome.waitForFunction(() => !document.querySelector('.banner.stop')); // it is known again
+  session.mayFail = false;
   await anew.close();
   assert.equal(new URL(dome.url()).hash, hash);
   await newResult(dome, '');

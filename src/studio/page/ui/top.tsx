@@ -24,6 +24,8 @@ export function askPrint(): void {
   panel.value = 'print';
   // One that goes on, has ended unseen, or would only be made again is shown.
   const stands = task && (task.state === 'running' || task.task === printToShow.value || isPrinted());
+  // Its end is seen now.
+  if (stands && task.state !== 'running') printToShow.value = '';
   if (!stands && !readOnly.value) void open.start('print');
 }
 
