@@ -3,7 +3,9 @@
 
 #include <random>
 
+#include "artwork/artwork.h"
 #include "artwork/geodesic.h"
+#include "artwork/placement.h"
 #include "shapes.h"
 
 namespace hydrodip {

@@ -1,4 +1,5 @@
 #include "plan/trial.h"
+#include "plan/hold.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
