@@ -125,11 +125,7 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   DesignedJob made = designed(job, {.wanted = false, .stretch = false}, times, context);
   const DippedObject& dipped = made.designed.dipped;
   const InkResult& ink = made.designed.ink;
-  if (!job.prepared.artwork.empty())
-    warn_of_dry_layers(
-        job.prepared.artwork, spread_targets(job.prepared.posed.mesh(), kWantedPoints),
-        [&](const Target& at) { return bool(dipped.map->to_film(at.position, at.normal)); },
-        context);
+  warn_of_dry_layers(job.prepared.artwork, dipped, context);
   JobRecord record{"print", config,      job.prepared,
                    inputs,  made.finish, times,
                    context, &ink,        job.printer.model->name()};

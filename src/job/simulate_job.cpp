@@ -242,11 +242,7 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
                    inputs,  made.finish, times,
                    context, nullptr,     job.printer.model->name()};
   if (config.film_image.empty()) {
-    if (!job.prepared.artwork.empty())
-      warn_of_dry_layers(
-          job.prepared.artwork, spread_targets(job.prepared.posed.mesh(), kWantedPoints),
-          [&](const Target& at) { return bool(made.dipped.map->to_film(at.position, at.normal)); },
-          context);
+    warn_of_dry_layers(job.prepared.artwork, made.dipped, context);
     record.wanted = wanted_coverage(made.dipped, *job.prepared.paint,
                                     doubtful_stretch(config.design.dip.material));
   } else {

@@ -95,4 +95,12 @@ void warn_of_dry_layers(const std::vector<LaidLayer>& layers, const Targets& tar
   }
 }
 
+void warn_of_dry_layers(const std::vector<LaidLayer>& layers, const DippedObject& dipped,
+                        const RunContext& context) {
+  if (layers.empty()) return;
+  warn_of_dry_layers(
+      layers, spread_targets(dipped.posed.mesh(), kWantedPoints),
+      [&](const Target& at) { return bool(dipped.map->to_film(at.position, at.normal)); }, context);
+}
+
 }  // namespace hydrodip

@@ -33,6 +33,9 @@ std::vector<std::uint8_t> wanted_at(const Targets& targets, const Paint& paint);
 void warn_of_dry_layers(const std::vector<LaidLayer>& layers, const Targets& targets,
                         const std::function<bool(const Target&)>& gets_film,
                         const RunContext& context);
+// Of one dip.
+void warn_of_dry_layers(const std::vector<LaidLayer>& layers, const DippedObject& dipped,
+                        const RunContext& context);
 // Whether film lies there of which nobody knows whether it holds, or where.
 bool is_in_doubt(const std::optional<FilmMap::Hold>& hold, const DoubtfulStretch& doubtful);
 // Whether a place comes into the water and faces down: a dip gets there then, whether or not film
