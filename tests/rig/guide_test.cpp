@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <csignal>
+#include <optional>
 
 #include "base/error.h"
 #include "contains.h"
+#include "full_disk.h"
 #include "guided.h"
 #include "rig/run_record.h"
 
@@ -320,14 +320,9 @@ TEST_F(GuideTest, AFaultInMidDipIsInTheLogAsItWas) {
 // The disk is full from the second question on: nobody shall dip what is not kept.
 TEST_F(GuideTest, StopsAtTheFirstLineThatCannotBeLogged) {
   GuidedBench guided;
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  std::optional<FullDisk> disk;
   guided.person.on_ask = [&](const std::string& question) {
-    if (!question.starts_with("Temperature")) return;
-    rlimit full = before;
-    full.rlim_cur = 1;
-    setrlimit(RLIMIT_FSIZE, &full);
+    if (question.starts_with("Temperature")) disk.emplace(1);
   };
   std::string why;
   try {
@@ -335,8 +330,7 @@ TEST_F(GuideTest, StopsAtTheFirstLineThatCannotBeLogged) {
   } catch (const InputError& error) {
     why = error.what();
   }
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
+  disk.reset();
   EXPECT_TRUE(contains(why, "log.jsonl: 'water' cannot be written")) << why;
   EXPECT_EQ(guided.person.times_asked("Enter the moment it lies"), 0);
 }

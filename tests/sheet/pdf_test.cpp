@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
-#include <csignal>
 #include <fstream>
 #include <sstream>
 #include <tuple>
@@ -12,6 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/math.h"
+#include "full_disk.h"
 #include "sheet/sheet.h"
 #include "sheet/sheet_testing.h"
 
@@ -439,16 +438,10 @@ TEST_F(PrintPdf, AFileThatIsCutShortIsNoticed) {
   };
   write("whole.pdf");
   const auto size = rlim_t(std::filesystem::file_size(folder_ / "whole.pdf"));
-  rlimit whole{};
-  getrlimit(RLIMIT_FSIZE, &whole);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   for (const rlim_t kept : {rlim_t(3000), size - 8}) {
-    const rlimit cut{kept, whole.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &cut);
+    const FullDisk disk(kept);
     EXPECT_THROW(write("cut.pdf"), InputError) << kept << " of " << size << " bytes";
-    setrlimit(RLIMIT_FSIZE, &whole);
   }
-  std::signal(SIGXFSZ, handler);
 }
 
 TEST_F(PrintPdf, ViewersMayNotScaleIt) {

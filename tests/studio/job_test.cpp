@@ -15,6 +15,7 @@
 #include "job/jobs.h"
 #include "settings/job_file.h"
 #include "settings/settings.h"
+#include "studio/models.h"
 #include "studio/served.h"
 
 namespace hydrodip {
@@ -22,17 +23,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kTetrahedron =
-    "solid a\n"
-    "facet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 40 0\nvertex 40 0 "
-    "0\nendloop\nendfacet\n"
-    "facet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 40 0 0\nvertex 0 0 "
-    "20\nendloop\nendfacet\n"
-    "facet normal -1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 20\nvertex 0 40 "
-    "0\nendloop\nendfacet\n"
-    "facet normal 1 1 1\nouter loop\nvertex 40 0 0\nvertex 0 40 0\nvertex 0 0 "
-    "20\nendloop\nendfacet\n"
-    "endsolid\n";
 const std::string kRedToy =
     "mtllib toy.mtl\nv 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nusemtl red\n"
     "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <sys/resource.h>
-
-#include <csignal>
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -13,23 +11,13 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "full_disk.h"
 #include "studio/api_error.h"
+#include "studio/models.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {
 namespace {
-
-const std::string kTetrahedron =
-    "solid a\n"
-    "facet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 40 0\nvertex 40 0 "
-    "0\nendloop\nendfacet\n"
-    "facet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 40 0 0\nvertex 0 0 "
-    "20\nendloop\nendfacet\n"
-    "facet normal -1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 20\nvertex 0 40 "
-    "0\nendloop\nendfacet\n"
-    "facet normal 1 1 1\nouter loop\nvertex 40 0 0\nvertex 0 40 0\nvertex 0 0 "
-    "20\nendloop\nendfacet\n"
-    "endsolid\n";
 
 class OpenJobTest : public testing::Test {
  protected:
@@ -51,27 +39,6 @@ class OpenJobTest : public testing::Test {
   JobStore store{folder.path()};
   std::string name;
   std::shared_ptr<std::atomic<long>> numbers = std::make_shared<std::atomic<long>>(0);
-};
-
-// While it lives, this process can write nothing, as where a disk is full.
-class FullDisk {
- public:
-  FullDisk() {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit none = before_;
-    none.rlim_cur = 0;
-    ::setrlimit(RLIMIT_FSIZE, &none);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, signal_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  void (*const signal_)(int) = std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before_ = {};
 };
 
 std::string code_of(const std::function<void()>& what) {
@@ -135,7 +102,7 @@ TEST_F(OpenJobTest, ANewNameOnAFullDiskLosesNoFile) {
   const std::filesystem::path files = store.home(name) / "files";
   ASSERT_TRUE(std::filesystem::exists(files / "first.toml"));
   {
-    const FullDisk full;
+    const FullDisk full(0);
     EXPECT_NE(code_of([&] { job->save("second"); }), "");
   }
   EXPECT_TRUE(std::filesystem::exists(files / "first.toml"));
