@@ -147,6 +147,19 @@ RTCRay ray_of(const Vec3& origin, const Vec3& direction, double t_min, double t_
   return ray;
 }
 
+// Half a micron of slack: the sphere is tested in single precision.
+float with_slack(double radius) { return float(radius) * 1.0001f + 5e-4f; }
+
+RTCPointQuery query_around(const Vec3& point, double max_distance) {
+  RTCPointQuery query;
+  query.x = float(point.x());
+  query.y = float(point.y());
+  query.z = float(point.z());
+  query.time = 0;
+  query.radius = with_slack(max_distance);
+  return query;
+}
+
 }  // namespace
 
 Surface::Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles)
@@ -215,13 +228,7 @@ std::optional<SurfaceHit> Surface::closest_point(const Vec3& point, double max_d
     SurfaceHit hit;
   } search{impl_.get(), point, max_distance * max_distance, {}};
 
-  RTCPointQuery query;
-  query.x = float(point.x());
-  query.y = float(point.y());
-  query.z = float(point.z());
-  query.time = 0;
-  // Half a micron of slack: the sphere is tested in single precision.
-  query.radius = float(max_distance) * 1.0001f + 5e-4f;
+  RTCPointQuery query = query_around(point, max_distance);
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   const auto visit = [](RTCPointQueryFunctionArguments* args) {
@@ -236,12 +243,26 @@ std::optional<SurfaceHit> Surface::closest_point(const Vec3& point, double max_d
     if (!nearer) return false;
     s.best_squared = c.distance_squared;
     s.hit = {triangle, c.u, c.v, std::sqrt(c.distance_squared)};
-    args->query->radius = float(std::sqrt(c.distance_squared)) * 1.0001f + 5e-4f;
+    args->query->radius = with_slack(s.hit.t);
     return true;
   };
   rtcPointQuery(impl_->scene, &query, &context, visit, &search);
   if (search.hit.triangle < 0) return std::nullopt;
   return search.hit;
+}
+
+void Surface::triangles_near(const Vec3& point, double max_distance,
+                             std::vector<int>& triangles) const {
+  triangles.clear();
+  RTCPointQuery query = query_around(point, max_distance);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  const auto visit = [](RTCPointQueryFunctionArguments* args) {
+    static_cast<std::vector<int>*>(args->userPtr)->push_back(static_cast<int>(args->primID));
+    return false;
+  };
+  rtcPointQuery(impl_->scene, &query, &context, visit, &triangles);
+  std::sort(triangles.begin(), triangles.end());
 }
 
 Vec3 Surface::position(const SurfaceHit& hit) const {

@@ -49,37 +49,6 @@ std::vector<Triangle> corners_of(const std::vector<std::int32_t>& triangles,
   return corners;
 }
 
-// A triangle of the object with its plane, for lines along the normal of film.
-class ObjectPlane {
- public:
-  ObjectPlane(const TriangleMesh& object, int triangle) : triangle_(triangle) {
-    const Triangle& t = object.triangles[std::size_t(triangle)];
-    corner_ = object.positions[std::size_t(t[0])];
-    e1_ = object.positions[std::size_t(t[1])] - corner_;
-    e2_ = object.positions[std::size_t(t[2])] - corner_;
-    least_determinant_ = 1e-6 * std::sqrt(e1_.squaredNorm() * e2_.squaredNorm());
-  }
-
-  // Nothing if the line all but lies in it, or meets it beyond reach.
-  std::optional<FilmMap::Projection> meet(const Vec3& point, const Vec3& direction,
-                                          double reach_mm) const {
-    const Vec3 p = direction.cross(e2_);
-    const double determinant = e1_.dot(p);
-    if (!(std::abs(determinant) > least_determinant_)) return std::nullopt;
-    const double scale = 1 / determinant;
-    const Vec3 s = point - corner_, q = s.cross(e1_);
-    const double distance_mm = std::abs(e2_.dot(q) * scale);
-    if (!(distance_mm <= reach_mm)) return std::nullopt;
-    return FilmMap::Projection{{triangle_, s.dot(p) * scale, direction.dot(q) * scale},
-                               distance_mm};
-  }
-
- private:
-  int triangle_;
-  Vec3 corner_, e1_, e2_;
-  double least_determinant_;
-};
-
 // Barycentric coordinates of target in a flat film triangle.
 bool weights_in(const FilmMesh& mesh, std::int32_t triangle, const Vec2& target, Vec3& weight) {
   const Triangle& t = mesh.triangles[std::size_t(triangle)];
@@ -151,30 +120,47 @@ struct FilmMap::Impl {
            film.is_whole_at(std::size_t(cursor.film_triangle), weight);
   }
 
-  Laid laid_at(std::int32_t triangle, const Vec3& weight) const {
-    const Triangle& t = film.mesh().triangles[std::size_t(triangle)];
-    Laid laid{weight, Vec3::Zero(), Vec3::Zero()};
-    for (std::size_t k = 0; k < 3; ++k) {
-      laid.point += weight[Eigen::Index(k)] * film.position[std::size_t(t[k])];
-      laid.direction += weight[Eigen::Index(k)] * normal[std::size_t(t[k])];
-    }
+  // Along which film of a triangle is brought onto the object, at one of its corners.
+  const Vec3& direction_at(std::int32_t triangle, std::size_t corner) const {
     if (const std::int32_t edge = over_edge[std::size_t(triangle)]; edge >= 0)
-      laid.direction = edge_direction[std::size_t(edge)];
-    return laid;
+      return edge_direction[std::size_t(edge)];
+    return normal[std::size_t(film.mesh().triangles[std::size_t(triangle)][corner])];
   }
 
-  // The line through the film point along the normal, against one triangle of the object.
-  std::optional<SurfacePoint> project_onto(int triangle, const Vec3& point,
-                                           const Vec3& direction) const {
-    const auto on = ObjectPlane(object, triangle).meet(point, direction, reach_mm);
-    if (!on || on->point.u < 0 || on->point.v < 0 || on->point.u + on->point.v > 1)
+  struct Line {
+    Vec3 point = Vec3::Zero(), direction = Vec3::Zero();
+  };
+  Line line_at(std::int32_t triangle, const Vec3& weight) const {
+    const Triangle& t = film.mesh().triangles[std::size_t(triangle)];
+    Line line;
+    for (std::size_t k = 0; k < 3; ++k) {
+      line.point += weight[Eigen::Index(k)] * film.position[std::size_t(t[k])];
+      line.direction += weight[Eigen::Index(k)] * direction_at(triangle, k);
+    }
+    return line;
+  }
+
+  // A line against one triangle of the object; nothing if it all but lies in its plane.
+  std::optional<SurfacePoint> project_onto(int triangle, const Line& line) const {
+    const Triangle& t = object.triangles[std::size_t(triangle)];
+    const Vec3& corner = object.positions[std::size_t(t[0])];
+    const Vec3 e1 = object.positions[std::size_t(t[1])] - corner;
+    const Vec3 e2 = object.positions[std::size_t(t[2])] - corner;
+    const Vec3 p = line.direction.cross(e2);
+    const double determinant = e1.dot(p);
+    if (!(std::abs(determinant) > 1e-6 * std::sqrt(e1.squaredNorm() * e2.squaredNorm())))
       return std::nullopt;
-    return on->point;
+    const double scale = 1 / determinant;
+    const Vec3 s = line.point - corner, q = s.cross(e1);
+    const double u = s.dot(p) * scale, v = line.direction.dot(q) * scale;
+    if (u < 0 || v < 0 || u + v > 1 || std::abs(e2.dot(q) * scale) > reach_mm) return std::nullopt;
+    return SurfacePoint{triangle, u, v};
   }
 
-  std::optional<SurfaceHit> project(const Vec3& point, const Vec3& direction) const {
-    const auto ahead = surface.first_hit(point, direction, 0, reach_mm);
-    const auto behind = surface.first_hit(point, -direction, 0, ahead ? ahead->t : reach_mm);
+  std::optional<SurfaceHit> project(const Line& line) const {
+    const auto ahead = surface.first_hit(line.point, line.direction, 0, reach_mm);
+    const auto behind =
+        surface.first_hit(line.point, -line.direction, 0, ahead ? ahead->t : reach_mm);
     if (behind && (!ahead || behind->t < ahead->t)) return behind;
     return ahead;
   }
@@ -245,56 +231,49 @@ FilmMap::FilmMap(FilmMap&&) noexcept = default;
 FilmMap& FilmMap::operator=(FilmMap&&) noexcept = default;
 
 std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u, Cursor& cursor) const {
-  Laid laid;
-  return to_object(u, cursor, laid);
-}
-
-std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u, Cursor& cursor, Laid& laid) const {
   Vec3 weight;
   if (!impl_->locate_on_object(u, cursor, weight)) return std::nullopt;
-  laid = impl_->laid_at(cursor.film_triangle, weight);
-  auto& [weights, point, direction] = laid;
-  const double length = direction.norm();
+  Impl::Line line = impl_->line_at(cursor.film_triangle, weight);
+  const double length = line.direction.norm();
   if (length > 1e-6) {
-    direction /= length;
+    line.direction /= length;
     if (cursor.object_triangle >= 0)
-      if (const auto same = impl_->project_onto(cursor.object_triangle, point, direction))
-        return same;
-    if (const auto hit = impl_->project(point, direction)) {
+      if (const auto same = impl_->project_onto(cursor.object_triangle, line)) return same;
+    if (const auto hit = impl_->project(line)) {
       cursor.object_triangle = hit->triangle;
       return SurfacePoint{hit->triangle, hit->u, hit->v};
     }
   }
   // Across a sharp edge the interpolated normal may miss; the nearest point is as good as any.
-  const auto nearest = impl_->surface.closest_point(point, 4 * impl_->reach_mm);
+  const auto nearest = impl_->surface.closest_point(line.point, 4 * impl_->reach_mm);
   if (!nearest) return std::nullopt;
   cursor.object_triangle = nearest->triangle;
   return SurfacePoint{nearest->triangle, nearest->u, nearest->v};
-}
-
-FilmMap::Laid FilmMap::laid(const Vec2& u, std::int32_t film_triangle) const {
-  Vec3 weight;
-  weights_in(impl_->film.mesh(), film_triangle, u, weight);
-  Laid laid = impl_->laid_at(film_triangle, weight);
-  laid.direction.stableNormalize();
-  return laid;
-}
-
-bool FilmMap::onto(int object_triangle, const std::array<Laid, 4>& laid,
-                   std::array<Projection, 4>& landing) const {
-  const ObjectPlane plane(impl_->object, object_triangle);
-  for (std::size_t k = 0; k < laid.size(); ++k) {
-    const auto on = plane.meet(laid[k].point, laid[k].direction, impl_->reach_mm);
-    if (!on) return false;
-    landing[k] = *on;
-  }
-  return true;
 }
 
 std::optional<SurfacePoint> FilmMap::to_object(const Vec2& u) const {
   Cursor cursor;
   return to_object(u, cursor);
 }
+
+const std::vector<std::int32_t>& FilmMap::lying() const { return impl_->film_triangle; }
+
+LyingTriangle FilmMap::lying(std::int32_t film_triangle) const {
+  LyingTriangle lying;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::int32_t v = impl_->film.mesh().triangles[std::size_t(film_triangle)][k];
+    lying.film_mm[k] = impl_->film.mesh().u[std::size_t(v)];
+    lying.position[k] = impl_->film.position[std::size_t(v)];
+    lying.direction[k] = impl_->direction_at(film_triangle, k);
+    lying.excess[k] = impl_->film.excess_of(v);
+    lying.area_ratio[k] = impl_->film.area_ratio[std::size_t(v)];
+  }
+  return lying;
+}
+
+double FilmMap::reach_mm() const { return impl_->reach_mm; }
+const TriangleMesh& FilmMap::object() const { return impl_->object; }
+const Surface& FilmMap::surface() const { return impl_->surface; }
 
 std::optional<Vec2> FilmMap::to_film(const Vec3& position, const Vec3& normal) const {
   return impl_->whole_film(impl_->lying_film_at(position, normal));

@@ -2,14 +2,24 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "film/film.h"
 #include "object/object.h"
 #include "object/surface.h"
 
 namespace hydrodip {
+
+// A triangle of film on the object: its plane, and lines from there to the object. A point of it
+// that is more than 0 beyond what is promised is torn (DippedFilm::excess).
+struct LyingTriangle {
+  std::array<Vec2, 3> film_mm;
+  std::array<Vec3, 3> position, direction;  // directions between corners are not of unit length
+  std::array<double, 3> excess, area_ratio;
+};
 
 // Immutable once built, safe to query from many threads; keeps references to all three arguments.
 class FilmMap {
@@ -30,21 +40,13 @@ class FilmMap {
   std::optional<SurfacePoint> to_object(const Vec2& u, Cursor& cursor) const;
   std::optional<SurfacePoint> to_object(const Vec2& u) const;
 
-  // What to_object is made of, for triangles of film and object whether or not they meet at u.
-  struct Laid {
-    Vec3 weight;            // of the film triangle's corners
-    Vec3 point, direction;  // where its plane lies there, and the object's normal
-  };
-  Laid laid(const Vec2& u, std::int32_t film_triangle) const;
-  // And to_object, with what it was made of; untouched if no film lies there.
-  std::optional<SurfacePoint> to_object(const Vec2& u, Cursor& cursor, Laid& laid) const;
-  // Where four of them land in the plane of a triangle of the object; false if one is too far.
-  struct Projection {
-    SurfacePoint point;
-    double distance_mm = 0;  // along the normal
-  };
-  bool onto(int object_triangle, const std::array<Laid, 4>& laid,
-            std::array<Projection, 4>& landing) const;
+  // What to_object is made of: the triangles of film that lie on the object, at least in part, and
+  // how far from film along its line the object may be.
+  const std::vector<std::int32_t>& lying() const;
+  LyingTriangle lying(std::int32_t film_triangle) const;
+  double reach_mm() const;
+  const TriangleMesh& object() const;
+  const Surface& surface() const;
 
   // Film coordinate (mm) that lands at a point of the object; nothing if it stays bare.
   std::optional<Vec2> to_film(const Vec3& position, const Vec3& normal) const;

@@ -2,15 +2,20 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "base/blank_pages.h"
 #include "base/parallel.h"
 #include "image/blank_image.h"
 #include "image/to_byte.h"
-#include "transfer/shared_pixel.h"
+#include "transfer/sample_landings.h"
 #include "transfer/texture_mean.h"
 
 namespace hydrodip {
@@ -58,78 +63,51 @@ bool may_hold_ink(const Tile& tile, const SheetRaster& raster, const FilmMap& ma
   return map.nearest_covered(centre, reach).has_value();
 }
 
-// SheetRaster::to_film for many pixels.
-class FilmGrid {
+// The triangles of film on the object under every tile.
+class FilmUnderTiles {
  public:
-  explicit FilmGrid(const SheetRaster& raster)
-      : pixel_mm_(kMmPerInch / raster.dpi),
-        centre_x_(0.5 * raster.width_px()),
-        centre_y_(0.5 * raster.height_px()) {}
-  double pixel_mm() const { return pixel_mm_; }
-  Vec2 at(double x_px, double y_px) const {
-    return {(x_px - centre_x_) * pixel_mm_, (centre_y_ - y_px) * pixel_mm_};
-  }
-
- private:
-  double pixel_mm_, centre_x_, centre_y_;
-};
-
-// The samples of a pixel, on a regular grid inside it.
-struct Samples {
-  Vec2 corner;  // of the pixel, in film coordinates
-  double pixel_mm;
-  int per_axis;
-  Vec2 at(int i, int j) const {
-    const double step = pixel_mm / per_axis;
-    return {corner.x() + (i + 0.5) * step, corner.y() - (j + 0.5) * step};
-  }
-};
-
-// Where the corners of a tile's pixels land, for pixels row by row: each is looked up once when it
-// is first asked for.
-class Corners {
- public:
-  Corners(const FilmMap& map, const FilmGrid& grid, const Tile& tile)
-      : map_(map), grid_(grid), tile_(tile) {}
-
-  // Of a pixel; nothing if one of them lands nowhere.
-  std::optional<PixelCorners> of_pixel(int x, int y) {
-    PixelCorners corners;
-    for (int k = 0; k < 4; ++k) {
-      const Entry& entry = at(x + k % 2, y + k / 2);
-      if (!entry.lands) return std::nullopt;
-      corners[std::size_t(k)] = &entry.corner;
+  FilmUnderTiles(const FilmMap& map, const SheetRaster& raster)
+      : columns_(count(raster.width_px())), triangles_(columns_ * count(raster.height_px())) {
+    for (const std::int32_t triangle : map.lying()) {
+      Vec2 least = Vec2::Constant(std::numeric_limits<double>::infinity()), most = -least;
+      for (const Vec2& corner : map.lying(triangle).film_mm) {
+        const Vec2 at = raster.to_pixel(corner);
+        least = least.cwiseMin(at);
+        most = most.cwiseMax(at);
+      }
+      add(triangle, least, most);
     }
-    return corners;
   }
-  FilmMap::Cursor& cursor() { return cursor_; }
+
+  const std::vector<std::int32_t>& under(const Tile& tile) const {
+    return triangles_[std::size_t(tile.y0 / kTile_px) * columns_ + std::size_t(tile.x0 / kTile_px)];
+  }
 
  private:
-  struct Entry {
-    int y = -1;  // whose it is; of no row yet
-    bool lands = false;
-    PixelCorner corner;
-  };
+  static std::size_t count(int size_px) { return std::size_t((size_px + kTile_px - 1) / kTile_px); }
 
-  const Entry& at(int x, int y) {
-    Entry& entry = rows_[std::size_t(y % 2)][std::size_t(x - tile_.x0)];
-    if (entry.y == y) return entry;
-    entry.y = y;
-    PixelCorner& corner = entry.corner;
-    corner.film_mm = grid_.at(x, y);
-    const auto point = map_.to_object(corner.film_mm, cursor_, corner.laid);
-    entry.lands = point.has_value();
-    if (point) corner.point = *point;
-    corner.film_triangle = cursor_.film_triangle;
-    return entry;
+  void add(std::int32_t triangle, const Vec2& least_px, const Vec2& most_px) {
+    const auto rows = triangles_.size() / columns_;
+    const auto tile_at = [](double px, std::size_t tiles) {
+      return std::size_t(std::clamp(px / kTile_px, 0.0, double(tiles - 1)));
+    };
+    for (std::size_t y = tile_at(least_px.y(), rows); y <= tile_at(most_px.y(), rows); ++y)
+      for (std::size_t x = tile_at(least_px.x(), columns_); x <= tile_at(most_px.x(), columns_);
+           ++x)
+        triangles_[y * columns_ + x].push_back(triangle);
   }
 
-  const FilmMap& map_;
-  const FilmGrid& grid_;
-  const Tile tile_;
-  FilmMap::Cursor cursor_;
-  std::array<std::array<Entry, kTile_px + 1>, 2> rows_;  // two are in use at a time
+  std::size_t columns_;
+  std::vector<std::vector<std::int32_t>> triangles_;
 };
+
+// The samples of a tile's pixels, so many in each direction of each.
+SampleGrid samples_of(const Tile& tile, const SheetRaster& raster, int per_axis) {
+  const double step_px = 1.0 / per_axis;
+  return {raster.to_film(tile.x0 + 0.5 * step_px, tile.y0 + 0.5 * step_px),
+          kMmPerInch / raster.dpi * step_px, (tile.x1 - tile.x0) * per_axis,
+          (tile.y1 - tile.y0) * per_axis};
+}
 
 // Darker than that no ink is, so that a part of it can be told.
 constexpr float kDarkest = 0.003F;
@@ -163,8 +141,10 @@ class Printed {
     return part_of_ink(color, paint_.base(), share);
   }
 
-  // The mean over those of a pixel's samples that land on a grid's points.
-  LinearColor mean(const SurfaceGrid& grid, const Samples& samples) const {
+  // The mean over those of a grid's points that count; `film_mm(column, row)`: where they come
+  // from.
+  template <class OnFilm>
+  LinearColor mean(const SurfaceGrid& grid, const OnFilm& film_mm) const {
     if (textured_ != nullptr)
       if (const auto color = mean_texture_color(*textured_, grid, paint_.base())) return *color;
     const float weight = 1.0F / static_cast<float>(grid.count());
@@ -172,7 +152,7 @@ class Printed {
     for (int row = 0; row < grid.per_axis; ++row)
       for (int column = 0; column < grid.per_axis; ++column)
         if (grid.counts(column, row))
-          sum.add(at(grid.at(column, row), samples.at(column, row)), weight);
+          sum.add(at(grid.at(column, row), film_mm(column, row)), weight);
     return sum.color();
   }
 
@@ -183,51 +163,111 @@ class Printed {
   const Object* textured_;  // the paint, if it is nothing else; or null
 };
 
-// One pixel of the film image.
-LinearColor pixel_color(const Printed& printed, const FilmMap& map, const FilmGrid& grid,
-                        const InverseOptions& options, int x, int y, Corners& tile) {
-  const int n = options.samples_per_axis;
-  const Samples samples{grid.at(x, y), grid.pixel_mm(), n};
-  FilmMap::Cursor& cursor = tile.cursor();
-  if (options.quick_look) {
-    const Vec2 centre = grid.at(x + 0.5, y + 0.5);
-    auto point = map.to_object(centre, cursor);
-    if (!point && options.bleed_mm > 0)
-      if (const auto near = map.nearest_covered(centre, options.bleed_mm, cursor))
-        point = map.to_object(*near, cursor);
-    return point ? printed.at(*point, centre) : LinearColor{0, 0, 0, 0};
+// The samples of a pixel by what they land on.
+class PixelShares {
+ public:
+  struct Share {
+    std::int32_t pair;      // of the landings
+    std::uint64_t samples;  // as SurfaceGrid::counted
+  };
+
+  PixelShares(const SampleLandings& landings, int column, int row, int per_axis) {
+    std::uint64_t sample = 1;
+    for (int j = 0; j < per_axis; ++j)
+      for (int i = 0; i < per_axis; ++i, sample <<= 1)
+        add(landings.pair_at(column + i, row + j), sample);
   }
-  const float weight = 1.0f / static_cast<float>(n * n);
-  ColorSum sum;
-  std::uint64_t unknown = ~std::uint64_t(0);  // the samples that are still to be looked up
-  if (const auto corners = tile.of_pixel(x, y)) {
-    if (on_one_pair(*corners)) return printed.mean(grid_between(*corners, n), samples);
-    const SharedPixel shared(map, *corners, n);
-    for (const SurfaceGrid& part : shared.grids())
-      if (part.count() > 0) sum.add(printed.mean(part, samples), weight * float(part.count()));
-    unknown = shared.unknown();
-  } else {
-    // One look for all samples: out of reach, or in the midst of the bleed, which shows little.
-    const double radius = 0.71 * grid.pixel_mm();
-    const Vec2 centre = grid.at(x + 0.5, y + 0.5);
-    const auto nearest = map.nearest_covered(centre, options.bleed_mm + radius, cursor);
-    if (!nearest) return {0, 0, 0, 0};
-    const double distance = (*nearest - centre).norm();
-    if (distance > radius && distance + radius < options.bleed_mm)
-      if (const auto point = map.to_object(*nearest, cursor)) return printed.at(*point, centre);
-  }
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) {
-      if ((unknown >> (j * n + i) & 1U) == 0) continue;
-      const Vec2 u = samples.at(i, j);
-      auto point = map.to_object(u, cursor);
-      if (!point && options.bleed_mm > 0)
-        if (const auto near = map.nearest_covered(u, options.bleed_mm, cursor))
-          point = map.to_object(*near, cursor);
-      if (point) sum.add(printed.at(*point, u), weight);
+
+  std::span<const Share> found() const { return {shares_.data(), count_}; }
+  std::uint64_t unknown() const { return unknown_; }
+
+ private:
+  void add(std::int32_t pair, std::uint64_t sample) {
+    if (pair == SampleLandings::kNone) {
+      unknown_ |= sample;
+      return;
     }
-  return sum.color();
-}
+    std::size_t n = 0;
+    while (n < count_ && shares_[n].pair != pair) ++n;
+    if (n == count_) shares_[count_++] = {pair, 0};
+    shares_[n].samples |= sample;
+  }
+
+  static constexpr std::size_t kMostSamples =
+      std::size_t(SurfaceGrid::kMostPerAxis) * std::size_t(SurfaceGrid::kMostPerAxis);
+  std::array<Share, kMostSamples> shares_;
+  std::size_t count_ = 0;
+  std::uint64_t unknown_ = 0;
+};
+
+// What is printed on the film of a tile.
+class TileColors {
+ public:
+  TileColors(const Printed& printed, const FilmMap& map, const SheetRaster& raster,
+             const InverseOptions& options, const Tile& tile,
+             const std::vector<std::int32_t>& film_triangles)
+      : printed_(printed),
+        map_(map),
+        bleed_mm_(options.bleed_mm),
+        tile_(tile),
+        per_axis_(options.quick_look ? 1 : options.samples_per_axis),
+        samples_(samples_of(tile, raster, per_axis_)),
+        landings_(map, samples_, film_triangles) {}
+
+  LinearColor of_pixel(int x, int y) {
+    const int column = (x - tile_.x0) * per_axis_, row = (y - tile_.y0) * per_axis_;
+    const PixelShares shares(landings_, column, row, per_axis_);
+    if (shares.found().empty())
+      if (const auto color = beside_film(column, row)) return *color;
+    const float weight = 1.0F / static_cast<float>(per_axis_ * per_axis_);
+    ColorSum sum;
+    for (const auto& [pair, samples] : shares.found()) {
+      SurfaceGrid grid = landings_.landing(pair, column, row, per_axis_);
+      grid.counted = samples;
+      const LinearColor mean =
+          printed_.mean(grid, [&](int i, int j) { return samples_.at(column + i, row + j); });
+      if (shares.found().size() == 1 && shares.unknown() == 0) return mean;
+      sum.add(mean, weight * static_cast<float>(grid.count()));
+    }
+    for (std::uint64_t left = shares.unknown(); left != 0; left &= left - 1) {
+      const int sample = std::countr_zero(left);
+      const Vec2 film_mm = samples_.at(column + sample % per_axis_, row + sample / per_axis_);
+      if (const auto point = landing(film_mm)) sum.add(printed_.at(*point, film_mm), weight);
+    }
+    return sum.color();
+  }
+
+ private:
+  // One look for all samples of a pixel: out of reach, or in the midst of the bleed, which shows
+  // little.
+  std::optional<LinearColor> beside_film(int column, int row) {
+    const double middle = 0.5 * (per_axis_ - 1), radius_mm = 0.71 * per_axis_ * samples_.step_mm;
+    const Vec2 film_mm = samples_.at(column + middle, row + middle);
+    const auto nearest = map_.nearest_covered(film_mm, bleed_mm_ + radius_mm, cursor_);
+    if (!nearest) return LinearColor{0, 0, 0, 0};
+    const double distance_mm = (*nearest - film_mm).norm();
+    if (distance_mm > radius_mm && distance_mm + radius_mm < bleed_mm_)
+      if (const auto point = map_.to_object(*nearest, cursor_)) return printed_.at(*point, film_mm);
+    return std::nullopt;
+  }
+
+  // Where film or, in its bleed, the film next to it lands.
+  std::optional<SurfacePoint> landing(const Vec2& film_mm) {
+    const auto point = map_.to_object(film_mm, cursor_);
+    if (point || !(bleed_mm_ > 0)) return point;
+    const auto near = map_.nearest_covered(film_mm, bleed_mm_, cursor_);
+    return near ? map_.to_object(*near, cursor_) : std::nullopt;
+  }
+
+  const Printed& printed_;
+  const FilmMap& map_;
+  const double bleed_mm_;
+  const Tile tile_;
+  const int per_axis_;
+  const SampleGrid samples_;
+  const SampleLandings landings_;
+  FilmMap::Cursor cursor_;
+};
 
 void store(const LinearColor& color, std::uint8_t* pixel) {
   pixel[0] = linear_to_srgb8(color.r);
@@ -288,12 +328,11 @@ Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& rast
                  const RunContext& context) {
   Image image = blank_image(raster.width_px(), raster.height_px());
   const Printed printed(paint, allotment);
-  const FilmGrid grid(raster);
+  const FilmUnderTiles film(map, raster);
   for_inked_tiles(map, raster, options.bleed_mm, "rastering", context, [&](const Tile& tile) {
-    Corners corners(map, grid, tile);
+    TileColors colors(printed, map, raster, options, tile, film.under(tile));
     for (int y = tile.y0; y < tile.y1; ++y)
-      for (int x = tile.x0; x < tile.x1; ++x)
-        store(pixel_color(printed, map, grid, options, x, y, corners), image.pixel(x, y));
+      for (int x = tile.x0; x < tile.x1; ++x) store(colors.of_pixel(x, y), image.pixel(x, y));
   });
   return image;
 }
@@ -301,21 +340,34 @@ Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& rast
 FilmStretch film_stretch(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
                          const RunContext& context) {
   const auto width = std::size_t(raster.width_px());
-  const FilmGrid grid(raster);
+  const FilmUnderTiles film(map, raster);
   FilmStretch result;
   result.area_ratio = blank<float>(width * std::size_t(raster.height_px()));
   result.on_object = blank<std::uint8_t>(result.area_ratio.size());
   for_inked_tiles(map, raster, bleed_mm, "measuring the stretch", context, [&](const Tile& tile) {
+    const SampleGrid centres = samples_of(tile, raster, 1);
+    const auto index = [&](int column, int row) {
+      return std::size_t(tile.y0 + row) * width + std::size_t(tile.x0 + column);
+    };
+    for (const std::int32_t triangle : film.under(tile)) {
+      const LyingTriangle lying = map.lying(triangle);
+      const FilmPiece piece(lying, centres);
+      const LinearOnGrid ratio = piece.linear(lying.area_ratio);
+      for (int row = piece.rows().begin; row < piece.rows().end; ++row)
+        for (int column = piece.in_row(row).begin; column < piece.in_row(row).end; ++column) {
+          result.area_ratio[index(column, row)] = static_cast<float>(ratio.at(column, row));
+          result.on_object[index(column, row)] = 1;
+        }
+    }
+    // Beside the film: of the nearest that is, but not less than the outline's hair away.
     FilmMap::Cursor cursor;
-    for (int y = tile.y0; y < tile.y1; ++y)
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        const Vec2 u = grid.at(x + 0.5, y + 0.5);
-        // Not less than the outline's hair.
-        const auto near = map.nearest_covered(u, std::max(bleed_mm, 1e-3), cursor);
-        if (!near) continue;
-        const std::size_t i = std::size_t(y) * width + std::size_t(x);
-        result.area_ratio[i] = static_cast<float>(map.area_ratio(*near, cursor));
-        result.on_object[i] = *near == u;
+    for (int row = 0; row < centres.rows; ++row)
+      for (int column = 0; column < centres.columns; ++column) {
+        if (result.on_object[index(column, row)] != 0) continue;
+        const auto near =
+            map.nearest_covered(centres.at(column, row), std::max(bleed_mm, 1e-3), cursor);
+        if (near)
+          result.area_ratio[index(column, row)] = static_cast<float>(map.area_ratio(*near, cursor));
       }
   });
   return result;

@@ -7,7 +7,7 @@
 namespace hydrodip {
 namespace {
 
-constexpr int kMostTexels = 4;  // under a grid, in a row or column
+constexpr std::size_t kMostTexels = 4;  // under a grid, in a row or column
 
 // A coordinate of a grid's points along one axis of a texture, in texels from the centre of the
 // first one.
@@ -44,9 +44,14 @@ std::optional<Texels> texels_under(const Along& along, int last, int size) {
   const float least = along.least(last), most = along.most(last);
   if (!(least >= 0 && most < float(size - 1))) return std::nullopt;
   const int first = int(least), count = int(most) - first + 2;
-  if (count > kMostTexels) return std::nullopt;
+  if (count > int(kMostTexels)) return std::nullopt;
   return Texels{first, count};
 }
+
+using PerTexel = Eigen::Array4f;  // of a row or column
+
+// Of a place to the texels 0, 1, ...: 1 in the middle of one, 0 from the middle of the next one on.
+PerTexel nearness(float at) { return (1 - (at - PerTexel(0, 1, 2, 3)).abs()).max(0); }
 
 // Premultiplied.
 std::optional<LinearColor> mean_of_texels(const Image& image, const Material& material,
@@ -58,21 +63,16 @@ std::optional<LinearColor> mean_of_texels(const Image& image, const Material& ma
   const auto rows = texels_under(y, last, image.height_px);
   if (!columns || !rows) return std::nullopt;
 
-  // Bilinear between texels: every point has shares of four.
-  std::array<std::array<float, kMostTexels>, kMostTexels> share{};
+  // Bilinear between texels: every point has shares of four, by how near it is to each along both
+  // axes. All rows and columns are always looked at, so that they fit into registers.
+  std::array<PerTexel, kMostTexels> share;
+  share.fill(PerTexel::Zero());
   for (int row = 0; row <= last; ++row)
     for (int column = 0; column <= last; ++column) {
       if (!grid.counts(column, row)) continue;
-      const float at_x = x.at(column, row) - float(columns->first);
-      const float at_y = y.at(column, row) - float(rows->first);
-      const int i = std::min(int(at_x), columns->count - 2);
-      const int j = std::min(int(at_y), rows->count - 2);
-      const float right = at_x - float(i), up = at_y - float(j);
-      auto &low = share[std::size_t(j)], &high = share[std::size_t(j) + 1];
-      low[std::size_t(i)] += (1 - right) * (1 - up);
-      low[std::size_t(i) + 1] += right * (1 - up);
-      high[std::size_t(i)] += (1 - right) * up;
-      high[std::size_t(i) + 1] += right * up;
+      const PerTexel near_x = nearness(x.at(column, row) - float(columns->first));
+      const PerTexel near_y = nearness(y.at(column, row) - float(rows->first));
+      for (std::size_t j = 0; j < kMostTexels; ++j) share[j] += near_y[Eigen::Index(j)] * near_x;
     }
 
   const std::array<float, 256>& decode = srgb8_table();
@@ -82,7 +82,7 @@ std::optional<LinearColor> mean_of_texels(const Image& image, const Material& ma
     // v runs up, rows run down.
     const std::uint8_t* texel = image.pixel(columns->first, image.height_px - 1 - rows->first - j);
     for (int i = 0; i < columns->count; ++i, texel += 4) {
-      const float alpha = share[std::size_t(j)][std::size_t(i)] * weight * float(texel[3]);
+      const float alpha = share[std::size_t(j)][i] * weight * float(texel[3]);
       sum.r += alpha * decode[texel[0]];
       sum.g += alpha * decode[texel[1]];
       sum.b += alpha * decode[texel[2]];
