@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "base/math.h"
+#include "artwork/laid_layer.h"
 #include "hydrodip/hydrodip.h"
 
 namespace hydrodip {
@@ -27,13 +27,6 @@ struct Project {
   PrinterOptions printer;             // which inks it makes of a colour
   // A model of more triangles is looked at with about so many; 0: with all that it has.
   std::size_t most_triangles = 0;
-};
-
-// How a layer of artwork lies on the object.
-struct LaidSize {
-  Vec2 size_mm{0, 0};
-  // Wrapped: lengths on the surface over the picture's.
-  double stretch_least = 1, stretch_most = 1;
 };
 
 // For any number of threads.
@@ -58,7 +51,7 @@ class Workspace {
   std::shared_ptr<const Paint> paint(const Project& project, Quality quality,
                                      const RunContext& context);
   // Of each layer of that artwork, the bottom one first.
-  std::vector<LaidSize> laid(const Project& project, Quality quality, const RunContext& context);
+  std::vector<LaidLayer> laid(const Project& project, Quality quality, const RunContext& context);
   // Of film with even stiffness.
   std::shared_ptr<const DippedObject> dipped(const Project& project, Quality quality,
                                              const RunContext& context);

@@ -1,11 +1,11 @@
 // Layers of artwork over the colours that an object has: a paint like any other.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "artwork/laid_layer.h"
 #include "artwork/layer.h"
 #include "artwork/picture.h"
 #include "base/context.h"
@@ -25,19 +25,6 @@ struct ArtworkTask {
   bool closed = true;                   // the object has an inside (MeshHealth::closed())
   double dpi = 300;                     // of what is printed
   int samples_per_axis = 3;             // that a printed pixel is made of
-};
-
-// What came of a layer.
-struct LaidLayer {
-  std::string name;
-  ArtworkLayer layer;  // so that it lies there however the object is held
-  Vec2 size_mm{0, 0};
-  // Wrapped: lengths on the surface over the picture's.
-  double stretch_least = 1, stretch_most = 1;
-  std::vector<FontUse> fonts;  // of a text
-  // Whether anything of it shows at a point of the object, if nothing lies above it. Safe to ask
-  // from many threads; empty: it is laid on the film.
-  std::function<bool(const SurfacePoint&)> shows;
 };
 
 // "40.0 x 20.0 mm, stretched 0.93 to 1.00 times, set in DejaVu Sans Bold".

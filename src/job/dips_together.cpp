@@ -33,6 +33,8 @@ DipsTogether put_together(const JobConfig& config, const PreparedObject& prepare
   DipsTogether look;
   const std::vector<ReportInput> inputs;
   const RunContext quiet = context.quiet();
+  look.dry = dry_layers_of(all);
+  warn_of(look.dry, quiet);
   const JobRecord record{"print",
                          config,
                          prepared,

@@ -7,6 +7,7 @@
 #include "base/context.h"
 #include "image/image.h"
 #include "job/prepare.h"
+#include "job/wanted.h"
 #include "object/object.h"
 #include "report/report.h"
 #include "settings/config.h"
@@ -18,6 +19,7 @@ struct DipsTogether {
   Object colors, parts;       // the model as it looks in the end, and in a colour for each dip
   std::vector<Image> sheets;  // as they are printed, in the order of the dips
   std::vector<LinearColor> color_of;  // those colours, in the order of the dips
+  std::vector<DryLayer> dry;          // layers of artwork to which none of the dips brings film
 };
 
 // Whether nothing has to be searched for it: every dip of `config` is given.

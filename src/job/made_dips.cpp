@@ -238,4 +238,13 @@ Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& prin
   return Finish(all.prepared.paint, std::move(coats));
 }
 
+std::vector<DryLayer> dry_layers_of(const MadeDips& all) {
+  return dry_layers(all.prepared.artwork, all.nodes->targets(), [&](const Target& at) {
+    return std::any_of(all.dips.begin(), all.dips.end(), [&](const MadeDip& dip) {
+      const Target hung = in_pose(at, dip.posed);
+      return bool(dip.made.dipped.map->to_film(hung.position, hung.normal));
+    });
+  });
+}
+
 }  // namespace hydrodip

@@ -12,6 +12,7 @@
 #include "ink/printer.h"
 #include "job/dip_plan.h"
 #include "job/prepare.h"
+#include "job/wanted.h"
 #include "plan/seams.h"
 #include "plan/surface_nodes.h"
 #include "plan/trial.h"
@@ -56,5 +57,8 @@ SharedSurface divide(MadeDips& all, const Printer& printer, Timings& times,
 // Each dip with its part of the ink, and what comes of all of them.
 Finish make_dips(MadeDips& all, const SharedSurface& shared, const Printer& printer, Timings& times,
                  const RunContext& context);
+
+// Of the job's layers of artwork those to which none of the dips brings film.
+std::vector<DryLayer> dry_layers_of(const MadeDips& all);
 
 }  // namespace hydrodip

@@ -213,6 +213,10 @@ MadePart make_part(const Part& part, Timings& timings, const RunContext& context
                    silent,  &made.designed.ink, job.printer.model->name()};
   record.wanted = wanted_coverage(made.designed.dipped, *job.prepared.paint,
                                   doubtful_stretch(job.config.design.dip.material));
+  for (const DryLayer& layer : dry_layers(job.prepared.artwork, made.designed.dipped)) {
+    silent.warn(layer.told);  // for the report
+    context.warn(part.name() + ": " + layer.told);
+  }
   Report report = make_report(record);
   return {std::move(made), std::move(report)};
 }

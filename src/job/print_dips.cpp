@@ -123,15 +123,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   const SharedSurface shared = divide(all, printer, times, context);
   const Finish finish = make_dips(all, shared, printer, times, context);
   require_some_ink(all);
-  warn_of_dry_layers(
-      prepared.artwork, all.nodes->targets(),
-      [&](const Target& at) {
-        return std::any_of(all.dips.begin(), all.dips.end(), [&](const MadeDip& dip) {
-          const Target hung = in_pose(at, dip.posed);
-          return bool(dip.made.dipped.map->to_film(hung.position, hung.normal));
-        });
-      },
-      context);
+  warn_of(dry_layers_of(all), context);
   times.measure("sheet", [&] {
     for (MadeDip& dip : all.dips) write_dip(folder, dip, all, inputs, printer, times, context);
   });

@@ -125,7 +125,7 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   DesignedJob made = designed(job, {.wanted = false, .stretch = false}, times, context);
   const DippedObject& dipped = made.designed.dipped;
   const InkResult& ink = made.designed.ink;
-  warn_of_dry_layers(job.prepared.artwork, dipped, context);
+  warn_of(dry_layers(job.prepared.artwork, dipped), context);
   JobRecord record{"print", config,      job.prepared,
                    inputs,  made.finish, times,
                    context, &ink,        job.printer.model->name()};

@@ -242,7 +242,7 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
                    inputs,  made.finish, times,
                    context, nullptr,     job.printer.model->name()};
   if (config.film_image.empty()) {
-    warn_of_dry_layers(job.prepared.artwork, made.dipped, context);
+    warn_of(dry_layers(job.prepared.artwork, made.dipped), context);
     record.wanted = wanted_coverage(made.dipped, *job.prepared.paint,
                                     doubtful_stretch(config.design.dip.material));
   } else {

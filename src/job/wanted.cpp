@@ -71,11 +71,12 @@ std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Pa
   return wanted;
 }
 
-void warn_of_dry_layers(const std::vector<LaidLayer>& layers, const Targets& targets,
-                        const std::function<bool(const Target&)>& gets_film,
-                        const RunContext& context) {
+std::vector<DryLayer> dry_layers(const std::vector<LaidLayer>& layers, const Targets& targets,
+                                 const std::function<bool(const Target&)>& gets_film) {
+  std::vector<DryLayer> dry;
   std::vector<std::uint8_t> shows(targets.list.size());
-  for (const LaidLayer& layer : layers) {
+  for (std::size_t n = 0; n < layers.size(); ++n) {
+    const LaidLayer& layer = layers[n];
     if (!layer.shows) continue;
     parallel_for(shows.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) shows[i] = layer.shows(targets.list[i].point);
@@ -88,19 +89,25 @@ void warn_of_dry_layers(const std::vector<LaidLayer>& layers, const Targets& tar
     }
     // So small that it lies between the points: unknown.
     if (!(shown_mm2 > 0) || covered_mm2 > kHardlyAny * shown_mm2) continue;
-    context.warn(fmt::format(
-        "{}: this artwork gets {} film that holds; turn it down (--down, --rotate), dip deeper "
-        "(--depth), move it (--art-at), or give it a dip of its own (--dips).",
-        layer.name, covered_mm2 > 0 ? "hardly any" : "no"));
+    dry.push_back(
+        {n, fmt::format(
+                "{}: this artwork gets {} film that holds; turn it down (--down, --rotate), dip "
+                "deeper (--depth), move it (--art-at), or give it a dip of its own (--dips).",
+                layer.name, covered_mm2 > 0 ? "hardly any" : "no")});
   }
+  return dry;
 }
 
-void warn_of_dry_layers(const std::vector<LaidLayer>& layers, const DippedObject& dipped,
-                        const RunContext& context) {
-  if (layers.empty()) return;
-  warn_of_dry_layers(
-      layers, spread_targets(dipped.posed.mesh(), kWantedPoints),
-      [&](const Target& at) { return bool(dipped.map->to_film(at.position, at.normal)); }, context);
+std::vector<DryLayer> dry_layers(const std::vector<LaidLayer>& layers, const DippedObject& dipped,
+                                 int points) {
+  if (layers.empty()) return {};
+  return dry_layers(layers, spread_targets(dipped.posed.mesh(), points), [&](const Target& at) {
+    return bool(dipped.map->to_film(at.position, at.normal));
+  });
+}
+
+void warn_of(const std::vector<DryLayer>& layers, const RunContext& context) {
+  for (const DryLayer& layer : layers) context.warn(layer.told);
 }
 
 }  // namespace hydrodip

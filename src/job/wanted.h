@@ -4,9 +4,10 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "artwork/artwork.h"
+#include "artwork/laid_layer.h"
 #include "base/context.h"
 #include "coat/dipped_object.h"
 #include "object/paint.h"
@@ -29,13 +30,18 @@ std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Pa
 // 1 where something shall be printed. Empty where the paint says nothing of it, or wants colour all
 // over the object.
 std::vector<std::uint8_t> wanted_at(const Targets& targets, const Paint& paint);
-// Warns of each layer of artwork that gets no film, or hardly any, as far as that many places tell.
-void warn_of_dry_layers(const std::vector<LaidLayer>& layers, const Targets& targets,
-                        const std::function<bool(const Target&)>& gets_film,
-                        const RunContext& context);
+// A layer of artwork that gets no film, or hardly any.
+struct DryLayer {
+  std::size_t layer;
+  std::string told;
+};
+// As far as that many places tell.
+std::vector<DryLayer> dry_layers(const std::vector<LaidLayer>& layers, const Targets& targets,
+                                 const std::function<bool(const Target&)>& gets_film);
 // Of one dip.
-void warn_of_dry_layers(const std::vector<LaidLayer>& layers, const DippedObject& dipped,
-                        const RunContext& context);
+std::vector<DryLayer> dry_layers(const std::vector<LaidLayer>& layers, const DippedObject& dipped,
+                                 int points = kWantedPoints);
+void warn_of(const std::vector<DryLayer>& layers, const RunContext& context);
 // Whether film lies there of which nobody knows whether it holds, or where.
 bool is_in_doubt(const std::optional<FilmMap::Hold>& hold, const DoubtfulStretch& doubtful);
 // Whether a place comes into the water and faces down: a dip gets there then, whether or not film

@@ -65,15 +65,8 @@ std::size_t bytes_of(const Designed& made) {
 
 struct SharedPaint {
   std::shared_ptr<const Paint> paint;
-  std::vector<LaidSize> laid = {};
+  std::vector<LaidLayer> laid = {};
 };
-
-SharedPaint shared(Artwork artwork) {
-  SharedPaint paint{std::move(artwork.paint)};
-  for (const LaidLayer& layer : artwork.layers)
-    paint.laid.push_back({layer.size_mm, layer.stretch_least, layer.stretch_most});
-  return paint;
-}
 
 // Its pictures are not known here; a guess.
 std::size_t bytes_of(const SharedPaint&) { return std::size_t(16) << 20U; }
@@ -213,10 +206,11 @@ struct Workspace::Impl {
     for (const ArtworkLayer& layer : project.artwork) add(key, layer);
     return node<SharedPaint>(std::move(key), context, [&] {
       const RunScope scope(context);
-      return shared(lay_artwork(
+      Artwork artwork = lay_artwork(
           {project.artwork, read_pictures(project.artwork), paint_of(*loaded.value, project.base),
            loaded.value->health.closed(), options.dpi, options.inverse.samples_per_axis},
-          *hanging.value, context));
+          *hanging.value, context);
+      return SharedPaint{std::move(artwork.paint), std::move(artwork.layers)};
     });
   }
 
@@ -286,8 +280,8 @@ std::shared_ptr<const Paint> Workspace::paint(const Project& project, Quality qu
   return impl_->paint(project, quality, context).value->paint;
 }
 
-std::vector<LaidSize> Workspace::laid(const Project& project, Quality quality,
-                                      const RunContext& context) {
+std::vector<LaidLayer> Workspace::laid(const Project& project, Quality quality,
+                                       const RunContext& context) {
   return impl_->paint(project, quality, context).value->laid;
 }
 

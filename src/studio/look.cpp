@@ -20,6 +20,7 @@
 #include "report/plain_words.h"
 #include "settings/correction_file.h"
 #include "studio/bundle.h"
+#include "studio/job_files.h"
 #include "studio/mends.h"
 
 namespace hydrodip {
@@ -60,6 +61,11 @@ void make_sketch(Project& project) {
   design.dip.step_mm = std::max(design.dip.step_mm, kSketchStep_mm);
   design.dip.quick_look = design.inverse.quick_look = true;
   design.air.cells = std::min(design.air.cells, kSketchAirCells);
+}
+
+// At which is asked what becomes of what shall be printed.
+int points_of(LookQuality quality) {
+  return quality == LookQuality::kSketch ? kSketchPoints : kWantedPoints;
 }
 
 // ---- computing ----
@@ -232,9 +238,10 @@ std::string hex_of(const LinearColor& c) {
                      linear_to_srgb8(c.b));
 }
 
-Report report_of(const Look& look, const RunContext& context) {
+Report report_of(const Look& look, const std::filesystem::path& uploads,
+                 const RunContext& context) {
   const RunContext words = context.quiet();
-  for (const std::string& warning : look.warnings) words.warn(warning);
+  for (const std::string& warning : look.warnings) words.warn(without_folder(warning, uploads));
   const PreparedObject prepared{.posed = look.made->dipped.posed,
                                 .paint = look.paint,
                                 .health = look.model->health,
@@ -247,9 +254,9 @@ Report report_of(const Look& look, const RunContext& context) {
   const Timings times;
   JobRecord record{"print", look.config, prepared,        inputs, finish,
                    times,   words,       &look.made->ink, "",     ""};
-  record.wanted = wanted_coverage(
-      look.made->dipped, *look.paint, doubtful_stretch(look.config.design.dip.material),
-      look.quality == LookQuality::kSketch ? kSketchPoints : kWantedPoints);
+  record.wanted =
+      wanted_coverage(look.made->dipped, *look.paint,
+                      doubtful_stretch(look.config.design.dip.material), points_of(look.quality));
   return make_report(record);
 }
 
@@ -307,6 +314,12 @@ std::vector<Finding> findings_of(const Look& look, const Report& report) {
   // Worst first, and otherwise as they come.
   std::stable_sort(list.begin(), list.end(),
                    [](const Finding& a, const Finding& b) { return a.concern > b.concern; });
+  return list;
+}
+
+Json layers_json(const std::vector<DryLayer>& layers) {
+  Json list = Json::array();
+  for (const DryLayer& layer : layers) list.push_back(layer.layer);
   return list;
 }
 
@@ -403,8 +416,12 @@ Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Lo
     look.artwork = workspace.laid(project, quality_of(quality), context);
     look.made = workspace.designed(project, quality_of(quality), context);
     look.paint = paint_as_dipped(look.paint, look.made->dipped);
+    look.dry = dry_layers(look.artwork, look.made->dipped, points_of(quality));
     look.warnings = known;
-    for (const auto& list : {look.model->health.findings(), context.warnings()})
+    std::vector<std::string> dry;
+    if (look.dips == 1)
+      for (const DryLayer& layer : look.dry) dry.push_back(layer.told);
+    for (const auto& list : {look.model->health.findings(), context.warnings(), dry})
       for (const std::string& warning : list)
         if (std::find(look.warnings.begin(), look.warnings.end(), warning) == look.warnings.end())
           look.warnings.push_back(warning);
@@ -429,14 +446,16 @@ DipsTogether look_at_dips(Workspace& workspace, const JobConfig& job, int textur
                                   .health = std::move(health),
                                   .units = model->units,
                                   .files = {},
-                                  .artwork = {},
+                                  .artwork = workspace.laid(project, Quality::kDraft, context),
                                   .picture_problems = {}};
     return put_together(config, prepared, texture_px, context.quiet());
   });
 }
 
-std::vector<std::uint8_t> finish_bundle(const DipsTogether& look, Json head) {
-  const Report& report = look.report;
+std::vector<std::uint8_t> finish_bundle(const DipsTogether& look, Json head,
+                                        const std::filesystem::path& uploads) {
+  Report report = look.report;
+  for (std::string& warning : report.warnings) warning = without_folder(warning, uploads);
   const ReportSeams& seams = *report.seams;
   const std::vector<Finding> list = findings(report);
   head["covered_share"] = report.coverage->covered_share();
@@ -445,6 +464,7 @@ std::vector<std::uint8_t> finish_bundle(const DipsTogether& look, Json head) {
   for (const Finding& f : list)
     head["findings"].push_back(
         finding_json(f, f.key == "seams" || f.key == "coverage" ? "parts" : "", Json::array()));
+  head["dry_layers"] = layers_json(look.dry);
   head["dips"] = Json::array();
   for (std::size_t k = 0; k < report.dips.size(); ++k) {
     const ReportDip& dip = report.dips[k];
@@ -467,7 +487,9 @@ std::vector<std::uint8_t> finish_bundle(const DipsTogether& look, Json head) {
   return bundle.finish();
 }
 
-std::vector<std::uint8_t> result_bundle(const Look& look, Json head, const RunContext& context) {
+std::vector<std::uint8_t> result_bundle(const Look& look, Json head,
+                                        const std::filesystem::path& uploads,
+                                        const RunContext& context) {
   const RunScope scope(context);
   const DippedObject& dipped = look.made->dipped;
   const DippedFilm& film = *dipped.film;
@@ -475,7 +497,7 @@ std::vector<std::uint8_t> result_bundle(const Look& look, Json head, const RunCo
   const FilmOptions& sheet = look.config.design.film;
   const BathOptions& bath = look.config.bath;
   const Printer printer = make_printer(look.config.printer);
-  const Report report = report_of(look, context);
+  const Report report = report_of(look, uploads, context);
   const std::vector<Finding> list = findings_of(look, report);
   head["quality"] = look.quality == LookQuality::kNormal ? "normal" : "draft";
   head["dip"] = look.dip;
@@ -498,11 +520,12 @@ std::vector<std::uint8_t> result_bundle(const Look& look, Json head, const RunCo
   head["findings"] = findings_json(look, list);
   head["figures"] = figures_json(look);
   head["artwork"] = Json::array();
-  for (const LaidSize& laid : look.artwork)
+  for (const LaidLayer& laid : look.artwork)
     head["artwork"].push_back({{"size_mm", {laid.size_mm.x(), laid.size_mm.y()}},
                                {"stretch", {laid.stretch_least, laid.stretch_most}}});
+  head["dry_layers"] = layers_json(look.dry);
   head["warnings"] = Json::array();
-  for (const std::string& warning : look.warnings)
+  for (const std::string& warning : report.warnings)
     head["warnings"].push_back(in_plain_words(warning));
   Bundle bundle(std::move(head));
   add_film(bundle, film);

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "hydrodip/workspace.h"
 #include "job/dips_together.h"
+#include "job/wanted.h"
 #include "settings/config.h"
 #include "studio/json.h"
 
@@ -43,7 +45,8 @@ struct Look {
   LookQuality quality = LookQuality::kDraft;
   std::shared_ptr<const Model> model;
   std::shared_ptr<const Paint> paint;
-  std::vector<LaidSize> artwork;  // each layer as it was laid
+  std::vector<LaidLayer> artwork;  // each layer as it was laid
+  std::vector<DryLayer> dry;       // of these; of several dips another one may bring film to them
   std::shared_ptr<const Designed> made;
   std::vector<std::string> warnings;
 };
@@ -55,11 +58,13 @@ Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Lo
 // All dips of the job together, as drafts. Throws ProblemFound, Cancelled.
 DipsTogether look_at_dips(Workspace& workspace, const JobConfig& job, int texture_px,
                           const RunContext& context);
-// The bundle of that; `head`: what only the job knows.
-std::vector<std::uint8_t> finish_bundle(const DipsTogether& look, Json head);
-
-// The bundle, without the numbers that only its job knows: `head` has them.
-std::vector<std::uint8_t> result_bundle(const Look& look, Json head, const RunContext& context);
+// What is shown, packed; `head`: what only the job knows; files in `uploads` are called by their
+// names alone.
+std::vector<std::uint8_t> finish_bundle(const DipsTogether& look, Json head,
+                                        const std::filesystem::path& uploads);
+std::vector<std::uint8_t> result_bundle(const Look& look, Json head,
+                                        const std::filesystem::path& uploads,
+                                        const RunContext& context);
 // Its way into the water.
 std::vector<std::uint8_t> dip_bundle(const DippedObject& dipped);
 

@@ -573,8 +573,8 @@ void OpenJob::show_look(long revision, const Look& look, double took_s) {
   result.id = ids_.result();
   result.dip = look.dip;
   result.made = look.made;
-  result.bundle = std::make_shared<const std::vector<std::uint8_t>>(
-      result_bundle(look, {{"result", result.id}, {"revision", revision}}, work_.quiet()));
+  result.bundle = std::make_shared<const std::vector<std::uint8_t>>(result_bundle(
+      look, {{"result", result.id}, {"revision", revision}}, files_.uploads(), work_.quiet()));
   result.event = {{"revision", revision},
                   {"quality", look.quality == LookQuality::kNormal ? "normal" : "draft"},
                   {"dip", look.dip},
@@ -590,8 +590,8 @@ void OpenJob::show_finish(const Model& model, const DipsTogether& look) {
   const std::array<std::string, 2> meshes = {show_mesh(model, look.colors),
                                              show_mesh(model, look.parts)};
   const std::string id = ids_.finish();
-  auto bundle = std::make_shared<const std::vector<std::uint8_t>>(
-      finish_bundle(look, {{"finish", id}, {"mesh", meshes[0]}, {"parts", meshes[1]}}));
+  auto bundle = std::make_shared<const std::vector<std::uint8_t>>(finish_bundle(
+      look, {{"finish", id}, {"mesh", meshes[0]}, {"parts", meshes[1]}}, files_.uploads()));
   const std::lock_guard lock(mutex_);
   shown_.set_finish(id, std::move(bundle), meshes);
 }

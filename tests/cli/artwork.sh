@@ -66,6 +66,14 @@ grep -q '^warning: logo.svg: this artwork gets no film' dry.txt || fail "a dry l
 "$hydrodip" print samples/box.obj --art logo.svg --art-toward 0,0,-1 --art-size 10 $quick -o dry --quiet > dry.txt
 grep -q '^warning: logo.svg: this artwork gets no film' dry.txt || fail 'a dry layer over a texture is not named'
 
+# A part of a nest is told of as its own print would be.
+# shellcheck disable=SC2086
+"$hydrodip" nest dry.toml --film 200x200 --set film.elements=800 --set dip.step_mm=1 --dpi 72 -o dry-nest --quiet > dry.txt ||
+  fail "a nest with a dry layer: $?"
+grep -q '^warning: dry.toml: logo.svg: this artwork gets no film' dry.txt || fail "nest does not name a dry layer: $(cat dry.txt)"
+! grep -q 'photo.png: this artwork' dry.txt || fail 'nest calls a wet layer dry'
+grep -q 'logo.svg: this artwork gets no film' dry-nest/nest.json || fail 'nor does nest.json'
+
 # Layers in a file beside its pictures, one more by options, and the same bytes from elsewhere.
 mkdir jobs
 cp logo.svg jobs/

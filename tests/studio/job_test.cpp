@@ -604,6 +604,52 @@ TEST_F(JobTest, APictureThatIsNamedLikeTheModelIsItsTexture) {
   EXPECT_FALSE(document.contains("artwork"));
 }
 
+// Before the print says it, in the same words but for options.
+TEST_F(JobTest, ArtworkThatGetsNoFilmIsNamed) {
+  const std::string job = sample("sphere");
+  const std::string svg =
+      "<svg xmlns='http://www.w3.org/2000/svg' width='10' height='10'>"
+      "<rect width='10' height='10' fill='red'/></svg>";
+  ASSERT_EQ(client->put(at(job, "/files/logo.svg"), svg).status, 201);
+  json document = quick(describe(job)["document"]);
+  const json up = {{"image", "logo.svg"}, {"size_mm", 20}, {"toward", {0, 0, -1}}};
+  const json down = {{"image", "logo.svg"}, {"size_mm", 20}, {"toward", {0, 0, 1}}};
+  document["artwork"] = {down, up};
+  document["dip"]["depth_mm"] = 10;
+  Events events(*client, at(job, "/events?client=c1"));
+  const std::string told_as = "logo.svg: this artwork gets no film that holds; turn it down, ";
+  const auto told = [&](const json& findings) {
+    return std::count_if(findings.begin(), findings.end(), [&](const json& finding) {
+      return finding["text"].get<std::string>().starts_with(told_as) &&
+             finding["concern"] == "care";
+    });
+  };
+  const auto head_of = [&](const std::string& event, const std::string& where, long revision) {
+    const auto found = events.next(event, [&](const json& e) { return e["revision"] == revision; });
+    if (!found || !found->data.contains(event)) return json();
+    return ReadBundle(client->get(at(job, where + found->data[event].get<std::string>())).body)
+        .head;
+  };
+  const json one = head_of("result", "/results/", put(job, document).json()["revision"]);
+  ASSERT_TRUE(one.is_object());
+  EXPECT_EQ(one["dry_layers"], json({1}));
+  EXPECT_EQ(told(one["findings"]), 1) << one["findings"];
+  // Of several dips another one may bring it: only what none brings is told of.
+  const json below = {{"down", "-z"}, {"rotate_deg", {0, 0, 0}}, {"depth_mm", 10}};
+  json above = below;
+  above["down"] = "+z";
+  document["dips"] = {below, above};
+  const json both = head_of("finish", "/finish/", put(job, document).json()["revision"]);
+  ASSERT_TRUE(both.is_object());
+  EXPECT_EQ(both["dry_layers"], json::array());
+  EXPECT_EQ(told(both["findings"]), 0) << both["findings"];
+  document["dips"] = {below, below};
+  const json same = head_of("finish", "/finish/", put(job, document).json()["revision"]);
+  ASSERT_TRUE(same.is_object());
+  EXPECT_EQ(same["dry_layers"], json({1}));
+  EXPECT_EQ(told(same["findings"]), 1) << same["findings"];
+}
+
 // A large model takes a while to read; the job is anybody's meanwhile.
 TEST_F(JobTest, WhatIsSaidWhileAModelIsReadStays) {
   constexpr int kSide = 300;
