@@ -74,7 +74,8 @@ Finding coverage(const Report& report) {
   const bool one_dip_only = report.one_dip_only;
   if (!(c.film_on_object_mm2 > 0)) return no_film(c, is_inside_out(report));
   if (report.wanted) return coverage_of_wanted(*report.wanted, c, beyond_best_dip(report));
-  // Beside film that is lost, a share of what faces down would tell little.
+  // The same measure whatever becomes of the film, so that figures compare. Beside film that is
+  // lost, the share of what faces down would tell little.
   if (c.torn_mm2 > 0)
     return {
         "coverage",
@@ -90,10 +91,10 @@ Finding coverage(const Report& report) {
               "(--dips)."};
   const bool nearly_all = c.covered_downward_share() >= kNearlyAll;
   Finding finding{"coverage", nearly_all ? Concern::kNone : Concern::kCare,
-                  "Coverage", percent(c.covered_downward_share()),
+                  "Coverage", percent(c.covered_share()),
                   "",         ""};
-  finding.text = fmt::format("of the surface that faces down gets film, {} of the whole object.",
-                             percent(c.covered_share()));
+  finding.text = fmt::format("of the object gets film, {} of what faces down.",
+                             percent(c.covered_downward_share()));
   if (!nearly_all)
     finding.advice =
         "What stays bare shows the object's own colour: paint the object to match "

@@ -20,8 +20,8 @@ std::string short_film_part(const Report& report) {
            : coverage.torn_mm2 > 0 ? "all film that meets the object tears"
                                    : "no film lies on the object";
   if (!has_wanted(report) && !(coverage.torn_mm2 > 0))
-    return fmt::format("{} of the downward side covered, stretched up to {:.2f} times, no tears",
-                       percent(coverage.covered_downward_share()), coverage.stretch_max);
+    return fmt::format("{} of the object covered, stretched up to {:.2f} times, no tears",
+                       percent(coverage.covered_share()), coverage.stretch_max);
   std::string text =
       has_wanted(report)
           ? fmt::format(
@@ -103,8 +103,8 @@ std::string covered_part(const Report& report) {
     return fmt::format("{} film {} {} of the object",
                        breaks ? "If the rest of it held, the" : "Where it holds, the", covers,
                        percent(c.covered_share()));
-  return fmt::format("The film {} {} of the surface that faces down ({} of all)", covers,
-                     percent(c.covered_downward_share()), percent(c.covered_share()));
+  return fmt::format("The film {} {} of the object ({} of what faces down)", covers,
+                     percent(c.covered_share()), percent(c.covered_downward_share()));
 }
 
 // What becomes of the film.

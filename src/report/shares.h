@@ -6,7 +6,8 @@
 
 namespace hydrodip {
 
-// Of the surface that faces down; film ends a cell or so short of every border.
+// Of what faces down, from where on a dip does what it can; film ends a cell or so short of every
+// border.
 constexpr double kNearlyAll = 0.9;
 // Of what shall be printed, or of the object.
 constexpr double kWholePicture = 0.98;

@@ -207,6 +207,21 @@ TEST(Findings, BesideTearsCoverageIsOfTheWholeObject) {
   EXPECT_EQ(short_verdict(report).find("100 %"), std::string::npos);
 }
 
+// Whoever changes the depth a little must not read of another share of another thing.
+TEST(Findings, CoverageIsOfTheSameWhetherOrNotFilmTears) {
+  Report report = good_report();
+  const std::string told =
+      std::to_string(std::lround(100 * report.coverage->covered_share())) + " % of the object";
+  for (const double torn_mm2 : {0.0, 200.0}) {
+    report.coverage->torn_mm2 = torn_mm2;
+    const std::vector<Finding> list = findings(report);
+    const Finding& coverage = *find(list, "coverage");
+    EXPECT_NE((coverage.figure + " " + coverage.text).find(told), std::string::npos) << torn_mm2;
+    EXPECT_NE(verdict_of(report).find(told), std::string::npos) << verdict_of(report);
+    EXPECT_NE(short_verdict(report).find(told), std::string::npos) << short_verdict(report);
+  }
+}
+
 // A sheet that brings nothing, and film of which most is lost, are no dips to make; torn film alone
 // is none of their business, as another dip may bring what belongs there.
 TEST(Findings, OfSeveralDipsNoneIsMadeForNothing) {
