@@ -116,7 +116,6 @@ void DroppedFiles::unpack(const std::string& archive, std::vector<std::string>& 
 
 UnreadFiles DroppedFiles::unread(const std::vector<std::string>& names) const {
   UnreadFiles files;
-  files.uploads = files_.uploads();
   for (const std::string& name : names) {
     const std::string kind = kind_of_file(name);
     // Whose pictures lie beside it is told by the model alone.
@@ -127,17 +126,14 @@ UnreadFiles DroppedFiles::unread(const std::vector<std::string>& names) const {
   return files;
 }
 
-Model UnreadFiles::read(const RunContext& context) const {
-  LoadOptions own;
-  own.confined_to = uploads;
-  Model read;
-  if (!model.empty()) read = load(model, own, context);
+std::shared_ptr<const Model> UnreadFiles::read(const LoadModel& load_model) const {
+  const std::shared_ptr<const Model> read = model.empty() ? nullptr : load_model(model);
   for (const std::filesystem::path& picture : pictures) {
-    const bool is_own = std::any_of(read.files.begin(), read.files.end(), [&](const auto& file) {
+    const auto is_it = [&](const std::filesystem::path& file) {
       std::error_code ignored;
       return std::filesystem::equivalent(file, picture, ignored);
-    });
-    if (is_own) continue;
+    };
+    if (read && std::any_of(read->files.begin(), read->files.end(), is_it)) continue;
     ArtworkLayer layer;
     layer.image = picture;
     read_pictures({layer});

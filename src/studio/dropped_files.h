@@ -3,12 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "base/context.h"
 #include "hydrodip/hydrodip.h"
 #include "studio/api_error.h"
 #include "studio/job_files.h"
@@ -22,12 +23,12 @@ inline constexpr std::uintmax_t kMostJobBytes = std::uintmax_t(2) << 30U;
 struct UnreadFiles {
   std::filesystem::path model;  // may be empty
   std::vector<std::filesystem::path> pictures;
-  std::filesystem::path uploads;  // nothing is read but what lies there
 
   bool empty() const { return model.empty() && pictures.empty(); }
-  // The model; pictures that are not its own are looked at only. Throws InputError for the first
-  // file that is broken, and Cancelled. Without any lock.
-  Model read(const RunContext& context) const;
+  // The model, by `load_model`; pictures that are not its own are looked at only. Null: there is no
+  // model. Throws InputError for the first file that is broken. Without any lock.
+  using LoadModel = std::function<std::shared_ptr<const Model>(const std::filesystem::path&)>;
+  std::shared_ptr<const Model> read(const LoadModel& load_model) const;
 };
 
 // With its owner's lock. Throws ApiError.

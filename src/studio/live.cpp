@@ -53,6 +53,30 @@ void Live::rest() {
   if (current_) current_->cancel();
 }
 
+std::shared_ptr<const Model> Live::model(const std::filesystem::path& file,
+                                         const LoadOptions& options, const RunContext& context) {
+  Project project;
+  project.model = file;
+  project.load = options;
+  return read(project, context);
+}
+
+std::shared_ptr<const Model> Live::read(const Project& project, const RunContext& context) {
+  const RunContext reading = context.quiet();
+  auto model = workspace_.model(project, reading);
+  const std::lock_guard lock(mutex_);
+  std::erase_if(warnings_, [](const auto& known) { return known.first.expired(); });
+  // One that was known is not read again, and nothing is said of it.
+  if (const auto said = reading.warnings(); !said.empty()) warnings_[model] = said;
+  return model;
+}
+
+std::vector<std::string> Live::warnings_of(const std::shared_ptr<const Model>& model) const {
+  const std::lock_guard lock(mutex_);
+  const auto known = warnings_.find(model);
+  return known == warnings_.end() ? std::vector<std::string>() : known->second;
+}
+
 Live::Counts Live::counts() const {
   const std::lock_guard lock(mutex_);
   return counts_;
@@ -129,12 +153,11 @@ void Live::compute(const Turn& turn) {
 
 // Before anything can be wrong with the dip, so that there is something to see.
 void Live::show_model(const Turn& turn) {
-  const RunContext reading = turn.context.quiet();
   std::shared_ptr<const Model> model;
   try {
-    model = workspace_.model(
-        project_of(config_of_dip(turn.request.config, turn.request.dip), LookQuality::kDraft),
-        reading);
+    model =
+        read(project_of(config_of_dip(turn.request.config, turn.request.dip), LookQuality::kDraft),
+             turn.context);
   } catch (const InputError&) {
     return;  // said by show_look()
   }
@@ -142,7 +165,7 @@ void Live::show_model(const Turn& turn) {
   shown_model_ = model;
   shown_paint_.reset();
   shows_artwork_ = false;
-  model_warnings_ = reading.warnings();
+  model_warnings_ = warnings_of(model);
   sinks_.model(turn.request.revision, model);
 }
 

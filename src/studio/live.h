@@ -3,6 +3,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -60,6 +61,11 @@ class Live {
   // Cancels what is being computed, until something is asked for again.
   void rest();
 
+  // A model as its file has it, read once for whoever asks and what is shown. For any thread.
+  // Throws InputError, Cancelled.
+  std::shared_ptr<const Model> model(const std::filesystem::path& file, const LoadOptions& options,
+                                     const RunContext& context);
+
   std::size_t memory_bytes() const { return workspace_.memory_bytes(); }
   // How many drafts (with sketches) and normal results were finished, and how many were cancelled.
   struct Counts {
@@ -73,6 +79,9 @@ class Live {
     RunContext context;
   };
 
+  std::shared_ptr<const Model> read(const Project& project, const RunContext& context);
+  // What reading that model warned of.
+  std::vector<std::string> warnings_of(const std::shared_ptr<const Model>& model) const;
   void run();
   void compute(const Turn& turn);
   void show_model(const Turn& turn);
@@ -95,6 +104,7 @@ class Live {
   std::string finish_of_;  // the content of which the finish was told; empty: none was
 
   mutable std::mutex mutex_;
+  std::map<std::weak_ptr<const Model>, std::vector<std::string>, std::owner_less<>> warnings_;
   std::condition_variable changed_;
   std::optional<LiveRequest> waiting_;
   std::optional<RunContext> current_;

@@ -260,14 +260,21 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
       taken.insert(names.begin(), names.end());
     } else if (const UnreadFiles unread = dropped_.unread(names); !unread.empty()) {
       // What is broken must not take the place of what was good.
+      LoadOptions own = config_.object.load;
+      own.texture.clear();
+      own.confined_to = files_.uploads();
       lock.unlock();
-      const Model read = unread.read(work_.quiet());
+      // By what shows it afterwards, so that a large one is read once.
+      const std::shared_ptr<const Model> read = unread.read(
+          [&](const std::filesystem::path& model) { return live_->model(model, own, work_); });
       lock.lock();
       // Meanwhile the job was anybody's.
       tabs_.require_pen(client);
       document = document_;
-      for (const auto& file : read.files) taken.insert(files_.grant(file));
-      if (read.object) texture = texture_for(read, first("model"), names);
+      if (read) {
+        for (const auto& file : read->files) taken.insert(files_.grant(file));
+        texture = texture_for(*read, first("model"), names);
+      }
     }
     if (const std::string model = first("model"); !model.empty() && first("job").empty()) {
       document["object"]["file"] = model;

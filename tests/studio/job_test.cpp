@@ -1,7 +1,10 @@
 // A job over HTTP: its document, what is computed of it, what is printed, and what outlives a run.
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -11,6 +14,8 @@
 #include <thread>
 
 #include "base/file.h"
+#include "base/folder_lock.h"
+#include "hydrodip/workspace.h"
 #include "image/files.h"
 #include "job/jobs.h"
 #include "settings/job_file.h"
@@ -698,6 +703,36 @@ TEST_F(JobTest, AJobThatCannotBeBegunLeavesNothing) {
   EXPECT_GE(client->post("/api/jobs", R"({"sample": "no such"})").status, 400);
   EXPECT_EQ(jobs(), before);
 }
+// Reading a large one takes longer than all else.
+TEST_F(JobTest, ADroppedModelIsReadOnce) {
+  const auto opened_by = [](const std::filesystem::path& file, const auto& work) {
+    const int watch = inotify_init1(IN_NONBLOCK);
+    EXPECT_GE(inotify_add_watch(watch, file.c_str(), IN_OPEN), 0);
+    work();
+    alignas(inotify_event) std::array<char, 65536> events;
+    const ssize_t bytes = ::read(watch, events.data(), events.size());
+    close(watch);
+    return bytes / ssize_t(sizeof(inotify_event));
+  };
+  Workspace workspace;
+  Project project;
+  project.model = folder / "toy.obj";
+  write_file(project.model, kRedToy);
+  const auto once = opened_by(project.model, [&] { workspace.model(project, RunContext()); });
+  ASSERT_GE(once, 1);
+
+  const std::string job = client->post("/api/jobs").json()["job"];
+  ASSERT_EQ(client->put(at(job, "/files/toy.obj"), kRedToy).status, 201);
+  ASSERT_EQ(client->put(at(job, "/files/toy.mtl"), kRed).status, 201);
+  Events events(*client, at(job, "/events?client=c1"));
+  const auto times = opened_by(folder / ("jobs/" + job + "/files/toy.obj"), [&] {
+    client->post(at(job, "/adopt"), R"({"client": "c1", "files": ["toy.obj", "toy.mtl"]})");
+    EXPECT_TRUE(events.next("mesh", [](const json& e) { return e["mesh"].is_string(); }));
+    EXPECT_TRUE(events.next("result", [](const json&) { return true; }));
+  });
+  EXPECT_EQ(times, once);
+}
+
 
 // Whoever chose "part.stl" knows it by that name, and not by where this program keeps it.
 TEST_F(JobTest, ABadFileIsCalledByItsNameAlone) {
