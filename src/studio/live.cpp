@@ -125,7 +125,7 @@ void Live::compute(const Turn& turn) {
       if (!sketch_of_ || !turn.request.comes_to_the_same(*sketch_of_)) {
         sketch_of_.reset();
         show_look(turn, LookQuality::kSketch);
-        count(&Counts::drafts);
+        count(&Counts::sketches);
         sketch_of_ = turn.request;
       }
       if (turn.request.dragging) return;
@@ -170,7 +170,7 @@ void Live::show_model(const Turn& turn) {
 }
 
 void Live::show_look(const Turn& turn, LookQuality quality) {
-  const std::string name = quality == LookQuality::kNormal ? "normal" : "draft";
+  const std::string name = quality_name(quality);
   const auto begun = Steady::now();
   auto told = begun;
   turn.context.on_progress([&](const std::string& activity, double fraction) {

@@ -67,9 +67,9 @@ class Live {
                                      const RunContext& context);
 
   std::size_t memory_bytes() const { return workspace_.memory_bytes(); }
-  // How many drafts (with sketches) and normal results were finished, and how many were cancelled.
+  // How many results of each quality were finished, and how many were cancelled.
   struct Counts {
-    long drafts = 0, normals = 0, cancelled = 0;
+    long sketches = 0, drafts = 0, normals = 0, cancelled = 0;
   };
   Counts counts() const;
 

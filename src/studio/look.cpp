@@ -361,6 +361,11 @@ Quality quality_of(LookQuality quality) {
 
 }  // namespace
 
+std::string quality_name(LookQuality quality) {
+  if (quality == LookQuality::kNormal) return "normal";
+  return quality == LookQuality::kDraft ? "draft" : "sketch";
+}
+
 JobConfig config_of_dip(const JobConfig& config, std::size_t dip) {
   JobConfig own = config;
   own.plan.find_pose = own.plan.find_depth = false;
@@ -499,7 +504,7 @@ std::vector<std::uint8_t> result_bundle(const Look& look, Json head,
   const Printer printer = make_printer(look.config.printer);
   const Report report = report_of(look, uploads, context);
   const std::vector<Finding> list = findings_of(look, report);
-  head["quality"] = look.quality == LookQuality::kNormal ? "normal" : "draft";
+  head["quality"] = quality_name(look.quality);
   head["dip"] = look.dip;
   head["dips"] = look.dips;
   const Eigen::Matrix4d& matrix = dipped.posed.matrix();

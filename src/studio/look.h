@@ -35,6 +35,8 @@ JobConfig config_of_dip(const JobConfig& config, std::size_t dip);
 // How finely a dip is looked at. A sketch is for what follows a hand: on coarser film than a draft,
 // in longer steps, and without the question what depends on how torn film falls.
 enum class LookQuality { kSketch, kDraft, kNormal };
+// "sketch", "draft", "normal"
+std::string quality_name(LookQuality quality);
 
 // As the workspace takes it; the picture of what is not normal is coarser too.
 Project project_of(const JobConfig& config, LookQuality quality);

@@ -583,7 +583,7 @@ void OpenJob::show_look(long revision, const Look& look, double took_s) {
   result.bundle = std::make_shared<const std::vector<std::uint8_t>>(result_bundle(
       look, {{"result", result.id}, {"revision", revision}}, files_.uploads(), work_.quiet()));
   result.event = {{"revision", revision},
-                  {"quality", look.quality == LookQuality::kNormal ? "normal" : "draft"},
+                  {"quality", quality_name(look.quality)},
                   {"dip", look.dip},
                   {"result", result.id},
                   {"took_s", took_s}};
@@ -636,7 +636,8 @@ std::shared_ptr<const std::vector<std::uint8_t>> OpenJob::dip(const std::string&
 
 Json OpenJob::counts() const {
   const Live::Counts counts = live_->counts();
-  return {{"drafts", counts.drafts},
+  return {{"sketches", counts.sketches},
+          {"drafts", counts.drafts},
           {"normals", counts.normals},
           {"cancelled", counts.cancelled},
           {"memory_bytes", live_->memory_bytes()}};

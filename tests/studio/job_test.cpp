@@ -84,7 +84,7 @@ TEST_F(JobTest, ASampleIsShownAndItsResultIsWhole) {
   const long revision = put(job, quick(describe(job)["document"])).json()["revision"];
   const auto told = events.next("result", [&](const json& e) { return e["revision"] == revision; });
   ASSERT_TRUE(told);
-  EXPECT_EQ(told->data["quality"], "draft");
+  EXPECT_NE(told->data["quality"], "normal");
 
   const ReadBundle result(
       client->get(at(job, "/results/" + told->data["result"].get<std::string>())).body);
@@ -165,10 +165,10 @@ TEST_F(JobTest, ASketchComesFirstAndAloneInADrag) {
   json document = quick(describe(job)["document"]);
   document["film"]["elements"] = 12000;
   Events events(*client, at(job, "/events?client=c1"));
-  const auto vertices_of_next = [&](long revision) -> std::size_t {
+  const auto vertices_of_next = [&](long revision, const std::string& quality) -> std::size_t {
     const auto told = events.next(
         "result", [&](const json& e) { return e["revision"] == revision; }, 20);
-    if (!told || told->data["quality"] != "draft") return 0;
+    if (!told || told->data["quality"] != quality) return 0;
     const std::string id = told->data["result"];
     return ReadBundle(client->get(at(job, "/results/" + id)).body)
         .array<std::uint8_t>("film.state")
@@ -176,12 +176,12 @@ TEST_F(JobTest, ASketchComesFirstAndAloneInADrag) {
   };
   document["object"]["rotate_deg"] = {0, 0, 10};
   const long dragged = put(job, document, true).json()["revision"];
-  const std::size_t sketch = vertices_of_next(dragged);
+  const std::size_t sketch = vertices_of_next(dragged, "sketch");
   EXPECT_GT(sketch, 0u);
   EXPECT_FALSE(events.next(
       "result", [&](const json& e) { return e["revision"] == dragged; }, 0.7));
   const long ended = put(job, document, false).json()["revision"];
-  EXPECT_GT(vertices_of_next(ended), sketch);
+  EXPECT_GT(vertices_of_next(ended, "draft"), sketch);
   EXPECT_TRUE(events.next("result", [&](const json& e) { return e["quality"] == "normal"; }));
 }
 
@@ -879,7 +879,7 @@ TEST_F(JobTest, TheListOfRecentJobsOpensNone) {
   ASSERT_EQ(client->put(at(job, "/thumbnail"), png).status, 200);
   begin();
   EXPECT_EQ(client->get(at(job, "/thumbnail")).body, png);
-  EXPECT_EQ(client->get(at(job, "/counts")).json()["drafts"], 0);
+  EXPECT_EQ(client->get(at(job, "/counts")).json()["sketches"], 0);
   EXPECT_EQ(client->remove("/api/recent/" + job).status, 200);
   EXPECT_EQ(client->get("/api/recent").json().size(), 0U);
   // One that a tab has open stays.

@@ -191,9 +191,12 @@ export interface Film {
 }
 
 export interface Result {
+// A sketch follows the hand, a draft comes when it stops, and then the normal result.
+export type Quality = 'sketch' | 'draft' | 'normal';
+
   result: string;
   revision: number;
-  quality: 'draft' | 'normal';
+  quality: Quality;
   dip: number;
   dips: number;
   matrix: number[];

@@ -2,7 +2,7 @@
 // signals here; the document is only ever replaced, never changed.
 import { batch, computed, signal } from '@preact/signals';
 import { api, ApiError, Unreachable } from './api.ts';
-import type { AdoptAnswer, DipFrames, Finish, JobFile, JobState, MeshData, Problem, Result, Task, TaskKind } from './api.ts';
+import type { AdoptAnswer, DipFrames, Finish, JobFile, JobState, MeshData, Problem, Quality, Result, Task, TaskKind } from './api.ts';
 import { dipCount, equal, layersOf, withLayer, type JobDocument, type Patch, type Vec3 } from './document.ts';
 import { t } from './strings.ts';
 
@@ -16,7 +16,7 @@ interface Step {
 
 export interface Working {
   revision: number;
-  quality: 'draft' | 'normal' | 'finish' | null;
+  quality: Quality | 'finish' | null;
   activity?: string;
   fraction?: number;
 }
@@ -70,7 +70,7 @@ export class Job {
   // Whether what is shown is not yet the last word on the document.
   readonly draft = computed(() => {
     const shown = this.result.value;
-    return !shown || this.unsent.value || shown.revision < this.revision.value || shown.quality === 'draft';
+    return !shown || this.unsent.value || shown.revision < this.revision.value || shown.quality !== 'normal';
   });
   // Whether the dips were put together as the document has them now.
   readonly wholeFinish = computed(() => {
@@ -140,7 +140,7 @@ export class Job {
 
   // --- Changing ---
 
-  // In the middle of a drag: drafts follow, nothing is kept yet.
+  // In the middle of a drag: sketches follow, nothing is kept yet.
   drag(document: JobDocument): void {
     if (!this.mayChange.value) return;
     this.beforeDrag ??= this.document.value;
@@ -463,7 +463,7 @@ export class Job {
     });
     on<{ mesh?: string | null; wanted?: string | null }>('mesh', (event) => void this.takeMesh(event));
     on<Working>('working', (event) => (this.working.value = event.quality ? event : null));
-    on<{ revision: number; quality: 'draft' | 'normal'; dip: number; result: string }>('result', (event) => void this.takeResult(event));
+    on<{ revision: number; quality: Quality; dip: number; result: string }>('result', (event) => void this.takeResult(event));
     on<{ revision: number; finish?: string; problem?: string }>('finish', (event) => void this.takeFinish(event));
     on<Problem>('problem', (problem) => this.takeProblem(problem));
     on<Task>('task', (task) => this.takeTask(task));
@@ -573,7 +573,7 @@ export class Job {
     return normal || !this.newest.normal;
   }
 
-  private async takeResult(event: { revision: number; quality: 'draft' | 'normal'; dip: number; result: string }): Promise<void> {
+  private async takeResult(event: { revision: number; quality: Quality; dip: number; result: string }): Promise<void> {
     const normal = event.quality === 'normal';
     const shown = event.dip === this.dip.value;
     if (shown && !this.isNewer(event.revision, normal)) return;

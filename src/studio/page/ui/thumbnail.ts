@@ -15,7 +15,7 @@ export function keepThumbnail(): () => void {
     const result = open?.result.value;
     clearTimeout(timer);
     if (!open || !result || readOnly.value || done === result.result) return;
-    if (result.quality === 'draft' && hasOne === open.id) return;
+    if (result.quality !== 'normal' && hasOne === open.id) return;
     timer = window.setTimeout(() => {
       done = result.result;
       hasOne = open.id;
