@@ -333,8 +333,8 @@ HttpAnswer Api::route(HttpRequest& request) {
 
   const Parts parts = parts_of(path);
   if (parts.size() < 2 || parts[0] != "api") throw not_found();
-  if (parts[1] == "hello" && reads) return hello();
-  if (parts[1] == "recent" && reads) return json_answer(store_.recent(kMostRecent));
+  if (parts[1] == "hello" && reads) return hello(request);
+  if (parts[1] == "recent" && reads) return json_answer(recent(request));
   if (parts[1] == "recent" && parts.size() == 3 && request.method == "DELETE") {
     forget(parts[2]);
     return json_answer(Json::object());
@@ -367,7 +367,27 @@ HttpAnswer Api::login(HttpRequest& request) {
   return answer;
 }
 
-HttpAnswer Api::hello() const {
+// That a tab had a job when it was kept last tells of a crash only where none has it now. The tab
+// that asks has left its own, which may not have been noticed yet.
+Json Api::recent(const HttpRequest& request) {
+  const auto given = request.query.find("client");
+  const std::string client = given == request.query.end() ? "" : client_in(given->second);
+  Json list = store_.recent(kMostRecent);
+  const std::lock_guard lock(mutex_);
+  for (Json& entry : list) {
+    const std::string name = entry["job"];
+    const bool was_open = entry["recovered"];
+    const auto known = jobs_.find(name);
+    const bool elsewhere =
+        known == jobs_.end() && was_open && store_.hold(name).state() == FolderLock::State::kTaken;
+    entry["open"] = elsewhere || (known != jobs_.end() && known->second->has_tab_but(client));
+    entry["recovered"] =
+        was_open && !elsewhere && (known == jobs_.end() || !known->second->has_tabs());
+  }
+  return list;
+}
+
+HttpAnswer Api::hello(const HttpRequest& request) {
   Json films = Json::array(), sample_list = Json::array(), layers = Json::array();
   for (const FilmFormat& film : film_formats())
     films.push_back(
@@ -385,7 +405,7 @@ HttpAnswer Api::hello() const {
                       {"parameters", parameters_list()},
                       {"layer_keys", layers},
                       {"profiles", profile_names(profiles_)},
-                      {"recent", store_.recent(kMostRecent)},
+                      {"recent", recent(request)},
                       {"limits",
                        {{"file_bytes", kMostFileBytes},
                         {"job_bytes", kMostJobBytes},

@@ -44,7 +44,8 @@ class Api {
   using Parts = std::vector<std::string>;
 
   HttpAnswer route(HttpRequest& request);
-  HttpAnswer hello() const;
+  HttpAnswer hello(const HttpRequest& request);
+  Json recent(const HttpRequest& request);
   HttpAnswer new_job(HttpRequest& request);
   HttpAnswer job_route(HttpRequest& request, const Parts& parts);
   HttpAnswer read_job(const Parts& parts, OpenJob& job);

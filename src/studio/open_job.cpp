@@ -483,6 +483,16 @@ void OpenJob::take_pen(const std::string& client) {
   tabs_.take_pen(client);
 }
 
+bool OpenJob::has_tabs() const {
+  const std::lock_guard lock(mutex_);
+  return !tabs_.none();
+}
+
+bool OpenJob::has_tab_but(const std::string& client) const {
+  const std::lock_guard lock(mutex_);
+  return tabs_.any_but(client);
+}
+
 std::optional<std::chrono::steady_clock::time_point> OpenJob::idle_since() const {
   if (tasks_->any_running()) return std::nullopt;
   const std::lock_guard lock(mutex_);

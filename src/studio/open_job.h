@@ -82,6 +82,8 @@ class OpenJob {
   std::shared_ptr<EventStream> connect(const std::string& client);
   void disconnect(const std::string& client, const std::shared_ptr<EventStream>& stream);
   void take_pen(const std::string& client);
+  bool has_tabs() const;
+  bool has_tab_but(const std::string& client) const;
   // Since when nobody has looked at it and nothing is done; nothing: it is in use.
   std::optional<std::chrono::steady_clock::time_point> idle_since() const;
   // Ends all lines, and work for it throws Cancelled.

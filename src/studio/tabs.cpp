@@ -31,6 +31,10 @@ bool Tabs::disconnect(const std::string& client, const std::shared_ptr<EventStre
   return true;
 }
 
+bool Tabs::any_but(const std::string& client) const {
+  return std::any_of(tabs_.begin(), tabs_.end(), [&](const Tab& t) { return t.client != client; });
+}
+
 void Tabs::close(const std::string& text) {
   Json event;
   event["text"] = text;

@@ -22,6 +22,7 @@ class Tabs {
   // Says why, and ends every line.
   void close(const std::string& text);
   bool none() const { return tabs_.empty(); }
+  bool any_but(const std::string& client) const;
   // Since when there is none.
   std::optional<std::chrono::steady_clock::time_point> none_since() const { return none_since_; }
 

@@ -208,16 +208,28 @@ TEST_F(JobTest, NothingIsComputedWhileNobodyLooks) {
 }
 
 // A job is recovered whose tab the program did not see close.
-TEST_F(JobTest, WhatWasClosedIsNotRecovered) {
+TEST_F(JobTest, WhatIsOpenOrWasClosedIsNotRecovered) {
   const std::string job = sample("pyramid");
-  const auto recovered = [&] { return client->get("/api/recent").json()[0]["recovered"]; };
+  const auto listed = [&](const std::string& who = "") {
+    const json entry = client->get("/api/recent" + who).json()[0];
+    return json{entry["open"], entry["recovered"]};
+  };
   auto tab = std::make_unique<Events>(*client, at(job, "/events?client=c1"));
   put(job, quick(describe(job)["document"]));
-  ASSERT_EQ(recovered(), true);
+  EXPECT_EQ(listed(), json({true, false}));
+  EXPECT_EQ(listed("?client=c1"), json({false, false}));  // it asks as it has left it
+  const std::vector<std::uint8_t> kept = read_file(folder / ("jobs/" + job + "/state.json"));
   tab.reset();
-  for (int tries = 0; tries < 500 && recovered() == true; ++tries)
+  for (int tries = 0; tries < 500 && listed() != json({false, false}); ++tries)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_EQ(recovered(), false);
+  EXPECT_EQ(listed(), json({false, false}));
+  // As a program leaves it that is killed.
+  studio.reset();
+  write_whole(folder / ("jobs/" + job + "/state.json"), std::string(kept.begin(), kept.end()));
+  begin();
+  EXPECT_EQ(listed(), json({false, true}));
+  const FolderLock another(folder / ("jobs/" + job));  // the studio that has it
+  EXPECT_EQ(listed(), json({true, false}));
 }
 
 // Requests in a drag come faster than drafts: what is shown in the end is the newest, and the first
@@ -592,23 +604,6 @@ TEST_F(JobTest, HowArtworkWasLaidIsTold) {
   EXPECT_NEAR(laid[1]["stretch"][1], 1, 0.02);
 }
 
-// Its own picture is named like the model or like a texture, in whatever letters.
-TEST_F(JobTest, APictureThatIsNamedLikeTheModelIsItsTexture) {
-  const std::string job = client->post("/api/jobs").json()["job"];
-  const std::string toy =
-      "v 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nvt 0 0\nvt 1 0\nvt 0 1\n"
-      "f 1/1 3/3 2/2\nf 1/1 2/2 4/3\nf 2/1 3/2 4/3\nf 1/1 4/3 3/2\n";
-  const std::vector<std::uint8_t> png = encode_png(Image(4, 4));
-  ASSERT_EQ(client->put(at(job, "/files/MyToy.obj"), toy).status, 201);
-  ASSERT_EQ(client->put(at(job, "/files/myTOY-1.png"), {png.begin(), png.end()}).status, 201);
-  const Reply adopted =
-      client->post(at(job, "/adopt"), R"({"files": ["MyToy.obj", "myTOY-1.png"]})");
-  ASSERT_EQ(adopted.status, 200) << adopted.body;
-  const json document = adopted.json()["document"];
-  EXPECT_EQ(document["object"]["texture"], "myTOY-1.png") << document;
-  EXPECT_FALSE(document.contains("artwork"));
-}
-
 // Before the print says it, in the same words but for options.
 TEST_F(JobTest, ArtworkThatGetsNoFilmIsNamed) {
   const std::string job = sample("sphere");
@@ -655,6 +650,23 @@ TEST_F(JobTest, ArtworkThatGetsNoFilmIsNamed) {
   EXPECT_EQ(told(same["findings"]), 1) << same["findings"];
 }
 
+// Its own picture is named like the model or like a texture, in whatever letters.
+TEST_F(JobTest, APictureThatIsNamedLikeTheModelIsItsTexture) {
+  const std::string job = client->post("/api/jobs").json()["job"];
+  const std::string toy =
+      "v 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nvt 0 0\nvt 1 0\nvt 0 1\n"
+      "f 1/1 3/3 2/2\nf 1/1 2/2 4/3\nf 2/1 3/2 4/3\nf 1/1 4/3 3/2\n";
+  const std::vector<std::uint8_t> png = encode_png(Image(4, 4));
+  ASSERT_EQ(client->put(at(job, "/files/MyToy.obj"), toy).status, 201);
+  ASSERT_EQ(client->put(at(job, "/files/myTOY-1.png"), {png.begin(), png.end()}).status, 201);
+  const Reply adopted =
+      client->post(at(job, "/adopt"), R"({"files": ["MyToy.obj", "myTOY-1.png"]})");
+  ASSERT_EQ(adopted.status, 200) << adopted.body;
+  const json document = adopted.json()["document"];
+  EXPECT_EQ(document["object"]["texture"], "myTOY-1.png") << document;
+  EXPECT_FALSE(document.contains("artwork"));
+}
+
 // A large model takes a while to read; the job is anybody's meanwhile.
 TEST_F(JobTest, WhatIsSaidWhileAModelIsReadStays) {
   constexpr int kSide = 300;
@@ -691,18 +703,6 @@ TEST_F(JobTest, WhatIsSaidWhileAModelIsReadStays) {
   EXPECT_EQ(document["object"]["file"], "large.obj");
 }
 
-TEST_F(JobTest, AJobThatCannotBeBegunLeavesNothing) {
-  sample("box");
-  const auto jobs = [&] {
-    return std::distance(std::filesystem::directory_iterator(folder.path() / "jobs"), {});
-  };
-  const auto before = jobs();
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path() / "samples"))
-    if (entry.path().filename() == "box.obj") std::filesystem::remove(entry.path());
-  EXPECT_GE(client->post("/api/jobs", R"({"sample": "box"})").status, 400);
-  EXPECT_GE(client->post("/api/jobs", R"({"sample": "no such"})").status, 400);
-  EXPECT_EQ(jobs(), before);
-}
 // Reading a large one takes longer than all else.
 TEST_F(JobTest, ADroppedModelIsReadOnce) {
   const auto opened_by = [](const std::filesystem::path& file, const auto& work) {
@@ -733,6 +733,18 @@ TEST_F(JobTest, ADroppedModelIsReadOnce) {
   EXPECT_EQ(times, once);
 }
 
+TEST_F(JobTest, AJobThatCannotBeBegunLeavesNothing) {
+  sample("box");
+  const auto jobs = [&] {
+    return std::distance(std::filesystem::directory_iterator(folder.path() / "jobs"), {});
+  };
+  const auto before = jobs();
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path() / "samples"))
+    if (entry.path().filename() == "box.obj") std::filesystem::remove(entry.path());
+  EXPECT_GE(client->post("/api/jobs", R"({"sample": "box"})").status, 400);
+  EXPECT_GE(client->post("/api/jobs", R"({"sample": "no such"})").status, 400);
+  EXPECT_EQ(jobs(), before);
+}
 
 // Whoever chose "part.stl" knows it by that name, and not by where this program keeps it.
 TEST_F(JobTest, ABadFileIsCalledByItsNameAlone) {

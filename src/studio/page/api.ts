@@ -24,6 +24,7 @@ export interface Recent {
   where: string;
   changed: string;
   unsaved: boolean;
+  open: boolean; // in another tab, or in another studio
   recovered: boolean;
   thumbnail: string;
 }
@@ -406,8 +407,8 @@ const bytes = async (path: string): Promise<ArrayBuffer> => {
 };
 
 export const api = {
-  hello: () => json<Hello>('/api/hello', 'GET'),
-  recent: () => json<Recent[] | { recent: Recent[] }>('/api/recent', 'GET').then((r) => (Array.isArray(r) ? r : r.recent)),
+  hello: (client: string) => json<Hello>(`/api/hello?client=${part(client)}`, 'GET'),
+  recent: (client: string) => json<Recent[] | { recent: Recent[] }>(`/api/recent?client=${part(client)}`, 'GET').then((r) => (Array.isArray(r) ? r : r.recent)),
   forget: (job: string) => json<unknown>(`/api/recent/${part(job)}`, 'DELETE'),
   profile: (job: string, name: string) => json<{ patch: Patch }>(`/api/jobs/${part(job)}/profiles/${part(name)}`, 'GET').then((r) => r.patch),
   saveProfile: (job: string, name: string) => json<{ profiles: string[] }>(`/api/jobs/${part(job)}/profiles/${part(name)}`, 'PUT', {}).then((r) => r.profiles),

@@ -523,7 +523,7 @@ export class Job {
   // A stream of events does not tell why there is none.
   private async again(): Promise<void> {
     try {
-      await api.recent();
+      await api.recent(this.client);
     } catch (error) {
       if (this.closed) return;
       if (error instanceof ApiError && error.code === 'no-token') this.link.value = 'shut';

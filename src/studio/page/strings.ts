@@ -23,6 +23,7 @@ export const t = {
     recent: 'Recent jobs',
     unsaved: 'not saved',
     recovered: 'recovered',
+    open: 'open elsewhere',
     forget: (name: string) => `Take ${name} off this list`,
     nothing: 'Nothing yet. What you work on shows up here, even if the browser is closed in between.',
     sampleText: {

@@ -133,7 +133,7 @@ export const chosenLayer = computed(() => {
 
 // --- Opening ---
 
-const CLIENT = (() => {
+export const CLIENT = (() => {
   const known = sessionStorage.getItem('hydrodip-client');
   // A duplicated tab brings the first one's storage along: it must not pass for it.
   const fresh = `c${crypto.getRandomValues(new Uint32Array(2)).join('')}`;
@@ -226,7 +226,7 @@ export async function goToStart(): Promise<void> {
   job.value = null;
   resetView();
   history.pushState(null, '', location.pathname);
-  recent.value = await api.recent().catch(() => recent.value);
+  recent.value = await api.recent(CLIENT).catch(() => recent.value);
 }
 
 let arrival: Promise<void> = Promise.resolve(); // what is dropped meanwhile comes after it
@@ -254,7 +254,7 @@ export async function addFiles(given: readonly File[], at_mm: Vec3 | null = null
 const jobOfAddress = (): string | null => new URLSearchParams(location.hash.slice(1)).get('job');
 
 export async function begin(): Promise<void> {
-  const answer = await api.hello();
+  const answer = await api.hello(CLIENT);
   hello.value = answer;
   recent.value = answer.recent;
   const wanted = jobOfAddress() ?? answer.opened;

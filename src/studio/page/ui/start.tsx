@@ -1,6 +1,6 @@
 // The empty page: a large place to drop things, samples, and what was worked on before.
-import { api } from '../api.ts';
-import { addFiles, arriving, createJob, failure, hello, openJob, recent } from '../studio.ts';
+import { api, type Recent } from '../api.ts';
+import { addFiles, arriving, CLIENT, createJob, failure, hello, openJob, recent } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button, Files } from './fields.tsx';
 import { SampleDrawing } from './samples.tsx';
@@ -46,7 +46,7 @@ export function Start() {
                 <b title={entry.name}>{entry.name || t.top.untitled}</b>
                 <small>
                   {new Date(entry.changed).toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' })}
-                  {entry.recovered ? ` · ${t.start.recovered}` : entry.unsaved ? ` · ${t.start.unsaved}` : ''}
+                  {stateOf(entry)}
                 </small>
               </button>
               <Button label={t.start.forget(entry.name)} icon="close" iconOnly kind="quiet" onClick={() => void forget(entry.job)} />
@@ -59,9 +59,14 @@ export function Start() {
 }
 
 async function forget(id: string): Promise<void> {
+function stateOf({ open, recovered, unsaved }: Recent): string {
+  const word = open ? t.start.open : recovered ? t.start.recovered : unsaved ? t.start.unsaved : '';
+  return word && ` · ${word}`;
+}
+
   try {
     await api.forget(id);
-    recent.value = await api.recent();
+    recent.value = await api.recent(CLIENT);
     failure.value = '';
   } catch (error) {
     failure.value = error instanceof Error ? error.message : String(error);
