@@ -8,6 +8,7 @@ import { Job } from './job.ts';
 import { heightOf, leant, turnOf } from './stage/pose.ts';
 import type { Compare, Hit, Stage, Tool, View } from './stage/stage.ts';
 import { t } from './strings.ts';
+import { keepPicture } from './thumbnail.ts';
 
 export type StepName = 'model' | 'artwork' | 'dips' | 'film';
 export const STEPS: readonly StepName[] = ['model', 'artwork', 'dips', 'film'];
@@ -145,7 +146,7 @@ export const CLIENT = (() => {
 
 export async function openJob(id: string): Promise<Job | null> {
   if (job.value?.id === id) return job.value;
-  job.value?.close();
+  void leave();
   resetView();
   const next = new Job(id, CLIENT);
   try {
@@ -221,11 +222,21 @@ export async function createJob(from: { sample?: string; job?: string } = {}): P
   }
 }
 
+// What it looks like is kept first. Until that is there.
+function leave(): Promise<void> {
+  const open = job.value;
+  if (!open) return Promise.resolve();
+  const pictured = readOnly.value ? Promise.resolve() : keepPicture(open, stage.current);
+  open.close();
+  return pictured;
+}
+
 export async function goToStart(): Promise<void> {
-  job.value?.close();
+  const pictured = leave();
   job.value = null;
   resetView();
   history.pushState(null, '', location.pathname);
+  await pictured;
   recent.value = await api.recent(CLIENT).catch(() => recent.value);
 }
 

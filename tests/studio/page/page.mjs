@@ -662,6 +662,50 @@ test('a tilt, a shift and a second dip go together, whichever comes first', asyn
 let lone;
 test('a way of its own says depth and shift; straight down they are the person\'s again', async () => {
   lone = await session.page();
+test('artwork that gets no film says so in its list, its step and among what to mind, before it is printed', async () => {
+  lone = await session.page();
+  const text = { text: 'A', size_mm: 12 };
+  await openQuick(lone, 'box', { dip: { step_mm: 1, air_cells: 20000, depth_mm: 4 }, artwork: [{ ...text, toward: [0, 0, 1] }, { ...text, toward: [0, 0, -1], up: [0, 1, 0] }] });
+  await until('the step says it', async () => (await lone.textContent('[data-step="artwork"] .summary')) === '2 layers, 1 without film');
+  await lone.keyboard.press('2');
+  await lone.waitForSelector('[data-name="dry-1"]');
+  assert.equal(await lone.locator('[data-name="dry-0"]').count(), 0);
+  await lone.waitForSelector('.side .finding >> text=this artwork gets no film that holds');
+  await lone.click('[data-layer="1"]');
+  await lone.waitForSelector('.said.care');
+  await picture(lone, 'dry');
+  // Turned over it is the other one that gets none.
+  await lone.keyboard.press('1');
+  await lone.selectOption('[name="down"]', '+z');
+  await lone.keyboard.press('2');
+  await lone.waitForSelector('[data-name="dry-0"]');
+  assert.equal(await lone.locator('[data-name="dry-1"]').count(), 0);
+  await lone.close();
+});
+
+test('a job that is left before anything is computed has its picture in the list; one that a tab has is not recovered', async () => {
+  lone = await session.page();
+  await lone.route('**/results/**', (route) => route.fulfill({ status: 204 }));
+  const pictured = lone.waitForRequest((request) => request.method() === 'PUT' && /thumbnail/.test(request.url()));
+  await lone.click('[data-sample="sphere"]');
+  await pictured;
+  await lone.click('.home');
+  await lone.waitForSelector('.recent li');
+  const entry = () => lone.locator('.recent li').first();
+  await until('its picture', () => entry().locator('img').evaluate((img) => img.complete && img.naturalWidth === 320));
+  assert.equal(await lone.locator('.recent b').first().textContent(), 'sphere');
+  assert.doesNotMatch(await entry().textContent(), /recovered|elsewhere/); // its own tab has left it this moment
+  const other = await session.page({ context: lone.context(), address: program.origin });
+  await other.locator('[data-recent]').first().click();
+  await other.waitForSelector('.work');
+  await lone.reload();
+  await until('it is open elsewhere', async () => /open elsewhere/.test(await entry().textContent()) || !(await lone.reload()));
+  assert.doesNotMatch(await entry().textContent(), /recovered/);
+  await picture(lone, 'open-elsewhere');
+  await other.close();
+  await lone.close();
+});
+
   await openQuick(lone, 'pyramid', { path: [[0, 0, 0, 0, 0, 0], [10, 5, 0, 0, 10, 0]] });
   for (const name of ['depth', 'shift-x', 'shift-y']) assert.ok(await lone.locator(`input[name="${name}"]`).isDisabled(), name);
   assert.equal(await lone.locator('[data-name="depth-handle"]').count(), 0);

@@ -44,6 +44,7 @@ export interface StageEvents {
 
 const FIELD_OF_VIEW = 28;
 const HALF = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+const HALF_SINE = Math.sin((FIELD_OF_VIEW * Math.PI) / 360);
 const WRAPS: Record<string, THREE.Wrapping> = {
   repeat: THREE.RepeatWrapping,
   mirror: THREE.MirroredRepeatWrapping,
@@ -554,7 +555,7 @@ export class Stage {
 
   private lookAlong(view: View, direction: THREE.Vector3, animated: boolean): void {
     const { target, radius } = this.home(view);
-    const distance = (1.02 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / Math.min(1, this.aspect());
+    const distance = (1.02 * radius) / HALF_SINE / Math.min(1, this.aspect());
     const place = direction.normalize().multiplyScalar(distance).add(target);
     const camera = this.cameras[view];
     camera.near = distance / 60;
@@ -606,7 +607,7 @@ export class Stage {
     outward.normalize().add(new THREE.Vector3(-0.1, 0.1, -0.55)).normalize();
     if (this.view === 'bath') outward.z = Math.max(0.25, outward.z);
     const { target, radius } = this.home(this.view);
-    const distance = (0.75 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / Math.min(1, this.aspect());
+    const distance = (0.75 * radius) / HALF_SINE / Math.min(1, this.aspect());
     const toward = this.view === 'object' ? new THREE.Vector3(...place).sub(this.center()).multiplyScalar(0.5) : target;
     this.fly(this.view, outward.multiplyScalar(distance).add(toward), toward, true);
     this.mark(place);
@@ -949,9 +950,8 @@ export class Stage {
     return true;
   }
 
-  private pane(view: View, what: 'bath' | 'wanted' | 'predicted', at: { x: number; y: number; width: number; height: number }, from = 0, to = 1): void {
+  private pane(view: View, what: 'bath' | 'wanted' | 'predicted', at: { x: number; y: number; width: number; height: number }, from = 0, to = 1, camera = this.cameras[view]): void {
     const { renderer } = this;
-    const camera = this.cameras[view];
     camera.aspect = at.width / at.height;
     camera.updateProjectionMatrix();
     renderer.setViewport(at.x, at.y, at.width, at.height);
@@ -978,21 +978,26 @@ export class Stage {
     if (from < 1) this.pane('object', 'predicted', at, from, 1);
   }
 
-  // A small picture of the finished object.
-  async thumbnail(width = 320, height = 240): Promise<Blob | null> {
-    if (!this.painted) return null;
+  // A small picture of the finished object, wherever the cameras are; null: there is nothing to be seen.
+  thumbnail(width = 320, height = 240): Promise<Blob | null> | null {
+    if (!this.painted || this.lost || this.size.width < width || this.size.height < height) return null;
     const canvas = document.createElement('canvas');
     [canvas.width, canvas.height] = [width, height];
     const ratio = this.renderer.getPixelRatio();
-    const at = { x: 0, y: 0, width: Math.min(width, this.size.width), height: Math.min(height, this.size.height) };
+    const camera = this.cameras.object.clone();
+    const away = new THREE.Vector3(...DIRECTIONS.object.home).setLength(1.02 * this.radius() / HALF_SINE);
+    camera.position.copy(away);
+    camera.near = away.length() / 60;
+    camera.far = away.length() * 20;
+    camera.lookAt(0, 0, 0);
     const held = this.overlay;
     this.overlay = 'none';
     this.renderer.setScissorTest(true);
-    this.pane('object', this.film ? 'predicted' : 'wanted', at);
+    this.pane('object', this.film ? 'predicted' : 'wanted', { x: 0, y: 0, width, height }, 0, 1, camera);
     this.overlay = held;
     const context = canvas.getContext('2d')!;
     const source = this.renderer.domElement;
-    context.drawImage(source, 0, source.height - at.height * ratio, at.width * ratio, at.height * ratio, 0, 0, width, height);
+    context.drawImage(source, 0, source.height - height * ratio, width * ratio, height * ratio, 0, 0, width, height);
     this.invalidate();
     return new Promise((done) => canvas.toBlob(done, 'image/png'));
   }

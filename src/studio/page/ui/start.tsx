@@ -3,6 +3,7 @@ import { api, type Recent } from '../api.ts';
 import { addFiles, arriving, CLIENT, createJob, failure, hello, openJob, recent } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button, Files } from './fields.tsx';
+import { Icon } from './icons.tsx';
 import { SampleDrawing } from './samples.tsx';
 import { Mark } from './top.tsx';
 
@@ -42,7 +43,7 @@ export function Start() {
           {recent.value.map((entry) => (
             <li key={entry.job}>
               <button type="button" data-recent={entry.job} onClick={() => void openJob(entry.job)}>
-                {entry.thumbnail ? <img src={entry.thumbnail} alt="" loading="lazy" /> : <span class="blank" aria-hidden="true" />}
+                {entry.thumbnail ? <img src={entry.thumbnail} alt="" loading="lazy" /> : <span class="blank" aria-hidden="true"><Icon name="file" /></span>}
                 <b title={entry.name}>{entry.name || t.top.untitled}</b>
                 <small>
                   {new Date(entry.changed).toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' })}
@@ -58,12 +59,12 @@ export function Start() {
   );
 }
 
-async function forget(id: string): Promise<void> {
 function stateOf({ open, recovered, unsaved }: Recent): string {
   const word = open ? t.start.open : recovered ? t.start.recovered : unsaved ? t.start.unsaved : '';
   return word && ` · ${word}`;
 }
 
+async function forget(id: string): Promise<void> {
   try {
     await api.forget(id);
     recent.value = await api.recent(CLIENT);

@@ -1,28 +1,25 @@
-// A picture of the job for the list of recent ones: of its first draft, for jobs that are closed soon, and of every final
-// result.
+// Keeps the picture of the open job, when the hand rests.
 import { effect } from '@preact/signals';
-import { api } from '../api.ts';
-import { job, readOnly, stage } from '../studio.ts';
+import { drawn, job, readOnly, stage } from '../studio.ts';
+import { keepPicture, newPictureOf } from '../thumbnail.ts';
 
-const LARGEST_BYTES = 256_000;
+const REST_MS = 600;
 
 export function keepThumbnail(): () => void {
-  let done = '';
-  let hasOne = '';
+  let waits = '';
   let timer = 0;
   const end = effect(() => {
+    drawn.value;
     const open = job.value;
-    const result = open?.result.value;
+    const what = open && !readOnly.value ? newPictureOf(open, open.result.value) : '';
+    if (what === waits) return;
     clearTimeout(timer);
-    if (!open || !result || readOnly.value || done === result.result) return;
-    if (result.quality !== 'normal' && hasOne === open.id) return;
+    waits = what;
+    if (!open || !what) return;
     timer = window.setTimeout(() => {
-      done = result.result;
-      hasOne = open.id;
-      void stage.current?.thumbnail().then((png) => {
-        if (png && png.size < LARGEST_BYTES && job.value === open) api.thumbnail(open.id, png).catch(() => undefined);
-      });
-    }, 600);
+      waits = '';
+      if (job.value === open) void keepPicture(open, stage.current);
+    }, what === 'model' ? 0 : REST_MS);
   });
   return () => {
     clearTimeout(timer);
