@@ -202,7 +202,8 @@ test('an address with a job in it opens that', async () => {
 test('a draft says so, and becomes final by itself when the hand rests', async () => {
   const before = await resultOf(toy);
   await type(toy, 'turn-z', 10);
-  await toy.waitForSelector('.verdict[data-draft="true"] .badge');
+  const figure = () => toy.textContent('[data-finding="coverage"] .figure');
+  await toy.waitForFunction(() => document.querySelector('.verdict[data-draft="true"] .badge') && /^about \d/.test(document.querySelector('[data-finding="coverage"] .figure').textContent));
   await newResult(toy, before, true);
   assert.equal(await toy.locator('.verdict .badge').count(), 0);
   await undo(toy);

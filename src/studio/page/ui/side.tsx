@@ -48,13 +48,18 @@ export function showFinding(finding: Finding): void {
   if (finding.at_mm) stage.current?.showPlace(finding.at_mm);
 }
 
-export function FindingCard({ finding }: { finding: Finding }) {
+// Beside what is a draft's, which is to be had in figures that are not final.
+export function DraftBadge({ more = '' }: { more?: string }) {
+  return <span class="badge" title={`${t.verdict.draftHelp} ${more}`.trim()}>{t.verdict.draft}</span>;
+}
+
+export function FindingCard({ finding, draft }: { finding: Finding; draft: boolean }) {
   return (
     <li class={`finding ${finding.concern}`} data-finding={finding.key}>
       <p class="head">
         <Icon name={CONCERN_ICON[finding.concern]} />
         <b>{finding.title}</b>
-        <span class="figure">{finding.figure}</span>
+        <span class="figure">{draft ? t.verdict.about(finding.figure) : finding.figure}</span>
       </p>
       <p>{finding.text}</p>
       {finding.advice && <p class="soft">{finding.advice}</p>}
@@ -78,9 +83,10 @@ function Findings() {
   const problem = open.problem.value;
   const result = open.result.value;
   const finish = open.wholeFinish.value;
+  const draft = open.draft.value;
   return (
     <section class="findings-section">
-      <h2>{t.findings.title}</h2>
+      <h2 class="row">{t.findings.title} {!problem && !finish && result && draft && <DraftBadge more={t.verdict.refining} />}</h2>
       {problem && problem.code !== 'no-model' && (
         <ul class="findings">
           <li class="finding stop" data-finding="problem">
@@ -92,28 +98,28 @@ function Findings() {
       )}
       {!problem && finish && (
         <>
-          <h3>{t.dips.together}</h3>
-          <FindingList findings={finish.findings} />
-          <h3>{t.findings.ofDip(open.dip.value + 1)}</h3>
+          <h3 class="row">{t.dips.together} <DraftBadge /></h3>
+          <FindingList findings={finish.findings} draft />
+          <h3 class="row">{t.findings.ofDip(open.dip.value + 1)} {draft && <DraftBadge more={t.verdict.refining} />}</h3>
         </>
       )}
-      {!problem && result && <FindingList findings={result.findings} />}
+      {!problem && result && <FindingList findings={result.findings} draft={draft} />}
     </section>
   );
 }
 
-function FindingList({ findings }: { findings: readonly Finding[] }) {
+function FindingList({ findings, draft }: { findings: readonly Finding[]; draft: boolean }) {
   const list = sorted(findings);
   const mind = list.filter(({ concern }) => concern !== 'none');
   const fine = list.filter(({ concern }) => concern === 'none');
   return (
     <>
       {mind.length === 0 && <p class="soft">{t.findings.none}</p>}
-      <ul class="findings">{mind.map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} />)}</ul>
+      <ul class="findings">{mind.map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} draft={draft} />)}</ul>
       {fine.length > 0 && (
         <details class="fine">
           <summary><Icon name="check" /> {t.verdict.fine(fine.length)}</summary>
-          <ul class="findings">{fine.map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} />)}</ul>
+          <ul class="findings">{fine.map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} draft={draft} />)}</ul>
         </details>
       )}
     </>

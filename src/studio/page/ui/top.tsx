@@ -10,7 +10,7 @@ import { usePanelFocus } from './focus.ts';
 import { Icon } from './icons.tsx';
 import { PrintPanel } from './print.tsx';
 import { taskOf } from './progress.tsx';
-import { CONCERN_ICON, FindingCard, sorted } from './side.tsx';
+import { CONCERN_ICON, DraftBadge, FindingCard, sorted } from './side.tsx';
 
 const toggle = (name: PanelName): void => {
   panel.value = panel.value === name ? 'none' : name;
@@ -162,8 +162,10 @@ function said(): Said {
 function VerdictLine() {
   const open = job.value!;
   const { concern, head, text } = said();
-  const all = head ? `${head}: ${text}` : text;
   const draft = concern !== 'wait' && open.draft.value && !open.problem.value;
+  const rough = draft || (concern !== 'wait' && !open.problem.value && open.wholeFinish.value !== null); // dips are put together as drafts
+  const told = rough ? t.verdict.about(text) : text;
+  const all = head ? `${head}: ${told}` : told;
   const working = open.working.value;
   return (
     <button
@@ -176,8 +178,8 @@ function VerdictLine() {
       onClick={() => toggle('verdict')}
     >
       {concern === 'wait' ? <span class="spinner" data-still={!working} /> : <Icon name={CONCERN_ICON[concern]} />}
-      <span class="sentence" aria-live="polite">{head && <b>{head}</b>} {text}</span>
-      {draft && <span class="badge" title={t.verdict.draftHelp}>{t.verdict.draft}</span>}
+      <span class="sentence" aria-live="polite">{head && <b>{head}</b>} {told}</span>
+      {rough && <DraftBadge more={draft ? t.verdict.refining : ''} />}
       {working?.fraction !== undefined && <i class="thin" style={{ width: `${100 * working.fraction}%` }} />}
     </button>
   );
@@ -187,14 +189,15 @@ function VerdictPanel() {
   const result = job.value!.result.value;
   const finish = job.value!.wholeFinish.value;
   const verdict = finish?.verdict ?? result?.verdict;
+  const draft = job.value!.draft.value;
   return (
     <Panel button=".verdict" kind="verdict-panel" label={t.verdict.restsOn}>
       <PanelHead title={verdict?.headline ?? t.verdict.waiting} />
       {verdict && <p>{verdict.text}</p>}
-      {finish && <ul class="findings">{sorted(finish.findings).map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} />)}</ul>}
+      {(draft || finish) && <p class="soft">{t.verdict.draftHelp} {draft && t.verdict.refining}</p>}
+      {finish && <ul class="findings">{sorted(finish.findings).map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} draft />)}</ul>}
       {finish && <h3>{t.findings.ofDip(job.value!.dip.value + 1)}</h3>}
-      <ul class="findings">{sorted(result?.findings ?? []).map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} />)}</ul>
-      {result && result.warnings.length > 0 && <ul class="notes">{result.warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>}
+      <ul class="findings">{sorted(result?.findings ?? []).map((finding) => <FindingCard key={finding.key + finding.text} finding={finding} draft={draft} />)}</ul>
     </Panel>
   );
 }
