@@ -191,10 +191,10 @@ export interface Film {
   wrinkledList: number[]; // of those that lie
 }
 
-export interface Result {
 // A sketch follows the hand, a draft comes when it stops, and then the normal result.
 export type Quality = 'sketch' | 'draft' | 'normal';
 
+export interface Result {
   result: string;
   revision: number;
   quality: Quality;
@@ -211,6 +211,7 @@ export type Quality = 'sketch' | 'draft' | 'normal';
   findings: Finding[];
   figures: Record<string, number>;
   artwork: { size_mm: [number, number]; stretch: [number, number] }[];
+  dry_layers: number[]; // that get no film, or hardly any, from this dip
   warnings: string[];
   filmMesh: Film;
   printed: Uint8Array;
@@ -227,6 +228,7 @@ export interface Finish {
   covered_share: number;
   verdict: Verdict;
   findings: Finding[];
+  dry_layers: number[]; // to which none of the dips brings film
   dips: { part_share: number; gained_share: number; covered_share: number; torn_share: number; color: string; width_px: number; height_px: number }[];
   seams: { length_mm: number; overlap_mm: number; error_mean: number; off_mm: number; error_mean_off: number };
   sheets: SheetPicture[];

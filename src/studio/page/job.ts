@@ -78,6 +78,13 @@ export class Job {
     const several = (this.document.value.dips?.length ?? 0) > 1;
     return several && finish && finish.revision >= this.revision.value && !this.unsent.value ? finish : null;
   });
+  // Layers of artwork to which no dip brings film, as far as that is known of the document as it is now.
+  readonly dryLayers = computed<readonly number[]>(() => {
+    const several = (this.document.value.dips?.length ?? 0) > 1;
+    if (several) return this.wholeFinish.value?.dry_layers ?? [];
+    const shown = this.result.value;
+    return shown && shown.artwork.length === layersOf(this.document.value).length ? shown.dry_layers : [];
+  });
   readonly mayChange = computed(() => this.pen.value && this.loaded.value);
 
   private events: EventSource | null = null;

@@ -80,7 +80,10 @@ export const t = {
     dips: 'Dips',
     film: 'Film & printer',
     noModel: 'none yet',
-    layers: (n: number) => (n === 0 ? 'the model’s own colours' : n === 1 ? '1 layer' : `${n} layers`),
+    layers: (n: number, dry: number) => {
+      const all = n === 0 ? 'the model’s own colours' : n === 1 ? '1 layer' : `${n} layers`;
+      return dry === 0 ? all : `${all}, ${dry === n ? '' : `${dry} `}without film`;
+    },
     oneDip: (depth: string) => `one, ${depth}`,
     manyDips: (n: number, covered: number | null) => `${n} dips${covered === null ? '' : `, about ${percent(covered)} of the object covered`}`,
     wholeDepth: 'whole object',
@@ -173,6 +176,8 @@ export const t = {
     laid: (w: number, h: number, onFilm: boolean) => `${w.toFixed(0)} × ${h.toFixed(0)} mm on the ${onFilm ? 'film' : 'object'}`,
     stretched: (low: number, high: number) => `stretched ${low.toFixed(2)} to ${high.toFixed(2)} times`,
     roundHint: 'It lies around the object, its middle where the object goes in first. Give it a centre (under More) to move it by hand.',
+    dry: 'gets no film',
+    dryHelp: 'No film that holds gets here: move it, turn the object, dip deeper, or add a dip.',
     patternHint: 'Drag the pattern on the sheet or on the object.',
   },
 

@@ -205,7 +205,8 @@ test('a draft says so, and becomes final by itself when the hand rests', async (
   const figure = () => toy.textContent('[data-finding="coverage"] .figure');
   await toy.waitForFunction(() => document.querySelector('.verdict[data-draft="true"] .badge') && /^about \d/.test(document.querySelector('[data-finding="coverage"] .figure').textContent));
   await newResult(toy, before, true);
-  assert.equal(await toy.locator('.verdict .badge').count(), 0);
+  assert.equal(await toy.locator('.verdict .badge, .side .badge').count(), 0);
+  assert.match(await figure(), /^\d/);
   await undo(toy);
   await kept(toy);
 });
@@ -661,8 +662,6 @@ test('a tilt, a shift and a second dip go together, whichever comes first', asyn
 });
 
 let lone;
-test('a way of its own says depth and shift; straight down they are the person\'s again', async () => {
-  lone = await session.page();
 test('artwork that gets no film says so in its list, its step and among what to mind, before it is printed', async () => {
   lone = await session.page();
   const text = { text: 'A', size_mm: 12 };
@@ -707,6 +706,8 @@ test('a job that is left before anything is computed has its picture in the list
   await lone.close();
 });
 
+test('a way of its own says depth and shift; straight down they are the person\'s again', async () => {
+  lone = await session.page();
   await openQuick(lone, 'pyramid', { path: [[0, 0, 0, 0, 0, 0], [10, 5, 0, 0, 10, 0]] });
   for (const name of ['depth', 'shift-x', 'shift-y']) assert.ok(await lone.locator(`input[name="${name}"]`).isDisabled(), name);
   assert.equal(await lone.locator('[data-name="depth-handle"]').count(), 0);

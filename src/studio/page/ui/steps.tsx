@@ -76,7 +76,7 @@ function summaryOf(name: StepName): string {
     case 'model':
       return document.object?.file ?? t.steps.noModel;
     case 'artwork':
-      return t.steps.layers(layersOf(document).length);
+      return t.steps.layers(layersOf(document).length, open.dryLayers.value.length);
     case 'dips':
       return document.dips?.length ? t.steps.manyDips(document.dips.length, open.wholeFinish.value?.covered_share ?? null) : t.steps.oneDip(depthText(document, 0));
     case 'film':
@@ -336,6 +336,7 @@ function textThatFits(): Layer {
 function LayerRow({ entry, at, last }: { entry: Layer; at: number; last: number }) {
   const chosen = layer.value === at;
   const name = layerName(entry);
+  const dry = job.value!.dryLayers.value.includes(at);
   const move = (to: number): void => {
     change((document) => withLayerMoved(document, at, to), t.undo.layerOrder);
     layer.value = to;
@@ -345,7 +346,7 @@ function LayerRow({ entry, at, last }: { entry: Layer; at: number; last: number 
     <li class={chosen ? 'layer chosen' : 'layer'}>
       <button type="button" class="pick" aria-pressed={chosen} data-layer={at} title={name} onClick={() => (layer.value = chosen ? null : at)}>
         {entry.image ? <img src={api.fileUrl(job.value!.id, entry.image)} alt="" loading="lazy" /> : <span class="letter" aria-hidden="true"><Icon name="text" /></span>}
-        <span>{name}</span>
+        <span>{name}{dry && <small data-name={`dry-${at}`}>{t.artwork.dry}</small>}</span>
       </button>
       <Button name={`up-${at}`} label={`${t.artwork.up}: ${name}`} icon="up" iconOnly kind="quiet" changes disabled={at === last} onClick={() => move(at + 1)} />
       <Button name={`down-${at}`} label={`${t.artwork.down}: ${name}`} icon="down" iconOnly kind="quiet" changes disabled={at === 0} onClick={() => move(at - 1)} />
@@ -401,6 +402,7 @@ function LayerForm() {
       <NumberField name="layer-turn" label={t.artwork.turn} unit="°" step={5} min={-3600} max={3600} value={entry.turn_deg ?? 0} onChange={(next, live) => set({ turn_deg: next || undefined }, live, t.undo.layerTurn)} />
       <SelectField name="repeat" label={t.artwork.repeat} value={entry.repeat ?? 'once'} options={Object.entries(t.artwork.repeats)} onChange={(repeat) => set({ repeat: repeat === 'once' ? undefined : (repeat as Layer['repeat']) })} />
       <NumberField name="opacity" label={t.artwork.opacity} unit="%" step={5} min={0} max={100} value={100 * (entry.opacity ?? 1)} onChange={(next, live) => set({ opacity: next === null || next === 100 ? undefined : next / 100 }, live)} />
+      {open.dryLayers.value.includes(at) && <p class="said care"><Icon name="care" /> {t.artwork.dryHelp}</p>}
       {laid && <p class="soft" data-name="laid">{t.artwork.laid(...laid.size_mm, onFilm)}{laid.stretch[0] !== laid.stretch[1] ? `, ${t.artwork.stretched(...laid.stretch)}` : ''}</p>}
       {onFilm && <p class="soft">{t.artwork.patternHint}</p>}
       {isRound(projection) && !center && <p class="soft">{t.artwork.roundHint}</p>}
