@@ -51,7 +51,8 @@ const WRAPS: Record<string, THREE.Wrapping> = {
   clamp: THREE.ClampToEdgeWrapping,
   decal: THREE.ClampToEdgeWrapping,
 };
-const DIRECTIONS: Record<View, Record<LookFrom, Vec3>> = {
+const STEEPEST = (86 / 180) * Math.PI; // from straight above: over the bath one stays over the film
+const DIRECTIONS: Record<View, Partial<Record<LookFrom, Vec3>> & { home: Vec3 }> = {
   bath: {
     home: [0.5, -1, 0.52],
     front: [0, -1, 0.28],
@@ -59,7 +60,6 @@ const DIRECTIONS: Record<View, Record<LookFrom, Vec3>> = {
     right: [1, -0.1, 0.28],
     back: [0, 1, 0.28],
     above: [0.001, -0.02, 1],
-    below: [0.3, -0.7, -0.8],
   },
   object: {
     home: [-0.35, 0.2, -1],
@@ -151,8 +151,13 @@ export class Stage {
     };
     this.cameras = { bath: camera([0, 0, 1]), object: camera([0, 1, 0]) };
     this.orbits = { bath: new OrbitControls(this.cameras.bath, canvas), object: new OrbitControls(this.cameras.object, canvas) };
-    for (const orbit of Object.values(this.orbits)) {
-      orbit.addEventListener('change', this.invalidate);
+    this.orbits.bath.maxPolarAngle = STEEPEST;
+    for (const view of ['bath', 'object'] as const) {
+      const orbit = this.orbits[view];
+      orbit.addEventListener('change', () => {
+        this.keepInSight(view);
+        this.invalidate();
+      });
       orbit.addEventListener('start', () => this.stopFlight());
     }
     this.waterLine = new THREE.LineLoop(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1f6f78 }));
@@ -533,7 +538,18 @@ export class Stage {
   }
 
   look(from: LookFrom): void {
-    this.lookAlong(this.view, new THREE.Vector3(...DIRECTIONS[this.view][from]), true);
+    const direction = DIRECTIONS[this.view][from];
+    if (direction) this.lookAlong(this.view, new THREE.Vector3(...direction), true);
+  }
+
+  // Whoever shifts the view with two fingers comes neither under the film nor away from all there is.
+  private keepInSight(view: View): void {
+    const { target } = this.orbits[view];
+    const { target: middle, radius } = this.home(view);
+    const kept = target.clone().sub(middle).clampLength(0, radius).add(middle);
+    if (view === 'bath') kept.z = Math.max(0, kept.z);
+    this.cameras[view].position.add(kept).sub(target);
+    target.copy(kept);
   }
 
   // Places the cameras that were never placed, or for an object of quite another size; from where they look now.
@@ -866,6 +882,11 @@ export class Stage {
   // --- Drawing ---
 
   resize(width: number, height: number): void {
+  // How high the eye is, over the bath.
+  get eye_mm(): number {
+    return this.cameras.bath.position.z;
+  }
+
     if (width < 1 || height < 1) return;
     const first = this.size.width === 1;
     this.size = { width, height };

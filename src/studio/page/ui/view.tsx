@@ -118,6 +118,7 @@ function startStage(canvas: HTMLCanvasElement): Stage {
       drawn.value = drawn.peek() + 1;
       canvas.dataset['drawn'] = String(drawn.peek());
     },
+      canvas.dataset['eye'] = stage.current?.eye_mm.toFixed(1) ?? '';
   });
 }
 
@@ -218,7 +219,7 @@ function ViewBar() {
             always
             hideLabel
             value=""
-            options={[['', t.stage.from], ...Object.entries(t.stage.sides)]}
+            options={[['', t.stage.from], ...Object.entries(t.stage.sides).filter(([side]) => view.value === 'object' || side !== 'below')]}
             onChange={(side) => side && stage.current?.look(side as LookFrom)}
           />
         </>
