@@ -176,6 +176,8 @@ export const t = {
     laid: (w: number, h: number, onFilm: boolean) => `${w.toFixed(0)} × ${h.toFixed(0)} mm on the ${onFilm ? 'film' : 'object'}`,
     stretched: (low: number, high: number) => `stretched ${low.toFixed(2)} to ${high.toFixed(2)} times`,
     roundHint: 'It lies around the object, its middle where the object goes in first. Give it a centre (under More) to move it by hand.',
+    behind: 'on the other side',
+    behindLong: (name: string) => `${name} is on the other side: look at it`,
     dry: 'gets no film',
     dryHelp: 'No film that holds gets here: move it, turn the object, dip deeper, or add a dip.',
     patternHint: 'Drag the pattern on the sheet or on the object.',

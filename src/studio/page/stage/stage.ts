@@ -617,7 +617,7 @@ export class Stage {
   }
 
   // Flies to a place of the posed object, seen from outside.
-  showPlace(place: Vec3): void {
+  showPlace(place: Vec3, marked = true): void {
     const outward = new THREE.Vector3(...place).sub(this.center());
     if (outward.lengthSq() < 1) outward.set(0, 0, -1);
     outward.normalize().add(new THREE.Vector3(-0.1, 0.1, -0.55)).normalize();
@@ -626,7 +626,7 @@ export class Stage {
     const distance = (0.75 * radius) / HALF_SINE / Math.min(1, this.aspect());
     const toward = this.view === 'object' ? new THREE.Vector3(...place).sub(this.center()).multiplyScalar(0.5) : target;
     this.fly(this.view, outward.multiplyScalar(distance).add(toward), toward, true);
-    this.mark(place);
+    if (marked) this.mark(place);
   }
 
   // --- Tools ---
@@ -645,7 +645,7 @@ export class Stage {
   private makeGizmo(): TransformControls {
     const gizmo = new TransformControls(this.cameras.bath, this.canvas);
     gizmo.setSpace('world');
-    gizmo.setSize(0.85);
+    gizmo.setSize(matchMedia('(pointer: coarse)').matches ? 1.15 : 0.85);
     gizmo.setColors('#cc5a52', '#4f9d5d', '#4a7fc0', '#1f9aa6');
     gizmo.attach(this.proxy);
     this.lowered.add(this.proxy);
@@ -831,6 +831,22 @@ export class Stage {
     this.root.updateMatrixWorld();
     const p = new THREE.Vector3(...place).applyMatrix4(this.group().matrixWorld).project(camera);
     return { x: (0.5 + 0.5 * p.x) * this.size.width, y: (0.5 - 0.5 * p.y) * this.size.height, behind: p.z > 1 };
+  }
+
+  // The nearest point of the canvas that is so far from its edge; `right`: from that on the right.
+  within({ x, y }: { x: number; y: number }, edge: number, right = edge): { x: number; y: number } {
+    const { width, height } = this.size;
+    return { x: Math.min(width - right, Math.max(edge, x)), y: Math.min(height - edge, Math.max(edge, y)) };
+  }
+
+  // Whether the object itself is in front of a place.
+  hides(place: Vec3): boolean {
+    if (!this.painted) return false;
+    const eye = this.cameras[this.view].position.clone().applyMatrix4(this.group().matrixWorld.clone().invert());
+    const toward = new THREE.Vector3(...place).sub(eye);
+    const distance = toward.length();
+    const hit = castRay(this.posed.position, this.painted.data.index, null, eye.toArray(), toward.divideScalar(distance).toArray());
+    return hit !== null && hit.t < distance - 0.04 * this.radius();
   }
 
   // How many millimetres a pixel is at a place.

@@ -1,10 +1,18 @@
-// What is taken hold of in the 3D view: the water line, and the chosen layer's place, width and turn.
+// What is taken hold of in the 3D view: the water line, and the chosen layer's place, width and turn. One kind at a time,
+// for what is being worked on, so that none lies on another.
 import { useRef } from 'preact/hooks';
 import { api } from '../api.ts';
 import { isRound, layerName, layerWidth, withLayer, type Layer, type Vec3 } from '../document.ts';
-import { changePose, change, chosenLayer, drawn, job, layer, ownWay, pose, readOnly, stage, view } from '../studio.ts';
+import { changePose, change, chosenLayer, drawn, job, layer, ownWay, pose, readOnly, stage, step, tool, view } from '../studio.ts';
 import { t } from '../strings.ts';
+import { Icon } from './icons.tsx';
 import { resized } from './steps.tsx';
+
+const DEPTH_WIDE = 100; // px: the depth handle with its figure
+const UNDER_BAR = 76; // px: over the view's upper edge lie its controls
+
+const turnsOrMoves = (): boolean => tool.value === 'turn' || tool.value === 'move';
+const laysArtwork = (): boolean => chosenLayer.value !== null && step.value === 'artwork' && !turnsOrMoves();
 
 const tenth = (length: number): number => Math.round(length * 10) / 10 + 0;
 
@@ -12,9 +20,11 @@ export function DepthHandle() {
   drawn.value;
   const drag = useRef<{ y: number; depth: number; pixel: number } | null>(null);
   const shown = stage.current;
-  if (!shown || readOnly.value || ownWay.value || !shown.extent()[2]) return null;
-  const at = shown.waterLineEnd();
-  if (at.behind) return null;
+  if (!shown || readOnly.value || ownWay.value || !shown.extent()[2] || laysArtwork() || turnsOrMoves()) return null;
+  const end = shown.waterLineEnd();
+  if (end.behind) return null;
+  const { x, y } = shown.within(end, 14, DEPTH_WIDE);
+  const at = { x, y: Math.max(UNDER_BAR, y) };
   const height = shown.extent()[2];
   const depth = shown.depth();
   const set = (next: number, live: boolean): void => {
@@ -152,6 +162,11 @@ export function frameOf(entry: Layer): Frame | null {
   };
 }
 
+interface Point {
+  x: number;
+  y: number;
+}
+
 type Grip = 'move' | 'scale' | 'turn';
 
 export function ArtworkHandles() {
@@ -160,17 +175,21 @@ export function ArtworkHandles() {
   const entry = chosenLayer.value;
   const at = layer.value;
   const shown = stage.current;
-  if (!entry || at === null || !shown || readOnly.value) return null;
+  if (!entry || at === null || !shown || readOnly.value || !laysArtwork()) return null;
   const frame = frameOf(entry);
   if (!frame) return null;
   const corner = (x: number, y: number): Vec3 => plus(plus(frame.center, frame.right, (x * frame.width) / 2), frame.up, (y * frame.height) / 2);
   const points = [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)].map((p) => shown.project(p));
   const middle = shown.project(frame.center);
-  const grip = shown.project(corner(1, -1));
-  const top = shown.project(corner(0, 1.25));
-  const edge = shown.project(corner(0, 1));
   if (middle.behind || (!frame.bent && points.some((p) => p.behind))) return null;
   const name = layerName(entry);
+  // A finger's width apart, however small the picture is, and within the view, however large.
+  const apart = matchMedia('(pointer: coarse)').matches ? 48 : 34;
+  const grip = shown.within(beyond(middle, shown.project(corner(1, -1)), apart), apart / 2);
+  const top = shown.within(beyond(middle, shown.project(corner(0, 1.25)), apart), apart / 2);
+  const edge = shown.project(corner(0, 1));
+  // Handles of what lies behind would pass for those of what is in front.
+  if (!drag.current && shown.hides(frame.center)) return <Behind name={name} at={shown.within(middle, 80)} onShow={() => shown.showPlace(frame.center, false)} />;
   const set = (part: Partial<Layer>, label: string, live: boolean): void => change((document) => withLayer(document, at, part), label, live);
   const follow = (event: PointerEvent, live: boolean): void => {
     const begun = drag.current;
@@ -247,6 +266,24 @@ export function ArtworkHandles() {
       {handle('move', middle, t.artwork.move(name))}
       {!frame.bent && handle('scale', grip, t.artwork.scale(name))}
       {!frame.bent && handle('turn', top, t.artwork.rotate(name))}
+    </div>
+  );
+}
+
+// The point, or one in its direction that is so far from there.
+function beyond(from: Point, to: Point, least: number): Point {
+  const [x, y] = [to.x - from.x, to.y - from.y];
+  const far = Math.hypot(x, y);
+  if (far >= least) return to;
+  return far > 0 ? { x: from.x + (x * least) / far, y: from.y + (y * least) / far } : { x: from.x + least, y: from.y };
+}
+
+function Behind({ name, at, onShow }: { name: string; at: Point; onShow: () => void }) {
+  return (
+    <div class="artwork-handles">
+      <button type="button" class="behind" data-name="behind" title={t.artwork.behindLong(name)} aria-label={t.artwork.behindLong(name)} style={{ transform: `translate(${at.x}px, ${at.y}px) translate(-50%, -50%)` }} onClick={onShow}>
+        <Icon name="eye" /> {t.artwork.behind}
+      </button>
     </div>
   );
 }
