@@ -4,6 +4,7 @@ import { api, type Hello, type Overlay, type Recent } from './api.ts';
 import {
   hasWay, hasWayOfItsOwn, layersOf, patched, poseInPatch, poseOf, valueOf, withoutWayOf, withPose, withTiltTurned, type Json, type JobDocument, type Patch, type Pose, type Vec3,
 } from './document.ts';
+import type { Box } from './free.ts';
 import { Job } from './job.ts';
 import { heightOf, leant, turnOf } from './stage/pose.ts';
 import type { Compare, Hit, Stage, Tool, View } from './stage/stage.ts';
@@ -24,6 +25,7 @@ export const compare = signal<Compare>('both');
 export const overlay = signal<Overlay>('none');
 export const tool = signal<Tool>('none');
 export const panel = signal<Panel>('none');
+export const covering = signal<Box | null>(null); // the open panel, in the window
 export const bigSheet = signal(false);
 export const divider = signal(0.5);
 export const level = signal(-1); // mm; negative: over the water

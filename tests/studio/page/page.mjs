@@ -788,6 +788,98 @@ test('the dip that is shown becomes final: after a reload, with new artwork, and
   await isFinal(lone);
 });
 
+// ---- What is in the way of what ----
+
+const boxOf = (page, selector) => page.locator(selector).first().boundingBox();
+const apart = (a, b) => a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y || b.y + b.height <= a.y;
+
+test('an open panel leaves the object beside it, in every window', async () => {
+  const page = await session.page();
+  await openQuick(page, 'pyramid');
+  for (const [width, height] of [[1440, 900], [1024, 768], [820, 1180]]) {
+    await page.setViewportSize({ width, height });
+    await page.click('[data-value="object"]');
+    for (const panel of ['.verdict', '[data-name="keys"]', '[data-name="save"]']) {
+      await page.click(panel);
+      await page.waitForSelector('.panel');
+      await until(`the view beside the panel of ${panel}`, async () => apart(await boxOf(page, '.panel'), await boxOf(page, '.canvas-box')), 20);
+      const view = await boxOf(page, '.canvas-box');
+      assert.ok(Math.min(view.width, view.height) >= 240, `${view.width} x ${view.height} px are left`);
+      await page.waitForTimeout(200);
+      const share = await filledShare(page, [0.05, 0.1, 0.9, 0.8]);
+      assert.ok(share > 0.04, `the object takes ${share} of what is left`);
+      await picture(page, `beside-${panel.replace(/\W/g, '')}-${width}`);
+      await page.keyboard.press('Escape');
+    }
+  }
+  await page.context().close();
+});
+
+test('two fingers and one bring nobody under the film, nor away from it', async () => {
+  const context = await session.browser.newContext({ viewport: { width: 1024, height: 768 }, hasTouch: true, reducedMotion: 'reduce' });
+  const tablet = await session.page({ context });
+  await openQuick(tablet, 'pyramid');
+  const touch = await context.newCDPSession(tablet);
+  const middle = await middleOf(tablet, '.canvas-box canvas');
+  const fingers = async (from, to) => {
+    const at = (share) => from.map(([x, y], k) => ({ id: k, x: middle.x + x + (to[k][0] - x) * share, y: middle.y + y + (to[k][1] - y) * share }));
+    await touch.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: at(0) });
+    for (let k = 1; k <= 8; ++k) await touch.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: at(k / 8) });
+    await touch.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+  };
+  const eye = async () => Number(await tablet.getAttribute('.canvas-box canvas', 'data-eye'));
+  const first = await eye();
+  assert.ok(first > 50);
+  for (let k = 0; k < 6; ++k) {
+    await fingers([[-40, 120], [40, 120]], [[-70, -180], [70, -180]]); // nearer, and the film up
+    await fingers([[0, 100]], [[0, -220]]); // round it
+  }
+  await tablet.waitForTimeout(300);
+  assert.notEqual(await eye(), first); // they were felt
+  assert.ok((await eye()) > 0, `${await eye()} mm over the water`);
+  assert.equal(await tablet.locator('[name="look"] option[value="below"]').count(), 0);
+  await picture(tablet, 'low');
+  await tablet.keyboard.press('z');
+  await until('as it was', async () => Math.abs((await eye()) - first) < 1, 20);
+  await context.close();
+});
+
+test('handles keep clear of each other, and of what lies behind', async () => {
+  const touch = await session.browser.newContext({ viewport: { width: 1024, height: 768 }, hasTouch: true, reducedMotion: 'reduce' });
+  for (const [context, least] of [[null, 34], [touch, 48]]) {
+    const page = await session.page({ context });
+    await openQuick(page, 'pyramid', { artwork: [{ text: 'A', size_mm: 2, toward: [0, 0, 1], up: [0, 1, 0] }] });
+    await page.keyboard.press('2');
+    await page.click('[data-layer="0"]');
+    const places = await page.locator('[data-grip]').evaluateAll((grips) => grips.map((g) => g.getBoundingClientRect()).map((b) => [b.x + b.width / 2, b.y + b.height / 2]));
+    assert.equal(places.length, 3);
+    for (const [k, a] of places.entries())
+      for (const b of places.slice(0, k)) assert.ok(Math.hypot(a[0] - b[0], a[1] - b[1]) > least - 1.5, `${a} and ${b}`);
+    await picture(page, `grips-${least}`);
+    // From above it is behind the object: said, and one click away.
+    await page.click('[data-value="bath"]');
+    await page.selectOption('[name="look"]', 'above');
+    await page.waitForSelector('[data-name="behind"]');
+    assert.equal(await page.locator('[data-grip], [data-name="depth-handle"]').count(), 0);
+    await picture(page, `behind-${least}`);
+    await page.click('[data-value="object"]');
+    await page.selectOption('[name="look"]', 'back');
+    await page.click('[data-name="behind"]');
+    await page.waitForSelector('[data-grip="move"]');
+    // One kind at a time.
+    await blur(page);
+    await page.keyboard.press('r');
+    await page.waitForSelector('[data-name="tool-turn"][aria-pressed="true"]');
+    assert.equal(await page.locator('[data-grip], [data-name="depth-handle"], [data-name="behind"]').count(), 0);
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('1');
+    await page.waitForSelector('[data-name="depth-handle"]');
+    assert.equal(await page.locator('[data-grip], [data-name="behind"]').count(), 0);
+    await page.close();
+  }
+  await touch.close();
+});
+
 // ---- Artwork ----
 
 part = 'artwork';

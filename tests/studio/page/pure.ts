@@ -5,6 +5,7 @@ import {
   dipCount, equal, laidAnew, merged, patched, poseOf, withAnotherDip, withLayer, withLayerMoved, withNewLayer, withoutDip, withoutLayer, withoutWayOf,
   withPose, withTiltTurned, withValue, type JobDocument, type Json, type Pose, type Side, type Vec3,
 } from '../../../src/studio/page/document.ts';
+import { freePart } from '../../../src/studio/page/free.ts';
 import { anglesOf, placeOf, turnedDown, turnOf } from '../../../src/studio/page/stage/pose.ts';
 
 let seed = 7;
@@ -195,6 +196,21 @@ const tests: Record<string, () => void> = {
       const more: Quaternion = turnedDown(turn, normal);
       close(inModel.applyQuaternion(more), new Vector3(0, 0, -1), String(i));
     }
+  },
+
+  'what a panel leaves free is the side of it with most room, if there is enough'() {
+    const middle = { left: 300, top: 50, right: 1100, bottom: 850 };
+    const free = (left: number, top: number, right: number, bottom: number): number[] => {
+      const { left: l, top: t, right: r, bottom: b } = freePart(middle, { left, top, right, bottom });
+      return [l, t, r, b];
+    };
+    assert.deepEqual(free(1100, 50, 1400, 850), [0, 0, 0, 0]); // beside it
+    assert.deepEqual(free(900, 60, 1400, 840), [0, 0, 208, 0]);
+    assert.deepEqual(free(200, 60, 500, 840), [208, 0, 0, 0]);
+    assert.deepEqual(free(320, 40, 1080, 300), [0, 258, 0, 0]);
+    assert.deepEqual(free(320, 600, 1080, 900), [0, 0, 0, 258]);
+    assert.deepEqual(free(400, 150, 1000, 750), [0, 0, 0, 0]); // all of it matters: nothing is left
+    assert.deepEqual(Object.values(freePart(middle, null)), [0, 0, 0, 0]);
   },
 
   'a placed object stands on the water in the middle of the film, at its size'() {

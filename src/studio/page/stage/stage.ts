@@ -571,7 +571,7 @@ export class Stage {
 
   private lookAlong(view: View, direction: THREE.Vector3, animated: boolean): void {
     const { target, radius } = this.home(view);
-    const distance = (1.02 * radius) / HALF_SINE / Math.min(1, this.aspect());
+    const distance = (1.02 * radius) / HALF_SINE;
     const place = direction.normalize().multiplyScalar(distance).add(target);
     const camera = this.cameras[view];
     camera.near = distance / 60;
@@ -623,7 +623,7 @@ export class Stage {
     outward.normalize().add(new THREE.Vector3(-0.1, 0.1, -0.55)).normalize();
     if (this.view === 'bath') outward.z = Math.max(0.25, outward.z);
     const { target, radius } = this.home(this.view);
-    const distance = (0.75 * radius) / HALF_SINE / Math.min(1, this.aspect());
+    const distance = (0.75 * radius) / HALF_SINE;
     const toward = this.view === 'object' ? new THREE.Vector3(...place).sub(this.center()).multiplyScalar(0.5) : target;
     this.fly(this.view, outward.multiplyScalar(distance).add(toward), toward, true);
     if (marked) this.mark(place);
@@ -765,8 +765,12 @@ export class Stage {
 
   // --- Pointing ---
 
-  private aspect(): number {
-    return this.size.width / Math.max(1, this.size.height);
+  // As much is seen across as along, whichever of the two there is less room for.
+  private fitCamera(camera: THREE.PerspectiveCamera, { width, height }: { width: number; height: number }): THREE.PerspectiveCamera {
+    camera.aspect = width / Math.max(1, height);
+    camera.zoom = Math.min(1, camera.aspect);
+    camera.updateProjectionMatrix();
+    return camera;
   }
 
   private group(): THREE.Group {
@@ -776,9 +780,7 @@ export class Stage {
   // What lies under a point of the canvas (CSS pixels from its corner).
   pick(x: number, y: number): Hit | null {
     if (!this.painted) return null;
-    const camera = this.cameras[this.view];
-    camera.aspect = this.aspect();
-    camera.updateProjectionMatrix();
+    const camera = this.fitCamera(this.cameras[this.view], this.size);
     camera.updateMatrixWorld();
     this.root.updateMatrixWorld();
     const caster = new THREE.Raycaster();
@@ -824,9 +826,7 @@ export class Stage {
 
   // A place of the posed frame on the canvas; `behind`: not in front of the camera.
   project(place: Vec3): { x: number; y: number; behind: boolean } {
-    const camera = this.cameras[this.view];
-    camera.aspect = this.aspect();
-    camera.updateProjectionMatrix();
+    const camera = this.fitCamera(this.cameras[this.view], this.size);
     camera.updateMatrixWorld();
     this.root.updateMatrixWorld();
     const p = new THREE.Vector3(...place).applyMatrix4(this.group().matrixWorld).project(camera);
@@ -851,9 +851,9 @@ export class Stage {
 
   // How many millimetres a pixel is at a place.
   pixel_mm(place: Vec3): number {
-    const camera = this.cameras[this.view];
+    const camera = this.fitCamera(this.cameras[this.view], this.size);
     const p = new THREE.Vector3(...place).applyMatrix4(this.group().matrixWorld);
-    return (2 * HALF * p.distanceTo(camera.position)) / Math.max(1, this.size.height);
+    return (2 * HALF * p.distanceTo(camera.position)) / (Math.max(1, this.size.height) * camera.zoom);
   }
 
   // Where on the canvas the water line can be taken hold of.
@@ -882,6 +882,11 @@ export class Stage {
     return new THREE.Vector3(...direction).applyQuaternion(this.turn).toArray() as Vec3;
   }
 
+  // How high the eye is, over the bath.
+  get eye_mm(): number {
+    return this.cameras.bath.position.z;
+  }
+
   get center_mm(): Vec3 {
     return this.center().toArray() as Vec3;
   }
@@ -898,11 +903,6 @@ export class Stage {
   // --- Drawing ---
 
   resize(width: number, height: number): void {
-  // How high the eye is, over the bath.
-  get eye_mm(): number {
-    return this.cameras.bath.position.z;
-  }
-
     if (width < 1 || height < 1) return;
     const first = this.size.width === 1;
     this.size = { width, height };
@@ -910,7 +910,7 @@ export class Stage {
     this.renderer.setSize(width, height, false);
     if (first && this.model) this.framed = { bath: 0, object: 0 };
     this.frame();
-    this.invalidate();
+    this.show(); // at once: what was drawn is gone
   }
 
   readonly invalidate = (): void => {
@@ -918,11 +918,15 @@ export class Stage {
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
-      if (this.lost) return;
-      this.render();
-      this.events.drawn();
+      this.show();
     });
   };
+
+  private show(): void {
+    if (this.lost) return;
+    this.render();
+    this.events.drawn();
+  }
 
   private updateUniforms(): void {
     this.scene.base = this.base;
@@ -989,8 +993,7 @@ export class Stage {
 
   private pane(view: View, what: 'bath' | 'wanted' | 'predicted', at: { x: number; y: number; width: number; height: number }, from = 0, to = 1, camera = this.cameras[view]): void {
     const { renderer } = this;
-    camera.aspect = at.width / at.height;
-    camera.updateProjectionMatrix();
+    this.fitCamera(camera, at);
     renderer.setViewport(at.x, at.y, at.width, at.height);
     const x = at.x + Math.round(from * at.width);
     renderer.setScissor(x, at.y, at.x + Math.round(to * at.width) - x, at.height);

@@ -3,7 +3,7 @@ import { useSignal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect } from 'preact/hooks';
 import { api, type Concern } from '../api.ts';
-import { change, goToStart, job, narrow, panel, printToShow, readOnly, type Panel as PanelName } from '../studio.ts';
+import { change, covering, goToStart, job, narrow, panel, printToShow, readOnly, type Panel as PanelName } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Button, TextField } from './fields.tsx';
 import { usePanelFocus } from './focus.ts';
@@ -204,6 +204,20 @@ function VerdictPanel() {
 
 export function Panel({ button, kind, label, children }: { button: string; kind: string; label: string; children: ComponentChildren }) {
   const own = usePanelFocus(button);
+  useEffect(() => {
+    const look = (): void => {
+      covering.value = own.current?.getBoundingClientRect() ?? null;
+    };
+    const observer = new ResizeObserver(look);
+    observer.observe(own.current!);
+    look();
+    window.addEventListener('resize', look);
+    return () => {
+      observer.disconnect();
+      window.removeEventListener('resize', look);
+      covering.value = null;
+    };
+  }, []);
   return <section ref={own} tabIndex={-1} class={`panel ${kind}`} aria-label={label}>{children}</section>;
 }
 

@@ -6,9 +6,10 @@ import type { MeshData, Overlay } from '../api.ts';
 import type { Vec3 } from '../document.ts';
 import { between, fateOf } from '../../../report/viewer/pick.js';
 import {
-  allDips, bigSheet, changePose, chooseOverlay, chooseTool, compare, divider, drawn, job, layer, level, overlay, ownWay,
-  playing, pointed, pose, readOnly, scale, showView, stage, tool, value, view,
+  allDips, bigSheet, changePose, chooseOverlay, chooseTool, compare, covering, divider, drawn, job, layer, level, overlay, ownWay,
+  narrow, playing, pointed, pose, readOnly, scale, showView, stage, tool, value, view,
 } from '../studio.ts';
+import { freePart } from '../free.ts';
 import { Stage, type Compare, type Hit, type LookFrom, type View } from '../stage/stage.ts';
 import { overlayOf, sceneOf, STUDIO_OVERLAYS } from '../stage/overlays.ts';
 import { t } from '../strings.ts';
@@ -117,8 +118,8 @@ function startStage(canvas: HTMLCanvasElement): Stage {
     drawn: () => {
       drawn.value = drawn.peek() + 1;
       canvas.dataset['drawn'] = String(drawn.peek());
-    },
       canvas.dataset['eye'] = stage.current?.eye_mm.toFixed(1) ?? '';
+    },
   });
 }
 
@@ -132,8 +133,15 @@ function pointAt(hit: Hit | null): void {
 export function Center() {
   const canvas = useRef<HTMLCanvasElement>(null);
   const box = useRef<HTMLDivElement>(null);
+  const center = useRef<HTMLElement>(null);
   const broken = useSignal(false);
+  const free = useSignal('');
 
+  // What a panel is about is seen beside it.
+  useEffect(() => effect(() => {
+    const { top, right, bottom, left } = freePart(center.current!.getBoundingClientRect(), narrow.value ? null : covering.value);
+    free.value = `${top}px ${right}px ${bottom}px ${left}px`;
+  }), []);
   useEffect(() => {
     let shown: Stage;
     try {
@@ -160,8 +168,8 @@ export function Center() {
 
   const empty = !job.value?.document.value.object?.file;
   return (
-    <section class={`center ${view.value}`} aria-label={t.stage.views}>
-      <div class="canvas-box" ref={box} hidden={bigSheet.value}>
+    <section ref={center} class={`center ${view.value}`} aria-label={t.stage.views}>
+      <div class="canvas-box" ref={box} hidden={bigSheet.value} style={{ inset: free.value }}>
         <canvas
           ref={canvas}
           tabIndex={0}
