@@ -333,3 +333,11 @@ export function withLayerMoved(document: JobDocument, from: number, to: number):
 export const layerName = (layer: Layer): string => layer.text ?? layer.image ?? '';
 export const layerWidth = (layer: Layer): number | null =>
   layer.size_mm === undefined ? null : Array.isArray(layer.size_mm) ? layer.size_mm[0] : layer.size_mm;
+
+// A layer's other measure follows where both are given.
+export function resized(entry: Layer, width: number | null): Layer['size_mm'] {
+  if (width === null) return undefined;
+  const round = (length: number): number => Math.round(length * 10) / 10;
+  if (!Array.isArray(entry.size_mm)) return round(width);
+  return [round(width), round((width * entry.size_mm[1]) / entry.size_mm[0])];
+}

@@ -2,7 +2,7 @@
 import { computed, signal } from '@preact/signals';
 import { api, type Hello, type Overlay, type Recent } from './api.ts';
 import {
-  hasWay, hasWayOfItsOwn, layersOf, patched, poseInPatch, poseOf, valueOf, withoutWayOf, withPose, withTiltTurned, type Json, type JobDocument, type Patch, type Pose, type Vec3,
+  hasWay, hasWayOfItsOwn, layersOf, patched, poseInPatch, poseOf, valueOf, withoutWayOf, withPose, withTiltTurned, withValue, type Json, type JobDocument, type Patch, type Pose, type Vec3,
 } from './document.ts';
 import type { Box } from './free.ts';
 import { Job } from './job.ts';
@@ -74,6 +74,9 @@ export function change(edit: (document: JobDocument) => JobDocument, label: stri
   if (live) open.drag(next);
   else open.commit(next, label);
 }
+
+export const setValue = (name: string, next: Json, label: string, live = false): void =>
+  change((document) => withValue(document, defaults.value, name, next), label, live);
 
 // A shifted way has to say how deep the whole object is, to a tenth of a millimetre. 0: not known yet.
 export function wholeDepth(of: Pose): number {

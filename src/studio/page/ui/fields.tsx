@@ -331,3 +331,12 @@ export function Files({ label, icon, kind, accept, many, name, disabled, title, 
     </span>
   );
 }
+
+export function Group({ title, children }: { title?: string; children: ComponentChildren }) {
+  return (
+    <section class="group">
+      {title && <h3>{title}</h3>}
+      {children}
+    </section>
+  );
+}

@@ -2,11 +2,10 @@
 // for what is being worked on, so that none lies on another.
 import { useRef } from 'preact/hooks';
 import { api } from '../api.ts';
-import { isRound, layerName, layerWidth, withLayer, type Layer, type Vec3 } from '../document.ts';
+import { isRound, layerName, layerWidth, resized, withLayer, type Layer, type Vec3 } from '../document.ts';
 import { changePose, change, chosenLayer, drawn, job, layer, ownWay, pose, readOnly, stage, step, tool, view } from '../studio.ts';
 import { t } from '../strings.ts';
 import { Icon } from './icons.tsx';
-import { resized } from './steps.tsx';
 
 const DEPTH_WIDE = 100; // px: the depth handle with its figure
 const UNDER_BAR = 76; // px: over the view's upper edge lie its controls

@@ -3,7 +3,7 @@ import { batch } from '@preact/signals';
 import { layersOf } from '../document.ts';
 import { bigSheet, chooseTool, goToStep, job, layer, panel, readOnly, stage, STEPS, tool } from '../studio.ts';
 import { focusOn } from './focus.ts';
-import { removeLayer } from './steps.tsx';
+import { removeLayer } from './artwork.tsx';
 import { askPrint, askSave } from './top.tsx';
 import { playDip } from './view.tsx';
 
