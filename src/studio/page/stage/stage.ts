@@ -2,20 +2,21 @@
 // side that met the film. It draws when something has changed, never waits for the program, and knows
 // nothing of jobs: it is told what to show and tells what was done to it.
 import * as THREE from 'three';
-import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import { TransformControls } from 'three/examples/jsm/controls/TransformControls.js';
 import { dress, MODE, sharedTextures, surfaceMaterial } from '../../../report/viewer/surface.js';
 import { castRay } from '../../../report/viewer/pick.js';
 import type { DipFrames, MeshData, Overlay, Result } from '../api.ts';
 import type { Pose, Vec3 } from '../document.ts';
+import { makeBasin, type BathShape, type SheetShape } from './basin.ts';
+import { Eyes, HALF, type LookFrom, type View } from './eyes.ts';
 import { FilmPicture, surfaceOf } from './film.ts';
 import { AIR, overlayOf, sceneOf, type Scene } from './overlays.ts';
+import { discard, makePainted, type Painted } from './painted.ts';
 import { anglesOf, placeOf, turnedDown, turnOf } from './pose.ts';
+import { PoseGizmo } from './pose_gizmo.ts';
 
-export type View = 'bath' | 'object';
+export type { LookFrom, View } from './eyes.ts';
 export type Tool = 'none' | 'turn' | 'move' | 'face';
 export type Compare = 'both' | 'wanted' | 'predicted';
-export type LookFrom = 'home' | 'front' | 'left' | 'right' | 'back' | 'above' | 'below';
 
 export interface FilmSpot {
   triangle: number;
@@ -28,13 +29,6 @@ export interface Hit {
   normal: Vec3;
 }
 
-export interface SheetShape {
-  width_mm: number;
-  height_mm: number;
-  margin_mm: number;
-  disc: boolean;
-}
-
 export interface StageEvents {
   pose(change: Partial<Pose>, live: boolean): void;
   click(hit: Hit | null): void;
@@ -42,45 +36,8 @@ export interface StageEvents {
   drawn(): void;
 }
 
-const FIELD_OF_VIEW = 28;
-const HALF = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
-const HALF_SINE = Math.sin((FIELD_OF_VIEW * Math.PI) / 360);
-const WRAPS: Record<string, THREE.Wrapping> = {
-  repeat: THREE.RepeatWrapping,
-  mirror: THREE.MirroredRepeatWrapping,
-  clamp: THREE.ClampToEdgeWrapping,
-  decal: THREE.ClampToEdgeWrapping,
-};
-const STEEPEST = (86 / 180) * Math.PI; // from straight above: over the bath one stays over the film
-const DIRECTIONS: Record<View, Partial<Record<LookFrom, Vec3>> & { home: Vec3 }> = {
-  bath: {
-    home: [0.5, -1, 0.52],
-    front: [0, -1, 0.28],
-    left: [-1, -0.1, 0.28],
-    right: [1, -0.1, 0.28],
-    back: [0, 1, 0.28],
-    above: [0.001, -0.02, 1],
-  },
-  object: {
-    home: [-0.35, 0.2, -1],
-    front: [0, 0.02, -1],
-    left: [1, 0.15, -0.25],
-    right: [-1, 0.15, -0.25],
-    back: [0.3, 0.2, 1],
-    above: [0, 1, -0.05],
-    below: [0, -1, -0.05],
-  },
-};
-const RESIZED = 1.5; // by so much larger or smaller, an object is looked at anew
 const WHITE = [1, 1, 1];
 const FILM_BASE = [0.80, 0.80, 0.78]; // wet film, linear
-
-interface Painted {
-  mesh: THREE.Mesh; // shown beside others where the model itself is not
-  geometry: THREE.BufferGeometry;
-  materials: THREE.ShaderMaterial[];
-  data: MeshData;
-}
 
 const linear = (hex: string): number[] => new THREE.Color(hex).toArray();
 
@@ -95,10 +52,8 @@ export class Stage {
   private readonly waterLine: THREE.LineLoop;
   private readonly marker = new THREE.Group();
   private readonly facet: THREE.Mesh;
-  private readonly gizmo: TransformControls;
-  private readonly proxy = new THREE.Object3D();
-  private readonly cameras: Record<View, THREE.PerspectiveCamera>;
-  private readonly orbits: Record<View, OrbitControls>;
+  private readonly gizmo: PoseGizmo;
+  private readonly eyes: Eyes;
   private readonly shared;
   private readonly meshes: Record<View, THREE.Mesh>;
   private scene: Scene = sceneOf(null, WHITE);
@@ -116,10 +71,6 @@ export class Stage {
   private base = WHITE;
   private size = { width: 1, height: 1 };
   private waiting = false;
-  private flight = 0;
-  // How large the object was (mm) when a camera was placed for it; 0: never.
-  private framed: Record<View, number> = { bath: 0, object: 0 };
-  private start: { turn: THREE.Quaternion; pose: Pose } | null = null;
   private sheetShape: SheetShape = { width_mm: 210, height_mm: 297, margin_mm: 10, disc: false };
   private lost = false;
 
@@ -144,29 +95,21 @@ export class Stage {
     const empty = new THREE.BufferGeometry();
     this.meshes = { bath: new THREE.Mesh(empty), object: new THREE.Mesh(empty) };
     for (const mesh of Object.values(this.meshes)) mesh.frustumCulled = false;
-    const camera = (up: Vec3): THREE.PerspectiveCamera => {
-      const result = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 1, 10000);
-      result.up.set(...up);
-      return result;
-    };
-    this.cameras = { bath: camera([0, 0, 1]), object: camera([0, 1, 0]) };
-    this.orbits = { bath: new OrbitControls(this.cameras.bath, canvas), object: new OrbitControls(this.cameras.object, canvas) };
-    this.orbits.bath.maxPolarAngle = STEEPEST;
-    for (const view of ['bath', 'object'] as const) {
-      const orbit = this.orbits[view];
-      orbit.addEventListener('change', () => {
-        this.keepInSight(view);
-        this.invalidate();
-      });
-      orbit.addEventListener('start', () => this.stopFlight());
-    }
+    this.eyes = new Eyes(canvas, { home: (view) => this.home(view), size_mm: () => (this.model?.largest_mm ?? 0) * this.scale, changed: () => this.invalidate() });
     this.waterLine = new THREE.LineLoop(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1f6f78 }));
     this.lowered.add(this.meshes.bath, this.waterLine);
     this.bath.add(this.lowered, this.basin);
     this.finished.add(this.meshes.object, this.filmGroup);
     this.facet = this.makeFacet();
     this.makeMarker();
-    this.gizmo = this.makeGizmo();
+    this.gizmo = new PoseGizmo(this.eyes.cameras.bath, canvas, this.lowered, this.bath, {
+      held: () => this.pose && { turn: this.turn.clone(), pose: this.pose },
+      center: () => this.center(),
+      height_mm: () => this.bounds.max.z,
+      moved: (change, live) => events.pose(change, live),
+      holds: (on) => (this.eyes.orbits.bath.enabled = !on && this.view === 'bath'),
+      changed: () => this.invalidate(),
+    });
     this.root.add(this.bath, this.finished);
     this.listen();
     this.setView('bath');
@@ -178,14 +121,14 @@ export class Stage {
     const another = model?.mesh !== this.model?.mesh;
     this.model = model;
     if (!model) this.paint(null, []);
-    if (another) this.framed = { bath: 0, object: 0 };
+    if (another) this.eyes.forget();
     this.place();
   }
 
   // The model in the colours that are wanted of it, with its textures loaded.
   paint(data: MeshData | null, textures: readonly THREE.Texture[]): void {
     const old = this.painted;
-    this.painted = data && this.makePainted(data, textures);
+    this.painted = data && makePainted(data, textures, this.scene, this.shared);
     for (const mesh of Object.values(this.meshes)) {
       mesh.visible = Boolean(this.painted);
       if (!this.painted) continue;
@@ -193,7 +136,7 @@ export class Stage {
       mesh.material = this.painted.materials;
     }
     if (data) this.place();
-    if (old) this.discard(old);
+    if (old) discard(old);
     this.updateUniforms();
     this.invalidate();
   }
@@ -202,9 +145,10 @@ export class Stage {
   setFinish(finish: { colors: MeshData; parts: MeshData } | null, textures: { colors: readonly THREE.Texture[]; parts: readonly THREE.Texture[] }): void {
     for (const part of this.whole ? [this.whole.colors, this.whole.parts] : []) {
       this.finished.remove(part.mesh);
-      this.discard(part);
+      discard(part);
     }
-    this.whole = finish && { colors: this.makePainted(finish.colors, textures.colors), parts: this.makePainted(finish.parts, textures.parts) };
+    const painted = (data: MeshData, list: readonly THREE.Texture[]): Painted => makePainted(data, list, this.scene, this.shared);
+    this.whole = finish && { colors: painted(finish.colors, textures.colors), parts: painted(finish.parts, textures.parts) };
     for (const part of this.whole ? [this.whole.colors, this.whole.parts] : []) {
       part.mesh.visible = false;
       this.finished.add(part.mesh);
@@ -212,43 +156,6 @@ export class Stage {
     if (this.whole) this.place();
     this.updateUniforms();
     this.invalidate();
-  }
-
-  private makePainted(data: MeshData, textures: readonly THREE.Texture[]): Painted {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(data.position.length), 3));
-    geometry.setAttribute('normal', new THREE.BufferAttribute(new Float32Array(data.position.length), 3));
-    if (data.uv) geometry.setAttribute('uv', new THREE.BufferAttribute(data.uv, 2));
-    if (data.color) geometry.setAttribute('tint', new THREE.BufferAttribute(data.color, 4));
-    geometry.setIndex(new THREE.BufferAttribute(data.index, 1));
-    for (const group of data.groups) geometry.addGroup(group.start, group.count, group.material);
-    const maps = new Map<string, THREE.Texture>();
-    const materials = data.materials.map((m) => {
-      const key = `${m.texture} ${m.wrap}`;
-      const picture = textures[m.texture];
-      if (picture && !maps.has(key)) {
-        const texture = picture.clone();
-        texture.wrapS = WRAPS[m.wrap[0]] ?? THREE.RepeatWrapping;
-        texture.wrapT = WRAPS[m.wrap[1]] ?? THREE.RepeatWrapping;
-        texture.needsUpdate = true;
-        maps.set(key, texture);
-      }
-      return surfaceMaterial(this.scene, this.shared, { ...m, map: maps.get(key), tinted: Boolean(data.color) });
-    });
-    if (!data.groups.length) geometry.addGroup(0, data.index.length, 0);
-    if (!materials.length) materials.push(surfaceMaterial(this.scene, this.shared, { tinted: Boolean(data.color) }));
-    const mesh = new THREE.Mesh(geometry, materials);
-    mesh.frustumCulled = false;
-    return { mesh, geometry, materials, data };
-  }
-
-  private discard({ geometry, materials }: Painted): void {
-    geometry.dispose();
-    for (const material of materials) {
-      const map = material.uniforms['map']?.value as THREE.Texture | null;
-      if (material.uniforms['textured']?.value) map?.dispose();
-      material.dispose();
-    }
   }
 
   setPose(pose: Pose, scale: number): void {
@@ -264,9 +171,9 @@ export class Stage {
     this.invalidate();
   }
 
-  setSheet(shape: SheetShape, bath: { width_mm: number; height_mm: number; depth_mm: number }): void {
+  setSheet(shape: SheetShape, bath: BathShape): void {
     this.sheetShape = shape;
-    this.makeBasin(shape, bath);
+    makeBasin(this.basin, shape, bath);
     this.invalidate();
   }
 
@@ -312,47 +219,6 @@ export class Stage {
     add(lids, { color: AIR, transparent: true, opacity: 0.25, depthWrite: false });
   }
 
-  private makeBasin(sheet: SheetShape, bath: { width_mm: number; height_mm: number; depth_mm: number }): void {
-    this.basin.traverse((child) => {
-      const { geometry, material } = child as THREE.Mesh;
-      geometry?.dispose();
-      (material as THREE.Material | undefined)?.dispose();
-    });
-    this.basin.clear();
-    // Bath and sheet may lie either way round.
-    const along = sheet.width_mm > sheet.height_mm === bath.width_mm > bath.height_mm;
-    const width = Math.max(along ? bath.width_mm : bath.height_mm, sheet.width_mm);
-    const height = Math.max(along ? bath.height_mm : bath.width_mm, sheet.height_mm);
-    const water = new THREE.Mesh(
-      new THREE.PlaneGeometry(width, height),
-      new THREE.MeshBasicMaterial({ color: 0x7fa6b8, transparent: true, opacity: 0.22, side: THREE.DoubleSide, depthWrite: false }),
-    );
-    water.position.z = -1.2;
-    water.renderOrder = 2;
-    const box = new THREE.BoxGeometry(width, height, bath.depth_mm);
-    const walls = new THREE.LineSegments(new THREE.EdgesGeometry(box), new THREE.LineBasicMaterial({ color: 0x8a9299, transparent: true, opacity: 0.5 }));
-    walls.position.z = -1.2 - bath.depth_mm / 2;
-    box.dispose();
-    const rim = new THREE.Mesh(this.rimShape(sheet), new THREE.MeshBasicMaterial({ color: 0xd9c7a0, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -1 }));
-    rim.position.z = 0.7; // over the film's edge, which is drawn a little nearer than it is
-    this.basin.add(water, walls, rim);
-  }
-
-  // The taped rim, at true size.
-  private rimShape({ width_mm, height_mm, margin_mm, disc }: SheetShape): THREE.ShapeGeometry {
-    const outer = new THREE.Shape();
-    const inner = new THREE.Path();
-    const [w, h] = [width_mm / 2, height_mm / 2];
-    outer.moveTo(-w, -h).lineTo(w, -h).lineTo(w, h).lineTo(-w, h).closePath();
-    if (disc) inner.absarc(0, 0, Math.max(1, Math.min(w, h) - margin_mm), 0, 2 * Math.PI, true);
-    else {
-      const [x, y] = [Math.max(1, w - margin_mm), Math.max(1, h - margin_mm)];
-      inner.moveTo(-x, -y).lineTo(-x, y).lineTo(x, y).lineTo(x, -y).closePath();
-    }
-    outer.holes.push(inner);
-    return new THREE.ShapeGeometry(outer, 48);
-  }
-
   private makeFacet(): THREE.Mesh {
     const facet = new THREE.Mesh(
       new THREE.RingGeometry(0.72, 1, 40),
@@ -389,10 +255,10 @@ export class Stage {
     }
     this.finished.position.copy(this.center()).negate();
     this.marker.children.forEach((child) => child.scale.setScalar(this.radius() / 55));
-    this.placeGizmo();
+    this.gizmo.place();
     this.glue();
     this.placeWaterLine();
-    this.frame();
+    this.eyes.frame();
     this.setLevel(this.level);
   }
 
@@ -514,8 +380,8 @@ export class Stage {
 
   setView(view: View): void {
     this.view = view;
-    for (const [key, orbit] of Object.entries(this.orbits)) orbit.enabled = key === view;
-    this.frame();
+    for (const [key, orbit] of Object.entries(this.eyes.orbits)) orbit.enabled = key === view;
+    this.eyes.frame();
     this.setTool(this.tool);
     this.invalidate();
   }
@@ -533,87 +399,12 @@ export class Stage {
   // Both views, so that the one that is shown next is not where an earlier size left it.
   fit(): void {
     const other = this.view === 'bath' ? 'object' : 'bath';
-    this.lookAlong(other, new THREE.Vector3(...DIRECTIONS[other].home), false);
+    this.eyes.look(other, 'home', false);
     this.look('home');
   }
 
   look(from: LookFrom): void {
-    const direction = DIRECTIONS[this.view][from];
-    if (direction) this.lookAlong(this.view, new THREE.Vector3(...direction), true);
-  }
-
-  // Whoever shifts the view with two fingers comes neither under the film nor away from all there is.
-  private keepInSight(view: View): void {
-    const { target } = this.orbits[view];
-    const { target: middle, radius } = this.home(view);
-    const kept = target.clone().sub(middle).clampLength(0, radius).add(middle);
-    if (view === 'bath') kept.z = Math.max(0, kept.z);
-    this.cameras[view].position.add(kept).sub(target);
-    target.copy(kept);
-  }
-
-  // Places the cameras that were never placed, or for an object of quite another size; from where they look now.
-  private frame(): void {
-    if (!this.model) return;
-    for (const view of ['bath', 'object'] as const) {
-      const then = this.framed[view];
-      const now = this.size_mm();
-      if (then && now < RESIZED * then && then < RESIZED * now) continue;
-      const direction = then ? this.cameras[view].position.clone().sub(this.orbits[view].target) : new THREE.Vector3(...DIRECTIONS[view].home);
-      this.lookAlong(view, direction, false);
-    }
-  }
-
-  // The same however the object is turned.
-  private size_mm(): number {
-    return Math.max(1e-9, (this.model?.largest_mm ?? 0) * this.scale);
-  }
-
-  private lookAlong(view: View, direction: THREE.Vector3, animated: boolean): void {
-    const { target, radius } = this.home(view);
-    const distance = (1.02 * radius) / HALF_SINE;
-    const place = direction.normalize().multiplyScalar(distance).add(target);
-    const camera = this.cameras[view];
-    camera.near = distance / 60;
-    camera.far = distance * 20;
-    this.orbits[view].minDistance = 0.1 * distance;
-    this.orbits[view].maxDistance = 5 * distance;
-    if (this.model) this.framed[view] = this.size_mm();
-    this.fly(view, place, target, animated);
-  }
-
-  private fly(view: View, place: THREE.Vector3, target: THREE.Vector3, animated: boolean): void {
-    this.stopFlight();
-    const camera = this.cameras[view];
-    const orbit = this.orbits[view];
-    const end = (): void => {
-      camera.position.copy(place);
-      orbit.target.copy(target);
-      orbit.update();
-      this.invalidate();
-    };
-    if (!animated || matchMedia('(prefers-reduced-motion: reduce)').matches) return end();
-    const from = { offset: camera.position.clone().sub(orbit.target), target: orbit.target.clone() };
-    const to = place.clone().sub(target);
-    const began = performance.now();
-    const turnTo = new THREE.Quaternion().setFromUnitVectors(from.offset.clone().normalize(), to.clone().normalize());
-    const step = (now: number): void => {
-      const t = Math.min(1, Math.max(0, (now - began) / 350));
-      const eased = t * t * (3 - 2 * t);
-      if (t >= 1) return end();
-      const turned = from.offset.clone().applyQuaternion(new THREE.Quaternion().slerp(turnTo, eased));
-      turned.setLength(THREE.MathUtils.lerp(from.offset.length(), to.length(), eased));
-      orbit.target.lerpVectors(from.target, target, eased);
-      camera.position.copy(orbit.target).add(turned);
-      camera.lookAt(orbit.target);
-      this.invalidate();
-      this.flight = requestAnimationFrame(step);
-    };
-    this.flight = requestAnimationFrame(step);
-  }
-
-  private stopFlight(): void {
-    cancelAnimationFrame(this.flight);
+    this.eyes.look(this.view, from, true);
   }
 
   // Flies to a place of the posed object, seen from outside.
@@ -622,10 +413,8 @@ export class Stage {
     if (outward.lengthSq() < 1) outward.set(0, 0, -1);
     outward.normalize().add(new THREE.Vector3(-0.1, 0.1, -0.55)).normalize();
     if (this.view === 'bath') outward.z = Math.max(0.25, outward.z);
-    const { target, radius } = this.home(this.view);
-    const distance = (0.75 * radius) / HALF_SINE;
-    const toward = this.view === 'object' ? new THREE.Vector3(...place).sub(this.center()).multiplyScalar(0.5) : target;
-    this.fly(this.view, outward.multiplyScalar(distance).add(toward), toward, true);
+    const toward = this.view === 'object' ? new THREE.Vector3(...place).sub(this.center()).multiplyScalar(0.5) : this.home(this.view).target;
+    this.eyes.approach(this.view, outward, toward);
     if (marked) this.mark(place);
   }
 
@@ -633,68 +422,11 @@ export class Stage {
 
   setTool(tool: Tool): void {
     this.tool = tool;
-    const gizmo = !this.readOnly && this.view === 'bath' && this.model && (tool === 'turn' || tool === 'move');
-    this.gizmo.enabled = Boolean(gizmo);
-    this.gizmo.getHelper().visible = Boolean(gizmo);
-    if (gizmo) this.gizmo.setMode(tool === 'turn' ? 'rotate' : 'translate');
+    const gizmo = !this.readOnly && this.view === 'bath' && this.model !== null && (tool === 'turn' || tool === 'move');
+    this.gizmo.show(gizmo ? tool : null);
     this.facet.visible = false;
     this.canvas.style.cursor = tool === 'face' ? 'crosshair' : '';
     this.invalidate();
-  }
-
-  private makeGizmo(): TransformControls {
-    const gizmo = new TransformControls(this.cameras.bath, this.canvas);
-    gizmo.setSpace('world');
-    gizmo.setSize(matchMedia('(pointer: coarse)').matches ? 1.15 : 0.85);
-    gizmo.setColors('#cc5a52', '#4f9d5d', '#4a7fc0', '#1f9aa6');
-    gizmo.attach(this.proxy);
-    this.lowered.add(this.proxy);
-    const helper = gizmo.getHelper();
-    helper.visible = false;
-    this.bath.add(helper);
-    gizmo.addEventListener('change', this.invalidate);
-    gizmo.addEventListener('dragging-changed', ({ value }) => {
-      this.orbits.bath.enabled = !value && this.view === 'bath';
-      if (value && this.pose) this.start = { turn: this.turn.clone(), pose: this.pose };
-      else this.endGizmo();
-    });
-    gizmo.addEventListener('objectChange', () => this.followGizmo(true));
-    return gizmo;
-  }
-
-  private followGizmo(live: boolean): void {
-    if (!this.start) return;
-    const { turn, pose } = this.start;
-    if (this.tool === 'turn') {
-      const turned = this.proxy.quaternion.clone().multiply(turn);
-      this.events.pose({ rotate_deg: anglesOf(turned, pose.down) }, live);
-    } else {
-      const moved = this.proxy.position.clone().sub(this.proxy.userData['from'] as THREE.Vector3);
-      const tenth = (value: number): number => Math.round(value * 10) / 10 + 0;
-      const change: Partial<Pose> = {};
-      if (moved.x || moved.y) change.shift_mm = [tenth(pose.shift_mm[0] + moved.x), tenth(pose.shift_mm[1] + moved.y)];
-      if (Math.abs(moved.z) > 0.04) {
-        const height = this.bounds.max.z;
-        const depth = Math.min(height, Math.max(0.5, (pose.depth_mm || height) - moved.z));
-        change.depth_mm = depth > height - 0.05 ? 0 : tenth(depth);
-      }
-      this.events.pose(change, live);
-    }
-  }
-
-  private endGizmo(): void {
-    if (!this.start) return;
-    this.followGizmo(false);
-    this.start = null;
-    this.placeGizmo();
-    this.invalidate();
-  }
-
-  private placeGizmo(): void {
-    if (this.start) return;
-    this.proxy.position.copy(this.center());
-    this.proxy.quaternion.identity();
-    this.proxy.userData['from'] = this.proxy.position.clone();
   }
 
   private listen(): void {
@@ -711,7 +443,7 @@ export class Stage {
       const [x, y] = where(event);
       const still = down && Math.hypot(x - down.x, y - down.y) < 5;
       down = null;
-      if (!still || this.gizmo.axis || event.button !== 0) return;
+      if (!still || this.gizmo.pointed || event.button !== 0) return;
       const hit = this.pick(x, y);
       if (this.tool === 'face') this.putDown(hit);
       else this.events.click(hit);
@@ -735,13 +467,8 @@ export class Stage {
       this.lost = false;
       this.invalidate();
     });
-    window.addEventListener('keydown', (event) => this.snap(event.shiftKey));
-    window.addEventListener('keyup', (event) => this.snap(event.shiftKey));
-  }
-
-  private snap(on: boolean): void {
-    this.gizmo.setRotationSnap(on ? Math.PI / 12 : null);
-    this.gizmo.setTranslationSnap(on ? 5 : null);
+    window.addEventListener('keydown', (event) => this.gizmo.snap(event.shiftKey));
+    window.addEventListener('keyup', (event) => this.gizmo.snap(event.shiftKey));
   }
 
   private showFacet(hit: Hit | null): void {
@@ -765,14 +492,6 @@ export class Stage {
 
   // --- Pointing ---
 
-  // As much is seen across as along, whichever of the two there is less room for.
-  private fitCamera(camera: THREE.PerspectiveCamera, { width, height }: { width: number; height: number }): THREE.PerspectiveCamera {
-    camera.aspect = width / Math.max(1, height);
-    camera.zoom = Math.min(1, camera.aspect);
-    camera.updateProjectionMatrix();
-    return camera;
-  }
-
   private group(): THREE.Group {
     return this.view === 'bath' ? this.lowered : this.finished;
   }
@@ -780,7 +499,7 @@ export class Stage {
   // What lies under a point of the canvas (CSS pixels from its corner).
   pick(x: number, y: number): Hit | null {
     if (!this.painted) return null;
-    const camera = this.fitCamera(this.cameras[this.view], this.size);
+    const camera = this.eyes.fit(this.eyes.cameras[this.view], this.size);
     camera.updateMatrixWorld();
     this.root.updateMatrixWorld();
     const caster = new THREE.Raycaster();
@@ -826,7 +545,7 @@ export class Stage {
 
   // A place of the posed frame on the canvas; `behind`: not in front of the camera.
   project(place: Vec3): { x: number; y: number; behind: boolean } {
-    const camera = this.fitCamera(this.cameras[this.view], this.size);
+    const camera = this.eyes.fit(this.eyes.cameras[this.view], this.size);
     camera.updateMatrixWorld();
     this.root.updateMatrixWorld();
     const p = new THREE.Vector3(...place).applyMatrix4(this.group().matrixWorld).project(camera);
@@ -842,7 +561,7 @@ export class Stage {
   // Whether the object itself is in front of a place.
   hides(place: Vec3): boolean {
     if (!this.painted) return false;
-    const eye = this.cameras[this.view].position.clone().applyMatrix4(this.group().matrixWorld.clone().invert());
+    const eye = this.eyes.cameras[this.view].position.clone().applyMatrix4(this.group().matrixWorld.clone().invert());
     const toward = new THREE.Vector3(...place).sub(eye);
     const distance = toward.length();
     const hit = castRay(this.posed.position, this.painted.data.index, null, eye.toArray(), toward.divideScalar(distance).toArray());
@@ -851,7 +570,7 @@ export class Stage {
 
   // How many millimetres a pixel is at a place.
   pixel_mm(place: Vec3): number {
-    const camera = this.fitCamera(this.cameras[this.view], this.size);
+    const camera = this.eyes.fit(this.eyes.cameras[this.view], this.size);
     const p = new THREE.Vector3(...place).applyMatrix4(this.group().matrixWorld);
     return (2 * HALF * p.distanceTo(camera.position)) / (Math.max(1, this.size.height) * camera.zoom);
   }
@@ -884,7 +603,7 @@ export class Stage {
 
   // How high the eye is, over the bath.
   get eye_mm(): number {
-    return this.cameras.bath.position.z;
+    return this.eyes.cameras.bath.position.z;
   }
 
   get center_mm(): Vec3 {
@@ -908,8 +627,8 @@ export class Stage {
     this.size = { width, height };
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     this.renderer.setSize(width, height, false);
-    if (first && this.model) this.framed = { bath: 0, object: 0 };
-    this.frame();
+    if (first && this.model) this.eyes.forget();
+    this.eyes.frame();
     this.show(); // at once: what was drawn is gone
   }
 
@@ -991,9 +710,9 @@ export class Stage {
     return true;
   }
 
-  private pane(view: View, what: 'bath' | 'wanted' | 'predicted', at: { x: number; y: number; width: number; height: number }, from = 0, to = 1, camera = this.cameras[view]): void {
+  private pane(view: View, what: 'bath' | 'wanted' | 'predicted', at: { x: number; y: number; width: number; height: number }, from = 0, to = 1, camera = this.eyes.cameras[view]): void {
     const { renderer } = this;
-    this.fitCamera(camera, at);
+    this.eyes.fit(camera, at);
     renderer.setViewport(at.x, at.y, at.width, at.height);
     const x = at.x + Math.round(from * at.width);
     renderer.setScissor(x, at.y, at.x + Math.round(to * at.width) - x, at.height);
@@ -1024,12 +743,7 @@ export class Stage {
     const canvas = document.createElement('canvas');
     [canvas.width, canvas.height] = [width, height];
     const ratio = this.renderer.getPixelRatio();
-    const camera = this.cameras.object.clone();
-    const away = new THREE.Vector3(...DIRECTIONS.object.home).setLength(1.02 * this.radius() / HALF_SINE);
-    camera.position.copy(away);
-    camera.near = away.length() / 60;
-    camera.far = away.length() * 20;
-    camera.lookAt(0, 0, 0);
+    const camera = this.eyes.portrait(this.radius());
     const held = this.overlay;
     this.overlay = 'none';
     this.renderer.setScissorTest(true);
