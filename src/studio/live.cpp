@@ -62,6 +62,7 @@ std::shared_ptr<const Model> Live::model(const std::filesystem::path& file,
 }
 
 std::shared_ptr<const Model> Live::read(const Project& project, const RunContext& context) {
+  context.check_cancelled();  // one that is known takes no time in which it could be
   const RunContext reading = context.quiet();
   auto model = workspace_.model(project, reading);
   const std::lock_guard lock(mutex_);

@@ -606,16 +606,19 @@ TEST_F(JobTest, HowArtworkWasLaidIsTold) {
 
 // Before the print says it, in the same words but for options.
 TEST_F(JobTest, ArtworkThatGetsNoFilmIsNamed) {
-  const std::string job = sample("sphere");
+  const std::string job = sample("box");
   const std::string svg =
       "<svg xmlns='http://www.w3.org/2000/svg' width='10' height='10'>"
       "<rect width='10' height='10' fill='red'/></svg>";
   ASSERT_EQ(client->put(at(job, "/files/logo.svg"), svg).status, 201);
   json document = quick(describe(job)["document"]);
-  const json up = {{"image", "logo.svg"}, {"size_mm", 20}, {"toward", {0, 0, -1}}};
-  const json down = {{"image", "logo.svg"}, {"size_mm", 20}, {"toward", {0, 0, 1}}};
+  const json up = {{"image", "logo.svg"}, {"size_mm", 10}, {"toward", {0, 0, -1}}};
+  const json down = {{"image", "logo.svg"}, {"size_mm", 10}, {"toward", {0, 0, 1}}};
   document["artwork"] = {down, up};
-  document["dip"]["depth_mm"] = 10;
+  document["dip"]["depth_mm"] = 4;
+  document["dip"]["step_mm"] = 2;
+  document["film"]["elements"] = 800;
+  document["ink"]["rounds_max"] = 1;
   Events events(*client, at(job, "/events?client=c1"));
   const std::string told_as = "logo.svg: this artwork gets no film that holds; turn it down, ";
   const auto told = [&](const json& findings) {
@@ -635,7 +638,7 @@ TEST_F(JobTest, ArtworkThatGetsNoFilmIsNamed) {
   EXPECT_EQ(one["dry_layers"], json({1}));
   EXPECT_EQ(told(one["findings"]), 1) << one["findings"];
   // Of several dips another one may bring it: only what none brings is told of.
-  const json below = {{"down", "-z"}, {"rotate_deg", {0, 0, 0}}, {"depth_mm", 10}};
+  const json below = {{"down", "-z"}, {"rotate_deg", {0, 0, 0}}, {"depth_mm", 4}};
   json above = below;
   above["down"] = "+z";
   document["dips"] = {below, above};
