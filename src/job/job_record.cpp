@@ -8,6 +8,7 @@
 #include "base/json_text.h"
 #include "dip/travel.h"
 #include "job/logo.h"
+#include "job/sheet_of.h"
 #include "job/ways.h"
 #include "report/findings.h"
 #include "settings/artwork_tables.h"
@@ -22,12 +23,12 @@ using json = nlohmann::ordered_json;
 std::vector<ReportOutput> outputs(const std::string& command, const JobConfig& config) {
   const InkSide ink_side = config.print.ink_side;
   std::vector<ReportOutput> list;
-  if (command == "print")
+  if (makes_sheet(command))
     list = {{"print.pdf", fmt::format("the sheet: print it at 100 % (no scaling), ink side {}",
                                       ink_side == InkSide::kUp ? "up" : "down")},
             {"print.png", "what the sheet will look like, sRGB"},
             {"print.tif", "the inks of the film image, CMYK with their ICC profile"}};
-  if (command == "print" && config.pictures && config.film_image.empty())
+  if (makes_sheet(command) && config.pictures && config.film_image.empty())
     list.push_back({"gamut.png", "which colours cannot be reached, and by how much"});
   if (config.pictures)
     list.insert(list.end(),
@@ -229,7 +230,7 @@ Report make_report(const JobRecord& record) {
   report.found_best = is_best_found(record.config);
   report.has_artwork = !record.config.object.artwork.empty();
   report.one_dip_only = record.prepared.paint->depends_on_film();
-  if (record.command == "print") report.bleed_mm = record.config.design.inverse.bleed_mm;
+  if (makes_sheet(record.command)) report.bleed_mm = record.config.design.inverse.bleed_mm;
   report.figures = figures(record.dipped());
   for (std::size_t n = 0; n < record.prepared.artwork.size(); ++n)
     report.figures.push_back({fmt::format("artwork_{}", n + 1),

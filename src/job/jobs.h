@@ -24,9 +24,10 @@ struct JobResult {
 // The main job: simulates the dip and writes the film image that puts every colour in its place:
 // print.pdf, print.png, print.tif, film.ply, preview.png, maps.png, gamut.png, preview.glb,
 // report.json, report.html in config.output. All of them appear, or none. Of several dips
-// (config.dips or config.plan.dips) each has its folder, and one report is on the whole. Throws
-// InputError, DipError, Cancelled.
-JobResult print_job(const JobConfig& config, const RunContext& context);
+// (config.dips or config.plan.dips) each has its folder, and one report is on the whole. `command`:
+// whose job it is, as the report says. Throws InputError, DipError, Cancelled.
+JobResult print_job(const JobConfig& config, const RunContext& context,
+                    const std::string& command = "print");
 
 // Forward only: film.ply, preview.png, maps.png, preview.glb, report.json, report.html; with
 // config.film_image (the whole sheet, as print.png) also what the object will look like.

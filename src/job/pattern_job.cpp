@@ -188,7 +188,7 @@ JobResult pattern_job(const JobConfig& given, const PatternRequest& request,
         "seamless, or larger than the film",
         request.tile.string()));
   config.object.artwork.insert(config.object.artwork.begin(), layer);
-  JobResult result = print_job(config, context);
+  JobResult result = print_job(config, context, "pattern");
   result.text = text + result.text;
   return result;
 }

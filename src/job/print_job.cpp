@@ -110,7 +110,7 @@ DesignedJob designed(const ReadyJob& job, const KeptImages& kept, Timings& times
   return {std::move(made), std::move(finish)};
 }
 
-JobResult print_job(const JobConfig& given, const RunContext& context) {
+JobResult print_job(const JobConfig& given, const RunContext& context, const std::string& command) {
   if (asks_for_several_dips(given)) return print_dips(given, context);
   const RunScope scope(context.with_threads(given.threads));
   OutputFolder folder(given.output, given.earlier_result);
@@ -119,14 +119,14 @@ JobResult print_job(const JobConfig& given, const RunContext& context) {
   const ReadyJob job = make_ready(given, true, times, context);
   const JobConfig& config = job.config;
   const std::vector<ReportInput> inputs = describe_inputs(config, job.prepared, job.printer);
-  announce_outputs(folder, "print", config, inputs);
+  announce_outputs(folder, command, config, inputs);
   folder.supersede(sheets_of_other_prints(0));
 
   DesignedJob made = designed(job, {.wanted = false, .stretch = false}, times, context);
   const DippedObject& dipped = made.designed.dipped;
   const InkResult& ink = made.designed.ink;
   warn_of(dry_layers(job.prepared.artwork, dipped), context);
-  JobRecord record{"print", config,      job.prepared,
+  JobRecord record{command, config,      job.prepared,
                    inputs,  made.finish, times,
                    context, &ink,        job.printer.model->name()};
   record.wanted =

@@ -13,6 +13,8 @@ PrinterScale printer_of(const PrintOptions& print) {
   return {print.scale_x, print.scale_y, print.scale_y * lean};
 }
 
+bool makes_sheet(const std::string& command) { return command == "print" || command == "pattern"; }
+
 std::string draft_alarm(const DesignOptions& options) {
   return is_draft(options) ? "DRAFT: not to be dipped through" : "";
 }
@@ -50,7 +52,7 @@ SheetOptions sheet_of(const JobConfig& config, const PosedObject& posed, const R
   SheetOptions sheet = sheet_of(config, posed);
   if (concern_of(findings(report)) == Concern::kStop)
     sheet.alarm = "DO NOT DIP: " + short_verdict(report);
-  else if (report.command == "print")
+  else
     sheet.alarm = draft_alarm(config.design);
   return sheet;
 }

@@ -10,6 +10,9 @@ namespace hydrodip {
 
 PrinterScale printer_of(const PrintOptions& print);
 
+// Whether the command's result is a sheet to print: "print", "pattern".
+bool makes_sheet(const std::string& command);
+
 // What the margin says of a draft; empty of a design that is none.
 std::string draft_alarm(const DesignOptions& options);
 

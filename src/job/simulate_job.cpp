@@ -230,10 +230,10 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
   const JobConfig& config = job.config;
   const std::vector<ReportInput> inputs = describe_inputs(config, job.prepared, job.printer);
   announce_outputs(folder, command, config, inputs);
-  folder.supersede(command == "print" ? sheets_of_other_prints(0) : prints());
+  folder.supersede(makes_sheet(command) ? sheets_of_other_prints(0) : prints());
   PrintedFilm printed = times.measure("film image", [&] {
     PrintedFilm film_image = printed_film(config, *job.printer.model, context);
-    if (command == "print") clear_margin(film_image, config.design.film, context);
+    if (makes_sheet(command)) clear_margin(film_image, config.design.film, context);
     return film_image;
   });
   const SimulatedJob made = dipped_with(printed, job, film, times, context);
@@ -253,7 +253,7 @@ JobResult forward_job(const std::string& command, const JobConfig& given,
     record.better_way = times.measure("find", [&] {
       return better_way(config, job.prepared, made.dipped, record.wanted, context);
     });
-  if (command == "print")
+  if (makes_sheet(command))
     times.measure("sheet", [&] {
       write_given_sheet(folder, std::move(printed), job.printer,
                         sheet_of(config, job.prepared.posed, first_look), context);

@@ -79,7 +79,7 @@ std::string facts(const Report& report) {
 }
 
 // The file's name is better than nothing, but its ending says nothing to them.
-std::string title_of(const Report& report) {
+std::string customer_title(const Report& report) {
   if (!report.title.empty()) return report.title;
   return report.inputs.empty() ? "Your piece"
                                : std::filesystem::path(report.inputs.front().path).stem().string();
@@ -150,8 +150,8 @@ std::string customer_html(const Report& report, const ReportPictures& pictures) 
   // What the workshop would not dip is nothing to be promised.
   const Concern concern =
       concern_of(findings(report)) == Concern::kStop ? Concern::kStop : concern_of(points);
-  std::string html = html_begin(title_of(report), "customer");
-  html += "<header>\n" + html_logo(pictures) + "<h1>" + html_escaped(title_of(report)) +
+  std::string html = html_begin(customer_title(report), "customer");
+  html += "<header>\n" + html_logo(pictures) + "<h1>" + html_escaped(customer_title(report)) +
           "</h1>\n</header>\n";
   if (report.coverage)
     html += html_verdict(concern, customer_headline(report, concern, has_picture),

@@ -47,6 +47,11 @@ ReportInput describe_input(const std::string& role, const std::filesystem::path&
   return {role, path.string(), sha256_hex(bytes), bytes.size()};
 }
 
+std::string title_of(const Report& report) {
+  if (!report.title.empty() || report.inputs.empty()) return report.title;
+  return std::filesystem::path(report.inputs.front().path).filename().string();
+}
+
 std::optional<double> missed_share(const Report& report) {
   if (report.wanted) return report.wanted->missed_share();
   if (report.together) return report.together->missed_share();

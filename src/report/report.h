@@ -174,6 +174,9 @@ struct Report {
   std::uint64_t peak_memory_bytes = 0;  // 0: unknown
 };
 
+// As its sheet has it; empty without name and inputs.
+std::string title_of(const Report& report);
+
 // Of what comes to the film, of several dips to that of any, and shall be printed: what gets no
 // film that holds. Nothing where that is not known.
 std::optional<double> missed_share(const Report& report);

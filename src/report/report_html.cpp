@@ -62,18 +62,14 @@ std::string with_unit(const std::string& value, const std::string& unit) {
   return unit.empty() ? value : value + "\u00a0" + unit_text(unit);
 }
 
-std::string file_name(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
-}
-
-std::string title_of(const Report& report) {
-  if (!report.title.empty()) return report.title;
-  return report.inputs.empty() ? "hydrodip" : file_name(report.inputs.front().path);
+std::string page_title(const Report& report) {
+  const std::string title = title_of(report);
+  return title.empty() ? "hydrodip" : title;
 }
 
 std::string heading(const Report& report, const ReportPictures& pictures) {
   return fmt::format("<header>\n<p>hydrodip {}</p>\n<h1>{}</h1>\n{}</header>\n",
-                     html_escaped(report.command), html_escaped(title_of(report)),
+                     html_escaped(report.command), html_escaped(page_title(report)),
                      html_logo(pictures));
 }
 
@@ -349,7 +345,7 @@ std::string foot(const Report& report) {
 std::string report_html(const Report& report, const ReportPictures& pictures) {
   if (report.for_customer) return customer_html(report, pictures);
   const std::vector<Finding> list = findings(report);
-  std::string html = html_begin(title_of(report) + " - hydrodip", "workshop");
+  std::string html = html_begin(page_title(report) + " - hydrodip", "workshop");
   html += heading(report, pictures);
   html += verdict(report, list);
   html += html_preview(pictures);

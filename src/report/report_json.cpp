@@ -237,7 +237,7 @@ std::string report_json(const Report& report) {
   json["tool"] = {{"name", "hydrodip"}, {"version", report.tool_version}};
   json["command"] = report.command;
   json["command_line"] = report.command_line;
-  json["title"] = report.title;
+  json["title"] = title_of(report);
   json["verdict"] = verdict_of(report);
   json["concern"] = concern_name(concern_of(findings(report)));
   json["findings"] = findings_json(report);

@@ -305,7 +305,7 @@ RigJob load_rig_job(const std::filesystem::path& folder, const SettingSources& s
       job.object_size_mm[k] = size[std::size_t(k)];
   if (text_of(report, "concern") == "stop")
     job.alarm = "Do not dip it like this: " + text_of(report, "short_verdict");
-  else if (text_of(report, "command") == "print")
+  else if (makes_sheet(text_of(report, "command")))
     job.alarm = draft_alarm(job.config.design);
   if (report.contains("dip_of_several") && report["dip_of_several"].is_object()) {
     const Json& dip = report["dip_of_several"];

@@ -111,6 +111,14 @@ done
 "$hydrodip" pattern plate.stl --tile photo.png --tile-mm 15 --keep 20,15,0,5 $quick -o pattern \
   --quiet > pattern.txt || fail "pattern: $?"
 grep -q 'pattern at' pattern.txt || fail 'pattern does not say where it lies'
+python3 - <<'PY' || fail "pattern's report"
+import json
+report = json.load(open('pattern/report.json'))
+assert report['command'] == 'pattern' and report['title'] == 'plate.stl', report['command']
+names = [output['name'] for output in report['outputs']]
+assert names[:3] == ['print.pdf', 'print.png', 'print.tif'] and 'gamut.png' in names, names
+PY
+"$hydrodip" rig sheet pattern --quiet > sheet.txt || fail 'the run sheet of a pattern'
 # shellcheck disable=SC2086
 "$hydrodip" pattern plate.stl --tile photo.png --tile-mm 15 --set material.tear_stretch=1.01 $quick -o fragile --strict \
   --quiet > fragile.txt

@@ -73,6 +73,15 @@ TEST(Report, EmptyReportIsStillAReport) {
   EXPECT_NE(report_html({}, {}).find("</html>"), std::string::npos);
 }
 
+TEST(Report, IsCalledByTheJobsNameElseByTheModels) {
+  Report report = full_report();
+  report.inputs = {{"model", "models/mask.obj", "00ff", 1}, {"texture", "mask.png", "00ff", 1}};
+  EXPECT_EQ(Json::parse(report_json(report))["title"], "mask.obj");
+  EXPECT_NE(report_html(report, {}).find("<h1>mask.obj</h1>"), std::string::npos);
+  report.title = "Mask for Anna";
+  EXPECT_EQ(Json::parse(report_json(report))["title"], "Mask for Anna");
+}
+
 TEST(Report, HtmlEscapesWhateverComesFromOutside) {
   const std::string html = report_html(full_report(), {});
   EXPECT_EQ(html.find("<script"), std::string::npos);
