@@ -96,7 +96,7 @@ DippedObject dip_object(const PosedObject& posed, const SharedFilmMesh& film,
     context.progress("mapping", 0);
     result.map = std::make_shared<const FilmMap>(mesh, posed.surface(), *result.film);
     result.direction_at = dipping_direction(trajectory, mesh.positions, mesh.triangles);
-    result.coverage = measure_coverage(mesh, *result.film, result.direction_at,
+    result.coverage = measure_coverage(mesh, posed.surface(), *result.film, result.direction_at,
                                        doubtful_stretch(options.material));
     result.angles = dip_angles(mesh, result.direction_at);
     context.progress("mapping", 1);

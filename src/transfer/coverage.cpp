@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+
+#include "film/over_edge.h"
 
 namespace hydrodip {
 namespace {
@@ -73,16 +76,71 @@ bool is_laid(const DippedFilm& film, std::size_t t) {
   });
 }
 
-void add_doubtful(Coverage& sum, const DippedFilm& film, const DoubtfulStretch& doubtful) {
-  for (std::size_t t = 0; t < film.mesh().triangles.size() && doubtful.to > 0; ++t)
-    if (is_laid(film, t)) {
-      const Triangle& triangle = film.mesh().triangles[t];
-      sum.doubtful_mm2 +=
-          doubtful_share(film, triangle, doubtful) * area_vector(film.position, triangle).norm();
+// As it lies on the object, whose normals it has.
+class LaidFilm {
+ public:
+  LaidFilm(const DippedFilm& film, const Surface& surface) : film_(film), surface_(surface) {
+    if (film.normal.empty()) normal_ = normals_near(surface, film.position, attached_of(film));
+  }
+
+  // Of a triangle: where its corners are, and of an edge's two faces each its own part.
+  struct Part {
+    double mm2 = 0, downward_mm2 = 0;
+  };
+  Part area(std::size_t t, const Vec3& direction) const {
+    const TriangleOnObject on =
+        triangle_on_object(film_, film_.normal.empty() ? normal_ : film_.normal, t);
+    if (const auto faces = faces_of(on)) {
+      Part sum;
+      for (const FacePart& face : *faces) {
+        const Vec3 area = area_of(face.corner);
+        sum.mm2 += face.share * area.norm();
+        if (meets_face_on(-area, direction)) sum.downward_mm2 += face.share * area.norm();
+      }
+      return sum;
     }
+    // Not its own normal, which no chord between places on a round wall keeps upright.
+    const Vec3 area = area_of(on.position);
+    const auto downward = std::count_if(on.normal.begin(), on.normal.end(), [&](const Vec3& n) {
+      return meets_face_on(n.isZero() ? Vec3(-area) : n, direction);
+    });
+    return {area.norm(), double(downward) / 3 * area.norm()};
+  }
+
+ private:
+  static Vec3 area_of(const std::array<Vec3, 3>& corner) {
+    return 0.5 * (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+  }
+  static std::vector<std::uint8_t> attached_of(const DippedFilm& film) {
+    std::vector<std::uint8_t> attached;
+    for (const VertexState state : film.state) attached.push_back(state == VertexState::kAttached);
+    return attached;
+  }
+  std::optional<std::array<FacePart, 2>> faces_of(const TriangleOnObject& on) const {
+    const auto is_near_object = [&](const Vec3& point, double within_mm) {
+      return surface_.closest_point(point, within_mm).has_value();
+    };
+    const auto direction =
+        direction_over_edge(on.position, on.normal, on.up, film_.z_stretch, is_near_object);
+    return direction ? parts_over_edge(on.position, on.normal, *direction) : std::nullopt;
+  }
+
+  const DippedFilm& film_;
+  const Surface& surface_;
+  std::vector<Vec3> normal_;
+};
+
+void add_doubtful(Coverage& sum, const DippedFilm& film, const LaidFilm& laid,
+                  const DoubtfulStretch& doubtful) {
+  for (std::size_t t = 0; t < film.mesh().triangles.size() && doubtful.to > 0; ++t) {
+    if (!is_laid(film, t)) continue;
+    const double share = doubtful_share(film, film.mesh().triangles[t], doubtful);
+    if (share > 0) sum.doubtful_mm2 += share * laid.area(t, Vec3(0, 0, -1)).mm2;
+  }
 }
 
-void add_film(Coverage& sum, const DippedFilm& film, const DippingDirection& direction_at) {
+void add_film(Coverage& sum, const DippedFilm& film, const LaidFilm& laid,
+              const DippingDirection& direction_at) {
   double stretch = 0;
   Vec3 lifted = Vec3::Zero();
   double area_ratio = 0;
@@ -93,19 +151,18 @@ void add_film(Coverage& sum, const DippedFilm& film, const DippingDirection& dir
     if (!film.lies_on_object(t)) continue;
     const double share = film.whole_part(t).share, flat = share * whole_flat;
     sum.torn_mm2 += whole_flat - flat;
-    const Vec3 area = share * area_vector(film.position, triangle);
     sum.film_on_object_mm2 += flat;
-    sum.covered_mm2 += area.norm();
-    // It is its other side that faces down.
     const Vec3 at = middle(film.position, triangle);
     auto direction = direction_at(at, 0);
     if (!direction) direction = direction_at(at, kAnyHeight_mm);
-    if (meets_face_on(-area, *direction)) sum.covered_downward_mm2 += area.norm();
-    if (!film.wrinkled.empty() && film.wrinkled[t]) sum.wrinkled_mm2 += area.norm();
+    const LaidFilm::Part area = laid.area(t, *direction);
+    sum.covered_mm2 += share * area.mm2;
+    sum.covered_downward_mm2 += share * area.downward_mm2;
+    if (!film.wrinkled.empty() && film.wrinkled[t]) sum.wrinkled_mm2 += share * area.mm2;
     for (const std::int32_t v : triangle) {
       if (film.lifted.empty() || !film.lifted[std::size_t(v)]) continue;
-      sum.lifted_mm2 += area.norm() / 3;
-      lifted += area.norm() / 3 * film.position[std::size_t(v)];
+      sum.lifted_mm2 += share * area.mm2 / 3;
+      lifted += share * area.mm2 / 3 * film.position[std::size_t(v)];
     }
     for (const std::int32_t v : triangle) {
       stretch += flat / 3 * film.stretch[std::size_t(v)];
@@ -131,17 +188,20 @@ double DoubtfulStretch::of(double stretch, double moved_mm) const {
   return std::clamp(std::max(torn, 0.5 * moved_mm / kMoved_mm), 0.0, 1.0);
 }
 
-Coverage measure_coverage(const TriangleMesh& object, const DippedFilm& film) {
-  return measure_coverage(object, film, straight_down_to(film.depth_mm));
+Coverage measure_coverage(const TriangleMesh& object, const Surface& surface,
+                          const DippedFilm& film) {
+  return measure_coverage(object, surface, film, straight_down_to(film.depth_mm));
 }
 
-Coverage measure_coverage(const TriangleMesh& object, const DippedFilm& film,
-                          const DippingDirection& direction_at, const DoubtfulStretch& doubtful) {
+Coverage measure_coverage(const TriangleMesh& object, const Surface& surface,
+                          const DippedFilm& film, const DippingDirection& direction_at,
+                          const DoubtfulStretch& doubtful) {
   Coverage sum;
+  const LaidFilm laid(film, surface);
   add_object(sum, object, direction_at);
-  add_film(sum, film, direction_at);
-  add_doubtful(sum, film, doubtful);
-  // Film that spans an edge of the object counts whole on either side.
+  add_film(sum, film, laid, direction_at);
+  add_doubtful(sum, film, laid, doubtful);
+  // Chords of a hollow are longer than its surface.
   sum.covered_mm2 = std::min(sum.covered_mm2, sum.object_mm2);
   sum.covered_downward_mm2 = std::min(sum.covered_downward_mm2, sum.downward_mm2);
   return sum;

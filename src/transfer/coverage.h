@@ -4,6 +4,7 @@
 #include "film/film.h"
 #include "object/dip_angles.h"
 #include "object/object.h"
+#include "object/surface.h"
 
 namespace hydrodip {
 
@@ -44,11 +45,13 @@ struct DoubtfulStretch {
   double of(double stretch, double moved_mm) const;
 };
 
-// Everything from the triangles of object and film alone: covered_mm2 is the area of the film as
-// it lies on the object, which is the object's to the accuracy of the film's mesh. Never NaN.
-Coverage measure_coverage(const TriangleMesh& object, const DippedFilm& film);  // straight down
-Coverage measure_coverage(const TriangleMesh& object, const DippedFilm& film,
-                          const DippingDirection& direction_at,
+// covered_mm2 is the area of the film as it lies on the object, on both faces of an edge that it is
+// laid over, which is the object's to the accuracy of the film's mesh; which way it faces there,
+// the object says. Never NaN.
+Coverage measure_coverage(const TriangleMesh& object, const Surface& surface,
+                          const DippedFilm& film);  // straight down
+Coverage measure_coverage(const TriangleMesh& object, const Surface& surface,
+                          const DippedFilm& film, const DippingDirection& direction_at,
                           const DoubtfulStretch& doubtful = {});
 
 }  // namespace hydrodip

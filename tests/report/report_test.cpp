@@ -246,7 +246,9 @@ TEST(Report, InputsCarryTheirHash) {
 
 TEST(Coverage, CapOfABall) {
   const double reach = 16;
-  const Coverage c = measure_coverage(two_coloured_ball(48), film_under_ball(reach));
+  const Object of_48 = two_coloured_ball(48);
+  const Surface surface(of_48.positions, of_48.triangles);
+  const Coverage c = measure_coverage(of_48, surface, film_under_ball(reach));
   const double ball = 4 * std::numbers::pi * kRadius * kRadius;
   EXPECT_NEAR(c.object_mm2, ball, 0.003 * ball);
   EXPECT_NEAR(c.downward_mm2, ball / 2, 0.003 * ball);
@@ -267,9 +269,10 @@ TEST(Coverage, CapOfABall) {
 TEST(Coverage, TornFilmNoLongerCovers) {
   DippedFilm film = film_under_ball();
   const Object ball = two_coloured_ball();
-  const Coverage before = measure_coverage(ball, film);
+  const Surface surface(ball.positions, ball.triangles);
+  const Coverage before = measure_coverage(ball, surface, film);
   for (std::size_t t = 0; t < film.torn.size(); ++t) film.torn[t] = film.lies_on_object(t) ? 1 : 0;
-  const Coverage after = measure_coverage(ball, film);
+  const Coverage after = measure_coverage(ball, surface, film);
   EXPECT_EQ(after.covered_mm2, 0);
   EXPECT_EQ(after.torn_mm2, before.film_on_object_mm2);
   EXPECT_EQ(after.torn_share(), 1);

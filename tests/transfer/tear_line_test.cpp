@@ -63,12 +63,14 @@ TEST(TearLine, AreasAreThoseOfTheCutSquare) {
   const auto& film = dipped->film;
   // The line leaves the square through its sides y = +-20; film beyond by 5 is stretched by 1.45.
   const double covered = 40 * (20 + kLine_mm);
-  const Coverage all = measure_coverage(dipped->object, film, straight_down_to(3), {1.35, 1.45});
+  const Coverage all =
+      measure_coverage(dipped->object, *dipped->surface, film, straight_down_to(3), {1.35, 1.45});
   EXPECT_NEAR(all.covered_mm2, covered, 1e-6);
   EXPECT_NEAR(all.film_on_object_mm2, covered, 1e-6);
   EXPECT_NEAR(all.torn_mm2, 1600 - covered, 1e-6);
   EXPECT_NEAR(all.doubtful_mm2, 40 * 10, 1e-6);
-  const Coverage never = measure_coverage(dipped->object, film, straight_down_to(3));
+  const Coverage never =
+      measure_coverage(dipped->object, *dipped->surface, film, straight_down_to(3));
   EXPECT_EQ(never.doubtful_mm2, 0);
 }
 
@@ -78,7 +80,8 @@ TEST(Coverage, UprightWallsDoNotFaceDown) {
     Object leaning = fixtures::slab();
     for (Vec3& p : leaning.positions) p += noise * p.z() * Vec3(1, -1, 0);
     const auto dipped = fixtures::mapped(leaning, fixtures::film_on_slab(5000));
-    const Coverage c = measure_coverage(dipped->object, dipped->film, straight_down_to(9));
+    const Coverage c =
+        measure_coverage(dipped->object, *dipped->surface, dipped->film, straight_down_to(9));
     EXPECT_NEAR(c.downward_mm2, 1600, 1e-3) << noise;
     EXPECT_NEAR(c.object_mm2, 3200 + 160 * dipped->object.bounds().size().z(), 1e-3) << noise;
   }
@@ -90,8 +93,8 @@ TEST(TearLine, FilmWhosePlaceIsNotKnownIsDoubtful) {
   film.torn_at_mm.assign(film.torn.size(), std::numeric_limits<double>::infinity());
   for (const Vec2& u : film.mesh().u) film.moved_mm.push_back(kMoved_mm + 0.01 * beyond(u));
   const auto dipped = fixtures::mapped(fixtures::slab(), std::move(film));
-  const Coverage c =
-      measure_coverage(dipped->object, dipped->film, straight_down_to(3), {1.3, 1.6});
+  const Coverage c = measure_coverage(dipped->object, *dipped->surface, dipped->film,
+                                      straight_down_to(3), {1.3, 1.6});
   EXPECT_NEAR(c.doubtful_mm2, 1600 - 40 * (20 + kLine_mm), 1e-6);
 }
 
