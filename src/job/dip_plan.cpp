@@ -22,6 +22,10 @@ constexpr int kFirstElements = 5000;
 // What trial dips promise finer film need not keep: so many times as many dips as are wanted are
 // looked at again on the job's film, in longer steps.
 constexpr int kLookedAtAgain = 3;
+// Nodes of the divided surface lie so close, in parts of the overlap, as far as so many allow.
+constexpr double kNodesInOverlap = 3.5;
+constexpr double kLeastSpacing_mm = 0.3;
+constexpr int kFewestNodes = 8000, kMostNodes = 60000;
 
 PoseOptions pose_of(const DipEntry& entry, const PoseOptions& base) {
   PoseOptions pose = base;
@@ -36,7 +40,10 @@ bool is_given(const DipEntry& entry, bool again) {
                : entry.rotate_deg.has_value() || entry.down.has_value() || !entry.path.empty();
 }
 
-[[noreturn]] void refuse_dip(std::size_t number, const Trial* trial) {
+[[noreturn]] void refuse_dip(std::size_t number, const Trial* trial, bool inside_out) {
+  if (trial && inside_out)
+    throw InputError(fmt::format("dip {} reaches nothing at any depth: {}; {}", number,
+                                 kLooksInwards, kTurnNormals));
   throw InputError(
       fmt::format("dip {} {}: turn it with rotate_deg, or leave that out and let it be found",
                   number, trial ? "reaches nothing at any depth" : "does not fit film and bath"));
@@ -54,6 +61,7 @@ class Planning {
   Planning(const JobConfig& config, const PreparedObject& prepared, const Targets& targets,
            bool again, const RunContext& context)
       : config_(config),
+        prepared_(prepared),
         again_(again),
         context_(context),
         task_(among_several(job_trials(config, prepared, targets))),
@@ -70,11 +78,12 @@ class Planning {
     const int wanted = std::max(config_.plan.dips, int(config_.dips.size()));
     if (int(chosen.size()) < wanted) chosen = search(std::move(chosen), wanted);
     if (chosen.empty())
-      throw InputError(
-          "no way to hold the object was found in which film stays whole on it: use film that "
-          "bears more (material.tear_stretch), or a smaller object");
+      throw InputError(fmt::format(
+          "no way to hold the object was found in which film stays whole on it{}",
+          prepared_.health.inside_out
+              ? fmt::format(": {}; {}", kLooksInwards, kTurnNormals)
+              : ": use film that bears more (material.tear_stretch), or a smaller object"));
     dip_for_good(chosen);
-    count_up();
     return std::move(plan_);
   }
 
@@ -102,7 +111,8 @@ class Planning {
       context_.progress("dipping what is given", double(i) / double(config_.dips.size()));
       const auto trial =
           try_pose(task_to(entry), pose_of(entry, config_.object.pose), 0, context_.quiet());
-      if (!trial || !(trial->depth_mm > 0)) refuse_dip(i + 1, trial ? &*trial : nullptr);
+      if (!trial || !(trial->depth_mm > 0))
+        refuse_dip(i + 1, trial ? &*trial : nullptr, prepared_.health.inside_out);
       given.push_back(*trial);
     }
     return given;
@@ -221,15 +231,8 @@ class Planning {
     }
   }
 
-  void count_up() {
-    std::vector<const Trial*> so_far;
-    for (const PlannedDip& dip : plan_.dips) {
-      so_far.push_back(&dip.trial);
-      plan_.covered_after.push_back(covered_share_of(task_.targets, so_far));
-    }
-  }
-
   const JobConfig& config_;
+  const PreparedObject& prepared_;
   const bool again_;
   const RunContext& context_;
   const TrialTask task_;    // as the job dips
@@ -243,6 +246,30 @@ DipPlan plan_dips(const JobConfig& config, const PreparedObject& prepared, const
                   bool again, const RunContext& context) {
   const RunScope scope(context);
   return Planning(config, prepared, targets, again, context).run();
+}
+
+std::shared_ptr<const SurfaceNodes> make_nodes(const PreparedObject& prepared, double overlap_mm) {
+  const double spacing_mm = std::max(kLeastSpacing_mm, overlap_mm / kNodesInOverlap);
+  const double wanted = prepared.health.area_mm2 / (spacing_mm * spacing_mm);
+  const int count = int(std::clamp(wanted, double(kFewestNodes), double(kMostNodes)));
+  return std::make_shared<const SurfaceNodes>(spread_targets(prepared.posed.object(), count));
+}
+
+std::vector<double> covered_after(const DipPlan& plan, const JobConfig& config,
+                                  const PreparedObject& prepared) {
+  if (plan.dips.size() == 1) return {plan.dips.front().blank.coverage.covered_share()};
+  const auto nodes = make_nodes(prepared, config.plan.overlap_mm);
+  const TrialTask task = job_trials(config, prepared, nodes->targets());
+  std::vector<Trial> dips(plan.dips.size());
+  for (std::size_t k = 0; k < dips.size(); ++k)
+    dips[k].worth = worth_at(task, plan.dips[k].blank.posed, *plan.dips[k].blank.film);
+  std::vector<double> covered;
+  std::vector<const Trial*> so_far;
+  for (const Trial& dip : dips) {
+    so_far.push_back(&dip);
+    covered.push_back(covered_share_of(nodes->targets(), so_far));
+  }
+  return covered;
 }
 
 std::filesystem::path correction_of(const JobConfig& config, const Trial& trial) {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "coat/dipped_object.h"
 #include "job/prepare.h"
+#include "plan/surface_nodes.h"
 #include "plan/trial.h"
 #include "settings/config.h"
 
@@ -18,9 +20,8 @@ struct PlannedDip {
 };
 
 struct DipPlan {
-  std::vector<PlannedDip> dips;       // in the order in which they are made
-  std::vector<double> covered_after;  // share of the surface under film after each
-  std::size_t trial_dips = 0;         // made to find them; 0: none had to be found
+  std::vector<PlannedDip> dips;  // in the order in which they are made
+  std::size_t trial_dips = 0;    // made to find them; 0: none had to be found
 };
 
 // As many dips as the job says (plan.dips, or one for each of config.dips). Those of config.dips
@@ -28,6 +29,12 @@ struct DipPlan {
 // chosen, together. Throws InputError if one of the given does not fit, or none is found.
 DipPlan plan_dips(const JobConfig& config, const PreparedObject& prepared, const Targets& targets,
                   bool again, const RunContext& context);
+
+// The points at which a print of several dips divides and counts the surface.
+std::shared_ptr<const SurfaceNodes> make_nodes(const PreparedObject& prepared, double overlap_mm);
+// Share of the surface under film after each dip: counted there, of a single dip its film's area.
+std::vector<double> covered_after(const DipPlan& plan, const JobConfig& config,
+                                  const PreparedObject& prepared);
 
 // The sheet of a planned dip, with the correction of the job's dip that is held so. Throws
 // InputError if the file is none.

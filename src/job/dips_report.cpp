@@ -93,6 +93,11 @@ Brought brought_by(const MadeDips& all, const SharedSurface& shared) {
     }
   }
   result.doubtful_share = doubtful_mm2 / targets.area;
+  if (all.dips.size() == 1) {  // a single film's area is known better than points tell it
+    const Coverage& coverage = all.dips.front().made.dipped.coverage;
+    result.gained = {coverage.covered_share()};
+    result.doubtful_share = coverage.doubtful_share();
+  }
   if (is_wanted.empty()) return result;
   for (const double mm2 : gained_wanted_mm2)
     result.gained_wanted.push_back(mm2 * scale * scale / wanted.object_mm2);

@@ -18,10 +18,6 @@
 namespace hydrodip {
 namespace {
 
-// Nodes of the divided surface lie so close, in parts of the overlap, as far as so many allow.
-constexpr double kNodesInOverlap = 3.5;
-constexpr double kLeastSpacing_mm = 0.3;
-constexpr int kFewestNodes = 8000, kMostNodes = 60000;
 // No two dips land nearer to each other than some tenths of a millimetre, and their inks fade over
 // more: what ink still moves below that is not worth a dip.
 constexpr double kSettledAmongSeveral_mm = 0.03;
@@ -45,13 +41,6 @@ JobConfig config_of(const JobConfig& config, const PreparedObject& prepared, con
       config.print.job_name.empty() ? config.model.filename().string() : config.print.job_name;
   own.print.job_name = fmt::format("{}, dip {} of {}", name, number, of);
   return own;
-}
-
-std::shared_ptr<const SurfaceNodes> make_nodes(const PreparedObject& prepared, double overlap_mm) {
-  const double spacing_mm = std::max(kLeastSpacing_mm, overlap_mm / kNodesInOverlap);
-  const double wanted = prepared.health.area_mm2 / (spacing_mm * spacing_mm);
-  const int count = int(std::clamp(wanted, double(kFewestNodes), double(kMostNodes)));
-  return std::make_shared<const SurfaceNodes>(spread_targets(prepared.posed.object(), count));
 }
 
 int at_once(const MadeDips& all, const RunContext& context) {

@@ -21,8 +21,11 @@ using json = nlohmann::ordered_json;
 
 constexpr LinearColor kEarlier{0.33F, 0.42F, 0.5F, 1};
 
-double gained(const DipPlan& plan, std::size_t k) {
-  return plan.covered_after[k] - (k > 0 ? plan.covered_after[k - 1] : 0);
+// Shares of the surface under film after each dip.
+using Covered = std::vector<double>;
+
+double gained(const Covered& covered, std::size_t k) {
+  return covered[k] - (k > 0 ? covered[k - 1] : 0);
 }
 
 json path_json(const std::vector<Keyframe>& path) {
@@ -34,7 +37,7 @@ json path_json(const std::vector<Keyframe>& path) {
   return rows;
 }
 
-std::string machine_readable(const JobConfig& config, const DipPlan& plan) {
+std::string machine_readable(const JobConfig& config, const DipPlan& plan, const Covered& covered) {
   json dips = json::array(), counts = json::array();
   for (std::size_t k = 0; k < plan.dips.size(); ++k) {
     const Trial& dip = plan.dips[k].trial;
@@ -43,11 +46,11 @@ std::string machine_readable(const JobConfig& config, const DipPlan& plan) {
                     {"rotate_deg", {rotate.x(), rotate.y(), rotate.z()}},
                     {"depth_mm", dip.depth_mm},
                     {"path", path_json(dip.path)},
-                    {"gained_share", gained(plan, k)},
-                    {"covered_share", plan.covered_after[k]},
+                    {"gained_share", gained(covered, k)},
+                    {"covered_share", covered[k]},
                     {"torn_share", dip.figures.torn_share},
                     {"text", describe_trial(dip, way_up(config))}});
-    counts.push_back({{"dips", k + 1}, {"covered_share", plan.covered_after[k]}});
+    counts.push_back({{"dips", k + 1}, {"covered_share", covered[k]}});
   }
   const json all = {
       {"schema_version", 1},           {"command", "plan"},  {"model", config.model.string()},
@@ -55,10 +58,10 @@ std::string machine_readable(const JobConfig& config, const DipPlan& plan) {
   return json_text(all);
 }
 
-std::string in_words(const JobConfig& config, const DipPlan& plan) {
+std::string in_words(const JobConfig& config, const DipPlan& plan, const Covered& covered) {
   std::string text = "covered after so many dips:";
   for (std::size_t k = 0; k < plan.dips.size(); ++k)
-    text += fmt::format("{} {}: {:.0f} %", k > 0 ? "," : "", k + 1, 100 * plan.covered_after[k]);
+    text += fmt::format("{} {}: {:.0f} %", k > 0 ? "," : "", k + 1, 100 * covered[k]);
   text += " (of film without ink, which stiffens it: a print's may differ by some points)\n";
   for (std::size_t k = 0; k < plan.dips.size(); ++k)
     text +=
@@ -70,7 +73,7 @@ std::string in_words(const JobConfig& config, const DipPlan& plan) {
 // Each dip as it hangs: what it covers anew in the wanted colours, what an earlier one does in grey
 // blue.
 Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,
-           const RunContext& context) {
+           const Covered& covered, const RunContext& context) {
   const Paint& paint = *prepared.paint;
   std::vector<HoldPicture> pictures;
   for (std::size_t k = 0; k < plan.dips.size(); ++k) {
@@ -91,8 +94,8 @@ Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPla
         {plan.dips[k].blank.posed.mesh(), plan.dips[k].blank.posed.surface(), look, dip.depth_mm,
          fmt::format("dip {}: {}, {:.4g} mm deep", k + 1, describe_hold(dip.pose, way_up(config)),
                      dip.depth_mm),
-         fmt::format("adds {:.1f} %, {:.1f} % are covered after it{}{}", 100 * gained(plan, k),
-                     100 * plan.covered_after[k], paint.says_anything() ? "" : "; teal: this dip",
+         fmt::format("adds {:.1f} %, {:.1f} % are covered after it{}{}", 100 * gained(covered, k),
+                     100 * covered[k], paint.says_anything() ? "" : "; teal: this dip",
                      k > 0 ? "; grey blue: done before" : "")});
   }
   return render_holds(pictures, config.preview_width_px, context);
@@ -124,8 +127,10 @@ JobResult plan_job(const JobConfig& config, const RunContext& context, const Job
   planned.plan.dips = 0;
   planned.plan.find_pose = planned.plan.find_depth = false;
   write_file(output.path("plan.toml"), job_file(planned, output.folder()));
-  JobResult result = output.finish(machine_readable(config, plan), in_words(config, plan),
-                                   [&] { return draw(config, output.prepared(), plan, context); });
+  const Covered covered = covered_after(plan, config, output.prepared());
+  JobResult result =
+      output.finish(machine_readable(config, plan, covered), in_words(config, plan, covered),
+                    [&] { return draw(config, output.prepared(), plan, covered, context); });
   result.text += printing(output);
   return result;
 }

@@ -54,6 +54,7 @@ struct MadeDip {
   const DippedFilm& film;
   const DipWatch& watch;
   const TrappedAir* air = nullptr;
+  const Coverage* coverage = nullptr;  // null: of what lay on the object at the depth in question
 };
 
 // Per target: when film landed there, and how well. The film triangle at a film coordinate is found
@@ -61,9 +62,7 @@ struct MadeDip {
 class Landing {
  public:
   Landing(const TrialTask& task, const MadeDip& dip)
-      : at_(task.targets.list.size(), kNever),
-        worth_(task.targets.list.size(), 0),
-        stretch_(worth_) {
+      : at_(task.targets.list.size(), kNever), worth_(task.targets.list.size(), 0) {
     const double limit = task.dip.material.tear_stretch;
     const PosedObject& posed = dip.posed;
     const Mat3 turn = posed.turn();
@@ -75,7 +74,6 @@ class Landing {
       const auto t = std::size_t(locate_flat(dip.film.mesh(), *u).triangle);
       if (!(dip.watch.landed_at()[t] < kNever)) continue;
       at_[i] = dip.watch.landed_at()[t];
-      stretch_[i] = float(dip.watch.stretch()[t]);
       worth_[i] = float(worth_of(dip.watch.stretch()[t], limit));
       if (dip.film.wrinkled[t]) worth_[i] *= float(kWrinkledWorth);
     }
@@ -83,11 +81,10 @@ class Landing {
 
   double at(std::size_t i) const { return at_[i]; }
   float worth(std::size_t i) const { return worth_[i]; }
-  float stretch(std::size_t i) const { return stretch_[i]; }
 
  private:
   std::vector<double> at_;
-  std::vector<float> worth_, stretch_;
+  std::vector<float> worth_;
 };
 
 // What happens at a depth: surface gets film, film tears, or air is shut in.
@@ -149,9 +146,8 @@ double overstretched_from(const TrialTask& task, const DipWatch& watch) {
 Trial judged(const TrialTask& task, const PoseOptions& pose, const MadeDip& dip,
              std::optional<double> depth_mm, double deepest_mm) {
   const Landing landing(task, dip);
-  const Targets& targets = task.targets;
   const double scale = dip.posed.scale();
-  const double object_mm2 = scale * scale * targets.area;
+  const double object_mm2 = scale * scale * task.targets.area;
   const std::vector<Event> events = events_of(task, dip, landing, object_mm2);
   Trial trial{.pose = pose};
   const double first_mm = overstretched_from(task, dip.watch);
@@ -161,33 +157,23 @@ Trial judged(const TrialTask& task, const PoseOptions& pose, const MadeDip& dip,
   TrialFigures& figures = trial.figures;
   for (const Event& event : events)
     if (event.at_mm <= trial.depth_mm) figures.score += event.gain;
-  const double limit = task.dip.material.tear_stretch;
-  for (std::size_t i = 0; i < targets.list.size(); ++i) {
-    const Target& target = targets.list[i];
-    const bool lies = landing.at(i) <= trial.depth_mm;
-    trial.worth.push_back(lies ? landing.worth(i) : 0.0F);
-    if (!lies) continue;
-    figures.covered_share += target.area / targets.area;
-    if (limit > 0 && double(landing.stretch(i)) > doubtful_stretch(task.dip.material).from)
-      figures.doubtful_share += target.area / targets.area;
-  }
-  const DipWatch& watch = dip.watch;
-  double torn_mm2 = 0, landed_mm2 = 0;
-  for (std::size_t t = 0; t < watch.torn_at().size(); ++t) {
-    const double flat_mm2 = watch.flat_mm2()[t];
-    if (watch.torn_at()[t] <= trial.depth_mm) {
-      torn_mm2 += flat_mm2;
-    } else if (watch.landed_at()[t] <= trial.depth_mm) {
-      torn_mm2 += watch.torn_share()[t] * flat_mm2;
-      landed_mm2 += (1 - watch.torn_share()[t]) * flat_mm2;
-    }
-  }
-  figures.torn_share = Coverage::share(torn_mm2, torn_mm2 + landed_mm2);
+  for (std::size_t i = 0; i < task.targets.list.size(); ++i)
+    trial.worth.push_back(landing.at(i) <= trial.depth_mm ? landing.worth(i) : 0.0F);
+  std::shared_ptr<const DippedFilm> film;
+  if (task.keep_film || dip.coverage == nullptr)
+    film = std::make_shared<const DippedFilm>(dip.watch.film_at(trial.depth_mm, dip.film));
+  const Coverage coverage =
+      dip.coverage != nullptr
+          ? *dip.coverage
+          : measure_coverage(dip.posed.mesh(), dip.posed.surface(), *film,
+                             straight_down_to(trial.depth_mm), doubtful_stretch(task.dip.material));
+  figures.covered_share = coverage.covered_share();
+  figures.doubtful_share = coverage.doubtful_share();
+  figures.torn_share = coverage.torn_share();
   if (dip.air)
     for (const AirPocket& pocket : dip.air->pockets)
       if (pocket.closed_at_mm <= trial.depth_mm) figures.air_mm2 += pocket.area_mm2;
-  if (task.keep_film)
-    trial.film = std::make_shared<const DippedFilm>(watch.film_at(trial.depth_mm, dip.film));
+  if (task.keep_film) trial.film = std::move(film);
   return trial;
 }
 
@@ -361,8 +347,10 @@ std::vector<float> worth_at(const TrialTask& task, const PosedObject& posed,
 Trial judge_dip(const TrialTask& task, const PoseOptions& pose, const DippedObject& dipped) {
   DipWatch watch(dipped.film->shared_mesh, task.dip.material.tear_stretch, 1);
   watch.take(*dipped.film);
-  return judged(task, pose, {dipped.posed, *dipped.map, *dipped.film, watch, dipped.air.get()},
-                dipped.film->depth_mm, dipped.film->depth_mm);
+  return judged(
+      task, pose,
+      {dipped.posed, *dipped.map, *dipped.film, watch, dipped.air.get(), &dipped.coverage},
+      dipped.film->depth_mm, dipped.film->depth_mm);
 }
 
 }  // namespace hydrodip

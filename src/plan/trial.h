@@ -14,12 +14,12 @@
 
 namespace hydrodip {
 
-// Shares of the object's whole surface unless said otherwise.
+// The first three as Coverage has them.
 struct TrialFigures {
-  double covered_share = 0;   // under whole film
-  double doubtful_share = 0;  // of that: stretched so far that it may tear after all
-  double torn_share = 0;      // of the film that meets the object, as Coverage has it
-  double air_mm2 = 0;         // surface under trapped air
+  double covered_share = 0;
+  double doubtful_share = 0;
+  double torn_share = 0;
+  double air_mm2 = 0;  // surface under trapped air
   // How much of what is wanted lands well: 1 is everything; below 0 more is spoilt than gained.
   double score = 0;
 };

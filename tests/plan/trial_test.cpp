@@ -98,7 +98,12 @@ TEST_F(SphereTrial, SaysTheSameOfADipThatWasMade) {
   const Trial judged = judge_dip(given, {}, dipped);
   EXPECT_EQ(judged.worth, trial->worth);
   EXPECT_NEAR(judged.figures.score, trial->figures.score, 1e-9);
-  EXPECT_NEAR(judged.figures.covered_share, dipped.coverage.covered_share(), 0.006);
+  // What a trial tells of a dip is what the job's report will say of it.
+  for (const TrialFigures& figures : {judged.figures, trial->figures}) {
+    EXPECT_EQ(figures.covered_share, dipped.coverage.covered_share());
+    EXPECT_EQ(figures.doubtful_share, dipped.coverage.doubtful_share());
+    EXPECT_EQ(figures.torn_share, dipped.coverage.torn_share());
+  }
 }
 
 // Film is torn along lines inside triangles: what a trial counts is what the job's report will say.
@@ -109,8 +114,11 @@ TEST_F(SphereTrial, CountsWhatIsTornAsTheJobDoes) {
   ASSERT_TRUE(trial);
   const DippedObject dipped = dipped_to(16);
   ASSERT_GT(dipped.coverage.torn_share(), 0.05);
-  EXPECT_NEAR(judge_dip(given, {}, dipped).figures.torn_share, dipped.coverage.torn_share(), 1e-9);
-  EXPECT_NEAR(trial->figures.torn_share, dipped.coverage.torn_share(), 1e-9);
+  for (const TrialFigures& figures : {judge_dip(given, {}, dipped).figures, trial->figures}) {
+    EXPECT_NEAR(figures.torn_share, dipped.coverage.torn_share(), 1e-9);
+    EXPECT_NEAR(figures.covered_share, dipped.coverage.covered_share(), 1e-9);
+    EXPECT_NEAR(figures.doubtful_share, dipped.coverage.doubtful_share(), 1e-9);
+  }
 }
 
 // A picture drawn from the film shows what the figures say.
