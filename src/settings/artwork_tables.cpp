@@ -286,7 +286,7 @@ bool apply_artwork_setting(JobConfig& config, const Setting& setting) {
   ArtworkLayer& layer =
       is_option ? topmost(layers, setting) : numbered(layers, at->number, setting);
   if (!key.set(layer, setting))
-    throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, setting.name,
+    throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, told_name(setting),
                                  key.key.range, setting.shown.empty() ? "empty" : setting.shown));
   return true;
 }

@@ -14,6 +14,7 @@ namespace {
 // The value as that parameter of a single dip would take it.
 JobConfig checked_as(const std::string& parameter, const Setting& setting) {
   Setting renamed = setting;
+  renamed.told = told_name(setting);
   renamed.name = parameter;
   JobConfig config;
   apply_settings(config, {renamed});
@@ -23,8 +24,8 @@ JobConfig checked_as(const std::string& parameter, const Setting& setting) {
 bool checked_flag(const Setting& setting) {
   const auto* text = std::get_if<std::string>(&setting.value);
   if (text && (*text == "true" || *text == "false")) return *text == "true";
-  throw InputError(fmt::format("{}: {} must be true or false, not {}", setting.origin, setting.name,
-                               setting.shown));
+  throw InputError(fmt::format("{}: {} must be true or false, not {}", setting.origin,
+                               told_name(setting), setting.shown));
 }
 
 }  // namespace

@@ -84,8 +84,8 @@ std::string expectation(const Parameter& p) {
 }
 
 [[noreturn]] void refuse(const Parameter& p, const Setting& setting) {
-  throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, p.name, expectation(p),
-                               setting.shown.empty() ? "empty" : setting.shown));
+  throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, told_name(setting),
+                               expectation(p), setting.shown.empty() ? "empty" : setting.shown));
 }
 
 bool in_range(const Parameter& p, double value) {
@@ -237,6 +237,10 @@ std::optional<std::string> switch_text(const std::string& name, bool value) {
   for (const Parameter& p : parameters())
     if (p.name == name && is_on_off(p)) return value ? "on" : "off";
   return {};
+}
+
+std::string told_name(const Setting& setting) {
+  return setting.told.empty() ? setting.name : setting.told;
 }
 
 void apply_settings(JobConfig& config, const std::vector<Setting>& settings) {

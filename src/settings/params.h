@@ -55,7 +55,11 @@ struct Setting {
   bool typed = false;  // from TOML: text stays text, and a number must be a number
   std::string shown;   // the value as the user wrote it, for messages
   std::string origin;  // "--set", "jobs/a.toml:3"
+  // What messages call it, as its file does: "[[dip]] 2: depth_mm"; empty: its name.
+  std::string told = {};
 };
+
+std::string told_name(const Setting& setting);
 
 // Checks every setting and applies them in order, so that later ones win. "dip[2].rotate_deg" is
 // the second of the job's dips, which is made if it is new. Throws InputError naming

@@ -16,8 +16,8 @@ namespace {
 constexpr int kMostCopies = 100;
 
 [[noreturn]] void refuse(const Setting& setting, const std::string& expected) {
-  throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, setting.name, expected,
-                               setting.shown.empty() ? "empty" : setting.shown));
+  throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, told_name(setting),
+                               expected, setting.shown.empty() ? "empty" : setting.shown));
 }
 
 PartEntry& numbered(JobConfig& config, std::size_t number, const Setting& setting) {

@@ -35,6 +35,7 @@ constexpr void check(bool holds) {
 #include "base/unicode.h"
 #include "settings/artwork_tables.h"
 #include "settings/settings.h"
+#include "settings/table_key.h"
 
 namespace hydrodip {
 namespace {
@@ -219,6 +220,14 @@ class SettingReader {
                                                             : ParameterType::kText;
   }
 
+  // As the file has it, where its name is made of that.
+  static std::string told_as(const std::string& given) {
+    for (const char* table : {kArtworkTables, kPartTables, kDipTables})
+      if (const auto at = table_key(table, given))
+        return fmt::format("[[{}]] {}: {}", table, at->number, at->key);
+    return given;
+  }
+
   // [dips] says what holds for all [[dip]]s: TOML has no room for a [dip] beside them.
   static std::string known_name(const std::string& name) {
     return name.starts_with("dips.") ? "dip." + name.substr(5) : name;
@@ -230,12 +239,13 @@ class SettingReader {
     const ParameterType type = type_of(name, origin);
     const auto text = node.value_exact<std::string>();
     if (text && text->find('\0') != std::string::npos)
-      throw InputError(fmt::format("{}: {} must be text without NUL characters", origin, name));
+      throw InputError(
+          fmt::format("{}: {} must be text without NUL characters", origin, told_as(given)));
     Located located;
     located.line = at.line;
     located.column = at.column;
     Setting& setting = located.setting;
-    setting = {name, std::string(), true, shown(node), origin};
+    setting = {name, std::string(), true, shown(node), origin, told_as(given)};
     if (const auto number = as_number(node))
       setting.value = *number;
     else if (text)

@@ -156,6 +156,15 @@ TEST_F(JobFile, IsRefusedWhereItIsWrong) {
   EXPECT_TRUE(contains(refusal("[[dip]]\nlocked = 1\n"), "true or false"));
   EXPECT_TRUE(contains(refusal("[[dip]]\nrotate_deg = 7\n"), "three numbers"));
   EXPECT_TRUE(contains(refusal("[[dip]]\ndepth_mm = -1\n"), "job.toml:2"));
+  // Named as the file does.
+  EXPECT_TRUE(contains(refusal("[[dip]]\n[[dip]]\ndepth_mm = -1\n"),
+                       "job.toml:3: [[dip]] 2: depth_mm must"));
+  EXPECT_TRUE(contains(refusal("[[dip]]\nlocked = 1\n"), "job.toml:2: [[dip]] 1: locked must"));
+  EXPECT_TRUE(contains(refusal("[[dip]]\nrotate_deg = 7\n"), ": [[dip]] 1: rotate_deg must"));
+  EXPECT_TRUE(contains(refusal("[[artwork]]\n[[artwork]]\nopacity = 7\n"),
+                       ": [[artwork]] 2: opacity must"));
+  EXPECT_TRUE(contains(refusal("[[part]]\ncount = 0\n"), ": [[part]] 1: count must"));
+  EXPECT_TRUE(contains(refusal("[dips]\nstep_mm = -1\n"), ": dips.step_mm must"));
   std::string many;
   for (int i = 0; i < 25; ++i) many += "[[dip]]\n";
   EXPECT_TRUE(contains(refusal(many), "at most 24"));
