@@ -207,6 +207,11 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments) {
   const std::string first = arguments.empty() ? "" : arguments.front();
   if (first.empty())
     throw InputError("name a command, as in 'hydrodip print MODEL'; see 'hydrodip --help'");
+  if (first == "help" && arguments.size() > 1) {
+    std::vector<std::string> about(arguments.begin() + 1, arguments.end());
+    about.emplace_back("--help");
+    return parse_command_line(about);
+  }
   if (first == "--help" || first == "-h" || first == "help") return {nullptr, {}, general_help()};
   const bool asks = arguments.size() == 2 && (arguments[1] == "--help" || arguments[1] == "-h");
   if (asks && !group_help(first).empty() && !is_command(first))

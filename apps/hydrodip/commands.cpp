@@ -17,16 +17,22 @@
 namespace hydrodip {
 namespace {
 
-void require_model(const std::string& model, const std::string& command) {
-  if (model.empty())
+// With a model, named by itself or by the job's files.
+JobConfig configure_job(const Request& request, const std::string& command) {
+  JobConfig config = configure(request);
+  if (config.model.empty())
     throw InputError("name the model to " + command + ", as in 'hydrodip " + command +
                      " mask.obj'; 'hydrodip sample' makes one to try");
+  return config;
 }
 
 // "models/spot.obj" goes to "spot-print" unless a folder is named.
-std::filesystem::path output_folder(const Request& request, const std::string& command) {
+std::filesystem::path output_folder(const Request& request, const JobConfig& config,
+                                    const std::string& command) {
   if (!request.output.empty()) return request.output;
-  return std::filesystem::path(request.model).stem().string() + "-" + command;
+  const std::filesystem::path named =
+      request.model.empty() ? config.model : std::filesystem::path(request.model);
+  return named.stem().string() + "-" + command;
 }
 
 // One for each of several dips, beside its sheet.
@@ -68,9 +74,8 @@ void require_no_artwork_option(const Request& request) {
 }
 
 JobResult run_print(const Request& request, const RunContext& context) {
-  require_model(request.model, "print");
-  JobConfig config = configure(request);
-  config.output = output_folder(request, "print");
+  JobConfig config = configure_job(request, "print");
+  config.output = output_folder(request, config, "print");
   if (!config.film_image.empty()) {
     require_no_artwork_option(request);
     return print_film_image_job(config, context);
@@ -95,15 +100,14 @@ void declare_pattern_command(CLI::App& app, Request& request) {
 }
 
 JobResult run_pattern(const Request& request, const RunContext& context) {
-  require_model(request.model, "pattern");
+  JobConfig config = configure_job(request, "pattern");
   if (request.pattern.tile.empty() || !(request.pattern.tile_mm > 0))
     throw InputError(
         "name the pattern and its true width, as in 'hydrodip pattern grip.stl --tile camo.png "
         "--tile-mm 80'");
   if (!(request.pattern.tile_mm >= 1 && request.pattern.tile_mm <= 3000))
     throw InputError("--tile-mm: must be a width from 1 to 3000 mm");
-  JobConfig config = configure(request);
-  config.output = output_folder(request, "pattern");
+  config.output = output_folder(request, config, "pattern");
   return pattern_job(config, request.pattern, context);
 }
 
@@ -164,9 +168,8 @@ void declare_simulate(CLI::App& app, Request& request) {
 }
 
 JobResult run_simulate(const Request& request, const RunContext& context) {
-  require_model(request.model, "simulate");
-  JobConfig config = configure(request);
-  config.output = output_folder(request, "simulate");
+  JobConfig config = configure_job(request, "simulate");
+  config.output = output_folder(request, config, "simulate");
   return simulate_job(config, context);
 }
 
@@ -180,8 +183,7 @@ void declare_inspect(CLI::App& app, Request& request) {
 }
 
 JobResult run_inspect(const Request& request, const RunContext& context) {
-  require_model(request.model, "inspect");
-  return inspect_job(configure(request), context);
+  return inspect_job(configure_job(request, "inspect"), context);
 }
 
 void declare_orient(CLI::App& app, Request& request) {
@@ -195,9 +197,8 @@ void declare_orient(CLI::App& app, Request& request) {
 }
 
 JobResult run_orient(const Request& request, const RunContext& context) {
-  require_model(request.model, "orient");
-  JobConfig config = configure(request);
-  config.output = output_folder(request, "orient");
+  JobConfig config = configure_job(request, "orient");
+  config.output = output_folder(request, config, "orient");
   return orient_job(config, context);
 }
 
@@ -213,12 +214,11 @@ void declare_plan(CLI::App& app, Request& request) {
 }
 
 JobResult run_plan(const Request& request, const RunContext& context) {
-  require_model(request.model, "plan");
-  JobConfig config = configure(request);
+  JobConfig config = configure_job(request, "plan");
   if (config.plan.dips == 0 && config.dips.empty())
-    throw InputError("say how many dips to plan, as in 'hydrodip plan " + request.model +
+    throw InputError("say how many dips to plan, as in 'hydrodip plan " + config.model.string() +
                      " --dips 4'");
-  config.output = output_folder(request, "plan");
+  config.output = output_folder(request, config, "plan");
   // A look in haste makes no sheets in haste: --quality is for this run, not for the plan's prints.
   Request without = request;
   without.sources.quality.clear();

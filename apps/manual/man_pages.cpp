@@ -167,7 +167,8 @@ std::string parameters_page(const std::string& release, const std::string& date)
       ".SH DESCRIPTION\nA profile describes film, printer and bath, a configuration a job; both "
       "are TOML files\nof parameters, for\n.B \\-\\-profile\nand\n.BR \\-\\-config .\n"
       "A job file is a configuration that names its model, as\n.BR object.file ,\nand stands "
-      "where a model may stand. Paths in a file are relative to it.\n.B \\-\\-set "
+      "where a model may stand, or is given by\n.B \\-\\-config\nalone. Paths in a file are "
+      "relative to it.\n.B \\-\\-set "
       "\\fINAME\\fR=\\fIVALUE\\fR\nhas the last word.\n";
   std::string group;
   for (const Parameter& p : parameters()) {

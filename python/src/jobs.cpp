@@ -64,7 +64,10 @@ ConfigHandle configure(const std::string& model, const ModelHandle* given,
   ConfigHandle handle{configured(model, std::move(sources)),
                       configured(model, std::move(without_quality))};
   for (JobConfig* config : {&handle.config, &handle.to_print}) {
-    if (given) config->object.given = given->loaded;
+    if (given) {
+      config->object.given = given->loaded;
+      config->model = model;  // what is named in a file stands back
+    }
     if (law) config->design.dip.material.law = law->law;
     config->output = output;
   }

@@ -243,7 +243,7 @@ JobConfig configured(const std::string& model, SettingSources sources) {
   apply_sources(config, sources);
   require_dips_alone_say(config, sources);
   require_one_way_down(config, model);
-  if (!is_job) config.model = model;
+  if (!is_job && !model.empty()) config.model = model;
   if (is_job) require_no_parts(model);
   if (is_job && config.model.empty())
     throw InputError(fmt::format(

@@ -55,8 +55,8 @@ void apply_sources(JobConfig& config, const SettingSources& sources);
 // that do not go together.
 void settle(JobConfig& config, const std::vector<Setting>& given);
 
-// A job's configuration: `model` is a model's file, or a job's (.toml) that names one. Throws
-// InputError.
+// A job's configuration: `model` is a model's file, or a job's (.toml) that names one; where it is
+// empty, what the sources name. Throws InputError.
 JobConfig configured(const std::string& model, SettingSources sources);
 
 }  // namespace hydrodip

@@ -113,6 +113,18 @@ cmp inspected/angles.png inspected-again/angles.png || fail 'angles.png depends 
 expect_files plain $simulate_files
 
 # Precedence, seen from outside.
+# A configuration that names its model is a job, wherever it stands.
+printf '[object]\nfile = "colored.ply"\n' > named.toml
+# shellcheck disable=SC2086
+{
+  "$hydrodip" print named.toml $quick -o as-model --quiet > /dev/null || fail 'a job in the place of a model'
+  "$hydrodip" print --config named.toml $quick -o as-config --quiet > /dev/null || fail 'a job by --config alone'
+  "$hydrodip" simulate --config named.toml --set object.file=tetra.obj $quick_simulate --quiet > /dev/null || fail 'a model by --set'
+  : > empty.toml
+  expect 2 'name the model to print' print --config empty.toml $quick
+}
+cmp as-model/print.tif as-config/print.tif || fail 'a job prints otherwise by --config'
+[ -s tetra-simulate/film.ply ] || fail 'without MODEL the folder is not named after the model'
 printf 'print.dpi = 50\n[film]\nwidth_mm = 90\nheight_mm = 70\n' > job.toml
 "$hydrodip" print colored.ply $quick --config job.toml --set print.dpi=60 --json --quiet \
   -o precedence > precedence.json 2> quiet.txt || fail 'config'
@@ -148,6 +160,14 @@ for command in print simulate inspect view sample params; do
   "$hydrodip" "$command" --help | grep -q "^Usage: hydrodip $command" || fail "$command --help"
 done
 "$hydrodip" --help | grep -q inspect || fail '--help'
+for command in print 'rig sheet' rig; do
+  # shellcheck disable=SC2086
+  "$hydrodip" $command --help > asked.txt
+  # shellcheck disable=SC2086
+  "$hydrodip" help $command | cmp -s - asked.txt || fail "help $command"
+done
+"$hydrodip" help | grep -q inspect || fail 'help'
+expect 2 "unknown command 'pirnt'; did you mean 'print'" help pirnt
 # What may be left out is in brackets, what may come several times has dots.
 for usage in 'print MODEL' 'studio [MODEL]' 'sample [NAME]' 'nest [PART...]' 'register PHOTO JOB_DIR' \
   'rig stage ACTION [JOB_DIR]' 'correct JOB_DIR SCAN...'; do
