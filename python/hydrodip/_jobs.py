@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from . import _core, _mesh, _results
 
@@ -87,19 +87,32 @@ def _options(given: Dict[str, Any]) -> List[Tuple[str, Any, str, str]]:
         seen[name] = keyword
         options.append(_setting(name, value, keyword))
     for table, key in (("artwork", "artwork"), ("dip", "dip_tables")):
-        for number, entry in enumerate(given.get(key) or (), 1):
+        for number, entry in enumerate(_tables(given.get(key), key), 1):
             for name, value in entry.items():
                 origin = f"{key}[{number - 1}]"
                 options.append(_setting(f"{table}[{number}].{name}", value, origin))
     return options
 
 
-def _files(given: Any) -> List[str]:
+_EXAMPLES = {"artwork": "[{'image': 'logo.png', 'size_mm': [40, 40]}]", "dip_tables": "[{'rotate_deg': [0, 90, 0]}]"}
+
+
+def _tables(given: Any, key: str) -> List[Mapping[str, Any]]:
     if given is None:
         return []
-    if isinstance(given, (str, os.PathLike)):
-        return [os.fspath(given)]
-    return [os.fspath(file) for file in given]
+    tables = list(given) if isinstance(given, Iterable) and not isinstance(given, (str, bytes, Mapping)) else [None]
+    if all(isinstance(table, Mapping) for table in tables):
+        return tables
+    raise TypeError(f"{key} is a list of dictionaries, as in {key}={_EXAMPLES[key]}, not {given!r}")
+
+
+def _files(given: Any, key: str) -> List[str]:
+    if given is None:
+        return []
+    files = [given] if isinstance(given, (str, os.PathLike)) or not isinstance(given, Iterable) else list(given)
+    if all(isinstance(file, (str, os.PathLike)) for file in files):
+        return [os.fspath(file) for file in files]
+    raise TypeError(f"{key} is a file or a list of files, not {given!r}")
 
 
 # Where `hydrodip profile` keeps profiles by their names.
@@ -113,12 +126,23 @@ def _profile_folder() -> str:
 def _film(film: Any) -> str:
     if film is None:
         return ""
-    return film if isinstance(film, str) else "{:.17g}x{:.17g}".format(*film)
+    if isinstance(film, str):
+        return film
+    try:
+        width_mm, height_mm = _numbers(film)
+    except (TypeError, ValueError):
+        raise TypeError(
+            f"film is a name or (width, height) in mm, as in film='a4' or film=(200, 150), not {film!r}"
+        ) from None
+    return f"{width_mm:.17g}x{height_mm:.17g}"
 
 
 def _config(given: Dict[str, Any], model: Any = None, output: Any = None, quiet: bool = False) -> Any:
     name, made = ("", None) if model is None else _mesh.resolved(model)
-    sets = [_setting(n, v, "settings") for n, v in (given.get("settings") or {}).items()]
+    settings = given.get("settings") or {}
+    if not isinstance(settings, Mapping):
+        raise TypeError(f"settings is a dictionary, as in settings={{'film.elements': 4000}}, not {settings!r}")
+    sets = [_setting(n, v, "settings") for n, v in settings.items()]
     if quiet:
         sets.append(("preview.pictures", "off", "off", "hydrodip"))
     material = given.get("material")
@@ -129,9 +153,9 @@ def _config(given: Dict[str, Any], model: Any = None, output: Any = None, quiet:
         sets,
         _film(given.get("film")),
         given.get("quality") or "",
-        _files(given.get("profile")),
+        _files(given.get("profile"), "profile"),
         _profile_folder(),
-        _files(given.get("config")),
+        _files(given.get("config"), "config"),
         "" if output is None else os.fspath(output),
         None if material is None else material._law,
     )
@@ -239,14 +263,14 @@ def _request(given: Dict[str, Any], scans: List[str]) -> Any:
         if name in given:
             setattr(request, name, given[name])
     request.torn_rings = list(given.get("torn_rings") or ())
-    request.merge = _files(given.get("merge"))
+    request.merge = _files(given.get("merge"), "merge")
     return request
 
 
 def _scans(scans: Any) -> List[str]:
     if hasattr(scans, "items"):
         return [f"{name}={os.fspath(file)}" for name, file in scans.items()]
-    return [scans] if isinstance(scans, str) else list(scans)
+    return _files(scans, "scans")
 
 
 def measure(given: Dict[str, Any]) -> _results.Measurement:
@@ -268,5 +292,4 @@ def calibrate(given: Dict[str, Any]) -> _results.Calibration:
 
 def synth(given: Dict[str, Any]) -> _results.JobFiles:
     objects = given["objects"]
-    scans = [objects] if isinstance(objects, str) else list(objects)
-    return _job_files("synth", given, _request(given, scans))
+    return _job_files("synth", given, _request(given, _files(objects, "objects")))

@@ -12,6 +12,7 @@
 #include "dip/principal_stretch.h"
 #include "elastic/corotated.h"
 #include "hydrodip/hydrodip.h"
+#include "ink/discoloration.h"
 #include "job/job_record.h"
 #include "job/sheet_of.h"
 #include "job/wanted.h"
@@ -164,6 +165,7 @@ void bind_figures(py::module_& m) {
       .def_readonly("downward_mm2", &Coverage::downward_mm2)
       .def_readonly("covered_mm2", &Coverage::covered_mm2)
       .def_readonly("covered_downward_mm2", &Coverage::covered_downward_mm2)
+      .def_readonly("doubtful_mm2", &Coverage::doubtful_mm2)
       .def_readonly("film_on_object_mm2", &Coverage::film_on_object_mm2)
       .def_readonly("torn_mm2", &Coverage::torn_mm2)
       .def_readonly("wrinkled_mm2", &Coverage::wrinkled_mm2)
@@ -173,6 +175,8 @@ void bind_figures(py::module_& m) {
       .def_readonly("area_ratio_mean", &Coverage::area_ratio_mean)
       .def_readonly("area_ratio_max", &Coverage::area_ratio_max)
       .def_property_readonly("covered_share", &Coverage::covered_share)
+      .def_property_readonly("covered_downward_share", &Coverage::covered_downward_share)
+      .def_property_readonly("doubtful_share", &Coverage::doubtful_share)
       .def_property_readonly("torn_share", &Coverage::torn_share);
   py::class_<AirPocket>(m, "AirPocket", "Air in one hollow: mm^2 of dry surface, mm^3.")
       .def_readonly("area_mm2", &AirPocket::area_mm2)
@@ -409,6 +413,17 @@ py::list rounds_of(const Design& d) {
   return list;
 }
 
+py::array print_image_of(const Design& d) {
+  std::shared_ptr<const Image> look;
+  {
+    const py::gil_scoped_release release;
+    const Inking& laid = d.designed->ink.ink.inking;
+    look =
+        std::make_shared<const Image>(look_on_film(laid.inks, laid.printed, *d.job->printer.model));
+  }
+  return image_view(look->rgba, look->width_px, look->height_px, look);
+}
+
 void bind_design(py::module_& m) {
   py::class_<Design, Simulation>(m, "Design", "What to print, and the dip of it.")
       .def_property_readonly(
@@ -417,8 +432,15 @@ void bind_design(py::module_& m) {
             const Image& i = d.designed->ink.ink.wanted;
             return image_view(i.rgba, i.width_px, i.height_px, d.designed);
           },
-          "(rows, columns, 4) uint8: what shall appear, sRGB with straight alpha, seen from above; "
-          "row 0 is the +y edge. A view.")
+          "(rows, columns, 4) uint8: what shall appear on the object, laid on the film, sRGB with "
+          "straight alpha, seen from above; row 0 is the +y edge. Not what print.png shows, which "
+          "is "
+          "print_image. A view.")
+      .def_property_readonly(
+          "print_image", &print_image_of,
+          "(rows, columns, 4) uint8: print.png of a film whose ink side is up: what the inks look "
+          "like on the flat sheet, before the dip, over white; transparent where nothing is "
+          "printed.")
       .def_property_readonly(
           "inks",
           [](const Design& d) {
@@ -429,8 +451,8 @@ void bind_design(py::module_& m) {
       .def_property_readonly(
           "on_object_image",
           [](const Design& d) {
-            const Image& i = d.designed->ink.ink.on_object;
-            return image_view(i.rgba, i.width_px, i.height_px, d.designed);
+            const std::shared_ptr<const Image>& i = d.finish->coats().front().look;
+            return image_view(i->rgba, i->width_px, i->height_px, i);
           },
           "(rows, columns, 4) uint8: what each pixel will look like on the object; transparent "
           "where "

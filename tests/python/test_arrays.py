@@ -324,6 +324,8 @@ class Results(unittest.TestCase):
         self.assertEqual(made.film_image.shape, (rows, columns, 4))
         self.assertEqual(made.inks.shape, made.film_image.shape)
         self.assertEqual(address(made.film_image), address(made.film_image))
+        self.assertEqual(made.on_object_image.shape, made.film_image.shape)
+        self.assertGreater(made.on_object_image[..., 3].max(), 0)
         picture = hydrodip.render(made, 200)
         self.assertEqual(picture.shape[1:], (200, 4))
         self.assertGreater(len(np.unique(picture.reshape(-1, 4), axis=0)), 50)

@@ -41,7 +41,8 @@ class SameAsTheCommandLine(InFolder):
         dip.film.write("film.ply")
         self.assertEqual(read("film.ply"), read("there", "film.ply"))
         report = json.loads(read("there", "report.json"))
-        self.assertEqual(dip.coverage.covered_mm2, report["coverage"]["covered_mm2"])
+        for figure in ("covered_mm2", "covered_share", "doubtful_mm2", "covered_downward_mm2", "covered_downward_share"):
+            self.assertEqual(getattr(dip.coverage, figure), report["coverage"][figure], figure)
 
     def test_design_and_what_its_print_leaves(self):
         run("print", "sphere.obj", *self.pose_options, *DESIGN_OPTIONS, "-o", "there")
@@ -51,6 +52,7 @@ class SameAsTheCommandLine(InFolder):
         self.assertEqual(read("film.ply"), read("there", "film.ply"))
         for name in ("print.png", "print.tif", "print.pdf"):
             self.assertEqual(read("here", name), read("there", name), name)
+        np.testing.assert_array_equal(made.print_image, hydrodip._core.read_image("there/print.png"))
 
     def test_a_printed_picture_dipped_as_file_and_as_array(self):
         rows, columns = 227, 283
@@ -148,6 +150,14 @@ class Arguments(InFolder):
             hydrodip.simulate(textured_cone(), elements=3)
         with self.assertRaises(TypeError):
             hydrodip.simulate(textured_cone(), depth=3, dip_depth_mm=4)
+
+    def test_what_is_of_no_such_kind_is_told_what_it_should_be(self):
+        for keyword, value in (
+            ("artwork", "logo.png"), ("artwork", ["logo.png"]), ("artwork", {"image": "logo.png"}), ("artwork", 3),
+            ("dip_tables", [3]), ("film", 3), ("film", (1, 2, 3)), ("profile", 3), ("config", [3]), ("settings", ["film.elements"]),
+        ):
+            with self.subTest(keyword, value=value), self.assertRaisesRegex(TypeError, f"^{keyword} is a .*, not "):
+                hydrodip.print_job(textured_cone(), output="none", **{keyword: value})
 
     def test_no_file_and_no_colours_are_said(self):
         with self.assertRaisesRegex(hydrodip.InputError, "nowhere.obj"):
