@@ -8,7 +8,6 @@
 
 #include "base/file.h"
 #include "base/run_scope.h"
-#include "base/shell_word.h"
 #include "export/film_ply.h"
 #include "export/preview_glb.h"
 #include "export/scene.h"
@@ -266,20 +265,17 @@ JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previe
   record.context.check_cancelled();
   folder.commit();
   JobResult result = describe_result(report, folder.folder());
-  result.text = folder.told_replaced() + told_earlier_jig(folder) + result.text;
+  result.text = folder.told_replaced() + result.text;
   return result;
-}
-
-std::string told_earlier_jig(const OutputFolder& folder) {
-  const std::filesystem::path jig = folder.folder() / "jig";
-  std::error_code none;
-  if (!folder.replaced_earlier() || !std::filesystem::exists(jig / "mount.stl", none)) return "";
-  return fmt::format("{} was cut for the earlier result: 'hydrodip rig jig {}' cuts it anew\n",
-                     jig.string(), shell_word(folder.folder().string()));
 }
 
 std::vector<std::string> files_of_dip() {
   return {"print.pdf", "print.png", "print.tif", "film.ply", "preview.glb", "report.json"};
+}
+
+std::vector<std::string> files_of_jig() {
+  return {"mount.stl",   "bar.stl",     "frame.stl",   "frame-1.stl",
+          "frame-2.stl", "frame-3.stl", "frame-4.stl", "jig.png"};
 }
 
 std::vector<std::string> prints() {
@@ -290,15 +286,23 @@ std::vector<std::string> prints() {
 
 std::vector<std::string> sheets_of_other_prints(std::size_t dips) {
   std::vector<std::string> names;
+  const auto add_jig = [&](const std::string& folder) {
+    for (const std::string& name : files_of_jig()) names.push_back(folder + "jig/" + name);
+  };
+  // The jig first, so that its folder is gone when that of the dip is to go.
   const auto add = [&](const std::string& folder) {
+    add_jig(folder);
     for (const std::string& name : files_of_dip())
       if (!folder.empty() || name != "report.json") names.push_back(folder + name);
     names.push_back(folder + "run-sheet.pdf");
   };
-  if (dips > 0)
+  if (dips > 0) {
     add("");  // whose report is replaced
-  else
+  } else {
+    add_jig("");
     names.emplace_back("run-sheet.pdf");
+  }
+  for (std::size_t k = 0; k < dips; ++k) add_jig(fmt::format("dip-{}/", k + 1));
   for (const std::string& picture : pictures_of_jobs()) names.push_back(picture);
   for (const char* of_others : {"nest.json", "nest.html", "angles.png"})
     names.emplace_back(of_others);

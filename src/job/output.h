@@ -31,15 +31,16 @@ JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previe
 // What a sheet lays of each ink, of a limit to their sum.
 ReportInk ink_amounts(const InkImage& inks, double limit);
 
-// Says that a jig lies beside the new files that was cut for what they have replaced, or nothing.
-std::string told_earlier_jig(const OutputFolder& folder);
+// What 'hydrodip rig jig' writes, into the folder jig of a print; its frame in one piece or in
+// four.
+std::vector<std::string> files_of_jig();
 
 // What a job of several dips writes into the folder of each.
 std::vector<std::string> files_of_dip();
 
 // What prints of another number of dips put into the same folder, for OutputFolder::supersede():
-// nobody shall print a sheet of an earlier job, or take its pictures for those of this one. 0: a
-// single dip, in no folder of its own.
+// nobody shall print a sheet of an earlier job, hang an object up in its jig, or take its pictures
+// for those of this one. 0: a single dip, in no folder of its own.
 std::vector<std::string> sheets_of_other_prints(std::size_t dips);
 // All that prints put into a folder: for what else is put there.
 std::vector<std::string> prints();

@@ -153,7 +153,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   JobResult result = describe_result(report, folder.folder());
   result.files = file_names(all);
   for (const MadeDip& dip : all.dips) result.dips.push_back(dip.folder);
-  result.text = folder.told_replaced() + told_earlier_jig(folder) + result.text;
+  result.text = folder.told_replaced() + result.text;
   return result;
 }
 

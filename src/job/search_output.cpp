@@ -32,6 +32,7 @@ SearchOutput::SearchOutput(const JobConfig& config, const std::string& name,
   inputs.insert(inputs.end(), config.settings_files.begin(), config.settings_files.end());
   if (!config.plan.importance.empty()) inputs.push_back(config.plan.importance);
   folder_.announce(files_, inputs);
+  folder_.supersede({name + ".png"});  // where pictures are off now
 }
 
 JobResult SearchOutput::finish(std::string json, const std::string& words,

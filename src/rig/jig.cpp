@@ -16,6 +16,7 @@
 #include "base/run_scope.h"
 #include "export/stl.h"
 #include "image/files.h"
+#include "job/output.h"
 #include "job/prepare.h"
 #include "rig/pictures.h"
 #include "rig/solids.h"
@@ -415,6 +416,7 @@ JobResult jig_job(const RigJob& job, const JigOptions& options, const std::files
   for (const JigPart& part : jig.parts) result.files.push_back(part.name + ".stl");
   result.files.emplace_back("jig.png");
   output.announce(result.files, prepared.files);
+  output.supersede(files_of_jig());  // a frame of four pieces beside one of one
   const double span_mm = object.bounds().size().head<2>().maxCoeff();
   std::vector<ShownPart> shown = {{object, LinearColor{0.75F, 0.3F, 0.12F, 1}}};
   for (const JigPart& part : jig.parts) {

@@ -281,4 +281,12 @@ expect 2 '50 or more each' rig jig job --bed 220,220,0
   fail 'print of what a jig holds'
 expect 0 'jig.png' rig jig held
 expect 2 'no_clobber' rig jig held --no-clobber
+# In four pieces, then in one; and gone with the print that it was cut for.
+[ -s held/jig/frame-4.stl ] || fail 'a frame in four pieces'
+expect 0 'gone with it: frame-1.stl, frame-2.stl, frame-3.stl, frame-4.stl' rig jig held --bed 500,500,300
+[ -s held/jig/frame.stl ] || fail 'a frame in one piece'
+[ ! -e held/jig/frame-1.stl ] || fail 'a frame of an earlier jig stays'
+expect 0 'gone with it: jig/mount.stl, .*jig/jig.png' print colored.ply --film 140x130 --size 60 --depth 5 \
+  --quality draft -o held --quiet
+[ ! -e held/jig ] || fail 'a jig stays that was cut for an earlier print'
 finish
