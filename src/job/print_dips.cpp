@@ -32,12 +32,18 @@ namespace {
 void require_some_ink(const MadeDips& all) {
   if (!std::ranges::all_of(all.dips, &MadeDip::blank)) return;
   const std::string thin = told_thin(all.prepared.artwork, all.config.design.dpi);
+  const auto gets_film = [](const MadeDip& dip) {
+    return dip.made.dipped.coverage.film_on_object_mm2 > 0;
+  };
+  const bool inside_out =
+      all.prepared.health.inside_out && std::ranges::none_of(all.dips, gets_film);
   throw InputError(fmt::format(
       "{}: all sheets would be blank: {}", all.config.model.string(),
-      !thin.empty() ? thin
-                    : "what the films reach of the model is white, transparent, of the object's "
-                      "own colour or lighter than it (object.base_color); check its texture and "
-                      "colours"));
+      inside_out ? fmt::format("no film stays on the object: {}; {}", kLooksInwards, kTurnNormals)
+      : !thin.empty() ? thin
+                      : "what the films reach of the model is white, transparent, of the object's "
+                        "own colour or lighter than it (object.base_color); check its texture and "
+                        "colours"));
 }
 
 // What the wet bench needs of one dip, whose inks are spent on it.

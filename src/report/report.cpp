@@ -162,6 +162,7 @@ std::string plain_verdict(const Report& report) {
 
 std::string several_dips_verdict(const Report& report) {
   const Coverage& c = *report.coverage;
+  if (is_inside_out(report)) return no_film_verdict(c, true);
   const std::size_t dips = report.dips.size();
   return fmt::format(
              "{} {}; {}", dips == 1 ? "1 dip covers" : fmt::format("{} dips cover", dips),

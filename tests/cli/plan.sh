@@ -208,6 +208,10 @@ grep -q "^Do not dip it like this. No film stays on the object: its $mend" tray.
 ! grep -q 'hydrodip orient' tray.txt || fail 'turning is said to mend normals'
 # shellcheck disable=SC2086
 refused "$mend" print --art picture.svg $tray -o tray
+printf '[object]\nfile = "tray.obj"\n[[dip]]\nrotate_deg = [0, 0, 0]\ndepth_mm = 5\n[[dip]]\nrotate_deg = [0, 20, 0]\ndepth_mm = 5\n' \
+  > trays.toml
+# shellcheck disable=SC2086
+refused "$mend" print trays.toml --art picture.svg --dpi 72 $small -o trays
 
 # shellcheck disable=SC2086
 "$hydrodip" $strict --quality draft -o draft --quiet > draft.txt || fail 'a draft'

@@ -187,6 +187,9 @@ TEST(Findings, WhereNoFilmStaysOnWhatLooksInwardsThatIsSaid) {
             "No film stays on the object: its faces look inwards; turn their normals round in the "
             "program that made it.");
   EXPECT_NE(short_verdict(report).find(kLooksInwards), std::string::npos);
+  const std::string of_one = verdict_of(report);
+  report.dips.resize(2);
+  EXPECT_EQ(verdict_of(report), of_one);
 }
 
 // The map's slope is the stretch: a millimetre beside on the film is that much on the object.
