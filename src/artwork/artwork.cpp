@@ -383,6 +383,8 @@ Layer lay(const ArtworkLayer& wanted, PictureSource& picture, const ArtworkTask&
   else
     placed = place({wanted, picture.aspect(), posed, task.closed}, laid, context);
   laid.layer = std::move(placed.layer);
+  laid.has_chosen_place =
+      !wanted.toward && !wanted.at_mm && (laid.layer.toward || laid.layer.at_mm);
   const double pixels_per_mm = task.dpi / kMmPerInch * task.samples_per_axis;
   PictureSource::Shown shown = picture.pixels(placed.size_mm, pixels_per_mm);
   warn_of_coarse(wanted, shown.share, task.dpi, context);

@@ -14,7 +14,8 @@ namespace hydrodip {
 
 struct LaidLayer {
   std::string name;
-  ArtworkLayer layer;  // so that it lies there however the object is held
+  ArtworkLayer layer;             // so that it lies there however the object is held
+  bool has_chosen_place = false;  // it was told none
   Vec2 size_mm{0, 0};
   // Wrapped: lengths on the surface over the picture's.
   double stretch_least = 1, stretch_most = 1;

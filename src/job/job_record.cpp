@@ -243,7 +243,8 @@ Report make_report(const JobRecord& record) {
   return report;
 }
 
-JobResult describe_result(const Report& report, const std::filesystem::path& folder) {
+JobResult describe_result(const Report& report, const std::filesystem::path& folder,
+                          const std::string& places) {
   JobResult result;
   result.folder = folder;
   const Concern concern = concern_of(findings(report));
@@ -260,7 +261,7 @@ JobResult describe_result(const Report& report, const std::filesystem::path& fol
                              "auto{} takes the best.\n",
                              report.way_in.empty() ? " --depth auto" : "")
                        : "hydrodip plan looks for better ways to hold it.\n";
-  result.text += fmt::format("wrote to {}:\n", folder.string());
+  result.text += places + fmt::format("wrote to {}:\n", folder.string());
   for (const ReportOutput& output : report.outputs) {
     result.files.push_back(output.name);
     result.text += fmt::format("  {:<12} {}\n", output.name, output.description);

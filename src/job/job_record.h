@@ -53,7 +53,9 @@ ReportFigure model_size(const PosedObject& posed);
 
 Report make_report(const JobRecord& record);
 
-// What the command prints: in words, and the report with its folder as JSON.
-JobResult describe_result(const Report& report, const std::filesystem::path& folder);
+// What the command prints: in words, and the report with its folder as JSON. `places`: as
+// told_places() has it.
+JobResult describe_result(const Report& report, const std::filesystem::path& folder,
+                          const std::string& places);
 
 }  // namespace hydrodip

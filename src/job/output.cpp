@@ -264,7 +264,7 @@ JobResult finish_job(OutputFolder& folder, const JobRecord& record, const Previe
   write_report_html(folder.path("report.html"), report, pictures);
   record.context.check_cancelled();
   folder.commit();
-  JobResult result = describe_result(report, folder.folder());
+  JobResult result = describe_result(report, folder.folder(), told_places(record.prepared.artwork));
   result.text = folder.told_replaced() + result.text;
   return result;
 }

@@ -156,7 +156,7 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   write_report_html(folder.path("report.html"), report, pictures);
   context.check_cancelled();
   folder.commit();
-  JobResult result = describe_result(report, folder.folder());
+  JobResult result = describe_result(report, folder.folder(), told_places(prepared.artwork));
   result.files = file_names(all);
   for (const MadeDip& dip : all.dips) result.dips.push_back(dip.folder);
   result.text = folder.told_replaced() + result.text;

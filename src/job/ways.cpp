@@ -188,6 +188,14 @@ std::string trial_options(const Trial& trial) {
   return fmt::format("{} --depth {:.4g}", hold_options(trial.pose), trial.depth_mm);
 }
 
+namespace {
+
+std::string figures_of(const Vec3& place) {
+  return fmt::format("{:.4g},{:.4g},{:.4g}", place.x(), place.y(), place.z());
+}
+
+}  // namespace
+
 std::string artwork_options(const JobConfig& config, const PreparedObject& prepared,
                             const RunContext& context) {
   std::string options;
@@ -196,9 +204,7 @@ std::string artwork_options(const JobConfig& config, const PreparedObject& prepa
     const ArtworkLayer& laid = prepared.artwork[n].layer;
     const bool toward = !given.toward && laid.toward, at = !given.at_mm && laid.at_mm;
     if (!toward && !at) continue;
-    const Vec3 place = toward ? *laid.toward : *laid.at_mm;
-    const std::string figures =
-        fmt::format("{:.4g},{:.4g},{:.4g}", place.x(), place.y(), place.z());
+    const std::string figures = figures_of(toward ? *laid.toward : *laid.at_mm);
     if (n + 1 == prepared.artwork.size())
       options = fmt::format(" {} {}", toward ? "--art-toward" : "--art-at", figures);
     else
@@ -208,6 +214,27 @@ std::string artwork_options(const JobConfig& config, const PreparedObject& prepa
           prepared.artwork[n].name, toward ? "toward" : "at_mm", figures));
   }
   return options;
+}
+
+std::string told_places(const std::vector<LaidLayer>& layers) {
+  std::string text;
+  for (std::size_t n = 0; n < layers.size(); ++n) {
+    if (!layers[n].has_chosen_place) continue;
+    const ArtworkLayer& laid = layers[n].layer;
+    const bool by_option = n + 1 == layers.size();
+    const std::string toward = by_option ? "--art-toward" : "toward",
+                      at = by_option ? "--art-at" : "at_mm",
+                      where = by_option ? "" : " in its [[artwork]] table";
+    text += laid.toward ? fmt::format(
+                              "{}: no place is said, so it lies on the side that enters the water "
+                              "first ({} {}); that or {}{} lays it elsewhere\n",
+                              layers[n].name, toward, figures_of(*laid.toward), at, where)
+                        : fmt::format(
+                              "{}: no place is said, so it lies around {} ({}); that{} lays it "
+                              "elsewhere\n",
+                              layers[n].name, figures_of(*laid.at_mm), at, where);
+  }
+  return text;
 }
 
 std::string better_way(const JobConfig& config, const PreparedObject& prepared,

@@ -45,6 +45,9 @@ std::string trial_options(const Trial& trial);
 std::string artwork_options(const JobConfig& config, const PreparedObject& prepared,
                             const RunContext& context);
 
+// A line for each layer that was told no place: where it lies, and what lays it elsewhere.
+std::string told_places(const std::vector<LaidLayer>& layers);
+
 // The best way that a short search finds, in words with its options, beside the figures of the dip
 // that was made; empty if it is no better. `wanted`: that dip's.
 std::string better_way(const JobConfig& config, const PreparedObject& prepared,

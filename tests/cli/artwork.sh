@@ -219,6 +219,11 @@ pdftotext torn/print.pdf - | grep -q '^DO NOT DIP 1$' || fail 'nor does its shee
 # shellcheck disable=SC2086
 "$hydrodip" print plate.stl --art photo.png --quality draft --dpi 72 -o draft --quiet > draft.txt || fail 'a draft'
 grep -q '^warning: This is a draft' draft.txt || fail 'a draft does not say that it is one'
+grep -q '^photo.png: no place is said, so it lies on the side that enters the water first (--art-toward 0,0,1); that or --art-at lays' \
+  draft.txt || fail 'nobody is told where a picture lies that was told no place'
+# shellcheck disable=SC2086
+"$hydrodip" simulate plate.stl --art photo.png --art-toward 0,0,1 $quick_simulate -o placed --quiet > placed.txt || fail 'placed'
+! grep -q 'no place is said' placed.txt || fail 'a place that was said is told'
 pdftotext draft/print.pdf - | grep -q DRAFT || fail 'nor does its sheet'
 "$hydrodip" nest flat.dip.toml --film 200x200 --quality draft --dpi 72 -o drafts --quiet > drafts.txt || fail 'a nest of drafts'
 pdftotext drafts/print.pdf - | grep -q DRAFT || fail 'nor does a sheet of several'
