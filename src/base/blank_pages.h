@@ -14,26 +14,12 @@ namespace hydrodip {
 // was there is lost: some of it stays and the rest is zero.
 void give_back(void* begin, std::size_t bytes);
 
-// While it lives, the system may lay whole pages out in large ones, which zeros fill faster.
-class LargePages {
- public:
-  LargePages(void* begin, std::size_t bytes);
-  ~LargePages();
-  LargePages(const LargePages&) = delete;
-  LargePages& operator=(const LargePages&) = delete;
-
- private:
-  void* begin_;
-  std::size_t bytes_;
-};
-
 // std::vector<T>(count), made in pieces. Throws Cancelled, as check_cancelled() does.
 template <typename T>
 std::vector<T> blank(std::size_t count) {
   constexpr std::size_t kPiece = (std::size_t(1) << 22U) / sizeof(T);
   std::vector<T> values;
   values.reserve(count);
-  const LargePages large(values.data(), count * sizeof(T));
   while (values.size() < count) {
     check_cancelled();
     const std::size_t begin = values.size();
