@@ -351,10 +351,10 @@ FilmStretch film_stretch(const FilmMap& map, const SheetRaster& raster, double b
     };
     for (const std::int32_t triangle : film.under(tile)) {
       const LyingTriangle lying = map.lying(triangle);
-      const FilmPiece piece(lying, centres);
-      const LinearOnGrid ratio = piece.linear(lying.area_ratio);
-      for (int row = piece.rows().begin; row < piece.rows().end; ++row)
-        for (int column = piece.in_row(row).begin; column < piece.in_row(row).end; ++column) {
+      const TriangleSamples samples(lying, centres);
+      const LinearOnGrid ratio = samples.linear(lying.area_ratio);
+      for (int row = samples.rows().begin; row < samples.rows().end; ++row)
+        for (int column = samples.in_row(row).begin; column < samples.in_row(row).end; ++column) {
           result.area_ratio[index(column, row)] = static_cast<float>(ratio.at(column, row));
           result.on_object[index(column, row)] = 1;
         }

@@ -115,7 +115,7 @@ struct Limits {
   std::vector<HalfPlane> sides;
   bool none_inside = false;
 
-  Limits(const CornersOnPlane& on, const FilmPiece& piece, double most_gap_mm) {
+  Limits(const CornersOnPlane& on, const TriangleSamples& samples, double most_gap_mm) {
     const double least = least_of(on.slope), most = most_of(on.slope);
     if (!(least > kFlattest || most < -kFlattest)) return;  // anywhere
     const auto between = [](const AtCorners& values, std::size_t k, std::size_t l) {
@@ -138,7 +138,7 @@ struct Limits {
                   least_of(way_mm.value) > gap_mm || most_of(way_mm.value) < -gap_mm;
     if (none_inside) return;
     for (const AtCorners& corners : {u.plus_slack(), v.plus_slack(), rest})
-      if (least_of(corners) < 0) sides.emplace_back(piece.linear(corners));
+      if (least_of(corners) < 0) sides.emplace_back(samples.linear(corners));
   }
 };
 
@@ -165,28 +165,29 @@ class SampleLandings::Drawing {
       : landings_(landings), map_(map), grid_(grid) {}
 
   void draw(const LyingTriangle& film) {
-    const FilmPiece piece(film, grid_);
-    if (piece.empty()) return;
+    const TriangleSamples samples(film, grid_);
+    if (samples.empty()) return;
     gap_mm_ = std::min(gap_of(film), map_.reach_mm());
     Surroundings(film, gap_mm_).find(map_, near_);
-    for (const int triangle : near_) draw(film, piece, triangle);
+    for (const int triangle : near_) draw(film, samples, triangle);
   }
 
  private:
-  void draw(const LyingTriangle& film, const FilmPiece& piece, int object_triangle) {
+  void draw(const LyingTriangle& film, const TriangleSamples& samples, int object_triangle) {
     const CornersOnPlane on(film, map_.object(), object_triangle);
     if (!on.exists) return;
-    const Limits limits(on, piece, gap_mm_);
+    const Limits limits(on, samples, gap_mm_);
     if (limits.none_inside) return;
-    Span rows = piece.rows();
-    for (const HalfPlane& side : limits.sides) rows = side.rows(rows, piece.columns());
+    Span rows = samples.rows();
+    for (const HalfPlane& side : limits.sides) rows = side.rows(rows, samples.columns());
     if (rows.empty()) return;
-    const FilmOnPlane pair{
-        object_triangle,    piece.linear(on.height),  piece.linear(on.slope),  piece.linear(on.u),
-        piece.linear(on.v), piece.linear(on.u_along), piece.linear(on.v_along)};
+    const FilmOnPlane pair{object_triangle,           samples.linear(on.height),
+                           samples.linear(on.slope),  samples.linear(on.u),
+                           samples.linear(on.v),      samples.linear(on.u_along),
+                           samples.linear(on.v_along)};
     bool any = false;
     for (int row = rows.begin; row < rows.end; ++row) {
-      Span span = piece.in_row(row);
+      Span span = samples.in_row(row);
       for (const HalfPlane& side : limits.sides) span = side.in_row(row, span);
       if (!span.empty()) any |= draw_row(pair, row, span);
     }

@@ -7,8 +7,8 @@
 #include "base/math.h"
 #include "object/object.h"
 #include "transfer/film_map.h"
-#include "transfer/film_piece.h"
 #include "transfer/texture_mean.h"
+#include "transfer/triangle_samples.h"
 
 namespace hydrodip {
 

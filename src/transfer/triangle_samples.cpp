@@ -1,4 +1,4 @@
-#include "transfer/film_piece.h"
+#include "transfer/triangle_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ Span HalfPlane::rows(Span rows, const Span& columns) const {
   return HalfPlane(along_rows).in_row(0, rows);
 }
 
-FilmPiece::FilmPiece(const LyingTriangle& film, const SampleGrid& grid) {
+TriangleSamples::TriangleSamples(const LyingTriangle& film, const SampleGrid& grid) {
   std::array<Vec2, 3> corner;
   for (std::size_t k = 0; k < 3; ++k) corner[k] = grid.column_and_row(film.film_mm[k]);
   const Vec2 ab = corner[1] - corner[0], ac = corner[2] - corner[0];
@@ -42,14 +42,14 @@ FilmPiece::FilmPiece(const LyingTriangle& film, const SampleGrid& grid) {
   find_spans(corner, film.excess, grid);
 }
 
-LinearOnGrid FilmPiece::linear(const std::array<double, 3>& at_corners) const {
+LinearOnGrid TriangleSamples::linear(const std::array<double, 3>& at_corners) const {
   const double b = at_corners[1] - at_corners[0], c = at_corners[2] - at_corners[0];
   return {at_corners[0] + b * weight_[1].first + c * weight_[2].first,
           b * weight_[1].across + c * weight_[2].across, b * weight_[1].down + c * weight_[2].down};
 }
 
-void FilmPiece::find_spans(const std::array<Vec2, 3>& corner, const std::array<double, 3>& excess,
-                           const SampleGrid& grid) {
+void TriangleSamples::find_spans(const std::array<Vec2, 3>& corner,
+                                 const std::array<double, 3>& excess, const SampleGrid& grid) {
   const double top = std::min({corner[0].y(), corner[1].y(), corner[2].y()});
   const double bottom = std::max({corner[0].y(), corner[1].y(), corner[2].y()});
   rows_ = {int(std::floor(std::clamp(top, 0.0, double(grid.rows)))),

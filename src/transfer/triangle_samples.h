@@ -53,9 +53,9 @@ class HalfPlane {
 };
 
 // The samples of a grid that a triangle of film holds where it is whole; those on its sides, too.
-class FilmPiece {
+class TriangleSamples {
  public:
-  FilmPiece(const LyingTriangle& film, const SampleGrid& grid);
+  TriangleSamples(const LyingTriangle& film, const SampleGrid& grid);
 
   bool empty() const { return columns_.empty(); }
   // Limits of its samples.
