@@ -41,6 +41,7 @@ class Surroundings {
     most_ = a.cwiseMax(b).cwiseMax(c).array() + gap_mm;
     for (const Vec3& corner : film.position)
       radius_mm_ = std::max(radius_mm_, (corner - middle_).norm() + gap_mm);
+    find_walls(film, gap_mm);
   }
 
   // In place of what was in `triangles`.
@@ -55,11 +56,39 @@ class Surroundings {
     const Vec3 &a = object.positions[std::size_t(t[0])], &b = object.positions[std::size_t(t[1])],
                &c = object.positions[std::size_t(t[2])];
     return (a.cwiseMin(b).cwiseMin(c).array() <= most_.array()).all() &&
-           (a.cwiseMax(b).cwiseMax(c).array() >= least_.array()).all();
+           (a.cwiseMax(b).cwiseMax(c).array() >= least_.array()).all() &&
+           std::none_of(walls_.begin(), walls_.end(), [&](const Wall& wall) {
+             return wall.outside(a) && wall.outside(b) && wall.outside(c);
+           });
   }
+
+  // Through the film triangle's sides, as far out as lines lean within the gap.
+  void find_walls(const LyingTriangle& film, double gap_mm) {
+    const auto& [a, b, c] = film.position;
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    const double side = film.direction[0].dot(normal) < 0 ? -1 : 1;
+    double lean = 0;
+    for (const Vec3& direction : film.direction) {
+      const double along = side * direction.dot(normal);
+      if (!(along > kFlattest)) return;
+      lean = std::max(lean, direction.cross(normal).norm() / along);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& corner = film.position[k];
+      const Vec3 out = (film.position[(k + 1) % 3] - corner).cross(normal).normalized();
+      walls_.push_back({out, out.dot(corner) + lean * gap_mm + 1e-9});
+    }
+  }
+
+  struct Wall {
+    Vec3 out;
+    double from;
+    bool outside(const Vec3& point) const { return out.dot(point) > from; }
+  };
 
   double radius_mm_ = 0;
   Vec3 middle_, least_, most_;
+  std::vector<Wall> walls_;
 };
 
 // Of a triangle of film, where its corners land in the plane of one of the object's.
