@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "film/over_edge.h"
+#include "transfer/film_normals.h"
 
 namespace hydrodip {
 namespace {
@@ -79,17 +79,15 @@ bool is_laid(const DippedFilm& film, std::size_t t) {
 // As it lies on the object, whose normals it has.
 class LaidFilm {
  public:
-  LaidFilm(const DippedFilm& film, const Surface& surface) : film_(film), surface_(surface) {
-    if (film.normal.empty()) normal_ = normals_near(surface, film.position, attached_of(film));
-  }
+  LaidFilm(const DippedFilm& film, const Surface& surface)
+      : film_(film), surface_(surface), normal_(film_normals(film, surface)) {}
 
   // Of a triangle: where its corners are, and of an edge's two faces each its own part.
   struct Part {
     double mm2 = 0, downward_mm2 = 0;
   };
   Part area(std::size_t t, const Vec3& direction) const {
-    const TriangleOnObject on =
-        triangle_on_object(film_, film_.normal.empty() ? normal_ : film_.normal, t);
+    const TriangleOnObject on = triangle_on_object(film_, normal_, t);
     if (const auto faces = faces_of(on)) {
       Part sum;
       for (const FacePart& face : *faces) {
@@ -111,17 +109,8 @@ class LaidFilm {
   static Vec3 area_of(const std::array<Vec3, 3>& corner) {
     return 0.5 * (corner[1] - corner[0]).cross(corner[2] - corner[0]);
   }
-  static std::vector<std::uint8_t> attached_of(const DippedFilm& film) {
-    std::vector<std::uint8_t> attached;
-    for (const VertexState state : film.state) attached.push_back(state == VertexState::kAttached);
-    return attached;
-  }
   std::optional<std::array<FacePart, 2>> faces_of(const TriangleOnObject& on) const {
-    const auto is_near_object = [&](const Vec3& point, double within_mm) {
-      return surface_.closest_point(point, within_mm).has_value();
-    };
-    const auto direction =
-        direction_over_edge(on.position, on.normal, on.up, film_.z_stretch, is_near_object);
+    const auto direction = direction_over_edge(film_, on, surface_);
     return direction ? parts_over_edge(on.position, on.normal, *direction) : std::nullopt;
   }
 

@@ -6,8 +6,8 @@
 
 #include "base/parallel.h"
 #include "film/locate.h"
-#include "film/over_edge.h"
 #include "transfer/covered_rim.h"
+#include "transfer/film_normals.h"
 
 namespace hydrodip {
 
@@ -20,12 +20,6 @@ std::vector<Triangle> triangles_on_object(const DippedFilm& film) {
   for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t)
     if (film.lies_on_object(t)) lying.push_back(film.mesh().triangles[t]);
   return lying;
-}
-
-std::vector<std::uint8_t> attached_of(const DippedFilm& film) {
-  std::vector<std::uint8_t> attached;
-  for (const VertexState state : film.state) attached.push_back(state == VertexState::kAttached);
-  return attached;
 }
 
 // What would lie on the object had it not torn.
@@ -86,7 +80,7 @@ struct FilmMap::Impl {
         torn_triangle(torn_on_object(f)),
         film_surface(f.position, triangles_on_object(f)),
         torn_surface(f.position, corners_of(torn_triangle, f)),
-        normal(f.normal.empty() ? normals_near(s, f.position, attached_of(f)) : f.normal),
+        normal(film_normals(f, s)),
         rim(f),
         reach_mm(f.mesh().cell_mm) {
     for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
@@ -98,12 +92,7 @@ struct FilmMap::Impl {
   }
 
   void find_edge(std::size_t t) {
-    const TriangleOnObject on = triangle_on_object(film, normal, t);
-    const auto is_near_object = [&](const Vec3& point, double within_mm) {
-      return surface.closest_point(point, within_mm).has_value();
-    };
-    const auto direction =
-        direction_over_edge(on.position, on.normal, on.up, film.z_stretch, is_near_object);
+    const auto direction = direction_over_edge(film, triangle_on_object(film, normal, t), surface);
     if (!direction) return;
     over_edge[t] = std::int32_t(edge_direction.size());
     edge_direction.push_back(*direction);
