@@ -24,8 +24,6 @@ constexpr int kAround = 6;
 constexpr double kTurn_deg = 30;
 // Hollows are looked for in so many cells.
 constexpr int kTrialAirCells = 20000;
-// Trial dips and the job's are that near to each other.
-constexpr double kClearlyBehind = 0.98;
 // What reaches less than that part of the best is none to choose from, and none to better.
 constexpr double kWorthShowing = 0.25, kWorthBettering = 0.45;
 
@@ -179,21 +177,16 @@ class Search {
       if (tried[n] && is_better(*tried[n], found[of[n]])) found[of[n]] = *tried[n];
   }
 
-  // The best is dipped as finely as the job, and what its trial dip put close behind it, until one
-  // that was dipped like that is the best. What cannot be computed so is none to recommend.
+  // As finely as the job, each of them: trial dips make out neither how much tears nor which is the
+  // best. What cannot be computed so is none to recommend.
   void confirm(std::vector<Trial>& found) {
-    std::vector<Confirmed> sure, others;
-    for (const Trial& trial : found) {
-      context_.progress("dipping the best for good",
-                        double(sure.size() + others.size()) / double(found.size()));
-      const bool is_behind = std::any_of(sure.begin(), sure.end(), [&](const Confirmed& other) {
-        return other.trial.figures.score >= kClearlyBehind * trial.figures.score;
-      });
-      TrialTask task = is_behind ? coarse_ : fine_;
-      task.keep_film = fine_.keep_film;
+    std::vector<Trial> sure;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      context_.progress("dipping the best for good", double(i) / double(found.size()));
       try {
-        auto again = try_pose(task, trial.pose, trial.depth_mm + kDeeper_mm, context_.quiet());
-        if (again) (is_behind ? others : sure).push_back({std::move(*again), trial.figures.score});
+        if (auto again =
+                try_pose(fine_, found[i].pose, found[i].depth_mm + kDeeper_mm, context_.quiet()))
+          sure.push_back(std::move(*again));
       } catch (const DipError&) {
         continue;
       }
@@ -201,22 +194,9 @@ class Search {
     context_.progress("dipping the best for good", 1);
     if (sure.empty())
       throw DipError("none of the best ways to hold it could be computed with the job's film");
-    found.clear();
-    for (std::vector<Confirmed>* list : {&sure, &others}) {
-      std::stable_sort(list->begin(), list->end(), [](const Confirmed& a, const Confirmed& b) {
-        return is_better(a.trial, b.trial);
-      });
-      for (Confirmed& one : *list) {
-        if (list == &sure) result_.drafted.push_back(one.drafted);
-        found.push_back(std::move(one.trial));
-      }
-    }
+    std::stable_sort(sure.begin(), sure.end(), is_better);
+    found = std::move(sure);
   }
-
-  struct Confirmed {
-    Trial trial;
-    double drafted;
-  };
 
   const TrialTask fine_, coarse_;
   TrialTask rough_;

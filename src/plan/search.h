@@ -25,11 +25,8 @@ inline constexpr double kDeeper_mm = 3;
 SearchOptions quick_search();
 
 struct SearchResult {
-  // Best first, apart from each other. The first `drafted.size()` by the job's dip, the others by
-  // trial dips that say they are clearly behind.
-  std::vector<Trial> best;
-  std::vector<double> drafted;  // per confirmed one: the score that its trial dip had
-  std::vector<Trial> trials;    // all trial dips, in the order in which they were made
+  std::vector<Trial> best;    // first, apart from each other; by the job's dip where it confirms
+  std::vector<Trial> trials;  // all trial dips, in the order in which they were made
 };
 
 // `task.dip` and `task.film` as the job has them: trial dips are coarser. Sees the best so far

@@ -364,6 +364,29 @@ TEST_F(BoxSearch, TheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.worth, two.worth);
 }
 
+// Not the best alone: trial dips, in coarser film and longer steps, know little of what tears.
+TEST(MaskSearch, TellsOfAllThatItFindsWhatTheirOwnDipsComeTo) {
+  const auto mask = std::make_shared<const Object>(make_sample("mask"));
+  const Targets targets = spread_targets(*mask, 1000);
+  FilmOptions film;
+  film.elements = 20000;
+  DipOptions dip;
+  dip.step_mm = 0.5;
+  const RunContext context;
+  const std::vector<Trial> best = search_holds({mask, targets, film, dip, BathOptions{}}, {},
+                                               {.best = 3, .directions = 14, .refined = 0}, context)
+                                      .best;
+  ASSERT_GT(best.size(), 1U);
+  for (const Trial& told : best) {
+    Timings timings;
+    const DippedObject dipped = dip_object(
+        PosedObject(mask, told.pose), std::make_shared<const FilmMesh>(make_film_mesh(film)),
+        Trajectory::straight_down(told.depth_mm), dip, timings, context);
+    EXPECT_NEAR(told.figures.torn_share, dipped.coverage.torn_share(), 0.01);
+    EXPECT_NEAR(told.figures.covered_share, dipped.coverage.covered_share(), 0.01);
+  }
+}
+
 TEST_F(BoxSearch, CanBeCancelled) {
   const TrialTask task{box_, targets_, film_, dip_, BathOptions{}};
   context_.cancel();
