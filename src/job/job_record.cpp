@@ -260,7 +260,10 @@ JobResult describe_result(const Report& report, const std::filesystem::path& fol
                              "hydrodip orient looks for better ways to hold it; --rotate "
                              "auto{} takes the best.\n",
                              report.way_in.empty() ? " --depth auto" : "")
-                       : "hydrodip plan looks for better ways to hold it.\n";
+                       : fmt::format(
+                             "hydrodip plan looks for better ways to hold it, and for more of them "
+                             "with --dips {}.\n",
+                             report.dips.size() + 1);
   result.text += places + fmt::format("wrote to {}:\n", folder.string());
   for (const ReportOutput& output : report.outputs) {
     result.files.push_back(output.name);

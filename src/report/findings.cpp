@@ -14,17 +14,18 @@
 namespace hydrodip {
 namespace {
 
-constexpr double kMostOfAPicture = 0.5;    // of one on a side of the object: less is a fragment
-constexpr double kHardlyAPicture = 0.25;   // the same, of one that goes around it
-constexpr double kOneSide = 0.5;           // of the object's surface
-constexpr double kMuchTorn = 0.1;          // of the film that meets the object
-constexpr double kMuchAir = 0.02;          // of the object's surface
-constexpr double kSomeEscapes = 0.05;      // of a pocket
-constexpr double kFewWrinkles = 0.01;      // of the film on the object
-constexpr double kNearLimit = 0.9;         // of the tear stretch
-constexpr double kMuchSteep = 0.1;         // of what faces down
-constexpr double kHardlyAnything = 0.002;  // of the surface: a dip not worth its sheet
-constexpr double kFarOff_mm = 3;           // from there on a picture is not on the object
+constexpr double kMostOfAPicture = 0.5;      // of one on a side of the object: less is a fragment
+constexpr double kHardlyAPicture = 0.25;     // the same, of one that goes around it
+constexpr double kOneSide = 0.5;             // of the object's surface
+constexpr double kMuchTorn = 0.1;            // of the film that meets the object
+constexpr double kMuchBareAround = 1.0 / 3;  // of what comes to any of several films
+constexpr double kMuchAir = 0.02;            // of the object's surface
+constexpr double kSomeEscapes = 0.05;        // of a pocket
+constexpr double kFewWrinkles = 0.01;        // of the film on the object
+constexpr double kNearLimit = 0.9;           // of the tear stretch
+constexpr double kMuchSteep = 0.1;           // of what faces down
+constexpr double kHardlyAnything = 0.002;    // of the surface: a dip not worth its sheet
+constexpr double kFarOff_mm = 3;             // from there on a picture is not on the object
 
 Finding no_film(const Coverage& c, bool inside_out) {
   Finding finding{"coverage", Concern::kStop, "Coverage", "0 %", "", ""};
@@ -102,9 +103,16 @@ Finding coverage(const Report& report) {
   return finding;
 }
 
-// Torn film is a loss where something shall be printed and no dip brings it.
-bool much_is_lost(const Coverage& c, const std::optional<double>& missed) {
-  return c.torn_share() > kMuchTorn && (!missed || *missed > kMuchTorn);
+// Torn film is a loss where something shall be printed and no dip brings it. Several dips that
+// shall colour an object all around tear somewhere on every real one, however they are planned: of
+// theirs a person touches up what stays bare, up to a third.
+bool much_is_lost(const Report& report) {
+  const Coverage& c = *report.coverage;
+  const std::optional<double> missed = missed_share(report);
+  const bool around = report.dips.size() > 1 &&
+                      (!report.wanted || report.wanted->object_mm2 > kOneSide * c.object_mm2);
+  return c.torn_share() > kMuchTorn &&
+         (!missed || *missed > (around ? kMuchBareAround : kMuchTorn));
 }
 
 Finding tears(const Report& report) {
@@ -118,7 +126,7 @@ Finding tears(const Report& report) {
             percent(c.torn_share()),
             "of the film that meets the object tears, where nothing shall be printed.",
             "Take torn film off the water and the object before it dries."};
-  const bool much = much_is_lost(c, missed_share(report));
+  const bool much = much_is_lost(report);
   return {"tears",
           much ? Concern::kStop : Concern::kCare,
           "Tears",
@@ -138,7 +146,7 @@ Finding tears_of_several(const Report& report) {
   const Coverage& c = *report.coverage;
   const std::optional<double> missed = missed_share(report);
   if (!(c.torn_mm2 > 0)) return tears(report);
-  const bool lost = !report.dips.empty() && much_is_lost(c, missed);
+  const bool lost = !report.dips.empty() && much_is_lost(report);
   std::string text =
       "of the film that meets the object tears. Nothing is printed on it; what no other dip "
       "brings there stays bare";
@@ -151,8 +159,10 @@ Finding tears_of_several(const Report& report) {
           percent(c.torn_share()),
           text + ".",
           lost
-              ? "Turn steep sides down or dip less deep ('hydrodip plan' looks for ways), or use a "
-                "film that bears more."
+              ? fmt::format(
+                    "Make more dips ('hydrodip plan' with --dips {} looks for them), or use a film "
+                    "that bears more.",
+                    report.dips.size() + 1)
               : "Take torn film off the water and the object before it dries."};
 }
 

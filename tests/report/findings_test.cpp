@@ -249,20 +249,30 @@ TEST(Findings, OfSeveralDipsNoneIsMadeForNothing) {
   EXPECT_EQ(concern_of(findings(report)), Concern::kCare);
 }
 
-// By the rule of one dip: what no film brings counts, and if that is not known, the torn film.
+// What no film brings counts, and if that is not known, the torn film: of a picture on one side by
+// the rule of one dip, of what goes around the object once it is more than a third.
 TEST(Findings, TornFilmOfSeveralDipsIsAStopWhereNoOtherBringsWhatIsLost) {
   Report report = good_report();
   report.coverage->torn_mm2 = 1100;  // 55 %
   report.dips.resize(2);
   for (ReportDip& dip : report.dips) dip.gained_share = 0.3;
   EXPECT_EQ(concern(report, "tears"), Concern::kStop);
-  report.together = ReportWanted{2000, 1500, 1200};
+  report.together = ReportWanted{2000, 1500, 900};
   EXPECT_EQ(concern(report, "tears"), Concern::kStop);
-  EXPECT_NE(find(findings(report), "tears")->text.find("20 % of the surface"), std::string::npos);
-  EXPECT_DOUBLE_EQ(nlohmann::json::parse(report_json(report))["missed_share"], 0.2);
-  report.together = ReportWanted{2000, 1500, 1450};
-  EXPECT_EQ(concern(report, "tears"), Concern::kCare);
+  EXPECT_NE(find(findings(report), "tears")->text.find("40 % of the surface"), std::string::npos);
+  EXPECT_NE(find(findings(report), "tears")->advice.find("--dips 3"), std::string::npos);
+  EXPECT_DOUBLE_EQ(nlohmann::json::parse(report_json(report))["missed_share"], 0.4);
   report.together = ReportWanted{2000, 1500, 1200};
+  EXPECT_EQ(concern(report, "tears"), Concern::kCare);
+  report.dips.resize(1);  // one alone
+  EXPECT_EQ(concern(report, "tears"), Concern::kStop);
+  report.dips.resize(2);
+  report.dips[1].gained_share = 0.3;
+  report.coverage->object_mm2 = 2000;
+  report.wanted = ReportWanted{2000, 1500, 1200};
+  EXPECT_EQ(concern(report, "tears"), Concern::kCare);
+  report.wanted = ReportWanted{2000, 1500, 900};
+  EXPECT_EQ(concern(report, "tears"), Concern::kStop);
   report.wanted = ReportWanted{500, 500, 490};  // what tears is not of the picture
   EXPECT_EQ(concern(report, "tears"), Concern::kCare);
   report.wanted = ReportWanted{500, 500, 400};

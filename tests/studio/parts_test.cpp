@@ -83,6 +83,9 @@ TEST(PlainWords, HaveNoOptionsInThem) {
                            "larger --film"),
             "shrink it to 71 mm or less, turn it, or take a larger sheet of film");
   EXPECT_EQ(in_plain_words("Take them away: 'hydrodip plan' looks for ways."), "Take them away.");
+  EXPECT_EQ(
+      in_plain_words("Make more dips ('hydrodip plan' with --dips 4 looks for them), or wait."),
+      "Make more dips, or wait.");
   EXPECT_EQ(in_plain_words("12 mm (x) and 3 % (CIEDE2000)"), "12 mm (x) and 3 % (CIEDE2000)");
 }
 
