@@ -55,6 +55,9 @@ function pattern(source) {
 
 function isStatement(piece) { return /[;}]\s*$/.test(piece); }
 
+// Whether what comes behind this is a statement, not the end of one.
+function beginsStatement(source) { return /(?:[;{}):]|\belse|\/\/.*|\*\/)\s*$/.test(source); }
+
 // Begins with no keyword, and has no comma outside brackets.
 function isExpression(piece) {
   if (/^\s*(if|for|while|return|else)\b/.test(piece)) return false;
@@ -75,7 +78,7 @@ function placeOf(source, mutant) {
   let from = found[0].index;
   if (first.trim()) from += pattern(first).exec(source.slice(from))[0].length;
   from += /^\s*/.exec(source.slice(from))[0].length;
-  if (!isStatement(middle) && !isExpression(middle)) return null;
+  if (isStatement(middle) ? !beginsStatement(source.slice(0, from)) : !isExpression(middle)) return null;
   const rest = pattern(middle).exec(source.slice(from));
   return rest && rest.index === 0 ? { from, to: from + rest[0].length, mutant } : null;
 }
