@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "camera/board.h"
 #include "camera/least_squares.h"
+#include "camera/view.h"
 
 namespace hydrodip {
 namespace {

@@ -10,6 +10,7 @@
 #include "camera/board.h"
 #include "camera/film_pose.h"
 #include "camera/tank.h"
+#include "camera/view.h"
 #include "scene.h"
 #include "sheet/film_marks.h"
 
