@@ -1,10 +1,10 @@
-// What the page is shown of one dip: computed, and packed. docs/studio-api.md, "A result".
+// What the page is shown of one dip, or of all together: computed.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hydrodip/workspace.h"
@@ -12,6 +12,7 @@
 #include "job/wanted.h"
 #include "settings/config.h"
 #include "studio/json.h"
+#include "studio/look_quality.h"
 
 namespace hydrodip {
 
@@ -32,15 +33,6 @@ struct ProblemFound : std::runtime_error {
 // The job as its dip of that number (from 0) is made.
 JobConfig config_of_dip(const JobConfig& config, std::size_t dip);
 
-// How finely a dip is looked at. A sketch is for what follows a hand: on coarser film than a draft,
-// in longer steps, and without the question what depends on how torn film falls.
-enum class LookQuality { kSketch, kDraft, kNormal };
-// "sketch", "draft", "normal"
-std::string quality_name(LookQuality quality);
-
-// As the workspace takes it; the picture of what is not normal is coarser too.
-Project project_of(const JobConfig& config, LookQuality quality);
-
 struct Look {
   JobConfig config;  // of this dip
   std::size_t dip = 0, dips = 1;
@@ -60,14 +52,5 @@ Look look_at_dip(Workspace& workspace, const JobConfig& job, std::size_t dip, Lo
 // All dips of the job together, as drafts. Throws ProblemFound, Cancelled.
 DipsTogether look_at_dips(Workspace& workspace, const JobConfig& job, int texture_px,
                           const RunContext& context);
-// What is shown, packed; `head`: what only the job knows; files in `uploads` are called by their
-// names alone.
-std::vector<std::uint8_t> finish_bundle(const DipsTogether& look, Json head,
-                                        const std::filesystem::path& uploads);
-std::vector<std::uint8_t> result_bundle(const Look& look, Json head,
-                                        const std::filesystem::path& uploads,
-                                        const RunContext& context);
-// Its way into the water.
-std::vector<std::uint8_t> dip_bundle(const DippedObject& dipped);
 
 }  // namespace hydrodip

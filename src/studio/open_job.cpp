@@ -18,6 +18,7 @@
 #include "studio/bundle.h"
 #include "studio/document.h"
 #include "studio/job_copies.h"
+#include "studio/look_bundles.h"
 
 namespace hydrodip {
 namespace {
