@@ -9,10 +9,12 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "studio/guard.h"
 #include "studio/http.h"
 #include "studio/job_store.h"
+#include "studio/json.h"
 #include "studio/open_job.h"
 #include "studio/sample_shelf.h"
 
@@ -41,18 +43,11 @@ class Api {
   void end(const std::string& farewell);
 
  private:
-  using Parts = std::vector<std::string>;
-
   HttpAnswer route(HttpRequest& request);
-  HttpAnswer hello(const HttpRequest& request);
+  Json hello(const HttpRequest& request);
   Json recent(const HttpRequest& request);
   HttpAnswer new_job(HttpRequest& request);
-  HttpAnswer job_route(HttpRequest& request, const Parts& parts);
-  HttpAnswer read_job(const Parts& parts, OpenJob& job);
-  HttpAnswer command(HttpRequest& request, const Parts& parts, OpenJob& job);
-  HttpAnswer upload(HttpRequest& request, const std::string& name, OpenJob& job);
-  HttpAnswer events(const HttpRequest& request, const std::shared_ptr<OpenJob>& job);
-  HttpAnswer login(HttpRequest& request);
+  HttpAnswer job_route(HttpRequest& request, const std::vector<std::string>& parts);
   void forget(const std::string& job);
   std::shared_ptr<OpenJob> job(const std::string& name);
 

@@ -20,6 +20,8 @@ struct ApiError : std::runtime_error {
   std::string field;  // "object.size_mm", where a value of the document is at fault
 };
 
+inline ApiError not_found() { return {404, "not-found", "There is nothing of that name here."}; }
+
 inline ApiError no_such_job() {
   return {404, "not-found", "There is no such job any more; begin a new one."};
 }

@@ -75,6 +75,8 @@ class OpenJob {
   Upload begin_upload(const std::string& name);
   Json end_upload(const Upload& upload);
   std::filesystem::path file(const std::string& name) const;
+  // Its folder in the store.
+  const std::filesystem::path& home() const { return home_; }
   std::filesystem::path thumbnail() const { return home_ / kThumbnail; }
 
   // ---- tabs ----
