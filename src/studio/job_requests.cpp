@@ -153,7 +153,7 @@ HttpAnswer put_profile(const JobRequest& asked) {
 // asks a moment too late, as a busy page does, is told of the successor anyway.
 HttpAnswer bundle_answer(const JobRequest& asked,
                          std::shared_ptr<const std::vector<std::uint8_t>> bytes) {
-  if (bytes || !asked.job->has_given(asked.parts[1])) return bytes_answer(std::move(bytes));
+  if (bytes || !asked.job->shown().has_given(asked.parts[1])) return bytes_answer(std::move(bytes));
   HttpAnswer answer;
   answer.status = 204;
   answer.headers = {{"Cache-Control", "no-store"}};
@@ -161,7 +161,7 @@ HttpAnswer bundle_answer(const JobRequest& asked,
 }
 
 HttpAnswer mesh(const JobRequest& asked) {
-  return bundle_answer(asked, asked.job->mesh(asked.parts[1]));
+  return bundle_answer(asked, asked.job->shown().mesh(asked.parts[1]));
 }
 
 HttpAnswer texture(const JobRequest& asked) {
@@ -170,22 +170,22 @@ HttpAnswer texture(const JobRequest& asked) {
   const char* const end = number.data() + number.size();
   const auto [rest, error] = std::from_chars(number.data(), end, k);
   const auto texture =
-      error == std::errc() && rest == end ? asked.job->texture(asked.parts[1], k) : nullptr;
+      error == std::errc() && rest == end ? asked.job->shown().texture(asked.parts[1], k) : nullptr;
   if (!texture) throw not_found();
   const ShownPicture& picture = texture->picture();
   return bytes_answer({texture, &picture.bytes}, picture.type);
 }
 
 HttpAnswer result(const JobRequest& asked) {
-  return bundle_answer(asked, asked.job->result(asked.parts[1]));
+  return bundle_answer(asked, asked.job->shown().result(asked.parts[1]));
 }
 
 HttpAnswer dip(const JobRequest& asked) {
-  return bundle_answer(asked, asked.job->dip(asked.parts[1]));
+  return bundle_answer(asked, asked.job->shown().dip(asked.parts[1]));
 }
 
 HttpAnswer finish(const JobRequest& asked) {
-  return bundle_answer(asked, asked.job->finish(asked.parts[1]));
+  return bundle_answer(asked, asked.job->shown().finish(asked.parts[1]));
 }
 
 // ---- tasks ----

@@ -1,9 +1,11 @@
-// A job that is being worked on: its document, who looks at it, what was computed of it.
+// A job that is being worked on: brings together its document, who looks at it, what is computed of
+// it, and long work.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -13,10 +15,11 @@
 #include "base/context.h"
 #include "studio/dropped_files.h"
 #include "studio/event_stream.h"
-#include "studio/job_files.h"
+#include "studio/job_document.h"
 #include "studio/job_store.h"
 #include "studio/json.h"
 #include "studio/live.h"
+#include "studio/shown_job.h"
 #include "studio/shown_results.h"
 #include "studio/tabs.h"
 #include "studio/tasks.h"
@@ -76,8 +79,8 @@ class OpenJob {
   Json end_upload(const Upload& upload);
   std::filesystem::path file(const std::string& name) const;
   // Its folder in the store.
-  const std::filesystem::path& home() const { return home_; }
-  std::filesystem::path thumbnail() const { return home_ / kThumbnail; }
+  const std::filesystem::path& home() const { return document_.home(); }
+  std::filesystem::path thumbnail() const { return home() / kThumbnail; }
 
   // ---- tabs ----
 
@@ -96,13 +99,7 @@ class OpenJob {
 
   // ---- what was computed ----
 
-  std::shared_ptr<const std::vector<std::uint8_t>> mesh(const std::string& id) const;
-  std::shared_ptr<const ShownTexture> texture(const std::string& id, std::size_t number) const;
-  std::shared_ptr<const std::vector<std::uint8_t>> result(const std::string& id) const;
-  std::shared_ptr<const std::vector<std::uint8_t>> finish(const std::string& id) const;
-  std::shared_ptr<const std::vector<std::uint8_t>> dip(const std::string& id) const;
-  // Whether an ID is one of this run's, kept or not.
-  bool has_given(const std::string& id) const;
+  const ShownJob& shown() const { return shown_; }
   Json counts() const;
 
   // ---- long work ----
@@ -113,47 +110,33 @@ class OpenJob {
 
  private:
   std::string address() const { return "/api/jobs/" + job_; }
-  JobConfig checked(const Json& document) const;
-  Json adopt_job_file(const std::string& job);
   void accept(const Json& document, const JobConfig& config, const std::string& client, bool live,
               std::size_t dip, bool tell_client);
+  std::shared_ptr<const Model> read_unlocked(const UnreadFiles& files,
+                                             std::unique_lock<std::mutex>& lock);
   void ask(bool live);
   void autosave() const;
   void autosave_if_possible() const;
-  std::vector<std::string> machine_names() const;
-  void tell_saved();
+  void tell_saved() const;
+  void tell_files() const;
   Json files_json() const;
-  Json files_event() const;
-  std::string show_mesh(const Model& model, const Object& object);
-  void tell_mesh(long revision, const std::string& wanted);
-  void tell_held(const std::string& event, const Json& data);
-  void show_look(long revision, const Look& look, double took_s);
-  void show_finish(const Model& model, const DipsTogether& look);
-  LiveSinks sinks();
 
   const RunContext work_;  // all that is done for it besides tasks and what Live computes
   const JobStore store_;
   const std::string job_, run_;
-  const std::filesystem::path home_;
   const FolderLock held_;
   ShownIds ids_;
 
   mutable std::mutex packing_;  // before mutex_
   mutable std::mutex mutex_;
-  JobFiles files_;
-  DroppedFiles dropped_{files_};
-  Json document_ = Json::object();
-  Json machine_ = Json::object();  // machine_values_of() the file that it was opened from
-  JobConfig config_;
+  JobDocument document_;
+  DroppedFiles dropped_{document_.files()};
   std::size_t dip_ = 0;
-  long revision_ = 1, saved_revision_ = 1;
-  std::filesystem::path where_;   // the job file that it was opened from or saved to
-  std::filesystem::path origin_;  // what the command line named
   Tabs tabs_;
   bool at_rest_ = false;  // nobody looks: what is shown may be older than the document
   bool let_go_ = false;   // the store has forgotten it
   long reloads_ = 0;
-  ShownResults shown_;
+  ShownJob shown_;
 
   std::unique_ptr<Tasks> tasks_;
   std::unique_ptr<Live> live_;  // last: ends first
