@@ -8,7 +8,7 @@
 #include "rig/rig_job.h"
 #include "settings/correction_file.h"
 #include "settings/path_file.h"
-#include "sweep/sweep_plan.h"
+#include "sweep/sweep_manifest.h"
 #include "sweep/sweep_run.h"
 #include "through_file.h"
 

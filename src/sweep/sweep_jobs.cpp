@@ -13,6 +13,7 @@
 #include "base/output_folder.h"
 #include "base/shell_word.h"
 #include "sweep/scripts.h"
+#include "sweep/sweep_manifest.h"
 #include "sweep/sweep_table.h"
 
 namespace hydrodip {

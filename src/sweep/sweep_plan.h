@@ -9,11 +9,9 @@
 
 #include "base/context.h"
 #include "settings/config.h"
+#include "sweep/sweep_command.h"
 
 namespace hydrodip {
-
-// What each run does.
-enum class SweepCommand { kSimulate, kPrint, kOrient };
 
 struct SweepRun {
   std::string id;     // 16 hexadecimal digits: a hash of command, values and all files it reads
@@ -72,10 +70,5 @@ std::string value_of(const SweepRun& run, const std::string& name);
 // things name the model.
 JobConfig sweep_config(const SweepPlan& plan, const SweepRun& run,
                        const std::filesystem::path& folder);
-
-// As FOLDER/sweep.json has it.
-std::string manifest_json(const SweepPlan& plan);
-// Throws InputError if there is none, or it is of another kind or version.
-SweepPlan read_manifest(const std::filesystem::path& folder);
 
 }  // namespace hydrodip

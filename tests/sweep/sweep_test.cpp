@@ -19,6 +19,7 @@
 #include "refusal.h"
 #include "sweep/scripts.h"
 #include "sweep/sweep_jobs.h"
+#include "sweep/sweep_manifest.h"
 #include "sweep/sweep_table.h"
 #include "temporary_folder.h"
 
