@@ -280,6 +280,20 @@ TEST_F(JobTest, OfAResultThatWasReplacedNothingIsLeft) {
     EXPECT_EQ(got(never).status, 404) << never;
 }
 
+TEST_F(JobTest, AnAddressThatGoesOnWhereNoneDoesIsNotFound) {
+  const std::string job = sample("pyramid");
+  for (const char* here : {"", "/counts", "/job.toml"}) {
+    EXPECT_EQ(client->get(at(job, here)).status, 200) << here;
+    EXPECT_EQ(client->get(at(job, std::string(here) + "/x")).status, 404) << here;
+  }
+  const long revision = describe(job)["revision"];
+  for (const char* command : {"/save/x", "/reload/x", "/pen/x", "/adopt/x", "/nothing"})
+    EXPECT_EQ(client->post(at(job, command), R"({"name": "x"})").status, 404) << command;
+  EXPECT_EQ(client->post(at(job, "/document"), "{}").status, 404);
+  EXPECT_EQ(client->put(at(job, "/thumbnail/x"), "\x89PNG").status, 404);
+  EXPECT_EQ(describe(job)["revision"], revision);
+}
+
 // A normal result of a fine film would take many seconds: a newer request does not wait for it.
 TEST_F(JobTest, ANewerRequestCancelsTheOlder) {
   const std::string job = sample("pyramid");

@@ -1,0 +1,76 @@
+// A job's document by itself: revisions, and where it is saved.
+#include "studio/job_document.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "studio/api_error.h"
+#include "temporary_folder.h"
+
+namespace hydrodip {
+namespace {
+
+class JobDocumentTest : public testing::Test {
+ protected:
+  static Json turned(const char* down) {
+    Json document;
+    document["object"]["down"] = down;
+    return document;
+  }
+  bool accept(const Json& json) { return document.accept(json, document.checked(json)); }
+
+  TemporaryFolder folder;
+  JobDocument document{folder.path(), Json()};
+};
+
+TEST_F(JobDocumentTest, TheSameAgainStaysSaved) {
+  EXPECT_FALSE(accept(turned("+x")));
+  EXPECT_LT(document.saved_revision(), document.revision());
+  document.set_saved();
+  EXPECT_TRUE(accept(turned("+x")));
+  EXPECT_EQ(document.saved_revision(), document.revision());
+  EXPECT_FALSE(accept(turned("-x")));
+  EXPECT_LT(document.saved_revision(), document.revision());
+}
+
+// As after a crash.
+TEST_F(JobDocumentTest, ComesBackAsItWasKept) {
+  accept(turned("+x"));
+  document.rename("mask");
+  document.save(RunContext());
+  accept(turned("-x"));
+  const JobDocument again(folder.path(), document.state(true));
+  EXPECT_EQ(again.json(), document.json());
+  EXPECT_EQ(again.revision(), document.revision());
+  EXPECT_EQ(again.saved_revision(), document.saved_revision());
+  EXPECT_EQ(again.where(), document.where());
+  EXPECT_EQ(again.state(true), document.state(true));
+  EXPECT_EQ(again.config().object.pose.down, ModelSide::kMinusX);
+}
+
+TEST_F(JobDocumentTest, ANameIsARevisionUnlessItIsTheSame) {
+  EXPECT_FALSE(document.rename(""));
+  EXPECT_TRUE(document.rename("mask"));
+  const long revision = document.revision();
+  EXPECT_FALSE(document.rename("mask"));
+  EXPECT_EQ(document.revision(), revision);
+  EXPECT_EQ(document.name(), "mask");
+}
+
+// Nothing of it changes when what it would become is refused.
+TEST_F(JobDocumentTest, WhatIsRefusedChangesNothing) {
+  accept(turned("+x"));
+  const Json before = document.state(true);
+  EXPECT_THROW(document.checked(turned("sideways")), ApiError);
+  EXPECT_EQ(document.state(true), before);
+}
+
+TEST_F(JobDocumentTest, AModelThatIsNotThereIsNoJob) {
+  EXPECT_THROW(config_of_file(folder / "none.obj"), InputError);
+  write_file(folder / "empty.toml", "[print]\ndpi = 100\n");
+  EXPECT_THROW(config_of_file(folder / "empty.toml"), InputError);
+}
+
+}  // namespace
+}  // namespace hydrodip
