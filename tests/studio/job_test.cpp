@@ -28,11 +28,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kRedToy =
-    "mtllib toy.mtl\nv 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nusemtl red\n"
-    "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-const std::string kRed = "newmtl red\nKd 1 0 0\n";
-
 // A job of the pyramid that is quick to compute, by default.
 class JobTest : public testing::Test {
  protected:

@@ -18,4 +18,10 @@ inline const std::string kTetrahedron =
     "20\nendloop\nendfacet\n"
     "endsolid\n";
 
+// An OBJ of 30 x 30 x 30 mm, red by its toy.mtl: there is something to print of it.
+inline const std::string kRedToy =
+    "mtllib toy.mtl\nv 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nusemtl red\n"
+    "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+inline const std::string kRed = "newmtl red\nKd 1 0 0\n";
+
 }  // namespace hydrodip

@@ -124,10 +124,11 @@ TEST_F(OpenJobTest, SavedAgainItKeepsTheNameThatItGot) {
 // What the running print reads and tells the hash of is its own.
 TEST_F(OpenJobTest, ASecondPrintChangesNothingOfTheFirst) {
   const auto job = open();
-  write_file(store.home(name) / "files/part.stl", kTetrahedron);
+  write_file(store.home(name) / "files/toy.obj", kRedToy);
+  write_file(store.home(name) / "files/toy.mtl", kRed);
   OpenJob::Change change;
   change.client = "c1";
-  change.document = {{"object", {{"file", "part.stl"}}},
+  change.document = {{"object", {{"file", "toy.obj"}}},
                      {"film", {{"elements", 640000}}},
                      {"dip", {{"step_mm", 0.02}}}};
   job->put(change);
