@@ -96,11 +96,11 @@ Json JobDocument::state(bool open) const {
           {"document", document_}};
 }
 
-JobConfig JobDocument::checked(const Json& document) const {
+JobConfig JobDocument::checked(const Json& document, const Json& machine) const {
   if (text_of(document).size() > kLargestDocument)
     throw ApiError(413, "too-large", "The job's document is too large.");
   JobConfig config = config_of(document, files_);
-  apply_machine_values(machine_, config);
+  apply_machine_values(machine, config);
   // What was uploaded may come from anybody, and names no other file of this machine.
   if (lies_in(config.model, files_.uploads())) config.object.load.confined_to = files_.uploads();
   return config;
@@ -124,19 +124,18 @@ bool JobDocument::rename(const std::string& name) {
   return true;
 }
 
-Json JobDocument::take_file(const std::filesystem::path& file, const JobConfig& config) {
-  machine_ = machine_values_of(config);
-  Json document = document_of(config, files_);
+OtherJob JobDocument::by_file(const std::filesystem::path& file, const JobConfig& config) {
+  OtherJob other{document_of(config, files_), machine_values_of(config), where_, origin_};
   // What a job file does not say.
   for (const char* own : {"name", "page"})
-    if (document_.contains(own)) document[own] = document_[own];
+    if (document_.contains(own)) other.document[own] = document_[own];
   const auto whole = std::filesystem::absolute(file).lexically_normal();
-  if (whole != where_) origin_ = whole;
-  if (is_job_file(file)) where_ = whole;
-  return document;
+  if (whole != where_) other.origin = whole;
+  if (is_job_file(file)) other.where = whole;
+  return other;
 }
 
-Json JobDocument::take_uploaded(const std::string& job_file) {
+OtherJob JobDocument::by_uploaded(const std::string& job_file) const {
   JobConfig config;
   SettingSources sources;
   sources.configs = {files_.find(job_file)};
@@ -150,8 +149,13 @@ Json JobDocument::take_uploaded(const std::string& job_file) {
         422, "bad-file",
         fmt::format("The job needs {}: drop it here together with {}.", missing, job_file));
   }
-  machine_ = machine_values_of(config);
-  return document;
+  return {std::move(document), machine_values_of(config), where_, origin_};
+}
+
+void JobDocument::replace_by(OtherJob other) {
+  machine_ = std::move(other.machine);
+  where_ = std::move(other.where);
+  origin_ = std::move(other.origin);
 }
 
 std::string JobDocument::job_file_text(const std::filesystem::path& folder) const {

@@ -19,6 +19,14 @@ bool is_job_file(const std::filesystem::path& file);
 // model.
 JobConfig config_of_file(const std::filesystem::path& file);
 
+// What may take the place of a job's document, and of what belongs to it.
+struct OtherJob {
+  Json document;
+  Json machine = Json::object();      // machine_values_of()
+  std::filesystem::path where = {};   // the job file; empty: there is none yet
+  std::filesystem::path origin = {};  // what the command line named
+};
+
 // With its owner's lock.
 class JobDocument {
  public:
@@ -45,7 +53,9 @@ class JobDocument {
   Json state(bool open) const;
 
   // What such a document would configure. Throws ApiError bad-value, too-large.
-  JobConfig checked(const Json& document) const;
+  JobConfig checked(const Json& document) const { return checked(document, machine_); }
+  // Beside what another file says of the machine.
+  JobConfig checked(const Json& document, const Json& machine) const;
   // The next revision. Whether that is as it was saved, and still counts as saved.
   bool accept(const Json& document, const JobConfig& config);
   // Reads anew what the document names. Throws ApiError bad-value.
@@ -53,12 +63,16 @@ class JobDocument {
   // As the next revision. False: it is called that already, or the name says nothing.
   bool rename(const std::string& name);
 
-  // The document that such a file of this machine stands for, which is to be accepted: from now on
-  // the job is that file's. Throws InputError for what the studio has no room for.
-  Json take_file(const std::filesystem::path& file, const JobConfig& config);
+  // What such a file of this machine stands for. Throws InputError for what the studio has no room
+  // for.
+  OtherJob by_file(const std::filesystem::path& file, const JobConfig& config);
   // The same of a job file that was uploaded, and names only what came with it. Throws InputError;
   // ApiError bad-file for one that names anything else.
-  Json take_uploaded(const std::string& job_file);
+  OtherJob by_uploaded(const std::string& job_file) const;
+  // As it is, to be changed.
+  OtherJob by_itself() const { return {document_, machine_, where_, origin_}; }
+  // Takes all of it but the document, which is still to be accepted.
+  void replace_by(OtherJob other);
   // Counts as saved from now on.
   void set_saved() { saved_revision_ = revision_; }
 

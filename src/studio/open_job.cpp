@@ -137,8 +137,10 @@ void OpenJob::tell_saved() const {
 void OpenJob::open_file(const std::filesystem::path& file) {
   const JobConfig config = config_of_file(file);
   const std::lock_guard lock(mutex_);
-  const Json document = document_.take_file(file, config);
-  accept(document, document_.checked(document), "", false, 0, true);
+  const OtherJob other = document_.by_file(file, config);
+  const JobConfig checked = document_.checked(other.document, other.machine);
+  document_.replace_by(other);
+  accept(other.document, checked, "", false, 0, true);
   if (is_job_file(file)) document_.set_saved();
   autosave();
 }
@@ -161,10 +163,10 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
   std::unique_lock lock(mutex_);
   tabs_.require_pen(client);
   Adoption adoption(dropped_.take_in(given));
-  Json document;
+  OtherJob other;
   try {
     if (!adoption.job().empty()) {
-      document = document_.take_uploaded(adoption.job());
+      other = document_.by_uploaded(adoption.job());
     } else {
       // What is broken must not take the place of what was good.
       if (const UnreadFiles unread = dropped_.unread(adoption.names()); !unread.empty()) {
@@ -175,15 +177,17 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
           adoption.set_texture(texture_for(*read, adoption.model(), adoption.names()));
         }
       }
-      document = document_.json();
+      other = document_.by_itself();
     }
-    adoption.put_into(document);
+    adoption.put_into(other.document);
   } catch (const InputError& error) {
     if (!lock) lock.lock();
     dropped_.refuse(adoption.names());
     throw bad_file(error.what(), document_.files());
   }
-  accept(document, document_.checked(document), client, false, 0, true);
+  const JobConfig checked = document_.checked(other.document, other.machine);
+  document_.replace_by(other);
+  accept(other.document, checked, client, false, 0, true);
   dropped_.accept(adoption.names());
   tell_files();
   return {{"revision", document_.revision()},

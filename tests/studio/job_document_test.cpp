@@ -66,6 +66,24 @@ TEST_F(JobDocumentTest, WhatIsRefusedChangesNothing) {
   EXPECT_EQ(document.state(true), before);
 }
 
+// Nor does a file that may take its place, before that is accepted.
+TEST_F(JobDocumentTest, AFileThatIsRefusedChangesNothing) {
+  write_file(folder / "box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write_file(folder / "job.toml", "[output]\nno_clobber = \"on\"\n[object]\nfile = \"box.obj\"\n");
+  const Json before = document.state(true);
+  const OtherJob other = document.by_file(folder / "job.toml", config_of_file(folder / "job.toml"));
+  Json refused = other.document;
+  refused["object"]["down"] = "sideways";
+  EXPECT_THROW(document.checked(refused, other.machine), ApiError);
+  Json after = document.state(true);
+  after["granted"] = before["granted"];  // the model that the file names
+  EXPECT_EQ(after, before);
+  document.replace_by(other);
+  document.accept(other.document, document.checked(other.document));
+  EXPECT_EQ(document.where(), folder / "job.toml");
+  EXPECT_EQ(document.machine_names(), std::vector<std::string>{"output.no_clobber"});
+}
+
 TEST_F(JobDocumentTest, AModelThatIsNotThereIsNoJob) {
   EXPECT_THROW(config_of_file(folder / "none.obj"), InputError);
   write_file(folder / "empty.toml", "[print]\ndpi = 100\n");
