@@ -105,6 +105,23 @@ class FilmMapOnSphere : public testing::Test {
 };
 std::unique_ptr<fixtures::Dipped> FilmMapOnSphere::dipped_;
 
+// Nor where the triangle that it remembers lies in another plane than what is beside it.
+TEST_F(FilmMapOnSphere, ACursorSpeedsUpButDecidesNothing) {
+  FilmMap::Cursor cursor;
+  int found = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const double radius_mm = 0.003 * i, angle = 0.05 * i;
+    const Vec2 u(radius_mm * std::cos(angle), radius_mm * std::sin(angle));
+    const auto with = dipped_->map->to_object(u, cursor), without = dipped_->map->to_object(u);
+    ASSERT_EQ(with.has_value(), without.has_value()) << u.transpose();
+    if (!with) continue;
+    ++found;
+    EXPECT_LT((position_at(dipped_->object, *with) - position_at(dipped_->object, *without)).norm(),
+              1e-9);
+  }
+  EXPECT_GT(found, 3000);
+}
+
 TEST_F(FilmMapOnSphere, ThereAndBackIsWhereItStarted) {
   double largest = 0;
   int count = 0;

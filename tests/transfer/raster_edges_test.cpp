@@ -23,7 +23,7 @@ TEST(RasterEdges, InkEndsWhereAWideBleedEnds) {
   const Image image =
       film_image(fixtures::paint_of(*dipped), *dipped->map, raster, options, Allotment(), context);
   const FilmStretch stretch = film_stretch(*dipped->map, raster, bleed_mm, context);
-  long missing = 0, beyond = 0, off_object = 0;
+  long missing = 0, beyond = 0, off_object = 0, without_ratio = 0;
   for (int y = 0; y < image.height_px; ++y)
     for (int x = 0; x < image.width_px; ++x) {
       const double outside = outside_mm(raster.to_film(x + 0.5, y + 0.5));
@@ -32,10 +32,12 @@ TEST(RasterEdges, InkEndsWhereAWideBleedEnds) {
       beyond += outside > bleed_mm + pixel_mm && ink != 0;
       const auto i = std::size_t(y) * std::size_t(image.width_px) + std::size_t(x);
       off_object += outside > 1e-3 && stretch.on_object[i] != 0;
+      without_ratio += outside < bleed_mm - pixel_mm && std::abs(stretch.area_ratio[i] - 1) > 1e-6;
     }
   EXPECT_EQ(missing, 0);
   EXPECT_EQ(beyond, 0);
   EXPECT_EQ(off_object, 0);
+  EXPECT_EQ(without_ratio, 0);
 }
 
 // A quantity that is linear over the film comes out as what it is at each pixel's centre.

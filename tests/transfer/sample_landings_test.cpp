@@ -29,7 +29,7 @@ Found compare(const fixtures::Dipped& dipped, int samples) {
   const SampleGrid grid = whole_sheet(samples);
   const SampleLandings landings(*dipped.map, grid, dipped.map->lying());
   Found found;
-  double largest_mm = 0;
+  double largest_mm = 0, outside = 0;  // of the triangle of the object
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       const auto line = dipped.map->to_object(grid.at(column, row));
@@ -42,11 +42,13 @@ Found compare(const fixtures::Dipped& dipped, int samples) {
         continue;
       }
       const SurfacePoint point = landing(landings, column, row);
+      outside = std::max({outside, -point.u, -point.v, point.u + point.v - 1});
       largest_mm =
           std::max(largest_mm,
                    (position_at(dipped.object, point) - position_at(dipped.object, *line)).norm());
     }
   EXPECT_LT(largest_mm, 1e-5);
+  EXPECT_LT(outside, 1e-4);  // of lines in floats
   return found;
 }
 
