@@ -255,23 +255,6 @@ std::shared_ptr<const SurfaceNodes> make_nodes(const PreparedObject& prepared, d
   return std::make_shared<const SurfaceNodes>(spread_targets(prepared.posed.object(), count));
 }
 
-std::vector<double> covered_after(const DipPlan& plan, const JobConfig& config,
-                                  const PreparedObject& prepared) {
-  if (plan.dips.size() == 1) return {plan.dips.front().blank.coverage.covered_share()};
-  const auto nodes = make_nodes(prepared, config.plan.overlap_mm);
-  const TrialTask task = job_trials(config, prepared, nodes->targets());
-  std::vector<Trial> dips(plan.dips.size());
-  for (std::size_t k = 0; k < dips.size(); ++k)
-    dips[k].worth = worth_at(task, plan.dips[k].blank.posed, *plan.dips[k].blank.film);
-  std::vector<double> covered;
-  std::vector<const Trial*> so_far;
-  for (const Trial& dip : dips) {
-    so_far.push_back(&dip);
-    covered.push_back(covered_share_of(nodes->targets(), so_far));
-  }
-  return covered;
-}
-
 std::filesystem::path correction_of(const JobConfig& config, const Trial& trial) {
   for (const DipEntry& entry : config.dips) {
     const PoseOptions pose = pose_of(entry, config.object.pose);

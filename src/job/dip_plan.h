@@ -32,9 +32,6 @@ DipPlan plan_dips(const JobConfig& config, const PreparedObject& prepared, const
 
 // The points at which a print of several dips divides and counts the surface.
 std::shared_ptr<const SurfaceNodes> make_nodes(const PreparedObject& prepared, double overlap_mm);
-// Share of the surface under film after each dip: counted there, of a single dip its film's area.
-std::vector<double> covered_after(const DipPlan& plan, const JobConfig& config,
-                                  const PreparedObject& prepared);
 
 // The sheet of a planned dip, with the correction of the job's dip that is held so. Throws
 // InputError if the file is none.

@@ -7,6 +7,7 @@
 #include "base/run_scope.h"
 #include "base/shell_word.h"
 #include "job/dip_plan.h"
+#include "job/plan_coverage.h"
 #include "job/search_output.h"
 #include "job/ways.h"
 #include "plan/choice.h"
@@ -37,7 +38,14 @@ json path_json(const std::vector<Keyframe>& path) {
   return rows;
 }
 
-std::string machine_readable(const JobConfig& config, const DipPlan& plan, const Covered& covered) {
+json missed_json(const PlanCoverage& coverage) {
+  if (!coverage.everywhere) return nullptr;
+  return coverage.wanted.value_or(*coverage.everywhere).missed_share();
+}
+
+std::string machine_readable(const JobConfig& config, const DipPlan& plan,
+                             const PlanCoverage& coverage) {
+  const Covered& covered = coverage.covered_share;
   json dips = json::array(), counts = json::array();
   for (std::size_t k = 0; k < plan.dips.size(); ++k) {
     const Trial& dip = plan.dips[k].trial;
@@ -52,9 +60,13 @@ std::string machine_readable(const JobConfig& config, const DipPlan& plan, const
                     {"text", describe_trial(dip, way_up(config))}});
     counts.push_back({{"dips", k + 1}, {"covered_share", covered[k]}});
   }
-  const json all = {
-      {"schema_version", 1},           {"command", "plan"},  {"model", config.model.string()},
-      {"trial_dips", plan.trial_dips}, {"coverage", counts}, {"dips", dips}};
+  const json all = {{"schema_version", 1},
+                    {"command", "plan"},
+                    {"model", config.model.string()},
+                    {"trial_dips", plan.trial_dips},
+                    {"coverage", counts},
+                    {"missed_share", missed_json(coverage)},
+                    {"dips", dips}};
   return json_text(all);
 }
 
@@ -127,9 +139,13 @@ JobResult plan_job(const JobConfig& config, const RunContext& context, const Job
   planned.plan.dips = 0;
   planned.plan.find_pose = planned.plan.find_depth = false;
   write_file(output.path("plan.toml"), job_file(planned, output.folder()));
-  const Covered covered = covered_after(plan, config, output.prepared());
+  const PlanCoverage coverage = coverage_of(plan, config, output.prepared());
+  const Covered& covered = coverage.covered_share;
+  if (const auto torn = too_much_torn(plan, coverage))
+    context.warn(fmt::format("print will advise against these dips: {} {} {}", torn->figure,
+                             torn->text, torn->advice));
   JobResult result =
-      output.finish(machine_readable(config, plan, covered), in_words(config, plan, covered),
+      output.finish(machine_readable(config, plan, coverage), in_words(config, plan, covered),
                     [&] { return draw(config, output.prepared(), plan, covered, context); });
   result.text += printing(output);
   return result;

@@ -58,6 +58,26 @@ for n in 1 2; do
   sed -i 's|^file = .*|file = "colored.ply"|' locked.toml
   grep -q '^down = "+x"' locked.toml && grep -q '^locked = true' locked.toml || fail "plan $n loses a locked dip"
 done
+# A plan says beforehand what its print will say of the film that tears: of film that bears enough, and of film that does not.
+"$hydrodip" sample box -o boxes --quiet > /dev/null || fail 'sample box'
+printf '[object]\nfile = "boxes/box.obj"\nsize_mm = 40\n[[dip]]\nrotate_deg = [35, 10, 0]\ndepth_mm = 25\nlocked = true\n[[dip]]\nrotate_deg = [-140, 20, 0]\ndepth_mm = 25\nlocked = true\n' > torn.toml
+for bears in 1.4 1.3; do
+  torn="--film 120x120 --set film.elements=3000 --set dip.step_mm=1 --set material.tear_stretch=$bears --set preview.pictures=off"
+  # shellcheck disable=SC2086
+  "$hydrodip" plan torn.toml $torn --quality draft -o foretold --json --quiet > foretold.json || fail "plan torn.toml: $?"
+  # shellcheck disable=SC2086
+  "$hydrodip" plan torn.toml $torn --quality draft -o foretold --quiet > said.txt || fail "plan torn.toml: $?"
+  # shellcheck disable=SC2086
+  "$hydrodip" print foretold/plan.toml $torn --quality draft --dpi 72 -o told --quiet > /dev/null || fail "print of foretold: $?"
+  python3 - "$(grep -c '^warning: print will advise against' said.txt)" <<'PY' || fail "what plan foretells of film that bears $bears"
+import json, sys
+plan, report = json.load(open('foretold.json')), json.load(open('told/report.json'))
+assert abs(plan['missed_share'] - report['missed_share']) < 1e-9, (plan['missed_share'], report['missed_share'])
+assert (report['concern'] == 'stop') == (sys.argv[1] == '1'), (report['verdict'], sys.argv[1])
+print(report['concern'])
+PY
+done > concerns
+[ "$(tr '\n' ' ' < concerns)" = 'care stop ' ] || fail "torn.toml: $(cat concerns)"
 # A model without a picture can be planned; what it ends with says where the picture goes.
 write_tetrahedron plain.obj
 # shellcheck disable=SC2086
