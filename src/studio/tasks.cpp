@@ -93,22 +93,25 @@ Concern concern_called(const std::string& name) {
   return Concern::kStop;
 }
 
+Json warnings_of(const RunContext& context) {
+  Json list = Json::array();
+  for (const std::string& warning : context.warnings()) list.push_back(in_plain_words(warning));
+  return list;
+}
+
 Json print_result(const TaskRequest& request, const RunContext& context) {
   const JobResult done = print_from(request, context);
   const Json report = Json::parse(done.json);
   const std::string verdict = report.value("verdict", "");
   const std::string concern = report.value("concern", "");
-  Json result = {{"where", shown_path(request.folder)},
-                 {"verdict",
-                  {{"concern", concern},
-                   {"headline", headline(concern_called(concern))},
-                   {"text", in_plain_words(verdict)}}},
-                 {"files", files_json(request)},
-                 {"zip", request.address + "/files.zip"},
-                 {"warnings", Json::array()}};
-  for (const std::string& warning : context.warnings())
-    result["warnings"].push_back(in_plain_words(warning));
-  return result;
+  return {{"where", shown_path(request.folder)},
+          {"verdict",
+           {{"concern", concern},
+            {"headline", headline(concern_called(concern))},
+            {"text", in_plain_words(verdict)}}},
+          {"files", files_json(request)},
+          {"zip", request.address + "/files.zip"},
+          {"warnings", warnings_of(context)}};
 }
 
 Image part_of(const Image& whole, const HoldPlace& at) {
@@ -224,7 +227,10 @@ Json plan_result(const TaskRequest& request, const RunContext& context) {
     keep_own(entry, request);
     patch.push_back(entry);
   }
-  return {{"covered_share", covered}, {"dips", dips}, {"patch", {{"dips", patch}}}};
+  return {{"covered_share", covered},
+          {"dips", dips},
+          {"patch", {{"dips", patch}}},
+          {"warnings", warnings_of(context)}};
 }
 
 Json do_task(const TaskRequest& request, const RunContext& context) {

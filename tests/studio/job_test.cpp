@@ -561,6 +561,23 @@ TEST_F(JobTest, APlanKeepsTheLockAndTheCorrectionOfWhatItKeeps) {
   EXPECT_EQ(put(job, document).status, 200);
 }
 
+TEST_F(JobTest, APlanOfFilmThatTearsSaysThatItsPrintWillAdviseAgainstIt) {
+  const std::string job = sample("box");
+  json document = quick(describe(job)["document"]);
+  document["object"]["size_mm"] = 40;
+  document["material"]["tear_stretch"] = 1.3;
+  document["dips"] = {{{"rotate_deg", {35, 10, 0}}, {"depth_mm", 25}, {"locked", true}},
+                      {{"rotate_deg", {-140, 20, 0}}, {"depth_mm", 25}, {"locked", true}}};
+  ASSERT_EQ(put(job, document, true).status, 200);
+  Events events(*client, at(job, "/events?client=c1"));
+  client->post(at(job, "/tasks"), R"({"kind": "plan", "dips": 2})");
+  const json task = finished(events, "plan");
+  ASSERT_EQ(task["state"], "done") << task;
+  const std::string told = task["result"]["warnings"].dump();
+  EXPECT_NE(told.find("advise against these dips"), std::string::npos) << told;
+  EXPECT_EQ(told.find("--"), std::string::npos) << told;
+}
+
 // A model and a picture dropped together: the picture is on it.
 TEST_F(JobTest, AModelAndAPictureBecomeAJob) {
   const std::string job = client->post("/api/jobs").json()["job"];

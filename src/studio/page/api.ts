@@ -100,6 +100,7 @@ export interface PlanResult {
   covered_share: number[];
   dips: { text: string; gained_share: number; covered_share: number; torn_share: number; picture: string }[];
   patch: Patch;
+  warnings: string[];
 }
 
 interface TaskCommon {

@@ -44,6 +44,7 @@ export function DipsStep() {
         {found && (
           <div class="found">
             <p>{t.dips.found(found.covered_share.map(t.percent).join(', '))}</p>
+            {found.warnings.length > 0 && <ul class="notes">{found.warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>}
             <Button name="apply-plan" label={t.dips.apply} kind="main" changes onClick={() => {
               change((now) => patched(now, found.patch), t.undo.dipPlan);
               open.forgetTask('plan');
