@@ -142,8 +142,8 @@ JobResult plan_job(const JobConfig& config, const RunContext& context, const Job
   const PlanCoverage coverage = coverage_of(plan, config, output.prepared());
   const Covered& covered = coverage.covered_share;
   if (const auto torn = too_much_torn(plan, coverage))
-    context.warn(fmt::format("print will advise against these dips: {} {} {}", torn->figure,
-                             torn->text, torn->advice));
+    context.warn(fmt::format("The print of these dips will advise against them: {} {} {}",
+                             torn->figure, torn->text, torn->advice));
   JobResult result =
       output.finish(machine_readable(config, plan, coverage), in_words(config, plan, covered),
                     [&] { return draw(config, output.prepared(), plan, covered, context); });

@@ -69,7 +69,7 @@ for bears in 1.4 1.3; do
   "$hydrodip" plan torn.toml $torn --quality draft -o foretold --quiet > said.txt || fail "plan torn.toml: $?"
   # shellcheck disable=SC2086
   "$hydrodip" print foretold/plan.toml $torn --quality draft --dpi 72 -o told --quiet > /dev/null || fail "print of foretold: $?"
-  python3 - "$(grep -c '^warning: print will advise against' said.txt)" <<'PY' || fail "what plan foretells of film that bears $bears"
+  python3 - "$(grep -c '^warning: The print of these dips will advise against' said.txt)" <<'PY' || fail "what plan foretells of film that bears $bears"
 import json, sys
 plan, report = json.load(open('foretold.json')), json.load(open('told/report.json'))
 assert abs(plan['missed_share'] - report['missed_share']) < 1e-9, (plan['missed_share'], report['missed_share'])
