@@ -50,14 +50,6 @@ struct Brought {
   ReportWanted everywhere;            // the same of the whole surface
 };
 
-bool is_reached_by_any(const MadeDips& all, const Target& node) {
-  return std::any_of(all.dips.begin(), all.dips.end(), [&](const MadeDip& dip) {
-    const Target hung = in_pose(node, dip.posed);
-    return dip.made.dipped.map->to_film(hung.position, hung.normal) ||
-           faces_film(dip.made.dipped, hung);
-  });
-}
-
 Brought brought_by(const MadeDips& all, const SharedSurface& shared) {
   const Targets& targets = all.nodes->targets();
   Brought result;
@@ -83,14 +75,13 @@ Brought brought_by(const MadeDips& all, const SharedSurface& shared) {
     }
     if (in_doubt >= kMuchOfTheInk) doubtful_mm2 += node.area;
     const bool covered = brought >= kMuchOfTheInk;
-    const bool reached = covered || is_reached_by_any(all, node);
-    for (ReportWanted* sum : {&result.everywhere, &wanted}) {
-      if (sum == &wanted && (is_wanted.empty() || !is_wanted[i])) continue;
-      sum->object_mm2 += real_mm2;
-      sum->covered_mm2 += covered ? real_mm2 : 0;
-      sum->reached_mm2 += reached ? real_mm2 : 0;
-      sum->doubtful_mm2 += covered && in_doubt >= kMuchOfTheInk ? real_mm2 : 0;
-    }
+    const bool reached =
+        covered || std::any_of(all.dips.begin(), all.dips.end(), [&](const MadeDip& dip) {
+          return is_reached(dip.made.dipped, node);
+        });
+    const bool doubtful = covered && in_doubt >= kMuchOfTheInk;
+    result.everywhere.add(real_mm2, reached, covered, doubtful);
+    if (!is_wanted.empty() && is_wanted[i]) wanted.add(real_mm2, reached, covered, doubtful);
   }
   result.doubtful_share = doubtful_mm2 / targets.area;
   if (all.dips.size() == 1) {  // a single film's area is known better than points tell it

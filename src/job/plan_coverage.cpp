@@ -9,31 +9,6 @@
 #include "plan/choice.h"
 
 namespace hydrodip {
-namespace {
-
-bool comes_to_film(const DipPlan& plan, const Target& node) {
-  return std::any_of(plan.dips.begin(), plan.dips.end(), [&](const PlannedDip& dip) {
-    return faces_film(dip.blank, in_pose(node, dip.blank.posed));
-  });
-}
-
-// Where `counts` says so; empty: everywhere.
-ReportWanted summed(const Targets& targets, const std::vector<std::uint8_t>& reached,
-                    const std::vector<std::uint8_t>& covered,
-                    const std::vector<std::uint8_t>& counts, double scale) {
-  ReportWanted sum;
-  for (std::size_t i = 0; i < targets.list.size(); ++i) {
-    if (!counts.empty() && !counts[i]) continue;
-    const double real_mm2 = scale * scale * targets.list[i].area;
-    sum.object_mm2 += real_mm2;
-    sum.reached_mm2 += reached[i] ? real_mm2 : 0;
-    sum.covered_mm2 += covered[i] ? real_mm2 : 0;
-  }
-  return sum;
-}
-
-}  // namespace
-
 PlanCoverage coverage_of(const DipPlan& plan, const JobConfig& config,
                          const PreparedObject& prepared) {
   if (plan.dips.size() == 1) return {{plan.dips.front().blank.coverage.covered_share()}, {}, {}};
@@ -49,18 +24,30 @@ PlanCoverage coverage_of(const DipPlan& plan, const JobConfig& config,
     so_far.push_back(&dip);
     result.covered_share.push_back(covered_share_of(targets, so_far));
   }
-  std::vector<std::uint8_t> covered(targets.list.size()), reached(targets.list.size());
-  parallel_for(covered.size(), 256, [&](std::size_t begin, std::size_t end) {
+  struct Seen {
+    bool reached = false, covered = false;
+  };
+  std::vector<Seen> seen(targets.list.size());
+  parallel_for(seen.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      covered[i] =
+      seen[i].covered =
           std::any_of(dips.begin(), dips.end(), [&](const Trial& dip) { return dip.worth[i] > 0; });
-      reached[i] = covered[i] || comes_to_film(plan, targets.list[i]);
+      seen[i].reached = seen[i].covered ||
+                        std::any_of(plan.dips.begin(), plan.dips.end(), [&](const PlannedDip& dip) {
+                          return is_reached(dip.blank, targets.list[i]);
+                        });
     }
   });
-  const double scale = prepared.posed.scale();
-  result.everywhere = summed(targets, reached, covered, {}, scale);
   const std::vector<std::uint8_t> is_wanted = wanted_at(targets, *prepared.paint);
-  if (!is_wanted.empty()) result.wanted = summed(targets, reached, covered, is_wanted, scale);
+  const double scale = prepared.posed.scale();
+  result.everywhere.emplace();
+  if (!is_wanted.empty()) result.wanted.emplace();
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const double real_mm2 = scale * scale * targets.list[i].area;
+    result.everywhere->add(real_mm2, seen[i].reached, seen[i].covered, false);
+    if (result.wanted && is_wanted[i])
+      result.wanted->add(real_mm2, seen[i].reached, seen[i].covered, false);
+  }
   return result;
 }
 

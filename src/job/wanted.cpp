@@ -35,6 +35,11 @@ bool faces_film(const DippedObject& dipped, const Target& at) {
   return direction && at.normal.dot(*direction) > 0;
 }
 
+bool is_reached(const DippedObject& dipped, const Target& node) {
+  const Target hung = in_pose(node, dipped.posed);
+  return dipped.map->to_film(hung.position, hung.normal) || faces_film(dipped, hung);
+}
+
 bool is_in_doubt(const std::optional<FilmMap::Hold>& hold, const DoubtfulStretch& doubtful) {
   return hold && !hold->let_go && hold->stretch < doubtful.to &&
          (hold->stretch > doubtful.from || hold->moved_mm > kMoved_mm);
@@ -61,13 +66,9 @@ std::optional<ReportWanted> wanted_coverage(const DippedObject& dipped, const Pa
     }
   });
   ReportWanted wanted;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const double area = targets.list[i].area;
-    wanted.object_mm2 += is_wanted[i] ? area : 0;
-    wanted.reached_mm2 += seen[i].reached ? area : 0;
-    wanted.covered_mm2 += seen[i].covered ? area : 0;
-    wanted.doubtful_mm2 += seen[i].in_doubt ? area : 0;
-  }
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (is_wanted[i])
+      wanted.add(targets.list[i].area, seen[i].reached, seen[i].covered, seen[i].in_doubt);
   return wanted;
 }
 

@@ -47,5 +47,7 @@ bool is_in_doubt(const std::optional<FilmMap::Hold>& hold, const DoubtfulStretch
 // Whether a place comes into the water and faces down: a dip gets there then, whether or not film
 // comes to lie. In the posed-object frame.
 bool faces_film(const DippedObject& dipped, const Target& at);
+// Whether a dip gets to a place of the object, in its own frame: film lies there, or it faces film.
+bool is_reached(const DippedObject& dipped, const Target& node);
 
 }  // namespace hydrodip

@@ -178,7 +178,7 @@ class Search {
   }
 
   // As finely as the job, each of them: trial dips make out neither how much tears nor which is the
-  // best. What cannot be computed so is none to recommend.
+  // best.
   void confirm(std::vector<Trial>& found) {
     std::vector<Trial> sure;
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -188,7 +188,7 @@ class Search {
                 try_pose(fine_, found[i].pose, found[i].depth_mm + kDeeper_mm, context_.quiet()))
           sure.push_back(std::move(*again));
       } catch (const DipError&) {
-        continue;
+        // One that cannot be computed so is none to recommend.
       }
     }
     context_.progress("dipping the best for good", 1);

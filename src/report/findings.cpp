@@ -48,12 +48,16 @@ std::string after_dips(std::size_t dips) {
   return dips == 1 ? "after 1 dip" : fmt::format("after {} dips", dips);
 }
 
+bool goes_around(const ReportWanted& picture, const Coverage& c) {
+  return picture.object_mm2 > kOneSide * c.object_mm2;
+}
+
 // A picture on one side can be held down; of one that goes around no single dip brings all.
 Finding coverage_of_wanted(const ReportWanted& wanted, const Coverage& c,
                            const std::string& beyond_best) {
-  const bool goes_around = wanted.object_mm2 > kOneSide * c.object_mm2;
   const bool nearly_all = wanted.covered_share() >= kWholePicture;
-  const bool hardly = wanted.covered_share() < (goes_around ? kHardlyAPicture : kMostOfAPicture);
+  const bool hardly =
+      wanted.covered_share() < (goes_around(wanted, c) ? kHardlyAPicture : kMostOfAPicture);
   Finding finding{"coverage",
                   nearly_all ? Concern::kNone
                   : hardly   ? Concern::kStop
@@ -109,8 +113,7 @@ Finding coverage(const Report& report) {
 bool much_is_lost(const Report& report) {
   const Coverage& c = *report.coverage;
   const std::optional<double> missed = missed_share(report);
-  const bool around = report.dips.size() > 1 &&
-                      (!report.wanted || report.wanted->object_mm2 > kOneSide * c.object_mm2);
+  const bool around = report.dips.size() > 1 && (!report.wanted || goes_around(*report.wanted, c));
   return c.torn_share() > kMuchTorn &&
          (!missed || *missed > (around ? kMuchBareAround : kMuchTorn));
 }

@@ -89,6 +89,13 @@ struct ReportWanted {
   double covered_mm2 = 0;  // of it: gets whole film
   // Of that: film that may tear after all, or lie elsewhere; see Coverage::doubtful_mm2.
   double doubtful_mm2 = 0;
+  // A place where something shall be printed.
+  void add(double mm2, bool reached, bool covered, bool doubtful) {
+    object_mm2 += mm2;
+    reached_mm2 += reached ? mm2 : 0;
+    covered_mm2 += covered ? mm2 : 0;
+    doubtful_mm2 += doubtful ? mm2 : 0;
+  }
   double doubtful_share() const { return Coverage::share(doubtful_mm2, covered_mm2); }
   double covered_share() const { return Coverage::share(covered_mm2, object_mm2); }
   double missed_share() const { return Coverage::share(reached_mm2 - covered_mm2, reached_mm2); }

@@ -134,13 +134,17 @@ void OpenJob::tell_saved() const {
              {{"saved_revision", document_.saved_revision()}, {"where", document_.shown_where()}});
 }
 
+// With the lock.
+void OpenJob::become(const OtherJob& other, const std::string& client) {
+  const JobConfig config = document_.checked(other.document, other.machine);
+  document_.replace_by(other);
+  accept(other.document, config, client, false, 0, true);
+}
+
 void OpenJob::open_file(const std::filesystem::path& file) {
   const JobConfig config = config_of_file(file);
   const std::lock_guard lock(mutex_);
-  const OtherJob other = document_.by_file(file, config);
-  const JobConfig checked = document_.checked(other.document, other.machine);
-  document_.replace_by(other);
-  accept(other.document, checked, "", false, 0, true);
+  become(document_.by_file(file, config), "");
   if (is_job_file(file)) document_.set_saved();
   autosave();
 }
@@ -185,9 +189,7 @@ Json OpenJob::adopt(const std::vector<std::string>& given, const std::string& cl
     dropped_.refuse(adoption.names());
     throw bad_file(error.what(), document_.files());
   }
-  const JobConfig checked = document_.checked(other.document, other.machine);
-  document_.replace_by(other);
-  accept(other.document, checked, client, false, 0, true);
+  become(other, client);
   dropped_.accept(adoption.names());
   tell_files();
   return {{"revision", document_.revision()},

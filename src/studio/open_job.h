@@ -114,6 +114,7 @@ class OpenJob {
               std::size_t dip, bool tell_client);
   std::shared_ptr<const Model> read_unlocked(const UnreadFiles& files,
                                              std::unique_lock<std::mutex>& lock);
+  void become(const OtherJob& other, const std::string& client);
   void ask(bool live);
   void autosave() const;
   void autosave_if_possible() const;
