@@ -262,7 +262,6 @@ void Surface::triangles_near(const Vec3& point, double max_distance,
     return false;
   };
   rtcPointQuery(impl_->scene, &query, &context, visit, &triangles);
-  std::sort(triangles.begin(), triangles.end());
 }
 
 Vec3 Surface::position(const SurfaceHit& hit) const {

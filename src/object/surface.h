@@ -39,8 +39,8 @@ class Surface {
   // Closest point within max_distance; SurfaceHit::t is its distance.
   std::optional<SurfaceHit> closest_point(const Vec3& point, double max_distance) const;
 
-  // All triangles of which a part is within the distance, and perhaps some others near it;
-  // ascending, in place of what `triangles` held.
+  // All triangles of which a part is within the distance, and perhaps some others near it, in any
+  // order, in place of what `triangles` held.
   void triangles_near(const Vec3& point, double max_distance, std::vector<int>& triangles) const;
 
   Vec3 position(const SurfaceHit& hit) const;

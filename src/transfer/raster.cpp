@@ -17,6 +17,7 @@
 #include "image/to_byte.h"
 #include "transfer/sample_landings.h"
 #include "transfer/texture_mean.h"
+#include "transfer/texture_row.h"
 
 namespace hydrodip {
 
@@ -131,6 +132,10 @@ class Printed {
         depends_on_film_(paint.depends_on_film()),
         textured_(allotment.is_full() && !depends_on_film_ ? paint.as_object() : nullptr) {}
 
+  // Whether `row` has anything to tell.
+  bool is_told_by_row() const { return textured_ != nullptr && textured_->colors.empty(); }
+  TextureRow row(const FilmOnPlane& pair) const { return {*textured_, pair, paint_.base()}; }
+
   // `film`: where on the film it is printed.
   LinearColor at(const SurfacePoint& point, const Vec2& film) const {
     const LinearColor color =
@@ -141,19 +146,10 @@ class Printed {
     return part_of_ink(color, paint_.base(), share);
   }
 
-  // The mean over those of a grid's points that count; `film_mm(column, row)`: where they come
-  // from.
-  template <class OnFilm>
-  LinearColor mean(const SurfaceGrid& grid, const OnFilm& film_mm) const {
-    if (textured_ != nullptr)
-      if (const auto color = mean_texture_color(*textured_, grid, paint_.base())) return *color;
-    const float weight = 1.0F / static_cast<float>(grid.count());
-    ColorSum sum;
-    for (int row = 0; row < grid.per_axis; ++row)
-      for (int column = 0; column < grid.per_axis; ++column)
-        if (grid.counts(column, row))
-          sum.add(at(grid.at(column, row), film_mm(column, row)), weight);
-    return sum.color();
+  // Of the points that count of some grids, if it is told at once.
+  std::optional<LinearColor> mean(std::span<const SurfaceGrid> grids) const {
+    if (textured_ == nullptr) return std::nullopt;
+    return mean_texture_color(*textured_, grids, paint_.base());
   }
 
  private:
@@ -214,31 +210,94 @@ class TileColors {
         samples_(samples_of(tile, raster, per_axis_)),
         landings_(map, samples_, film_triangles) {}
 
-  LinearColor of_pixel(int x, int y) {
-    const int column = (x - tile_.x0) * per_axis_, row = (y - tile_.y0) * per_axis_;
+  // One for each of a row's pixels.
+  void of_row(int y, std::span<LinearColor> colors) {
+    const int row = (y - tile_.y0) * per_axis_, width = tile_.x1 - tile_.x0;
+    for (int x = 0, end = 0; x < width; x = end) {
+      const std::int32_t pair =
+          printed_.is_told_by_row() ? pair_of_pixel(x, row) : SampleLandings::kNone;
+      for (end = x + 1; end < width && pair != SampleLandings::kNone; ++end)
+        if (pair_of_pixel(end, row) != pair) break;
+      if (pair == SampleLandings::kNone)
+        colors[std::size_t(x)] = of_pixel(x * per_axis_, row);
+      else
+        of_one_pair(pair, x, end, row, colors);
+    }
+  }
+
+ private:
+  // Which holds all its samples, or kNone.
+  std::int32_t pair_of_pixel(int x, int row) const {
+    const int column = x * per_axis_;
+    const std::int32_t pair = landings_.pair_at(column, row);
+    for (int j = 0; j < per_axis_; ++j)
+      for (int i = 0; i < per_axis_; ++i)
+        if (landings_.pair_at(column + i, row + j) != pair) return SampleLandings::kNone;
+    return pair;
+  }
+
+  void of_one_pair(std::int32_t pair, int begin, int end, int row, std::span<LinearColor> colors) {
+    std::array<std::optional<LinearColor>, kTile_px> means;
+    const std::span<std::optional<LinearColor>> known(means.data(), std::size_t(end - begin));
+    printed_.row(landings_.pair(pair)).means(begin * per_axis_, row, per_axis_, known);
+    for (int x = begin; x < end; ++x) {
+      const auto& mean = known[std::size_t(x - begin)];
+      colors[std::size_t(x)] = mean ? *mean : of_pixel(x * per_axis_, row);
+    }
+  }
+
+  LinearColor of_pixel(int column, int row) {
     const PixelShares shares(landings_, column, row, per_axis_);
     if (shares.found().empty())
       if (const auto color = beside_film(column, row)) return *color;
-    const float weight = 1.0F / static_cast<float>(per_axis_ * per_axis_);
     ColorSum sum;
-    for (const auto& [pair, samples] : shares.found()) {
-      SurfaceGrid grid = landings_.landing(pair, column, row, per_axis_);
-      grid.counted = samples;
-      const LinearColor mean =
-          printed_.mean(grid, [&](int i, int j) { return samples_.at(column + i, row + j); });
-      if (shares.found().size() == 1 && shares.unknown() == 0) return mean;
-      sum.add(mean, weight * static_cast<float>(grid.count()));
-    }
+    add_found(shares, column, row, sum);
     for (std::uint64_t left = shares.unknown(); left != 0; left &= left - 1) {
       const int sample = std::countr_zero(left);
       const int i = sample % per_axis_, j = sample / per_axis_;
       const Vec2 film_mm = samples_.at(column + i, row + j);
-      if (const auto point = landing(film_mm)) sum.add(printed_.at(*point, film_mm), weight);
+      if (const auto point = landing(film_mm)) sum.add(printed_.at(*point, film_mm), weight());
     }
     return sum.color();
   }
 
- private:
+  float weight() const { return 1.0F / static_cast<float>(per_axis_ * per_axis_); }
+
+  // Together if they can be, else grid by grid, or sample by sample.
+  void add_found(const PixelShares& shares, int column, int row, ColorSum& sum) const {
+    constexpr std::size_t kTogether = 6;
+    std::array<SurfaceGrid, kTogether> grids;
+    std::size_t count = 0;
+    if (shares.found().size() <= kTogether) {
+      for (const PixelShares::Share& share : shares.found())
+        grids[count++] = grid_of(share, column, row);
+      if (const auto mean = printed_.mean({grids.data(), count})) {
+        sum.add(*mean, weight() * static_cast<float>(per_axis_ * per_axis_ -
+                                                     std::popcount(shares.unknown())));
+        return;
+      }
+    }
+    for (const PixelShares::Share& share : shares.found())
+      add_grid(grid_of(share, column, row), column, row, sum);
+  }
+
+  SurfaceGrid grid_of(const PixelShares::Share& share, int column, int row) const {
+    SurfaceGrid grid = landings_.landing(share.pair, column, row, per_axis_);
+    grid.counted = share.samples;
+    return grid;
+  }
+
+  void add_grid(const SurfaceGrid& grid, int column, int row, ColorSum& sum) const {
+    if (const auto mean = printed_.mean({&grid, 1})) {
+      sum.add(*mean, weight() * static_cast<float>(grid.count()));
+      return;
+    }
+    for (int j = 0; j < per_axis_; ++j)
+      for (int i = 0; i < per_axis_; ++i)
+        if (grid.counts(i, j))
+          sum.add(printed_.at(grid.at(i, j), samples_.at(column + i, row + j)), weight());
+  }
+
   // One look for all samples of a pixel: out of reach, or in the midst of the bleed, which shows
   // little.
   std::optional<LinearColor> beside_film(int column, int row) {
@@ -276,6 +335,19 @@ void store(const LinearColor& color, std::uint8_t* pixel) {
   pixel[2] = linear_to_srgb8(color.b);
   pixel[3] = to_byte(color.a);
   if (pixel[3] == 0) pixel[0] = pixel[1] = pixel[2] = 0;
+}
+
+bool is_same(const LinearColor& one, const LinearColor& other) {
+  return one.r == other.r && one.g == other.g && one.b == other.b && one.a == other.a;
+}
+
+// A row's; neighbours are often alike.
+void store(const LinearColor* colors, int count, std::uint8_t* pixels) {
+  for (int x = 0; x < count; ++x, pixels += 4)
+    if (x > 0 && is_same(colors[x], colors[x - 1]))
+      std::copy_n(pixels - 4, 4, pixels);
+    else
+      store(colors[x], pixels);
 }
 
 }  // namespace
@@ -332,8 +404,11 @@ Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& rast
   const FilmUnderTiles film(map, raster);
   for_inked_tiles(map, raster, options.bleed_mm, "rastering", context, [&](const Tile& tile) {
     TileColors colors(printed, map, raster, options, tile, film.under(tile));
-    for (int y = tile.y0; y < tile.y1; ++y)
-      for (int x = tile.x0; x < tile.x1; ++x) store(colors.of_pixel(x, y), image.pixel(x, y));
+    std::array<LinearColor, kTile_px> row;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      colors.of_row(y, row);
+      store(row.data(), tile.x1 - tile.x0, image.pixel(tile.x0, y));
+    }
   });
   return image;
 }

@@ -48,6 +48,8 @@ class Surroundings {
   void find(const FilmMap& map, std::vector<int>& triangles) const {
     map.surface().triangles_near(middle_, radius_mm_, triangles);
     std::erase_if(triangles, [&](int triangle) { return !may_hold(map.object(), triangle); });
+    // Of those that are equally near along a line the first counts.
+    std::sort(triangles.begin(), triangles.end());
   }
 
  private:

@@ -8,6 +8,13 @@ namespace {
 
 constexpr double kInside = -1e-9;
 
+// Of numbers that are not negative, without a call.
+int rounded_down(double value) { return int(value); }
+int rounded_up(double value) {
+  const int down = int(value);
+  return down + (down < value ? 1 : 0);
+}
+
 }  // namespace
 
 Span HalfPlane::in_row(int row, Span columns) const {
@@ -15,10 +22,9 @@ Span HalfPlane::in_row(int row, Span columns) const {
   if (function_.across == 0) return start >= 0 ? columns : Span{};
   const double zero = -start * per_across_;
   if (function_.across > 0) {
-    if (zero > columns.begin)
-      columns.begin = zero < columns.end ? int(std::ceil(zero)) : columns.end;
+    if (zero > columns.begin) columns.begin = zero < columns.end ? rounded_up(zero) : columns.end;
   } else if (zero < columns.end - 1) {
-    columns.end = zero >= columns.begin ? int(std::floor(zero)) + 1 : columns.begin;
+    columns.end = zero >= columns.begin ? rounded_down(zero) + 1 : columns.begin;
   }
   return columns;
 }
