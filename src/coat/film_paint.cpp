@@ -11,9 +11,7 @@ class DippedPaint : public Paint {
       : Paint(paint->base()), paint_(std::move(paint)), dipped_(dipped) {}
 
   LinearColor color_at(const SurfacePoint& point) const override {
-    const TriangleMesh& mesh = dipped_.posed.mesh();
-    const auto film_mm =
-        dipped_.map->to_film(position_at(mesh, point), face_normal(mesh, point.triangle));
+    const auto film_mm = dipped_.map->to_film(point);
     return film_mm ? paint_->color_on_film(point, *film_mm) : paint_->color_at(point);
   }
   LinearColor color_on_film(const SurfacePoint& point, const Vec2& film_mm) const override {

@@ -8,8 +8,7 @@ namespace {
 
 // At the coat's own pose; nothing where its film does not lie.
 std::optional<Vec2> film_point(const Coat& coat, const SurfacePoint& point) {
-  const TriangleMesh& mesh = coat.dipped.posed.mesh();
-  return coat.dipped.map->to_film(position_at(mesh, point), face_normal(mesh, point.triangle));
+  return coat.dipped.map->to_film(point);
 }
 
 LinearColor laid_over(const Coat& coat, const Vec2& u, const LinearColor& under) {

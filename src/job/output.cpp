@@ -68,8 +68,8 @@ LinearColor reach_color(float difference) {
 PreviewPair reach_pair(const JobRecord& record, const SheetRaster& raster) {
   PreviewPair pair;
   pair.left_is_firsts_right = true;
-  pair.shown.predicted = [&](const SurfacePoint&, const Vec3& position, const Vec3& normal) {
-    const auto u = record.dipped().map->to_film(position, normal);
+  pair.shown.predicted = [&](const SurfacePoint& point, const Vec3&, const Vec3&) {
+    const auto u = record.dipped().map->to_film(point);
     if (!u) return record.paint().base();
     const Vec2 pixel = raster.to_pixel(*u);
     const int x = std::clamp(int(pixel.x()), 0, raster.width_px() - 1);
@@ -98,9 +98,9 @@ Appearance fading(const Appearance& shown, const JobRecord& record) {
   if (!(material.tear_stretch > doubtful.from)) return shown;
   Appearance result = shown;
   result.predicted = [&finish = record.finish, doubtful, map = record.dipped().map,
-                      base = record.paint().base()](const SurfacePoint& point, const Vec3& position,
-                                                    const Vec3& normal) {
-    const FilmMap::Lying lying = map->lying_at(position, normal);
+                      base = record.paint().base()](const SurfacePoint& point, const Vec3&,
+                                                    const Vec3&) {
+    const FilmMap::Lying lying = map->lying_at(point);
     const LinearColor color = finish.color_with_film(point, lying.film);
     if (!lying.hold || !lying.hold->whole) return color;
     const auto left = float(1 - doubtful.of(lying.hold->stretch, fading_mm(lying.hold->moved_mm)));

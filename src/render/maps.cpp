@@ -293,9 +293,9 @@ Appearance map_appearance(const MapScene& scene, const Camera& camera, double ha
     if (scene.in_air && scene.in_air(point.triangle, position)) return kAir;
     return angle_color(angle_at(scene.object, scene.normals, point, *direction));
   };
-  appearance.predicted = [&scene, diagonal, hatch_mm](const SurfacePoint&, const Vec3& position,
-                                                      const Vec3& normal) {
-    const auto hold = scene.map ? scene.map->hold_at(position, normal) : std::nullopt;
+  appearance.predicted = [&scene, diagonal, hatch_mm](const SurfacePoint& point,
+                                                      const Vec3& position, const Vec3&) {
+    const auto hold = scene.map ? scene.map->lying_at(point).hold : std::nullopt;
     if (!hold) return kNeutral;
     const LinearColor& stripe =
         on_dark_stripe(position.dot(diagonal), hatch_mm) ? kTornDark : kTornLight;

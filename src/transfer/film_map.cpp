@@ -8,6 +8,7 @@
 #include "film/locate.h"
 #include "transfer/covered_rim.h"
 #include "transfer/film_normals.h"
+#include "transfer/film_over_object.h"
 
 namespace hydrodip {
 
@@ -72,6 +73,7 @@ struct FilmMap::Impl {
   std::vector<Vec3> edge_direction;  // of those
   CoveredRim rim;
   double reach_mm;  // how far apart film and object may be: chords against curved surface
+  FilmOverObject over_object;
 
   Impl(const TriangleMesh& o, const Surface& s, const DippedFilm& f)
       : object(o),
@@ -82,7 +84,8 @@ struct FilmMap::Impl {
         torn_surface(f.position, corners_of(torn_triangle, f)),
         normal(film_normals(f, s)),
         rim(f),
-        reach_mm(f.mesh().cell_mm) {
+        reach_mm(f.mesh().cell_mm),
+        over_object(o, f.position, triangles_on_object(f), film_surface, reach_mm) {
     for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
       lies.push_back(film.lies_on_object(t));
       if (lies.back()) film_triangle.push_back(static_cast<std::int32_t>(t));
@@ -177,7 +180,18 @@ struct FilmMap::Impl {
   };
   // The film that lies at a point of the object, whole or not.
   std::optional<FilmPoint> lying_film_at(const Vec3& position, const Vec3& direction) const {
-    auto hit = lying_at(film_surface, position, direction);
+    return lying_film(lying_at(film_surface, position, direction), position);
+  }
+
+  // Along the triangle's normal.
+  std::optional<FilmPoint> lying_film_at(const SurfacePoint& point) const {
+    const FilmOverObject::Nearest nearest = over_object.nearest(point);
+    const Vec3 position = position_at(object, point);
+    if (nearest.is_known) return lying_film(nearest.hit, position);
+    return lying_film_at(position, face_normal(object, point.triangle));
+  }
+
+  std::optional<FilmPoint> lying_film(std::optional<SurfaceHit> hit, const Vec3& position) const {
     if (!hit) return std::nullopt;
     // Over an edge film is looked up as to_object() does.
     const std::int32_t edge = over_edge[std::size_t(film_triangle[std::size_t(hit->triangle)])];
@@ -195,6 +209,26 @@ struct FilmMap::Impl {
     const auto& u = film.mesh().u;
     return Vec2(at->weight[0] * u[std::size_t(t[0])] + at->weight[1] * u[std::size_t(t[1])] +
                 at->weight[2] * u[std::size_t(t[2])]);
+  }
+
+  // What is to be said of film at a point of the object; `at`: what lies there of what has not
+  // torn.
+  Lying lying(std::optional<FilmPoint> at, const Vec3& position, const Vec3& direction) const {
+    Lying lying{whole_film(at), std::nullopt};
+    Hold hold;
+    hold.whole = lying.film.has_value();
+    if (!at) {
+      const auto hit = lying_at(torn_surface, position, direction);
+      if (!hit) return lying;
+      at = FilmPoint{std::size_t(torn_triangle[std::size_t(hit->triangle)]),
+                     Vec3(1 - hit->u - hit->v, hit->u, hit->v)};
+    }
+    hold.stretch = interpolated(film.stretch, *at);
+    if (!film.moved_mm.empty()) hold.moved_mm = interpolated(film.moved_mm, *at);
+    hold.let_go = film.torn[at->triangle] &&
+                  (film.torn_at_mm.empty() || std::isfinite(film.torn_at_mm[at->triangle]));
+    lying.hold = hold;
+    return lying;
   }
 
   double interpolated(const std::vector<double>& value, const FilmPoint& at) const {
@@ -268,6 +302,10 @@ std::optional<Vec2> FilmMap::to_film(const Vec3& position, const Vec3& normal) c
   return impl_->whole_film(impl_->lying_film_at(position, normal));
 }
 
+std::optional<Vec2> FilmMap::to_film(const SurfacePoint& point) const {
+  return impl_->whole_film(impl_->lying_film_at(point));
+}
+
 bool FilmMap::torn_at(const Vec3& position, const Vec3& normal) const {
   const auto at = impl_->lying_film_at(position, normal);
   if (at && !impl_->film.is_whole_at(at->triangle, at->weight)) return true;
@@ -279,23 +317,12 @@ std::optional<FilmMap::Hold> FilmMap::hold_at(const Vec3& position, const Vec3& 
 }
 
 FilmMap::Lying FilmMap::lying_at(const Vec3& position, const Vec3& normal) const {
-  const DippedFilm& film = impl_->film;
-  std::optional<Impl::FilmPoint> at = impl_->lying_film_at(position, normal);
-  Lying lying{impl_->whole_film(at), std::nullopt};
-  Hold hold;
-  hold.whole = lying.film.has_value();
-  if (!at) {
-    const auto hit = impl_->lying_at(impl_->torn_surface, position, normal);
-    if (!hit) return lying;
-    at = Impl::FilmPoint{std::size_t(impl_->torn_triangle[std::size_t(hit->triangle)]),
-                         Vec3(1 - hit->u - hit->v, hit->u, hit->v)};
-  }
-  hold.stretch = impl_->interpolated(film.stretch, *at);
-  if (!film.moved_mm.empty()) hold.moved_mm = impl_->interpolated(film.moved_mm, *at);
-  hold.let_go = film.torn[at->triangle] &&
-                (film.torn_at_mm.empty() || std::isfinite(film.torn_at_mm[at->triangle]));
-  lying.hold = hold;
-  return lying;
+  return impl_->lying(impl_->lying_film_at(position, normal), position, normal);
+}
+
+FilmMap::Lying FilmMap::lying_at(const SurfacePoint& point) const {
+  return impl_->lying(impl_->lying_film_at(point), position_at(impl_->object, point),
+                      face_normal(impl_->object, point.triangle));
 }
 
 double FilmMap::area_ratio(const Vec2& u) const {
