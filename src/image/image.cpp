@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hydrodip {
 
@@ -21,18 +22,20 @@ std::array<float, 256> make_decode_table() {
   return table;
 }
 
-// The way back without a power per pixel: a coarse table gives the byte at the cell's lower end,
-// the thresholds half-way between neighbouring bytes settle the rest.
+// The way back without a power per pixel: a table gives the byte at the cell's lower end, and the
+// threshold half-way to the next byte, of which no cell holds two, settles the rest.
 struct EncodeTable {
   static constexpr int kCells = 4096;
   std::array<std::uint8_t, kCells + 1> first{};
-  std::array<float, 256> lower{};  // smallest linear value that rounds to this byte
+  std::array<float, 257>
+      lower{};  // smallest linear value that rounds to this byte; none does to 256
 
   EncodeTable() {
     for (int i = 1; i < 256; ++i) lower[std::size_t(i)] = float(decode((i - 0.5) / 255.0));
+    lower[256] = std::numeric_limits<float>::infinity();
     for (int c = 0; c <= kCells; ++c) {
       const float value = float(c) / float(kCells);
-      const auto next = std::upper_bound(lower.begin() + 1, lower.end(), value);
+      const auto next = std::upper_bound(lower.begin() + 1, lower.end() - 1, value);
       first[std::size_t(c)] = std::uint8_t(next - lower.begin() - 1);
     }
   }
@@ -55,9 +58,8 @@ std::uint8_t linear_to_srgb8(float linear) {
   static const EncodeTable table;
   if (!(linear > 0)) return 0;  // also not-a-number
   if (linear >= 1) return 255;
-  unsigned byte = table.first[std::size_t(linear * float(EncodeTable::kCells))];
-  while (byte < 255 && linear >= table.lower[byte + 1]) ++byte;
-  return std::uint8_t(byte);
+  const std::uint8_t byte = table.first[std::size_t(linear * float(EncodeTable::kCells))];
+  return std::uint8_t(byte + (linear >= table.lower[byte + 1U] ? 1 : 0));
 }
 
 }  // namespace hydrodip

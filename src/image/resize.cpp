@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "image/blank_image.h"
 #include "image/shown_columns.h"
+#include "image/to_byte.h"
 
 namespace hydrodip {
 namespace {
@@ -37,30 +38,60 @@ std::vector<Span> spans(int source, int target) {
   return list;
 }
 
-// Outside of them no row of the span shows anything.
-Columns shown(const Image& image, const Span& rows) {
-  Columns all{image.width_px, 0};
-  for (int y = rows.first; y < rows.end(); ++y) {
-    const Columns row = shown_columns(image, y);
-    if (!row.empty()) all = {std::min(all.begin, row.begin), std::max(all.end, row.end)};
-  }
-  return all;
-}
+using Premultiplied = std::array<float, 4>;  // linear red, green, blue; and alpha
 
-void average_into(const Image& image, const Span& columns, const Span& rows, std::uint8_t* out) {
-  const std::array<float, 256>& decode = srgb8_table();
-  std::array<float, 3> sum{};
-  float alpha = 0;
-  for (std::size_t j = 0; j < rows.weights.size(); ++j)
-    for (std::size_t i = 0; i < columns.weights.size(); ++i) {
-      const std::uint8_t* p = image.pixel(columns.first + int(i), rows.first + int(j));
-      if (p[3] == 0) continue;
-      const float weight = rows.weights[j] * columns.weights[i] * float(p[3]) / 255.0f;
-      for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * decode[p[k]];
-      alpha += weight;
+// A row of the source in the target's columns.
+class ReducedRow {
+ public:
+  ReducedRow(const Image& image, const std::vector<Span>& columns)
+      : image_(image), columns_(columns), pixels_(columns.size()) {}
+
+  void reduce(int row) {
+    if (row == row_) return;
+    row_ = row;
+    const Columns seen = shown_columns(image_, row);
+    const auto shows = [&](std::size_t x) {
+      return columns_[x].first < seen.end && columns_[x].end() > seen.begin;
+    };
+    begin_ = 0;
+    while (begin_ < columns_.size() && !shows(begin_)) ++begin_;
+    for (end_ = begin_; end_ < columns_.size() && shows(end_); ++end_)
+      pixels_[end_] = mean_of(columns_[end_]);
+  }
+
+  void add_to(std::vector<Premultiplied>& sums, float weight) const {
+    for (std::size_t x = begin_; x < end_; ++x)
+      for (std::size_t k = 0; k < 4; ++k) sums[x][k] += weight * pixels_[x][k];
+  }
+
+ private:
+  Premultiplied mean_of(const Span& span) const {
+    const std::array<float, 256>& decode = srgb8_table();
+    float r = 0, g = 0, b = 0, a = 0;
+    const std::uint8_t* p = image_.pixel(span.first, row_);
+    for (const float share : span.weights) {
+      const float weight = share * float(p[3]);
+      r += weight * decode[p[0]];
+      g += weight * decode[p[1]];
+      b += weight * decode[p[2]];
+      a += weight;
+      p += 4;
     }
-  for (std::size_t k = 0; k < 3; ++k) out[k] = alpha > 0 ? linear_to_srgb8(sum[k] / alpha) : 0;
-  out[3] = static_cast<std::uint8_t>(std::lround(255.0f * std::min(alpha, 1.0f)));
+    return {r, g, b, a};
+  }
+
+  const Image& image_;
+  const std::vector<Span>& columns_;
+  std::vector<Premultiplied> pixels_;
+  std::size_t begin_ = 0, end_ = 0;  // outside of them nothing shows
+  int row_ = -1;
+};
+
+void store(const Premultiplied& sum, std::uint8_t* out) {
+  const float alpha = sum[3];
+  if (!(alpha > 0)) return;  // it is blank
+  for (std::size_t k = 0; k < 3; ++k) out[k] = linear_to_srgb8(sum[k] / alpha);
+  out[3] = to_byte(alpha / 255.0F);
 }
 
 }  // namespace
@@ -70,11 +101,16 @@ Image resize(const Image& image, int width_px, int height_px) {
   const std::vector<Span> rows = spans(image.height_px, height_px);
   Image result = blank_image(width_px, height_px);
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    // The last row of one is often the first one of the next.
+    ReducedRow reduced(image, columns);
+    std::vector<Premultiplied> sums(columns.size());
     for (std::size_t y = begin; y < end; ++y) {
-      const Columns seen = shown(image, rows[y]);
-      for (std::size_t x = 0; x < columns.size(); ++x)
-        if (columns[x].first < seen.end && columns[x].end() > seen.begin)
-          average_into(image, columns[x], rows[y], result.pixel(int(x), int(y)));
+      std::fill(sums.begin(), sums.end(), Premultiplied{});
+      for (std::size_t j = 0; j < rows[y].weights.size(); ++j) {
+        reduced.reduce(rows[y].first + int(j));
+        reduced.add_to(sums, rows[y].weights[j]);
+      }
+      for (std::size_t x = 0; x < columns.size(); ++x) store(sums[x], result.pixel(int(x), int(y)));
     }
   });
   return result;

@@ -12,30 +12,46 @@ namespace {
 
 constexpr std::size_t kBandGrain = 64;
 
+// Columns [x0, x1) and rows [y0, y1) of an image.
+struct PixelBox {
+  int x0, y0, x1, y1;
+};
+
+bool is_blank_in(const InkImage& image, const PixelBox& box) {
+  const int x0 = std::max(box.x0, 0), x1 = std::min(box.x1, image.width_px);
+  const int y0 = std::max(box.y0, 0), y1 = std::min(box.y1, image.height_px);
+  if (x0 >= x1) return true;
+  for (int y = y0; y < y1; ++y) {
+    unsigned laid = 0;
+    const std::uint8_t* ink = image.pixel(x0, y);
+    for (int k = 0; k < 4 * (x1 - x0); ++k) laid |= ink[k];
+    if (laid != 0) return false;
+  }
+  return true;
+}
+
 // Over the pixels around one triangle: S, the density summed over everything left of and above a
 // point, and Q, its integral from the left. S is bilinear within a pixel, so both are known
 // everywhere from their values at the pixels' corners.
 class Sums {
  public:
-  // Columns [x0, x1) and rows [y0, y1) of the image; what lies off it is blank.
-  Sums(const InkImage& image, int x0, int y0, int x1, int y1)
-      : x0_(x0), y0_(y0), stride_(std::size_t(x1 - x0) + 1) {
-    const std::size_t rows = std::size_t(y1 - y0) + 1;
+  // What lies off the image is blank.
+  Sums(const InkImage& image, const PixelBox& box)
+      : x0_(box.x0), y0_(box.y0), stride_(std::size_t(box.x1 - box.x0) + 1) {
+    const std::size_t rows = std::size_t(box.y1 - box.y0) + 1;
     s_.assign(stride_ * rows, 0);
     q_.assign(stride_ * rows, 0);
-    for (int y = y0; y < y1; ++y) {
-      const std::size_t above = std::size_t(y - y0) * stride_;
+    for (int y = box.y0; y < box.y1; ++y) {
+      const std::size_t above = std::size_t(y - box.y0) * stride_;
       std::int64_t row = 0;
-      for (int x = x0; x < x1; ++x) {
+      for (int x = box.x0; x < box.x1; ++x) {
         row += density(image, x, y);
-        const std::size_t i = above + std::size_t(x - x0) + 1;
+        const std::size_t i = above + std::size_t(x - box.x0) + 1;
         s_[i + stride_] = s_[i] + double(row);
         q_[i + stride_] = q_[i + stride_ - 1] + 0.5 * (s_[i + stride_ - 1] + s_[i + stride_]);
       }
     }
   }
-
-  bool blank() const { return s_.back() == 0; }
 
   // Along the straight way from `from` to `to` (in pixels): the integral of Q dy. Between two
   // crossings of pixel edges Q is a cubic of the way, which two Gauss points integrate exactly.
@@ -106,9 +122,10 @@ double mean_density(const InkImage& image, const SheetRaster& raster,
   const Vec2 low = corner[0].cwiseMin(corner[1]).cwiseMin(corner[2]) - Vec2::Constant(half);
   const Vec2 high = corner[0].cwiseMax(corner[1]).cwiseMax(corner[2]) + Vec2::Constant(half);
   // A pixel more on each side: rounding may put a point just outside.
-  const Sums sums(image, int(std::floor(low.x())) - 1, int(std::floor(low.y())) - 1,
-                  int(std::ceil(high.x())) + 1, int(std::ceil(high.y())) + 1);
-  if (sums.blank()) return 0;
+  const PixelBox box{int(std::floor(low.x())) - 1, int(std::floor(low.y())) - 1,
+                     int(std::ceil(high.x())) + 1, int(std::ceil(high.y())) + 1};
+  if (is_blank_in(image, box)) return 0;
+  const Sums sums(image, box);
 
   // The mean over the box around a point comes from S at its four corners; the integral of S over
   // the triangle, by Green's theorem, from Q along its edges.
