@@ -99,22 +99,24 @@ std::unique_ptr<const FilmOverObject::Overs> FilmOverObject::find(int object_tri
     const Vec3 upwards = ab.cross(ac);
     const double squared = upwards.squaredNorm(), slope = normal.dot(upwards);
     if (!(std::abs(slope) > kFlattest * std::sqrt(squared))) continue;
-    std::array<double, 3> u, v, way_mm;
-    for (std::size_t k = 0; k < 3; ++k) {
-      way_mm[k] = (a - corner[k]).dot(upwards) / slope;
-      const Vec3 met = corner[k] + way_mm[k] * normal - a;
-      u[k] = met.cross(ac).dot(upwards) / squared;
-      v[k] = ab.cross(met).dot(upwards) / squared;
-    }
     const auto linear = [](const std::array<double, 3>& at) {
       return Linear{float(at[0]), float(at[1] - at[0]), float(at[2] - at[0])};
     };
-    const Over over{triangle, slope < 0, linear(u), linear(v), linear(way_mm)};
+    std::array<double, 3> way_mm, u, v;
+    for (std::size_t k = 0; k < 3; ++k) way_mm[k] = (a - corner[k]).dot(upwards) / slope;
+    Over over{triangle, slope < 0, {}, {}, linear(way_mm)};
+    if (over.way_mm.least() > float(reach_mm_) || over.way_mm.most() < -float(reach_mm_)) continue;
+    const Vec3 to_u = ac.cross(upwards) / squared, to_v = upwards.cross(ab) / squared;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 met = corner[k] + way_mm[k] * normal - a;
+      u[k] = met.dot(to_u);
+      v[k] = met.dot(to_v);
+    }
+    over.u = linear(u);
+    over.v = linear(v);
     const Linear rest = linear({1 - u[0] - v[0], 1 - u[1] - v[1], 1 - u[2] - v[2]});
-    const bool is_over = over.u.most() >= -kSlack && over.v.most() >= -kSlack &&
-                         rest.most() >= -kSlack && over.way_mm.least() <= float(reach_mm_) &&
-                         over.way_mm.most() >= -float(reach_mm_);
-    if (is_over) overs->push_back(over);
+    if (over.u.most() < -kSlack || over.v.most() < -kSlack || rest.most() < -kSlack) continue;
+    overs->push_back(over);
     if (overs->size() > kMostOver) break;
   }
   overs->shrink_to_fit();
