@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -15,35 +12,15 @@
 #include "base/parallel.h"
 #include "image/blank_image.h"
 #include "image/to_byte.h"
-#include "transfer/sample_landings.h"
-#include "transfer/texture_mean.h"
-#include "transfer/texture_row.h"
+#include "transfer/color_sum.h"
+#include "transfer/tile_colors.h"
+#include "transfer/triangle_samples.h"
 
 namespace hydrodip {
 
 namespace {
 
-constexpr int kTile_px = 64;
 constexpr std::size_t kTilesPerRound = 256;
-
-// Averages colours by their coverage, in linear light.
-struct ColorSum {
-  float r = 0, g = 0, b = 0, a = 0;
-  void add(const LinearColor& c, float weight) {
-    r += weight * c.a * c.r;
-    g += weight * c.a * c.g;
-    b += weight * c.a * c.b;
-    a += weight * c.a;
-  }
-  LinearColor color() const {
-    if (!(a > 0)) return {0, 0, 0, 0};
-    return {r / a, g / a, b / a, a};
-  }
-};
-
-struct Tile {
-  int x0, y0, x1, y1;
-};
 
 std::vector<Tile> tiles_of(int width_px, int height_px) {
   std::vector<Tile> tiles;
@@ -100,233 +77,6 @@ class FilmUnderTiles {
 
   std::size_t columns_;
   std::vector<std::vector<std::int32_t>> triangles_;
-};
-
-// The samples of a tile's pixels, so many in each direction of each.
-SampleGrid samples_of(const Tile& tile, const SheetRaster& raster, int per_axis) {
-  const double step_px = 1.0 / per_axis;
-  return {raster.to_film(tile.x0 + 0.5 * step_px, tile.y0 + 0.5 * step_px),
-          kMmPerInch / raster.dpi * step_px, (tile.x1 - tile.x0) * per_axis,
-          (tile.y1 - tile.y0) * per_axis};
-}
-
-// Darker than that no ink is, so that a part of it can be told.
-constexpr float kDarkest = 0.003F;
-
-// A part of the ink that makes `base` look like `wanted`: ink is a filter, so that the parts of
-// several films multiply to what the whole ink leaves of the light.
-LinearColor part_of_ink(const LinearColor& wanted, const LinearColor& base, float share) {
-  const auto part = [&](float w, float b) {
-    if (!(b > 0)) return w;
-    return b * std::pow(std::clamp(w / b, kDarkest, 1.0F), share);
-  };
-  return {part(wanted.r, base.r), part(wanted.g, base.g), part(wanted.b, base.b), wanted.a};
-}
-
-// What is printed of a point of the object.
-class Printed {
- public:
-  Printed(const Paint& paint, const Allotment& allotment)
-      : paint_(paint),
-        allotment_(allotment),
-        depends_on_film_(paint.depends_on_film()),
-        textured_(allotment.is_full() && !depends_on_film_ ? paint.as_object() : nullptr) {}
-
-  // Whether `row` has anything to tell.
-  bool is_told_by_row() const { return textured_ != nullptr && textured_->colors.empty(); }
-  TextureRow row(const FilmOnPlane& pair) const { return {*textured_, pair, paint_.base()}; }
-
-  // `film`: where on the film it is printed.
-  LinearColor at(const SurfacePoint& point, const Vec2& film) const {
-    const LinearColor color =
-        depends_on_film_ ? paint_.color_on_film(point, film) : paint_.color_at(point);
-    const float share = allotment_.at(point);
-    if (share >= 1) return color;
-    if (share <= 0) return {0, 0, 0, 0};
-    return part_of_ink(color, paint_.base(), share);
-  }
-
-  // Of the points that count of some grids, if it is told at once.
-  std::optional<LinearColor> mean(std::span<const SurfaceGrid> grids) const {
-    if (textured_ == nullptr) return std::nullopt;
-    return mean_texture_color(*textured_, grids, paint_.base());
-  }
-
- private:
-  const Paint& paint_;
-  const Allotment& allotment_;
-  bool depends_on_film_;
-  const Object* textured_;  // the paint, if it is nothing else; or null
-};
-
-// The samples of a pixel by what they land on.
-class PixelShares {
- public:
-  struct Share {
-    std::int32_t pair;      // of the landings
-    std::uint64_t samples;  // as SurfaceGrid::counted
-  };
-
-  PixelShares(const SampleLandings& landings, int column, int row, int per_axis) {
-    std::uint64_t sample = 1;
-    for (int j = 0; j < per_axis; ++j)
-      for (int i = 0; i < per_axis; ++i, sample <<= 1)
-        add(landings.pair_at(column + i, row + j), sample);
-  }
-
-  std::span<const Share> found() const { return {shares_.data(), count_}; }
-  std::uint64_t unknown() const { return unknown_; }
-
- private:
-  void add(std::int32_t pair, std::uint64_t sample) {
-    if (pair == SampleLandings::kNone) {
-      unknown_ |= sample;
-      return;
-    }
-    std::size_t n = 0;
-    while (n < count_ && shares_[n].pair != pair) ++n;
-    if (n == count_) shares_[count_++] = {pair, 0};
-    shares_[n].samples |= sample;
-  }
-
-  static constexpr std::size_t kMostSamples =
-      std::size_t(SurfaceGrid::kMostPerAxis) * std::size_t(SurfaceGrid::kMostPerAxis);
-  std::array<Share, kMostSamples> shares_;
-  std::size_t count_ = 0;
-  std::uint64_t unknown_ = 0;
-};
-
-// What is printed on the film of a tile.
-class TileColors {
- public:
-  TileColors(const Printed& printed, const FilmMap& map, const SheetRaster& raster,
-             const InverseOptions& options, const Tile& tile,
-             const std::vector<std::int32_t>& film_triangles)
-      : printed_(printed),
-        map_(map),
-        bleed_mm_(options.bleed_mm),
-        tile_(tile),
-        per_axis_(options.quick_look ? 1 : options.samples_per_axis),
-        samples_(samples_of(tile, raster, per_axis_)),
-        landings_(map, samples_, film_triangles) {}
-
-  // One for each of a row's pixels.
-  void of_row(int y, std::span<LinearColor> colors) {
-    const int row = (y - tile_.y0) * per_axis_, width = tile_.x1 - tile_.x0;
-    for (int x = 0, end = 0; x < width; x = end) {
-      const std::int32_t pair =
-          printed_.is_told_by_row() ? pair_of_pixel(x, row) : SampleLandings::kNone;
-      for (end = x + 1; end < width && pair != SampleLandings::kNone; ++end)
-        if (pair_of_pixel(end, row) != pair) break;
-      if (pair == SampleLandings::kNone)
-        colors[std::size_t(x)] = of_pixel(x * per_axis_, row);
-      else
-        of_one_pair(pair, x, end, row, colors);
-    }
-  }
-
- private:
-  // Which holds all its samples, or kNone.
-  std::int32_t pair_of_pixel(int x, int row) const {
-    const int column = x * per_axis_;
-    const std::int32_t pair = landings_.pair_at(column, row);
-    for (int j = 0; j < per_axis_; ++j)
-      for (int i = 0; i < per_axis_; ++i)
-        if (landings_.pair_at(column + i, row + j) != pair) return SampleLandings::kNone;
-    return pair;
-  }
-
-  void of_one_pair(std::int32_t pair, int begin, int end, int row, std::span<LinearColor> colors) {
-    std::array<std::optional<LinearColor>, kTile_px> means;
-    const std::span<std::optional<LinearColor>> known(means.data(), std::size_t(end - begin));
-    printed_.row(landings_.pair(pair)).means(begin * per_axis_, row, per_axis_, known);
-    for (int x = begin; x < end; ++x) {
-      const auto& mean = known[std::size_t(x - begin)];
-      colors[std::size_t(x)] = mean ? *mean : of_pixel(x * per_axis_, row);
-    }
-  }
-
-  LinearColor of_pixel(int column, int row) {
-    const PixelShares shares(landings_, column, row, per_axis_);
-    if (shares.found().empty())
-      if (const auto color = beside_film(column, row)) return *color;
-    ColorSum sum;
-    add_found(shares, column, row, sum);
-    for (std::uint64_t left = shares.unknown(); left != 0; left &= left - 1) {
-      const int sample = std::countr_zero(left);
-      const int i = sample % per_axis_, j = sample / per_axis_;
-      const Vec2 film_mm = samples_.at(column + i, row + j);
-      if (const auto point = landing(film_mm)) sum.add(printed_.at(*point, film_mm), weight());
-    }
-    return sum.color();
-  }
-
-  float weight() const { return 1.0F / static_cast<float>(per_axis_ * per_axis_); }
-
-  // Together if they can be, else grid by grid, or sample by sample.
-  void add_found(const PixelShares& shares, int column, int row, ColorSum& sum) const {
-    constexpr std::size_t kTogether = 6;
-    std::array<SurfaceGrid, kTogether> grids;
-    std::size_t count = 0;
-    if (shares.found().size() <= kTogether) {
-      for (const PixelShares::Share& share : shares.found())
-        grids[count++] = grid_of(share, column, row);
-      if (const auto mean = printed_.mean({grids.data(), count})) {
-        sum.add(*mean, weight() * static_cast<float>(per_axis_ * per_axis_ -
-                                                     std::popcount(shares.unknown())));
-        return;
-      }
-    }
-    for (const PixelShares::Share& share : shares.found())
-      add_grid(grid_of(share, column, row), column, row, sum);
-  }
-
-  SurfaceGrid grid_of(const PixelShares::Share& share, int column, int row) const {
-    SurfaceGrid grid = landings_.landing(share.pair, column, row, per_axis_);
-    grid.counted = share.samples;
-    return grid;
-  }
-
-  void add_grid(const SurfaceGrid& grid, int column, int row, ColorSum& sum) const {
-    if (const auto mean = printed_.mean({&grid, 1})) {
-      sum.add(*mean, weight() * static_cast<float>(grid.count()));
-      return;
-    }
-    for (int j = 0; j < per_axis_; ++j)
-      for (int i = 0; i < per_axis_; ++i)
-        if (grid.counts(i, j))
-          sum.add(printed_.at(grid.at(i, j), samples_.at(column + i, row + j)), weight());
-  }
-
-  // One look for all samples of a pixel: out of reach, or in the midst of the bleed, which shows
-  // little.
-  std::optional<LinearColor> beside_film(int column, int row) {
-    const double middle = 0.5 * (per_axis_ - 1), radius_mm = 0.71 * per_axis_ * samples_.step_mm;
-    const Vec2 film_mm = samples_.at(column + middle, row + middle);
-    const auto nearest = map_.nearest_covered(film_mm, bleed_mm_ + radius_mm, cursor_);
-    if (!nearest) return LinearColor{0, 0, 0, 0};
-    const double distance_mm = (*nearest - film_mm).norm();
-    if (distance_mm > radius_mm && distance_mm + radius_mm < bleed_mm_)
-      if (const auto point = map_.to_object(*nearest, cursor_)) return printed_.at(*point, film_mm);
-    return std::nullopt;
-  }
-
-  // Where film or, in its bleed, the film next to it lands.
-  std::optional<SurfacePoint> landing(const Vec2& film_mm) {
-    const auto point = map_.to_object(film_mm, cursor_);
-    if (point || !(bleed_mm_ > 0)) return point;
-    const auto near = map_.nearest_covered(film_mm, bleed_mm_, cursor_);
-    return near ? map_.to_object(*near, cursor_) : std::nullopt;
-  }
-
-  const Printed& printed_;
-  const FilmMap& map_;
-  const double bleed_mm_;
-  const Tile tile_;
-  const int per_axis_;
-  const SampleGrid samples_;
-  const SampleLandings landings_;
-  FilmMap::Cursor cursor_;
 };
 
 void store(const LinearColor& color, std::uint8_t* pixel) {

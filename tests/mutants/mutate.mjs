@@ -70,6 +70,9 @@ function isExpression(piece) {
   return true;
 }
 
+// What it declares would be gone behind the choice between it and its mutant.
+function declares(statement) { return /^\s*(const|constexpr|auto|std::[\w:]+(<[^;=(]*>)?&?)\s+[\w:<>,&* ]*?\w+\s*(=|\{|\()/.test(statement); }
+
 // Where in a source a mutant's piece is; nothing if it is not found, or not once.
 function placeOf(source, mutant) {
   const [first, middle, last] = mutant.before.includes("@@") ? mutant.before.split("@@") : ["", mutant.before, ""];
@@ -78,7 +81,7 @@ function placeOf(source, mutant) {
   let from = found[0].index;
   if (first.trim()) from += pattern(first).exec(source.slice(from))[0].length;
   from += /^\s*/.exec(source.slice(from))[0].length;
-  if (isStatement(middle) ? !beginsStatement(source.slice(0, from)) : !isExpression(middle)) return null;
+  if (isStatement(middle) ? !beginsStatement(source.slice(0, from)) || declares(middle) : !isExpression(middle)) return null;
   const rest = pattern(middle).exec(source.slice(from));
   return rest && rest.index === 0 ? { from, to: from + rest[0].length, mutant } : null;
 }

@@ -126,8 +126,35 @@ TEST(FilmOverObject, SeesTheNearerSideFirst) {
   EXPECT_EQ(nearest({film_at(-0.5, false)}), -1);
   EXPECT_EQ(nearest({film_at(-2.5, true)}), -1);  // out of reach
   EXPECT_EQ(nearest({film_at(-0.5, true), film_at(0.3, true)}), 1);
+  EXPECT_EQ(nearest({film_at(-0.3, true), film_at(0.5, true)}), 0);
   EXPECT_EQ(nearest({film_at(-0.5, true), film_at(-0.3, false)}), -1);
   EXPECT_EQ(nearest({film_at(-0.5, true), film_at(0.3, false)}), 0);
+}
+
+TEST(FilmOverObject, EndsWhereFilmIsOutOfReach) {
+  const Object slab = fixtures::slab();
+  TriangleMesh film;  // the further from the slab's bottom the further towards +y
+  film.positions = {{-90, -30, -0.5}, {90, -30, -0.5}, {0, 90, -8.5}};
+  film.triangles = {{0, 1, 2}};
+  const Surface sheet(film.positions, film.triangles);
+  const FilmOverObject over(slab, film.positions, film.triangles, sheet, 2);
+  std::mt19937 random(4);
+  int within = 0, beyond = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const SurfacePoint point = some_point(slab, random);
+    if (face_normal(slab, point.triangle).z() > -0.9) continue;
+    const double away_mm = 0.5 + (position_at(slab, point).y() + 30) / 15;
+    if (std::abs(away_mm - 2) < 1e-4) continue;
+    const FilmOverObject::Nearest nearest = over.nearest(point);
+    ASSERT_TRUE(nearest.is_known);
+    ASSERT_EQ(nearest.hit.has_value(), away_mm < 2);
+    ++(nearest.hit ? within : beyond);
+    if (nearest.hit) {
+      EXPECT_NEAR(nearest.hit->t, away_mm, 1e-5);
+    }
+  }
+  EXPECT_GT(within, 50);
+  EXPECT_GT(beyond, 50);
 }
 
 // Whoever asks first keeps what it found; all get the same.

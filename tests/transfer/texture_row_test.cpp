@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "transfer/fixtures.h"
-#include "transfer/texture_mean.h"
 
 namespace hydrodip {
 namespace {
@@ -25,11 +24,15 @@ FilmOnPlane leaning_pair(std::mt19937& random) {
   return pair;
 }
 
-SurfaceGrid samples_of_pixel(const FilmOnPlane& pair, int column, int row, int per_axis) {
-  const SurfacePoint first = pair.at(column, row), right = pair.at(column + 1, row),
-                     below = pair.at(column, row + 1);
-  return {first,   right.u - first.u, right.v - first.v, below.u - first.u, below.v - first.v,
-          per_axis};
+Vec3 mean_of_samples(const Object& object, const FilmOnPlane& pair, int column, int row,
+                     int per_axis, const LinearColor& base) {
+  Vec3 sum = Vec3::Zero();
+  for (int j = 0; j < per_axis; ++j)
+    for (int i = 0; i < per_axis; ++i) {
+      const LinearColor c = color_at(object, pair.at(column + i, row + j), base);
+      sum += Vec3(double(c.r), double(c.g), double(c.b));
+    }
+  return sum / (per_axis * per_axis);
 }
 
 // In parts with nothing but one colour, in others with none like its neighbour.
@@ -37,7 +40,9 @@ Object half_painted_slab(std::mt19937& random, Wrap wrap) {
   Object object = fixtures::slab();
   Image texture(61, 47);
   for (std::size_t i = 0; i < texture.rgba.size(); ++i)
-    texture.rgba[i] = i % 244 < 120 ? std::uint8_t(200 - 10 * (i % 4)) : std::uint8_t(random());
+    texture.rgba[i] = i % 244 < 120 && i < texture.rgba.size() / 2
+                          ? std::uint8_t(200 - 10 * (i % 4))
+                          : std::uint8_t(random());
   fixtures::set_texture(object, std::move(texture));
   object.materials[0].wrap_u = object.materials[0].wrap_v = wrap;
   object.materials[0].base_color = {0.9F, 0.7F, 0.8F, 0.6F};
@@ -63,14 +68,13 @@ TEST(TextureRow, IsTheMeanOfEachPixelsSamples) {
       std::vector<std::optional<LinearColor>> means(1 + random() % 80);
       TextureRow(object, pair, base).means(column, row, per_axis, means);
       for (std::size_t k = 0; k < means.size(); ++k) {
-        const SurfaceGrid grid = samples_of_pixel(pair, column + int(k) * per_axis, row, per_axis);
-        const auto mean = mean_texture_color(object, grid, base);
-        ASSERT_EQ(means[k].has_value(), mean.has_value()) << n << " " << k;
-        if (!mean) continue;
+        if (!means[k]) continue;
         ++known;
-        EXPECT_NEAR(double(means[k]->r), double(mean->r), 2e-4);
-        EXPECT_NEAR(double(means[k]->g), double(mean->g), 2e-4);
-        EXPECT_NEAR(double(means[k]->b), double(mean->b), 2e-4);
+        const Vec3 mean =
+            mean_of_samples(object, pair, column + int(k) * per_axis, row, per_axis, base);
+        EXPECT_NEAR(double(means[k]->r), mean[0], 2e-4);
+        EXPECT_NEAR(double(means[k]->g), mean[1], 2e-4);
+        EXPECT_NEAR(double(means[k]->b), mean[2], 2e-4);
       }
     }
     EXPECT_GT(known, wrap == Wrap::kRepeat ? 500 : 50);
