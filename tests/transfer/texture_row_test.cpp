@@ -40,7 +40,7 @@ Object half_painted_slab(std::mt19937& random, Wrap wrap) {
   Object object = fixtures::slab();
   Image texture(61, 47);
   for (std::size_t i = 0; i < texture.rgba.size(); ++i)
-    texture.rgba[i] = i % 244 < 120 && i < texture.rgba.size() / 2
+    texture.rgba[i] = i % 244 < 120 && i >= texture.rgba.size() / 2
                           ? std::uint8_t(200 - 10 * (i % 4))
                           : std::uint8_t(random());
   fixtures::set_texture(object, std::move(texture));
