@@ -27,8 +27,8 @@ std::array<float, 256> make_decode_table() {
 struct EncodeTable {
   static constexpr int kCells = 4096;
   std::array<std::uint8_t, kCells + 1> first{};
-  std::array<float, 257>
-      lower{};  // smallest linear value that rounds to this byte; none does to 256
+  // The smallest linear value that rounds to this byte; none does to 256.
+  std::array<float, 257> lower{};
 
   EncodeTable() {
     for (int i = 1; i < 256; ++i) lower[std::size_t(i)] = float(decode((i - 0.5) / 255.0));

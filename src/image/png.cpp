@@ -221,21 +221,31 @@ const std::uint8_t* row_of(const Image& image, int y, bool mirrored, Bytes& turn
   return turned.data();
 }
 
+// Of so many of each pixel's four channels.
+void store_differences(const std::uint8_t* here, const std::uint8_t* above, std::size_t width,
+                       std::size_t channels, std::uint8_t* out) {
+  if (channels == 4) {
+    for (std::size_t i = 0; i < 4 * width; ++i) out[i] = std::uint8_t(here[i] - above[i]);
+    return;
+  }
+  for (std::size_t x = 0; x < width; ++x, here += 4, above += 4)
+    for (std::size_t k = 0; k < channels; ++k) *out++ = std::uint8_t(here[k] - above[k]);
+}
+
 // Each row begins with its filter's number and holds differences to the row above.
 std::vector<Bytes> png_rows(const Image& image, bool mirrored, bool drop_alpha) {
   constexpr std::uint8_t kUp = 2;
   const std::size_t channels = drop_alpha ? 3 : 4, width = std::size_t(image.width_px);
-  return deflate_rows(std::size_t(image.height_px), 1 + channels * width,
-                      [&](std::size_t y, std::uint8_t* out) {
-                        *out++ = kUp;
-                        Bytes turned, turned_above;
-                        const std::uint8_t* here = row_of(image, int(y), mirrored, turned);
-                        const std::uint8_t* above =
-                            y > 0 ? row_of(image, int(y) - 1, mirrored, turned_above) : nullptr;
-                        for (std::size_t x = 0; x < width; ++x)
-                          for (std::size_t k = 0; k < channels; ++k)
-                            *out++ = std::uint8_t(here[4 * x + k] - (above ? above[4 * x + k] : 0));
-                      });
+  return deflate_rows(
+      std::size_t(image.height_px), 1 + channels * width, [&](std::size_t y, std::uint8_t* out) {
+        *out++ = kUp;
+        Bytes turned, turned_above;
+        const std::uint8_t* here = row_of(image, int(y), mirrored, turned);
+        if (y == 0) turned_above.assign(4 * width, 0);
+        const std::uint8_t* above =
+            y == 0 ? turned_above.data() : row_of(image, int(y) - 1, mirrored, turned_above);
+        store_differences(here, above, width, channels, out);
+      });
 }
 
 bool png_encode(PngWriter& writer, const Image& image, bool drop_alpha, double dpi,
