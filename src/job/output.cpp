@@ -287,7 +287,8 @@ std::vector<std::string> prints() {
 std::vector<std::string> sheets_of_other_prints(std::size_t dips) {
   std::vector<std::string> names;
   const auto add_jig = [&](const std::string& folder) {
-    for (const std::string& name : files_of_jig()) names.push_back(folder + "jig/" + name);
+    for (const std::string& name : files_of_jig())
+      names.push_back(fmt::format("{}jig/{}", folder, name));
   };
   // The jig first, so that its folder is gone when that of the dip is to go.
   const auto add = [&](const std::string& folder) {

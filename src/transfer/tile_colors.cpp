@@ -104,7 +104,8 @@ LinearColor TileColors::of_pixel(int column, int row) {
   add_found(shares, column, row, sum);
   for (std::uint64_t left = shares.unknown(); left != 0; left &= left - 1) {
     const int sample = std::countr_zero(left);
-    const Vec2 film_mm = samples_.at(column + sample % per_axis_, row + sample / per_axis_);
+    const int i = sample % per_axis_, j = sample / per_axis_;
+    const Vec2 film_mm = samples_.at(column + i, row + j);
     if (const auto point = landing(film_mm)) sum.add(printed_.at(*point, film_mm), weight());
   }
   return sum.color();

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <thread>
@@ -107,7 +107,7 @@ TEST(FilmOverObject, SeesTheNearerSideFirst) {
   };
   const SurfacePoint below{0, 0.3, 0.3};  // the slab's bottom, at 0, which faces down
   ASSERT_LT(face_normal(slab, 0).z(), -0.9);
-  const auto nearest = [&](std::vector<TriangleMesh> parts) {
+  const auto nearest = [&](const std::vector<TriangleMesh>& parts) {
     TriangleMesh all;
     for (const TriangleMesh& part : parts) {
       const auto first = std::int32_t(all.positions.size());
@@ -169,6 +169,7 @@ TEST(FilmOverObject, IsTheSameForAllThreads) {
   };
   std::array<std::vector<double>, 4> answers;
   std::vector<std::thread> threads;
+  threads.reserve(answers.size());
   for (auto& own : answers) threads.emplace_back([&ask, &own] { ask(own); });
   for (std::thread& thread : threads) thread.join();
   for (const auto& own : answers) EXPECT_EQ(own, answers[0]);
