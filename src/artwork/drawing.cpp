@@ -106,12 +106,14 @@ std::string font_attributes(const FontWish& wish) {
                      wish.italic ? "italic" : "normal");
 }
 
-std::string text_element(const std::string& text, const FontWish& font, const LinearColor& color) {
+// Its lines begin at x = 0 ("start"), or lie in the middle of it ("middle").
+std::string text_element(const std::string& text, const FontWish& font, const LinearColor& color,
+                         const char* anchor) {
   std::string element = fmt::format(
-      "<text id=\"t\" xml:space=\"preserve\" text-anchor=\"middle\" font-size=\"{}\" "
+      "<text id=\"t\" xml:space=\"preserve\" text-anchor=\"{}\" font-size=\"{}\" "
       "fill=\"rgb({},{},{})\" {}>",
-      kFontSize, linear_to_srgb8(color.r), linear_to_srgb8(color.g), linear_to_srgb8(color.b),
-      font_attributes(font));
+      anchor, kFontSize, linear_to_srgb8(color.r), linear_to_srgb8(color.g),
+      linear_to_srgb8(color.b), font_attributes(font));
   std::size_t begin = 0;
   for (int line = 0; begin <= text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -127,6 +129,24 @@ std::string svg_around(const std::string& element, const RsvgRectangle& box) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{2}\" height=\"{3}\" "
       "viewBox=\"{0} {1} {2} {3}\">{4}</svg>",
       box.x, box.y, box.width, box.height, element);
+}
+
+// Where its ink lies, with some room around; nothing if there is nothing to see.
+std::optional<RsvgRectangle> ink_of(const std::string& element, const std::string& name) {
+  std::string why;
+  // Around the origin, so large that no line reaches its edge.
+  constexpr double kRoom = 1000 * kFontSize;
+  const RsvgRectangle whole{-kRoom, -kRoom, 2 * kRoom, 2 * kRoom};
+  const Owned<RsvgHandle> measured = parse(svg_around(element, whole), why, true);
+  if (!measured) throw InputError(fmt::format("{} cannot be set: {}.", name, why));
+  const RsvgRectangle viewport{0, 0, 2 * kRoom, 2 * kRoom};
+  RsvgRectangle ink{}, logical{};
+  if (!rsvg_handle_get_geometry_for_layer(measured.get(), "#t", &viewport, &ink, &logical,
+                                          nullptr) ||
+      !(ink.width > 0 && ink.height > 0))
+    return {};
+  return RsvgRectangle{ink.x - kRoom - kTextPad, ink.y - kRoom - kTextPad, ink.width + 2 * kTextPad,
+                       ink.height + 2 * kTextPad};
 }
 
 Owned<cairo_surface_t> blank_surface(int width, int height) {
@@ -291,6 +311,9 @@ struct Drawing::Impl {
   bool is_indivisible = false;
   double most_scale = 1e300;  // pixels per unit
 
+  static std::unique_ptr<Impl> of_letters(const std::string& element, const RsvgRectangle& ink,
+                                          const std::string& name);
+
   // A part of the drawing as large as `whole`, from its left upper corner on; false with a reason.
   bool draw(cairo_surface_t* surface, const Vec2& whole, int left, int top,
             std::string& why) const {
@@ -407,26 +430,10 @@ Drawing Drawing::from_svg(const std::vector<std::uint8_t>& bytes, const std::str
   return Drawing(std::move(impl));
 }
 
-Drawing Drawing::from_text(const std::string& text, const std::string& font,
-                           const LinearColor& color) {
-  const std::string name = "the text '" + text + "'";
-  require_fonts(name);
-  const std::string element = text_element(text, parse_font(font), color);
+std::unique_ptr<Drawing::Impl> Drawing::Impl::of_letters(const std::string& element,
+                                                         const RsvgRectangle& ink,
+                                                         const std::string& name) {
   std::string why;
-  // Around the origin, so large that no line reaches its edge.
-  constexpr double kRoom = 1000 * kFontSize;
-  const RsvgRectangle whole{-kRoom, -kRoom, 2 * kRoom, 2 * kRoom};
-  const Owned<RsvgHandle> measured = parse(svg_around(element, whole), why, true);
-  if (!measured) throw InputError(fmt::format("{} cannot be set: {}.", name, why));
-  const RsvgRectangle viewport{0, 0, 2 * kRoom, 2 * kRoom};
-  RsvgRectangle ink{}, logical{};
-  if (!rsvg_handle_get_geometry_for_layer(measured.get(), "#t", &viewport, &ink, &logical,
-                                          nullptr) ||
-      !(ink.width > 0 && ink.height > 0))
-    throw InputError(name + " shows nothing: write letters");
-  ink.x -= kRoom;
-  ink.y -= kRoom;
-  ink = {ink.x - kTextPad, ink.y - kTextPad, ink.width + 2 * kTextPad, ink.height + 2 * kTextPad};
   auto impl = std::make_unique<Impl>();
   impl->name = name;
   impl->handle = parse(svg_around(element, ink), why, true);
@@ -434,7 +441,30 @@ Drawing Drawing::from_text(const std::string& text, const std::string& font,
   impl->size = {ink.width, ink.height};
   impl->is_text = true;
   impl->most_scale = kLargestLetter_px / kFontSize;
-  return Drawing(std::move(impl));
+  return impl;
+}
+
+Drawing Drawing::from_text(const std::string& text, const std::string& font,
+                           const LinearColor& color) {
+  const std::string name = "the text '" + text + "'";
+  require_fonts(name);
+  const std::string element = text_element(text, parse_font(font), color, "middle");
+  const std::optional<RsvgRectangle> ink = ink_of(element, name);
+  if (!ink) throw InputError(name + " shows nothing: write letters");
+  return Drawing(Impl::of_letters(element, *ink, name));
+}
+
+std::optional<DrawnLine> Drawing::of_line(const std::string& text, const std::string& font) {
+  const std::string name = "the text '" + text + "'";
+  require_fonts(name);
+  const std::string element = text_element(text, parse_font(font), {}, "start");
+  const std::optional<RsvgRectangle> ink = ink_of(element, name);
+  if (!ink) return {};
+  const Vec2 left_top = Vec2(ink->x, ink->y) / kFontSize;
+  const Vec2 size = Vec2(ink->width, ink->height) / kFontSize;
+  return DrawnLine{
+      Drawing(Impl::of_letters(element, *ink, name)),
+      {Vec2(left_top.x(), -left_top.y() - size.y()), Vec2(left_top.x() + size.x(), -left_top.y())}};
 }
 
 double Drawing::aspect() const { return impl_->size.x() / impl_->size.y(); }

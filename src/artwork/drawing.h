@@ -9,9 +9,12 @@
 
 #include "artwork/svg_contents.h"
 #include "artwork/tiled_image.h"
+#include "base/math.h"
 #include "image/image.h"
 
 namespace hydrodip {
+
+struct DrawnLine;
 
 // Not to be used by two threads at once.
 class Drawing {
@@ -23,6 +26,8 @@ class Drawing {
   // a box. Throws InputError if nothing would be seen, and on a machine without fonts.
   static Drawing from_text(const std::string& text, const std::string& font,
                            const LinearColor& color);
+  // One line of black letters. Nothing if there is nothing to see. Throws as from_text does.
+  static std::optional<DrawnLine> of_line(const std::string& text, const std::string& font);
 
   ~Drawing();
   Drawing(Drawing&&) noexcept;
@@ -51,6 +56,12 @@ class Drawing {
   struct Impl;
   explicit Drawing(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
+};
+
+// Of text.
+struct DrawnLine {
+  Drawing drawing;
+  Box2 place;  // of the drawing: font sizes from the base line's left end, y up
 };
 
 }  // namespace hydrodip

@@ -73,6 +73,30 @@ bool is_drawn(FcChar32 letter) {
          !(letter >= 0xfe00 && letter <= 0xfe0f);
 }
 
+// The first that has it, or null.
+FcPattern* font_with(const FcFontSet& fonts, FcChar32 letter) {
+  for (int n = 0; n < fonts.nfont; ++n) {
+    FcCharSet* letters = nullptr;
+    if (FcPatternGetCharSet(fonts.fonts[n], FC_CHARSET, 0, &letters) == FcResultMatch &&
+        FcCharSetHasChar(letters, letter))
+      return fonts.fonts[n];
+  }
+  return nullptr;
+}
+
+// Calls visit(letter, its UTF-8) for every letter that needs a font.
+template <class Visit>
+void for_each_drawn(const std::string& text, const std::string& what, const Visit& visit) {
+  for (std::size_t at = 0; at < text.size();) {
+    FcChar32 letter = 0;
+    const auto* rest = reinterpret_cast<const FcChar8*>(text.data() + at);
+    const int length = FcUtf8ToUcs4(rest, &letter, int(text.size() - at));
+    if (length <= 0) throw InputError(what + ": the text is not valid UTF-8");
+    if (is_drawn(letter)) visit(letter, std::string_view(text).substr(at, std::size_t(length)));
+    at += std::size_t(length);
+  }
+}
+
 bool take_last_word(std::string& text, std::string_view word) {
   if (text.size() < word.size() || !text.ends_with(word)) return false;
   const std::size_t rest = text.size() - word.size();
@@ -101,39 +125,40 @@ std::vector<FontUse> fonts_for(const std::string& text, const FontWish& wish,
   const Owned<FcFontSet> fonts = sorted_fonts(wish);
   if (!fonts || fonts->nfont == 0) refuse_without_fonts(what);
   std::vector<FontUse> used;
-  const FcChar8* at = as_fc(text);
-  auto left = int(text.size());
-  while (left > 0) {
-    FcChar32 letter = 0;
-    const int length = FcUtf8ToUcs4(at, &letter, left);
-    if (length <= 0) throw InputError(what + ": the text is not valid UTF-8");
-    if (is_drawn(letter)) {
-      FcPattern* with = nullptr;
-      for (int n = 0; n < fonts->nfont && !with; ++n) {
-        FcCharSet* letters = nullptr;
-        if (FcPatternGetCharSet(fonts->fonts[n], FC_CHARSET, 0, &letters) == FcResultMatch &&
-            FcCharSetHasChar(letters, letter))
-          with = fonts->fonts[n];
-      }
-      if (!with)
-        throw InputError(fmt::format(
-            "{}: no font on this machine has the letter '{}' (U+{:04X}); install one that has it, "
-            "or convert the text to paths in an SVG",
-            what, std::string(reinterpret_cast<const char*>(at), std::size_t(length)), letter));
-      const FontUse use = described(with, wish);
-      if (std::none_of(used.begin(), used.end(),
-                       [&](const FontUse& other) { return other.file == use.file; }))
-        used.push_back(use);
-    }
-    at += length;
-    left -= length;
-  }
+  for_each_drawn(text, what, [&](FcChar32 letter, std::string_view as_written) {
+    FcPattern* with = font_with(*fonts, letter);
+    if (!with)
+      throw InputError(fmt::format(
+          "{}: no font on this machine has the letter '{}' (U+{:04X}); install one that has it, "
+          "or convert the text to paths in an SVG",
+          what, as_written, letter));
+    const FontUse use = described(with, wish);
+    if (std::none_of(used.begin(), used.end(),
+                     [&](const FontUse& other) { return other.file == use.file; }))
+      used.push_back(use);
+  });
   return used;
 }
 
-void require_fonts(const std::string& what) {
+std::vector<std::string> letters_without_font(const std::string& text, const FontWish& wish,
+                                              const std::string& what) {
+  const Owned<FcFontSet> fonts = sorted_fonts(wish);
+  std::vector<std::string> letters;
+  for_each_drawn(text, what, [&](FcChar32 letter, std::string_view as_written) {
+    if (fonts && font_with(*fonts, letter)) return;
+    if (std::find(letters.begin(), letters.end(), as_written) == letters.end())
+      letters.emplace_back(as_written);
+  });
+  return letters;
+}
+
+bool has_fonts() {
   const Owned<FcFontSet> fonts = sorted_fonts({});
-  if (!fonts || fonts->nfont == 0) refuse_without_fonts(what);
+  return fonts && fonts->nfont > 0;
+}
+
+void require_fonts(const std::string& what) {
+  if (!has_fonts()) refuse_without_fonts(what);
 }
 
 }  // namespace hydrodip

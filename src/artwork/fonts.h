@@ -25,6 +25,12 @@ struct FontUse {
 std::vector<FontUse> fonts_for(const std::string& text, const FontWish& wish,
                                const std::string& what);
 
+// The text's letters that no font has, each once, in UTF-8; on a machine without fonts all of them.
+// Throws InputError, as fonts_for does, if the text is not valid UTF-8.
+std::vector<std::string> letters_without_font(const std::string& text, const FontWish& wish,
+                                              const std::string& what);
+
+bool has_fonts();
 // Throws InputError if this machine has no fonts.
 void require_fonts(const std::string& what);
 

@@ -19,6 +19,7 @@
 #include "job/output.h"
 #include "job/prepare.h"
 #include "session/sheet_files.h"
+#include "sheet/page_text.h"
 #include "transfer/raster.h"
 
 namespace hydrodip {
@@ -86,6 +87,8 @@ JobResult nest_job(const JobConfig& sheet, const NestRequest& request, const Run
   share_out_film(nest, sheet.design.film, request.clearance_mm, context);
   nest.made = make_parts(nest.parts, context);
 
+  for (const NestPart& part : nest.parts)
+    warn_of_lost_letters("a part's name", part.file.stem().string(), "the sheet", context);
   Inking whole = whole_sheet(nest, raster_of(sheet.design.film, sheet.design.dpi));
   write_sheet_files(folder, std::move(whole.inks), whole.printed, printer, sheet_of(sheet, nest),
                     context);

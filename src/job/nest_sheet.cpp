@@ -8,6 +8,7 @@
 
 #include "artwork/drawing.h"
 #include "job/sheet_of.h"
+#include "sheet/page_text.h"
 
 namespace hydrodip {
 namespace {
@@ -82,7 +83,7 @@ void mark_piece(Inking& laid, const std::string& label, double margin_mm, double
       blacken(laid, width - 1 - k, height / 2 + across, 255);
     }
   if (margin_mm < kLabel_mm + 2) return;
-  const Drawing text = Drawing::from_text(label, "sans bold", {0, 0, 0, 1});
+  const Drawing text = Drawing::from_text(page_text(label).shown, "sans bold", {0, 0, 0, 1});
   double high_mm = kLabel_mm, wide_mm = high_mm * text.aspect();
   const double room_mm = width / pixels_per_mm - 4;
   if (wide_mm > room_mm) {

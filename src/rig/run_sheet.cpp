@@ -7,13 +7,14 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/output_folder.h"
+#include "base/unicode.h"
 #include "job/ways.h"
 #include "plan/hold.h"
 #include "rig/pictures.h"
 #include "rig/rig.h"
+#include "sheet/page_text.h"
 #include "sheet/page_writer.h"
 #include "sheet/pdf_document.h"
-#include "sheet/winansi.h"
 
 namespace hydrodip {
 namespace {
@@ -93,8 +94,7 @@ class RunSheet {
     page_.pdf().fill_red({Vec2(page_.left(), page_.y), Vec2(page_.right(), page_.y + band_mm)});
     double base = page_.y + band_mm - kLine_mm;
     for (const std::string& line : lines) {
-      page_.pdf().draw_text(
-          {to_winansi(line), Vec2(page_.left() + 4, base), kHead_pt, PdfFont::kBold, 0, 1});
+      page_.pdf().draw_text({line, Vec2(page_.left() + 4, base), kHead_pt, PdfFont::kBold, 0, 1});
       base -= kLine_mm;
     }
   }
@@ -117,15 +117,18 @@ class RunSheet {
     return lines;
   }
 
-  std::string fitted(std::string words, double width_mm, double size_pt,
+  std::string fitted(const std::string& text, double width_mm, double size_pt,
                      PdfFont font = PdfFont::kRegular) const {
+    constexpr std::size_t kLongest = 1000;  // bytes, more than any line takes
+    const std::string words = cut_utf8(text, kLongest);
     if (page_.width_of(words, size_pt, font) <= width_mm) return words;
-    const auto within_a_letter = [](char c) { return (c & 0xC0) == 0x80; };
-    while (!words.empty() && page_.width_of(words + "...", size_pt, font) > width_mm) {
-      while (words.size() > 1 && within_a_letter(words.back())) words.pop_back();
-      words.pop_back();
+    std::size_t fits = 0, too_long = words.size();
+    while (too_long - fits > 1) {
+      const std::size_t bytes = (fits + too_long) / 2;
+      const double width_then = page_.width_of(cut_utf8(words, bytes) + "...", size_pt, font);
+      (width_then <= width_mm ? fits : too_long) = bytes;
     }
-    return words + "...";
+    return cut_utf8(words, fits) + "...";
   }
 
   // Goes on where the object's size ends.
@@ -380,26 +383,18 @@ class RunSheet {
   const RunContext& context_;
 };
 
-// What a name loses where letters other than Latin ones become question marks.
-void warn_of_letters(const std::string& what, const std::string& name, const RunContext& context) {
-  const std::string shown = to_winansi(name);
-  if (std::count(shown.begin(), shown.end(), '?') == std::count(name.begin(), name.end(), '?'))
-    return;
-  context.warn(fmt::format(
-      "{} '{}' stands on the run sheet as '{}': its letters are Latin ones only; write it by hand, "
-      "or choose a name in Latin letters.",
-      what, name, shown));
-}
-
 }  // namespace
 
 JobResult rig_sheet(const RigJob& job, const std::string& paper_name,
                     const std::filesystem::path& file, const RunContext& context) {
-  warn_of_letters("the title", job.title, context);
-  warn_of_letters("the batch", job.batch, context);
-  warn_of_letters("the piece", job.label, context);
   const PaperSize paper = choose_paper(paper_name, job.config.design.film);
   const std::filesystem::path path = file.empty() ? job.folder / "run-sheet.pdf" : file;
+  const auto warn_of_letters = [&](const char* what, const std::string& name) {
+    warn_of_lost_letters(what, name, path.filename().string(), context);
+  };
+  warn_of_letters("the title", job.title);
+  warn_of_letters("the batch", job.batch);
+  warn_of_letters("the piece", job.label);
   const std::vector<PosePicture> pictures = pose_pictures(
       job, kPictureWidth_px, static_cast<int>(kPictureWidth_px / kPictureAspect), context);
   OutputFolder output(path.has_parent_path() ? path.parent_path() : ".", job.config.earlier_result);

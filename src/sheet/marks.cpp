@@ -6,6 +6,7 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "base/unicode.h"
 #include "sheet/film_marks.h"
 #include "sheet/winansi.h"
 
@@ -22,10 +23,10 @@ constexpr double kLeastLabelPt = 3.5;
 constexpr double kCapHeight = 0.72;  // of the font size: Helvetica's capitals and digits
 constexpr double kRulerMm = 100;
 constexpr double kShortestRulerMm = 10;
-constexpr double kRulerRoomMm = 25;  // what a full ruler leaves free of the sheet's width
-constexpr double kLeastNamePt = 6;   // a long job name is shortened rather than made smaller
-constexpr std::size_t kLongestName = 300;
-constexpr char kEllipsis = '\x85';
+constexpr double kRulerRoomMm = 25;        // what a full ruler leaves free of the sheet's width
+constexpr double kLeastNamePt = 6;         // a long job name is shortened rather than made smaller
+constexpr std::size_t kLongestName = 300;  // bytes
+constexpr const char* kEllipsis = "\u2026";
 
 // Where a text may stand: a stretch of base line.
 struct Slot {
@@ -233,7 +234,7 @@ class MarkMaker {
   void alarm() {
     if (options_.alarm.empty()) return;
     const std::size_t before = marks_.texts.size();
-    const std::string whole = to_winansi(options_.alarm);
+    const std::string whole = tidy_utf8(options_.alarm);
     const std::string shorter = whole.substr(0, whole.find(':'));
     if (!place(whole, {kLeftLower, kRightLower}) && !place(shorter, {kLeftLower, kRightLower})) {
       warn("has no room for the alarm");
@@ -269,14 +270,21 @@ class MarkMaker {
   }
 
   void job_name() {
-    const std::string name = to_winansi(options_.job_name).substr(0, kLongestName);
+    const std::string name = cut_utf8(tidy_utf8(options_.job_name), kLongestName);
     const double least = std::max(kLeastTextPt, kLeastNamePt * scale_);
     if (name.empty() || place(name, {kTopLeft}, least)) return;
-    for (std::size_t keep = name.size(); keep-- > 1;) {
-      std::string shortened = name.substr(0, keep);
-      while (shortened.ends_with(' ')) shortened.pop_back();
-      if (place(shortened + kEllipsis, {kTopLeft}, least)) return;
+    const auto shortened = [&](std::size_t bytes) {
+      std::string words = cut_utf8(name, bytes);
+      while (words.ends_with(' ')) words.pop_back();
+      return words + kEllipsis;
+    };
+    // Each longer piece is about as long as the one before and a letter.
+    std::size_t fits = 0, too_long = name.size();
+    while (too_long - fits > 1) {
+      const std::size_t bytes = (fits + too_long) / 2;
+      (has_room(shortened(bytes), slots_[kTopLeft], least) ? fits : too_long) = bytes;
     }
+    if (shortened(fits) != kEllipsis) place(shortened(fits), {kTopLeft}, least);
   }
 
   // In the first free slot that takes the text, as large as it fits; false if none does.
@@ -284,16 +292,22 @@ class MarkMaker {
              double least_pt = kLeastTextPt) {
     for (const SlotName name : names) {
       Slot& slot = slots_[name];
-      const double room = slot.end_mm - slot.begin_mm;
-      const double fitting_pt = room / length_of(text, 1);
-      const double size = std::min(kTextPt * scale_, fitting_pt);
-      if (slot.taken || size < least_pt) continue;
+      if (slot.taken || !has_room(text, slot, least_pt)) continue;
+      const double size = size_in(slot, text);
       slot.taken = true;
       const double length = length_of(text, size);
       write_along(slot, text, slot.align_end ? slot.end_mm - length : slot.begin_mm, size);
       return true;
     }
     return false;
+  }
+
+  // The largest size at which a slot takes the text.
+  double size_in(const Slot& slot, const std::string& text) const {
+    return std::min(kTextPt * scale_, (slot.end_mm - slot.begin_mm) / length_of(text, 1));
+  }
+  bool has_room(const std::string& text, const Slot& slot, double least_pt) const {
+    return size_in(slot, text) >= least_pt;
   }
 
   void write_along(const Slot& slot, const std::string& text, double along, double size) {

@@ -17,7 +17,7 @@ struct MarkLine {
 };
 
 struct MarkText {
-  std::string text;   // Windows-1252
+  std::string text;   // UTF-8
   Vec2 start;         // left end of the base line
   int quarter_turns;  // 0: upright; 1: reads upward; -1: reads downward
   double size_pt;
@@ -46,7 +46,7 @@ struct Marks {
   std::vector<std::string> warnings;  // what was left out, a sentence each
 };
 
-// Width of a Windows-1252 text at font size 1.
+// Width of an UTF-8 text at font size 1.
 using TextWidth = std::function<double(const std::string& text)>;
 
 // Centre ticks, ruler, orientation, the alarm along the left edge, the reminder to print unscaled,

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "sheet/winansi.h"
-
 namespace hydrodip {
 PageWriter::PageWriter(PdfDocument& pdf, const PaperSize& paper) : pdf_(pdf), paper_(paper) {
   new_page();
@@ -16,11 +14,11 @@ void PageWriter::new_page() {
 
 void PageWriter::text(double x, double base, const std::string& words, double size_pt, PdfFont font,
                       double gray) {
-  pdf_.draw_text({to_winansi(words), {x, base}, size_pt, font, 0, gray});
+  pdf_.draw_text({words, {x, base}, size_pt, font, 0, gray});
 }
 
 double PageWriter::width_of(const std::string& words, double size_pt, PdfFont font) const {
-  return pdf_.text_width(to_winansi(words), font) * size_pt * kMmPerPt;
+  return pdf_.text_width(words, font) * size_pt * kMmPerPt;
 }
 
 void PageWriter::paragraph(double x, double width_mm, const std::string& words, double size_pt,

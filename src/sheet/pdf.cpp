@@ -4,6 +4,7 @@
 
 #include "sheet/marks.h"
 #include "sheet/page.h"
+#include "sheet/page_text.h"
 #include "sheet/pdf_document.h"
 #include "sheet/sheet.h"
 #include "transfer/raster.h"
@@ -33,6 +34,9 @@ void draw_marks(PdfDocument& document, const SheetOptions& options, const RunCon
                         band.text.quarter_turns, 1});
   }
   for (const std::string& warning : marks.warnings) context.warn(warning);
+  // Where there is room for it.
+  if (!marks.texts.empty())
+    warn_of_lost_letters("the job's name", options.job_name, "the PDF's margin", context);
 }
 
 // Whether nothing is printed there, nor a line's width beside it. From the image's middle.

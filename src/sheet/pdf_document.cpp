@@ -12,15 +12,20 @@
 #include <ctime>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <new>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "base/unicode.h"
 #include "image/deflate_rows.h"
+#include "sheet/page_text.h"
 #include "sheet/winansi.h"
 
 namespace hydrodip {
@@ -186,6 +191,54 @@ HPDF_Image add_image(HPDF_Doc document, const PixelBox& box, const Picture& pict
   return image;
 }
 
+// What is to be printed of a drawing in black, as a PDF's stencil: a bit for each pixel, 0 where
+// there is ink, rows in whole bytes. Fine enough for any printer.
+struct Stencil {
+  int width_px, height_px;
+  std::vector<HPDF_BYTE> bits;
+};
+
+Stencil stencil_of(const Drawing& letters, const Vec2& size_mm) {
+  constexpr double kDpi = 1200, kLongestSide_px = 16000;
+  const double dpi = std::min(kDpi, kMmPerInch * kLongestSide_px / size_mm.maxCoeff());
+  const auto pixels = [&](double mm) {
+    return std::max(1, int(std::lround(mm * dpi / kMmPerInch)));
+  };
+  const Image image = letters.pixels(pixels(size_mm.x()), pixels(size_mm.y()));
+  Stencil stencil{(image.width_px + 7) / 8 * 8, image.height_px, {}};
+  stencil.bits.assign(std::size_t(stencil.width_px / 8) * std::size_t(stencil.height_px), 0xff);
+  for (int y = 0; y < image.height_px; ++y) {
+    HPDF_BYTE* row = &stencil.bits[std::size_t(stencil.width_px / 8) * std::size_t(y)];
+    for (int x = 0; x < image.width_px; ++x) {
+      // Over white: some fonts have coloured letters.
+      const std::uint8_t* pixel = image.pixel(x, y);
+      const int dark = pixel[3] * (3 * 255 - pixel[0] - pixel[1] - pixel[2]);
+      if (2 * dark >= 3 * 255 * 255) row[x / 8] = HPDF_BYTE(row[x / 8] & ~(0x80 >> (x % 8)));
+    }
+  }
+  return stencil;
+}
+
+HPDF_Image add_stencil(HPDF_Doc document, const Stencil& stencil) {
+  const HPDF_Image image = made(
+      document, HPDF_LoadRawImageFromMem(document, stencil.bits.data(), HPDF_UINT(stencil.width_px),
+                                         HPDF_UINT(stencil.height_px), HPDF_CS_DEVICE_GRAY, 1));
+  HPDF_Image_SetMask(image, HPDF_TRUE);
+  HPDF_Dict_RemoveElement(image, "ColorSpace");  // a stencil has none
+  return image;
+}
+
+// Into a page's drawing commands, as libharu has no function for it.
+void write_raw(HPDF_Page page, const std::string& commands) {
+  HPDF_Stream_WriteStr(static_cast<HPDF_PageAttr>(page->attr)->stream, commands.c_str());
+}
+
+std::string in_hex(std::string_view bytes) {
+  std::string hex;
+  for (const char byte : bytes) hex += fmt::format("{:02X}", static_cast<unsigned char>(byte));
+  return hex;
+}
+
 [[noreturn]] void refuse_date(const std::string& iso) {
   throw InputError(fmt::format("'{}' is not a date; write it as 2026-01-31.", iso));
 }
@@ -227,7 +280,73 @@ struct PdfDocument::Impl {
   // libharu reads pictures while it saves.
   std::vector<std::unique_ptr<PixelStream>> pictures;
 
+  // Texts with letters that these fonts lack.
+  struct Lettering {
+    std::string shown;
+    std::optional<DrawnLine> line;  // nothing: the fonts have what is shown
+    double width = 0;               // at font size 1
+  };
+  std::map<std::pair<PdfFont, std::string>, Lettering> lettering;
+
   HPDF_Font font(PdfFont which) const { return which == PdfFont::kBold ? bold : regular; }
+
+  double width_of(const std::string& winansi, PdfFont which) const {
+    const auto* bytes = reinterpret_cast<const HPDF_BYTE*>(winansi.data());
+    return HPDF_Font_TextWidth(font(which), bytes, static_cast<HPDF_UINT>(winansi.size())).width /
+           1000.0;
+  }
+
+  const Lettering& lettering_of(const std::string& text, PdfFont which) {
+    const auto [at, is_new] = lettering.try_emplace({which, text});
+    Lettering& letters = at->second;
+    if (!is_new) return letters;
+    letters.shown = page_text(text).shown;
+    if (!is_winansi(letters.shown)) letters.line = set_line(letters.shown, which == PdfFont::kBold);
+    letters.width = letters.line ? std::max(0.0, letters.line->place.max.x())
+                                 : width_of(to_winansi(letters.shown), which);
+    return letters;
+  }
+
+  // The page's x and y axes and origin become the text's for what is drawn until unturn().
+  void turn(const PdfText& text) const {
+    const auto cosine = static_cast<HPDF_REAL>(text.quarter_turns == 0 ? 1 : 0);
+    const auto sine = static_cast<HPDF_REAL>(text.quarter_turns);
+    HPDF_Page_GSave(page);
+    HPDF_Page_Concat(page, cosine, sine, -sine, cosine, pt(text.start.x()), pt(text.start.y()));
+  }
+  void unturn() const { HPDF_Page_GRestore(page); }
+
+  void draw_line(const DrawnLine& line, double size_pt) const {
+    const double em_mm = size_pt * kMmPerPt;
+    const Vec2 corner = em_mm * line.place.min, size = em_mm * (line.place.max - line.place.min);
+    const Stencil stencil = stencil_of(line.drawing, size);
+    const HPDF_Image image = add_stencil(document.get(), stencil);
+    // The last byte of a row may reach beyond the letters.
+    const double pixels = std::max(1.0, std::round(size.x() * stencil.height_px / size.y()));
+    HPDF_Page_GSave(page);
+    HPDF_Page_Concat(page, pt(size.x() * stencil.width_px / pixels), 0, 0, pt(size.y()),
+                     pt(corner.x()), pt(corner.y()));
+    HPDF_Page_ExecuteXObject(page, image);
+    HPDF_Page_GRestore(page);
+  }
+
+  // What a reader finds and copies where letters are drawn; nothing of it is seen.
+  void write_unseen(const Lettering& letters, const PdfText& text) const {
+    constexpr double kLeastScale = 10, kLargestScale = 300;  // libharu's, in percent
+    const std::string winansi = to_winansi(letters.shown);
+    const double width = width_of(winansi, text.font);
+    if (!(width > 0)) return;
+    write_raw(page,
+              fmt::format("/Span <</ActualText <{}>>> BDC\012", in_hex(to_utf16(letters.shown))));
+    HPDF_Page_BeginText(page);
+    HPDF_Page_SetFontAndSize(page, font(text.font), static_cast<HPDF_REAL>(text.size_pt));
+    HPDF_Page_SetTextRenderingMode(page, HPDF_INVISIBLE);
+    HPDF_Page_SetHorizontalScalling(
+        page, HPDF_REAL(std::clamp(100 * letters.width / width, kLeastScale, kLargestScale)));
+    HPDF_Page_ShowText(page, winansi.c_str());
+    HPDF_Page_EndText(page);
+    write_raw(page, "EMC\012");
+  }
 };
 
 PdfDocument::PdfDocument() : impl_(std::make_unique<Impl>()) {
@@ -246,11 +365,24 @@ void PdfDocument::forbid_scaling() {
 }
 
 void PdfDocument::set_title(const std::string& utf8) {
-  std::string title = to_winansi(utf8);
+  constexpr std::size_t kLongest = 1000;  // bytes; libharu has a limit
+  const std::string title = tidy_utf8(cut_utf8(utf8, kLongest));
+  if (title.empty()) return;
+  const HPDF_Doc document = impl_->document.get();
+  const std::string winansi = to_winansi(title);
   // PDF's encoding of titles agrees with Windows-1252 except here.
-  std::replace_if(
-      title.begin(), title.end(), [](char c) { return (c & 0xE0) == 0x80; }, '?');
-  if (!title.empty()) HPDF_SetInfoAttr(impl_->document.get(), HPDF_INFO_TITLE, title.c_str());
+  const bool is_plain =
+      is_winansi(title) &&
+      std::none_of(winansi.begin(), winansi.end(), [](char c) { return (c & 0xE0) == 0x80; });
+  if (is_plain) {
+    HPDF_SetInfoAttr(document, HPDF_INFO_TITLE, winansi.c_str());
+    return;
+  }
+  std::string utf16 = to_utf16(title);
+  HPDF_Dict_Add(
+      document->info, "Title",
+      made(document, HPDF_Binary_New(document->mmgr, reinterpret_cast<HPDF_BYTE*>(utf16.data()),
+                                     static_cast<HPDF_UINT>(utf16.size()))));
 }
 
 void PdfDocument::set_date(const std::string& iso) {
@@ -347,23 +479,28 @@ void PdfDocument::fill_triangle(const std::array<Vec2, 3>& corners, double gray)
 }
 
 void PdfDocument::draw_text(const PdfText& text) {
+  const Impl::Lettering& letters = impl_->lettering_of(text.text, text.font);
+  const HPDF_Page page = impl_->page;
+  HPDF_Page_SetGrayFill(page, static_cast<HPDF_REAL>(text.gray));
+  if (letters.line) {
+    impl_->turn(text);
+    impl_->draw_line(*letters.line, text.size_pt);
+    impl_->write_unseen(letters, text);
+    impl_->unturn();
+    return;
+  }
   const auto cosine = static_cast<HPDF_REAL>(text.quarter_turns == 0 ? 1 : 0);
   const auto sine = static_cast<HPDF_REAL>(text.quarter_turns);
-  HPDF_Page_SetGrayFill(impl_->page, static_cast<HPDF_REAL>(text.gray));
-  HPDF_Page_BeginText(impl_->page);
-  HPDF_Page_SetFontAndSize(impl_->page, impl_->font(text.font),
-                           static_cast<HPDF_REAL>(text.size_pt));
-  HPDF_Page_SetTextMatrix(impl_->page, cosine, sine, -sine, cosine, pt(text.start.x()),
+  HPDF_Page_BeginText(page);
+  HPDF_Page_SetFontAndSize(page, impl_->font(text.font), static_cast<HPDF_REAL>(text.size_pt));
+  HPDF_Page_SetTextMatrix(page, cosine, sine, -sine, cosine, pt(text.start.x()),
                           pt(text.start.y()));
-  HPDF_Page_ShowText(impl_->page, text.text.c_str());
-  HPDF_Page_EndText(impl_->page);
+  HPDF_Page_ShowText(page, to_winansi(letters.shown).c_str());
+  HPDF_Page_EndText(page);
 }
 
-double PdfDocument::text_width(const std::string& winansi, PdfFont font) const {
-  const auto* bytes = reinterpret_cast<const HPDF_BYTE*>(winansi.data());
-  return HPDF_Font_TextWidth(impl_->font(font), bytes, static_cast<HPDF_UINT>(winansi.size()))
-             .width /
-         1000.0;
+double PdfDocument::text_width(const std::string& text, PdfFont font) const {
+  return impl_->lettering_of(text, font).width;
 }
 
 void PdfDocument::save(const std::filesystem::path& path) {

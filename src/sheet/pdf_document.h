@@ -20,7 +20,7 @@ namespace hydrodip {
 enum class PdfFont { kRegular, kBold };
 
 struct PdfText {
-  std::string text;  // Windows-1252, see sheet/winansi.h
+  std::string text;  // UTF-8
   Vec2 start;        // left end of the base line
   double size_pt = 10;
   PdfFont font = PdfFont::kRegular;
@@ -59,10 +59,12 @@ class PdfDocument {
   void fill_rectangle(const Box2& box, double gray);
   void fill_red(const Box2& box);  // of an alarm
   void fill_triangle(const std::array<Vec2, 3>& corners, double gray);
+  // Letters that the PDF's own fonts lack are drawn as this machine's fonts have them
+  // (page_text.h); readers find them as text all the same.
   void draw_text(const PdfText& text);
 
-  // Width of a Windows-1252 text at font size 1.
-  double text_width(const std::string& winansi, PdfFont font = PdfFont::kRegular) const;
+  // Width of an UTF-8 text at font size 1.
+  double text_width(const std::string& text, PdfFont font = PdfFont::kRegular) const;
 
   // Throws InputError if the file cannot be written, Cancelled if the job was cancelled.
   void save(const std::filesystem::path& path);

@@ -536,6 +536,27 @@ TEST(Fonts, AreFilesOfThisMachine) {
   EXPECT_TRUE(fonts_for(" ", parse_font("sans"), "test").empty());
 }
 
+TEST(Fonts, LettersThatNoneHasAreNamedOnce) {
+  const FontWish wish = parse_font("sans");
+  EXPECT_TRUE(letters_without_font("No. 7 \u200d", wish, "test").empty());
+  const std::vector<std::string> none = {"\xf4\x8f\xbf\xbd", "\xf4\x8f\xbf\xbc"};
+  EXPECT_EQ(letters_without_font(none[0] + "7" + none[1] + none[0], wish, "test"), none);
+  EXPECT_THROW(letters_without_font("a\xff", wish, "test"), InputError);
+}
+
+// Capitals stand on it; blanks before a letter move it.
+TEST(Lines, LieOnTheirBaseLine) {
+  EXPECT_FALSE(Drawing::of_line(" \u3000", "sans").has_value());
+  const auto letter = Drawing::of_line("H", "sans"), far = Drawing::of_line("      H", "sans");
+  ASSERT_TRUE(letter && far);
+  EXPECT_NEAR(letter->place.min.y(), 0, 0.02);
+  EXPECT_GT(letter->place.max.y(), 0.6);
+  EXPECT_LT(letter->place.max.y(), 0.8);
+  EXPECT_GT(far->place.min.x(), letter->place.min.x() + 1);
+  const Vec2 size = letter->place.max - letter->place.min;
+  EXPECT_NEAR(letter->drawing.aspect(), size.x() / size.y(), 1e-9);
+}
+
 TEST(Fonts, WhatCannotBeSetIsRefused) {
   EXPECT_THROW(fonts_for("\xf4\x8f\xbf\xbd", parse_font("sans"), "test"), InputError);
   EXPECT_THROW(fonts_for("a\xff", parse_font("sans"), "test"), InputError);

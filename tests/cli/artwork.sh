@@ -159,6 +159,14 @@ python3 - <<'PY' || fail 'nest takes the whole object where its job says auto'
 import json
 assert 0 < json.load(open('found/nest.json'))['pieces'][0]['depth_mm'] < 15
 PY
+# A part's name need not be UTF-8, nor in letters that some font has.
+cp samples/box.obj "$(printf 'Gr\366sse.obj')"
+cp samples/box.obj "$(printf 'box \364\217\277\275.obj')"
+# shellcheck disable=SC2086
+"$hydrodip" nest "$(printf 'Gr\366sse.obj')" "$(printf 'box \364\217\277\275.obj')" $nest -o named --quiet > named.txt ||
+  fail "nest of parts whose names no font has: $?"
+grep -q "^warning: No font on this machine has .* of a part's name, which stands as 'box ?'" named.txt ||
+  fail "nest does not say what it makes of a part's name: $(cat named.txt)"
 # One sheet is printed and laid on the water in one way, whatever a part's job says.
 for of_sheet in 'print.ink_side = "down"' 'film.swelling_x = 1.1' 'print.scale_x = 1.02' \
   'ink.model = "profile"' 'print.color = "cmyk"'; do

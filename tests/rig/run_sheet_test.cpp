@@ -110,15 +110,29 @@ TEST_F(RunSheetTest, TheRulerAndTheTapeAreTheSheetsOwn) {
     EXPECT_EQ(text.find(no), std::string::npos) << no << "\n" << text;
 }
 
-TEST_F(RunSheetTest, LettersThatItLacksAreToldOf) {
+// Whatever their script is; those that no font has are told of.
+TEST_F(RunSheetTest, NamesStandAsTheyAreWritten) {
   RigJob job = load_rig_job(folder_, {});
+  job.title = "\u041c\u0430\u0441\u043a\u0430 \u0142\u00f3d\u017a";
   job.batch = "Größe M?";
+  job.label = "\u03a9 3";
   EXPECT_EQ(rig_sheet(job, "", "", context_).text.find("warning"), std::string::npos);
-  job.batch = "\u4e00\u4e8c";
+  const std::string text = read_back("pdftotext -enc UTF-8 -raw");
+  for (const std::string& name : {job.title, job.batch, job.label})
+    EXPECT_NE(text.find(name), std::string::npos) << name << " not in:\n" << text;
+  job.batch = "\xf4\x8f\xbf\xbd";
   const std::string told = rig_sheet(job, "", "", context_).text;
-  EXPECT_NE(told.find("warning: the batch '\u4e00\u4e8c' stands on the run sheet as '\?\?'"),
-            std::string::npos)
+  EXPECT_NE(told.find("of the batch, which stands as '?' in run-sheet.pdf"), std::string::npos)
       << told;
+}
+
+// A name longer than the page ends in dots, between letters.
+TEST_F(RunSheetTest, LongNamesAreCutBetweenLetters) {
+  RigJob job = load_rig_job(folder_, {});
+  job.title.clear();
+  for (int i = 0; i < 2000; ++i) job.title += "\u043c";
+  EXPECT_EQ(rig_sheet(job, "", "", context_).text.find("warning"), std::string::npos);
+  EXPECT_NE(read_back("pdftotext -enc UTF-8 -raw").find("\u043c\u043c..."), std::string::npos);
 }
 
 // Printed with paths as they are typed in the folder above the job's; seen from anywhere.

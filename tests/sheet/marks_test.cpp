@@ -205,8 +205,16 @@ TEST(Marks, LongNamesEndInAnEllipsis) {
   Marks marks = make_marks(options, half_em);
   const MarkText* name = find_text(marks, "xxx");
   ASSERT_NE(name, nullptr);
-  EXPECT_EQ(name->text.back(), '\x85');
+  EXPECT_TRUE(name->text.ends_with("x\u2026"));
   EXPECT_GE(name->size_pt, 6);
+  // No letter is cut in two.
+  for (std::size_t ahead = 0; ahead < 3; ++ahead) {
+    options.job_name = std::string(ahead, 'x');
+    for (int i = 0; i < 200; ++i) options.job_name += "\u65e5";
+    const std::string cut = text(make_marks(options, half_em), "\u65e5").text;
+    ASSERT_TRUE(cut.ends_with("\u65e5\u2026")) << cut;
+    EXPECT_EQ((cut.size() - ahead) % 3, 0u);
+  }
   options.job_name = "";
   marks = make_marks(options, half_em);
   for (const MarkText& text : marks.texts) EXPECT_FALSE(text.text.empty());

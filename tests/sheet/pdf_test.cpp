@@ -7,10 +7,12 @@
 #include <tuple>
 #include <vector>
 
+#include "artwork/drawing.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/math.h"
 #include "full_disk.h"
+#include "sheet/pdf_document.h"
 #include "sheet/sheet.h"
 #include "sheet/sheet_testing.h"
 
@@ -39,6 +41,10 @@ class PrintPdf : public fixtures::InFolder {
     EXPECT_EQ(said.find("Error"), std::string::npos) << said;
     EXPECT_EQ(said.find("Warning"), std::string::npos) << said;
     return said;
+  }
+  static std::string contents(const std::filesystem::path& path) {
+    const auto bytes = read_file(path);
+    return {bytes.begin(), bytes.end()};
   }
   RunContext context_;
 };
@@ -326,9 +332,109 @@ TEST_F(PrintPdf, TheTextsCanBeReadByAnotherProgram) {
   EXPECT_EQ(status, 0);
   // It puts the words of turned texts on lines of their own.
   std::replace(said.begin(), said.end(), '\n', ' ');
-  for (const char* text : {"TOP: this side up", "this edge left", "this edge right",
-                           "Print at 100 %, no scaling", "Gr\u00f6\u00dfe (80\\%) L", "100 mm"}) {
+  for (const char* text :
+       {"TOP: this side up", "this edge left", "this edge right", "Print at 100 %, no scaling",
+        "Gr\u00f6\u00dfe (80\\%) \u0141", "100 mm"}) {
     EXPECT_NE(said.find(text), std::string::npos) << text << " not in:\n" << said;
+  }
+}
+
+// Polish, Russian, Greek, and accents that stand by themselves.
+constexpr const char* kForeign =
+    "\u0141\u00f3d\u017a \u041c\u0430\u0441\u043a\u0430 \u03a9 e\u0301";
+
+TEST_F(PrintPdf, LettersThatPdfFontsLackAreTextToo) {
+  if (!has_tool("pdftotext")) GTEST_SKIP() << "needs pdftotext";
+  SheetOptions options = sheet(210, 297, 10, 72);
+  options.job_name = kForeign;
+  const auto path = write(blank_image(options), options);
+  const auto size = std::filesystem::file_size(path);
+  EXPECT_TRUE(context_.warnings().empty());
+  EXPECT_NE(info(path).find("Title:           " + options.job_name), std::string::npos);
+  const auto [status, said] = run_tool("pdftotext -raw -enc UTF-8 " + path.string() + " -");
+  EXPECT_EQ(status, 0);
+  // Accents that stand by themselves may come back with their letters.
+  const std::string name = options.job_name.substr(0, options.job_name.rfind(' '));
+  EXPECT_NE(said.find(name), std::string::npos) << said;
+  // A picture of a few letters, and none where the PDF's own fonts have all.
+  EXPECT_NE(contents(path).find("/ImageMask true"), std::string::npos);
+  options.job_name = "Gr\u00f6\u00dfe 5 \u20ac";
+  write(blank_image(options), options);
+  EXPECT_LT(size, std::filesystem::file_size(path) + 6000);
+  EXPECT_EQ(contents(path).find("/ImageMask"), std::string::npos);
+}
+
+// What of the page is dark: its mean and its area, in mm.
+struct Darkness {
+  double area_mm2 = 0;
+  Box2 box;
+};
+Darkness darkness_of(const Image& page, int dpi) {
+  const double mm = kMmPerInch / dpi;
+  Darkness all;
+  for (int y = 0; y < page.height_px; ++y)
+    for (int x = 0; x < page.width_px; ++x) {
+      const int dark = darkness(page, x, y);
+      all.area_mm2 += dark / 255.0 * mm * mm;
+      if (dark > 127) all.box.add(mm * Vec2(x + 0.5, page.height_px - y - 0.5));
+    }
+  return all;
+}
+
+// However they are turned, they lie where their base line is, as large as the font, and as black as
+// the letters are.
+TEST_F(PrintPdf, LettersThatPdfFontsLackLieWhereTheyShould) {
+  if (!has_tool("pdftoppm")) GTEST_SKIP() << "needs pdftoppm";
+  constexpr int kDpi = 300, kSide_px = 1500;
+  constexpr double kSize_pt = 36, kSide_mm = kSide_px * kMmPerInch / kDpi;
+  const double em_mm = kSize_pt * kMmPerPt;
+  const auto line = Drawing::of_line(kForeign, "Helvetica");
+  ASSERT_TRUE(line.has_value());
+  const Image letters = line->drawing.pixels(1000, int(1000 / line->drawing.aspect()));
+  double ink = 0;  // share of the drawing
+  for (std::size_t i = 3; i < letters.rgba.size(); i += 4)
+    ink += letters.rgba[i] / 255.0 / (double(letters.rgba.size()) / 4);
+  const Vec2 size_mm = em_mm * (line->place.max - line->place.min);
+  for (const int turns : {0, 1, -1}) {
+    const Vec2 start = turns == 0 ? Vec2(5, 40) : turns == 1 ? Vec2(40, 5) : Vec2(40, 120);
+    PdfDocument pdf;
+    pdf.add_page(kSide_mm, kSide_mm);
+    pdf.draw_text({kForeign, start, kSize_pt, PdfFont::kRegular, turns, 0});
+    pdf.save(folder_ / "letters.pdf");
+    const Darkness seen =
+        darkness_of(rasterised(folder_ / "letters.pdf", kDpi, 0, 0, kSide_px, kSide_px), kDpi);
+    EXPECT_NEAR(seen.area_mm2, ink * size_mm.x() * size_mm.y(), 0.03 * seen.area_mm2) << turns;
+    const Vec2 along = turns == 0 ? Vec2(1, 0) : Vec2(0, turns), up(-along.y(), along.x());
+    Box2 expected;
+    for (const Vec2& corner : {line->place.min, line->place.max})
+      expected.add(start + em_mm * (corner.x() * along + corner.y() * up));
+    // There is a hundredth of the font size around the letters.
+    constexpr double kSlack_mm = 0.3;
+    EXPECT_LT((seen.box.min - expected.min).cwiseAbs().maxCoeff(), kSlack_mm) << turns;
+    EXPECT_LT((seen.box.max - expected.max).cwiseAbs().maxCoeff(), kSlack_mm) << turns;
+    EXPECT_NEAR(pdf.text_width(kForeign), line->place.max.x(), 1e-12);
+  }
+}
+
+// No font has them: the page says so, and the PDF is whole.
+TEST_F(PrintPdf, LettersThatNoFontHasAreReplacedAndToldOf) {
+  if (!has_tool("pdftotext")) GTEST_SKIP() << "needs pdftotext";
+  SheetOptions options = sheet(210, 297, 10, 72);
+  options.job_name = "mask \xf4\x8f\xbf\xbd 2";
+  const auto path = write(blank_image(options), options);
+  ASSERT_EQ(context_.warnings().size(), 1u);
+  EXPECT_NE(context_.warnings()[0].find("'mask ? 2'"), std::string::npos);
+  info(path);
+  EXPECT_NE(run_tool("pdftotext -raw " + path.string() + " -").second.find("mask ? 2"),
+            std::string::npos);
+}
+
+// Blanks and marks alone, and no UTF-8 at all.
+TEST_F(PrintPdf, NamesThatShowNothingAreNoFault) {
+  SheetOptions options = sheet(210, 297, 10, 72);
+  for (const char* name : {"\u3000", "\u200d", "\xff\xfe", "\u202e", "\u0301"}) {
+    options.job_name = name;
+    EXPECT_NO_THROW(write(blank_image(options), options)) << name;
   }
 }
 

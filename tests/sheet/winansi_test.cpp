@@ -49,5 +49,30 @@ TEST(WinAnsi, BrokenUtf8NeverHidesWhatFollows) {
             "??z");
 }
 
+TEST(TidyUtf8, KeepsLettersAndNothingThatIsNone) {
+  EXPECT_EQ(tidy_utf8("a\u00f6\u0142\u65e5\U0001F600e\u0301"),
+            "a\u00f6\u0142\u65e5\U0001F600e\u0301");
+  EXPECT_EQ(tidy_utf8("a\tb\n\x7f\u0085\u2028\u202e\ufeff"), "ab");
+  // Bytes of Latin-1, cut letters, letters in more bytes than they need, halves of UTF-16's pairs,
+  // beyond Unicode, and what stands for no character.
+  EXPECT_EQ(tidy_utf8("Gr\xf6\xdf"
+                      "e"),
+            "Gr??e");
+  EXPECT_EQ(tidy_utf8("\xe2\x82"), "??");
+  EXPECT_EQ(tidy_utf8("\xe0\x80\x80\xed\xa0\x80\xf4\x90\x80\x80"), "??????????");
+  EXPECT_EQ(tidy_utf8("\xef\xbf\xbf"), "?");
+}
+
+TEST(WinAnsi, SaysWhetherItHasAllLetters) {
+  EXPECT_TRUE(is_winansi("Gr\u00f6\u00dfe 5 \u20ac \u2026 \u0160"));
+  for (const char* text : {"\u0141\u00f3d\u017a", "e\u0301", "\u041c\u0430", "\u03a9", "\u65e5"})
+    EXPECT_FALSE(is_winansi(text)) << text;
+}
+
+TEST(Utf16, BeginsWithItsMarkAndHasPairs) {
+  EXPECT_EQ(to_utf16("A\u03a9"), std::string("\xfe\xff\0A\x03\xa9", 6));
+  EXPECT_EQ(to_utf16("\U0001F600"), std::string("\xfe\xff\xd8\x3d\xde\0", 6));
+}
+
 }  // namespace
 }  // namespace hydrodip
