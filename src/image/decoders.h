@@ -76,6 +76,8 @@ void take_ink_profile(StoredPicture& picture, PictureBytes profile);
 
 // Of a pixel's values that are stored multiplied by its alpha. Where that is 0 they stay.
 void divide_by_alpha(std::uint8_t* values, int count, int alpha);
+// Warns that some pixels are not what was meant.
+void warn_of_damage(const std::string& name);
 // Warns of so many channels, if any, that are no transparency.
 void warn_of_left_out(int channels, const std::string& name);
 

@@ -126,14 +126,17 @@ void bring_to_srgb(StoredPicture& picture, const std::string& name) {
 
 }  // namespace
 
+void warn_of_damage(const std::string& name) {
+  warn(fmt::format(
+      "{}: its data are damaged, and parts of the picture may be wrong; take it anew from where it "
+      "came from.",
+      name));
+}
+
 Image decode_image(const Bytes& bytes, const std::string& name) {
   try {
     StoredPicture picture = decode_any(bytes, name);
-    if (picture.damaged)
-      warn(
-          fmt::format("{}: its data are damaged, and parts of the picture may be wrong; take it "
-                      "anew from where it came from.",
-                      name));
+    if (picture.damaged) warn_of_damage(name);
     if (picture.has_more)
       warn(fmt::format("{}: the file holds several pictures (pages or frames); the first is taken.",
                        name));

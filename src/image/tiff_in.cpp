@@ -26,8 +26,9 @@ struct TiffSource {
   const PictureBytes& bytes;
   std::size_t at = 0;
   char message[256] = {};  // the last error
-  // What warnings told.
-  bool profile_lost = false, jpeg_damaged = false, jpeg_cut = false;
+  bool in_pixels = false;  // these are read now
+  // What warnings told, and errors that libtiff went on after.
+  bool profile_lost = false, pixels_damaged = false, jpeg_cut = false;
 };
 
 extern "C" {
@@ -63,18 +64,24 @@ static void tiff_unmap(thandle_t, tdata_t, toff_t) {}
 static int tiff_keep_error(TIFF*, void* user, const char*, const char* format, va_list arguments) {
   auto* source = static_cast<TiffSource*>(user);
   std::vsnprintf(source->message, sizeof source->message, format, arguments);
+  if (source->in_pixels) source->pixels_damaged = true;
   return 1;
 }
 
-// Of a field that cannot be read libtiff says no more than that, and goes on without it.
+// Of a field that cannot be read libtiff says no more than that, and goes on without it; of pixels
+// that do not come out as they should, too.
 static int tiff_note_warning(TIFF*, void* user, const char* module, const char* format,
                              va_list arguments) {
   auto* source = static_cast<TiffSource*>(user);
   char text[256] = {};
   std::vsnprintf(text, sizeof text, format, arguments);
   const std::string_view said(text);
-  if (module && std::string_view(module) == "JPEGLib") {
-    source->jpeg_damaged = true;
+  const std::string_view from(module ? module : "");
+  // Which is how some write them.
+  const bool is_old = said.find("Old-style LZW") != said.npos || from.starts_with("OJPEG");
+  if (source->in_pixels && !is_old) source->pixels_damaged = true;
+  if (from == "JPEGLib") {
+    source->pixels_damaged = true;
     if (said.find("remature end") != said.npos) source->jpeg_cut = true;
   }
   if (said.find("ICC Profile") != said.npos) source->profile_lost = true;
@@ -522,13 +529,15 @@ StoredPicture decode_tiff(const PictureBytes& bytes, const std::string& name) {
   picture.orientation = orientation;  // numbered as EXIF's
   if (pixels.photometric == PHOTOMETRIC_SEPARATED) picture.stored = Stored::kInks;
   if (pixels.is_lab()) picture.stored = Stored::kLab;
+  source.in_pixels = true;
   if (pixels.colors > 0 ? !read_samples(file.get(), pixels, picture)
                         : !RgbaReader(file.get(), name).read(picture.image))
     refuse_picture(name, "TIFF", source.message);
+  source.in_pixels = false;
   if (source.jpeg_cut) refuse_picture(name, "TIFF", "it ends too early");
   if (pixels.colors > 0)
     warn_of_left_out(pixels.samples - pixels.colors - (pixels.alpha() >= 0 ? 1 : 0), name);
-  picture.damaged = source.jpeg_damaged;
+  picture.damaged = source.pixels_damaged;
   if (picture.stored == Stored::kInks) take_ink_profile(picture, profile_of(file.get()));
   if (picture.stored == Stored::kInks && pixels.ink_set != INKSET_CMYK && picture.profile.empty())
     refuse_unknown_inks(name);

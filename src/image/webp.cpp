@@ -37,6 +37,24 @@ bool read_pixels(const PictureBytes& bytes, Image& image) {
   return false;
 }
 
+// Whether a part of the file is missing, by the lengths that it states. The last one's filling byte
+// may be: some leave it out.
+bool is_cut(const PictureBytes& bytes) {
+  constexpr std::size_t kHeader = 8, kFirstChunk = 12;
+  const auto length_at = [&](std::size_t at) {
+    std::size_t length = 0;
+    for (std::size_t i = at + 4; i-- > at;) length = length << 8 | bytes[i];
+    return length;
+  };
+  const std::size_t end = kHeader + length_at(4);
+  for (std::size_t at = kFirstChunk; at + kHeader <= end; at += at % 2) {
+    if (at + kHeader > bytes.size()) return true;
+    at += kHeader + length_at(at + 4);
+    if (at > bytes.size()) return true;
+  }
+  return false;
+}
+
 // By its header, whether or not it is there.
 bool says_profile(const PictureBytes& bytes) {
   constexpr std::size_t kFlags = 20;
@@ -59,6 +77,8 @@ StoredPicture decode_webp(const PictureBytes& bytes, const std::string& name) {
   if (WebPGetFeatures(bytes.data(), bytes.size(), &features) != VP8_STATUS_OK)
     refuse_picture(name, "WebP", "its header cannot be read");
   if (features.has_animation) refuse_picture(name, "WebP", "it is animated");
+  // The decoder asks for no more bytes than its pixels take.
+  if (is_cut(bytes)) refuse_picture(name, "WebP", "it ends too early");
   check_picture_size(name, "WebP", std::uint32_t(features.width), std::uint32_t(features.height), 0,
                      bytes.size());
   StoredPicture picture;

@@ -37,15 +37,25 @@ int keep_message(TIFF*, void* user, const char*, const char* format, va_list arg
 
 int ignore_message(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 
+int note_warning(TIFF*, void* user, const char*, const char*, va_list) {
+  *static_cast<bool*>(user) = true;
+  return 1;
+}
+
+struct Complaints {
+  std::string error;
+  bool warned = false;
+};
+
 struct CloseTiff {
   void operator()(TIFF* tiff) const { TIFFClose(tiff); }
 };
 using Tiff = std::unique_ptr<TIFF, CloseTiff>;
 
-Tiff open_tiff(const std::filesystem::path& path, const char* mode, std::string& message) {
+Tiff open_tiff(const std::filesystem::path& path, const char* mode, Complaints& complaints) {
   TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
-  TIFFOpenOptionsSetErrorHandlerExtR(options, keep_message, &message);
-  TIFFOpenOptionsSetWarningHandlerExtR(options, ignore_message, nullptr);
+  TIFFOpenOptionsSetErrorHandlerExtR(options, keep_message, &complaints.error);
+  TIFFOpenOptionsSetWarningHandlerExtR(options, note_warning, &complaints.warned);
   Tiff tiff(TIFFOpenExt(path.c_str(), mode, options));
   TIFFOpenOptionsFree(options);
   return tiff;
@@ -212,7 +222,7 @@ double recorded_tiff_dpi(TIFF* tiff) {
 }  // namespace
 
 bool is_ink_tiff(const std::filesystem::path& path) {
-  std::string ignored;
+  Complaints ignored;
   const Tiff tiff = open_tiff(path, "r", ignored);
   std::uint16_t photometric = 0;
   return tiff && TIFFGetField(tiff.get(), TIFFTAG_PHOTOMETRIC, &photometric) == 1 &&
@@ -220,9 +230,9 @@ bool is_ink_tiff(const std::filesystem::path& path) {
 }
 
 CmykFile read_cmyk_tiff(const std::filesystem::path& path) {
-  std::string message;
-  const Tiff tiff = open_tiff(path, "r", message);
-  if (!tiff) refuse(path, message);
+  Complaints complaints;
+  const Tiff tiff = open_tiff(path, "r", complaints);
+  if (!tiff) refuse(path, complaints.error);
   check_cmyk(tiff.get(), path);
   std::uint32_t width = 0, height = 0;
   TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &width);
@@ -234,14 +244,17 @@ CmykFile read_cmyk_tiff(const std::filesystem::path& path) {
   file.inks.width_px = int(width);
   file.inks.height_px = int(height);
   std::vector<std::uint8_t> row(std::size_t(TIFFScanlineSize64(tiff.get())));
-  if (row.size() < std::size_t(4) * width) refuse(path, message);
+  if (row.size() < std::size_t(4) * width) refuse(path, complaints.error);
+  // What libtiff says while it reads rows is of rows that do not come out as they should.
+  complaints.warned = false;
   for (std::uint32_t y = 0; y < height; ++y) {
     check_cancelled();
-    if (TIFFReadScanline(tiff.get(), row.data(), y, 0) != 1) refuse(path, message);
+    if (TIFFReadScanline(tiff.get(), row.data(), y, 0) != 1) refuse(path, complaints.error);
     // Row by row, so that a header alone makes nobody reserve much memory.
     file.inks.cmyk.insert(file.inks.cmyk.end(), row.begin(),
                           row.begin() + std::ptrdiff_t(4) * std::ptrdiff_t(width));
   }
+  if (complaints.warned || !complaints.error.empty()) warn_of_damage(path.string());
   file.inks = upright(std::move(file.inks), tiff.get());
   file.profile = embedded_profile(tiff.get());
   return file;
@@ -250,18 +263,18 @@ CmykFile read_cmyk_tiff(const std::filesystem::path& path) {
 void write_print_tiff(const std::filesystem::path& path, const InkImage& inks,
                       const std::vector<std::uint8_t>& profile, const SheetOptions& options) {
   check_sheet(inks, options);
-  std::string message;
+  Complaints complaints;
   const bool big = 4.0 * inks.width_px * inks.height_px > kClassicTiffBytes;
-  Tiff tiff = open_tiff(path, big ? "w8" : "w", message);
+  Tiff tiff = open_tiff(path, big ? "w8" : "w", complaints);
   bool written = tiff != nullptr;
   if (written) {
     describe(tiff.get(), inks, profile, options.dpi);
     written = write_strips(tiff.get(), inks, !options.ink_side_up);
     tiff.reset();  // may still write, and complain
   }
-  if (!written || !message.empty()) {
+  if (!written || !complaints.error.empty()) {
     throw InputError(fmt::format("{}: cannot be written ({}); choose another folder or free space.",
-                                 path.string(), message));
+                                 path.string(), complaints.error));
   }
 }
 

@@ -11,6 +11,8 @@
 #include <functional>
 
 #include "base/error.h"
+#include "base/file.h"
+#include "base/run_scope.h"
 #include "image/files.h"
 #include "temporary_folder.h"
 
@@ -59,7 +61,26 @@ TEST(Webp, LosslessWithAlpha) {
   const Bytes bytes(data, data + size);
   WebPFree(data);
   EXPECT_EQ(decode_image(bytes, "a.webp").rgba, image.rgba);
-  expect_every_cut_refused(bytes, bytes.size() - 2);
+  expect_every_cut_refused(bytes, bytes.size() - 1);
+}
+
+// Its decoder is done before the last byte. The byte that fills up an odd length is no part of it.
+TEST(Webp, EveryCutIsRefused) {
+  Image image(40, 30);
+  for (std::size_t i = 0; i < image.rgba.size(); ++i)
+    image.rgba[i] = i % 4 == 3 ? 255 : std::uint8_t(i * i / 7);
+  for (const float quality : {30.F, 80.F, 81.F, 82.F, 83.F}) {
+    std::uint8_t* data = nullptr;
+    const std::size_t size = WebPEncodeRGBA(image.rgba.data(), image.width_px, image.height_px,
+                                            4 * image.width_px, quality, &data);
+    const Bytes bytes(data, data + size);
+    WebPFree(data);
+    const std::size_t odd = bytes[16] % 2;
+    EXPECT_NO_THROW(decode_image(bytes, "a.webp"));
+    EXPECT_NO_THROW(
+        decode_image({bytes.begin(), bytes.end() - std::ptrdiff_t(odd)}, "unfilled.webp"));
+    expect_every_cut_refused(bytes, bytes.size() - odd);
+  }
 }
 
 TEST(Gif, WithPaletteAndTransparency) {
@@ -166,6 +187,109 @@ TEST(Tiff, WithStraightAlphaAndProfileOfItsOwn) {
   for (std::uint32_t y = 0; y < 2; ++y) TIFFWriteScanline(tiff, image.pixel(0, int(y)), y, 0);
   TIFFClose(tiff);
   expect_four(load_image(path));
+}
+
+// Twelve entries and the rows behind them, each of a run and of pixels that differ.
+struct PackedTiff {
+  Bytes bytes;
+  std::vector<std::size_t> lengths_at;  // of the bytes that say how long a run is
+};
+PackedTiff packed_tiff(int rows_per_strip) {
+  constexpr std::uint32_t kWide = 40, kHigh = 6, kRowBytes = 23;
+  const std::uint32_t strips = kHigh / std::uint32_t(rows_per_strip);
+  PackedTiff tiff;
+  Bytes& bytes = tiff.bytes;
+  const auto put = [&](std::uint32_t value, int count) {
+    for (int i = 0; i < count; ++i) bytes.push_back(std::uint8_t(value >> (8 * i)));
+  };
+  const std::uint32_t arrays = 8 + 2 + 9 * 12 + 4, data = arrays + (strips > 1 ? 8 * strips : 0);
+  const std::uint32_t strip_bytes = kRowBytes * kHigh / strips;
+  put(0x2a4949, 4);
+  put(8, 4);
+  put(9, 2);
+  const auto entry = [&](std::uint32_t tag, std::uint32_t count, std::uint32_t value) {
+    put(tag, 2);
+    put(4, 2);
+    put(count, 4);
+    put(value, 4);
+  };
+  entry(TIFFTAG_IMAGEWIDTH, 1, kWide);
+  entry(TIFFTAG_IMAGELENGTH, 1, kHigh);
+  entry(TIFFTAG_BITSPERSAMPLE, 1, 8);
+  entry(TIFFTAG_COMPRESSION, 1, COMPRESSION_PACKBITS);
+  entry(TIFFTAG_PHOTOMETRIC, 1, PHOTOMETRIC_MINISBLACK);
+  entry(TIFFTAG_STRIPOFFSETS, strips, strips > 1 ? arrays : data);
+  entry(TIFFTAG_SAMPLESPERPIXEL, 1, 1);
+  entry(TIFFTAG_ROWSPERSTRIP, 1, std::uint32_t(rows_per_strip));
+  entry(TIFFTAG_STRIPBYTECOUNTS, strips, strips > 1 ? arrays + 4 * strips : strip_bytes);
+  put(0, 4);
+  if (strips > 1) {
+    for (std::uint32_t i = 0; i < strips; ++i) put(data + i * strip_bytes, 4);
+    for (std::uint32_t i = 0; i < strips; ++i) put(strip_bytes, 4);
+  }
+  for (std::uint32_t y = 0; y < kHigh; ++y) {
+    tiff.lengths_at.insert(tiff.lengths_at.end(), {bytes.size(), bytes.size() + 2});
+    put(257 - 20, 1);
+    put(10 * y, 1);
+    put(20 - 1, 1);
+    for (std::uint32_t x = 0; x < 20; ++x) put(9 * x + y, 1);
+  }
+  return tiff;
+}
+
+TEST(Tiff, RunsThatDoNotFillTheirRowsAreNotTakenSilently) {
+  for (const int rows : {6, 2}) {
+    const PackedTiff whole = packed_tiff(rows);
+    const Image image = decode_image(whole.bytes, "a.tif");
+    EXPECT_EQ(at(image, 19, 3), (Rgba{30, 30, 30, 255}));
+    EXPECT_EQ(at(image, 39, 3), (Rgba{9 * 19 + 3, 9 * 19 + 3, 9 * 19 + 3, 255}));
+    expect_every_cut_refused(whole.bytes, whole.bytes.size());
+    for (const std::size_t at : whole.lengths_at)
+      for (int bit = 0; bit < 8; ++bit) {
+        Bytes damaged = whole.bytes;
+        damaged[at] = std::uint8_t(damaged[at] ^ 1 << bit);
+        const RunContext context;
+        const RunScope scope(context);
+        try {
+          decode_image(damaged, "a.tif");
+          EXPECT_EQ(context.warnings().size(), 1U)
+              << rows << " rows, byte " << at << " bit " << bit;
+        } catch (const InputError&) {
+          // Told even better.
+        }
+      }
+  }
+}
+
+// A fax has no other sign of damage than rows of another length.
+TEST(Tiff, FaxesWithRowsOfAnotherLengthAreWarnedOf) {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "a.tif").string();
+  constexpr int kWide = 64, kHigh = 16;
+  TIFF* tiff = TIFFOpen(path.c_str(), "w");
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, kWide);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, kHigh);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 1);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISWHITE);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_CCITTFAX4);
+  for (std::uint32_t y = 0; y < kHigh; ++y) {
+    Bytes row(kWide / 8);
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] = std::uint8_t(37 * i * (y + 3));
+    TIFFWriteScanline(tiff, row.data(), y, 0);
+  }
+  TIFFClose(tiff);
+  const auto warnings_of = [](const Bytes& bytes) {
+    const RunContext context;
+    const RunScope scope(context);
+    decode_image(bytes, "a.tif");
+    return context.warnings();
+  };
+  Bytes bytes = read_file(path);
+  EXPECT_TRUE(warnings_of(bytes).empty());
+  for (std::size_t i = 20; i < 40; ++i) bytes[i] = std::uint8_t(0x5a * i);  // rows, behind 8 bytes
+  ASSERT_EQ(warnings_of(bytes).size(), 1U);
+  EXPECT_NE(warnings_of(bytes)[0].find("a.tif: its data are damaged"), std::string::npos);
 }
 
 // How large a picture of an orientation is stored, and where a pixel that is stored at (x, y) is

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/run_scope.h"
 #include "sheet/sheet.h"
 #include "sheet/sheet_testing.h"
 
@@ -149,6 +150,41 @@ TEST_F(PrintRaster, ThreeOrFiveInksAreNotFour) {
     TIFFClose(tiff);
     EXPECT_THROW(read_cmyk_tiff(path), InputError) << inks;
   }
+}
+
+// Three rows of one run each, of which the second is told to be longer.
+TEST_F(PrintRaster, RowsThatDoNotComeOutAreWarnedOf) {
+  const std::string path = (folder_ / "inks.tif").string();
+  TIFF* tiff = TIFFOpen(path.c_str(), "w");
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 4);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 3);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 4);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_SEPARATED);
+  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_PACKBITS);
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, 3);
+  std::uint8_t row[16];
+  for (std::uint32_t y = 0; y < 3; ++y) {
+    std::fill(std::begin(row), std::end(row), std::uint8_t(10 * y));
+    TIFFWriteScanline(tiff, row, y, 0);
+  }
+  TIFFClose(tiff);
+  const auto warnings_of_reading = [&] {
+    const RunContext context;
+    const RunScope scope(context);
+    EXPECT_EQ(read_cmyk_tiff(path).inks.pixel(3, 1)[3], 10);
+    return context.warnings();
+  };
+  EXPECT_TRUE(warnings_of_reading().empty());
+  auto bytes = read_file(path);
+  constexpr std::size_t kSecondRun = 8 + 2;
+  ASSERT_EQ(bytes[kSecondRun], 257 - 16);
+  bytes[kSecondRun] = 257 - 20;
+  write_file(path, bytes.data(), bytes.size());
+  const auto warnings = warnings_of_reading();
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("inks.tif: its data are damaged"), std::string::npos);
 }
 
 TEST_F(PrintRaster, OtherFilesAreNoInks) {
