@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "camera/board.h"
 #include "camera/least_squares.h"
-#include "camera/view.h"
 
 namespace hydrodip {
 namespace {
@@ -151,6 +150,7 @@ FilmPose pose_of(const std::vector<Pair>& pairs, const View& view, const FilmPla
   pose.unexplained_rms_mm = std::sqrt(fit.residuals.squaredNorm() / double(pairs.size()));
   pose.board_rms_px = view.rms_px;
   pose.board_marks = view.board_marks;
+  pose.view = view;
   return pose;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "camera/tank.h"
+#include "camera/view.h"
 #include "tags/mark.h"
 
 namespace hydrodip {
@@ -26,6 +27,7 @@ struct FilmPose {
   int foreign = 0;  // marks of a sheet's kind that belong to no sheet that lies like that
   double board_rms_px = 0;
   int board_marks = 0;
+  View view{};  // of the photo
 
   // Where it lies from its place on: mm.
   Vec2 at(const Vec2& u) const;

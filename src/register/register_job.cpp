@@ -9,6 +9,7 @@
 #include "base/json_text.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
+#include "camera/film_picture.h"
 #include "camera/film_pose.h"
 #include "image/files.h"
 #include "image/picture_file.h"
@@ -102,6 +103,29 @@ Image draw_map(const FilmPose& pose, const FilmOptions& film) {
                                      pose.unexplained_rms_mm)});
 }
 
+// Marks tell a sheet's size only: another job's film of the same size is found as well.
+void warn_of_another_film(const RigJob& job, const GrayImage& photo, const std::string& name,
+                          const FilmPose& pose, const Tank& tank, const RunContext& context) {
+  constexpr double kAlike = 0.3, kSameShape = 0.01;
+  const std::filesystem::path file = job.folder / "print.png";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return;
+  const FilmOptions& film = job.config.design.film;
+  GrayImage gray = gray_of(load_image(file));
+  const double shape = film.width_mm / film.height_mm;
+  if (std::abs(gray.width_px / (shape * gray.height_px) - 1) > kSameShape) return;
+  // It is as it is printed; seen from above, the film shows its back then.
+  if (job.config.print.ink_side == InkSide::kDown) gray = mirrored(gray);
+  const auto alike = film_likeness(
+      photo, pose, tank, {std::move(gray), film.width_mm, film.height_mm, film.margin_mm});
+  if (!alike || *alike >= kAlike) return;
+  context.warn(fmt::format(
+      "{}: the film in it does not look like {}: is it another job's of the same size, or of an "
+      "earlier print? Its place holds all the same; do not dip this job's object into another's "
+      "film.",
+      name, file.string()));
+}
+
 // Where this film lies is where film is to lie.
 void set_place(Tank tank, const FilmPose& pose, const std::filesystem::path& camera) {
   const double turn = tank.place.turn_deg * std::numbers::pi / 180;
@@ -132,10 +156,15 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
   const GrayImage photo = gray_of(decode_image(bytes, request.photo.string()));
   const FilmPose pose = find_film(photo, request.photo.string(), tank, search, context);
 
+  if (!request.set_place)
+    warn_of_another_film(job, photo, request.photo.string(), pose, tank, context);
+
   JobResult result;
   const Json json = json_of(pose, request, bytes, camera);
   result.json = json_text(json);
   result.text = sentence(pose);
+  for (const std::string& warning : context.warnings())
+    result.text += fmt::format("warning: {}\n", warning);
   if (request.set_place) {
     tank.water_below_mm = kept_below_mm;  // what was said is of this photo
     set_place(tank, pose, camera);
