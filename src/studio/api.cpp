@@ -34,12 +34,14 @@ Api::Api(JobStore store, Guard guard, std::string run, std::function<void()> qui
       quit_(std::move(quit)),
       profiles_(std::move(profiles)) {}
 
-std::optional<HttpAnswer> Api::admit(const HttpRequest& request) const {
-  if (const auto refusal = guard_.refuses_origin(request)) return error_answer(*refusal);
+Admission Api::admit(const HttpRequest& request) const {
+  if (const auto refusal = guard_.refuses_origin(request)) return {false, error_answer(*refusal)};
   const bool entering = request.path == "/" || request.path == "/login";
-  if (entering || guard_.knows(request)) return std::nullopt;
-  return error_answer({403, "no-token",
-                       "The studio does not know this browser: open the address that it printed."});
+  const bool is_known = guard_.knows(request);
+  if (entering || is_known) return {is_known, std::nullopt};
+  return {false, error_answer({403, "no-token",
+                               "The studio does not know this browser: open the address that it "
+                               "printed."})};
 }
 
 HttpAnswer Api::answer(HttpRequest& request) {

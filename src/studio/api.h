@@ -27,7 +27,7 @@ class Api {
       std::filesystem::path profiles = {});
 
   // For HttpServer.
-  std::optional<HttpAnswer> admit(const HttpRequest& request) const;
+  Admission admit(const HttpRequest& request) const;
   HttpAnswer answer(HttpRequest& request);
 
   // A file that the command line named, as a job of its own, or as that which was opened from it

@@ -1,26 +1,29 @@
 #include "studio/http.h"
 
 #include <httplib.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 
-#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
+#include <deque>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 
+#include "studio/connections.h"
 #include "studio/json_answers.h"
 
 namespace hydrodip {
 namespace {
 
-// A connection is held by its thread as long as it is open: a page's few requests at a time, and
-// its events.
-constexpr std::size_t kThreads = 64;
+// A connection is held by its thread as long as it is open: a page's few requests at a time, its
+// events, and whoever else connects, for a moment.
+constexpr std::size_t kMostThreads = 512;
+// How many may come at once; cpp-httplib's own five make the sixth try again after a second.
+constexpr int kBacklog = 512;
 // After that long without a request its thread is free again; opening another is cheap here.
 constexpr int kKeepAlive_s = 2;
 constexpr int kTimeout_s = 20;
@@ -45,6 +48,8 @@ HttpRequest request_of(const httplib::Request& from) {
   request.has_body = chunked || request.body_bytes.value_or(0) > 0;
   return request;
 }
+
+Peer peer_of(const httplib::Request& from) { return {from.remote_addr, from.remote_port}; }
 
 // A provider that ends in failure is the one way to make cpp-httplib close the connection.
 void send_and_close(httplib::Response& to, const std::string& type, const std::string& body) {
@@ -110,38 +115,71 @@ void send(httplib::Response& to, const HttpAnswer& answer, bool and_close) {
   }
 }
 
-// Whether that descriptor is a connection to the port of this machine.
-bool is_connection_to(int port, int descriptor) {
-  sockaddr_storage address{};
-  socklen_t size = sizeof address;
-  if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) != 0) return false;
-  in_port_t own = 0;
-  if (address.ss_family == AF_INET)
-    own = reinterpret_cast<const sockaddr_in*>(&address)->sin_port;
-  else if (address.ss_family == AF_INET6)
-    own = reinterpret_cast<const sockaddr_in6*>(&address)->sin6_port;
-  return own != 0 && ntohs(own) == port;
-}
+// As many as are needed at once, so that nobody waits for others. Tells of every connection.
+class ThreadsForConnections : public httplib::TaskQueue {
+ public:
+  explicit ThreadsForConnections(Connections& connections) : connections_(connections) {}
 
-// cpp-httplib keeps its connections to itself, and waits kTimeout_s for each that stalls.
-void shut_connections(int port, int how) {
-  std::error_code error;
-  for (auto entry = std::filesystem::directory_iterator("/proc/self/fd", error);
-       !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    int descriptor = -1;
-    std::from_chars(name.data(), name.data() + name.size(), descriptor);
-    if (descriptor >= 0 && is_connection_to(port, descriptor)) ::shutdown(descriptor, how);
+  void enqueue(std::function<void()> serve) override {
+    {
+      const std::lock_guard lock(mutex_);
+      waiting_.push_back(std::move(serve));
+      if (idle_ < waiting_.size() && threads_.size() < kMostThreads) add_thread();
+    }
+    changed_.notify_one();
+    connections_.opened();
   }
-}
+
+  void shutdown() override {
+    {
+      const std::lock_guard lock(mutex_);
+      ends_ = true;
+    }
+    changed_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+ private:
+  void add_thread() {
+    try {
+      threads_.emplace_back([this] { work(); });
+    } catch (const std::system_error&) {
+      if (threads_.empty()) throw;  // else those that there are serve one after another
+    }
+  }
+
+  void work() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      ++idle_;
+      changed_.wait(lock, [this] { return ends_ || !waiting_.empty(); });
+      --idle_;
+      if (waiting_.empty()) return;
+      const std::function<void()> serve = std::move(waiting_.front());
+      waiting_.pop_front();
+      lock.unlock();
+      serve();
+      lock.lock();
+    }
+  }
+
+  Connections& connections_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> waiting_;
+  std::vector<std::thread> threads_;
+  std::size_t idle_ = 0;
+  bool ends_ = false;
+};
 
 }  // namespace
 
 struct HttpServer::Impl {
   httplib::Server server;
   HttpHandler handler;
-  std::function<std::optional<HttpAnswer>(const HttpRequest&)> admit;
-  int port = 0;
+  HttpAdmission admit;
+  int port = 0, listening = -1;
+  std::optional<Connections> connections;  // while it serves
 
   std::mutex mutex;
   std::condition_variable changed;
@@ -161,8 +199,10 @@ struct HttpServer::Impl {
       send(to, plain_refusal(414, "The address is too long."), true);
       return Handled::Handled;
     }
-    if (const auto refusal = admit(request)) {
-      send(to, *refusal, request.has_body);
+    const Admission admission = admit(request);
+    if (admission.is_known) connections->know(peer_of(from));
+    if (admission.refusal) {
+      send(to, *admission.refusal, request.has_body);
       return Handled::Handled;
     }
     if (request.has_body && (from.method == "POST" || from.method == "PUT"))
@@ -192,16 +232,15 @@ struct HttpServer::Impl {
   }
 };
 
-HttpServer::HttpServer(HttpHandler handler,
-                       std::function<std::optional<HttpAnswer>(const HttpRequest&)> admit)
-    : impl_(std::make_unique<Impl>()) {
+HttpServer::HttpServer(HttpHandler handler, HttpAdmission admit) : impl_(std::make_unique<Impl>()) {
   impl_->handler = std::move(handler);
   impl_->admit = std::move(admit);
   httplib::Server& server = impl_->server;
   Impl* const impl = impl_.get();
-  server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+  server.new_task_queue = [impl] { return new ThreadsForConnections(*impl->connections); };
   // Not SO_REUSEPORT, cpp-httplib's own choice: two studios would share a port.
-  server.set_socket_options([](int socket) {
+  server.set_socket_options([impl](int socket) {
+    impl->listening = socket;
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
@@ -230,20 +269,24 @@ HttpServer::HttpServer(HttpHandler handler,
 HttpServer::~HttpServer() = default;
 
 bool HttpServer::bind(const std::string& address, int port) {
-  if (port == 0) {
-    impl_->port = impl_->server.bind_to_any_port(address);
-    return impl_->port > 0;
-  }
+  if (port == 0)
+    port = impl_->server.bind_to_any_port(address);
+  else if (!impl_->server.bind_to_port(address, port))
+    port = -1;
+  if (port <= 0) return false;
   impl_->port = port;
-  return impl_->server.bind_to_port(address, port);
+  ::listen(impl_->listening, kBacklog);
+  return true;
 }
 
 int HttpServer::port() const { return impl_->port; }
 
 void HttpServer::run() {
+  impl_->connections.emplace(impl_->port);
   impl_->set_serving(true);
   impl_->server.listen_after_bind();
   impl_->set_serving(false);
+  impl_->connections.reset();
 }
 
 void HttpServer::stop() {

@@ -40,14 +40,20 @@ struct HttpAnswer {
 
 using HttpHandler = std::function<HttpAnswer(HttpRequest&)>;
 
-// One thread for each connection, up to a bound; requests beyond it wait.
+struct Admission {
+  bool is_known = false;  // not a stranger's: its connection may stay
+  std::optional<HttpAnswer> refusal = {};
+};
+using HttpAdmission = std::function<Admission(const HttpRequest&)>;
+
+// One thread for each connection, up to a bound; requests beyond it wait. Strangers get few of them
+// (connections.h).
 class HttpServer {
  public:
   // `handler` is called by many threads, and answers whatever is asked. `admit` comes before it,
   // for every request, when its body has not been read: an answer refuses, and the connection is
   // closed if there is a body.
-  HttpServer(HttpHandler handler,
-             std::function<std::optional<HttpAnswer>(const HttpRequest&)> admit);
+  HttpServer(HttpHandler handler, HttpAdmission admit);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;

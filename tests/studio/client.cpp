@@ -119,6 +119,12 @@ Reply Client::send(const std::string& method, const std::string& path, const std
   return reply;
 }
 
+int Client::say(const std::string& text) const {
+  const int handle = connected(port_);
+  write_all(handle, text);
+  return handle;
+}
+
 EndlessUpload::EndlessUpload(const Client& client, const std::string& path)
     : socket_(connected(client.port())) {
   auto headers = client.own_headers();

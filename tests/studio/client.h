@@ -39,6 +39,9 @@ class Client {
   Reply send(const std::string& method, const std::string& path, const std::string& body,
              std::map<std::string, std::string> headers, int pause_ms = 0) const;
 
+  // A connection that has said so much and no more; the caller's to close.
+  int say(const std::string& text) const;
+
   // As the page sends them.
   std::map<std::string, std::string> own_headers() const;
   int port() const { return port_; }

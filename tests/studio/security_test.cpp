@@ -1,8 +1,12 @@
 // Who is let in, and what nobody gets.
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <unistd.h>
 #include <zip.h>
 
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -192,6 +196,55 @@ TEST_F(SecurityTest, AWrongRequestLeavesTheServerWell) {
     EXPECT_LT(reply.status, 500) << body;
   }
   EXPECT_EQ(client.get("/api/hello").status, 200);
+}
+
+// Connections that say half of something, or nothing, and wait.
+class SilentStrangers {
+ public:
+  SilentStrangers(int port, std::size_t count, const std::string& says) {
+    for (std::size_t i = 0; i < count; ++i) sockets_.push_back(Client(port, "").say(says));
+  }
+  ~SilentStrangers() {
+    for (const int socket : sockets_) ::close(socket);
+  }
+  SilentStrangers(const SilentStrangers&) = delete;
+  SilentStrangers& operator=(const SilentStrangers&) = delete;
+
+  // Waits until the server has ended so many of them.
+  bool are_ended(std::size_t count, int at_most_ms) const {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(at_most_ms);
+    while (std::chrono::steady_clock::now() < until) {
+      std::size_t ended = 0;
+      for (const int socket : sockets_) {
+        pollfd one{socket, POLLIN, 0};
+        ended += ::poll(&one, 1, 0) > 0;
+      }
+      if (ended >= count) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return false;
+  }
+
+ private:
+  std::vector<int> sockets_;
+};
+
+// A stranger's half request was kept for 20 s, and 64 of them kept everybody else out.
+TEST_F(SecurityTest, StrangersWhoSayHalfOfSomethingKeepNobodyOut) {
+  const std::string job = new_job();
+  Events events(client, "/api/jobs/" + job + "/events?client=c1");
+  EXPECT_TRUE(events.next("hello"));
+  for (const char* half :
+       {"GET / HTTP/1.1\r\nHost: ", "",
+        "POST /login HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 9\r\n\r\n"}) {
+    const SilentStrangers strangers(studio.port(), 100, half);
+    EXPECT_EQ(client.get("/api/hello").status, 200) << half;
+    // One address has few.
+    EXPECT_TRUE(strangers.are_ended(100 - 16, 10000)) << half;
+  }
+  // Who is known stays, whatever strangers do.
+  EXPECT_EQ(client.post("/api/jobs/" + job + "/pen", R"({"client": "c1"})").status, 200);
+  EXPECT_TRUE(events.next("pen"));
 }
 
 // "name" in a ZIP archive, by libzip.
