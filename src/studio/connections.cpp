@@ -2,6 +2,7 @@
 
 #include <netdb.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -89,6 +90,21 @@ void Connections::opened() {
 void Connections::know(const Peer& peer) {
   const std::lock_guard lock(mutex_);
   open_.try_emplace(peer, Open{Clock::now(), true, 0}).first->second.known = true;
+}
+
+WatchedConnection::WatchedConnection(int port, const Peer& peer) {
+  for_each_connection(port, [&](int descriptor) {
+    if (descriptor_ < 0 && peer_of(descriptor) == peer) descriptor_ = ::dup(descriptor);
+  });
+}
+
+WatchedConnection::~WatchedConnection() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool WatchedConnection::is_left() const {
+  pollfd line{descriptor_, POLLRDHUP, 0};
+  return descriptor_ >= 0 && ::poll(&line, 1, 0) > 0;
 }
 
 void Connections::watch() {

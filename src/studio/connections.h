@@ -70,6 +70,22 @@ class Connections {
   std::thread thread_;
 };
 
+// One of them, by which its other side is watched.
+class WatchedConnection {
+ public:
+  WatchedConnection(int port, const Peer& peer);
+  ~WatchedConnection();
+  WatchedConnection(const WatchedConnection&) = delete;
+  WatchedConnection& operator=(const WatchedConnection&) = delete;
+
+  // Whether the other side has closed it: cpp-httplib notices that when it writes the second time
+  // after that.
+  bool is_left() const;
+
+ private:
+  int descriptor_ = -1;  // our own
+};
+
 // Shuts all of them, as ::shutdown does.
 void shut_connections(int port, int how);
 

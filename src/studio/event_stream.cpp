@@ -5,6 +5,7 @@ namespace {
 
 // A tab that sleeps may miss what it can ask for again.
 constexpr std::size_t kMostWaiting = 200;
+constexpr auto kHeartbeat = std::chrono::seconds(2);
 
 }  // namespace
 
@@ -31,9 +32,11 @@ bool EventStream::next(std::string& text, std::chrono::milliseconds at_most) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, at_most, [&] { return closed_ || !waiting_.empty(); });
   if (waiting_.empty() && closed_) return false;
-  text = waiting_.empty() ? ":\n\n" : "";
+  const auto now = std::chrono::steady_clock::now();
+  text = waiting_.empty() && now - sent_ >= kHeartbeat ? ":\n\n" : "";
   for (const Event& event : waiting_) text += event.text;
   waiting_.clear();
+  if (!text.empty()) sent_ = now;
   return true;
 }
 

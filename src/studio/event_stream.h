@@ -21,8 +21,8 @@ class EventStream {
   // No more events; those that wait are still sent.
   void close();
 
-  // What goes over the wire next; a comment after a while without events, so that a side that has
-  // gone is noticed. False at the end.
+  // What goes over the wire next, or nothing if nothing comes for so long; a comment after a while
+  // without events, so that a side that has gone without a word is noticed. False at the end.
   bool next(std::string& text, std::chrono::milliseconds at_most);
 
  private:
@@ -34,6 +34,7 @@ class EventStream {
   std::condition_variable changed_;
   std::deque<Event> waiting_;
   bool closed_ = false;
+  std::chrono::steady_clock::time_point sent_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace hydrodip

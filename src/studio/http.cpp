@@ -90,19 +90,25 @@ HttpAnswer plain_refusal(int status, const std::string& sentence) {
   return error_answer({status, "bad-request", sentence});
 }
 
+// After send().
+void send_stream(httplib::Response& to, const HttpAnswer& answer,
+                 std::shared_ptr<const WatchedConnection> connection) {
+  to.set_chunked_content_provider(
+      answer.type, [next = answer.stream, connection = std::move(connection)](
+                       std::size_t, httplib::DataSink& sink) {
+        std::string piece;
+        if (next(piece))
+          return piece.empty() ? !connection->is_left() : sink.write(piece.data(), piece.size());
+        sink.done();
+        return true;
+      });
+}
+
 void send(httplib::Response& to, const HttpAnswer& answer, bool and_close) {
   to.status = answer.status;
   for (const auto& [name, value] : answer.headers) to.set_header(name, value);
   if (and_close) return send_and_close(to, answer.type, answer.body);
-  if (answer.stream) {
-    to.set_chunked_content_provider(
-        answer.type, [next = answer.stream](std::size_t, httplib::DataSink& sink) {
-          std::string piece;
-          if (next(piece)) return piece.empty() || sink.write(piece.data(), piece.size());
-          sink.done();
-          return true;
-        });
-  } else if (answer.bytes && !answer.bytes->empty()) {
+  if (answer.bytes && !answer.bytes->empty()) {
     to.set_content_provider(
         answer.bytes->size(), answer.type,
         [bytes = answer.bytes](std::size_t at, std::size_t left, httplib::DataSink& sink) {
@@ -110,7 +116,7 @@ void send(httplib::Response& to, const HttpAnswer& answer, bool and_close) {
         });
   } else if (!answer.file.empty()) {
     send_file(to, answer);
-  } else {
+  } else if (!answer.stream) {
     to.set_content(answer.body, answer.type.c_str());
   }
 }
@@ -212,7 +218,10 @@ struct HttpServer::Impl {
       return Handled::Handled;
     }
     request.read_body = [](const auto&) { return true; };
-    send(to, handler(request), false);
+    const HttpAnswer answer = handler(request);
+    send(to, answer, false);
+    if (answer.stream)
+      send_stream(to, answer, std::make_shared<const WatchedConnection>(port, peer_of(from)));
     return Handled::Handled;
   }
 

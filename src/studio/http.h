@@ -34,7 +34,8 @@ struct HttpAnswer {
   std::string body = {};
   std::shared_ptr<const std::vector<std::uint8_t>> bytes = {};
   std::filesystem::path file = {};
-  // Asked for the next piece until it says false: a stream without an end. A piece is never empty.
+  // Of a request without a body: asked for the next piece until it says false, or the other side
+  // has gone; a stream without an end. A piece is empty where there is none yet.
   std::function<bool(std::string& piece)> stream = {};
 };
 

@@ -23,7 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMostThumbnail = 256 << 10U;
-constexpr auto kHeartbeat = std::chrono::seconds(2);
+// How soon it is noticed that a tab was closed.
+constexpr auto kBetweenLooks = std::chrono::milliseconds(200);
 
 HttpAnswer done() { return json_answer(Json::object()); }
 
@@ -91,7 +92,7 @@ HttpAnswer events(const JobRequest& asked) {
   HttpAnswer answer;
   answer.type = "text/event-stream";
   answer.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
-  answer.stream = [line](std::string& text) { return line->stream->next(text, kHeartbeat); };
+  answer.stream = [line](std::string& text) { return line->stream->next(text, kBetweenLooks); };
   return answer;
 }
 

@@ -44,6 +44,10 @@ class Door {
     return end;
   }
   static Peer peer_with(int end) { return {"127.0.0.1", port_of(end)}; }
+  void close(int end) {
+    std::erase(ends_, end);
+    ::close(end);
+  }
 
  private:
   static int port_of(int socket) {
@@ -61,6 +65,19 @@ class Door {
 bool is_ended(int end, int at_most_ms) {
   pollfd one{end, POLLRDHUP, 0};
   return ::poll(&one, 1, at_most_ms) > 0;
+}
+
+TEST(WatchedConnection, SaysWhenTheOtherSideHasGone) {
+  Door door;
+  const int first = door.connect(), second = door.connect();
+  const WatchedConnection of_first(door.port(), Door::peer_with(first)),
+      of_second(door.port(), Door::peer_with(second));
+  EXPECT_FALSE(of_first.is_left());
+  ASSERT_EQ(::send(first, "x", 1, 0), 1);
+  EXPECT_FALSE(of_first.is_left()) << "what was sent and not read is no farewell";
+  door.close(first);
+  EXPECT_TRUE(of_first.is_left());
+  EXPECT_FALSE(of_second.is_left());
 }
 
 TEST(Connections, EndThoseOfStrangersBeyondTheirBounds) {
