@@ -11,9 +11,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <memory>
+#include <regex>
 #include <system_error>
 
 #include "base/error.h"
+#include "base/file_lock.h"
 #include "base/run_scope.h"
 
 namespace hydrodip {
@@ -62,19 +64,55 @@ std::filesystem::path behind_links(std::filesystem::path path) {
   return path;
 }
 
-// A file beside the one that it is to become; it goes again unless it does.
+// Short, as the target's own name may be as long as names can be.
+std::string part_name(int process, int number) {
+  return fmt::format(".hydrodip-{}-{}.part", process, number);
+}
+
+bool is_part_name(const std::string& name) {
+  static const std::regex kPattern(R"(\.hydrodip-[0-9]+-[0-9]+\.part)");
+  return std::regex_match(name, kPattern);
+}
+
+// Parts that nobody has locked were left by processes that were killed.
+void clear_abandoned_parts(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::vector<std::filesystem::path> found;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error))
+    if (is_part_name(it->path().filename().string())) found.push_back(it->path());
+  for (const std::filesystem::path& part : found) {
+    const FileLock lock(::open(part.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC), part);
+    if (lock.state() == FileLock::State::kHeld) ::unlink(part.c_str());
+  }
+}
+
+// A file beside the one that it is to become; it goes again unless it does. Locked as long as it is
+// written.
 class Part {
  public:
   // `path`: as the user calls the target.
   Part(const std::filesystem::path& target, const std::filesystem::path& path) : path_(path) {
-    int descriptor = -1;
-    // Short, as the target's own name may be as long as names can be.
-    for (int number = 0; descriptor < 0; ++number) {
-      part_ = target.parent_path() / fmt::format(".hydrodip-{}-{}.part", ::getpid(), number);
-      descriptor = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor < 0 && errno != EEXIST) refuse_write(path_, errno);
+    std::filesystem::path folder = target.parent_path();
+    if (folder.empty()) folder = ".";
+    clear_abandoned_parts(folder);
+    for (int number = 0; !file_; ++number) {
+      part_ = folder / part_name(::getpid(), number);
+      const int descriptor = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor < 0 && errno == EEXIST) continue;
+      if (descriptor < 0) refuse_write(path_, errno);
+      lock_ = FileLock(descriptor, part_);
+      // Another who cleared up may have come between.
+      if (lock_.state() == FileLock::State::kTaken || lock_.state() == FileLock::State::kGone)
+        continue;
+      const int own = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+      if (own < 0) {
+        const int error = errno;
+        ::unlink(part_.c_str());
+        refuse_write(path_, error);
+      }
+      file_.reset(::fdopen(own, "wb"));
     }
-    file_.reset(::fdopen(descriptor, "wb"));
   }
   ~Part() {
     if (!part_.empty()) ::unlink(part_.c_str());
@@ -108,6 +146,7 @@ class Part {
   }
 
   std::filesystem::path path_, part_;
+  FileLock lock_;
   File file_;
 };
 

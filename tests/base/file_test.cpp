@@ -1,12 +1,16 @@
 #include "base/file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "base/error.h"
+#include "base/file_lock.h"
 #include "base/run_scope.h"
 #include "contains.h"
 #include "refusal.h"
@@ -76,6 +80,41 @@ TEST(WholeFile, LeavesNothingWhereItEndsEarly) {
   }
   EXPECT_EQ(text_in(folder / "file"), "old");
   EXPECT_EQ(entries_of(folder.path()), 1U);
+}
+
+TEST(WholeFile, ClearsUpWhatKilledProcessesLeftAndNothingElse) {
+  const TemporaryFolder folder;
+  write_file(folder / ".hydrodip-1-0.part", "left");
+  write_file(folder / ".hydrodip-1-1.part", "being written");
+  const auto written = folder / ".hydrodip-1-1.part";
+  const FileLock lock(::open(written.c_str(), O_WRONLY | O_CLOEXEC), written);
+  ASSERT_EQ(lock.state(), FileLock::State::kHeld);
+  const std::array<const char*, 4> of_others = {".hydrodip-1-x.part", ".hydrodip-mine.part",
+                                                "hydrodip-1-0.part", ".hydrodip-1-0.part.old"};
+  for (const char* name : of_others) write_file(folder / name, "mine");
+  std::filesystem::create_symlink(of_others[0], folder / ".hydrodip-2-0.part");
+  std::filesystem::create_directory(folder / ".hydrodip-3-0.part");
+  write_whole(folder / "file", "new");
+  EXPECT_FALSE(std::filesystem::exists(folder / ".hydrodip-1-0.part"));
+  EXPECT_EQ(text_in(written), "being written");
+  for (const char* name : of_others) EXPECT_EQ(text_in(folder / name), "mine");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / ".hydrodip-2-0.part"));
+  EXPECT_TRUE(std::filesystem::is_directory(folder / ".hydrodip-3-0.part"));
+  EXPECT_EQ(text_in(folder / "file"), "new");
+  EXPECT_EQ(entries_of(folder.path()), of_others.size() + 4);
+}
+
+// Each clears up before it writes: none may take another's part for left behind.
+TEST(WholeFile, ManyThatAreWrittenAtOnceAllCome) {
+  const TemporaryFolder folder;
+  const std::string text(std::size_t(1) << 16U, 'x');
+  std::vector<std::thread> writers;
+  for (int writer = 0; writer < 4; ++writer)
+    writers.emplace_back([&, writer] {
+      for (int n = 0; n < 50; ++n) write_whole(folder / std::to_string(100 * writer + n), text);
+    });
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_EQ(entries_of(folder.path()), 200U);
 }
 
 TEST(WholeFile, IsRefusedWhereItMayNotBe) {
