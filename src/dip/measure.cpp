@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "dip/principal_stretch.h"
+#include "film/film_normals.h"
 #include "film/over_edge.h"
 
 namespace hydrodip {
@@ -70,11 +71,7 @@ TriangleMeasure measure_triangle(const FilmMesh& film, const DippedFilm& dipped,
   const PrincipalStretches stretches = principal_stretches(flat, on.position);
   m.stretch = stretches.largest;
   m.least_stretch = stretches.least;
-  const auto is_near_object = [&](const Vec3& point, double within_mm) {
-    return surface.closest_point(point, within_mm).has_value();
-  };
-  if (const auto direction =
-          direction_over_edge(on.position, on.normal, on.up, dipped.z_stretch, is_near_object))
+  if (const auto direction = direction_over_edge(dipped, on, surface))
     if (const auto parts = parts_over_edge(on.position, on.normal, *direction))
       measure_parts(flat, *parts, m);
   return m;
@@ -183,9 +180,7 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
   result.up = state.up;
   if (options.method == DipMethod::kFull) result.z_stretch = options.material.z_stretch;
   if (state.moment.moved) hold_rim(state.moment, result);
-  std::vector<std::uint8_t> attached;
-  for (const VertexState at : state.state) attached.push_back(at == VertexState::kAttached);
-  result.normal = normals_near(surface, state.position, attached);
+  result.normal = film_normals(result, surface);
 
   const std::size_t vertices = film.u.size();
   // Vertices on the object are measured on the film that lies there; others on all around them.

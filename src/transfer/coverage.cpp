@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "transfer/film_normals.h"
+#include "film/film_normals.h"
 
 namespace hydrodip {
 namespace {

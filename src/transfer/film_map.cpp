@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "film/film_normals.h"
 #include "film/locate.h"
 #include "transfer/covered_rim.h"
-#include "transfer/film_normals.h"
 #include "transfer/film_over_object.h"
 
 namespace hydrodip {

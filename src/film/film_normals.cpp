@@ -1,4 +1,4 @@
-#include "transfer/film_normals.h"
+#include "film/film_normals.h"
 
 #include <cstdint>
 
