@@ -6,12 +6,11 @@ import {
 } from '../document.ts';
 import { addFiles, change, hello, job, layer } from '../studio.ts';
 import { t } from '../strings.ts';
-import { Button, CheckField, ColorField, Files, Group, NumberField, SelectField, TextField } from './fields.tsx';
+import { AxisFields, Button, CheckField, ColorField, Files, Group, NumberField, SelectField, TextField } from './fields.tsx';
 import { focusIfLost, focusOn } from './focus.ts';
 import { frameOf } from './handles.tsx';
 import { Icon } from './icons.tsx';
 import { extensions } from './model.tsx';
-import { AXES } from './pose.tsx';
 
 export function ArtworkStep() {
   const open = job.value!;
@@ -95,7 +94,7 @@ function LayerForm() {
   const projection = entry.projection ?? 'planar';
   const onFilm = projection === 'film';
   const mesh = open.mesh.value;
-  const center = entry.at_mm ?? null;
+  const center: Vec3 = entry.at_mm ?? [0, 0, 0];
   return (
     <section class="group" aria-label={layerName(entry)}>
       {entry.text !== undefined && (
@@ -129,28 +128,20 @@ function LayerForm() {
       {open.dryLayers.value.includes(at) && <p class="said care"><Icon name="care" /> {t.artwork.dryHelp}</p>}
       {laid && <p class="soft" data-name="laid">{t.artwork.laid(...laid.size_mm, onFilm)}{laid.stretch[0] !== laid.stretch[1] ? `, ${t.artwork.stretched(...laid.stretch)}` : ''}</p>}
       {onFilm && <p class="soft">{t.artwork.patternHint}</p>}
-      {isRound(projection) && !center && <p class="soft">{t.artwork.roundHint}</p>}
+      {isRound(projection) && !entry.at_mm && <p class="soft">{t.artwork.roundHint}</p>}
       <details>
         <summary>{t.artwork.more}</summary>
-        <fieldset class={onFilm ? 'triple two' : 'triple'}>
-          <legend>{onFilm ? t.artwork.onFilm : t.artwork.at}, mm</legend>
-          {AXES.slice(0, onFilm ? 2 : 3).map((axis, k) => (
-            <NumberField
-              key={axis}
-              inline
-              name={`at-${axis}`}
-              label={axis}
-              unit="mm"
-              unitElsewhere
-              empty="–"
-              value={center ? center[k]! : null}
-              onChange={(next, live) => {
-                const from = center ?? [0, 0, 0];
-                set({ at_mm: next === null ? undefined : (from.map((c, i) => (i === k ? next : c)) as Vec3) }, live, t.undo.layerMove);
-              }}
-            />
-          ))}
-        </fieldset>
+        <AxisFields
+          legend={`${onFilm ? t.artwork.onFilm : t.artwork.at}, mm`}
+          name="at"
+          unit="mm"
+          unitElsewhere
+          count={onFilm ? 2 : 3}
+          values={center}
+          unset={!entry.at_mm}
+          onChange={(at_mm, live) => set({ at_mm }, live, t.undo.layerMove)}
+          onEmptied={() => set({ at_mm: undefined }, false, t.undo.layerMove)}
+        />
         <NumberField name="fade" label={t.artwork.fade} unit="°" min={0} max={90} step={5} value={entry.fade_deg ?? 90} onChange={(next, live) => set({ fade_deg: next === null || next === 90 ? undefined : next }, live)} />
         <SelectField name="blend" label={t.artwork.blend} value={entry.blend ?? 'normal'} options={Object.entries(t.artwork.blends)} onChange={(blend) => set({ blend: blend === 'normal' ? undefined : 'multiply' })} />
         <CheckField name="through" label={t.artwork.through} checked={entry.through ?? false} onChange={(through) => set({ through: through || undefined })} />

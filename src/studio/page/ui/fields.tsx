@@ -126,6 +126,39 @@ export function NumberField({ label, value, unit, min, max, step = 1, empty, too
   );
 }
 
+const AXES = ['x', 'y', 'z'] as const;
+
+interface AxisProps<Values extends number[]> extends Pick<NumberProps, 'unit' | 'unitElsewhere' | 'min' | 'max' | 'step' | 'disabled'> {
+  legend: string;
+  name: string; // of the fields, with -x, -y and -z behind it
+  values: Values; // along x, y and so on
+  count?: 2 | 3; // of the values; all of them
+  unset?: boolean; // the values stand for nothing yet
+  onChange: (values: Values, live: boolean) => void;
+  onEmptied?: () => void;
+}
+
+export function AxisFields<Values extends number[]>({ legend, name, values, count, unset, onChange, onEmptied, ...field }: AxisProps<Values>) {
+  const axes = AXES.slice(0, count ?? values.length);
+  return (
+    <fieldset class={axes.length === 2 ? 'triple two' : 'triple'}>
+      <legend>{legend}</legend>
+      {axes.map((axis, k) => (
+        <NumberField
+          key={axis}
+          inline
+          name={`${name}-${axis}`}
+          label={axis}
+          empty={onEmptied && '–'}
+          value={unset ? null : values[k]!}
+          onChange={(next, live) => (next === null ? onEmptied?.() : onChange(values.map((old, i) => (i === k ? next : old)) as Values, live))}
+          {...field}
+        />
+      ))}
+    </fieldset>
+  );
+}
+
 interface SelectProps {
   label: string;
   value: string;

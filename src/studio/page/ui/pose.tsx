@@ -1,10 +1,8 @@
 // How the object hangs, in figures: for the only dip, or for the one that is shown.
-import type { Side, Vec3 } from '../document.ts';
+import type { Side } from '../document.ts';
 import { changePose, chooseTool, goStraightDown, ownWay, pose, tool, wholeDepth } from '../studio.ts';
 import { t } from '../strings.ts';
-import { Button, Group, NumberField, SelectField } from './fields.tsx';
-
-export const AXES = ['x', 'y', 'z'] as const;
+import { AxisFields, Button, Group, NumberField, SelectField } from './fields.tsx';
 
 export function PoseFields() {
   const now = pose.value;
@@ -18,23 +16,16 @@ export function PoseFields() {
         options={Object.entries(t.model.sides)}
         onChange={(down) => changePose({ down: down as Side })}
       />
-      <fieldset class="triple">
-        <legend>{t.model.turn}</legend>
-        {AXES.map((axis, k) => (
-          <NumberField
-            key={axis}
-            inline
-            name={`turn-${axis}`}
-            label={axis}
-            unit="°"
-            min={-3600}
-            max={3600}
-            step={5}
-            value={now.rotate_deg[k]!}
-            onChange={(next, live) => changePose({ rotate_deg: now.rotate_deg.map((a, i) => (i === k ? (next ?? 0) : a)) as Vec3 }, live)}
-          />
-        ))}
-      </fieldset>
+      <AxisFields
+        legend={t.model.turn}
+        name="turn"
+        unit="°"
+        min={-3600}
+        max={3600}
+        step={5}
+        values={now.rotate_deg}
+        onChange={(rotate_deg, live) => changePose({ rotate_deg }, live)}
+      />
       <NumberField
         name="depth"
         label={t.model.depth}
@@ -48,23 +39,16 @@ export function PoseFields() {
         value={now.depth_mm || null}
         onChange={(next, live) => changePose({ depth_mm: next ?? 0 }, live)}
       />
-      <fieldset class="triple two">
-        <legend>{t.model.shift}</legend>
-        {(['x', 'y'] as const).map((axis, k) => (
-          <NumberField
-            key={axis}
-            inline
-            name={`shift-${axis}`}
-            label={axis}
-            unit="mm"
-            min={-2000}
-            max={2000}
-            disabled={ownWay.value}
-            value={now.shift_mm[k]!}
-            onChange={(next, live) => changePose({ shift_mm: now.shift_mm.map((s, i) => (i === k ? (next ?? 0) : s)) as [number, number] }, live)}
-          />
-        ))}
-      </fieldset>
+      <AxisFields
+        legend={t.model.shift}
+        name="shift"
+        unit="mm"
+        min={-2000}
+        max={2000}
+        disabled={ownWay.value}
+        values={now.shift_mm}
+        onChange={(shift_mm, live) => changePose({ shift_mm }, live)}
+      />
       {ownWay.value && (
         <>
           <p class="soft">{t.model.ownWayHelp}</p>
