@@ -145,7 +145,11 @@ bool is_draft(const DesignOptions& options) {
          options.rounds_max == 1;
 }
 
-double InkResult::last_change_mm() const { return rounds.empty() ? 0 : rounds.back().change_mm; }
+double InkResult::last_change_mm() const {
+  for (std::size_t n = rounds.size(); n-- > 1;)
+    if (rounds[n].step_mm == rounds[n - 1].step_mm) return rounds[n].change_mm;
+  return 0;
+}
 
 Designed design_on(const DesignTask& task, const DippedObject& dipped, const RunContext& context) {
   const RunScope scope(context);

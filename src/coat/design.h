@@ -55,6 +55,7 @@ struct FilmInk {
 struct InkRound {
   bool tears_kept = false;  // torn as in an earlier round
   double change_mm = 0;     // mean way of the film on the object since the round before
+  double step_mm = 0;       // of its dip
   double printed_mm2 = 0;   // area of the film image that carries colour
   double mean_modulus = 1;  // of the film that was dipped, over blank film
   DipStatistics dip;
@@ -66,7 +67,8 @@ struct InkResult {
   std::vector<InkRound> rounds;
   bool settled = false;
 
-  // The mean way that the last round moved the film.
+  // The mean way that the last round moved the film whose dip went in the same steps as the one
+  // before: other steps move it, too.
   double last_change_mm() const;
 };
 

@@ -168,6 +168,7 @@ void InkRounds::judge() {
   round.tears_kept = !dip_options_.tears_at_mm.empty();
   if (before_) round.change_mm = mean_way(*before_->film, *dipped_->film);
   round.printed_mm2 = printed_area_mm2(ink_.wanted, rounds_dpi_);
+  round.step_mm = dip_options_.step_mm;
   round.mean_modulus = mean_of(dip_options_.modulus);
   round.dip = dipped_->statistics;
   rounds_.push_back(round);

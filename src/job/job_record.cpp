@@ -75,6 +75,7 @@ std::vector<ReportFigure> ink_figures(const InkRound& round, bool first) {
   std::vector<ReportFigure> figures = {
       {"printed_area_mm2", "Printed area", round.printed_mm2, "mm2"},
       {"mean_modulus", "Mean stiffness over blank film", round.mean_modulus, ""},
+      {"step_mm", "Steps of the dip", round.step_mm, "mm"},
       {"tears_kept", "Tears kept from before", round.tears_kept, ""}};
   if (!first)
     figures.insert(figures.begin(),
@@ -101,7 +102,7 @@ void add_ink(const JobRecord& record, std::vector<ReportFigure>& figures) {
       figures.end(),
       {{"ink_rounds", "Rounds", std::int64_t(record.ink->rounds.size()), ""},
        {"ink_settled", "Ink settled", record.ink->settled, ""},
-       {"ink_last_change_mm", "Last mean change of whole film on the object",
+       {"ink_last_change_mm", "Mean change of whole film on the object by the last ink",
         record.ink->last_change_mm(), "mm"},
        {"lightened", "Factor on all inks (gamut.policy=scale)", record.ink->ink.inking.lightened,
         ""},

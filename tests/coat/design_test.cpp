@@ -131,5 +131,22 @@ TEST(InkRounds, AreMadeAtMostAsOftenAsAsked) {
   EXPECT_EQ(all.result.last_change_mm(), all.result.rounds.back().change_mm);
 }
 
+// What is said to settle is the ink: that its last dip goes in finer steps than the rounds moves
+// the film besides, and is no news of the ink.
+TEST(InkRounds, TellWhatTheInkMovesAndNotWhatOtherStepsDo) {
+  DesignOptions options = quick(3000);
+  options.dip.step_mm = 0.5;
+  options.trajectory.depth_mm = 20;
+  options.rounds_step_mm = 4;
+  options.rounds_max = 6;
+  options.settled_mm = 0.01;
+  const InkResult made = settled(make_sample("sphere"), options).result;
+  ASSERT_TRUE(made.settled);
+  ASSERT_GT(made.rounds.size(), 3U);
+  EXPECT_EQ(made.rounds.back().step_mm, 0.5);
+  EXPECT_GT(made.rounds.back().change_mm, options.settled_mm);
+  EXPECT_LT(made.last_change_mm(), options.settled_mm);
+}
+
 }  // namespace
 }  // namespace hydrodip
