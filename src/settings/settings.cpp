@@ -215,6 +215,19 @@ void require_dips_alone_say(const JobConfig& config, const SettingSources& sourc
             s.origin == "--set" ? "--set " + s.name : s.origin));
 }
 
+// One depth for several dips would be passed over: each has its own, which is looked for.
+void require_no_common_depth(const JobConfig& config, const SettingSources& sources) {
+  if (config.plan.dips < 2 || !config.dips.empty() || !(config.design.trajectory.depth_mm > 0))
+    return;
+  for (const auto* settings : {&sources.options, &sources.sets})
+    for (const Setting& s : *settings)
+      if (s.name == "dip.depth_mm")
+        throw InputError(fmt::format(
+            "{}: each of several dips has a depth of its own, which is looked for: leave this out, "
+            "or give each dip its depth in a [[dip]] table (depth_mm)",
+            s.origin == "--set" ? "--set " + s.name : s.origin));
+}
+
 // Of a path and a depth beside it one would be passed over.
 void require_one_way_down(const JobConfig& config, const std::string& model) {
   const bool has_path = !config.design.trajectory.path.empty();
@@ -242,6 +255,7 @@ JobConfig configured(const std::string& model, SettingSources sources) {
   if (is_job) sources.configs.insert(sources.configs.begin(), model);
   apply_sources(config, sources);
   require_dips_alone_say(config, sources);
+  require_no_common_depth(config, sources);
   require_one_way_down(config, model);
   if (!is_job && !model.empty()) config.model = model;
   if (is_job) require_no_parts(model);
