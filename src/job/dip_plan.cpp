@@ -62,9 +62,11 @@ class Planning {
            bool again, const RunContext& context)
       : config_(config),
         prepared_(prepared),
+        targets_(targets),
         again_(again),
         context_(context),
-        task_(among_several(job_trials(config, prepared, targets))),
+        wanted_(std::max(config.plan.dips, int(config.dips.size()))),
+        task_(to_any_depth(job_trials(config, prepared, targets), wanted_)),
         sought_(as_sought(task_)) {}
 
   DipPlan run() {
@@ -75,8 +77,10 @@ class Planning {
                       "or ask for as many or more",
                       config_.dips.size(), config_.plan.dips));
     std::vector<Trial> chosen = given();
-    const int wanted = std::max(config_.plan.dips, int(config_.dips.size()));
-    if (int(chosen.size()) < wanted) chosen = search(std::move(chosen), wanted);
+    if (chosen.empty() && wanted_ == 1)
+      chosen = {best_alone()};
+    else if (int(chosen.size()) < wanted_)
+      chosen = search(std::move(chosen), wanted_);
     if (chosen.empty())
       throw InputError(fmt::format(
           "no way to hold the object was found in which film stays whole on it{}",
@@ -88,9 +92,9 @@ class Planning {
   }
 
  private:
-  static TrialTask among_several(TrialTask task) {
+  static TrialTask to_any_depth(TrialTask task, int dips) {
     task.depth_mm = 0;
-    task.torn_price = kTornPriceAmongSeveral;
+    if (dips > 1) task.torn_price = kTornPriceAmongSeveral;
     return task;
   }
   static TrialTask as_sought(TrialTask task) {
@@ -135,6 +139,15 @@ class Planning {
     if (chosen.size() == given.size()) return;
     if (auto sure = try_pose(task, chosen.back().pose, 0, context_.quiet()))
       given.push_back(std::move(*sure));
+  }
+
+  // No other brings what it tears: what `orient` recommends.
+  Trial best_alone() {
+    JobConfig config = config_;
+    config.plan.find_depth = config.plan.find_depth || !(config.design.trajectory.depth_mm > 0);
+    SearchResult found = find_holds(config, prepared_, targets_, context_);
+    plan_.trial_dips += found.trials.size();
+    return std::move(found.best.front());
   }
 
   // On the film of trial dips first; then what is chosen of those is looked at again, until it has
@@ -233,8 +246,10 @@ class Planning {
 
   const JobConfig& config_;
   const PreparedObject& prepared_;
+  const Targets& targets_;
   const bool again_;
   const RunContext& context_;
+  const int wanted_;
   const TrialTask task_;    // as the job dips
   const TrialTask sought_;  // as dips are chosen
   DipPlan plan_;
