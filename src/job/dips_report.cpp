@@ -24,22 +24,6 @@ bool lies_in_doubt(const MadeDip& dip, const Target& node) {
                      doubtful_stretch(dip.config.design.dip.material));
 }
 
-// Why a dip is not to be made, whatever the others bring.
-std::optional<ReportObstacle> obstacle_of(const MadeDip& dip, std::size_t of) {
-  Report report;
-  report.dip_number = dip.number;
-  report.dip_of = int(of);
-  report.coverage = dip.made.dipped.coverage;
-  report.air = dip.made.dipped.air;
-  report.equilibrium = equilibrium_of(dip.made.dipped.statistics, &dip.made.ink);
-  report.tear_stretch = dip.config.design.dip.material.tear_stretch;
-  // Of tears and bare surface all together decide.
-  for (const Finding& finding : findings(report))
-    if (finding.concern == Concern::kStop && finding.key != "tears" && finding.key != "coverage")
-      return ReportObstacle{finding.title + ": " + finding.figure, finding.text, finding.advice};
-  return std::nullopt;
-}
-
 // What becomes of the surface.
 struct Brought {
   std::vector<double> gained;  // per dip: the part covered by it and those before, not without it
@@ -96,33 +80,44 @@ Brought brought_by(const MadeDips& all, const SharedSurface& shared) {
   return result;
 }
 
-// Of all films together: the surface under those that bring its ink, all film that meets the
-// object, whatever wrinkles or was lifted.
+// Of all films together: the surface under those that bring its ink, and the films.
 Coverage coverage_together(const MadeDips& all, const Brought& brought) {
-  Coverage sum;
+  std::vector<const DippedObject*> dips;
+  for (const MadeDip& dip : all.dips) dips.push_back(&dip.made.dipped);
+  Coverage sum = films_together(dips);
   const double scale = all.prepared.posed.scale();
   sum.object_mm2 = sum.downward_mm2 = scale * scale * all.nodes->targets().area;
   for (const double share : brought.gained) sum.covered_mm2 += share * sum.object_mm2;
   sum.covered_downward_mm2 = sum.covered_mm2;
   sum.doubtful_mm2 = brought.doubtful_share * sum.object_mm2;
-  double stretch = 0, area_ratio = 0;
-  for (const MadeDip& dip : all.dips) {
-    const Coverage& c = dip.made.dipped.coverage;
-    sum.film_on_object_mm2 += c.film_on_object_mm2;
-    sum.torn_mm2 += c.torn_mm2;
-    sum.wrinkled_mm2 += c.wrinkled_mm2;
-    sum.lifted_mm2 += c.lifted_mm2;
-    if (c.lifted_mm2 > 0) sum.lifted_at = c.lifted_at;
-    sum.stretch_max = std::max(sum.stretch_max, c.stretch_max);
-    sum.area_ratio_max = std::max(sum.area_ratio_max, c.area_ratio_max);
-    stretch += c.stretch_mean * c.film_on_object_mm2;
-    area_ratio += c.area_ratio_mean * c.film_on_object_mm2;
-  }
-  if (sum.film_on_object_mm2 > 0) {
-    sum.stretch_mean = stretch / sum.film_on_object_mm2;
-    sum.area_ratio_mean = area_ratio / sum.film_on_object_mm2;
-  }
   return sum;
+}
+
+// The air of each, largest first.
+std::shared_ptr<const TrappedAir> air_together(const MadeDips& all) {
+  if (all.dips.size() == 1) return all.dips.front().made.dipped.air;
+  auto sum = std::make_shared<TrappedAir>();
+  for (const MadeDip& dip : all.dips) {
+    const TrappedAir& air = *dip.made.dipped.air;
+    sum->pockets.insert(sum->pockets.end(), air.pockets.begin(), air.pockets.end());
+    sum->vents.insert(sum->vents.end(), air.vents.begin(), air.vents.end());
+    sum->cell_mm = std::max(sum->cell_mm, air.cell_mm);
+  }
+  const auto larger = [](const auto& a, const auto& b) { return a.area_mm2 > b.area_mm2; };
+  std::stable_sort(sum->pockets.begin(), sum->pockets.end(), larger);
+  std::stable_sort(sum->vents.begin(), sum->vents.end(), larger);
+  return sum;
+}
+
+// Colours are as far off as in the dip that is known least. What found no equilibrium, its dip
+// tells.
+ReportEquilibrium equilibrium_together(const MadeDips& all) {
+  ReportEquilibrium worst;
+  for (const MadeDip& dip : all.dips) {
+    const ReportEquilibrium own = equilibrium_of(dip.made.dipped.statistics, &dip.made.ink);
+    worst.unsettled_mm = std::max(worst.unsettled_mm, own.unknown_mm());
+  }
+  return worst;
 }
 
 // Which part each does, and what is covered after it.
@@ -135,19 +130,21 @@ std::vector<ReportDip> report_dips(const MadeDips& all, const SharedSurface& sha
     const MadeDip& dip = all.dips[k];
     so_far += brought.gained[k];
     const Vec3& rotate = dip.trial.pose.rotate_deg;
-    list.push_back({side_name(dip.trial.pose.down),
-                    {rotate.x(), rotate.y(), rotate.z()},
-                    dip.trial.depth_mm,
-                    describe_hold(dip.trial.pose, way_up(all.config)),
-                    dip.folder,
-                    parts[k],
-                    brought.gained[k],
-                    so_far,
-                    dip.made.dipped.coverage.torn_share(),
-                    obstacle_of(dip, all.dips.size()),
-                    brought.wanted ? std::optional(brought.gained_wanted[k]) : std::nullopt,
-                    dip.blank,
-                    dip.trial.path});
+    list.push_back(
+        {side_name(dip.trial.pose.down),
+         {rotate.x(), rotate.y(), rotate.z()},
+         dip.trial.depth_mm,
+         describe_hold(dip.trial.pose, way_up(all.config)),
+         dip.folder,
+         parts[k],
+         brought.gained[k],
+         so_far,
+         dip.made.dipped.coverage.torn_share(),
+         obstacle_of(dip.made.dipped, &dip.made.ink, dip.config.design.dip.material.tear_stretch,
+                     std::size_t(dip.number), all.dips.size()),
+         brought.wanted ? std::optional(brought.gained_wanted[k]) : std::nullopt,
+         dip.blank,
+         dip.trial.path});
   }
   return list;
 }
@@ -180,7 +177,11 @@ Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishC
   const Brought brought = brought_by(all, shared);
   report.coverage = coverage_together(all, brought);
   report.wanted = brought.wanted;
-  if (all.dips.size() > 1) report.together = brought.everywhere;
+  report.air = air_together(all);
+  if (all.dips.size() > 1) {
+    report.together = brought.everywhere;
+    report.equilibrium = equilibrium_together(all);
+  }
   report.angles.reset();
   report.figures = {model_size(all.prepared.posed)};
   report.rounds.clear();
@@ -190,6 +191,49 @@ Report report_on(const MadeDips& all, const SharedSurface& shared, const FinishC
                              check.seam_error(), FinishCheck::kOff_mm, check.seam_error_off()};
   report.outputs = outputs_of(all);
   return report;
+}
+
+std::optional<ReportObstacle> obstacle_of(const DippedObject& dipped, const InkResult* ink,
+                                          double tear_stretch, std::size_t number, std::size_t of) {
+  if (of == 1) return std::nullopt;  // the report is its own
+  Report report;
+  report.dip_number = int(number);
+  report.dip_of = int(of);
+  report.coverage = dipped.coverage;
+  report.air = dipped.air;
+  report.equilibrium = equilibrium_of(dipped.statistics, ink);
+  report.tear_stretch = tear_stretch;
+  std::optional<ReportObstacle> air;
+  for (const Finding& finding : findings(report)) {
+    const ReportObstacle told{finding.title + ": " + finding.figure, finding.text, finding.advice,
+                              finding.concern == Concern::kStop};
+    // Of tears and bare surface all together decide.
+    if (told.forbids && finding.key != "tears" && finding.key != "coverage") return told;
+    if (!air && (finding.key == "air" || finding.key == "vent")) air = told;
+  }
+  return air;
+}
+
+Coverage films_together(const std::vector<const DippedObject*>& dips) {
+  Coverage sum;
+  double stretch = 0, area_ratio = 0;
+  for (const DippedObject* dip : dips) {
+    const Coverage& c = dip->coverage;
+    sum.film_on_object_mm2 += c.film_on_object_mm2;
+    sum.torn_mm2 += c.torn_mm2;
+    sum.wrinkled_mm2 += c.wrinkled_mm2;
+    sum.lifted_mm2 += c.lifted_mm2;
+    if (c.lifted_mm2 > 0) sum.lifted_at = c.lifted_at;
+    sum.stretch_max = std::max(sum.stretch_max, c.stretch_max);
+    sum.area_ratio_max = std::max(sum.area_ratio_max, c.area_ratio_max);
+    stretch += c.stretch_mean * c.film_on_object_mm2;
+    area_ratio += c.area_ratio_mean * c.film_on_object_mm2;
+  }
+  if (sum.film_on_object_mm2 > 0) {
+    sum.stretch_mean = stretch / sum.film_on_object_mm2;
+    sum.area_ratio_mean = area_ratio / sum.film_on_object_mm2;
+  }
+  return sum;
 }
 
 std::vector<std::string> file_names(const MadeDips& all) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
@@ -12,6 +13,7 @@
 #include "job/ways.h"
 #include "report/findings.h"
 #include "settings/artwork_tables.h"
+#include "settings/dip_tables.h"
 #include "settings/params.h"
 #include "settings/path_file.h"
 
@@ -244,6 +246,22 @@ Report make_report(const JobRecord& record) {
   return report;
 }
 
+namespace {
+
+// Where one of them is for nothing already, one more is no help.
+std::string better_dips(const Report& report) {
+  const std::vector<Finding> list = findings(report);
+  const bool has_idle =
+      std::any_of(list.begin(), list.end(), [](const auto& f) { return f.key == "idle_dips"; });
+  if (has_idle || report.dips.size() >= std::size_t(kMostDips))
+    return "hydrodip plan looks for better ways to hold it.\n";
+  return fmt::format(
+      "hydrodip plan looks for better ways to hold it, and for more of them with --dips {}.\n",
+      report.dips.size() + 1);
+}
+
+}  // namespace
+
 JobResult describe_result(const Report& report, const std::filesystem::path& folder,
                           const std::string& places) {
   JobResult result;
@@ -261,10 +279,7 @@ JobResult describe_result(const Report& report, const std::filesystem::path& fol
                              "hydrodip orient looks for better ways to hold it; --rotate "
                              "auto{} takes the best.\n",
                              report.way_in.empty() ? " --depth auto" : "")
-                       : fmt::format(
-                             "hydrodip plan looks for better ways to hold it, and for more of them "
-                             "with --dips {}.\n",
-                             report.dips.size() + 1);
+                       : better_dips(report);
   result.text += places + fmt::format("wrote to {}:\n", folder.string());
   for (const ReportOutput& output : report.outputs) {
     result.files.push_back(output.name);

@@ -25,6 +25,8 @@ constexpr double kFewWrinkles = 0.01;        // of the film on the object
 constexpr double kNearLimit = 0.9;           // of the tear stretch
 constexpr double kMuchSteep = 0.1;           // of what faces down
 constexpr double kHardlyAnything = 0.002;    // of the surface: a dip not worth its sheet
+constexpr double kLittleGained = 0.03;       // the same, of a dip whose film is mostly lost
+constexpr double kMostlyTorn = 0.5;          // of a dip's film that meets the object
 constexpr double kFarOff_mm = 3;             // from there on a picture is not on the object
 
 Finding no_film(const Coverage& c, bool inside_out) {
@@ -169,13 +171,31 @@ Finding tears_of_several(const Report& report) {
               : "Take torn film off the water and the object before it dries."};
 }
 
+// Of what shall be printed, if that is not everywhere.
+double gain_of(const ReportDip& dip) { return dip.gained_wanted_share.value_or(dip.gained_share); }
+
+bool is_idle(const ReportDip& dip) { return dip.blank || gain_of(dip) < kHardlyAnything; }
+
+bool is_hardly_worth_it(const ReportDip& dip) {
+  return !is_idle(dip) && gain_of(dip) < kLittleGained && dip.torn_share > kMostlyTorn;
+}
+
+// " (--dips 5)": how to do without so many.
+std::string with_fewer(std::size_t dips, std::size_t fewer) {
+  return fmt::format(" (--dips {})", dips - fewer);
+}
+
+std::vector<std::size_t> numbers_of(const std::vector<ReportDip>& dips,
+                                    bool (*is_meant)(const ReportDip&)) {
+  std::vector<std::size_t> numbers;
+  for (std::size_t k = 0; k < dips.size(); ++k)
+    if (is_meant(dips[k])) numbers.push_back(k + 1);
+  return numbers;
+}
+
 // A sheet, a bath and an afternoon for nothing.
 void add_idle_dips(const std::vector<ReportDip>& dips, std::vector<Finding>& list) {
-  std::vector<std::size_t> idle;
-  for (std::size_t k = 0; k < dips.size(); ++k)
-    if (dips[k].blank ||
-        dips[k].gained_wanted_share.value_or(dips[k].gained_share) < kHardlyAnything)
-      idle.push_back(k + 1);
+  const std::vector<std::size_t> idle = numbers_of(dips, is_idle);
   if (idle.empty()) return;
   const bool one = idle.size() == 1;
   list.push_back(
@@ -183,16 +203,39 @@ void add_idle_dips(const std::vector<ReportDip>& dips, std::vector<Finding>& lis
        fmt::format("{}", fmt::join(idle, ", ")),
        one ? "adds hardly anything to what the others bring: its sheet is all but blank."
            : "add hardly anything to what the others bring: their sheets are all but blank.",
-       one ? "Take it away, or hold the object another way: 'hydrodip plan' looks for ways."
-           : "Take them away, or hold the object another way: 'hydrodip plan' looks for ways."});
+       idle.size() < dips.size()
+           ? fmt::format("Leave {} out{}, or hold the object another way.", one ? "it" : "them",
+                         with_fewer(dips.size(), idle.size()))
+           : "Hold the object another way: 'hydrodip plan' looks for ways."});
+}
+
+// Or for next to nothing.
+void add_poor_dips(const Report& report, std::vector<Finding>& list) {
+  const std::vector<ReportDip>& dips = report.dips;
+  const std::vector<std::size_t> poor = numbers_of(dips, is_hardly_worth_it);
+  if (poor.empty() || poor.size() == dips.size()) return;
+  const bool one = poor.size() == 1;
+  const std::string of = report.wanted ? "what shall be printed" : "the surface";
+  const ReportDip& first = dips[poor.front() - 1];
+  list.push_back(
+      {"poor_dips", Concern::kCare,
+       one ? "A dip hardly worth its film" : "Dips hardly worth their film",
+       fmt::format("{}", fmt::join(poor, ", ")),
+       one ? fmt::format("adds {} of {}, and {} of its film that meets the object tears.",
+                         percent(gain_of(first)), of, percent(first.torn_share))
+           : fmt::format("add less than {} of {} each, and most of their film tears.",
+                         percent(kLittleGained), of),
+       fmt::format("{}{} {} nearly as much.", one ? "One fewer" : "Fewer",
+                   with_fewer(dips.size(), poor.size()), one ? "brings" : "bring")});
 }
 
 // What is in the way of one of them is in the way of all.
 void add_obstacles(const std::vector<ReportDip>& dips, std::vector<Finding>& list) {
   for (std::size_t k = 0; k < dips.size(); ++k)
     if (const auto& obstacle = dips[k].obstacle)
-      list.push_back({"dip", Concern::kStop, fmt::format("Dip {}", k + 1), obstacle->what,
-                      obstacle->text, obstacle->advice});
+      list.push_back({"dip", obstacle->forbids ? Concern::kStop : Concern::kCare,
+                      fmt::format("Dip {}", k + 1), obstacle->what, obstacle->text,
+                      obstacle->advice});
 }
 
 // Rounded before it is written: -0.3 is not "-0".
@@ -323,8 +366,8 @@ void add_doubtful(const Coverage& c, const std::optional<ReportWanted>& wanted,
                         ? fmt::format(" Of what shall be printed and gets film it is {}.",
                                       percent(wanted->doubtful_share()))
                         : " Nothing of what shall be printed lies there.";
-  if (c.doubtful_mm2 > kLittleDoubt * c.covered_mm2 ||
-      (wanted && wanted->doubtful_share() > kLittleDoubt)) {
+  if ((wanted ? wanted->doubtful_share() : Coverage::share(c.doubtful_mm2, c.covered_mm2)) >
+      kLittleDoubt) {
     finding.concern = Concern::kCare;
     finding.advice =
         "Let nothing that matters lie there. How much your film bears a test dip tells "
@@ -501,6 +544,7 @@ std::vector<Finding> findings(const Report& report) {
     if (!report.better_way.empty())
       list.push_back({"better_way", Concern::kNone, "Better", "", report.better_way + ".", ""});
     add_idle_dips(report.dips, list);
+    add_poor_dips(report, list);
     add_obstacles(report.dips, list);
     if (report.seams && report.seams->length_mm > 0) list.push_back(seams(*report.seams));
     if (c.film_on_object_mm2 > 0) {
@@ -508,7 +552,8 @@ std::vector<Finding> findings(const Report& report) {
       add_doubtful(c, report.wanted, list);
       list.push_back(stretch(c, report.tear_stretch));
       add_slack_film(c, list);
-      if (report.air) add_air(*report.air, c, list);
+      // Each of several tells its own.
+      if (report.air && report.dips.size() < 2) add_air(*report.air, c, list);
       if (report.angles) list.push_back(steepness(*report.angles));
       list.push_back(registration(report));
     }

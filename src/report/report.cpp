@@ -170,7 +170,8 @@ std::string several_dips_verdict(const Report& report) {
                                       " of what shall be printed" + only_perhaps(report.wanted)
                                 : percent(c.covered_share()) + " of the object",
              c.torn_mm2 > 0
-                 ? fmt::format("{} of the film that meets it tears.", percent(c.torn_share()))
+                 ? fmt::format("{} of the film that meets {} tears.", percent(c.torn_share()),
+                               has_wanted(report) ? "the object" : "it")
                  : "nothing tears.") +
          obstacle(findings(report));
 }

@@ -101,9 +101,11 @@ struct ReportWanted {
   double missed_share() const { return Coverage::share(reached_mm2 - covered_mm2, reached_mm2); }
 };
 
-// Why a dip is not to be made, whatever others bring: what, in words, and how to mend it.
+// Why a dip is not to be made, or what to mind of it, whatever others bring: what, in words, and
+// how to mend it.
 struct ReportObstacle {
   std::string what, text, advice;  // "Trapped air: 242 mm2", "of the surface stays dry..."
+  bool forbids = true;
 };
 
 // One of several dips, in the order in which they are made. Shares of the object's whole surface.
@@ -158,7 +160,8 @@ struct Report {
   std::optional<Coverage> coverage;    // nothing was dipped: absent
   std::optional<ReportWanted> wanted;  // absent: unknown, or all of the surface
   ReportEquilibrium equilibrium;
-  std::shared_ptr<const TrappedAir> air;  // likewise
+  // Likewise; of several dips that of all, each in its own pose.
+  std::shared_ptr<const TrappedAir> air;
   std::optional<DipAngles> angles;
   std::optional<MeshHealth> mesh;
   std::optional<ReportInk> ink;

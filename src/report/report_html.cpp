@@ -158,11 +158,14 @@ std::string section(const std::string& title, const std::string& rows) {
 
 std::string dips(const Report& report, const ReportPictures& pictures) {
   if (report.dips.empty()) return "";
-  std::string rows =
+  std::string rows = fmt::format(
       "<tr><th scope=\"row\">Dip</th><td>held</td><td class=\"number\">depth</td><td "
-      "class=\"number\">prints</td><td class=\"number\">covered after it</td></tr>\n";
+      "class=\"number\">prints{}</td><td class=\"number\">covered after it{}</td></tr>\n",
+      report.wanted ? ", of the surface" : "", report.wanted ? ", of what shall be printed" : "");
+  double covered_share = 0;
   for (std::size_t k = 0; k < report.dips.size(); ++k) {
     const ReportDip& dip = report.dips[k];
+    covered_share += dip.gained_wanted_share.value_or(dip.gained_share);
     rows += fmt::format(
         "<tr><th scope=\"row\">{} <code>{}/print.pdf</code></th><td>{}<br><code "
         "class=\"soft\">--down "
@@ -170,7 +173,7 @@ std::string dips(const Report& report, const ReportPictures& pictures) {
         "class=\"number\">{}</td><td class=\"number\">{}</td></tr>\n",
         k + 1, html_escaped(dip.folder), html_escaped(dip.hold), html_escaped(dip.down),
         dip.rotate_deg[0], dip.rotate_deg[1], dip.rotate_deg[2], dip.depth_mm,
-        percent(dip.part_share), percent(dip.covered_share));
+        percent(dip.part_share), percent(covered_share));
   }
   return section("The dips, in order; let each dry before the next", rows) +
          (pictures.dips_png.empty()

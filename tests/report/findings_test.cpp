@@ -152,6 +152,8 @@ TEST(Findings, WhatOfThePictureIsDoubtfulIsTold) {
   report.wanted = ReportWanted{100, 100, 100};
   EXPECT_EQ(concern(report, "doubtful"), Concern::kNone);
   EXPECT_EQ(verdict_of(report).find("perhaps"), std::string::npos);
+  report.coverage->doubtful_mm2 = 200;  // elsewhere, where nothing shall be printed
+  EXPECT_EQ(concern(report, "doubtful"), Concern::kNone);
   report.wanted->doubtful_mm2 = 57;
   EXPECT_EQ(concern(report, "doubtful"), Concern::kCare);
   const std::vector<Finding> list = findings(report);
@@ -247,6 +249,49 @@ TEST(Findings, OfSeveralDipsNoneIsMadeForNothing) {
   EXPECT_EQ(concern_of(findings(report)), Concern::kStop);
   report.dips[1].gained_wanted_share = 0.05;
   EXPECT_EQ(concern_of(findings(report)), Concern::kCare);
+}
+
+// Much film for little: nobody forbids it, and who plans is told.
+TEST(Findings, ADipThatTearsMostOfItsFilmForLittleIsHardlyWorthIt) {
+  Report report = good_report();
+  report.coverage->torn_mm2 = 1500;
+  report.together = ReportWanted{2000, 1000, 960};
+  report.dips.resize(3);
+  for (ReportDip& dip : report.dips) dip.gained_share = 0.3;
+  report.dips[1].gained_share = 0.02;
+  EXPECT_EQ(find(findings(report), "poor_dips"), nullptr);  // it closes a gap
+  report.dips[1].torn_share = 0.88;
+  EXPECT_EQ(concern(report, "poor_dips"), Concern::kCare);
+  EXPECT_EQ(find(findings(report), "poor_dips")->figure, "2");
+  EXPECT_NE(find(findings(report), "poor_dips")->text.find("2.0 % of the surface"),
+            std::string::npos);
+  EXPECT_NE(find(findings(report), "poor_dips")->advice.find("--dips 2"), std::string::npos);
+  report.dips[1].gained_share = 0.04;
+  EXPECT_EQ(find(findings(report), "poor_dips"), nullptr);
+  report.dips[1].gained_wanted_share = 0.01;
+  EXPECT_NE(find(findings(report), "poor_dips"), nullptr);
+  report.dips[1].gained_wanted_share = 0;  // nothing at all is another matter
+  EXPECT_EQ(find(findings(report), "poor_dips"), nullptr);
+  EXPECT_EQ(find(findings(report), "idle_dips")->figure, "2");
+  EXPECT_NE(find(findings(report), "idle_dips")->advice.find("--dips 2"), std::string::npos);
+}
+
+// Where a little air stays is told of its dip, and forbids nothing; once, and not of all.
+TEST(Findings, AirOfOneOfSeveralDipsIsToldOfThatDip) {
+  Report report = good_report();
+  TrappedAir air;
+  air.pockets.resize(1);
+  air.pockets[0].area_mm2 = 1;
+  report.air = std::make_shared<const TrappedAir>(air);
+  EXPECT_EQ(concern(report, "air"), Concern::kCare);
+  report.dips.resize(2);
+  for (ReportDip& dip : report.dips) dip.gained_share = 0.3;
+  report.dips[1].obstacle =
+      ReportObstacle{"Trapped air: 1 mm2", "stays dry", "Drill a vent.", false};
+  EXPECT_EQ(find(findings(report), "air"), nullptr);
+  EXPECT_EQ(concern(report, "dip"), Concern::kCare);
+  EXPECT_EQ(find(findings(report), "dip")->title, "Dip 2");
+  EXPECT_NE(concern_of(findings(report)), Concern::kStop);
 }
 
 // What no film brings counts, and if that is not known, the torn film: of a picture on one side by
