@@ -4,69 +4,113 @@
 #include <cstdint>
 
 #include "base/parallel.h"
+#include "job/dips_report.h"
 #include "job/wanted.h"
 #include "job/ways.h"
-#include "plan/choice.h"
 
 namespace hydrodip {
-PlanCoverage coverage_of(const DipPlan& plan, const JobConfig& config,
-                         const PreparedObject& prepared) {
-  if (plan.dips.size() == 1) return {{plan.dips.front().blank.coverage.covered_share()}, {}, {}};
-  const auto nodes = make_nodes(prepared, config.plan.overlap_mm);
-  const Targets& targets = nodes->targets();
-  const TrialTask task = job_trials(config, prepared, targets);
-  std::vector<Trial> dips(plan.dips.size());
-  for (std::size_t k = 0; k < dips.size(); ++k)
-    dips[k].worth = worth_at(task, plan.dips[k].blank.posed, *plan.dips[k].blank.film);
-  PlanCoverage result;
-  std::vector<const Trial*> so_far;
-  for (const Trial& dip : dips) {
-    so_far.push_back(&dip);
-    result.covered_share.push_back(covered_share_of(targets, so_far));
-  }
-  struct Seen {
-    bool reached = false, covered = false;
-  };
+namespace {
+
+// Of a point of the surface: the first dip whose film stays there, and whether one comes to it.
+struct Seen {
+  std::size_t covered_by = 0;
+  bool is_covered = false, is_reached = false;
+};
+
+std::vector<Seen> seen_by(const DipPlan& plan, const TrialTask& task) {
+  const Targets& targets = task.targets;
+  std::vector<std::vector<float>> worth;
+  for (const PlannedDip& dip : plan.dips)
+    worth.push_back(worth_at(task, dip.blank.posed, *dip.blank.film));
   std::vector<Seen> seen(targets.list.size());
   parallel_for(seen.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      seen[i].covered =
-          std::any_of(dips.begin(), dips.end(), [&](const Trial& dip) { return dip.worth[i] > 0; });
-      seen[i].reached = seen[i].covered ||
-                        std::any_of(plan.dips.begin(), plan.dips.end(), [&](const PlannedDip& dip) {
-                          return is_reached(dip.blank, targets.list[i]);
-                        });
+      std::size_t& first = seen[i].covered_by;
+      while (first < worth.size() && !(worth[first][i] > 0)) ++first;
+      seen[i].is_covered = first < worth.size();
+      seen[i].is_reached = seen[i].is_covered ||
+                           std::any_of(plan.dips.begin(), plan.dips.end(), [&](const auto& dip) {
+                             return is_reached(dip.blank, targets.list[i]);
+                           });
     }
   });
-  const std::vector<std::uint8_t> is_wanted = wanted_at(targets, *prepared.paint);
-  const double scale = prepared.posed.scale();
-  result.everywhere.emplace();
-  if (!is_wanted.empty()) result.wanted.emplace();
+  return seen;
+}
+
+double gained(const std::vector<double>& covered, std::size_t k) {
+  return covered[k] - (k > 0 ? covered[k - 1] : 0);
+}
+
+// Of what `counts` of the points.
+template <class Counts>
+ReportWanted sum_of(const std::vector<Seen>& seen, const Targets& targets, double scale,
+                    const Counts& counts, std::vector<double>& covered_share) {
+  ReportWanted sum;
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const double real_mm2 = scale * scale * targets.list[i].area;
-    result.everywhere->add(real_mm2, seen[i].reached, seen[i].covered, false);
-    if (result.wanted && is_wanted[i])
-      result.wanted->add(real_mm2, seen[i].reached, seen[i].covered, false);
+    if (!counts(i)) continue;
+    const double mm2 = scale * scale * targets.list[i].area;
+    sum.add(mm2, seen[i].is_reached, seen[i].is_covered, false);
+    for (std::size_t k = seen[i].covered_by; k < covered_share.size(); ++k) covered_share[k] += mm2;
+  }
+  for (double& share : covered_share) share = Coverage::share(share, sum.object_mm2);
+  return sum;
+}
+
+}  // namespace
+
+PlanCoverage coverage_of(const DipPlan& plan, const JobConfig& config,
+                         const PreparedObject& prepared) {
+  const auto nodes = make_nodes(prepared, config.plan.overlap_mm);
+  const Targets& targets = nodes->targets();
+  const std::vector<Seen> seen = seen_by(plan, job_trials(config, prepared, targets));
+  const double scale = prepared.posed.scale();
+  PlanCoverage result;
+  result.covered_share.resize(plan.dips.size());
+  const auto all = [](std::size_t) { return true; };
+  result.everywhere = sum_of(seen, targets, scale, all, result.covered_share);
+  const std::vector<std::uint8_t> is_wanted = wanted_at(targets, *prepared.paint);
+  if (!is_wanted.empty()) {
+    result.covered_wanted_share.resize(plan.dips.size());
+    const auto wanted = [&](std::size_t i) { return is_wanted[i] != 0; };
+    result.wanted = sum_of(seen, targets, scale, wanted, result.covered_wanted_share);
+  }
+  if (plan.dips.size() == 1) {
+    result.covered_share = {plan.dips.front().blank.coverage.covered_share()};
+    result.everywhere.reset();
   }
   return result;
 }
 
-std::optional<Finding> too_much_torn(const DipPlan& plan, const PlanCoverage& coverage) {
-  if (!coverage.everywhere) return std::nullopt;
+std::vector<Finding> foretold(const DipPlan& plan, const PlanCoverage& coverage,
+                              const JobConfig& config) {
   Report report;
-  report.coverage.emplace();
-  report.coverage->object_mm2 = coverage.everywhere->object_mm2;
-  report.coverage->covered_mm2 = coverage.everywhere->covered_mm2;
-  for (const PlannedDip& dip : plan.dips) {
-    report.coverage->film_on_object_mm2 += dip.blank.coverage.film_on_object_mm2;
-    report.coverage->torn_mm2 += dip.blank.coverage.torn_mm2;
+  report.tear_stretch = config.design.dip.material.tear_stretch;
+  std::vector<const DippedObject*> films;
+  for (std::size_t k = 0; k < plan.dips.size(); ++k) {
+    const DippedObject& blank = plan.dips[k].blank;
+    films.push_back(&blank);
+    ReportDip dip;
+    dip.gained_share = gained(coverage.covered_share, k);
+    if (coverage.wanted) dip.gained_wanted_share = gained(coverage.covered_wanted_share, k);
+    dip.torn_share = blank.coverage.torn_share();
+    dip.obstacle = obstacle_of(blank, nullptr, report.tear_stretch, k + 1, plan.dips.size());
+    report.dips.push_back(dip);
   }
-  report.dips.resize(plan.dips.size());
+  report.coverage = films_together(films);
+  const DippedObject& first = *films.front();
+  report.coverage->object_mm2 = first.coverage.object_mm2;
+  report.coverage->covered_mm2 = coverage.covered_share.back() * first.coverage.object_mm2;
   report.together = coverage.everywhere;
   report.wanted = coverage.wanted;
-  for (const Finding& finding : findings(report))
-    if (finding.key == "tears" && finding.concern == Concern::kStop) return finding;
-  return std::nullopt;
+  if (films.size() == 1) {
+    report.air = first.air;
+    report.equilibrium = equilibrium_of(first.statistics, nullptr);
+  }
+  std::vector<Finding> told = findings(report);
+  std::erase_if(told, [](const Finding& finding) {
+    return finding.concern != Concern::kStop && finding.key != "poor_dips";
+  });
+  return told;
 }
 
 }  // namespace hydrodip

@@ -1,5 +1,5 @@
-// What planned dips come to: how much they cover together, as blank film, and whether that is worth
-// printing.
+// What planned dips come to: how much they cover together, as blank film, and what their print will
+// say of them.
 #pragma once
 
 #include <optional>
@@ -17,15 +17,18 @@ struct PlanCoverage {
   // Share of the surface under film after each dip: counted at the points at which a print counts,
   // of a single dip its film's area.
   std::vector<double> covered_share;
-  // Of several: of all together, of the whole surface and of what shall be printed if that is not
-  // everywhere.
+  // The same of what shall be printed, if that is not everywhere; empty: it is, or nobody knows.
+  std::vector<double> covered_wanted_share;
+  // Of all together: of several the whole surface, and what shall be printed likewise.
   std::optional<ReportWanted> everywhere, wanted;
 };
 
 PlanCoverage coverage_of(const DipPlan& plan, const JobConfig& config,
                          const PreparedObject& prepared);
 
-// What a print would say of the film that tears, if it would advise against these dips for that.
-std::optional<Finding> too_much_torn(const DipPlan& plan, const PlanCoverage& coverage);
+// Why a print would advise against these dips, and which of them are hardly worth their film. Of
+// blank film.
+std::vector<Finding> foretold(const DipPlan& plan, const PlanCoverage& coverage,
+                              const JobConfig& config);
 
 }  // namespace hydrodip

@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/json_text.h"
+#include "base/plain_number.h"
 #include "base/run_scope.h"
 #include "base/shell_word.h"
 #include "job/dip_plan.h"
@@ -39,8 +40,8 @@ json path_json(const std::vector<Keyframe>& path) {
 }
 
 json missed_json(const PlanCoverage& coverage) {
-  if (!coverage.everywhere) return nullptr;
-  return coverage.wanted.value_or(*coverage.everywhere).missed_share();
+  const auto& counted = coverage.wanted ? coverage.wanted : coverage.everywhere;
+  return counted ? json(counted->missed_share()) : json(nullptr);
 }
 
 std::string machine_readable(const JobConfig& config, const DipPlan& plan,
@@ -59,6 +60,10 @@ std::string machine_readable(const JobConfig& config, const DipPlan& plan,
                     {"torn_share", dip.figures.torn_share},
                     {"text", describe_trial(dip, way_up(config))}});
     counts.push_back({{"dips", k + 1}, {"covered_share", covered[k]}});
+    if (!coverage.wanted) continue;
+    const Covered& wanted = coverage.covered_wanted_share;
+    dips.back()["gained_wanted_share"] = gained(wanted, k);
+    counts.back()["covered_wanted_share"] = wanted[k];
   }
   const json all = {{"schema_version", 1},
                     {"command", "plan"},
@@ -70,10 +75,19 @@ std::string machine_readable(const JobConfig& config, const DipPlan& plan,
   return json_text(all);
 }
 
-std::string in_words(const JobConfig& config, const DipPlan& plan, const Covered& covered) {
-  std::string text = "covered after so many dips:";
-  for (std::size_t k = 0; k < plan.dips.size(); ++k)
-    text += fmt::format("{} {}: {:.0f} %", k > 0 ? "," : "", k + 1, 100 * covered[k]);
+std::string after_each(const Covered& covered) {
+  std::string text;
+  for (std::size_t k = 0; k < covered.size(); ++k)
+    text += fmt::format("{}{}: {}", k > 0 ? ", " : "", k + 1, percent(covered[k]));
+  return text;
+}
+
+std::string in_words(const JobConfig& config, const DipPlan& plan, const PlanCoverage& coverage) {
+  std::string text =
+      fmt::format("covered after so many dips: {}", after_each(coverage.covered_share));
+  if (coverage.wanted)
+    text = fmt::format("{} of the surface; of what shall be printed: {}", text,
+                       after_each(coverage.covered_wanted_share));
   text += " (of film without ink, which stiffens it: a print's may differ by some points)\n";
   for (std::size_t k = 0; k < plan.dips.size(); ++k)
     text +=
@@ -85,7 +99,9 @@ std::string in_words(const JobConfig& config, const DipPlan& plan, const Covered
 // Each dip as it hangs: what it covers anew in the wanted colours, what an earlier one does in grey
 // blue.
 Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,
-           const Covered& covered, const RunContext& context) {
+           const PlanCoverage& coverage, const RunContext& context) {
+  const Covered& covered = coverage.wanted ? coverage.covered_wanted_share : coverage.covered_share;
+  const std::string of = coverage.wanted ? " of what shall be printed" : "";
   const Paint& paint = *prepared.paint;
   std::vector<HoldPicture> pictures;
   for (std::size_t k = 0; k < plan.dips.size(); ++k) {
@@ -106,11 +122,23 @@ Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPla
         {plan.dips[k].blank.posed.mesh(), plan.dips[k].blank.posed.surface(), look, dip.depth_mm,
          fmt::format("dip {}: {}, {:.4g} mm deep", k + 1, describe_hold(dip.pose, way_up(config)),
                      dip.depth_mm),
-         fmt::format("adds {:.1f} %, {:.1f} % are covered after it{}{}", 100 * gained(covered, k),
-                     100 * covered[k], paint.says_anything() ? "" : "; teal: this dip",
+         fmt::format("adds {:.1f} %{}, {:.1f} % are covered after it{}{}", 100 * gained(covered, k),
+                     of, 100 * covered[k], paint.says_anything() ? "" : "; teal: this dip",
                      k > 0 ? "; grey blue: done before" : "")});
   }
   return render_holds(pictures, config.preview_width_px, context);
+}
+
+// What the print of these dips will say, before anything is printed.
+void warn_of(const std::vector<Finding>& told, std::size_t dips, const RunContext& context) {
+  for (const Finding& finding : told) {
+    const bool is_of_film = finding.key == "tears" || finding.key == "coverage";
+    const std::string words = fmt::format("{}{} {} {}", is_of_film ? "" : finding.title + ": ",
+                                          finding.figure, finding.text, finding.advice);
+    context.warn(finding.concern != Concern::kStop ? words
+                 : dips == 1 ? "The print of this dip will advise against it: " + words
+                             : "The print of these dips will advise against them: " + words);
+  }
 }
 
 // A plan needs no picture, its print does.
@@ -140,14 +168,11 @@ JobResult plan_job(const JobConfig& config, const RunContext& context, const Job
   planned.plan.find_pose = planned.plan.find_depth = false;
   write_file(output.path("plan.toml"), job_file(planned, output.folder()));
   const PlanCoverage coverage = coverage_of(plan, config, output.prepared());
-  const Covered& covered = coverage.covered_share;
-  if (const auto torn = too_much_torn(plan, coverage))
-    context.warn(fmt::format("The print of these dips will advise against them: {} {} {}",
-                             torn->figure, torn->text, torn->advice));
+  warn_of(foretold(plan, coverage, config), plan.dips.size(), context);
   JobResult result =
-      output.finish(machine_readable(config, plan, coverage), in_words(config, plan, covered),
-                    [&] { return draw(config, output.prepared(), plan, covered, context); });
-  result.text += printing(output);
+      output.finish(machine_readable(config, plan, coverage), in_words(config, plan, coverage),
+                    [&] { return draw(config, output.prepared(), plan, coverage, context); });
+  result.text += told_places(output.prepared().artwork) + printing(output);
   return result;
 }
 

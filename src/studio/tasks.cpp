@@ -210,10 +210,13 @@ Json plan_result(const TaskRequest& request, const RunContext& context) {
   const JobResult done = plan_job(config, context);
   const Json found = Json::parse(done.json);
   const auto names = cut_rows(request.folder / "plan.png", request.folder, found["dips"].size());
-  Json dips = Json::array(), patch = Json::array(), covered = Json::array();
+  Json dips = Json::array(), patch = Json::array(), covered = Json::array(),
+       covered_wanted = Json::array();
   for (std::size_t k = 0; k < names.size(); ++k) {
     const Json& dip = found["dips"][k];
     covered.push_back(dip["covered_share"]);
+    if (const Json& after = found["coverage"][k]; after.contains("covered_wanted_share"))
+      covered_wanted.push_back(after["covered_wanted_share"]);
     dips.push_back({{"text", dip["text"]},
                     {"gained_share", dip["gained_share"]},
                     {"covered_share", dip["covered_share"]},
@@ -228,6 +231,7 @@ Json plan_result(const TaskRequest& request, const RunContext& context) {
     patch.push_back(entry);
   }
   return {{"covered_share", covered},
+          {"covered_wanted_share", covered_wanted},
           {"dips", dips},
           {"patch", {{"dips", patch}}},
           {"warnings", warnings_of(context)}};

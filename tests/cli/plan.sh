@@ -78,13 +78,89 @@ print(report['concern'])
 PY
 done > concerns
 [ "$(tr '\n' ' ' < concerns)" = 'care stop ' ] || fail "torn.toml: $(cat concerns)"
+# And whatever else its print will advise against: of a picture on one side the second dip is for nothing, and no more of them help.
+sed '/^mtllib/d; /^usemtl/d' boxes/box.obj > boxes/bare.obj
+printf '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm"><rect width="9mm" height="9mm" fill="red"/></svg>' > picture.svg
+side="--set preview.pictures=off --quality draft --film 120x120 --set film.elements=3000"
+pictured="boxes/bare.obj --size 40 --art picture.svg --art-toward 0,0,1"
+# shellcheck disable=SC2086
+"$hydrodip" plan $pictured --dips 2 $side -o side --json --quiet > side.json || fail "plan of one side: $?"
+# shellcheck disable=SC2086
+"$hydrodip" plan $pictured --dips 2 $side -o side --quiet > said.txt || fail "plan of one side: $?"
+grep -q '^covered after so many dips: .* of the surface; of what shall be printed: 1: ' said.txt ||
+  fail 'plan does not say how much of the picture it covers'
+grep -q '^warning: The print of these dips will advise against them: A dip for nothing: 2 .*--dips 1' said.txt ||
+  fail "plan does not foretell a dip for nothing: $(cat said.txt)"
+# shellcheck disable=SC2086
+"$hydrodip" print side/plan.toml $side --dpi 72 -o side-print --quiet > said.txt || fail "print of side: $?"
+grep -q 'A dip for nothing: 2 ' said.txt || fail "print of side: $(cat said.txt)"
+! grep -q -e '--dips 3' said.txt || fail 'more dips are said to help where one is for nothing'
+python3 - <<'PY' || fail 'what plan says of the picture'
+import json
+plan, report = json.load(open('side.json')), json.load(open('side-print/report.json'))
+assert abs(plan['missed_share'] - report['missed_share']) < 1e-9, (plan['missed_share'], report['missed_share'])
+covered = [count['covered_wanted_share'] for count in plan['coverage']]
+assert abs(covered[1] - report['wanted']['covered_share']) < 1e-9 and covered[0] <= covered[1], (covered, report['wanted'])
+assert abs(sum(dip['gained_wanted_share'] for dip in plan['dips']) - covered[1]) < 1e-9, plan
+PY
+# A dip alone is the one that orient recommends: no other brings what it tears.
+# shellcheck disable=SC2086
+"$hydrodip" plan boxes/box.obj --size 40 --dips 1 $side -o alone --json --quiet > alone.json || fail "plan of one dip: $?"
+# shellcheck disable=SC2086
+"$hydrodip" orient boxes/box.obj --size 40 $side -o alone --json --quiet > ways.json || fail "orient of the box: $?"
+python3 - <<'PY' || fail 'plan --dips 1 is not what orient recommends'
+import json
+dip, way = json.load(open('alone.json'))['dips'][0], json.load(open('ways.json'))['poses'][0]
+assert (dip['rotate_deg'], dip['depth_mm']) == (way['rotate_deg'], way['depth_mm']), (dip, way)
+PY
+# Air that either of two dips traps is the report's, and is told once, of that dip.
+python3 - <<'PY'
+from math import cos, pi, sin
+ring = lambda r, z: [(r * cos(2 * pi * k / 24), r * sin(2 * pi * k / 24), z) for k in range(24)]
+points = [*ring(15, 0), *ring(15, 20), *ring(12, 20), *ring(12, 4), (0, 0, 0), (0, 0, 4)]
+with open('cup.obj', 'w') as file:
+    for x, y, z in points:
+        file.write(f'v {x} {y} {z}\n')
+    for k in range(24):
+        a, b = k + 1, (k + 1) % 24 + 1
+        for low in (0, 24, 48):
+            file.write(f'f {low + a} {low + b} {low + b + 24}\nf {low + a} {low + b + 24} {low + a + 24}\n')
+        file.write(f'f 97 {b} {a}\nf 98 {a + 72} {b + 72}\n')
+PY
+for order in '180 90' '90 180'; do
+  printf '[object]\nfile = "cup.obj"\n' > cup.toml
+  for turn in $order; do printf '[[dip]]\nrotate_deg = [%s, 0, 0]\ndepth_mm = 8\n' "$turn" >> cup.toml; done
+  # shellcheck disable=SC2086
+  "$hydrodip" print cup.toml --art picture.svg --art-toward 0,1,0 $side --dpi 72 -o cup --quiet > /dev/null || fail "print of a cup: $?"
+  python3 - <<'PY' || fail "air of two dips, $order"
+import json
+report = json.load(open('cup/report.json'))
+parts = [json.load(open(f'cup/dip-{k}/report.json'))['air']['area_mm2'] for k in (1, 2)]
+assert report['air']['cell_mm'] > 0, report['air']
+assert min(parts) == 0 < max(parts) and abs(report['air']['area_mm2'] - max(parts)) < 1e-9, (report['air'], parts)
+told = [f['title'] for f in report['findings'] if 'air' in (f['title'] + f['figure'] + f['text']).split()]
+assert told == [f'Dip {1 + parts.index(max(parts))}'], report['findings']
+PY
+done
+# Colours land as far off as in the dip whose ink is settled least, whichever that is.
+"$hydrodip" sample mask -o masks --quiet > /dev/null || fail 'sample mask'
+printf '[object]\nfile = "masks/mask.obj"\n[[dip]]\nrotate_deg = [0, 0, 45]\ndepth_mm = 15\n[[dip]]\nrotate_deg = [-135, 0, 45]\ndepth_mm = 60\n' > masks.toml
+"$hydrodip" print masks.toml --film 120x120 --set film.elements=800 --set dip.step_mm=1 --dpi 72 --set dip.air_cells=0 \
+  --set ink.rounds_max=2 --set preview.pictures=off -o masks --quiet > /dev/null || fail "print masks.toml: $?"
+python3 - <<'PY' || fail 'how far colours land off where the second dip is not settled'
+import json
+report = json.load(open('masks/report.json'))
+moved = [json.load(open(f'masks/dip-{k}/report.json'))['figures']['ink_last_change_mm'] for k in (1, 2)]
+told = next(f['figure'] for f in report['findings'] if f['key'] == 'registration')
+first, second = (f"{report['stretch']['stretch_max'] + mm:.1f} mm" for mm in moved)
+assert moved[0] < moved[1] and told == second != first, (told, moved, report['stretch'])
+PY
 # A model without a picture can be planned; what it ends with says where the picture goes.
 write_tetrahedron plain.obj
 # shellcheck disable=SC2086
 "$hydrodip" plan plain.obj $small --dips 1 --quality draft -o plain --quiet > said.txt || fail "plain: $?"
 grep -q '^print them all, with the picture .*: hydrodip print plain/plan.toml --art IMG -o plain-print$' said.txt || fail 'no word of the picture'
 # Dips are chosen by a picture that is given, and it is the plan's from then on.
-printf '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm"><rect width="9mm" height="9mm" fill="red"/></svg>' > picture.svg
 # shellcheck disable=SC2086
 "$hydrodip" plan plain.obj $small --dips 1 --quality draft --art picture.svg --art-toward 0,1,0 -o pictured --quiet > said.txt ||
   fail "plan --art: $?"
@@ -160,6 +236,8 @@ refused '^error: --rotate: .*tables' print two.toml --rotate 10,0,0
 refused '^error: --depth: .*tables' plan two.toml --dips 2 --depth 3
 refused '^error: --set object.down: .*tables' print two.toml --set object.down=+y
 refused '2 .*tables' plan two.toml --dips 1
+refused '^error: --depth: .*looked for' plan colored.ply --dips 2 --depth 3
+refused '^error: --set dip.depth_mm: .*looked for' print colored.ply --dips 2 --set dip.depth_mm=3
 refused "'hydrodip plan'" orient two.toml
 refused "'hydrodip print'" simulate two.toml
 printf '[object]\nfile = "colored.ply"\n[[dip]]\nrotate_deg = [0, 0]\n' > bad.toml

@@ -98,6 +98,7 @@ export interface OrientResult {
 
 export interface PlanResult {
   covered_share: number[];
+  covered_wanted_share: number[]; // of what shall be printed; none: everywhere
   dips: { text: string; gained_share: number; covered_share: number; torn_share: number; picture: string }[];
   patch: Patch;
   warnings: string[];

@@ -193,6 +193,7 @@ export const t = {
     search: 'Search the best for the others',
     searching: 'Searching dips',
     found: (shares: string) => `Found: of the object covered after each dip about ${shares}.`,
+    foundOfPicture: (shares: string) => `Found: of what shall be printed covered after each dip about ${shares}.`,
     apply: 'Use them',
     remove: (n: number) => `Remove dip ${n}`,
     whole: 'Show all dips together',

@@ -43,7 +43,9 @@ export function DipsStep() {
         {plan?.state === 'failed' && <p class="bad">{plan.error?.text}</p>}
         {found && (
           <div class="found">
-            <p>{t.dips.found(found.covered_share.map(t.percent).join(', '))}</p>
+            <p>{found.covered_wanted_share.length > 0
+              ? t.dips.foundOfPicture(found.covered_wanted_share.map(t.percent).join(', '))
+              : t.dips.found(found.covered_share.map(t.percent).join(', '))}</p>
             {found.warnings.length > 0 && <ul class="notes">{found.warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>}
             <Button name="apply-plan" label={t.dips.apply} kind="main" changes onClick={() => {
               change((now) => patched(now, found.patch), t.undo.dipPlan);
