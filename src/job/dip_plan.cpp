@@ -240,7 +240,8 @@ class Planning {
       context_.progress(activity, double(i) / double(count));
       const RunContext own = context_.quiet();
       dip(i, own);
-      for (const std::string& warning : own.warnings()) context_.warn(warning);
+      for (const std::string& warning : own.warnings())
+        context_.warn(fmt::format("dip {}: {}", i + 1, warning));
     }
   }
 

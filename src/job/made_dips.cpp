@@ -12,6 +12,7 @@
 #include "dip/tear_doubt.h"
 #include "job/correction_fit.h"
 #include "job/dips_side_by_side.h"
+#include "job/job_part.h"
 #include "job/ways.h"
 #include "session/coat_of.h"
 
@@ -120,7 +121,8 @@ void for_each_dip(MadeDips& all, const std::string& activity, const RunContext& 
   for (MadeDip& dip : all.dips) {
     context.log(fmt::format("dip {} of {}", dip.number, all.dips.size()));
     context.progress(activity, double(dip.number - 1) / double(all.dips.size()));
-    work(dip, context);
+    do_part(fmt::format("dip {}", dip.number), context,
+            [&](const RunContext& own) { work(dip, own); });
   }
 }
 

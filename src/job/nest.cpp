@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "job/job_part.h"
 #include "job/prepare.h"
 #include "plan/fit.h"
 
@@ -88,8 +89,10 @@ void share_out_film(Nest& nest, const FilmOptions& sheet, std::optional<double> 
         nest.pieces.size(), part.name(), part.film().width_mm, part.film().height_mm));
   }
   for (const NestPart& part : nest.parts) {
-    require_fit(part.job.prepared.posed.size_mm(), part.room, part.film(), part.job.config.bath,
-                context);
+    do_part(part.name(), context, [&](const RunContext& own) {
+      require_fit(part.job.prepared.posed.size_mm(), part.room, part.film(), part.job.config.bath,
+                  own);
+    });
     require_on_film(part.job.prepared, part.film());
   }
 }

@@ -65,10 +65,10 @@ JobResult result_of(const Nest& nest, const OutputFolder& folder, std::string re
   for (std::size_t p = 0; p < nest.parts.size(); ++p)
     result.text += fmt::format("{}: {}\n", nest.parts[p].name(), nest.made[p].verdict());
   result.text += fmt::format(
-      "wrote to {}:\n  print.pdf    the sheet with {} pieces: print it at 100 % (no scaling)\n"
+      "wrote to {}:\n  print.pdf    the sheet with {} {}: print it at 100 % (no scaling)\n"
       "  print.png    what the sheet will look like\n  print.tif    its inks\n"
       "  nest.html    the run sheet: which part where\n  nest.json    the same for programs\n",
-      folder.folder().string(), nest.pieces.size());
+      folder.folder().string(), nest.pieces.size(), nest.pieces.size() == 1 ? "piece" : "pieces");
   for (const std::string& warning : context.warnings()) result.text += "warning: " + warning + "\n";
   return result;
 }

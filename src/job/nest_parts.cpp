@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/timings.h"
+#include "job/job_part.h"
 #include "job/job_record.h"
 #include "job/prepare.h"
 #include "job/print_dips.h"
@@ -48,7 +49,7 @@ MadePart make_part(const NestPart& part, Timings& timings, const RunContext& con
                                   doubtful_stretch(job.config.design.dip.material));
   for (const DryLayer& layer : dry_layers(job.prepared.artwork, made.designed.dipped)) {
     silent.warn(layer.told);  // for the report
-    context.warn(part.name() + ": " + layer.told);
+    context.warn(layer.told);
   }
   Report report = make_report(record);
   return {std::move(made), std::move(report)};
@@ -85,13 +86,13 @@ NestPart prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet,
 std::vector<MadePart> make_parts(const std::vector<NestPart>& parts, const RunContext& context) {
   std::vector<MadePart> all;
   Timings timings;
-  for (const NestPart& part : parts) {
-    all.push_back(make_part(part, timings, context));
-    const MadePart& made = all.back();
-    if (made.is_not_to_be_dipped())
-      context.warn(fmt::format("{}: do not dip it like this: {}; 'hydrodip plan' looks for ways.",
-                               part.name(), short_verdict(made.report)));
-  }
+  for (const NestPart& part : parts)
+    do_part(part.name(), context, [&](const RunContext& own) {
+      all.push_back(make_part(part, timings, own));
+      if (all.back().is_not_to_be_dipped())
+        own.warn(fmt::format("do not dip it like this: {}; 'hydrodip plan' looks for ways.",
+                             short_verdict(all.back().report)));
+    });
   return all;
 }
 

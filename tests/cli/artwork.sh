@@ -133,6 +133,10 @@ grep -q 'without' flat.txt || fail 'pattern --compensate does not say what it ga
 nest='--film 200x200 --set film.elements=800 --set dip.step_mm=1 --dpi 72 --set preview.width_px=200
       --set print.samples=1'
 # shellcheck disable=SC2086
+"$hydrodip" nest samples/box.obj $nest --set ink.rounds_max=2 -o hasty --quiet > said.txt || fail "nest of two rounds: $?"
+grep -q '^warning: box.obj: after 2 rounds' said.txt || fail "which part a warning is of: $(cat said.txt)"
+grep -q 'the sheet with 1 piece:' said.txt || fail 'one piece'
+# shellcheck disable=SC2086
 "$hydrodip" nest samples/box.obj samples/box.obj $nest -o nest --json --quiet > nest.json ||
   fail "nest: $?"
 python3 - <<'PY' || fail 'nest.json'

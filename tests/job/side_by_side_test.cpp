@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "job/dips_side_by_side.h"
+#include "job/job_part.h"
 #include "job/jobs.h"
 #include "samples/samples.h"
 #include "temporary_folder.h"
@@ -175,6 +176,24 @@ TEST(DipsSideBySide, SayWhichDipAWarningIsOf) {
   });
   EXPECT_EQ(context.warnings(),
             (std::vector<std::string>{"dip 1: film is short", "dip 3: ink is thin"}));
+}
+
+// One at a time, too, and all else that it tells is heard.
+TEST(JobPart, WarnsUnderItsName) {
+  const RunContext context;
+  std::vector<std::string> heard;
+  context.on_progress([&](const std::string& activity, double) { heard.push_back(activity); });
+  context.on_log([&](const std::string& line) { heard.push_back(line); });
+  do_part("dip 2", context, [](const RunContext& own) {
+    own.progress("dipping", 0.5);
+    own.log("a round");
+    own.warn("ink is thin");
+  });
+  EXPECT_EQ(context.warnings(), std::vector<std::string>{"dip 2: ink is thin"});
+  EXPECT_EQ(heard, (std::vector<std::string>{"dipping", "a round"}));
+  context.cancel();
+  EXPECT_THROW(do_part("dip 3", context, [](const RunContext& own) { own.progress("dipping", 0); }),
+               Cancelled);
 }
 
 }  // namespace
