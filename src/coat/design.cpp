@@ -104,11 +104,10 @@ class Settling {
       context_.warn(
           "the dip could not be computed again with its ink: film torn or stretched this far finds "
           "no equilibrium; turn steep sides down or dip less, then print anew");
-    else if (outcome != Outcome::kSettled && result_.rounds.size() > 1)
+    else if (outcome != Outcome::kSettled && result_.last_change_mm() > kUnseen_mm)
       context_.warn(fmt::format(
-          "after {} rounds the ink still moves the film by {} mm on average (settled: {:g} "
-          "mm); {}",
-          result_.rounds.size(), plain_number(result_.last_change_mm()), options().settled_mm,
+          "after {} rounds the ink still moves the film by {} mm on average; {}",
+          result_.rounds.size(), plain_number(result_.last_change_mm()),
           int(result_.rounds.size()) >= options().rounds_max
               ? "raise ink.rounds_max, or film.elements if it does not help"
               : "more rounds would not bring it down: turn steep sides down, dip less deep, or "

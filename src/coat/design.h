@@ -33,6 +33,10 @@ struct DesignOptions {
   InkingOptions inking;  // its base is the paint's
 };
 
+// No dip lands nearer to its place than some tenths of a millimetre: what ink still moves film by
+// below that is not worth a word, and among several dips no further one.
+inline constexpr double kUnseen_mm = 0.03;
+
 // The same to look at while an object is still being turned: coarse film in long steps, one round.
 // docs/performance.md has the errors and times.
 inline constexpr int kDraftElements = 10000;

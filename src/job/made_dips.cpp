@@ -19,10 +19,6 @@
 namespace hydrodip {
 namespace {
 
-// No two dips land nearer to each other than some tenths of a millimetre, and their inks fade over
-// more: what ink still moves below that is not worth a dip.
-constexpr double kSettledAmongSeveral_mm = 0.03;
-
 // What film is worth that lay on the object until it got ink, beside film that lies there with it.
 constexpr float kHoped = 0.3F;
 
@@ -35,7 +31,7 @@ JobConfig config_of(const JobConfig& config, const PreparedObject& prepared, con
   own.correction = correction_of(config, trial);
   own.design.film = film_of(config, trial);
   own.design.rounds_step_mm = longer_step_mm(own.design.dip.step_mm);
-  own.design.settled_mm = std::max(own.design.settled_mm, kSettledAmongSeveral_mm);
+  own.design.settled_mm = std::max(own.design.settled_mm, kUnseen_mm);
   own.dips.clear();
   own.plan.dips = 0;
   const std::string name =

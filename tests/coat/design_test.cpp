@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "samples/samples.h"
 
 namespace hydrodip {
@@ -51,6 +54,7 @@ Object beast_on_four_legs() {
 struct Settled {
   DippedObject dipped;
   InkResult result;
+  std::vector<std::string> warnings = {};
 };
 
 Settled settled(Object object, const DesignOptions& options) {
@@ -60,7 +64,7 @@ Settled settled(Object object, const DesignOptions& options) {
   const PosedObject posed(shared, {});
   Designed made = design({posed, *model_paint(shared), Allotment(), *make_device_model(), options},
                          timings, context);
-  return {std::move(made.dipped), std::move(made.ink)};
+  return {std::move(made.dipped), std::move(made.ink), context.warnings()};
 }
 
 // Film that has torn takes no part in the measure, and what tears in one round tears in all that
@@ -129,6 +133,24 @@ TEST(InkRounds, AreMadeAtMostAsOftenAsAsked) {
   const Settled all = settled(make_sample("sphere"), options);
   EXPECT_EQ(all.result.rounds.size(), 2U);
   EXPECT_EQ(all.result.last_change_mm(), all.result.rounds.back().change_mm);
+}
+
+// A thousandth of a millimetre is no news, though it is not settled; some tenths are.
+TEST(InkRounds, WarnOfWhatIsSeen) {
+  DesignOptions options = quick(3000);
+  options.trajectory.depth_mm = 8;
+  options.rounds_max = 4;
+  options.settled_mm = 1e-9;
+  const Settled calm = settled(make_sample("sphere"), options);
+  EXPECT_FALSE(calm.result.settled);
+  EXPECT_LT(calm.result.last_change_mm(), kUnseen_mm);
+  EXPECT_EQ(calm.warnings, std::vector<std::string>());
+  options.trajectory.depth_mm = 0;
+  options.rounds_max = 2;
+  const Settled moved = settled(beast_on_four_legs(), options);
+  EXPECT_GT(moved.result.last_change_mm(), kUnseen_mm);
+  ASSERT_EQ(moved.warnings.size(), 1U);
+  EXPECT_EQ(moved.warnings.front().rfind("after 2 rounds the ink still moves the film by ", 0), 0U);
 }
 
 // What is said to settle is the ink: that its last dip goes in finer steps than the rounds moves
