@@ -12,6 +12,7 @@
 #include "base/json_text.h"
 #include "base/nearest_name.h"
 #include "base/output_folder.h"
+#include "base/shell_word.h"
 #include "settings/params.h"
 
 namespace hydrodip {
@@ -72,8 +73,8 @@ JobResult written(const char* command, const fs::path& file, const std::string& 
   JobResult result;
   result.folder = file.parent_path();
   result.files = {name};
-  result.text =
-      fmt::format("{} {}\nuse it with --profile {}\n", what, file.string(), file.stem().string());
+  result.text = fmt::format("{} {}\nuse it with --profile {}\n", what, file.string(),
+                            shell_word(file.stem().string()));
   result.json = json_answer(
       command, {{"name", file.stem().string()}, {"file", file.string()}, {"text", text}});
   return result;

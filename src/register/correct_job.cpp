@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/output_folder.h"
 #include "base/run_scope.h"
+#include "base/shell_word.h"
 #include "image/files.h"
 #include "job/correction_fit.h"
 #include "register/correction_output.h"
@@ -62,7 +63,8 @@ std::filesystem::path job_file_of(const RigJob& job) {
 
 std::string how_to_print(const RigJob& job, const std::string& file) {
   const std::filesystem::path path = job.folder / file;
-  if (job.earlier_dips == 0 && job.next_dip == 0) return "--correction " + path.string();
+  if (job.earlier_dips == 0 && job.next_dip == 0)
+    return "--correction " + shell_word(path.string());
   const std::filesystem::path job_file = job_file_of(job);
   if (job_file.empty())
     return fmt::format("correction = \"{}\" in this dip's [[dip]] table of the job file",

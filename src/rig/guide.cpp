@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/parse_double.h"
+#include "base/shell_word.h"
 #include "rig/finish_run.h"
 #include "rig/registration_file.h"
 #include "rig/rig.h"
@@ -151,7 +152,7 @@ class Guide {
         fmt::format("\nWHERE IT LIES. Photograph the film with the whole rim in the picture; in "
                     "another window: "
                     "hydrodip register PHOTO {}",
-                    job_.folder.string()));
+                    shell_word(job_.folder.string())));
     std::string seen = photo_seen();
     for (;;) {
       const std::string answer = person_.ask("Enter when that has said where it lies, or skip: ");

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/nearest_name.h"
+#include "base/shell_word.h"
 #include "rig/finish_run.h"
 #include "rig/rig.h"
 #include "rig/stage_session.h"
@@ -87,9 +88,9 @@ RunEnd end_of(const std::optional<StageSession>& session, const std::string& act
 double require_level(const RigJob& job) {
   if (const auto level = known_water_level_mm(job)) return *level;
   throw InputError(fmt::format(
-      "the water level is not known yet: find it with 'hydrodip rig stage approach {}', or give "
-      "--set stage.water_mm=...",
-      job.folder.string()));
+      "the water level is not known yet: give --set stage.water_mm=..., or find it: hydrodip rig "
+      "stage approach {}",
+      shell_word(job.folder.string())));
 }
 
 void perform(StageSession& session, const StageAction& action, const RigJob* job) {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "base/shell_word.h"
 #include "settings/correction_file.h"
 
 namespace hydrodip {
@@ -243,8 +244,8 @@ void require_no_parts(const std::filesystem::path& job) {
   for (const Setting& s : read_settings(job))
     if (s.name.starts_with("part["))
       throw InputError(fmt::format(
-          "{}: [[part]] tables share a sheet among jobs: 'hydrodip nest --config {}' prints it",
-          s.origin, job.string()));
+          "{}: [[part]] tables share a sheet among jobs; to print it: hydrodip nest --config {}",
+          s.origin, shell_word(job.string())));
 }
 
 }  // namespace

@@ -173,8 +173,8 @@ JobResult sweep_run_job(const fs::path& folder, const SweepWork& work, const Run
         "\nother versions did some of those before: {}; this is hydrodip {}, and --again does them "
         "once more",
         told_versions(done.by_others), work.version);
-  result.text += fmt::format("\n'hydrodip sweep collect {}' puts them together\n",
-                             shell_word(folder.string()));
+  result.text +=
+      fmt::format("\nput them together: hydrodip sweep collect {}\n", shell_word(folder.string()));
   result.json = json_answer("sweep run", {{"done", done.done},
                                           {"failed", done.failed},
                                           {"before", done.before},

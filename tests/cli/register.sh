@@ -185,6 +185,9 @@ cp -r job own
   --correction own/correction.json > /dev/null || fail "print into the correction's folder"
 expect 0 'print again with --correction own/correction-2.json' correct own places.csv
 cmp -s first.json own/correction.json || fail "correct replaced what its print was made with"
+# What it ends with can be typed, whatever the folder is called.
+cp -r job 'my own job'
+expect 0 "print again with --correction 'my own job/correction.*'" correct 'my own job' places.csv
 # Of several dips, as the job's file has to name it.
 mkdir plan
 printf '[object]\nfile = "../colored.ply"\n[[dip]]\nrotate_deg = [0, 0, 0]\ndepth_mm = 6\n[[dip]]\nrotate_deg = [180, 0, 0]\ndepth_mm = 3\n' \
