@@ -1,5 +1,7 @@
 #include "job/job_part.h"
 
+#include <fmt/format.h>
+
 namespace hydrodip {
 
 void do_part(const std::string& name, const RunContext& context,
@@ -9,7 +11,8 @@ void do_part(const std::string& name, const RunContext& context,
       [&](const std::string& activity, double fraction) { context.progress(activity, fraction); });
   own.on_log([&](const std::string& line) { context.log(line); });
   work(own);
-  for (const std::string& warning : own.warnings()) context.warn(name + ": " + warning);
+  for (const std::string& warning : own.warnings())
+    context.warn(fmt::format("{}: {}", name, warning));
 }
 
 }  // namespace hydrodip
