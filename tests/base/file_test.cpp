@@ -109,6 +109,7 @@ TEST(WholeFile, ManyThatAreWrittenAtOnceAllCome) {
   const TemporaryFolder folder;
   const std::string text(std::size_t(1) << 16U, 'x');
   std::vector<std::thread> writers;
+  writers.reserve(4);
   for (int writer = 0; writer < 4; ++writer)
     writers.emplace_back([&, writer] {
       for (int n = 0; n < 50; ++n) write_whole(folder / std::to_string(100 * writer + n), text);
