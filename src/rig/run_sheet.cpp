@@ -120,7 +120,7 @@ class RunSheet {
   std::string fitted(const std::string& text, double width_mm, double size_pt,
                      PdfFont font = PdfFont::kRegular) const {
     constexpr std::size_t kLongest = 1000;  // bytes, more than any line takes
-    const std::string words = cut_utf8(text, kLongest);
+    std::string words = cut_utf8(text, kLongest);
     if (page_.width_of(words, size_pt, font) <= width_mm) return words;
     std::size_t fits = 0, too_long = words.size();
     while (too_long - fits > 1) {

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -58,7 +58,9 @@ std::optional<Peer> peer_of(int descriptor) {
       ::getnameinfo(reinterpret_cast<const sockaddr*>(&from), size, address, sizeof address,
                     service, sizeof service, NI_NUMERICHOST | NI_NUMERICSERV) != 0)
     return std::nullopt;
-  return Peer{address, std::atoi(service)};
+  Peer peer{address, 0};
+  std::from_chars(service, service + std::strlen(service), peer.port);
+  return peer;
 }
 
 }  // namespace

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <chrono>
-#include <compare>
 #include <condition_variable>
 #include <map>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 namespace hydrodip {
@@ -17,7 +17,10 @@ namespace hydrodip {
 struct Peer {
   std::string address;
   int port = 0;
-  auto operator<=>(const Peer&) const = default;
+  bool operator==(const Peer&) const = default;
+  bool operator<(const Peer& other) const {
+    return std::tie(address, port) < std::tie(other.address, other.port);
+  }
 };
 
 // Looks after the connections of a port while it lives, whenever there are some of which nobody

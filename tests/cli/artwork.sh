@@ -164,10 +164,11 @@ import json
 assert 0 < json.load(open('found/nest.json'))['pieces'][0]['depth_mm'] < 15
 PY
 # A part's name need not be UTF-8, nor in letters that some font has.
-cp samples/box.obj "$(printf 'Gr\366sse.obj')"
-cp samples/box.obj "$(printf 'box \364\217\277\275.obj')"
+latin1=$(printf 'samples/Gr\366sse.obj') unknown=$(printf 'samples/box \364\217\277\275.obj')
+cp samples/box.obj "$latin1"
+cp samples/box.obj "$unknown"
 # shellcheck disable=SC2086
-"$hydrodip" nest "$(printf 'Gr\366sse.obj')" "$(printf 'box \364\217\277\275.obj')" $nest -o named --quiet > named.txt ||
+"$hydrodip" nest "$latin1" "$unknown" $nest -o named --quiet > named.txt ||
   fail "nest of parts whose names no font has: $?"
 grep -q "^warning: No font on this machine has .* of a part's name, which stands as 'box ?'" named.txt ||
   fail "nest does not say what it makes of a part's name: $(cat named.txt)"
