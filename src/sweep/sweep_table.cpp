@@ -63,7 +63,7 @@ SweepTable make_table(const std::filesystem::path& folder, const SweepPlan& plan
       if (row.state == RunState::kDone) {
         const Json report = Json::parse(outcome->report);
         if (report.contains("concern") && report["concern"].is_string())
-          row.concern = report["concern"].get<std::string>();
+          row.verdict = report["concern"].get<std::string>();
         std::vector<std::string> order;
         for (const char* part : kParts)
           if (report.contains(part)) flatten(report[part], part, figures[i], order);
@@ -88,13 +88,13 @@ SweepTable make_table(const std::filesystem::path& folder, const SweepPlan& plan
 std::string table_csv(const SweepTable& table, const SweepPlan& plan) {
   std::string csv = "id,state";
   for (const std::string& name : plan.varied) csv += "," + csv_cell(name);
-  csv += ",concern";
+  csv += ",verdict";
   for (const std::string& name : table.figure_names) csv += "," + name;
   csv += ",version,error\n";
   for (const SweepRow& row : table.rows) {
     csv += row.run->id + "," + state_name(row.state);
     for (const std::string& name : plan.varied) csv += "," + csv_cell(value_of(*row.run, name));
-    csv += "," + row.concern;
+    csv += "," + row.verdict;
     for (const auto& figure : row.figures) csv += figure ? fmt::format(",{}", *figure) : ",";
     csv += "," + csv_cell(row.version) + "," + csv_cell(row.error) + "\n";
   }
@@ -111,7 +111,7 @@ std::string table_json(const SweepTable& table, const SweepPlan& plan) {
     Json entry = {{"id", row.run->id}, {"state", state_name(row.state)}, {"values", values}};
     if (!row.version.empty()) entry["version"] = row.version;
     if (row.state == RunState::kDone) {
-      entry["concern"] = row.concern;
+      entry["verdict"] = row.verdict;
       entry["figures"] = figures;
     }
     if (row.state == RunState::kFailed) entry["error"] = row.error;

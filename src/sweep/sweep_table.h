@@ -17,7 +17,7 @@ struct SweepRow {
   RunState state = RunState::kMissing;
   std::string error;
   std::string version;                         // of the program that did it; empty: not known
-  std::string concern;                         // the verdict's: "none", "care", "stop"
+  std::string verdict;                         // report.json's concern: "none", "care", "stop"
   std::vector<std::optional<double>> figures;  // as the table's names have them
 };
 
@@ -29,7 +29,7 @@ struct SweepTable {
 // Of the numbers in each run's report.json. The plan has to outlive the table.
 SweepTable make_table(const std::filesystem::path& folder, const SweepPlan& plan);
 
-// One line a run: id, state, model, the varied values, concern, figures, version, error.
+// One line a run: id, state, model, the varied values, verdict, figures, version, error.
 std::string table_csv(const SweepTable& table, const SweepPlan& plan);
 std::string table_json(const SweepTable& table, const SweepPlan& plan);
 
