@@ -36,9 +36,4 @@ LinearColor Printed::at(const SurfacePoint& point, const Vec2& film_mm) const {
   return part_of_ink(color, paint_.base(), share);
 }
 
-std::optional<LinearColor> Printed::mean(std::span<const SurfaceGrid> grids) const {
-  if (textured_ == nullptr) return std::nullopt;
-  return mean_texture_color(*textured_, grids, paint_.base());
-}
-
 }  // namespace hydrodip

@@ -1,14 +1,10 @@
 // What is printed of a point of the object: what is wanted there, or this film's part of it.
 #pragma once
 
-#include <optional>
-#include <span>
-
 #include "object/paint.h"
 #include "transfer/allotment.h"
-#include "transfer/sample_landings.h"
+#include "transfer/color_sum.h"
 #include "transfer/texture_mean.h"
-#include "transfer/texture_row.h"
 
 namespace hydrodip {
 
@@ -20,12 +16,20 @@ class Printed {
   // `film_mm`: where on the film it is printed.
   LinearColor at(const SurfacePoint& point, const Vec2& film_mm) const;
 
-  // Of the points that count of some grids, if it is told at once.
-  std::optional<LinearColor> mean(std::span<const SurfaceGrid> grids) const;
-
-  // Whether `row` has anything to tell.
-  bool is_told_by_row() const { return textured_ != nullptr && textured_->colors.empty(); }
-  TextureRow row(const FilmOnPlane& pair) const { return {*textured_, pair, paint_.base()}; }
+  // The mean over those of a grid's points that count; `film_mm(column, row)`: where they come
+  // from.
+  template <class OnFilm>
+  LinearColor mean(const SurfaceGrid& grid, const OnFilm& film_mm) const {
+    if (textured_ != nullptr)
+      if (const auto color = mean_texture_color(*textured_, grid, paint_.base())) return *color;
+    const float weight = 1.0F / static_cast<float>(grid.count());
+    ColorSum sum;
+    for (int row = 0; row < grid.per_axis; ++row)
+      for (int column = 0; column < grid.per_axis; ++column)
+        if (grid.counts(column, row))
+          sum.add(at(grid.at(column, row), film_mm(column, row)), weight);
+    return sum.color();
+  }
 
  private:
   const Paint& paint_;

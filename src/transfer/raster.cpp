@@ -156,7 +156,7 @@ Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& rast
     TileColors colors(printed, map, raster, options, tile, film.under(tile));
     std::array<LinearColor, kTile_px> row;
     for (int y = tile.y0; y < tile.y1; ++y) {
-      colors.of_row(y, row);
+      for (int x = tile.x0; x < tile.x1; ++x) row[std::size_t(x - tile.x0)] = colors.of_pixel(x, y);
       store(row.data(), tile.x1 - tile.x0, image.pixel(tile.x0, y));
     }
   });

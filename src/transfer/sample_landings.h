@@ -39,7 +39,6 @@ class SampleLandings {
   std::int32_t pair_at(int column, int row) const {
     return pair_.empty() ? kNone : pair_[index(column, row)];
   }
-  const FilmOnPlane& pair(std::int32_t number) const { return pairs_[std::size_t(number)]; }
   // Where a pair's samples land, for `per_axis` of them in each direction from one on, as if it
   // held them all.
   SurfaceGrid landing(std::int32_t pair, int column, int row, int per_axis) const;

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstdint>
 #include <optional>
-#include <span>
 
 #include "object/object.h"
 
@@ -33,19 +32,10 @@ struct SurfaceGrid {
   }
 };
 
-// The mean of color_at over the points that count of all grids, together as many as a grid may
-// have, as closely as floats tell, where colours come from a texture alone, whose few texels under
-// all of them lie in its inside, or from nothing but the material. Else, and of several materials,
-// nothing.
-std::optional<LinearColor> mean_texture_color(const Object& object,
-                                              std::span<const SurfaceGrid> grids,
+// The mean of color_at over the grid's points that count, as closely as floats tell, where colours
+// come from a texture alone, whose few texels under the grid lie in its inside, or from nothing but
+// the material. Else nothing.
+std::optional<LinearColor> mean_texture_color(const Object& object, const SurfaceGrid& grid,
                                               const LinearColor& base);
-inline std::optional<LinearColor> mean_texture_color(const Object& object, const SurfaceGrid& grid,
-                                                     const LinearColor& base) {
-  return mean_texture_color(object, {&grid, 1}, base);
-}
-
-// A premultiplied mean as a material tints it, over the bare object's colour.
-LinearColor over_base(const LinearColor& mean, const LinearColor& tint, const LinearColor& base);
 
 }  // namespace hydrodip

@@ -3,10 +3,8 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "transfer/color_sum.h"
 #include "transfer/film_map.h"
 #include "transfer/printed.h"
 #include "transfer/raster.h"
@@ -32,21 +30,10 @@ class TileColors {
              const InverseOptions& options, const Tile& tile,
              const std::vector<std::int32_t>& film_triangles);
 
-  // One for each pixel of a row of the sheet that is the tile's.
-  void of_row(int y, std::span<LinearColor> colors);
+  // Of a pixel of the sheet that is the tile's.
+  LinearColor of_pixel(int x, int y);
 
  private:
-  class Shares;
-
-  std::int32_t pair_of_pixel(int x, int row) const;
-  void of_one_pair(std::int32_t pair, int begin, int end, int row, std::span<LinearColor> colors);
-
-  // Of the pixel whose first sample that is.
-  LinearColor of_pixel(int column, int row);
-  void add_found(const Shares& shares, int column, int row, ColorSum& sum) const;
-  void add_grid(const SurfaceGrid& grid, int column, int row, ColorSum& sum) const;
-  float weight() const { return 1.0F / static_cast<float>(per_axis_ * per_axis_); }
-
   std::optional<LinearColor> beside_film(int column, int row);
   std::optional<SurfacePoint> landing(const Vec2& film_mm);
 

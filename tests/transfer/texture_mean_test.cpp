@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <random>
 
 #include "transfer/fixtures.h"
@@ -72,50 +71,6 @@ TEST(TextureMean, IsTheMeanOfThePoints) {
       }
       EXPECT_GT(known, wrap == Wrap::kRepeat ? 200 : 10);
     }
-}
-
-// A pixel that lies on several triangles.
-TEST(TextureMean, OfSeveralGridsIsThatOfAllTheirPoints) {
-  std::mt19937 random(12);
-  const LinearColor base{0.2F, 0.5F, 0.9F, 1};
-  int known = 0;
-  for (int n = 0; n < 400; ++n) {
-    Object object = painted_slab(random, Wrap::kRepeat, n % 2 == 0);
-    object.uvs[1] = object.uvs[0];
-    const int per_axis = 2 + n % 3;
-    const std::uint64_t first = random(), all = (std::uint64_t(1) << per_axis * per_axis) - 1;
-    std::array<SurfaceGrid, 2> grids;
-    grids[0] = some_grid(random, per_axis);
-    grids[1] = grids[0];
-    grids[1].first.triangle = 1 - grids[0].first.triangle;
-    grids[1].first.u += 0.002;
-    grids[0].counted = first;
-    grids[1].counted = ~first & all;
-    const auto mean = mean_texture_color(object, grids, base);
-    if (!mean) continue;
-    ++known;
-    Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < per_axis * per_axis; ++k) {
-      const SurfaceGrid& grid = grids[(first >> k & 1U) != 0 ? 0 : 1];
-      const LinearColor c = color_at(object, grid.at(k % per_axis, k / per_axis), base);
-      sum += Vec3(double(c.r), double(c.g), double(c.b));
-    }
-    sum /= per_axis * per_axis;
-    EXPECT_NEAR(double(mean->r), sum[0], 2e-4);
-    EXPECT_NEAR(double(mean->g), sum[1], 2e-4);
-    EXPECT_NEAR(double(mean->b), sum[2], 2e-4);
-  }
-  EXPECT_GT(known, 100);
-}
-
-TEST(TextureMean, LeavesSeveralMaterialsToTheCaller) {
-  Object object = fixtures::slab();
-  object.materials.push_back({"other", {0.5F, 0.5F, 0.5F, 1}});
-  object.material_of[1] = 1;
-  const SurfaceGrid one{{0, 0.2, 0.3}, 0.01, 0, 0, 0.01, 3},
-      other{{1, 0.2, 0.3}, 0.01, 0, 0, 0.01, 3};
-  EXPECT_FALSE(mean_texture_color(object, std::array{one, other}, {1, 1, 1, 1}));
-  EXPECT_TRUE(mean_texture_color(object, std::array{one, one}, {1, 1, 1, 1}));
 }
 
 TEST(TextureMean, OfAPlainMaterialIsItsColour) {
