@@ -260,19 +260,6 @@ TEST(SlowFilmPose, ToldWhenItLiesUpsideDown) {
   }
 }
 
-// Boxes on the free film of an A4 sheet, from its middle; of those of another job none is the same,
-// though both lie around the middle.
-std::vector<Box2> pattern(std::uint32_t seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> along(-1, 1), size(4, 16);
-  std::vector<Box2> boxes;
-  for (int i = 0; i < 40; ++i) {
-    const Vec2 from(60 * along(random), 90 * along(random));
-    boxes.push_back({from, from + Vec2(size(random), size(random))});
-  }
-  return boxes;
-}
-
 FilmPicture picture_of(const std::vector<Box2>& boxes) {
   Box2 sheet;
   sheet.add(Vec2(105, 148.5));
@@ -283,24 +270,24 @@ FilmPicture picture_of(const std::vector<Box2>& boxes) {
 TEST(SlowFilmPicture, TellsOneJobsFilmFromAnothers) {
   const Tank tank = known_tank();
   const Laid laid{{1.4, -2.2}, 1.7, {1.025, 1.015}};
-  const Photographed seen = photographed(tank, laid, 5, false, pattern(1));
+  const Photographed seen = photographed(tank, laid, 5, false, fixtures::boxes_on_a4(1));
   const FilmPose pose =
       find_film(seen.photo, "photo.jpg", tank, {film_marks(210, 297, 10)}, RunContext());
   const auto likeness = [&](const std::vector<Box2>& printed) {
     return film_likeness(seen.photo, pose, tank, picture_of(printed));
   };
-  ASSERT_TRUE(likeness(pattern(1)).has_value());
-  EXPECT_GT(*likeness(pattern(1)), 0.8);
+  ASSERT_TRUE(likeness(fixtures::boxes_on_a4(1)).has_value());
+  EXPECT_GT(*likeness(fixtures::boxes_on_a4(1)), 0.8);
   for (const std::uint32_t other : {2U, 3U, 4U}) {
-    ASSERT_TRUE(likeness(pattern(other)).has_value());
-    EXPECT_LT(std::abs(*likeness(pattern(other))), 0.2) << other;
+    ASSERT_TRUE(likeness(fixtures::boxes_on_a4(other)).has_value());
+    EXPECT_LT(std::abs(*likeness(fixtures::boxes_on_a4(other))), 0.2) << other;
   }
   // A print without a picture, or of one colour all over, tells nothing.
   EXPECT_FALSE(likeness({}).has_value());
   EXPECT_FALSE(likeness({{Vec2(-105, -148.5), Vec2(105, 148.5)}}).has_value());
   // Film on which nothing is printed is another's.
   const Photographed blank = photographed(tank, laid, 5, false);
-  EXPECT_LT(*film_likeness(blank.photo, pose, tank, picture_of(pattern(1))), 0.2);
+  EXPECT_LT(*film_likeness(blank.photo, pose, tank, picture_of(fixtures::boxes_on_a4(1))), 0.2);
 }
 
 }  // namespace

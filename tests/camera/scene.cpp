@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "base/parallel.h"
 #include "camera/board.h"
@@ -84,6 +85,17 @@ void blur(std::vector<float>& value, int width, int height, double sigma) {
 }
 
 }  // namespace
+
+std::vector<Box2> boxes_on_a4(std::uint32_t job) {
+  std::mt19937 random(job);
+  std::uniform_real_distribution<double> along(-1, 1), size(4, 16);
+  std::vector<Box2> boxes;
+  for (int i = 0; i < 40; ++i) {
+    const Vec2 from(60 * along(random), 90 * along(random));
+    boxes.push_back({from, from + Vec2(size(random), size(random))});
+  }
+  return boxes;
+}
 
 SheetPicture draw_boxes(const std::vector<Box2>& boxes, const Box2& sheet, double px_per_mm) {
   SheetPicture picture;

@@ -23,6 +23,10 @@ struct SheetPicture {
 };
 void find_ink(SheetPicture& picture);
 
+// Boxes on the free film of an A4 sheet, from its middle; of those of another job none is the same,
+// though both lie around the middle.
+std::vector<Box2> boxes_on_a4(std::uint32_t job);
+
 // Black boxes on white, each pixel as much as it is covered.
 SheetPicture draw_boxes(const std::vector<Box2>& boxes, const Box2& sheet, double px_per_mm = 20);
 // The same of marks.

@@ -17,6 +17,7 @@
 namespace hydrodip {
 namespace {
 
+using fixtures::boxes_on_a4;
 using fixtures::draw_boxes;
 using fixtures::phone_lens;
 using fixtures::random_view;
@@ -24,17 +25,6 @@ using fixtures::random_view;
 constexpr double kWater_mm = 22;  // below the rim
 
 Box2 a4() { return {Vec2(-105, -148.5), Vec2(105, 148.5)}; }
-
-std::vector<Box2> boxes_of(std::uint32_t job) {
-  std::mt19937 random(job);
-  std::uniform_real_distribution<double> along(-1, 1), size(4, 16);
-  std::vector<Box2> boxes;
-  for (int i = 0; i < 40; ++i) {
-    const Vec2 from(60 * along(random), 90 * along(random));
-    boxes.push_back({from, from + Vec2(size(random), size(random))});
-  }
-  return boxes;
-}
 
 void save(const std::filesystem::path& file, const GrayImage& gray, bool mirrored = false) {
   Image image(gray.width_px, gray.height_px);
@@ -76,7 +66,7 @@ GrayImage photo_of(const std::vector<Box2>& printed) {
 TEST(SlowRegister, AnotherJobsFilmIsToldFromTheOwn) {
   const TemporaryFolder folder;
   write_file(folder / "camera.json", tank_as_json(calibrated_tank()));
-  save(folder / "photo.png", photo_of(boxes_of(1)));
+  save(folder / "photo.png", photo_of(boxes_on_a4(1)));
   const auto told = [&](std::uint32_t print, InkSide side) {
     RigJob job;
     job.folder = folder.path();
@@ -84,7 +74,8 @@ TEST(SlowRegister, AnotherJobsFilmIsToldFromTheOwn) {
     job.config.design.film.height_mm = 297;
     job.config.design.film.margin_mm = 10;
     job.config.print.ink_side = side;
-    save(folder / "print.png", draw_boxes(boxes_of(print), a4(), 4).gray, side == InkSide::kDown);
+    save(folder / "print.png", draw_boxes(boxes_on_a4(print), a4(), 4).gray,
+         side == InkSide::kDown);
     RegisterRequest request;
     request.photo = folder / "photo.png";
     request.camera = folder / "camera.json";
