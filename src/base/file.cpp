@@ -70,6 +70,7 @@ std::string part_name(int process, int number) {
 }
 
 bool is_part_name(const std::string& name) {
+  if (!name.starts_with(".hydrodip-")) return false;  // as nearly all
   static const std::regex kPattern(R"(\.hydrodip-[0-9]+-[0-9]+\.part)");
   return std::regex_match(name, kPattern);
 }

@@ -107,10 +107,7 @@ Image draw(const JobConfig& config, const PreparedObject& prepared, const DipPla
   for (std::size_t k = 0; k < plan.dips.size(); ++k) {
     const auto look = [&paint, &plan, k](const SurfacePoint& point, const Vec3&, const Vec3&) {
       const auto lies = [&](std::size_t j) {
-        const DippedObject& dipped = plan.dips[j].blank;
-        const TriangleMesh& mesh = dipped.posed.mesh();
-        return dipped.map->to_film(position_at(mesh, point), face_normal(mesh, point.triangle))
-            .has_value();
+        return plan.dips[j].blank.map->to_film(point).has_value();
       };
       for (std::size_t j = 0; j < k; ++j)
         if (lies(j)) return kEarlier;

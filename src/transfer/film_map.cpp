@@ -16,10 +16,10 @@ namespace {
 
 constexpr double kInside = -1e-9;
 
-std::vector<Triangle> triangles_on_object(const DippedFilm& film) {
-  std::vector<Triangle> lying;
+std::vector<std::int32_t> lying_on_object(const DippedFilm& film) {
+  std::vector<std::int32_t> lying;
   for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t)
-    if (film.lies_on_object(t)) lying.push_back(film.mesh().triangles[t]);
+    if (film.lies_on_object(t)) lying.push_back(std::int32_t(t));
   return lying;
 }
 
@@ -65,7 +65,8 @@ struct FilmMap::Impl {
   std::vector<std::uint8_t> lies;           // per film triangle
   std::vector<std::int32_t> film_triangle;  // of each triangle of film_surface
   std::vector<std::int32_t> torn_triangle;  // of torn_surface
-  Surface film_surface;
+  std::shared_ptr<const TriangleMesh> film_on_object;
+  Surface film_surface;      // of film_on_object
   Surface torn_surface;      // torn film, where it met the object
   std::vector<Vec3> normal;  // as DippedFilm::normal
   // Per film triangle: its number among those that are laid over an edge of the object, or -1.
@@ -79,19 +80,22 @@ struct FilmMap::Impl {
       : object(o),
         surface(s),
         film(f),
+        lies(f.mesh().triangles.size(), 0),
+        film_triangle(lying_on_object(f)),
         torn_triangle(torn_on_object(f)),
-        film_surface(f.position, triangles_on_object(f)),
+        film_on_object(std::make_shared<const TriangleMesh>(
+            TriangleMesh{f.position, corners_of(film_triangle, f)})),
+        film_surface(film_on_object),
         torn_surface(f.position, corners_of(torn_triangle, f)),
         normal(film_normals(f, s)),
         rim(f),
         reach_mm(f.mesh().cell_mm),
-        over_object(o, f.position, triangles_on_object(f), film_surface, reach_mm) {
-    for (std::size_t t = 0; t < film.mesh().triangles.size(); ++t) {
-      lies.push_back(film.lies_on_object(t));
-      if (lies.back()) film_triangle.push_back(static_cast<std::int32_t>(t));
-    }
+        over_object(o, *film_on_object, film_surface, reach_mm) {
     over_edge.assign(film.mesh().triangles.size(), -1);
-    for (const std::int32_t t : film_triangle) find_edge(std::size_t(t));
+    for (const std::int32_t t : film_triangle) {
+      lies[std::size_t(t)] = 1;
+      find_edge(std::size_t(t));
+    }
   }
 
   void find_edge(std::size_t t) {

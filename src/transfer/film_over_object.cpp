@@ -22,12 +22,10 @@ constexpr float kSlack = 1e-5F;
 float FilmOverObject::Linear::least() const { return first + std::min({0.0F, by_u, by_v}); }
 float FilmOverObject::Linear::most() const { return first + std::max({0.0F, by_u, by_v}); }
 
-FilmOverObject::FilmOverObject(const TriangleMesh& object, const std::vector<Vec3>& film_positions,
-                               std::vector<Triangle> triangles, const Surface& sheet,
-                               double reach_mm)
+FilmOverObject::FilmOverObject(const TriangleMesh& object, const TriangleMesh& film,
+                               const Surface& sheet, double reach_mm)
     : object_(object),
-      film_positions_(film_positions),
-      triangles_(std::move(triangles)),
+      film_(film),
       sheet_(sheet),
       reach_mm_(reach_mm),
       found_(object.triangles.size() <= kMostTriangles ? object.triangles.size() : 0) {}
@@ -92,10 +90,10 @@ std::unique_ptr<const FilmOverObject::Overs> FilmOverObject::find(int object_tri
   // Of those that are equally near the first counts.
   std::sort(near.begin(), near.end());
   for (const int triangle : near) {
-    const Triangle& film = triangles_[std::size_t(triangle)];
-    const Vec3& a = film_positions_[std::size_t(film[0])];
-    const Vec3 ab = film_positions_[std::size_t(film[1])] - a;
-    const Vec3 ac = film_positions_[std::size_t(film[2])] - a;
+    const Triangle& film = film_.triangles[std::size_t(triangle)];
+    const Vec3& a = film_.positions[std::size_t(film[0])];
+    const Vec3 ab = film_.positions[std::size_t(film[1])] - a;
+    const Vec3 ac = film_.positions[std::size_t(film[2])] - a;
     const Vec3 upwards = ab.cross(ac);
     const double squared = upwards.squaredNorm(), slope = normal.dot(upwards);
     if (!(std::abs(slope) > kFlattest * std::sqrt(squared))) continue;

@@ -19,9 +19,9 @@ namespace hydrodip {
 // it is made from.
 class FilmOverObject {
  public:
-  // Of film within `reach_mm` on either side; `sheet`: its surface, which has its `triangles`.
-  FilmOverObject(const TriangleMesh& object, const std::vector<Vec3>& film_positions,
-                 std::vector<Triangle> triangles, const Surface& sheet, double reach_mm);
+  // Of film within `reach_mm` on either side; `sheet`: its surface.
+  FilmOverObject(const TriangleMesh& object, const TriangleMesh& film, const Surface& sheet,
+                 double reach_mm);
   ~FilmOverObject();
   FilmOverObject(const FilmOverObject&) = delete;
   FilmOverObject& operator=(const FilmOverObject&) = delete;
@@ -55,8 +55,7 @@ class FilmOverObject {
   std::unique_ptr<const Overs> find(int object_triangle) const;
 
   const TriangleMesh& object_;
-  const std::vector<Vec3>& film_positions_;
-  const std::vector<Triangle> triangles_;
+  const TriangleMesh& film_;
   const Surface& sheet_;
   const double reach_mm_;
   mutable std::vector<std::atomic<const Overs*>> found_;  // per object triangle, or empty

@@ -69,9 +69,9 @@ TEST(FilmOverObject, IsWhatRaysMeetOverARoundObject) {
 TEST(FilmOverObject, IsWhatRaysMeetOverTrianglesThatAreMuchLargerThanTheFilms) {
   const auto slab = fixtures::mapped(fixtures::slab(), fixtures::film_on_slab(5000));
   EXPECT_GT(compare(*slab, 20000).covered, 1000);
-  const Surface sheet(slab->film.position, slab->film.mesh().triangles);
-  const FilmOverObject over(slab->object, slab->film.position, slab->film.mesh().triangles, sheet,
-                            1);
+  const TriangleMesh film{slab->film.position, slab->film.mesh().triangles};
+  const Surface sheet(film.positions, film.triangles);
+  const FilmOverObject over(slab->object, film, sheet, 1);
   EXPECT_FALSE(over.nearest({0, 0.3, 0.3}).is_known);
 }
 
@@ -116,7 +116,7 @@ TEST(FilmOverObject, SeesTheNearerSideFirst) {
         all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     }
     const Surface sheet(all.positions, all.triangles);
-    const FilmOverObject over(slab, all.positions, all.triangles, sheet, 2);
+    const FilmOverObject over(slab, all, sheet, 2);
     const FilmOverObject::Nearest found = over.nearest(below);
     EXPECT_TRUE(found.is_known);
     return found.hit ? found.hit->triangle : -1;
@@ -137,7 +137,7 @@ TEST(FilmOverObject, EndsWhereFilmIsOutOfReach) {
   film.positions = {{-90, -30, -0.5}, {90, -30, -0.5}, {0, 90, -8.5}};
   film.triangles = {{0, 1, 2}};
   const Surface sheet(film.positions, film.triangles);
-  const FilmOverObject over(slab, film.positions, film.triangles, sheet, 2);
+  const FilmOverObject over(slab, film, sheet, 2);
   std::mt19937 random(4);
   int within = 0, beyond = 0;
   for (int n = 0; n < 4000; ++n) {
