@@ -37,10 +37,6 @@ std::vector<Seen> seen_by(const DipPlan& plan, const TrialTask& task) {
   return seen;
 }
 
-double gained(const std::vector<double>& covered, std::size_t k) {
-  return covered[k] - (k > 0 ? covered[k - 1] : 0);
-}
-
 // Of what `counts` of the points.
 template <class Counts>
 ReportWanted sum_of(const std::vector<Seen>& seen, const Targets& targets, double scale,
@@ -57,6 +53,10 @@ ReportWanted sum_of(const std::vector<Seen>& seen, const Targets& targets, doubl
 }
 
 }  // namespace
+
+double gained(const std::vector<double>& covered, std::size_t k) {
+  return covered[k] - (k > 0 ? covered[k - 1] : 0);
+}
 
 PlanCoverage coverage_of(const DipPlan& plan, const JobConfig& config,
                          const PreparedObject& prepared) {

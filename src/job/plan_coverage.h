@@ -2,6 +2,7 @@
 // say of them.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct PlanCoverage {
   // Of all together: of several the whole surface, and what shall be printed likewise.
   std::optional<ReportWanted> everywhere, wanted;
 };
+
+// What the kth dip, from 0 on, adds to one of these shares.
+double gained(const std::vector<double>& covered, std::size_t k);
 
 PlanCoverage coverage_of(const DipPlan& plan, const JobConfig& config,
                          const PreparedObject& prepared);

@@ -26,10 +26,6 @@ constexpr LinearColor kEarlier{0.33F, 0.42F, 0.5F, 1};
 // Shares of the surface under film after each dip.
 using Covered = std::vector<double>;
 
-double gained(const Covered& covered, std::size_t k) {
-  return covered[k] - (k > 0 ? covered[k - 1] : 0);
-}
-
 json path_json(const std::vector<Keyframe>& path) {
   if (path.empty()) return nullptr;
   json rows = json::array();
