@@ -159,6 +159,7 @@ JobResult plan_job(const JobConfig& config, const RunContext& context, const Job
   planned.dips = entries_of(plan, config);
   planned.plan.dips = 0;
   planned.plan.find_pose = planned.plan.find_depth = false;
+  planned.design.trajectory.depth_mm = 0;  // each has its own
   write_file(output.path("plan.toml"), job_file(planned, output.folder()));
   const PlanCoverage coverage = coverage_of(plan, config, output.prepared());
   warn_of(foretold(plan, coverage, config), plan.dips.size(), context);

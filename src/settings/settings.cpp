@@ -164,6 +164,25 @@ void keep_path_files(JobConfig& config, const std::vector<Setting>& all) {
     keep(fmt::format("dip[{}].path", k + 1), config.dips[k].path);
 }
 
+// One depth for dips of which each has its own would be passed over. What a file says of others, as
+// a profile does, may stand beside dips that all say theirs.
+void require_no_common_depth(const JobConfig& config, const std::vector<Setting>& all) {
+  const Setting* last = last_given(all, "dip.depth_mm");
+  if (!last || config.plan.find_depth || (config.dips.empty() && config.plan.dips < 2)) return;
+  const bool is_planned = config.plan.dips > int(config.dips.size());
+  if (last->typed && !is_planned && std::ranges::all_of(config.dips, [](const DipEntry& dip) {
+        return dip.depth_mm.has_value() || !dip.path.empty();
+      }))
+    return;
+  throw InputError(fmt::format(
+      "{}{}: each of several dips has a depth of its own: write it into their [[dip]] tables "
+      "(depth_mm), or leave this out, and it is looked for",
+      last->origin,
+      last->typed               ? ": " + told_name(*last)
+      : last->origin == "--set" ? " " + last->name
+                                : ""));
+}
+
 }  // namespace
 
 void apply_sources(JobConfig& config, const SettingSources& sources) {
@@ -189,6 +208,7 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
   add(sources.options);
   add(sources.sets);
   settle(config, all);
+  require_no_common_depth(config, all);
   keep_path_files(config, all);
 }
 
@@ -213,19 +233,6 @@ void require_dips_alone_say(const JobConfig& config, const SettingSources& sourc
         throw InputError(fmt::format(
             "{}: this job's [[dip]] tables say how it is held and how deep it goes; change it "
             "there, or take the tables away",
-            s.origin == "--set" ? "--set " + s.name : s.origin));
-}
-
-// One depth for several dips would be passed over: each has its own, which is looked for.
-void require_no_common_depth(const JobConfig& config, const SettingSources& sources) {
-  if (config.plan.dips < 2 || !config.dips.empty() || !(config.design.trajectory.depth_mm > 0))
-    return;
-  for (const auto* settings : {&sources.options, &sources.sets})
-    for (const Setting& s : *settings)
-      if (s.name == "dip.depth_mm")
-        throw InputError(fmt::format(
-            "{}: each of several dips has a depth of its own, which is looked for: leave this out, "
-            "or give each dip its depth in a [[dip]] table (depth_mm)",
             s.origin == "--set" ? "--set " + s.name : s.origin));
 }
 
@@ -256,7 +263,6 @@ JobConfig configured(const std::string& model, SettingSources sources) {
   if (is_job) sources.configs.insert(sources.configs.begin(), model);
   apply_sources(config, sources);
   require_dips_alone_say(config, sources);
-  require_no_common_depth(config, sources);
   require_one_way_down(config, model);
   if (!is_job && !model.empty()) config.model = model;
   if (is_job) require_no_parts(model);
