@@ -117,12 +117,22 @@ std::array<double, 3> checked_vector(const Parameter& p, const Setting& setting)
   return {(*values)[0] + 0.0, (*values)[1] + 0.0, (*values)[2] + 0.0};
 }
 
+// What is wrong with it is told with the place that names it, which may be one of many.
+std::vector<Keyframe> path_in_file(const std::string& file, const Setting& setting) {
+  try {
+    return read_path(file);
+  } catch (const InputError& error) {
+    if (!setting.typed) throw;
+    throw InputError(fmt::format("{}: {}: {}", setting.origin, told_name(setting), error.what()));
+  }
+}
+
 // A text with ';' is the rows themselves, as reports have them, and else the name of a file.
 std::string checked_path(const Parameter& p, const Setting& setting) {
   if (const auto* text = std::get_if<std::string>(&setting.value)) {
     if (text->find('\0') != std::string::npos) refuse(p, setting);
     if (text->empty()) return "";
-    return rows_of(text->find(';') == std::string::npos ? read_path(*text)
+    return rows_of(text->find(';') == std::string::npos ? path_in_file(*text, setting)
                                                         : path_of_rows(*text, setting.origin));
   }
   const auto* values = std::get_if<std::vector<double>>(&setting.value);

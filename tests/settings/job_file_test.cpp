@@ -1,5 +1,6 @@
 #include "settings/job_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -89,6 +90,51 @@ TEST_F(JobFile, APathAndADepthOfOneDipAreRefused) {
       EXPECT_TRUE(contains(error.what(), "leave out depth_mm")) << error.what();
     }
   }
+}
+
+// Each dip has its own: one for all would be passed over.
+TEST_F(JobFile, OneDepthForSeveralDipsIsRefused) {
+  const auto told = [&](const std::string& text, const SettingSources& more = {}) {
+    const auto file = (folder_ / "job.toml").string();
+    std::ofstream(file) << "object.file = \"a.obj\"\n" << text;
+    try {
+      configured(file, more);
+      return std::string("accepted");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  SettingSources by_hand;
+  by_hand.sets = {parse_set("dip.depth_mm=5")};
+  for (const char* depth : {"3", "0"}) {
+    const std::string common = fmt::format("[dips]\ndepth_mm = {}\n", depth);
+    for (const char* tables : {"[[dip]]\n", "[[dip]]\n[[dip]]\ndepth_mm = 4\n"})
+      EXPECT_TRUE(
+          contains(told(common + tables), "job.toml:3: dips.depth_mm: each of several dips"))
+          << told(common + tables);
+  }
+  EXPECT_TRUE(
+      contains(told("[plan]\ndips = 2\n[dip]\ndepth_mm = 3\n"), "job.toml:5: dip.depth_mm"));
+  EXPECT_TRUE(contains(told("[plan]\ndips = 2\n[dips]\ndepth_mm = 3\n[[dip]]\ndepth_mm = 4\n"),
+                       "job.toml:5: dips.depth_mm"));
+  EXPECT_TRUE(contains(told("[dips]\ndepth_mm = 3\n[[dip]]\ndepth_mm = 4\n", by_hand),
+                       "--set dip.depth_mm: "));
+  // It is looked for, or every dip says its own.
+  EXPECT_EQ(told("[dips]\ndepth_mm = \"auto\"\n[[dip]]\n[[dip]]\n"), "accepted");
+  EXPECT_EQ(told("[plan]\ndips = 1\n[dip]\ndepth_mm = 3\n"), "accepted");
+  EXPECT_EQ(told("[dips]\ndepth_mm = 3\n[[dip]]\ndepth_mm = 4\n[[dip]]\n"
+                 "path = [[0, 0, 0, 0, 0, 0], [9, 0, 0, 0, 0, 0]]\n"),
+            "accepted");
+}
+
+// Of many tables: whose it is.
+TEST_F(JobFile, APathFileThatIsNotThereIsToldWithItsPlace) {
+  const std::string file = (folder_ / "gone.csv").string() + ": cannot be read";
+  EXPECT_TRUE(contains(refusal("[[dip]]\n[[dip]]\npath = \"gone.csv\"\n"),
+                       "job.toml:3: [[dip]] 2: path: " + file));
+  EXPECT_TRUE(contains(refusal("path = \"gone.csv\"\n"), "job.toml:1: path: " + file));
+  std::ofstream(folder_ / "gone.csv") << "1,2,3\n";
+  EXPECT_TRUE(contains(refusal("[[dip]]\npath = \"gone.csv\"\n"), "job.toml:2: [[dip]] 1: path: "));
 }
 
 TEST_F(JobFile, ARotationToBeFoundIsOneBesideTheSideThatGoesDown) {
