@@ -248,13 +248,8 @@ Report make_report(const JobRecord& record) {
 
 namespace {
 
-// Where one of them is for nothing already, one more is no help.
 std::string better_dips(const Report& report) {
-  const std::vector<Finding> list = findings(report);
-  const bool has_idle =
-      std::any_of(list.begin(), list.end(), [](const auto& f) { return f.key == "idle_dips"; });
-  if (has_idle || report.dips.size() >= std::size_t(kMostDips))
-    return "hydrodip plan looks for better ways to hold it.\n";
+  if (!may_add_a_dip(report.dips)) return "hydrodip plan looks for better ways to hold it.\n";
   return fmt::format(
       "hydrodip plan looks for better ways to hold it, and for more of them with --dips {}.\n",
       report.dips.size() + 1);

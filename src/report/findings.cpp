@@ -10,6 +10,7 @@
 
 #include "dip/dip.h"
 #include "report/shares.h"
+#include "transfer/allotment.h"
 
 namespace hydrodip {
 namespace {
@@ -76,37 +77,41 @@ Finding coverage_of_wanted(const ReportWanted& wanted, const Coverage& c,
   return finding;
 }
 
+// What to do about surface that stays bare where all of it shall be printed.
+std::string give_it_more_dips(const Report& report, bool hardly) {
+  const std::string bare = "What stays bare shows the object's own colour: ";
+  if (report.one_dip_only)
+    return bare + "paint the object to match (object.base_color)" +
+           (report.found_best ? "." : ", or hold it another way (--rotate auto).");
+  return bare + (hardly ? "give it other dips, turned: 'hydrodip plan' with --dips finds them, and "
+                          "says how much each one adds."
+                        : "give it other dips, turned (--dips), or paint the object to match "
+                          "(object.base_color).");
+}
+
 Finding coverage(const Report& report) {
   const Coverage& c = *report.coverage;
-  const bool one_dip_only = report.one_dip_only;
   if (!(c.film_on_object_mm2 > 0)) return no_film(c, is_inside_out(report));
   if (report.wanted) return coverage_of_wanted(*report.wanted, c, beyond_best_dip(report));
+  // Whatever faces down: of one of several dips, the others do the rest.
+  const bool hardly = c.covered_share() < kHardlyAPicture && report.dip_of < 2;
   // The same measure whatever becomes of the film, so that figures compare. Beside film that is
   // lost, the share of what faces down would tell little.
   if (c.torn_mm2 > 0)
-    return {
-        "coverage",
-        Concern::kCare,
-        "Coverage",
-        percent(c.covered_share()),
-        "of the object gets film that holds.",
-        one_dip_only
-            ? "What stays bare shows the object's own colour: paint the object to match "
-              "(object.base_color)" +
-                  std::string(report.found_best ? "." : ", or hold it another way (--rotate auto).")
-            : "What stays bare shows the object's own colour: give it other dips, turned "
-              "(--dips)."};
-  const bool nearly_all = c.covered_downward_share() >= kNearlyAll;
-  Finding finding{"coverage", nearly_all ? Concern::kNone : Concern::kCare,
-                  "Coverage", percent(c.covered_share()),
-                  "",         ""};
-  finding.text = fmt::format("of the object gets film, {} of what faces down.",
-                             percent(c.covered_downward_share()));
-  if (!nearly_all)
-    finding.advice =
-        "What stays bare shows the object's own colour: paint the object to match "
-        "(object.base_color), or give it another dip, turned.";
-  return finding;
+    return {"coverage",
+            Concern::kCare,
+            "Coverage",
+            percent(c.covered_share()),
+            "of the object gets film that holds.",
+            give_it_more_dips(report, hardly)};
+  const bool enough = c.covered_downward_share() >= kNearlyAll && !hardly;
+  return {"coverage",
+          enough ? Concern::kNone : Concern::kCare,
+          "Coverage",
+          percent(c.covered_share()),
+          fmt::format("of the object gets film, {} of what faces down.",
+                      percent(c.covered_downward_share())),
+          enough ? "" : give_it_more_dips(report, hardly)};
 }
 
 // Torn film is a loss where something shall be printed and no dip brings it. Several dips that
@@ -145,6 +150,11 @@ Finding tears(const Report& report) {
 
 bool is_of_several(const Report& report) { return report.dips.size() > 1 || report.dip_of > 1; }
 
+// Of what shall be printed, if that is not everywhere.
+double gain_of(const ReportDip& dip) { return dip.gained_wanted_share.value_or(dip.gained_share); }
+
+bool is_idle(const ReportDip& dip) { return dip.blank || gain_of(dip) < kHardlyAnything; }
+
 // No dip inks what it tears, and another one may bring what belongs there: all are judged by what
 // none brings, and each by itself not at all.
 Finding tears_of_several(const Report& report) {
@@ -163,18 +173,15 @@ Finding tears_of_several(const Report& report) {
           "Tears",
           percent(c.torn_share()),
           text + ".",
-          lost
+          !lost ? "Take torn film off the water and the object before it dries."
+          : may_add_a_dip(report.dips)
               ? fmt::format(
                     "Make more dips ('hydrodip plan' with --dips {} looks for them), or use a film "
                     "that bears more.",
                     report.dips.size() + 1)
-              : "Take torn film off the water and the object before it dries."};
+              : "Hold the object another way ('hydrodip plan' looks for ways), or use a film that "
+                "bears more."};
 }
-
-// Of what shall be printed, if that is not everywhere.
-double gain_of(const ReportDip& dip) { return dip.gained_wanted_share.value_or(dip.gained_share); }
-
-bool is_idle(const ReportDip& dip) { return dip.blank || gain_of(dip) < kHardlyAnything; }
 
 bool is_hardly_worth_it(const ReportDip& dip) {
   return !is_idle(dip) && gain_of(dip) < kLittleGained && dip.torn_share > kMostlyTorn;
@@ -480,12 +487,17 @@ Finding gamut(double share) {
 
 Finding coverage_of_dips(const Coverage& c, const std::optional<ReportWanted>& wanted,
                          std::size_t dips) {
+  const bool may_be_more = dips < std::size_t(kMostDips);
   if (wanted) {
     Finding finding = coverage_of_wanted(*wanted, c, "");
     finding.text = fmt::format("of what shall be printed gets film that holds {}{}.",
                                after_dips(dips), only_perhaps(wanted));
     if (!finding.advice.empty())
-      finding.advice = "Plan more dips (--dips): 'hydrodip plan' says how much each one adds.";
+      finding.advice =
+          may_be_more
+              ? "Plan more dips (--dips): 'hydrodip plan' says how much each one adds."
+              : "No job has more dips: put what stays bare elsewhere, or paint the object to "
+                "match (object.base_color).";
     return finding;
   }
   const bool nearly_all = c.covered_share() >= kNearlyAll;
@@ -496,9 +508,10 @@ Finding coverage_of_dips(const Coverage& c, const std::optional<ReportWanted>& w
                   fmt::format("of the object is under film {}.", after_dips(dips)),
                   ""};
   if (!nearly_all)
-    finding.advice =
-        "What stays bare shows the object's own colour: plan more dips (--dips), or paint the "
-        "object to match (object.base_color).";
+    finding.advice = fmt::format(
+        "What stays bare shows the object's own colour: {}paint the object to match "
+        "(object.base_color).",
+        may_be_more ? "plan more dips (--dips), or " : "");
   return finding;
 }
 
@@ -532,6 +545,10 @@ std::string beyond_best_dip(const Report& report) {
       "This is the best single dip that was found: {}{}{}.", dips,
       dips.empty() || picture.empty() ? "" : ", or ",
       dips.empty() && picture.empty() ? "make the object smaller (--size)" : picture);
+}
+
+bool may_add_a_dip(const std::vector<ReportDip>& dips) {
+  return dips.size() < std::size_t(kMostDips) && std::ranges::none_of(dips, is_idle);
 }
 
 std::vector<Finding> findings(const Report& report) {

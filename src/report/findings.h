@@ -27,6 +27,10 @@ std::vector<Finding> findings(const Report& report);
 // best one is not known.
 std::string beyond_best_dip(const Report& report);
 
+// Whether one dip more is to be proposed: there may be one, and none of these is for nothing
+// already.
+bool may_add_a_dip(const std::vector<ReportDip>& dips);
+
 // Of them, the first that is a reason not to dip besides what becomes of the film (tears, stretch,
 // coverage); null: there is none.
 const Finding* first_obstacle(const std::vector<Finding>& findings);

@@ -4,11 +4,9 @@
 #include <functional>
 
 #include "settings/params.h"
+#include "transfer/allotment.h"
 
 namespace hydrodip {
-
-// Of one job.
-inline constexpr int kMostDips = 24;
 
 // The names of a table's values.
 const std::vector<std::string>& dip_keys();

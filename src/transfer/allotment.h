@@ -8,6 +8,9 @@
 
 namespace hydrodip {
 
+// So many dips may share an object.
+inline constexpr int kMostDips = 24;
+
 // A function on the object's surface, the same in every pose. Immutable, safe to ask from many
 // threads.
 class Allotment {

@@ -251,6 +251,47 @@ TEST(Findings, OfSeveralDipsNoneIsMadeForNothing) {
   EXPECT_EQ(concern_of(findings(report)), Concern::kCare);
 }
 
+// No more are proposed than there may be, nor where one is for nothing already.
+TEST(Findings, OneDipMoreIsProposedWhereThereMayBeOne) {
+  Report report = good_report();
+  report.coverage->torn_mm2 = 1500;
+  report.together = ReportWanted{2000, 1000, 500};
+  const auto advice = [&](const char* key) { return find(findings(report), key)->advice; };
+  const auto with_dips = [&](int dips) {
+    report.dips.assign(std::size_t(dips), {});
+    for (ReportDip& dip : report.dips) dip.gained_share = 0.02;
+  };
+  with_dips(23);
+  EXPECT_EQ(concern(report, "tears"), Concern::kStop);
+  EXPECT_TRUE(advice("tears").find("--dips 24") != std::string::npos) << advice("tears");
+  EXPECT_TRUE(advice("coverage").find("--dips") != std::string::npos) << advice("coverage");
+  report.dips.back().gained_share = 0;
+  EXPECT_EQ(advice("tears").find("--dips"), std::string::npos) << advice("tears");
+  with_dips(24);
+  EXPECT_EQ(concern(report, "tears"), Concern::kStop);
+  for (const char* key : {"tears", "coverage"})
+    EXPECT_EQ(advice(key).find("--dips"), std::string::npos) << advice(key);
+  report.wanted = ReportWanted{1500, 1000, 500};
+  EXPECT_EQ(advice("coverage").find("--dips"), std::string::npos) << advice("coverage");
+}
+
+// All of what faces down may be little of an object that shall be coloured all around.
+TEST(Findings, ADipThatColoursLittleOfTheObjectIsToldToBeOneOfSeveral) {
+  Report report = good_report();
+  report.coverage->object_mm2 = 50000;  // 2 % of it
+  EXPECT_EQ(concern(report, "coverage"), Concern::kCare);
+  const Finding told = findings(report).front();
+  EXPECT_EQ(told.key, "coverage");
+  EXPECT_EQ(told.figure, "1.9 %");
+  EXPECT_NE(told.advice.find("hydrodip plan"), std::string::npos) << told.advice;
+  EXPECT_EQ(concern_of(findings(report)), Concern::kCare);
+  report.wanted = ReportWanted{960, 960, 960};  // a picture on one side, all of it
+  EXPECT_EQ(concern(report, "coverage"), Concern::kNone);
+  report.wanted.reset();
+  report.dip_number = 1, report.dip_of = 2;  // others do the rest
+  EXPECT_EQ(concern(report, "coverage"), Concern::kNone);
+}
+
 // Much film for little: nobody forbids it, and who plans is told.
 TEST(Findings, ADipThatTearsMostOfItsFilmForLittleIsHardlyWorthIt) {
   Report report = good_report();
