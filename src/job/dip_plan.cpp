@@ -11,6 +11,7 @@
 #include "job/dips_side_by_side.h"
 #include "job/ways.h"
 #include "plan/choice.h"
+#include "plan/fit.h"
 #include "plan/search.h"
 #include "settings/correction_file.h"
 
@@ -219,12 +220,14 @@ class Planning {
     TrajectoryOptions way = config_.design.trajectory;
     way.depth_mm = trial.path.empty() ? trial.depth_mm : 0;
     way.path = trial.path;
+    const Trajectory trajectory = make_trajectory(way, posed.mesh().positions);
+    warn_if_tight(room_of(posed.mesh(), trajectory), config_.design.film, context);
     Timings unheard;
     PlannedDip dip{
         trial,
         dip_object(posed, std::make_shared<const FilmMesh>(make_film_mesh(film_of(config_, trial))),
-                   make_trajectory(way, posed.mesh().positions), config_.design.dip, unheard,
-                   context, {}, {.options = config_.design.air, .found = {}})};
+                   trajectory, config_.design.dip, unheard, context, {},
+                   {.options = config_.design.air, .found = {}})};
     dip.trial = judge_dip(task_, trial.pose, dip.blank);
     dip.trial.depth_mm = trial.depth_mm;
     dip.trial.path = trial.path;
@@ -308,8 +311,11 @@ std::vector<DipEntry> entries_of(const DipPlan& plan, const JobConfig& config) {
     if (dip.path.empty()) entry.depth_mm = dip.depth_mm;
     entry.path = dip.path;
     if (const auto same = dip_held_so(config, dip.pose)) {
-      entry.locked = config.dips[*same].locked;
-      entry.correction = config.dips[*same].correction;
+      const DipEntry& given = config.dips[*same];
+      entry.locked = given.locked;
+      entry.correction = given.correction;
+      // As it was said: "the whole object" is not that many digits.
+      if (given.locked && entry.depth_mm && given.depth_mm) entry.depth_mm = given.depth_mm;
     }
     entries.push_back(entry);
   }

@@ -165,6 +165,7 @@ void require_no_pattern(const Paint& paint) {
 MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const DipPlan& plan,
                  const RunContext& context) {
   MadeDips all{config, prepared, {}, make_nodes(prepared, config.plan.overlap_mm), {}};
+  warn_if_sheet_exceeds_bath(config.design.film, config.bath, context);
   for (std::size_t k = 0; k < plan.dips.size(); ++k) {
     const PosedObject& posed = plan.dips[k].blank.posed;
     MadeDip dip{config_of(config, prepared, plan.dips[k].trial, k + 1, plan.dips.size()),
@@ -177,7 +178,7 @@ MadeDips hang_up(const JobConfig& config, const PreparedObject& prepared, const 
                 int(k) + 1};
     const Trajectory way = make_trajectory(dip.config.design.trajectory, posed.mesh().positions);
     const Room room = room_of(posed.mesh(), way);
-    require_fit(posed.size_mm(), room, config.design.film, config.bath, context);
+    require_room(posed.size_mm(), room, config.design.film, config.bath);
     require_correction_fits(dip.config, posed, room.depth_mm);
     all.dips.push_back(std::move(dip));
   }

@@ -117,16 +117,6 @@ std::vector<RoomFit> room_in_bath(const Room& footprint, const FilmOptions& film
           {kDeep, kBath, footprint.depth_mm, tank.depth_mm, "bath.depth_mm"}};
 }
 
-void warn_if_tight(const std::vector<RoomFit>& list, const RunContext& context) {
-  for (const RoomFit& fit : list) {
-    if (-fit.excess_mm() >= fit.comfort_mm - kFitTolerance_mm) continue;
-    context.warn(fmt::format(
-        "Only {} of free film is left beside the object where it is {} {}: the film there will "
-        "stretch strongly; a larger --film helps.",
-        mm(std::max(0.0, -0.5 * fit.excess_mm())), mm(fit.needed_mm), fit.what));
-  }
-}
-
 }  // namespace
 
 Room room_of(const TriangleMesh& posed, double depth_mm) {
@@ -215,18 +205,32 @@ void warn_if_sheet_exceeds_bath(const FilmOptions& film, const BathOptions& tank
       mm(film.width_mm), mm(film.height_mm), mm(bath.x()), mm(bath.y())));
 }
 
-void require_fit(double size_mm, const Room& room, const FilmOptions& film, const BathOptions& bath,
-                 const RunContext& context) {
+void require_room(double size_mm, const Room& room, const FilmOptions& film,
+                  const BathOptions& bath) {
   half_of_free_film(film);  // throws where there is none
-  const std::vector<RoomFit> list = fits(size_mm, room, film, bath);
-  for (const RoomFit& fit : list)
+  for (const RoomFit& fit : fits(size_mm, room, film, bath))
     if (fit.excess_mm() > kFitTolerance_mm)
       throw InputError(fmt::format(
           "the object is {} {}, {} more than the {} of {}: {}{}", mm(fit.needed_mm), fit.what,
           mm(fit.excess_mm()), mm(fit.available_mm), fit.room, fit.remedy,
           fit.needed_mm > kSuspiciousMisfit * fit.available_mm ? "; are its --units right?" : ""));
+}
+
+void warn_if_tight(const Room& room, const FilmOptions& film, const RunContext& context) {
+  for (const RoomFit& fit : film_fits(room, film)) {
+    if (-fit.excess_mm() >= fit.comfort_mm - kFitTolerance_mm) continue;
+    context.warn(fmt::format(
+        "Only {} of free film is left beside the object where it is {} {}: the film there will "
+        "stretch strongly; a larger --film helps.",
+        mm(std::max(0.0, -0.5 * fit.excess_mm())), mm(fit.needed_mm), fit.what));
+  }
+}
+
+void require_fit(double size_mm, const Room& room, const FilmOptions& film, const BathOptions& bath,
+                 const RunContext& context) {
+  require_room(size_mm, room, film, bath);
   warn_if_sheet_exceeds_bath(film, bath, context);
-  warn_if_tight(list, context);
+  warn_if_tight(room, film, context);
 }
 
 }  // namespace hydrodip

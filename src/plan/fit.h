@@ -60,8 +60,13 @@ bool sheet_fits_bath(const FilmOptions& film, const BathOptions& bath);
 void warn_if_sheet_exceeds_bath(const FilmOptions& film, const BathOptions& bath,
                                 const RunContext& context);
 
-// Throws InputError for the first that does not fit, saying by how much and how to mend it. Warns
-// about a sheet larger than the bath and about little film around the object.
+// Throws InputError for the first that does not fit, saying by how much and how to mend it.
+void require_room(double size_mm, const Room& room, const FilmOptions& film,
+                  const BathOptions& bath);
+// Warns about little film around the object.
+void warn_if_tight(const Room& room, const FilmOptions& film, const RunContext& context);
+
+// As require_room; warns about a sheet larger than the bath and as warn_if_tight.
 void require_fit(double size_mm, const Room& room, const FilmOptions& film, const BathOptions& bath,
                  const RunContext& context);
 

@@ -113,6 +113,23 @@ import json
 dip, way = json.load(open('alone.json'))['dips'][0], json.load(open('ways.json'))['poses'][0]
 assert (dip['rotate_deg'], dip['depth_mm']) == (way['rotate_deg'], way['depth_mm']), (dip, way)
 PY
+# Little free film beside the object is told beforehand, dip by dip, as print tells it.
+tight="--set film.elements=800 --set dip.step_mm=1 --set dip.air_cells=0 --set preview.pictures=off --film 66x66"
+printf '[object]\nfile = "boxes/box.obj"\nsize_mm = 40\n[[dip]]\nrotate_deg = [0, 0, 0]\ndepth_mm = 3\nlocked = true\n[[dip]]\nrotate_deg = [0, 0, 90]\ndepth_mm = 0\nlocked = true\n' > tight.toml
+# shellcheck disable=SC2086
+"$hydrodip" plan tight.toml $tight -o tight --quiet > said.txt || fail "plan of tight film: $?"
+# shellcheck disable=SC2086
+"$hydrodip" print tight/plan.toml $tight --dpi 72 -o tight-print --quiet > printed.txt || fail "print on tight film: $?"
+for file in said.txt printed.txt; do
+  for dip in 1 2; do
+    grep -q "^warning: dip $dip: Only .* of free film is left beside the object" $file || fail "tight film: $(cat $file)"
+  done
+done
+# A depth is written as it was said, and one for all is not there beside them.
+[ "$(grep -c '^depth_mm = ' tight/plan.toml)" -eq 2 ] && grep -qx 'depth_mm = 0' tight/plan.toml || fail "plan.toml: $(cat tight/plan.toml)"
+# shellcheck disable=SC2086
+"$hydrodip" plan boxes/box.obj --size 40 --dips 1 --depth 3 $side -o shallow --quiet > /dev/null || fail "plan --depth: $?"
+[ "$(grep -c '^depth_mm = 3$' shallow/plan.toml)" -eq 1 ] || fail "plan.toml: $(cat shallow/plan.toml)"
 # Air that either of two dips traps is the report's, and is told once, of that dip.
 python3 - <<'PY'
 from math import cos, pi, sin
@@ -238,6 +255,10 @@ refused '^error: --set object.down: .*tables' print two.toml --set object.down=+
 refused '2 .*tables' plan two.toml --dips 1
 refused '^error: --depth: .*looked for' plan colored.ply --dips 2 --depth 3
 refused '^error: --set dip.depth_mm: .*looked for' print colored.ply --dips 2 --set dip.depth_mm=3
+for job in '[dips]\ndepth_mm = 3\n[[dip]]\nrotate_deg = [0, 0, 0]' '[dip]\ndepth_mm = 3\n[plan]\ndips = 2'; do
+  printf '[object]\nfile = "colored.ply"\n%b\n' "$job" > common.toml
+  for command in print plan; do refused '^error: common.toml:4: dips\?.depth_mm: each of several dips' $command common.toml; done
+done
 refused "'hydrodip plan'" orient two.toml
 refused "'hydrodip print'" simulate two.toml
 printf '[object]\nfile = "colored.ply"\n[[dip]]\nrotate_deg = [0, 0]\n' > bad.toml
@@ -246,6 +267,8 @@ printf '[object]\nfile = "colored.ply"\n[[dip]]\nrotat_deg = [0, 0, 0]\n' > bad.
 refused 'rotate_deg' print bad.toml
 printf '[[dip]]\n' > bad.toml
 refused 'names no model' print bad.toml
+printf '[object]\nfile = "colored.ply"\n[[dip]]\n[[dip]]\npath = "gone.csv"\n' > bad.toml
+refused '^error: bad.toml:5: \[\[dip]] 2: path: gone.csv: cannot be read' print bad.toml
 printf 'lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_z_deg\n0,0,0,0,0,0\n5,0,0,0,0,0\n' > way.csv
 refused 'a path says how deep' print colored.ply --depth auto --path way.csv
 
