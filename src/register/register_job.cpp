@@ -144,6 +144,7 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
                        const RunContext& context) {
   const RunScope scope(context.with_threads(job.config.threads));
   FilmSearch search{marks_of(job), request.water_sigma_mm, request.tolerance_mm};
+  const std::vector<std::uint8_t> bytes = read_picture(request.photo);
   const std::filesystem::path camera = camera_file(job, request);
   Tank tank = read_tank(camera);
   const double kept_below_mm = tank.water_below_mm;
@@ -152,7 +153,6 @@ JobResult register_job(const RigJob& job, const RegisterRequest& request,
   OutputFolder output(job.folder, job.config.earlier_result);
   output.announce({kRegistrationFile, kMapFile}, {request.photo, camera});
   context.progress("looking for the film", 0);
-  const std::vector<std::uint8_t> bytes = read_picture(request.photo);
   const GrayImage photo = gray_of(decode_image(bytes, request.photo.string()));
   const FilmPose pose = find_film(photo, request.photo.string(), tank, search, context);
 

@@ -112,6 +112,7 @@ expect 2 'too many for' correct job large.csv
 rm large.*
 expect 2 'name one photo' register
 expect 2 'camera.json' register scan.png job
+expect 2 '^error: gone.png: cannot be read' register gone.png job
 printf '{}' > camera.json
 expect 2 'not a camera' register scan.png job
 printf '{"schema_version": 2}' > camera.json
