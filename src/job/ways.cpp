@@ -185,7 +185,7 @@ std::string describe_trial(const Trial& trial, ModelSide up) {
 
 std::string trial_options(const Trial& trial) {
   if (!trial.path.empty()) return hold_options(trial.pose);
-  return fmt::format("{} --depth {:.4g}", hold_options(trial.pose), trial.depth_mm);
+  return fmt::format("{} --depth {:.6g}", hold_options(trial.pose), trial.depth_mm);
 }
 
 namespace {

@@ -119,6 +119,15 @@ std::vector<Event> events_of(const TrialTask& task, const MadeDip& dip, const La
   return events;
 }
 
+// What is looked for ends at a depth that a person can read: an object's own height has as many
+// digits as a number can.
+double readable_below(double depth_mm) {
+  constexpr double kPartsPerMm = 100;
+  const double parts = std::floor(depth_mm * kPartsPerMm + 1e-9);
+  const double readable = parts / kPartsPerMm;
+  return readable <= depth_mm ? readable : (parts - 1) / kPartsPerMm;
+}
+
 double best_depth(const std::vector<Event>& events, double reached_mm) {
   double score = 0, best = 0, best_at = 0;
   for (std::size_t i = 0; i < events.size() && events[i].at_mm <= reached_mm; ++i) {
@@ -130,7 +139,7 @@ double best_depth(const std::vector<Event>& events, double reached_mm) {
     }
   }
   const double rounded = std::ceil(best_at * kDepthsPerMm - 1e-6) / kDepthsPerMm;
-  return std::min(rounded, reached_mm);
+  return rounded <= reached_mm ? rounded : readable_below(reached_mm);
 }
 
 // The depth at which film comes to lie that no film could be; kNever: there is none.
@@ -327,7 +336,8 @@ std::optional<Trial> try_pose(const TrialTask& task, const PoseOptions& pose, do
   double depth_mm = mesh.bounds().max.z();
   if (depth_most_mm > 0) depth_mm = std::min(depth_mm, depth_most_mm);
   if (task.depth_mm > 0) depth_mm = std::min(depth_mm, task.depth_mm);
-  const double fitting_mm = deepest_fit(task, mesh, depth_mm);
+  double fitting_mm = deepest_fit(task, mesh, depth_mm);
+  if (!(task.depth_mm > 0)) fitting_mm = readable_below(fitting_mm);
   if (fitting_mm < (task.depth_mm > 0 ? depth_mm : 2 * task.dip.step_mm)) return std::nullopt;
   const std::optional<double> given = task.depth_mm > 0 ? std::optional(fitting_mm) : std::nullopt;
   return StraightTrial(task, pose, posed, given).run(fitting_mm, context);

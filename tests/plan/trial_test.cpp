@@ -61,6 +61,19 @@ TEST_F(SphereTrial, TellsDepthsInTenths) {
   }
 }
 
+// Down to all that fits, too, whose depth has as many digits as a number can; nothing tears there.
+TEST_F(SphereTrial, TellsNoDepthWithMoreDigitsThanAPersonReads) {
+  TrialTask small = task();
+  small.dip.material.tear_stretch = 2.5;
+  for (const double most_mm : {7.123456789, 8.0 / 3, 12.3}) {
+    const auto trial = try_pose(small, {}, most_mm, context_);
+    ASSERT_TRUE(trial);
+    EXPECT_EQ(trial->depth_mm, std::stod(fmt::format("{:.2f}", trial->depth_mm)));
+    EXPECT_NEAR(trial->depth_mm, most_mm, 0.01);
+    EXPECT_LE(trial->depth_mm, most_mm);
+  }
+}
+
 TEST_F(SphereTrial, IsWorthLessAsTheFilmIsStretched) {
   const auto trial = try_pose(task(), {}, 0, context_);
   ASSERT_TRUE(trial);
