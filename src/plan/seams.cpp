@@ -28,6 +28,9 @@ constexpr double kPoorBorder = 3;
 // Ink fades in over that much at the border of its film.
 constexpr double kFadeIn_mm = 0.6;
 
+// What may lie just as far is looked for a hair further.
+constexpr double kHair = 1 + 1e-9;
+
 // What a seam is seen by.
 constexpr double kAlwaysSeen = 0.15;
 constexpr double kInkSeen = 0.55;
@@ -191,18 +194,29 @@ double length_mm(const std::vector<LabelEdge>& edges, const std::vector<std::uin
   return double(cut) * spacing_mm / kPairsAcross;
 }
 
+// Of each dip's part.
+std::vector<NearestNode> nearest_of_parts(const SurfaceNodes& nodes,
+                                          const std::vector<std::uint8_t>& dip_of,
+                                          std::size_t dips) {
+  std::vector<std::vector<std::int32_t>> parts(dips);
+  for (std::size_t i = 0; i < dip_of.size(); ++i) parts[dip_of[i]].push_back(std::int32_t(i));
+  std::vector<NearestNode> nearest;
+  for (auto& part : parts) nearest.emplace_back(nodes, std::move(part));
+  return nearest;
+}
+
 // Nodes that have one of another dip within reach.
 std::vector<std::uint8_t> near_seams(const SurfaceNodes& nodes,
-                                     const std::vector<std::uint8_t>& dip_of, double reach) {
+                                     const std::vector<std::uint8_t>& dip_of,
+                                     const std::vector<NearestNode>& nearest, double reach) {
   std::vector<std::uint8_t> at_seam(dip_of.size(), 0);
   parallel_for(dip_of.size(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::int32_t> close;
     for (std::size_t i = begin; i < end; ++i) {
       check_cancelled();
       const Target& node = nodes.nodes()[i];
-      nodes.near(node.position, node.normal, reach, close);
-      at_seam[i] = std::any_of(close.begin(), close.end(),
-                               [&](std::int32_t j) { return dip_of[std::size_t(j)] != dip_of[i]; });
+      for (std::size_t k = 0; k < nearest.size() && !at_seam[i]; ++k)
+        at_seam[i] = k != dip_of[i] &&
+                     std::isfinite(nearest[k].squared_distance(node.position, node.normal, reach));
     }
   });
   return at_seam;
@@ -231,7 +245,9 @@ SharedSurface::SharedSurface(const SeamTask& task, const RunContext& context) {
   data->dip_of = best_labels(int(task.worth.size()), costs.costs, edges, std::move(costs.cheapest));
   context.progress(activity, 0.9);
   data->seam_mm = length_mm(edges, data->dip_of, spacing_mm);
-  data->at_seam = near_seams(*task.nodes, data->dip_of, data->overlap + 2 * task.nodes->spacing());
+  data->nearest = nearest_of_parts(*task.nodes, data->dip_of, task.worth.size());
+  data->at_seam = near_seams(*task.nodes, data->dip_of, data->nearest,
+                             data->overlap + 2 * task.nodes->spacing());
   data_ = std::move(data);
   context.progress(activity, 1);
 }
@@ -263,14 +279,20 @@ std::vector<float> SharedSurface::shares_at(const Vec3& position, const Vec3& no
     shares[d.dip_of[std::size_t(nearest)]] = 1;
     return shares;
   }
-  // How far each dip's part is; equally far from two is on the seam.
-  nodes.near(position, normal, d.overlap + 2 * nodes.spacing(), close);
+  // How far each dip's part is; equally far from two is on the seam. What is further than a fade
+  // beyond the nearest has no share, however far it is.
+  double within = d.overlap + 2 * nodes.spacing();
   std::vector<double> distance(shares.size(), 1e300);
-  for (const std::int32_t j : close) {
-    double& so_far = distance[d.dip_of[std::size_t(j)]];
-    so_far = std::min(so_far, (nodes.nodes()[std::size_t(j)].position - position).norm());
-  }
-  const double own = *std::min_element(distance.begin(), distance.end());
+  const auto measure = [&](std::size_t k) {
+    const double squared = d.nearest[k].squared_distance(position, normal, within);
+    if (std::isfinite(squared)) distance[k] = std::sqrt(squared);
+  };
+  const std::size_t own_dip = d.dip_of[std::size_t(nearest)];
+  measure(own_dip);
+  const double own = distance[own_dip];
+  within = std::min(within, kHair * (own + 0.5 * d.overlap));
+  for (std::size_t k = 0; k < distance.size(); ++k)
+    if (k != own_dip) measure(k);
   double sum = 0;
   for (std::size_t k = 0; k < shares.size(); ++k) {
     // From 0 on the seam to 1 where the fade ends; two dips' shares are then linear in it.

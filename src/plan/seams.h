@@ -7,6 +7,7 @@
 #include "base/context.h"
 #include "object/paint.h"
 #include "object/surface.h"
+#include "plan/nearest_node.h"
 #include "plan/surface_nodes.h"
 #include "transfer/allotment.h"
 
@@ -53,6 +54,7 @@ class SharedSurface {
     std::vector<std::vector<float>> worth;
     std::vector<std::vector<float>> inside;  // per dip, per node: 0 at its film's border, 1 well in
     std::vector<std::uint8_t> dip_of;
+    std::vector<NearestNode> nearest;   // per dip: of its part
     std::vector<std::uint8_t> at_seam;  // another dip's node is near
     double overlap = 2;                 // in the frame's unit
     double seam_mm = 0;

@@ -44,6 +44,10 @@ std::uint64_t SurfaceNodes::key_of(const Cell& cell) {
          (std::uint64_t(cell[2]) << (2 * kBits));
 }
 
+bool SurfaceNodes::face_alike(const Vec3& normal, const Vec3& other) {
+  return normal.dot(other) > kSameSide;
+}
+
 void SurfaceNodes::near(const Vec3& position, const Vec3& normal, double reach,
                         std::vector<std::int32_t>& found) const {
   found.clear();
@@ -58,7 +62,7 @@ void SurfaceNodes::near(const Vec3& position, const Vec3& normal, double reach,
         for (const std::int32_t i : at->second) {
           const Target& node = targets_.list[std::size_t(i)];
           if ((node.position - position).squaredNorm() > reach * reach) continue;
-          if (node.normal.dot(normal) > kSameSide) found.push_back(i);
+          if (face_alike(node.normal, normal)) found.push_back(i);
         }
       }
   std::sort(found.begin(), found.end());

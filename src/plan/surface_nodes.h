@@ -20,6 +20,9 @@ class SurfaceNodes {
   // Distance of nodes, about: the side of the square that one stands for.
   double spacing() const { return spacing_; }
 
+  // Whether surface looks the same way within 60 degrees or so.
+  static bool face_alike(const Vec3& normal, const Vec3& other);
+
   // Nodes within `reach` of a point, on surface that looks the same way within 60 degrees or so: a
   // thin wall has two sides. In ascending order.
   void near(const Vec3& position, const Vec3& normal, double reach,

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace hydrodip {
@@ -157,6 +160,43 @@ TEST(SurfaceNodes, NearIsWhatADistanceSays) {
       }
       EXPECT_EQ(found, wanted) << reach;
     }
+}
+
+TEST(NearestNode, IsTheNearestOfThoseThatAreNear) {
+  const shapes::Shape ball = shapes::full_sphere(10, 20, 30);
+  TriangleMesh object;
+  object.positions = ball.positions;
+  object.triangles = ball.triangles;
+  const SurfaceNodes nodes(spread_targets(object, 800));
+  std::vector<std::int32_t> among, found;
+  for (std::int32_t i = 0; i < 800; ++i)
+    if (i % 3 == 1) among.push_back(i);
+  const NearestNode nearest(nodes, among);
+  for (const Vec3& from : {Vec3(10, 0, 0), Vec3(0, -7, 7), Vec3(1, 2, -3), Vec3(300, -20, 5)})
+    for (const double reach : {1e-3, 0.8, 3.0, 15.0, 400.0, 1e7}) {
+      const Vec3 normal = from.normalized();
+      nodes.near(from, normal, reach, found);
+      double least = std::numeric_limits<double>::infinity();
+      for (const std::int32_t i : found)
+        if (i % 3 == 1)
+          least = std::min(least, (nodes.nodes()[std::size_t(i)].position - from).squaredNorm());
+      EXPECT_EQ(nearest.squared_distance(from, normal, reach), least) << reach;
+    }
+  EXPECT_TRUE(std::isinf(NearestNode(nodes, {}).squared_distance({10, 0, 0}, Vec3::UnitX(), 99)));
+}
+
+// All nodes may lie within reach of a point.
+TEST_F(Plate, AWideFadeCostsLittleMoreThanANarrowOne) {
+  const auto seconds = [&](double overlap) {
+    const SharedSurface shared = divide(StripedPaint(*mesh_, 0, 0), overlap);
+    const std::vector<std::int32_t> at_seam = shared.seam_nodes();
+    const auto begin = std::chrono::steady_clock::now();
+    for (const std::int32_t i : at_seam)
+      shared.shares_at(shared.nodes().nodes()[std::size_t(i)].position, Vec3::UnitZ());
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    return taken.count() / double(at_seam.size());
+  };
+  EXPECT_LT(seconds(30), 10 * seconds(2));
 }
 
 TEST(SurfaceNodes, AThinWallHasTwoSides) {
