@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "base/file_lock.h"
 #include "base/run_scope.h"
+#include "base/staging_name.h"
 
 namespace hydrodip {
 
@@ -35,12 +36,11 @@ std::string reason(int error) { return std::generic_category().message(error); }
 
 [[noreturn]] void refuse_read(const std::filesystem::path& path, const std::string& why) {
   throw InputError(fmt::format("{}: cannot be read ({}); check the path and its permissions.",
-                               path.string(), why));
+                               final_path(path).string(), why));
 }
 
-[[noreturn]] void refuse_write(const std::filesystem::path& path, int error) {
-  throw InputError(fmt::format("{}: cannot be written ({}); choose another folder or free space.",
-                               path.string(), reason(error)));
+[[noreturn]] void refuse_write_for(const std::filesystem::path& path, int error) {
+  refuse_write(path, reason(error));
 }
 
 void put(std::FILE* file, const std::filesystem::path& path, const void* data, std::size_t size) {
@@ -48,7 +48,7 @@ void put(std::FILE* file, const std::filesystem::path& path, const void* data, s
     check_cancelled();
     const std::size_t count = std::min(kPiece, size - begin);
     if (std::fwrite(static_cast<const char*>(data) + begin, 1, count, file) != count)
-      refuse_write(path, errno);
+      refuse_write_for(path, errno);
   }
 }
 
@@ -101,7 +101,7 @@ class Part {
       part_ = folder / part_name(::getpid(), number);
       const int descriptor = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (descriptor < 0 && errno == EEXIST) continue;
-      if (descriptor < 0) refuse_write(path_, errno);
+      if (descriptor < 0) refuse_write_for(path_, errno);
       lock_ = FileLock(descriptor, part_);
       // Another who cleared up may have come between.
       if (lock_.state() == FileLock::State::kTaken || lock_.state() == FileLock::State::kGone)
@@ -110,7 +110,7 @@ class Part {
       if (own < 0) {
         const int error = errno;
         ::unlink(part_.c_str());
-        refuse_write(path_, error);
+        refuse_write_for(path_, error);
       }
       file_.reset(::fdopen(own, "wb"));
     }
@@ -124,11 +124,11 @@ class Part {
   std::FILE* file() const { return file_.get(); }
 
   void become(const std::filesystem::path& target, ExistingFile existing) {
-    if (std::fflush(file_.get()) != 0) refuse_write(path_, errno);
+    if (std::fflush(file_.get()) != 0) refuse_write_for(path_, errno);
     // EINVAL: of a file system that has nothing to wait for.
-    if (::fsync(::fileno(file_.get())) != 0 && errno != EINVAL) refuse_write(path_, errno);
-    if (std::fclose(file_.release()) != 0) refuse_write(path_, errno);
-    if (move(target, existing) != 0) refuse_write(path_, errno);
+    if (::fsync(::fileno(file_.get())) != 0 && errno != EINVAL) refuse_write_for(path_, errno);
+    if (std::fclose(file_.release()) != 0) refuse_write_for(path_, errno);
+    if (move(target, existing) != 0) refuse_write_for(path_, errno);
     part_.clear();
   }
 
@@ -189,6 +189,11 @@ std::vector<std::uint8_t> read_pipe(const std::filesystem::path& path) {
 
 }  // namespace
 
+void refuse_write(const std::filesystem::path& path, const std::string& why) {
+  throw InputError(fmt::format("{}: cannot be written ({}); choose another folder or free space.",
+                               final_path(path).string(), why));
+}
+
 std::vector<std::uint8_t> read_file(const std::filesystem::path& path) {
   std::error_code ignored;
   switch (std::filesystem::status(path, ignored).type()) {
@@ -220,10 +225,10 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path) {
 
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size) {
   File file(std::fopen(path.c_str(), "wb"));
-  if (!file) refuse_write(path, errno);
+  if (!file) refuse_write_for(path, errno);
   put(file.get(), path, data, size);
   // A full disk may only show when the last buffer goes out.
-  if (std::fclose(file.release()) != 0) refuse_write(path, errno);
+  if (std::fclose(file.release()) != 0) refuse_write_for(path, errno);
 }
 
 void write_file(const std::filesystem::path& path, const std::string& text) {
@@ -235,11 +240,11 @@ void write_whole(const std::filesystem::path& path, const void* data, std::size_
   const std::filesystem::path target = behind_links(path);
   struct stat there = {};
   const bool is_there = ::stat(target.c_str(), &there) == 0;
-  if (is_there && existing == ExistingFile::kKept) refuse_write(path, EEXIST);
-  if (is_there && S_ISDIR(there.st_mode)) refuse_write(path, EISDIR);
+  if (is_there && existing == ExistingFile::kKept) refuse_write_for(path, EEXIST);
+  if (is_there && S_ISDIR(there.st_mode)) refuse_write_for(path, EISDIR);
   if (is_there && !S_ISREG(there.st_mode)) return write_file(path, data, size);
   // A new file would take the place of one that is protected.
-  if (is_there && ::access(target.c_str(), W_OK) != 0) refuse_write(path, errno);
+  if (is_there && ::access(target.c_str(), W_OK) != 0) refuse_write_for(path, errno);
   Part part(target, path);
   if (is_there) ::fchmod(::fileno(part.file()), there.st_mode & 07777);
   put(part.file(), path, data, size);

@@ -16,6 +16,10 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size);
 void write_file(const std::filesystem::path& path, const std::string& text);
 
+// What a file is refused with that cannot be written, by whomever. Of one in an OutputFolder that
+// is not whole yet the name is told that it was to have.
+[[noreturn]] void refuse_write(const std::filesystem::path& path, const std::string& why);
+
 // What becomes of a file that is there already.
 enum class ExistingFile { kReplaced, kKept };
 

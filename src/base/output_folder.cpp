@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -20,6 +19,7 @@
 #include "base/error.h"
 #include "base/json_nesting.h"
 #include "base/obstacle.h"
+#include "base/staging_name.h"
 
 namespace hydrodip {
 
@@ -76,16 +76,13 @@ void remove_created(std::vector<fs::path>& created) {
   }
 }
 
-constexpr const char* kStagingPrefix = ".hydrodip-";
-
 // A staging folder that nobody has locked was left by a process that was killed.
 void clear_abandoned(const fs::path& folder) {
   std::error_code ignored;
   std::vector<fs::path> found;
   for (fs::directory_iterator it(folder, ignored), end; !ignored && it != end;
        it.increment(ignored)) {
-    const std::string name = it->path().filename().string();
-    if (name.starts_with(kStagingPrefix) && name.size() == std::strlen(kStagingPrefix) + 6 &&
+    if (is_staging_name(it->path().filename().string()) &&
         fs::is_directory(it->symlink_status(ignored)))
       found.push_back(it->path());
   }
@@ -97,7 +94,7 @@ void clear_abandoned(const fs::path& folder) {
 
 bool make_staging_folder(const fs::path& folder, fs::path& staging, FolderLock& lock) {
   for (int tries = 0; tries < 10; ++tries) {
-    std::string name = (folder / (std::string(kStagingPrefix) + "XXXXXX")).string();
+    std::string name = (folder / fmt::format("{}{}", kStagingPrefix, kStagingLetters)).string();
     if (mkdtemp(name.data()) == nullptr) return false;
     staging = name;
     lock = FolderLock(staging);

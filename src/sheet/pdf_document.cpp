@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/unicode.h"
 #include "image/deflate_rows.h"
 #include "sheet/page_text.h"
@@ -511,9 +512,7 @@ void PdfDocument::save(const std::filesystem::path& path) {
   const int reason = errno;
   if (status == HPDF_OK && is_whole(path)) return;
   const bool known = status != HPDF_OK && reason != 0;
-  throw InputError(fmt::format("{}: cannot be written ({}); choose another folder or free space.",
-                               path.string(),
-                               known ? std::generic_category().message(reason) : "is it full?"));
+  refuse_write(path, known ? std::generic_category().message(reason) : "is it full?");
 }
 
 }  // namespace hydrodip

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/parallel.h"
 #include "base/run_scope.h"
 #include "image/decoders.h"
@@ -272,10 +273,7 @@ void write_print_tiff(const std::filesystem::path& path, const InkImage& inks,
     written = write_strips(tiff.get(), inks, !options.ink_side_up);
     tiff.reset();  // may still write, and complain
   }
-  if (!written || !complaints.error.empty()) {
-    throw InputError(fmt::format("{}: cannot be written ({}); choose another folder or free space.",
-                                 path.string(), complaints.error));
-  }
+  if (!written || !complaints.error.empty()) refuse_write(path, complaints.error);
 }
 
 }  // namespace hydrodip

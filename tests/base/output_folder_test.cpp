@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -10,6 +11,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/file.h"
+#include "full_disk.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {
@@ -53,6 +56,20 @@ TEST_F(OutputFolderTest, StagedFilesAreHidden) {
   write(folder.path("one.txt"), "1");
   for (const auto& entry : fs::directory_iterator(root_)) {
     EXPECT_EQ(entry.path().filename().string().front(), '.');
+  }
+}
+
+TEST_F(OutputFolderTest, WhatCannotBeWrittenIsToldByItsFinalName) {
+  OutputFolder folder(root_ / "out");
+  const fs::path staged = folder.path("dip-1/print.png");
+  const std::vector<std::uint8_t> bytes(1000);
+  try {
+    const FullDisk disk(100);
+    write_file(staged, bytes.data(), bytes.size());
+    FAIL() << "a full disk takes it all";
+  } catch (const InputError& error) {
+    const std::string said = error.what(), name = (root_ / "out/dip-1/print.png").string();
+    EXPECT_TRUE(said.starts_with(name + ": cannot be written")) << said;
   }
 }
 
