@@ -101,6 +101,9 @@ void declare_history(CLI::App& app, Request& request) {
   app.add_option("--run", history.amend_run, "the dip that the following is about, as in rig-3")
       ->group(kRun)
       ->type_name("RUN");
+  app.add_option("--remove", history.remove_run, "takes a dip away that --add told of by mistake")
+      ->group(kRun)
+      ->type_name("RUN");
   const auto add = [&](const char* option, const char* field, const char* type, const char* help) {
     app.add_option_function<std::string>(
            option, [&history, field](const std::string& value) { history.fields[field] = value; },
@@ -142,8 +145,11 @@ void declare_history(CLI::App& app, Request& request) {
 HistoryRequest history_request(const Request& request) {
   HistoryRequest history = request.history;
   const bool changes = history.add || !history.amend_run.empty();
-  if (history.add && !history.amend_run.empty())
-    throw InputError("--add is a new dip, --run corrects one: give one of them");
+  if (int(history.add) + int(!history.amend_run.empty()) + int(!history.remove_run.empty()) > 1)
+    throw InputError(
+        "--add is a new dip, --run corrects one, --remove takes one away: give one of them");
+  if (!history.remove_run.empty() && !history.fields.empty())
+    throw InputError("--remove takes all of a dip away: leave out what else is said of it");
   if (changes && !history.add && history.fields.empty())
     throw InputError("--run: say what of it is to change, as in --outcome good");
   if (!changes) {

@@ -20,7 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFile = "history.sqlite";
-constexpr int kPatience_ms = 5000;  // while another process writes
+constexpr const char* kByHand = "hand-";  // and a number
+constexpr int kPatience_ms = 5000;        // while another process writes
 
 // A table has what the logs say, another what people say about it, so that neither loses the other.
 constexpr const char* kSchema = R"(
@@ -262,21 +263,41 @@ std::string History::add(const std::string& started_utc, const std::string& repo
     set_field(run, name, value);
   }
   database_->transact([&] {
-    const auto count = database_->query("SELECT COUNT(*) FROM runs WHERE id LIKE 'hand-%'");
-    run.id = fmt::format("hand-{}", std::stol(count.front().front()) + 1);
+    // Not their number: one of them may have been taken away.
+    const auto last = database_->query(
+        "SELECT COALESCE(MAX(CAST(SUBSTR(id, 6) AS INTEGER)), 0) FROM runs WHERE id LIKE 'hand-%'");
+    run.id = fmt::format("{}{}", kByHand, std::stol(last.front().front()) + 1);
     database_->put(run);
   });
   return run.id;
 }
 
-void History::amend(const std::string& id, const RunFields& fields) {
-  for (const auto& [name, value] : fields) check_field(name, value);
+void History::require_run(const std::string& id) const {
   std::vector<std::string> known;
   for (const auto& row : database_->query("SELECT id FROM runs")) known.push_back(row[0]);
   if (std::ranges::find(known, id) == known.end())
     throw InputError(
         fmt::format("there is no run '{}' in {}{}", id, folder_.string(),
                     known.empty() ? "; nothing was dipped yet" : did_you_mean(id, known)));
+}
+
+void History::remove(const std::string& id) {
+  require_run(id);
+  if (!id.starts_with(kByHand))
+    throw InputError(fmt::format(
+        "{}: 'hydrodip rig guide' kept this dip, and {} tells of it: only what --add told of can "
+        "be removed; what became of a piece is corrected with --run {} --outcome",
+        id, (folder_ / id / "log.jsonl").string(), id));
+  database_->transact([&] {
+    database_->query("DELETE FROM runs WHERE id = ?", {id});
+    for (const char* table : {"readings", "amendments"})
+      database_->query(fmt::format("DELETE FROM {} WHERE run = ?", table).c_str(), {id});
+  });
+}
+
+void History::amend(const std::string& id, const RunFields& fields) {
+  for (const auto& [name, value] : fields) check_field(name, value);
+  require_run(id);
   database_->transact([&] {
     for (const auto& [name, value] : fields)
       database_->query("INSERT OR REPLACE INTO amendments VALUES (?, ?, ?)", {id, name, value});

@@ -52,11 +52,15 @@ class History {
   // Corrects what a run's log says, or judges the piece. Throws InputError as add, or if there is
   // no such run.
   void amend(const std::string& id, const RunFields& fields);
+  // Takes a dip away that was added. Throws InputError if there is none of that id, or a log tells
+  // of it, which would bring it back.
+  void remove(const std::string& id);
   // The report.json of that hash, if it was there when the run was taken in. Empty: it was not.
   std::string report(const std::string& sha256) const;
 
  private:
   struct Database;
+  void require_run(const std::string& id) const;
   std::filesystem::path folder_;
   std::vector<std::string> unread_;
   std::unique_ptr<Database> database_;

@@ -271,13 +271,18 @@ DipUse use_of(const DipRun& run, const SheetUse& sheet, const CostOptions& cost)
 }
 
 JobResult history_job(const RigJob& job, const HistoryRequest& request, Clock& clock) {
-  History history(job.folder, !request.add && request.amend_run.empty());
+  History history(job.folder,
+                  !request.add && request.amend_run.empty() && request.remove_run.empty());
   if (!request.settings_run.empty()) return report_of_run(history, request.settings_run);
   JobResult result;
   if (request.add)
     result.text =
         fmt::format("added {}\n\n", history.add(clock.utc(), job.report_sha256, request.fields));
   if (!request.amend_run.empty()) history.amend(request.amend_run, request.fields);
+  if (!request.remove_run.empty()) {
+    history.remove(request.remove_run);
+    result.text = fmt::format("removed {}\n\n", request.remove_run);
+  }
   const std::vector<CostedRun> runs =
       costed(of_batch(history.runs(), request.batch_only), history, job);
   const Totals totals = totals_of(runs);

@@ -12,8 +12,9 @@
 namespace hydrodip {
 
 struct HistoryRequest {
-  bool add = false;       // a dip that was made without `rig guide`
-  std::string amend_run;  // whose fields are corrected; empty: none
+  bool add = false;        // a dip that was made without `rig guide`
+  std::string amend_run;   // whose fields are corrected; empty: none
+  std::string remove_run;  // that was added by mistake; empty: none
   RunFields fields;
   std::string batch_only;    // shows this batch; empty: all
   std::string settings_run;  // whose report.json is wanted instead; empty: none

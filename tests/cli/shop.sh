@@ -112,6 +112,17 @@ assert sorted(rows) == [("rig-1", "good"), ("rig-2", "good"), ("rig-3", "failed"
 "$hydrodip" history job --batch B8 | grep -q '+0.30 -0.20' || fail 'history does not show where the film lay'
 "$hydrodip" history job --batch B7 | grep -q 'film off' && fail 'a column without anything in it'
 "$hydrodip" history job --settings rig-2 | cmp -s - job/report.json || fail 'history --settings'
+# A slip of the hand can be taken back.
+"$hydrodip" history job --json --quiet > before.json || fail 'history --json'
+"$hydrodip" history job --add --batch B7 --outcome failed > said.txt || fail 'history --add by mistake'
+grep -q '^added hand-2' said.txt || fail "history --add: $(cat said.txt)"
+"$hydrodip" history job --remove hand-2 > said.txt || fail 'history --remove'
+grep -q '^removed hand-2' said.txt || fail "history --remove: $(cat said.txt)"
+"$hydrodip" history job --json --quiet | cmp -s - before.json || fail 'history --remove leaves something behind'
+refused 'log.jsonl' history job --remove rig-1
+refused "no run 'hand-2'" history job --remove hand-2
+refused 'give one of them' history job --remove hand-1 --add
+refused 'takes all of a dip away' history job --remove hand-1 --batch B8
 refused 'rig-' history job --run rig-99 --outcome good
 refused 'good' history job --run rig-1 --outcome splendid
 refused '--run' history job --outcome good

@@ -123,6 +123,28 @@ TEST(History, RefusesWhatNoRunHas) {
   EXPECT_EQ(history.add("2026-01-01T10:00:00Z", "", {}), "hand-2");
 }
 
+// What was added by mistake goes; what the guide kept stays, and so do the others' names.
+TEST(History, WhatWasAddedByMistakeCanBeTakenAway) {
+  const TemporaryFolder job;
+  write_run(job, "rig-1", guided_log("2026-01-01T10:00:00Z", "7", kDone));
+  History history(job.path());
+  for (const char* label : {"1", "2", "3"})
+    history.add("2026-01-02T10:00:00Z", "", {{"label", label}});
+  history.amend("hand-1", {{"outcome", "failed"}});
+  history.remove("hand-1");
+  EXPECT_EQ(history.add("2026-01-02T10:00:00Z", "", {{"label", "4"}}), "hand-4");
+  std::string labels;
+  for (const DipRun& run : History(job.path()).runs()) labels += run.id + "=" + run.label + " ";
+  EXPECT_EQ(labels, "rig-1=7 hand-2=2 hand-3=3 hand-4=4 ");
+  EXPECT_TRUE(contains(refusal([&] { history.remove("hand-1"); }), "there is no run 'hand-1'"));
+  EXPECT_TRUE(contains(refusal([&] { history.remove("rig-1"); }), "log.jsonl"));
+  // The number comes again, and nothing of what was said of it.
+  history.amend("hand-4", {{"notes", "of another"}});
+  history.remove("hand-4");
+  EXPECT_EQ(history.add("2026-01-03T10:00:00Z", "", {}), "hand-4");
+  EXPECT_EQ(history.runs().back().notes, "");
+}
+
 TEST(History, SaysWhatIsWrongWithItsFile) {
   const TemporaryFolder job;
   write_file(job / "history.sqlite", std::string(5000, 'x'));
