@@ -164,28 +164,8 @@ void keep_path_files(JobConfig& config, const std::vector<Setting>& all) {
     keep(fmt::format("dip[{}].path", k + 1), config.dips[k].path);
 }
 
-// One depth for dips of which each has its own would be passed over. What a file says of others, as
-// a profile does, may stand beside dips that all say theirs.
-void require_no_common_depth(const JobConfig& config, const std::vector<Setting>& all) {
-  const Setting* last = last_given(all, "dip.depth_mm");
-  if (!last || config.plan.find_depth || (config.dips.empty() && config.plan.dips < 2)) return;
-  const bool is_planned = config.plan.dips > int(config.dips.size());
-  if (last->typed && !is_planned && std::ranges::all_of(config.dips, [](const DipEntry& dip) {
-        return dip.depth_mm.has_value() || !dip.path.empty();
-      }))
-    return;
-  throw InputError(fmt::format(
-      "{}{}: each of several dips has a depth of its own: write it into their [[dip]] tables "
-      "(depth_mm), or leave this out, and it is looked for",
-      last->origin,
-      last->typed               ? ": " + told_name(*last)
-      : last->origin == "--set" ? " " + last->name
-                                : ""));
-}
-
-}  // namespace
-
-void apply_sources(JobConfig& config, const SettingSources& sources) {
+// All that they said, in order.
+std::vector<Setting> applied(JobConfig& config, const SettingSources& sources) {
   std::vector<Setting> all;
   const auto add = [&](const std::vector<Setting>& settings) {
     apply_settings(config, settings);
@@ -208,9 +188,13 @@ void apply_sources(JobConfig& config, const SettingSources& sources) {
   add(sources.options);
   add(sources.sets);
   settle(config, all);
-  require_no_common_depth(config, all);
   keep_path_files(config, all);
+  return all;
 }
+
+}  // namespace
+
+void apply_sources(JobConfig& config, const SettingSources& sources) { applied(config, sources); }
 
 void settle(JobConfig& config, const std::vector<Setting>& given) {
   settle_grading(config, given);
@@ -236,14 +220,33 @@ void require_dips_alone_say(const JobConfig& config, const SettingSources& sourc
             s.origin == "--set" ? "--set " + s.name : s.origin));
 }
 
+// One depth for dips of which each has its own would be passed over. What a file says of others, as
+// a profile does, may stand beside dips that all say theirs.
+void require_no_common_depth(const JobConfig& config, const std::vector<Setting>& all) {
+  const Setting* last = last_given(all, "dip.depth_mm");
+  if (!last || config.plan.find_depth || (config.dips.empty() && config.plan.dips < 2)) return;
+  const bool is_planned = config.plan.dips > int(config.dips.size());
+  if (last->typed && !is_planned && std::ranges::all_of(config.dips, [](const DipEntry& dip) {
+        return dip.depth_mm.has_value() || !dip.path.empty();
+      }))
+    return;
+  throw InputError(fmt::format(
+      "{}{}: each of several dips has a depth of its own: write it into their [[dip]] tables "
+      "(depth_mm), or leave this out, and it is looked for",
+      last->origin,
+      last->typed               ? ": " + told_name(*last)
+      : last->origin == "--set" ? " " + last->name
+                                : ""));
+}
+
 // Of a path and a depth beside it one would be passed over.
 void require_one_way_down(const JobConfig& config, const std::string& model) {
   const bool has_path = !config.design.trajectory.path.empty();
   for (std::size_t k = 0; k < config.dips.size(); ++k)
     if (config.dips[k].depth_mm && (has_path || !config.dips[k].path.empty()))
       throw InputError(fmt::format(
-          "{}: [[dip]] {}: a path says all of the way in: leave out depth_mm, or the path", model,
-          k + 1));
+          "{}: [[dip]] {}: a path says all of the way in: leave out depth_mm, or the path",
+          model.empty() ? "this job" : model, k + 1));
 }
 
 // Parts share a sheet; the job of one object would pass them over.
@@ -261,8 +264,9 @@ JobConfig configured(const std::string& model, SettingSources sources) {
   JobConfig config;
   const bool is_job = std::filesystem::path(model).extension() == ".toml";
   if (is_job) sources.configs.insert(sources.configs.begin(), model);
-  apply_sources(config, sources);
+  const std::vector<Setting> all = applied(config, sources);
   require_dips_alone_say(config, sources);
+  require_no_common_depth(config, all);
   require_one_way_down(config, model);
   if (!is_job && !model.empty()) config.model = model;
   if (is_job) require_no_parts(model);

@@ -37,10 +37,7 @@ constexpr auto kBetweenReports = std::chrono::milliseconds(150);
 
 // As `hydrodip print JOB.toml` does it, and a run sheet for the bench beside each sheet.
 JobResult print_from(const TaskRequest& request, const RunContext& context) {
-  JobConfig config;
-  SettingSources sources;
-  sources.configs = {request.job};
-  apply_sources(config, sources);
+  JobConfig config = configured(request.job.string(), {});
   config.object.load.confined_to = request.config.object.load.confined_to;
   config.output = request.folder;
   JobResult result = print_job(config, context);

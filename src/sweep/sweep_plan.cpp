@@ -167,7 +167,6 @@ JobConfig sweep_config(const SweepPlan& plan, const SweepRun& run, const fs::pat
         "{} and models under [sweep] (or model in a [[run]]) both name the model of a run: leave "
         "out one of them",
         kModelFile));
-  JobConfig config;
   SettingSources sources;
   if (!plan.quality.empty()) sources.quality = quality_settings(plan.quality);
   if (!plan.job.empty()) sources.configs.push_back(folder / plan.job);
@@ -178,7 +177,8 @@ JobConfig sweep_config(const SweepPlan& plan, const SweepRun& run, const fs::pat
   for (const auto& [name, value] : run.values)
     sources.sets.push_back(
         {name, as_from_here(name, value, folder), false, "'" + value + "'", "the sweep"});
-  apply_sources(config, sources);
+  // As 'hydrodip print' refuses what would be passed over.
+  JobConfig config = configured("", std::move(sources));
   if (!run.model.empty()) config.model = folder / run.model;
   if (config.model.empty())
     throw InputError(
