@@ -201,6 +201,7 @@ std::vector<NearestNode> nearest_of_parts(const SurfaceNodes& nodes,
   std::vector<std::vector<std::int32_t>> parts(dips);
   for (std::size_t i = 0; i < dip_of.size(); ++i) parts[dip_of[i]].push_back(std::int32_t(i));
   std::vector<NearestNode> nearest;
+  nearest.reserve(dips);
   for (auto& part : parts) nearest.emplace_back(nodes, std::move(part));
   return nearest;
 }
