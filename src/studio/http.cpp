@@ -51,6 +51,15 @@ HttpRequest request_of(const httplib::Request& from) {
 
 Peer peer_of(const httplib::Request& from) { return {from.remote_addr, from.remote_port}; }
 
+// Never packed: cpp-httplib packs what it is given whole, the page's script in a second and more.
+void send_bytes(httplib::Response& to, const std::string& type, std::string bytes) {
+  const auto kept = std::make_shared<const std::string>(std::move(bytes));
+  to.set_content_provider(kept->size(), type,
+                          [kept](std::size_t at, std::size_t left, httplib::DataSink& sink) {
+                            return sink.write(kept->data() + at, left);
+                          });
+}
+
 // A provider that ends in failure is the one way to make cpp-httplib close the connection.
 void send_and_close(httplib::Response& to, const std::string& type, const std::string& body) {
   to.set_header("Connection", "close");
@@ -116,8 +125,10 @@ void send(httplib::Response& to, const HttpAnswer& answer, bool and_close) {
         });
   } else if (!answer.file.empty()) {
     send_file(to, answer);
+  } else if (!answer.body.empty()) {
+    send_bytes(to, answer.type, answer.body);
   } else if (!answer.stream) {
-    to.set_content(answer.body, answer.type.c_str());
+    to.set_content("", answer.type.c_str());
   }
 }
 

@@ -968,6 +968,21 @@ TEST_F(JobTest, AStateOfTheWrongKindIsNobodysJob) {
   }
 }
 
+// Packing is for long ways: it takes longer than all of the way to a browser beside the studio.
+TEST_F(JobTest, NothingIsPackedOnItsWay) {
+  const std::string job = sample("pyramid");
+  std::map<std::string, std::string> eager = client->own_headers();
+  eager["Accept-Encoding"] = "gzip, deflate, br";
+  for (const std::string& path : {std::string("/"), std::string("/app.js"),
+                                  std::string("/styles.css"), std::string("/api/hello"), at(job)}) {
+    const Reply reply = client->send("GET", path, "", eager);
+    EXPECT_EQ(reply.status, 200) << path;
+    EXPECT_FALSE(reply.headers.contains("content-encoding")) << path;
+    EXPECT_EQ(reply.headers.at("content-length"), std::to_string(reply.body.size())) << path;
+    EXPECT_TRUE(reply.body == client->get(path).body) << path;
+  }
+}
+
 TEST_F(JobTest, EverybodyGetsTheWholeArchive) {
   const std::string job = sample("pyramid");
   std::atomic<int> whole = 0;
