@@ -3,6 +3,7 @@ import { spawn } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { roughEdges } from './rough_edges.mjs';
 
 const FLAGS = [
   '--headless=new', '--remote-debugging-pipe', '--no-sandbox', '--disable-dev-shm-usage', '--no-first-run',
@@ -28,6 +29,7 @@ export class Browser {
     const { sessionId } = await browser.send('Target.attachToTarget', { targetId, flatten: true });
     browser.session = sessionId;
     for (const domain of ['Page', 'Runtime', 'Log', 'Network']) await browser.send(`${domain}.enable`);
+    await browser.send('Page.addScriptToEvaluateOnNewDocument', { source: `(${roughEdges})()` });
     return browser;
   }
 

@@ -4,6 +4,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'nod
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { roughEdges } from '../../viewer/rough_edges.mjs';
 
 const FLAGS = ['--no-sandbox', '--disable-dev-shm-usage', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 // Said by the software renderer about itself, and by Chromium about requests to a program that was killed.
@@ -80,6 +81,7 @@ export class Session {
     const own = context ?? (await this.browser.newContext({
       viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', reducedMotion: 'reduce', acceptDownloads: true,
     }));
+    if (!process.env.HYDRODIP_PICTURES) await own.addInitScript(roughEdges);
     const page = await own.newPage();
     page.setDefaultTimeout(PATIENCE_MS);
     const complain = (text) => {
