@@ -1,7 +1,6 @@
 #include "plan/nearest_node.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace hydrodip {
@@ -9,52 +8,55 @@ namespace hydrodip {
 struct NearestNode::Looking {
   const Vec3& position;
   const Vec3& normal;
-  double most;  // squared; from the first that is found on, its own
-  bool is_found = false;
+  Found best;  // squared: at most that, until one is found
 };
 
-NearestNode::NearestNode(const SurfaceNodes& nodes, std::vector<std::int32_t> among)
-    : nodes_(nodes.nodes()), sorted_(std::move(among)), axis_(sorted_.size(), 0) {
-  sort(0, sorted_.size());
+NearestNode::NearestNode(const SurfaceNodes& nodes, const std::vector<std::int32_t>& among) {
+  placed_.reserve(among.size());
+  for (const std::int32_t i : among) {
+    const Target& node = nodes.nodes()[std::size_t(i)];
+    placed_.push_back({node.position, node.normal, i, 0});
+  }
+  sort(0, placed_.size());
 }
 
 void NearestNode::sort(std::size_t begin, std::size_t end) {
   if (end - begin < 2) return;
   Box3 box;
-  for (std::size_t i = begin; i < end; ++i) box.add(nodes_[std::size_t(sorted_[i])].position);
+  for (std::size_t i = begin; i < end; ++i) box.add(placed_[i].position);
   Eigen::Index axis = 0;
   box.size().maxCoeff(&axis);
   const std::size_t middle = begin + (end - begin) / 2;
-  const auto at = [&](std::size_t i) { return sorted_.begin() + std::ptrdiff_t(i); };
-  std::nth_element(at(begin), at(middle), at(end), [&](std::int32_t a, std::int32_t b) {
-    return nodes_[std::size_t(a)].position[axis] < nodes_[std::size_t(b)].position[axis];
+  const auto at = [&](std::size_t i) { return placed_.begin() + std::ptrdiff_t(i); };
+  std::nth_element(at(begin), at(middle), at(end), [&](const Placed& a, const Placed& b) {
+    return a.position[axis] < b.position[axis];
   });
-  axis_[middle] = std::uint8_t(axis);
+  placed_[middle].axis = int(axis);
   sort(begin, middle);
   sort(middle + 1, end);
 }
 
-double NearestNode::squared_distance(const Vec3& position, const Vec3& normal, double reach) const {
-  Looking looking{position, normal, reach * reach};
-  look(0, sorted_.size(), looking);
-  return looking.is_found ? looking.most : std::numeric_limits<double>::infinity();
+NearestNode::Found NearestNode::find(const Vec3& position, const Vec3& normal, double reach) const {
+  Looking looking{position, normal, {-1, reach * reach}};
+  look(0, placed_.size(), looking);
+  return looking.best;
 }
 
 void NearestNode::look(std::size_t begin, std::size_t end, Looking& looking) const {
   if (begin == end) return;
   const std::size_t middle = begin + (end - begin) / 2;
-  const Target& node = nodes_[std::size_t(sorted_[middle])];
-  const double squared = (node.position - looking.position).squaredNorm();
-  if (squared <= looking.most && SurfaceNodes::face_alike(node.normal, looking.normal)) {
-    looking.most = squared;
-    looking.is_found = true;
-  }
-  const auto axis = Eigen::Index(axis_[middle]);
-  const double beyond = looking.position[axis] - node.position[axis];
+  const Placed& placed = placed_[middle];
+  const double squared = (placed.position - looking.position).squaredNorm();
+  Found& best = looking.best;
+  const bool is_first = best.node < 0 || placed.node < best.node;
+  if ((squared < best.squared || (squared == best.squared && is_first)) &&
+      SurfaceNodes::face_alike(placed.normal, looking.normal))
+    best = {placed.node, squared};
+  const double beyond = looking.position[placed.axis] - placed.position[placed.axis];
   const std::pair below(begin, middle), above(middle + 1, end);
   const auto& [near, far] = beyond < 0 ? std::pair(below, above) : std::pair(above, below);
   look(near.first, near.second, looking);
-  if (beyond * beyond <= looking.most) look(far.first, far.second, looking);
+  if (beyond * beyond <= best.squared) look(far.first, far.second, looking);
 }
 
 }  // namespace hydrodip

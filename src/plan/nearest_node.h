@@ -8,25 +8,32 @@
 
 namespace hydrodip {
 
-// Immutable; safe to ask from many threads. Refers to the nodes.
+// Immutable; safe to ask from many threads.
 class NearestNode {
  public:
+  NearestNode() = default;  // of none
   // Among these nodes, by number.
-  NearestNode(const SurfaceNodes& nodes, std::vector<std::int32_t> among);
+  NearestNode(const SurfaceNodes& nodes, const std::vector<std::int32_t>& among);
 
-  // Squared distance to the nearest of those that SurfaceNodes::near finds; infinity: none is
-  // within `reach`.
-  double squared_distance(const Vec3& position, const Vec3& normal, double reach) const;
+  struct Found {
+    std::int32_t node = -1;  // -1: none is within reach
+    double squared = 0;      // its squared distance
+  };
+  // The nearest of those that SurfaceNodes::near finds; of several the first.
+  Found find(const Vec3& position, const Vec3& normal, double reach) const;
 
  private:
+  // A k-d tree: the middle one of a range is where it is divided, at right angles to its axis.
+  struct Placed {
+    Vec3 position, normal;
+    std::int32_t node;
+    int axis;
+  };
   struct Looking;
   void sort(std::size_t begin, std::size_t end);
   void look(std::size_t begin, std::size_t end, Looking& looking) const;
 
-  const std::vector<Target>& nodes_;
-  // A k-d tree: the middle one of a range is where it is divided, at right angles to its axis.
-  std::vector<std::int32_t> sorted_;
-  std::vector<std::uint8_t> axis_;
+  std::vector<Placed> placed_;
 };
 
 }  // namespace hydrodip

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -28,6 +29,8 @@ constexpr double kPoorBorder = 3;
 // Ink fades in over that much at the border of its film.
 constexpr double kFadeIn_mm = 0.6;
 
+// A point further from all nodes than so many spacings belongs to the first dip.
+constexpr double kFarthest = 8;
 // What may lie just as far is looked for a hair further.
 constexpr double kHair = 1 + 1e-9;
 
@@ -202,7 +205,7 @@ std::vector<NearestNode> nearest_of_parts(const SurfaceNodes& nodes,
   for (std::size_t i = 0; i < dip_of.size(); ++i) parts[dip_of[i]].push_back(std::int32_t(i));
   std::vector<NearestNode> nearest;
   nearest.reserve(dips);
-  for (auto& part : parts) nearest.emplace_back(nodes, std::move(part));
+  for (const auto& part : parts) nearest.emplace_back(nodes, part);
   return nearest;
 }
 
@@ -216,8 +219,7 @@ std::vector<std::uint8_t> near_seams(const SurfaceNodes& nodes,
       check_cancelled();
       const Target& node = nodes.nodes()[i];
       for (std::size_t k = 0; k < nearest.size() && !at_seam[i]; ++k)
-        at_seam[i] = k != dip_of[i] &&
-                     std::isfinite(nearest[k].squared_distance(node.position, node.normal, reach));
+        at_seam[i] = k != dip_of[i] && nearest[k].find(node.position, node.normal, reach).node >= 0;
     }
   });
   return at_seam;
@@ -246,6 +248,9 @@ SharedSurface::SharedSurface(const SeamTask& task, const RunContext& context) {
   data->dip_of = best_labels(int(task.worth.size()), costs.costs, edges, std::move(costs.cheapest));
   context.progress(activity, 0.9);
   data->seam_mm = length_mm(edges, data->dip_of, spacing_mm);
+  std::vector<std::int32_t> all(task.nodes->nodes().size());
+  std::iota(all.begin(), all.end(), 0);
+  data->nearest_of_all = NearestNode(*task.nodes, all);
   data->nearest = nearest_of_parts(*task.nodes, data->dip_of, task.worth.size());
   data->at_seam = near_seams(*task.nodes, data->dip_of, data->nearest,
                              data->overlap + 2 * task.nodes->spacing());
@@ -253,57 +258,54 @@ SharedSurface::SharedSurface(const SeamTask& task, const RunContext& context) {
   context.progress(activity, 1);
 }
 
-std::vector<float> SharedSurface::shares_at(const Vec3& position, const Vec3& normal) const {
+SharedSurface::Place SharedSurface::place_of(const Vec3& position, const Vec3& normal) const {
   const Data& d = *data_;
-  const SurfaceNodes& nodes = *d.nodes;
-  std::vector<float> shares(d.worth.size(), 0);
-  std::vector<std::int32_t> close;
-  double reach = 2 * nodes.spacing();
-  nodes.near(position, normal, reach, close);
-  if (close.empty()) {
-    reach = 8 * nodes.spacing();
-    nodes.near(position, normal, reach, close);
-  }
-  std::int32_t nearest = -1;
-  double least = 1e300;
-  for (const std::int32_t j : close) {
-    const double distance = (nodes.nodes()[std::size_t(j)].position - position).squaredNorm();
-    if (distance >= least) continue;
-    least = distance;
-    nearest = j;
-  }
-  if (nearest < 0) {
-    shares[0] = 1;
-    return shares;
-  }
-  if (!d.at_seam[std::size_t(nearest)]) {
-    shares[d.dip_of[std::size_t(nearest)]] = 1;
-    return shares;
-  }
+  const auto found = d.nearest_of_all.find(position, normal, kFarthest * d.nodes->spacing());
+  if (found.node < 0) return {-1, 0, true};
+  return {found.node, d.dip_of[std::size_t(found.node)], !d.at_seam[std::size_t(found.node)]};
+}
+
+std::vector<float> SharedSurface::shares_at(const Vec3& position, const Vec3& normal) const {
+  const Place place = place_of(position, normal);
+  if (!place.alone) return faded_at(place, position, normal);
+  std::vector<float> shares(dips(), 0);
+  shares[place.dip] = 1;
+  return shares;
+}
+
+float SharedSurface::share_at(std::size_t dip, const Vec3& position, const Vec3& normal) const {
+  const Place place = place_of(position, normal);
+  if (place.alone) return place.dip == dip ? 1 : 0;
+  return faded_at(place, position, normal)[dip];
+}
+
+std::vector<float> SharedSurface::faded_at(const Place& place, const Vec3& position,
+                                           const Vec3& normal) const {
+  const Data& d = *data_;
+  std::vector<float> shares(dips(), 0);
   // How far each dip's part is; equally far from two is on the seam. What is further than a fade
   // beyond the nearest has no share, however far it is.
-  double within = d.overlap + 2 * nodes.spacing();
-  std::vector<double> distance(shares.size(), 1e300);
+  double within = d.overlap + 2 * d.nodes->spacing();
+  std::vector<double> distance(dips(), 1e300);
   const auto measure = [&](std::size_t k) {
-    const double squared = d.nearest[k].squared_distance(position, normal, within);
-    if (std::isfinite(squared)) distance[k] = std::sqrt(squared);
+    const auto found = d.nearest[k].find(position, normal, within);
+    if (found.node >= 0) distance[k] = std::sqrt(found.squared);
   };
-  const std::size_t own_dip = d.dip_of[std::size_t(nearest)];
-  measure(own_dip);
-  const double own = distance[own_dip];
+  measure(place.dip);
+  const double own = distance[place.dip];
   within = std::min(within, kHair * (own + 0.5 * d.overlap));
   for (std::size_t k = 0; k < distance.size(); ++k)
-    if (k != own_dip) measure(k);
+    if (k != place.dip) measure(k);
   double sum = 0;
   for (std::size_t k = 0; k < shares.size(); ++k) {
     // From 0 on the seam to 1 where the fade ends; two dips' shares are then linear in it.
     const double t = d.overlap > 0 ? std::clamp(2 * (distance[k] - own) / d.overlap, 0.0, 1.0)
                                    : (distance[k] > own ? 1.0 : 0.0);
-    shares[k] = float((1 - t) / (1 + t)) * d.inside[k][std::size_t(nearest)];
+    shares[k] = float((1 - t) / (1 + t)) * d.inside[k][std::size_t(place.nearest)];
     sum += double(shares[k]);
   }
   if (!(sum > 0)) {
-    shares[d.dip_of[std::size_t(nearest)]] = 1;
+    shares[place.dip] = 1;
     return shares;
   }
   for (float& share : shares) share = float(double(share) / sum);
@@ -313,7 +315,7 @@ std::vector<float> SharedSurface::shares_at(const Vec3& position, const Vec3& no
 Allotment SharedSurface::allotment(std::size_t dip,
                                    std::shared_ptr<const TriangleMesh> mesh) const {
   return Allotment([shared = *this, dip, mesh = std::move(mesh)](const SurfacePoint& point) {
-    return shared.shares_at(position_at(*mesh, point), face_normal(*mesh, point.triangle))[dip];
+    return shared.share_at(dip, position_at(*mesh, point), face_normal(*mesh, point.triangle));
   });
 }
 

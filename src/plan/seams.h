@@ -38,6 +38,7 @@ class SharedSurface {
   // Which part of its ink a point gets from each dip: they add up to 1 wherever any film lies, and
   // none comes from a dip whose film does not lie there.
   std::vector<float> shares_at(const Vec3& position, const Vec3& normal) const;
+  float share_at(std::size_t dip, const Vec3& position, const Vec3& normal) const;
   // The same as one dip sees it; `mesh`: the object's, in its own frame.
   Allotment allotment(std::size_t dip, std::shared_ptr<const TriangleMesh> mesh) const;
 
@@ -54,11 +55,22 @@ class SharedSurface {
     std::vector<std::vector<float>> worth;
     std::vector<std::vector<float>> inside;  // per dip, per node: 0 at its film's border, 1 well in
     std::vector<std::uint8_t> dip_of;
+    NearestNode nearest_of_all;
     std::vector<NearestNode> nearest;   // per dip: of its part
     std::vector<std::uint8_t> at_seam;  // another dip's node is near
     double overlap = 2;                 // in the frame's unit
     double seam_mm = 0;
   };
+  // Where a point is: the node nearest to it (-1: none is near) and that one's dip; `alone`: no
+  // other dip has a part in its ink.
+  struct Place {
+    std::int32_t nearest;
+    std::size_t dip;
+    bool alone;
+  };
+  Place place_of(const Vec3& position, const Vec3& normal) const;
+  std::vector<float> faded_at(const Place& place, const Vec3& position, const Vec3& normal) const;
+
   std::shared_ptr<const Data> data_;
 };
 

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "plan/targets.h"
@@ -21,7 +20,7 @@ class SurfaceNodes {
   double spacing() const { return spacing_; }
 
   // Whether surface looks the same way within 60 degrees or so.
-  static bool face_alike(const Vec3& normal, const Vec3& other);
+  static bool face_alike(const Vec3& normal, const Vec3& other) { return normal.dot(other) > 0.5; }
 
   // Nodes within `reach` of a point, on surface that looks the same way within 60 degrees or so: a
   // thin wall has two sides. In ascending order.
@@ -33,15 +32,25 @@ class SurfaceNodes {
 
  private:
   using Cell = std::array<int, 3>;
+  // A node where it is looked for.
+  struct Placed {
+    Vec3 position, normal;
+    std::int32_t node;
+    int x;  // of its cell
+  };
   // Of a point; beyond the nodes' box the nearest within it.
   Cell cell_at(const Vec3& position) const;
-  static std::uint64_t key_of(const Cell& cell);
+  // Cells that differ in x alone are a row.
+  std::size_t row_of(int y, int z) const {
+    return std::size_t(z) * (std::size_t(last_[1]) + 1) + std::size_t(y);
+  }
 
   Targets targets_;
   double spacing_ = 1, cell_ = 1;
   Vec3 corner_ = Vec3::Zero();
   Cell last_ = {0, 0, 0};
-  std::unordered_map<std::uint64_t, std::vector<std::int32_t>> in_cell_;
+  std::vector<Placed> by_row_;           // and in a row by x
+  std::vector<std::uint32_t> row_ends_;  // in by_row_
 };
 
 }  // namespace hydrodip

@@ -176,13 +176,35 @@ TEST(NearestNode, IsTheNearestOfThoseThatAreNear) {
     for (const double reach : {1e-3, 0.8, 3.0, 15.0, 400.0, 1e7}) {
       const Vec3 normal = from.normalized();
       nodes.near(from, normal, reach, found);
+      std::int32_t of_all = -1;
       double least = std::numeric_limits<double>::infinity();
-      for (const std::int32_t i : found)
-        if (i % 3 == 1)
-          least = std::min(least, (nodes.nodes()[std::size_t(i)].position - from).squaredNorm());
-      EXPECT_EQ(nearest.squared_distance(from, normal, reach), least) << reach;
+      for (const std::int32_t i : found) {
+        const double squared = (nodes.nodes()[std::size_t(i)].position - from).squaredNorm();
+        if (i % 3 != 1 || squared >= least) continue;
+        least = squared;
+        of_all = i;
+      }
+      const NearestNode::Found at = nearest.find(from, normal, reach);
+      EXPECT_EQ(at.node, of_all) << reach;
+      EXPECT_TRUE(of_all < 0 || at.squared == least) << reach;
     }
-  EXPECT_TRUE(std::isinf(NearestNode(nodes, {}).squared_distance({10, 0, 0}, Vec3::UnitX(), 99)));
+  EXPECT_EQ(NearestNode(nodes, {}).find({10, 0, 0}, Vec3::UnitX(), 99).node, -1);
+}
+
+// A plate's nodes twice, in the same places: the first is taken.
+TEST(NearestNode, OfTwoThatAreAsNearIsTheFirst) {
+  Targets twice;
+  twice.area = 8;
+  for (int i = 0; i < 8; ++i) {
+    Target& node = twice.list.emplace_back();
+    node.position = Vec3(i % 4, 0, 0);
+    node.normal = Vec3::UnitZ();
+    node.area = 1;
+  }
+  const SurfaceNodes nodes(twice);
+  const NearestNode nearest(nodes, {7, 6, 5, 4, 3, 2, 1, 0});
+  for (int i = 0; i < 4; ++i)
+    EXPECT_EQ(nearest.find(Vec3(i + 0.1, 0, 0), Vec3::UnitZ(), 1).node, i);
 }
 
 // All nodes may lie within reach of a point.
