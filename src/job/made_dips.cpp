@@ -87,10 +87,9 @@ Worth with_hope(Worth inked, const Worth& blank) {
 // What each dip brings of the paint. Refers to all dips.
 class Allotments {
  public:
-  Allotments(const MadeDips& all, const SharedSurface& shared) : all_(all) {
-    const auto mesh = std::make_shared<const TriangleMesh>(all.prepared.posed.object());
-    for (std::size_t k = 0; k < all.dips.size(); ++k) of_.push_back(shared.allotment(k, mesh));
-  }
+  Allotments(const MadeDips& all, const SharedSurface& shared)
+      : all_(all),
+        of_(shared.allotments(std::make_shared<const TriangleMesh>(all.prepared.posed.object()))) {}
 
   DesignTask task(const MadeDip& dip, const Printer& printer) const {
     return {.posed = dip.posed,

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -33,6 +34,13 @@ constexpr double kFadeIn_mm = 0.6;
 constexpr double kFarthest = 8;
 // What may lie just as far is looked for a hair further.
 constexpr double kHair = 1 + 1e-9;
+
+using Corners = std::array<Vec3, 3>;
+
+// Sets of dips.
+static_assert(kMostDips < 30);
+constexpr std::uint32_t kAllDips = ~std::uint32_t(0);
+constexpr std::uint32_t bit_of(std::size_t dip) { return std::uint32_t(1) << dip; }
 
 // What a seam is seen by.
 constexpr double kAlwaysSeen = 0.15;
@@ -261,41 +269,35 @@ SharedSurface::SharedSurface(const SeamTask& task, const RunContext& context) {
 SharedSurface::Place SharedSurface::place_of(const Vec3& position, const Vec3& normal) const {
   const Data& d = *data_;
   const auto found = d.nearest_of_all.find(position, normal, kFarthest * d.nodes->spacing());
-  if (found.node < 0) return {-1, 0, true};
-  return {found.node, d.dip_of[std::size_t(found.node)], !d.at_seam[std::size_t(found.node)]};
+  if (found.node < 0) return {-1, 0, 0, true};
+  const auto node = std::size_t(found.node);
+  return {found.node, found.squared, d.dip_of[node], !d.at_seam[node]};
 }
 
 std::vector<float> SharedSurface::shares_at(const Vec3& position, const Vec3& normal) const {
   const Place place = place_of(position, normal);
-  if (!place.alone) return faded_at(place, position, normal);
+  if (!place.alone) return faded_at(place, position, normal, kAllDips);
   std::vector<float> shares(dips(), 0);
   shares[place.dip] = 1;
   return shares;
 }
 
-float SharedSurface::share_at(std::size_t dip, const Vec3& position, const Vec3& normal) const {
-  const Place place = place_of(position, normal);
-  if (place.alone) return place.dip == dip ? 1 : 0;
-  return faded_at(place, position, normal)[dip];
-}
-
 std::vector<float> SharedSurface::faded_at(const Place& place, const Vec3& position,
-                                           const Vec3& normal) const {
+                                           const Vec3& normal, std::uint32_t near) const {
   const Data& d = *data_;
   std::vector<float> shares(dips(), 0);
   // How far each dip's part is; equally far from two is on the seam. What is further than a fade
   // beyond the nearest has no share, however far it is.
   double within = d.overlap + 2 * d.nodes->spacing();
   std::vector<double> distance(dips(), 1e300);
-  const auto measure = [&](std::size_t k) {
-    const auto found = d.nearest[k].find(position, normal, within);
-    if (found.node >= 0) distance[k] = std::sqrt(found.squared);
-  };
-  measure(place.dip);
+  if (place.squared <= within * within) distance[place.dip] = std::sqrt(place.squared);
   const double own = distance[place.dip];
   within = std::min(within, kHair * (own + 0.5 * d.overlap));
-  for (std::size_t k = 0; k < distance.size(); ++k)
-    if (k != place.dip) measure(k);
+  for (std::size_t k = 0; k < distance.size(); ++k) {
+    if (k == place.dip || !(near & bit_of(k))) continue;
+    const auto found = d.nearest[k].find(position, normal, within);
+    if (found.node >= 0) distance[k] = std::sqrt(found.squared);
+  }
   double sum = 0;
   for (std::size_t k = 0; k < shares.size(); ++k) {
     // From 0 on the seam to 1 where the fade ends; two dips' shares are then linear in it.
@@ -312,11 +314,85 @@ std::vector<float> SharedSurface::faded_at(const Place& place, const Vec3& posit
   return shares;
 }
 
-Allotment SharedSurface::allotment(std::size_t dip,
-                                   std::shared_ptr<const TriangleMesh> mesh) const {
-  return Allotment([shared = *this, dip, mesh = std::move(mesh)](const SurfacePoint& point) {
-    return shared.share_at(dip, position_at(*mesh, point), face_normal(*mesh, point.triangle));
-  });
+// What is asked of points of a mesh; of its triangles it is found once what all their points share.
+class SharedSurface::Triangles {
+ public:
+  Triangles(SharedSurface shared, std::shared_ptr<const TriangleMesh> mesh)
+      : shared_(std::move(shared)), mesh_(std::move(mesh)), known_(mesh_->triangles.size()) {}
+
+  float share_at(std::size_t dip, const SurfacePoint& point) const {
+    std::atomic<std::uint32_t>& known = known_[std::size_t(point.triangle)];
+    std::uint32_t near = known.load(std::memory_order_relaxed);
+    if (near == 0) known.store(near = look_at(point.triangle), std::memory_order_relaxed);
+    if (near & kWhole) return near & bit_of(dip) ? 1 : 0;
+    const Vec3 position = position_at(*mesh_, point), normal = face_normal(*mesh_, point.triangle);
+    const Place place = shared_.place_of(position, normal);
+    if (place.alone) return place.dip == dip ? 1 : 0;
+    return shared_.faded_at(place, position, normal, near)[dip];
+  }
+
+ private:
+  static constexpr std::uint32_t kSeen = bit_of(31), kWhole = bit_of(30);
+
+  // The dips that may have a part anywhere in it; kWhole: it is one dip's.
+  std::uint32_t look_at(int triangle) const {
+    const Data& d = *shared_.data_;
+    const Corners corners = corners_of(triangle);
+    const Vec3 center = (corners[0] + corners[1] + corners[2]) / 3,
+               normal = face_normal(*mesh_, triangle);
+    double radius = 0;
+    for (const Vec3& corner : corners) radius = std::max(radius, (corner - center).norm());
+    radius *= kHair;
+    const std::uint32_t whole = whole_part(corners, center, radius, normal);
+    if (whole != 0) return kSeen | kWhole | whole;
+    std::uint32_t near = kSeen;
+    for (std::size_t k = 0; k < d.nearest.size(); ++k)
+      if (d.nearest[k]
+              .find(center, normal, kHair * (d.overlap + 2 * d.nodes->spacing()) + radius)
+              .node >= 0)
+        near |= bit_of(k);
+    return near;
+  }
+
+  // The one dip of all nodes that may be the nearest to a point of the triangle, if no seam is near
+  // any of them.
+  std::uint32_t whole_part(const Corners& corners, const Vec3& center, double radius,
+                           const Vec3& normal) const {
+    const Data& d = *shared_.data_;
+    const double reach = 2 * d.nodes->spacing();
+    std::vector<std::int32_t> close;
+    d.nodes->near(center, normal, kHair * reach + radius, close);
+    bool is_one_near_all = false;
+    for (const std::int32_t j : close) {
+      if (d.at_seam[std::size_t(j)] || d.dip_of[std::size_t(j)] != d.dip_of[std::size_t(close[0])])
+        return 0;
+      const Vec3& at = d.nodes->nodes()[std::size_t(j)].position;
+      is_one_near_all |= std::all_of(corners.begin(), corners.end(),
+                                     [&](const Vec3& p) { return (at - p).norm() < reach; });
+    }
+    return is_one_near_all ? bit_of(d.dip_of[std::size_t(close[0])]) : 0;
+  }
+
+  Corners corners_of(int triangle) const {
+    Corners corners;
+    for (int i = 0; i < 3; ++i)
+      corners[std::size_t(i)] =
+          mesh_->positions[std::size_t(mesh_->triangles[std::size_t(triangle)][i])];
+    return corners;
+  }
+
+  SharedSurface shared_;
+  std::shared_ptr<const TriangleMesh> mesh_;
+  mutable std::vector<std::atomic<std::uint32_t>> known_;  // bits of dips; 0: not looked at yet
+};
+
+std::vector<Allotment> SharedSurface::allotments(std::shared_ptr<const TriangleMesh> mesh) const {
+  const auto triangles = std::make_shared<const Triangles>(*this, std::move(mesh));
+  std::vector<Allotment> all;
+  for (std::size_t k = 0; k < dips(); ++k)
+    all.emplace_back(
+        [triangles, k](const SurfacePoint& point) { return triangles->share_at(k, point); });
+  return all;
 }
 
 std::vector<std::int32_t> SharedSurface::seam_nodes() const {

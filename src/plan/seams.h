@@ -1,6 +1,7 @@
 // Which dip does which part of the object, and how their inks fade into each other.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -38,9 +39,8 @@ class SharedSurface {
   // Which part of its ink a point gets from each dip: they add up to 1 wherever any film lies, and
   // none comes from a dip whose film does not lie there.
   std::vector<float> shares_at(const Vec3& position, const Vec3& normal) const;
-  float share_at(std::size_t dip, const Vec3& position, const Vec3& normal) const;
-  // The same as one dip sees it; `mesh`: the object's, in its own frame.
-  Allotment allotment(std::size_t dip, std::shared_ptr<const TriangleMesh> mesh) const;
+  // The same as each dip sees it; `mesh`: the object's, in its own frame.
+  std::vector<Allotment> allotments(std::shared_ptr<const TriangleMesh> mesh) const;
 
   // Nodes in whose ink more than one dip has a part.
   std::vector<std::int32_t> seam_nodes() const;
@@ -61,15 +61,19 @@ class SharedSurface {
     double overlap = 2;                 // in the frame's unit
     double seam_mm = 0;
   };
-  // Where a point is: the node nearest to it (-1: none is near) and that one's dip; `alone`: no
-  // other dip has a part in its ink.
+  // Where a point is: the node nearest to it (-1: none is near), how far, and that one's dip;
+  // `alone`: no other dip has a part in its ink.
   struct Place {
     std::int32_t nearest;
+    double squared;
     std::size_t dip;
     bool alone;
   };
+  class Triangles;
   Place place_of(const Vec3& position, const Vec3& normal) const;
-  std::vector<float> faded_at(const Place& place, const Vec3& position, const Vec3& normal) const;
+  // Dips whose bit in `near` is not set lie too far away.
+  std::vector<float> faded_at(const Place& place, const Vec3& position, const Vec3& normal,
+                              std::uint32_t near) const;
 
   std::shared_ptr<const Data> data_;
 };

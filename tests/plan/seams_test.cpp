@@ -38,6 +38,22 @@ class Plate : public testing::Test {
     mesh_->triangles = {{0, 1, 2}, {0, 2, 3}};
   }
 
+  // The plate in smaller triangles.
+  static TriangleMesh tiled(int columns, int rows) {
+    TriangleMesh mesh;
+    for (int j = 0; j <= rows; ++j)
+      for (int i = 0; i <= columns; ++i)
+        mesh.positions.emplace_back(kHalf * (2.0 * i / columns - 1), kHalf * (2.0 * j / rows - 1),
+                                    0);
+    for (int j = 0; j < rows; ++j)
+      for (int i = 0; i < columns; ++i) {
+        const int at = j * (columns + 1) + i, above = at + columns + 1;
+        mesh.triangles.push_back({at, at + 1, above + 1});
+        mesh.triangles.push_back({at, above + 1, above});
+      }
+    return mesh;
+  }
+
   // The first dip reaches up to x = 10, the second down to x = -10.
   SharedSurface divide(const Paint& paint, double overlap_mm) {
     const auto nodes = std::make_shared<const SurfaceNodes>(spread_targets(*mesh_, 6000));
@@ -117,13 +133,23 @@ TEST_F(Plate, TheFadeKeepsOffTheBorderOfAFilm) {
   for (double y = -18; y < 19; y += 2) EXPECT_LT(std::abs(seam_at(shared, y)), 9) << y;
 }
 
+// Whatever is known of whole triangles: small ones, large ones and slivers.
 TEST_F(Plate, AnAllotmentIsWhatOneDipGets) {
-  const SharedSurface shared = divide(StripedPaint(*mesh_, 0, 0), 2);
-  const Allotment first = shared.allotment(0, mesh_), second = shared.allotment(1, mesh_);
-  for (int i = 0; i < 200; ++i) {
-    const SurfacePoint point{i % 2, (i % 20) / 40.0, (i / 20) / 40.0};
-    EXPECT_NEAR(first.at(point) + second.at(point), 1, 1e-5);
-    EXPECT_EQ(first.at(point), shared.shares_at(position_at(*mesh_, point), Vec3::UnitZ())[0]);
+  for (const double overlap : {0.0, 2.0, 12.0}) {
+    const SharedSurface shared = divide(StripedPaint(*mesh_, 0, 0), overlap);
+    for (const auto& [columns, rows] : {std::pair(1, 1), {100, 100}, {13, 17}, {200, 1}}) {
+      const auto tiles = std::make_shared<const TriangleMesh>(tiled(columns, rows));
+      const std::vector<Allotment> of = shared.allotments(tiles);
+      ASSERT_EQ(of.size(), 2);
+      for (int i = 0; i < 4000; ++i) {
+        const SurfacePoint point{i * 7 % int(tiles->triangles.size()), (i % 20) / 40.0,
+                                 (i / 20 % 20) / 40.0};
+        const auto shares = shared.shares_at(position_at(*tiles, point), Vec3::UnitZ());
+        ASSERT_EQ(of[0].at(point), shares[0]) << columns << " " << rows << " " << i;
+        ASSERT_EQ(of[1].at(point), shares[1]) << columns << " " << rows << " " << i;
+        ASSERT_NEAR(shares[0] + shares[1], 1, 1e-5);
+      }
+    }
   }
 }
 
