@@ -28,8 +28,7 @@ class Cut {
     while (find_levels()) {
       check_cancelled();
       next_ = first_;
-      while (push_path()) {
-      }
+      push_paths();
     }
     std::vector<std::uint8_t> with_source;
     for (std::size_t v = 0; v + 2 < first_.size(); ++v) with_source.push_back(level_[v] >= 0);
@@ -62,32 +61,40 @@ class Cut {
     return level_[std::size_t(sink_)] >= 0;
   }
 
-  // One path level by level, and as much flow on it as it takes.
-  bool push_path() {
+  // As much flow as goes, path by path and level by level.
+  void push_paths() {
     path_.clear();
-    int at = source_;
-    while (at != sink_) {
+    for (int at = source_;;) {
       int& a = next_[std::size_t(at)];
       while (a >= 0 && !leads_on(at, a)) a = arcs_[std::size_t(a)].next;
       if (a >= 0) {
         path_.push_back(a);
         at = arcs_[std::size_t(a)].to;
+        if (at == sink_) at = fill();
         continue;
       }
-      if (path_.empty()) return false;
+      if (path_.empty()) return;
       // A dead end: back, and never this way again.
       const int back = path_.back();
       path_.pop_back();
       at = arcs_[std::size_t(back ^ 1)].to;
       next_[std::size_t(at)] = arcs_[std::size_t(back)].next;
     }
+  }
+
+  // As much flow on the path as it takes; back to where its first full arc begins.
+  int fill() {
     std::int64_t flow = std::numeric_limits<std::int64_t>::max();
     for (const int a : path_) flow = std::min(flow, arcs_[std::size_t(a)].left);
     for (const int a : path_) {
       arcs_[std::size_t(a)].left -= flow;
       arcs_[std::size_t(a ^ 1)].left += flow;
     }
-    return true;
+    const auto full = std::find_if(path_.begin(), path_.end(),
+                                   [&](int a) { return arcs_[std::size_t(a)].left == 0; });
+    const int at = arcs_[std::size_t(*full ^ 1)].to;
+    path_.erase(full, path_.end());
+    return at;
   }
 
   bool leads_on(int from, int a) const {
@@ -100,43 +107,77 @@ class Cut {
   int source_, sink_;
 };
 
+// A node that may keep its label or take alpha has its number among those; of others it is known.
+constexpr int kKeeps = -1, kTakes = -2;
+
+// Whoever has alpha takes it. A node keeps its label, whatever others do, if alpha costs more by
+// more than all its edges.
+std::vector<int> undecided(int labels, const std::vector<std::int32_t>& costs,
+                           const std::vector<LabelEdge>& edges,
+                           const std::vector<std::uint8_t>& label, int alpha) {
+  std::vector<std::int64_t> dearer(label.size());
+  for (std::size_t v = 0; v < label.size(); ++v) {
+    const std::int32_t* of = costs.data() + v * std::size_t(labels);
+    dearer[v] = std::int64_t(of[alpha]) - of[label[v]];
+  }
+  for (const LabelEdge& edge : edges)
+    for (const int v : {edge.a, edge.b}) dearer[std::size_t(v)] -= edge.cost;
+  std::vector<int> number(label.size(), kKeeps);
+  int count = 0;
+  for (std::size_t v = 0; v < label.size(); ++v) {
+    if (label[v] == alpha)
+      number[v] = kTakes;
+    else if (dearer[v] <= 0)
+      number[v] = count++;
+  }
+  return number;
+}
+
 // Where `alpha` should take over from what is there now.
 std::vector<std::uint8_t> expansion(int labels, const std::vector<std::int32_t>& costs,
                                     const std::vector<LabelEdge>& edges,
                                     const std::vector<std::uint8_t>& label, int alpha) {
-  const std::size_t nodes = label.size();
-  const auto cost = [&](std::size_t node, int of) {
-    return std::int64_t(costs[node * std::size_t(labels) + std::size_t(of)]);
-  };
+  const std::vector<int> number = undecided(labels, costs, edges, label, alpha);
   // A node with the source keeps its label, one with the sink takes alpha.
-  std::vector<std::int64_t> keeps(nodes), takes(nodes);
-  for (std::size_t v = 0; v < nodes; ++v) {
-    keeps[v] = cost(v, label[v]);
-    takes[v] = cost(v, alpha);
+  std::vector<std::int64_t> keeps, takes;
+  for (std::size_t v = 0; v < label.size(); ++v) {
+    if (number[v] < 0) continue;
+    keeps.push_back(costs[v * std::size_t(labels) + label[v]]);
+    takes.push_back(costs[v * std::size_t(labels) + std::size_t(alpha)]);
   }
-  Cut cut(nodes);
+  Cut cut(keeps.size());
   for (const LabelEdge& edge : edges) {
-    const auto a = std::size_t(edge.a), b = std::size_t(edge.b);
+    const int a = number[std::size_t(edge.a)], b = number[std::size_t(edge.b)];
+    if (a < 0 && b < 0) continue;
     // What the pair costs if both keep, if only a takes, if only b takes; nothing if both do.
-    const std::int64_t none = label[a] != label[b] ? edge.cost : 0;
-    const std::int64_t only_a = label[b] != alpha ? edge.cost : 0;
-    const std::int64_t only_b = label[a] != alpha ? edge.cost : 0;
-    // As costs of the nodes alone, and a cut between them (V. Kolmogorov, R. Zabih, "What energy
-    // functions can be minimized via graph cuts?", 2004).
-    keeps[a] += none;
-    takes[a] += only_a;
-    takes[b] -= only_a;
-    cut.join(edge.a, edge.b, only_a + only_b - none, 0);
+    const std::int64_t none =
+        label[std::size_t(edge.a)] != label[std::size_t(edge.b)] ? edge.cost : 0;
+    const std::int64_t only_a = label[std::size_t(edge.b)] != alpha ? edge.cost : 0;
+    const std::int64_t only_b = label[std::size_t(edge.a)] != alpha ? edge.cost : 0;
+    if (a < 0) {
+      keeps[std::size_t(b)] += a == kKeeps ? none : only_a;
+      takes[std::size_t(b)] += a == kKeeps ? only_b : 0;
+    } else if (b < 0) {
+      keeps[std::size_t(a)] += b == kKeeps ? none : only_b;
+      takes[std::size_t(a)] += b == kKeeps ? only_a : 0;
+    } else {
+      // As costs of the nodes alone, and a cut between them (V. Kolmogorov, R. Zabih, "What energy
+      // functions can be minimized via graph cuts?", 2004).
+      keeps[std::size_t(a)] += none;
+      takes[std::size_t(a)] += only_a;
+      takes[std::size_t(b)] -= only_a;
+      cut.join(a, b, only_a + only_b - none, 0);
+    }
   }
-  for (std::size_t v = 0; v < nodes; ++v) {
+  for (std::size_t v = 0; v < keeps.size(); ++v) {
     const std::int64_t least = std::min(keeps[v], takes[v]);
     cut.to_source(int(v), takes[v] - least);
     cut.to_sink(int(v), keeps[v] - least);
   }
   std::vector<std::uint8_t> changed = label;
   const std::vector<std::uint8_t> keep = cut.run();
-  for (std::size_t v = 0; v < nodes; ++v)
-    if (!keep[v]) changed[v] = std::uint8_t(alpha);
+  for (std::size_t v = 0; v < label.size(); ++v)
+    if (number[v] >= 0 && !keep[std::size_t(number[v])]) changed[v] = std::uint8_t(alpha);
   return changed;
 }
 
@@ -158,16 +199,17 @@ std::vector<std::uint8_t> best_labels(int labels, const std::vector<std::int32_t
   constexpr int kMostSweeps = 4;
   std::vector<std::uint8_t> label = std::move(start);
   std::int64_t cost = cost_of_labels(labels, costs, edges, label);
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
-    const std::int64_t before = cost;
-    for (int alpha = 0; alpha < labels; ++alpha) {
-      std::vector<std::uint8_t> changed = expansion(labels, costs, edges, label, alpha);
-      const std::int64_t now = cost_of_labels(labels, costs, edges, changed);
-      if (now >= cost) continue;
-      cost = now;
-      label = std::move(changed);
-    }
-    if (cost == before) break;
+  // Labels that nothing would gain by, one after another.
+  int in_vain = 0;
+  for (int turn = 0; turn < kMostSweeps * labels && in_vain < labels; ++turn) {
+    const int alpha = turn % labels;
+    std::vector<std::uint8_t> changed = expansion(labels, costs, edges, label, alpha);
+    const std::int64_t now = cost_of_labels(labels, costs, edges, changed);
+    ++in_vain;
+    if (now >= cost) continue;
+    in_vain = 1;  // itself has all that it can gain
+    cost = now;
+    label = std::move(changed);
   }
   return label;
 }

@@ -25,22 +25,25 @@ std::int64_t least_of_all(const Problem& p) {
   }
 }
 
-Problem random_problem(int labels, int nodes, unsigned seed) {
+Problem random_problem(int labels, int nodes, unsigned seed, unsigned dearest = 100) {
   std::mt19937 random(seed);
   Problem p{labels, {}, {}};
-  for (int i = 0; i < nodes * labels; ++i) p.costs.push_back(std::int32_t(random() % 100));
+  for (int i = 0; i < nodes * labels; ++i) p.costs.push_back(std::int32_t(random() % dearest));
   for (int a = 0; a < nodes; ++a)
     for (int b = a + 1; b < nodes; ++b)
       if (random() % 3 == 0) p.edges.push_back({a, b, std::int32_t(random() % 60)});
   return p;
 }
 
+// Where edges decide, where nodes do, and where some nodes are decided before any edge is looked
+// at.
 TEST(Labelling, TwoLabelsAreExact) {
-  for (unsigned seed = 0; seed < 40; ++seed) {
-    const Problem p = random_problem(2, 10, seed);
-    const auto label = best_labels(2, p.costs, p.edges, std::vector<std::uint8_t>(p.nodes(), 0));
-    EXPECT_EQ(cost_of_labels(2, p.costs, p.edges, label), least_of_all(p)) << seed;
-  }
+  for (const unsigned dearest : {20, 100, 300, 2000})
+    for (unsigned seed = 0; seed < 40; ++seed) {
+      const Problem p = random_problem(2, 10, seed, dearest);
+      const auto label = best_labels(2, p.costs, p.edges, std::vector<std::uint8_t>(p.nodes(), 0));
+      EXPECT_EQ(cost_of_labels(2, p.costs, p.edges, label), least_of_all(p)) << seed;
+    }
 }
 
 TEST(Labelling, ManyLabelsAreWithinAFactorOfTwo) {
