@@ -844,6 +844,27 @@ test('two fingers and one bring nobody under the film, nor away from it', async 
   await context.close();
 });
 
+test('without a graphics card edges are rough while the view moves, and smooth when it rests', async () => {
+  const page = await session.page({ rough: false });
+  await page.waitForSelector('.recent button');
+  await page.locator('.recent li > button').first().click();
+  await newResult(page, '');
+  const canvas = page.locator('.canvas-box canvas');
+  const fineness = () => canvas.evaluate((c) => Math.round(c.width / c.clientWidth));
+  await until('smooth edges at rest', async () => (await fineness()) === 2);
+  const { x, y } = await middleOf(page, '.canvas-box canvas');
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 40, y, { steps: 2 });
+  await until('rough edges in a turn', async () => {
+    await page.mouse.move(x + 40 + Math.random() * 9, y);
+    return (await fineness()) === 1;
+  });
+  await page.mouse.up();
+  await until('smooth edges again', async () => (await fineness()) === 2);
+  await page.context().close();
+});
+
 test('handles keep clear of each other, and of what lies behind', async () => {
   const touch = await session.browser.newContext({ viewport: { width: 1024, height: 768 }, hasTouch: true, reducedMotion: 'reduce' });
   for (const [context, least] of [[null, 34], [touch, 48]]) {

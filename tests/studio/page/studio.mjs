@@ -77,11 +77,11 @@ export class Session {
   }
 
   // A page of its own, with its own cookies.
-  async page({ width = 1000, height = 680, dark = false, address = this.program.address, context = null } = {}) {
+  async page({ width = 1000, height = 680, dark = false, rough = !process.env.HYDRODIP_PICTURES, address = this.program.address, context = null } = {}) {
     const own = context ?? (await this.browser.newContext({
       viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', reducedMotion: 'reduce', acceptDownloads: true,
     }));
-    if (!process.env.HYDRODIP_PICTURES) await own.addInitScript(roughEdges);
+    if (rough) await own.addInitScript(roughEdges);
     const page = await own.newPage();
     page.setDefaultTimeout(PATIENCE_MS);
     const complain = (text) => {

@@ -7,6 +7,7 @@ import { castRay } from '../../../report/viewer/pick.js';
 import type { DipFrames, MeshData, Overlay, Result } from '../api.ts';
 import type { Pose, Vec3 } from '../document.ts';
 import { makeBasin, type BathShape, type SheetShape } from './basin.ts';
+import { drawsOnProcessor, Edges } from './edges.ts';
 import { Eyes, HALF, type LookFrom, type View } from './eyes.ts';
 import { FilmPicture, surfaceOf } from './film.ts';
 import { AIR, overlayOf, sceneOf, type Scene } from './overlays.ts';
@@ -43,6 +44,7 @@ const linear = (hex: string): number[] => new THREE.Color(hex).toArray();
 
 export class Stage {
   private readonly renderer: THREE.WebGLRenderer;
+  private readonly edges: Edges;
   private readonly root = new THREE.Scene();
   private readonly bath = new THREE.Group();
   private readonly lowered = new THREE.Group();
@@ -88,8 +90,9 @@ export class Stage {
     private readonly canvas: HTMLCanvasElement,
     private readonly events: StageEvents,
   ) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    const slow = drawsOnProcessor();
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !slow, alpha: true });
+    this.edges = new Edges(this.renderer, slow, () => this.lost || this.render());
     this.renderer.autoClear = false;
     this.shared = sharedTextures(this.scene);
     const empty = new THREE.BufferGeometry();
@@ -625,7 +628,6 @@ export class Stage {
     if (width < 1 || height < 1) return;
     const first = this.size.width === 1;
     this.size = { width, height };
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     this.renderer.setSize(width, height, false);
     if (first && this.model) this.eyes.forget();
     this.eyes.frame();
@@ -643,6 +645,7 @@ export class Stage {
 
   private show(): void {
     if (this.lost) return;
+    this.edges.changed();
     this.render();
     this.events.drawn();
   }
