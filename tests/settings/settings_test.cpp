@@ -412,6 +412,38 @@ TEST_F(Settings, FilesOfPathsAreRemembered) {
   EXPECT_EQ(configured("model.obj", sources).settings_files, Files{rows});
 }
 
+// Each dip's depth is looked for, wherever another one is said: it would be passed over.
+TEST_F(Settings, ADepthForDipsThatAreLookedForIsRefusedWhereverItIsSaid) {
+  const auto told = [](const SettingSources& sources) -> std::string {
+    try {
+      configured("model.obj", sources);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const Setting dips{"plan.dips", 2.0, false, "2", "--dips"};
+  const Setting depth{"dip.depth_mm", 5.0, false, "5", "--depth"};
+  SettingSources option, job, profile;
+  option.options = {dips, depth};
+  EXPECT_NE(told(option).find("--depth: each of several dips"), std::string::npos) << told(option);
+  job.options = {dips};
+  job.configs = {file("[dip]\nstep_mm = 1\ndepth_mm = 5\n", "deep.toml")};
+  EXPECT_NE(told(job).find("deep.toml:3: dip.depth_mm: each of several"), std::string::npos)
+      << told(job);
+  profile.options = {dips};
+  profile.profiles = job.configs;
+  EXPECT_NE(told(profile).find("deep.toml:3"), std::string::npos) << told(profile);
+  // One dip goes as deep as is said, and so does one of a table; what is taken back counts nowhere.
+  job.options.clear();
+  EXPECT_EQ(told(job), "");
+  job.options = {dips, {"dip.depth_mm", std::string("auto"), false, "auto", "--depth"}};
+  EXPECT_EQ(told(job), "");
+  job.options = {dips};
+  job.configs = {file("[[dip]]\ndepth_mm = 5\n", "table.toml")};
+  EXPECT_EQ(told(job), "");
+}
+
 TEST_F(Settings, SetNeedsNameAndValue) {
   for (const char* text : {"film.width_mm", "=3", ""}) EXPECT_THROW(parse_set(text), InputError);
   EXPECT_EQ(std::get<std::string>(parse_set("print.job_name=a=b").value), "a=b");
