@@ -249,7 +249,7 @@ Report make_report(const JobRecord& record) {
 namespace {
 
 std::string better_dips(const Report& report) {
-  if (!may_add_a_dip(report.dips)) return "hydrodip plan looks for better ways to hold it.\n";
+  if (!more_dips_may_help(report)) return "hydrodip plan looks for better ways to hold it.\n";
   return fmt::format(
       "hydrodip plan looks for better ways to hold it, and for more of them with --dips {}.\n",
       report.dips.size() + 1);

@@ -155,6 +155,10 @@ double gain_of(const ReportDip& dip) { return dip.gained_wanted_share.value_or(d
 
 bool is_idle(const ReportDip& dip) { return dip.blank || gain_of(dip) < kHardlyAnything; }
 
+bool is_hardly_worth_it(const ReportDip& dip) {
+  return !is_idle(dip) && gain_of(dip) < kLittleGained && dip.torn_share > kMostlyTorn;
+}
+
 // No dip inks what it tears, and another one may bring what belongs there: all are judged by what
 // none brings, and each by itself not at all.
 Finding tears_of_several(const Report& report) {
@@ -174,17 +178,13 @@ Finding tears_of_several(const Report& report) {
           percent(c.torn_share()),
           text + ".",
           !lost ? "Take torn film off the water and the object before it dries."
-          : may_add_a_dip(report.dips)
+          : more_dips_may_help(report)
               ? fmt::format(
                     "Make more dips ('hydrodip plan' with --dips {} looks for them), or use a film "
                     "that bears more.",
                     report.dips.size() + 1)
-              : "Hold the object another way ('hydrodip plan' looks for ways), or use a film that "
-                "bears more."};
-}
-
-bool is_hardly_worth_it(const ReportDip& dip) {
-  return !is_idle(dip) && gain_of(dip) < kLittleGained && dip.torn_share > kMostlyTorn;
+              : "Use a film that bears more, or hold the object another way: 'hydrodip plan' looks "
+                "for ways."};
 }
 
 // " (--dips 5)": how to do without so many.
@@ -485,19 +485,19 @@ Finding gamut(double share) {
   return finding;
 }
 
-Finding coverage_of_dips(const Coverage& c, const std::optional<ReportWanted>& wanted,
-                         std::size_t dips) {
-  const bool may_be_more = dips < std::size_t(kMostDips);
+Finding coverage_of_dips(const Report& report) {
+  const Coverage& c = *report.coverage;
+  const std::optional<ReportWanted>& wanted = report.wanted;
+  const std::size_t dips = report.dips.size();
+  const bool more = more_dips_may_help(report);
   if (wanted) {
     Finding finding = coverage_of_wanted(*wanted, c, "");
     finding.text = fmt::format("of what shall be printed gets film that holds {}{}.",
                                after_dips(dips), only_perhaps(wanted));
     if (!finding.advice.empty())
-      finding.advice =
-          may_be_more
-              ? "Plan more dips (--dips): 'hydrodip plan' says how much each one adds."
-              : "No job has more dips: put what stays bare elsewhere, or paint the object to "
-                "match (object.base_color).";
+      finding.advice = more
+                           ? "Plan more dips (--dips): 'hydrodip plan' says how much each one adds."
+                           : "Hold the object another way: 'hydrodip plan' looks for ways.";
     return finding;
   }
   const bool nearly_all = c.covered_share() >= kNearlyAll;
@@ -511,7 +511,7 @@ Finding coverage_of_dips(const Coverage& c, const std::optional<ReportWanted>& w
     finding.advice = fmt::format(
         "What stays bare shows the object's own colour: {}paint the object to match "
         "(object.base_color).",
-        may_be_more ? "plan more dips (--dips), or " : "");
+        more ? "plan more dips (--dips), or " : "");
   return finding;
 }
 
@@ -535,6 +535,12 @@ Finding warning(const std::string& sentence) {
 
 }  // namespace
 
+bool more_dips_may_help(const Report& report) {
+  return report.dips.size() < std::size_t(kMostDips) &&
+         std::none_of(report.dips.begin(), report.dips.end(),
+                      [](const ReportDip& dip) { return is_idle(dip) || is_hardly_worth_it(dip); });
+}
+
 std::string beyond_best_dip(const Report& report) {
   if (!report.found_best) return "";
   const std::string dips = report.one_dip_only ? "" : "give the rest other dips (--dips 2)";
@@ -547,17 +553,12 @@ std::string beyond_best_dip(const Report& report) {
       dips.empty() && picture.empty() ? "make the object smaller (--size)" : picture);
 }
 
-bool may_add_a_dip(const std::vector<ReportDip>& dips) {
-  return dips.size() < std::size_t(kMostDips) && std::ranges::none_of(dips, is_idle);
-}
-
 std::vector<Finding> findings(const Report& report) {
   std::vector<Finding> list;
   if (report.coverage) {
     const Coverage& c = *report.coverage;
     const bool several = !report.dips.empty() && c.film_on_object_mm2 > 0;
-    list.push_back(several ? coverage_of_dips(c, report.wanted, report.dips.size())
-                           : coverage(report));
+    list.push_back(several ? coverage_of_dips(report) : coverage(report));
     if (!report.better_way.empty())
       list.push_back({"better_way", Concern::kNone, "Better", "", report.better_way + ".", ""});
     add_idle_dips(report.dips, list);

@@ -23,16 +23,16 @@ struct Finding {
 // far as the report knows about them.
 std::vector<Finding> findings(const Report& report);
 
+// Whether one dip more may help: a job may have it, and none of those that there are is for nothing
+// or hardly worth its film.
+bool more_dips_may_help(const Report& report);
+
 // What helps where the best single dip that was found is not good enough; empty: whether it is the
 // best one is not known.
 std::string beyond_best_dip(const Report& report);
 
-// Whether one dip more is to be proposed: there may be one, and none of these is for nothing
-// already.
-bool may_add_a_dip(const std::vector<ReportDip>& dips);
-
-// Of them, the first that is a reason not to dip besides what becomes of the film (tears, stretch,
-// coverage); null: there is none.
+// Of findings, the first that is a reason not to dip besides what becomes of the film (tears,
+// stretch, coverage); null: there is none.
 const Finding* first_obstacle(const std::vector<Finding>& findings);
 
 // The gravest of all; kStop when the dip should not be done like this.

@@ -32,7 +32,7 @@ std::string in_plain_words(const std::string& sentence) {
     add(R"(film\.elements)", "the number of film triangles");
     add(R"(print\.dpi)", "the resolution");
     add(R"(ink\.rounds_max)", "the number of rounds");
-    add(R"(: 'hydrodip plan' looks for ways)", "");
+    add(R"(: 'hydrodip plan' (looks for ways|says how much each one adds))", "");
     add(R"( \('hydrodip plan' with --dips [0-9]+ looks for them\))", "");
     add(R"(; gamut\.policy chooses how)", "");
     add(R"(dip\.tilt_deg and dip\.roll_deg)", "tilt and roll");

@@ -317,6 +317,40 @@ TEST(Findings, ADipThatTearsMostOfItsFilmForLittleIsHardlyWorthIt) {
   EXPECT_NE(find(findings(report), "idle_dips")->advice.find("--dips 2"), std::string::npos);
 }
 
+// Nobody can do with fewer dips and make more of them.
+TEST(Findings, WhereADipIsForNothingOrHardlyAnythingNoneAdvisesMoreDips) {
+  const auto advises_more = [](const Report& report) {
+    for (const Finding& finding : findings(report))
+      for (const char* more : {"ore dips", "--dips 4"})
+        if (finding.advice.find(more) != std::string::npos) return true;
+    return false;
+  };
+  Report report = good_report();
+  report.coverage->torn_mm2 = 1500;
+  report.together = ReportWanted{2000, 1500, 600};
+  report.dips.resize(3);
+  for (ReportDip& dip : report.dips) dip.gained_share = 0.1;
+  for (const bool is_picture : {false, true}) {
+    if (is_picture) report.wanted = ReportWanted{500, 500, 200};
+    EXPECT_EQ(concern(report, "tears"), Concern::kStop);
+    report.dips[1] = {};
+    report.dips[1].gained_share = 0.1;
+    EXPECT_TRUE(advises_more(report));
+    EXPECT_TRUE(more_dips_may_help(report));
+    Report most = report;
+    most.dips.resize(24, most.dips[0]);
+    EXPECT_FALSE(advises_more(most)) << "a job has no more";
+    report.dips[1].gained_share = 0;
+    ASSERT_NE(find(findings(report), "idle_dips"), nullptr);
+    EXPECT_FALSE(advises_more(report));
+    report.dips[1].gained_share = 0.02;
+    report.dips[1].torn_share = 0.9;
+    ASSERT_NE(find(findings(report), "poor_dips"), nullptr);
+    EXPECT_FALSE(advises_more(report));
+    EXPECT_FALSE(more_dips_may_help(report));
+  }
+}
+
 // Where a little air stays is told of its dip, and forbids nothing; once, and not of all.
 TEST(Findings, AirOfOneOfSeveralDipsIsToldOfThatDip) {
   Report report = good_report();

@@ -83,6 +83,8 @@ TEST(PlainWords, HaveNoOptionsInThem) {
                            "larger --film"),
             "shrink it to 71 mm or less, turn it, or take a larger sheet of film");
   EXPECT_EQ(in_plain_words("Take them away: 'hydrodip plan' looks for ways."), "Take them away.");
+  EXPECT_EQ(in_plain_words("Plan more dips (--dips): 'hydrodip plan' says how much each one adds."),
+            "Plan more dips.");
   EXPECT_EQ(
       in_plain_words("Make more dips ('hydrodip plan' with --dips 4 looks for them), or wait."),
       "Make more dips, or wait.");
