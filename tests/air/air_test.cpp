@@ -246,6 +246,73 @@ TEST(Air, TheSmallestTiltThatLetsItOut) {
   EXPECT_NEAR(air.pockets[0].lets_out->tilt_deg, std::atan(4.0 / 20) / kRad, 3);
 }
 
+// Leaning already, it needs the less the more it leans, and to that side.
+TEST(Air, ATiltThatLetsItOutIsToldToTheSideToWhichItLeans) {
+  const TriangleMesh dish = mesh_of(turned({{0, 16}, {24, 16}, {24, 0}, {20, 0}, {0, 10}}));
+  const double enough = std::atan(10.0 / 20) / kRad;
+  for (const double toward : {0.0, 90.0, 180.0, 270.0}) {
+    const Vec3 axis(-std::sin(toward * kRad), std::cos(toward * kRad), 0);
+    const Mat3 lean = Eigen::AngleAxisd(10 * kRad, axis).toRotationMatrix();
+    const TrappedAir air = air_of(moved(dish, lean));
+    ASSERT_EQ(air.pockets.size(), 1U);
+    ASSERT_TRUE(air.pockets[0].lets_out);
+    EXPECT_NEAR(air.pockets[0].lets_out->tilt_deg, enough - 10, 3) << toward;
+    const double off = std::abs(std::remainder(air.pockets[0].lets_out->toward_deg - toward, 360));
+    EXPECT_LE(off, 45) << toward;  // beside it hardly more is needed
+  }
+}
+
+// Where a leaning cup's water stands, its wall is wet below.
+TEST(Air, OnlyAboveItsWaterAPocketKeepsDry) {
+  const Mat3 lean = Eigen::AngleAxisd(20 * kRad, Vec3::UnitY()).toRotationMatrix();
+  const TriangleMesh cup = moved(mesh_of(turned(kCup)), lean);
+  const TrappedAir air = air_of(cup);
+  ASSERT_EQ(air.pockets.size(), 1U);
+  const double level = air.pockets[0].closed_at_mm;
+  int dry = 0, wet = 0;
+  for (std::size_t t = 0; t < cup.triangles.size(); ++t) {
+    if (air.pocket_of[t] < 0) continue;
+    const Triangle& corners = cup.triangles[t];
+    for (int step = 0; step <= 10; ++step) {
+      const Vec3 p =
+          cup.positions[std::size_t(corners[0])] +
+          0.1 * step *
+              (cup.positions[std::size_t(corners[1])] - cup.positions[std::size_t(corners[0])]);
+      if (std::abs(p.z() - level) < 0.01) continue;
+      EXPECT_EQ(air.holds(int(t), p), p.z() > level) << p.transpose();
+      (p.z() > level ? dry : wet) += 1;
+    }
+  }
+  EXPECT_GT(dry, 0);
+  EXPECT_GT(wet, 0);
+}
+
+// Turned about another point the same cup comes into the same water, later or earlier.
+TEST(Air, ThePointThatAWayTurnsAboutChangesNothingOfItsAir) {
+  const TriangleMesh cup = mesh_of(turned(kCup));
+  constexpr double kTilt_deg = 20;
+  const Kept kept = kept_by_leaning_cup(kTilt_deg);
+  for (const double height : {0.0, 200.0}) {
+    TrajectoryOptions options;
+    options.pivot_mm = Vec3(0, 0, height);
+    const double higher = height * (1 - std::cos(kTilt_deg * kRad));
+    options.path = {{higher - 10, 0, 0, 0, kTilt_deg, 0}, {higher + 45, 0, 0, 0, kTilt_deg, 0}};
+    const TrappedAir air = air_of(cup, make_trajectory(options, cup.positions));
+    ASSERT_EQ(air.pockets.size(), 1U) << height;
+    EXPECT_NEAR(air.volume_mm3(), kept.volume_mm3, 5) << height;
+    EXPECT_NEAR(air.area_mm2(), kept.area_mm2, 1) << height;
+  }
+}
+
+// A bore through the bottom that is narrower than the cells of a coarse look.
+TEST(Air, ABoreThatCoarseCellsDoNotSeeLetsItOut) {
+  for (const double radius : {0.8, 1.2, 1.6}) {
+    const TriangleMesh cup =
+        mesh_of(turned({{radius, 28}, {18, 28}, {18, 0}, {15, 0}, {15, 25}, {radius, 25}}));
+    EXPECT_TRUE(air_of(cup, Trajectory::straight_down(28), 2000).pockets.empty()) << radius;
+  }
+}
+
 TEST(Air, TurningEverythingChangesNothing) {
   const TriangleMesh cup = mesh_of(turned(kCup));
   const Mat3 lean = Eigen::AngleAxisd(15 * kRad, Vec3::UnitY()).toRotationMatrix();

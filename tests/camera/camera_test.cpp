@@ -65,6 +65,25 @@ TEST(Lens, SeesAlongTheRayThroughWhichItProjects) {
     EXPECT_LT((lens.project(430 * lens.ray(px)) - px).norm(), 1e-8);
 }
 
+// Brown and Conrady's: off the middle by r, a lens that leans moves along its lean three times as
+// far as across it.
+TEST(Lens, LeansAsTheModelSays) {
+  Lens lens;
+  lens.focal_px = 1000;
+  lens.center_px = {500, 400};
+  lens.p2 = 0.02;
+  EXPECT_LT((lens.project({0.5, 0, 1}) - Vec2(1000 + 1000 * 0.02 * 0.75, 400)).norm(), 1e-9);
+  EXPECT_LT((lens.project({0, 0.5, 1}) - Vec2(500 + 1000 * 0.02 * 0.25, 900)).norm(), 1e-9);
+  EXPECT_LT((lens.project({0, 1, 2}) - lens.project({0, 0.5, 1})).norm(), 1e-9);
+  lens.p2 = 0;
+  lens.p1 = 0.02;
+  EXPECT_LT((lens.project({0, 0.5, 1}) - Vec2(500, 900 + 1000 * 0.02 * 0.75)).norm(), 1e-9);
+  EXPECT_LT((lens.project({0.5, 0, 1}) - Vec2(1000, 400 + 1000 * 0.02 * 0.25)).norm(), 1e-9);
+  lens.p1 = 0;
+  lens.k1 = 0.1;
+  EXPECT_LT((lens.project({0.5, 0, 1}) - Vec2(1000 + 1000 * 0.1 * 0.125, 400)).norm(), 1e-9);
+}
+
 TEST(Calibration, FindsLensAndRimFromPhotosOfTheBoard) {
   const Tank tank = calibrate_tank(calibration_photos(0.05, 3), 4000, 3000, RunContext());
   const Lens truth = phone_lens();
@@ -246,6 +265,45 @@ TEST(SlowFilmPose, IsFoundInAPhoto) {
   // A sheet of another size.
   search.marks = film_marks(215.9, 279.4, 10);
   EXPECT_THROW(find_film(seen.photo, "photo.jpg", tank, search, RunContext()), InputError);
+}
+
+// One photo, of sheets that were printed otherwise.
+TEST(SlowFilmPose, FilmOnWhichAJobDoesNotLandIsRefused) {
+  Tank tank = known_tank();
+  const Photographed seen = photographed(tank, {}, 7, false);
+  const std::vector<MarkPlace> own = film_marks(210, 297, 10);
+  const auto told = [&](const FilmSearch& search) -> std::string {
+    try {
+      find_film(seen.photo, "photo.jpg", tank, search, RunContext());
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto says = [&](const FilmSearch& search, const char* words) {
+    EXPECT_NE(told(search).find(words), std::string::npos) << told(search);
+  };
+  FilmSearch search{own};
+  EXPECT_EQ(told(search), "");
+  search.tolerance_mm = 1e-6;
+  says(search, "any evenly swollen sheet");
+  search = {own};
+  for (MarkPlace& mark : search.marks) mark.corner /= 1.09;
+  says(search, "would have swollen by");
+  search = {own};
+  for (MarkPlace& mark : search.marks) mark.corner = {-mark.corner.y(), mark.corner.x()};
+  says(search, "lies turned by");
+  search.any_turn = true;
+  EXPECT_EQ(told(search), "");
+  // One mark is another sheet's.
+  search = {own};
+  search.marks.front().corner += Vec2(15, 0);
+  const FilmPose pose = find_film(seen.photo, "photo.jpg", tank, search, RunContext());
+  for (const FilmPose::Mark& mark : pose.marks) EXPECT_NE(mark.id, search.marks.front().id);
+  EXPECT_LT(pose.shift_mm.norm(), 0.1);
+  search = {own};
+  ++tank.width_px;
+  says(search, "use the same camera");
 }
 
 TEST(SlowFilmPose, ToldWhenItLiesUpsideDown) {

@@ -183,6 +183,75 @@ TEST(PreviewGlb, TextureCarriesEachFilmPointsColour) {
   }
 }
 
+// Where a sheet is blank the object's own colour shows.
+TEST(PreviewGlb, BlankFilmIsAsTheBareObject) {
+  const TemporaryFolder folder;
+  const Object ball = two_coloured_ball(4);
+  const LinearColor base{0.2F, 0.4F, 0.6F, 1};
+  write_preview_glb(folder / "b.glb", ball, surface_of(ball), film_under_ball(), Image(160, 200),
+                    80, 100, base);
+  const Glb glb = parse(read_file(folder / "b.glb"));
+  const Json& view =
+      glb.json["bufferViews"][glb.json["images"][0]["bufferView"].get<std::size_t>()];
+  const auto begin = glb.binary.begin() + view["byteOffset"].get<std::ptrdiff_t>();
+  const Image texture = decode_image(
+      std::vector<std::uint8_t>(begin, begin + view["byteLength"].get<std::ptrdiff_t>()),
+      "texture");
+  const std::uint8_t* p = texture.pixel(texture.width_px / 2, texture.height_px / 2);
+  EXPECT_EQ(p[0], linear_to_srgb8(base.r));
+  EXPECT_EQ(p[1], linear_to_srgb8(base.g));
+  EXPECT_EQ(p[2], linear_to_srgb8(base.b));
+}
+
+// glTF's pictures begin at their top, models' at their bottom.
+TEST(PreviewGlb, TextureCoordinatesRunDown) {
+  Object ball = two_coloured_ball(4);
+  ball.materials = {Material{}};
+  ball.material_of.assign(ball.triangles.size(), 0);
+  ball.textures = {std::make_shared<const Image>(gradient_sheet())};
+  ball.materials[0].texture = 0;
+  for (std::size_t t = 0; t < ball.triangles.size(); ++t) {
+    CornerUv corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& p = ball.positions[std::size_t(ball.triangles[t][k])];
+      corners[k] = {float(0.5 + p.x() / 100), float(p.z() / 100)};
+    }
+    ball.uvs.push_back(corners);
+  }
+  const TemporaryFolder folder;
+  write_preview_glb(folder / "t.glb", ball, surface_of(ball), film_under_ball(), gradient_sheet(),
+                    80, 100, {1, 1, 1, 1});
+  const Glb glb = parse(read_file(folder / "t.glb"));
+  const Json& part = primitive(glb, 0);
+  const std::vector<float> positions = floats(glb, part["attributes"]["POSITION"]);
+  const std::vector<float> uvs = floats(glb, part["attributes"]["TEXCOORD_0"]);
+  ASSERT_EQ(uvs.size() / 2, positions.size() / 3);
+  for (std::size_t i = 0; i < uvs.size() / 2; ++i) {  // x right and z up of the model, in metres
+    EXPECT_NEAR(uvs[2 * i], 0.5 - 10 * positions[3 * i], 1e-4);
+    EXPECT_NEAR(uvs[2 * i + 1], 1 + 10 * positions[3 * i + 2], 1e-4);
+  }
+}
+
+// Film of large triangles, through which the ball bulges.
+TEST(PreviewGlb, FilmLiesOutsideOfWhatBulgesBetweenItsCorners) {
+  const Object ball = two_coloured_ball();
+  DippedFilm film = film_under_ball();
+  const TemporaryFolder folder;
+  // Flatter than the ball: each corner a little below the surface, as if its triangles were large.
+  for (std::size_t v = 0; v < film.position.size(); ++v)
+    if (film.state[v] == VertexState::kAttached) {
+      const Vec3 center(0, 0, kRadius);
+      film.position[v] = center + (1 - 0.3 / kRadius) * (film.position[v] - center);
+    }
+  write_preview_glb(folder / "f.glb", ball, surface_of(ball), film, gradient_sheet(), 80, 100,
+                    {1, 1, 1, 1});
+  const Glb glb = parse(read_file(folder / "f.glb"));
+  const std::vector<float> positions = floats(glb, primitive(glb, 1)["attributes"]["POSITION"]);
+  const Vec3 center(0, 0, -1e-3 * kRadius);
+  for (std::uint32_t i = 0; i < positions.size() / 3; ++i)
+    ASSERT_GT((vec3(positions, i) - center).norm(), 1e-3 * (kRadius - 0.1)) << i;
+}
+
 // The materials of every primitive in a variant, by name.
 std::vector<std::string> shown_in(const Glb& glb, int variant) {
   std::vector<std::string> names;

@@ -102,6 +102,58 @@ TEST(Packer, EveryWidthComesBack) {
   EXPECT_EQ(data.numbers(pc), c);
 }
 
+// RFC 4648.
+TEST(Packer, Base64IsFilledUp) {
+  const auto of = [](const std::string& text) { return base64(Bytes(text.begin(), text.end())); };
+  EXPECT_EQ(of(""), "");
+  EXPECT_EQ(of("f"), "Zg==");
+  EXPECT_EQ(of("fo"), "Zm8=");
+  EXPECT_EQ(of("foo"), "Zm9v");
+  EXPECT_EQ(of("foobar"), "Zm9vYmFy");
+}
+
+// A tear line runs through triangles; those are shown whole that are so for the most part.
+TEST(Scene, ATriangleOfWhichLittleIsWholeIsTorn) {
+  const Object ball = two_coloured_ball(4);
+  DippedFilm film = film_under_ball();
+  for (const Vec2& u : film.mesh().u) film.excess.push_back(0.8 * u.x() + 0.6 * u.y());
+  const DipHistory history = some_history(film);
+  RunContext context;
+  const Json scene = Json::parse(scene_json({ball, film, history, Image()}, context));
+  const std::vector<std::uint32_t> torn = Unpacked(scene["data"]).numbers(scene["film"]["torn"]);
+  int mostly_torn = 0, mostly_whole = 0;
+  for (std::size_t t = 0; t < torn.size(); ++t) {
+    if (!film.lies_on_object(t)) continue;
+    constexpr int kSteps = 20;
+    int whole = 0, all = 0;
+    for (int a = 0; a <= kSteps; ++a)
+      for (int b = 0; a + b <= kSteps; ++b, ++all)
+        whole += film.excess_at(t, Vec3(a, b, kSteps - a - b) / kSteps) <= 0;
+    const double share = double(whole) / all;
+    if (std::abs(share - 0.5) < 0.1 || share == 1) continue;
+    EXPECT_EQ(torn[t] != 0, share < 0.5) << t;
+    (share < 0.5 ? mostly_torn : mostly_whole) += 1;
+  }
+  EXPECT_GT(mostly_torn, 0);
+  EXPECT_GT(mostly_whole, 0);
+}
+
+// Seen from the object, the water comes up to it.
+TEST(Scene, AMovedObjectStandsOverTheWaterOfItsMoment) {
+  const Object ball = two_coloured_ball(4);
+  const DippedFilm film = film_under_ball();
+  DipHistory history = some_history(film);
+  Moment moment;
+  moment.moved = true;
+  moment.travelled_mm = moment.level_mm = 7;
+  moment.shift = Vec3(1, 2, 3);
+  history.record(2, 2, moment, film.position, film.state);
+  RunContext context;
+  const Json scene = Json::parse(scene_json({ball, film, history, Image()}, context));
+  const Json pose = scene["film"]["frames"]["poses"].at(0);
+  EXPECT_EQ(pose, Json({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, -4, 1}));
+}
+
 TEST(Scene, EverythingComesBack) {
   const Object ball = two_coloured_ball();
   const DippedFilm film = film_under_ball();

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <limits>
 
 #include "base/error.h"
 #include "film/film.h"
@@ -31,6 +33,14 @@ TEST(Correction, KeepsWhatIsAffineAndFollowsWhatIsSmooth) {
   // Beyond its edge as on it.
   EXPECT_LT((a.at({500, 0}) - a.at({60, 0})).norm(), 1e-12);
   EXPECT_EQ(FilmCorrection().at({1, 2}), Vec2(0, 0));
+}
+
+TEST(Correction, ThatSaysNothingSomewhereIsAsFarAsCanBe) {
+  FilmCorrection some = field([](const Vec2&) -> Vec2 { return {0.2, -0.7}; });
+  EXPECT_EQ(some.farthest_mm(), 0.7);
+  some.move[7].y() = std::nan("");
+  EXPECT_EQ(some.farthest_mm(), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(FilmCorrection().farthest_mm(), 0);
 }
 
 TEST(Correction, MovesWhatIsPrintedAndNotWhatFloats) {

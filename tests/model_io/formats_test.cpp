@@ -232,6 +232,19 @@ TEST_F(Formats, MissingFilesAreNamedWithWhoAsksForThem) {
   EXPECT_TRUE(warned(obj("newmtl other\nKd 1 0 0\n"), "no material library defines (m)"));
 }
 
+TEST_F(Formats, ObjWeightsOfVertices) {
+  const Object object =
+      load(folder_.write("w.obj", "v 0 0 0 2\nv 4 0 0 2\nv 0 4 8 4\nf 1 2 3\n")).object.object;
+  EXPECT_EQ(object.bounds().max, Vec3(2, 1, 2));
+}
+
+TEST_F(Formats, ObjTheFirstDefinitionOfAMaterialCounts) {
+  folder_.write("m.mtl", "newmtl a\nKd 1 0 0\nnewmtl a\nKd 0 0 1\n");
+  const Loaded loaded =
+      load(folder_.write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"));
+  EXPECT_EQ(seen_at(loaded, 0.2, 0.2), kRed);
+}
+
 TEST_F(Formats, ObjColoursOfVertices) {
   const auto corner_color = [&](const char* colors) {
     return seen_at(load(folder_.write("a.obj", fmt::format("v 0 0 0 {0}\nv 1 0 0 {0}\nv 0 1 0 {0}\n"
@@ -654,6 +667,31 @@ TEST_F(Gltf, CompressedByMeshoptimizer) {
   }
 }
 
+// Each node is placed in the one above it; a turn is counter-clockwise as one looks against its
+// axis.
+TEST_F(Gltf, NodesInNodes) {
+  const Bytes written = read_file(write(plain(), kTextured));
+  std::string text(written.begin(), written.end());
+  const std::string one = R"({"mesh": 0})";
+  text.replace(
+      text.find(one), one.size(),
+      R"({"translation": [5, 0, 0], "children": [1]},)"
+      R"({"translation": [0, 0, 2], "rotation": [0, 0.70710678, 0, 0.70710678], "mesh": 0})");
+  const Object& object = load(folder_.write("a.gltf", text)).object.object;
+  const Box3 box = object.bounds();
+  // Of the square from 0 to 1 along glTF's x and -z: a quarter turn about y takes x to -z and z to
+  // x; z up, glTF's (x, y, z) is (x, -z, y).
+  EXPECT_LT((box.min - 1000 * Vec3(4, -2, 0)).norm(), 0.1) << box.min.transpose();
+  EXPECT_LT((box.max - 1000 * Vec3(5, -1, 0)).norm(), 0.1) << box.max.transpose();
+}
+
+// A mirrored part needs no repair: its faces are read the other way round.
+TEST_F(Gltf, MirroredNodesLookOutwards) {
+  const Object object = with_node(plain(), R"("scale": [-1, 1, 1])").object.object;
+  for (std::size_t t = 0; t < object.triangles.size(); ++t)
+    EXPECT_GT(face_normal(object, int(t)).z(), 0.9) << t;
+}
+
 TEST_F(Gltf, CopiesOfAMesh) {
   std::vector<Piece> pieces = plain();
   Bytes places;
@@ -893,6 +931,22 @@ TEST_F(ThreeMf, ColoursOfCornersCompositesAndLayers) {
                              "</m:multiproperties>";
   EXPECT_EQ(seen_at(colored(layers, "pid=\"6\" p1=\"0\""), 0.5, 0.2), kGreen);
   EXPECT_TRUE(colored(base, "pid=\"1\" p1=\"1\"").object.object.has_appearance());
+}
+
+TEST_F(ThreeMf, MirroredPartsLookOutwards) {
+  const std::string resources =
+      "<resources><object id=\"3\">" + square("") + "</object></resources>";
+  const auto placed = [&](const std::string& transform) {
+    return package(
+               {{"3D/3dmodel.model", model(resources + "<build><item objectid=\"3\" transform=\"" +
+                                           transform + "\"/></build>")}})
+        .object.object;
+  };
+  for (const char* transform : {"1 0 0 0 1 0 0 0 1 0 0 0", "-1 0 0 0 1 0 0 0 1 0 0 0"}) {
+    const Object object = placed(transform);
+    for (std::size_t t = 0; t < object.triangles.size(); ++t)
+      EXPECT_GT(face_normal(object, int(t)).z(), 0.9) << transform;
+  }
 }
 
 TEST_F(ThreeMf, PartsOfTheProductionExtension) {

@@ -191,6 +191,19 @@ TEST(Health, RoundingPartsNoSeam) {
   }
 }
 
+// Single precision knows places far from the origin less well, and makes no gap a seam that is much
+// wider than the object's own.
+TEST(Health, AGapFarFromTheOriginStaysOne) {
+  for (const double far : {0.0, 1e6}) {
+    Object object = box();
+    for (std::size_t f = 0; f < object.triangles.size(); f += 2)
+      for (const std::int32_t v : object.triangles[f])
+        object.positions[std::size_t(v)] += Vec3(-1e-3, 0, 1e-3);
+    for (Vec3& p : object.positions) p.x() += far;
+    EXPECT_FALSE(check_and_repair(object).closed()) << far;
+  }
+}
+
 TEST(Health, ASliverWithoutAreaStillJoinsItsNeighbours) {
   // A tetrahedron with a vertex on the middle of one edge of one face only; the sliver closes it.
   Object object;
@@ -328,6 +341,28 @@ TEST(Triangulate, ConcavePolygonsExactly) {
   area = 0;
   for (const auto& t : triangulate(comb)) area += signed_area(comb, t);
   EXPECT_NEAR(area, -24, 1e-12);
+}
+
+// A face with a dent is cut without overlaps whichever way it looks.
+TEST(Triangulate, FacesThatLookAnyWay) {
+  const std::vector<Vec3> arrow = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {3, 1, 0}};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool reversed : {false, true}) {
+      std::vector<Vec3> corners;
+      for (const Vec3& p : arrow) {
+        Vec3 turned = Vec3::Zero();
+        turned[(axis + 1) % 3] = p.x();
+        turned[(axis + 2) % 3] = p.y();
+        corners.push_back(turned);
+      }
+      if (reversed) std::reverse(corners.begin(), corners.end());
+      double area = 0;
+      for (const auto& t : triangulate(corners))
+        area += 0.5 * (corners[std::size_t(t[1])] - corners[std::size_t(t[0])])
+                          .cross(corners[std::size_t(t[2])] - corners[std::size_t(t[0])])
+                          .norm();
+      EXPECT_NEAR(area, 4, 1e-12) << axis << reversed;
+    }
 }
 
 TEST(Triangulate, DegeneratePolygonsEnd) {

@@ -534,6 +534,7 @@ TEST(Findings, FilmThatTearsWhereNothingIsPrintedForbidsNothing) {
   report.wanted = ReportWanted{100, 100, 100};
   std::vector<Finding> list = findings(report);
   EXPECT_EQ(concern_of(list), Concern::kCare);
+  EXPECT_NE(find(list, "tears")->text.find("where nothing shall be printed"), std::string::npos);
   EXPECT_EQ(find(list, "coverage")->figure, "100 %");
   EXPECT_EQ(find(list, "coverage")->concern, Concern::kNone);
   // A part of it stays out of the water: nothing is spoilt, but it is said.

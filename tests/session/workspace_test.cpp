@@ -14,6 +14,7 @@
 #include "image/files.h"
 #include "refusal.h"
 #include "samples/samples.h"
+#include "session/content_key.h"
 #include "temporary_folder.h"
 
 namespace hydrodip {
@@ -150,6 +151,78 @@ TEST_F(WorkspaceTest, LooksAtALargeModelWithFewerTriangles) {
   EXPECT_EQ(coarse->object->bounds().max, whole->object->bounds().max);
   const auto sketched = workspace_.dipped(project_, Quality::kNormal, context_);
   EXPECT_NEAR(sketched->coverage.covered_share(), dipped->coverage.covered_share(), 0.02);
+}
+
+// Whatever changes how a project is dipped or printed makes it another one.
+TEST_F(WorkspaceTest, WhatAProjectSaysIsHeard) {
+  project_.artwork.emplace_back();
+  project_.artwork[0].text = "A";
+  project_.design.trajectory.depth_mm = 0;
+  project_.design.trajectory.path = {{0, 0, 0, 0, 0, 0}, {4, 0, 0, 0, 0, 0}};
+  dip();
+  design_it();
+  const Project plain = project_;
+  const auto asks_anew = [&](const auto& change) {
+    project_ = plain;
+    EXPECT_EQ(dip() + design_it(), 0U);
+    change(project_);
+    return dip() + design_it() > 0;
+  };
+  EXPECT_TRUE(asks_anew([](Project& p) { p.design.film.swelling_x = 1.02; }));
+  EXPECT_TRUE(asks_anew([](Project& p) { p.design.film.swelling_y = 1.02; }));
+  EXPECT_TRUE(asks_anew([](Project& p) { p.design.trajectory.path[1].shift_x_mm = 1; }));
+  EXPECT_TRUE(asks_anew([](Project& p) { p.design.inking.limit = 1; }));
+  EXPECT_TRUE(asks_anew([](Project& p) { p.design.stiffness.ratio = 30; }));
+  EXPECT_TRUE(asks_anew([](Project& p) { p.artwork[0].font = "serif"; }));
+  EXPECT_TRUE(asks_anew([](Project& p) { p.artwork[0].turn_deg = 20; }));
+}
+
+// Two large models that are looked at with as many triangles are two all the same.
+TEST_F(WorkspaceTest, TheFewerTrianglesAreThoseOfTheModel) {
+  write_sample("sphere", make_sample("sphere"), folder_.path());
+  write_sample("ellipsoid", make_sample("ellipsoid"), folder_.path());
+  project_.most_triangles = 500;
+  project_.model = folder_.path() / "sphere.obj";
+  const Vec3 sphere = workspace_.model(project_, context_)->object->bounds().size();
+  project_.model = folder_.path() / "ellipsoid.obj";
+  const Vec3 ellipsoid = workspace_.model(project_, context_)->object->bounds().size();
+  EXPECT_EQ(ellipsoid, load(project_.model).object->bounds().size());
+  EXPECT_NE(ellipsoid, sphere);
+}
+
+TEST_F(WorkspaceTest, AnotherPrinterPrintsOtherwise) {
+  EXPECT_EQ(design_it(), 3U);  // model, pose, design
+  project_.printer.color = PrintColor::kCmyk;
+  EXPECT_EQ(design_it(), 1U);
+  project_.printer.color = {};
+  EXPECT_EQ(design_it(), 0U);
+}
+
+// What was asked for last stays when there is no room for all.
+TEST_F(WorkspaceTest, LetsGoOfWhatNobodyAskedForForTheLongest) {
+  const auto dip_turned = [&](Workspace& workspace, double turn_deg) {
+    project_.pose.rotate_deg.z() = turn_deg;
+    const std::size_t before = workspace.computed();
+    workspace.dipped(project_, Quality::kNormal, context_);
+    return workspace.computed() - before;
+  };
+  dip_turned(workspace_, 0);
+  const std::size_t one = workspace_.memory_bytes();
+  dip_turned(workspace_, 20);
+  Workspace two(workspace_.memory_bytes() + (workspace_.memory_bytes() - one) / 4);
+  EXPECT_EQ(dip_turned(two, 0), 3U);
+  EXPECT_EQ(dip_turned(two, 20), 2U);
+  EXPECT_EQ(dip_turned(two, 0), 0U);
+  EXPECT_GT(dip_turned(two, 40), 0U);  // no room for the dip at 20
+  EXPECT_EQ(dip_turned(two, 0), 0U);
+  EXPECT_GT(dip_turned(two, 20), 0U);
+}
+
+TEST(ContentKeys, TextsDoNotRunIntoEachOther) {
+  ContentKey one("key"), other("key");
+  one.add(std::string("ab")).add(std::string("c"));
+  other.add(std::string("a")).add(std::string("bc"));
+  EXPECT_NE(one.text(), other.text());
 }
 
 TEST_F(WorkspaceTest, ValuesAreThoseOfTheStepsThemselves) {

@@ -189,6 +189,28 @@ TEST_F(JobFile, ReadsWhatItWrites) {
   EXPECT_EQ(again.dips[2].path[1].turn_z_deg, 5);
 }
 
+// A job's folder may be moved: its files are named from there.
+TEST_F(JobFile, NamesFilesFromWhereItLies) {
+  JobConfig config;
+  config.model = folder_ / "a.obj";
+  config.object.load.texture = folder_ / "pictures/a.png";
+  config.dips.resize(1);
+  config.dips[0].correction = folder_ / "dip-1/correction.json";
+  const std::string text = job_file(config, folder_);
+  EXPECT_TRUE(contains(text, "texture = \"pictures/a.png\"")) << text;
+  EXPECT_TRUE(contains(text, "correction = \"dip-1/correction.json\"")) << text;
+  EXPECT_EQ(text.find(folder_.string()), std::string::npos) << text;
+}
+
+// What was planned is not planned anew by whoever prints it.
+TEST_F(JobFile, DoesNotAskForMoreDipsThanItNames) {
+  JobConfig config;
+  config.model = folder_ / "a.obj";
+  config.plan.dips = 5;
+  config.dips.resize(2);
+  EXPECT_EQ(read(job_file(config, folder_)).plan.dips, 0);
+}
+
 TEST_F(JobFile, SaysOfARunOnlyWhatItIsToldTo) {
   JobConfig config;
   config.threads = 3;

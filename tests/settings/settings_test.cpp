@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "contains.h"
+#include "refusal.h"
 #include "settings/path_file.h"
 
 namespace hydrodip {
@@ -442,6 +443,32 @@ TEST_F(Settings, ADepthForDipsThatAreLookedForIsRefusedWhereverItIsSaid) {
   job.options = {dips};
   job.configs = {file("[[dip]]\ndepth_mm = 5\n", "table.toml")};
   EXPECT_EQ(told(job), "");
+}
+
+TEST_F(Settings, WhatTablesOfDipsSayIsSaidThereOnly) {
+  const auto is_refused = [&](const Setting& setting) {
+    SettingSources sources;
+    sources.configs = {file("[[dip]]\ndown = '-z'\n", "dips.toml")};
+    sources.options = {setting};
+    return !refusal([&] { configured("model.obj", sources); }).empty();
+  };
+  EXPECT_TRUE(is_refused({"object.rotate_deg", std::string("0,0,9"), false, "", "--rotate"}));
+  EXPECT_TRUE(is_refused({"object.down", std::string("+y"), false, "", "--down"}));
+  EXPECT_TRUE(is_refused({"dip.depth_mm", 9.0, false, "", "--depth"}));
+  EXPECT_FALSE(is_refused({"dip.step_mm", 0.5, false, "", "--set"}));
+}
+
+TEST_F(Settings, PathsLeadSomewhereInABath) {
+  const auto is_taken = [&](const std::string& rows) {
+    SettingSources sources;
+    sources.configs = {file("path = [" + rows + "]\n", "way.toml")};
+    return refusal([&] { configured("model.obj", sources); }).empty();
+  };
+  EXPECT_TRUE(is_taken("[0,0,0,0,0,0], [5000,5000,-5000,3600,-3600,0]"));
+  EXPECT_FALSE(is_taken("[0,0,0,0,0,0]"));
+  for (const char* row : {"[5001,0,0,0,0,0]", "[5,-5001,0,0,0,0]", "[5,0,5001,0,0,0]",
+                          "[5,0,0,3601,0,0]", "[5,0,0,0,-3601,0]", "[5,0,0,0,0,3601]"})
+    EXPECT_FALSE(is_taken(std::string("[0,0,0,0,0,0], ") + row)) << row;
 }
 
 TEST_F(Settings, SetNeedsNameAndValue) {

@@ -190,6 +190,14 @@ TEST(Marks, NarrowSheetsHaveAShorterRulerThatSaysSo) {
   }
 }
 
+TEST(Marks, ASheetTooNarrowForARulerHasNoneAndSaysSo) {
+  const SheetOptions options = sheet(34, 200, 10);
+  const Marks marks = make_marks(options, half_em);
+  EXPECT_EQ(ruler_mm(34, 10), 0);
+  ASSERT_FALSE(marks.warnings.empty());
+  EXPECT_NE(marks.warnings.front().find("no room for a ruler"), std::string::npos);
+}
+
 TEST(Marks, TheDiscsRimIsDrawnJustOutsideTheFreeFilm) {
   SheetOptions options = sheet(210, 297, 10);
   options.disc = true;

@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace hydrodip {
@@ -31,13 +32,15 @@ class Door {
 
   int port() const { return port_; }
 
-  // The other side's end.
-  int connect() {
+  // The other side's end, at an address 127.0.0.1, 2, ...
+  int connect(std::uint32_t from = 1) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
+    const int end = ::socket(AF_INET, SOCK_STREAM, 0);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK + from - 1);
+    EXPECT_EQ(::bind(end, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     address.sin_port = htons(in_port_t(port_));
-    const int end = ::socket(AF_INET, SOCK_STREAM, 0);
     EXPECT_EQ(::connect(end, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
     ends_.push_back(::accept(door_, nullptr, nullptr));
     ends_.push_back(end);
@@ -106,6 +109,35 @@ TEST(Connections, EndThoseOfStrangersBeyondTheirBounds) {
   }
   EXPECT_EQ(ended, 7) << "an address has three";
   EXPECT_FALSE(is_ended(known, 0));
+}
+
+// Which of two is ended; -1: none for long.
+int first_ended(int one, int other) {
+  std::vector<pollfd> both = {{one, POLLRDHUP, 0}, {other, POLLRDHUP, 0}};
+  if (::poll(both.data(), both.size(), 60000) <= 0) return -1;
+  return both[0].revents != 0 ? one : other;
+}
+
+TEST(Connections, EndTheStrangerWhoHasWaitedLongest) {
+  Door door;
+  Connections connections(door.port(), {std::chrono::hours(1), 1, 10});
+  const int one = door.connect(), other = door.connect();
+  connections.opened();
+  const int ended = first_ended(one, other);
+  ASSERT_NE(ended, -1);
+  const int earlier = ended == one ? other : one;  // has been seen by now
+  const int later = door.connect();
+  connections.opened();
+  EXPECT_EQ(first_ended(earlier, later), earlier);
+  EXPECT_FALSE(is_ended(later, 0));
+}
+
+TEST(Connections, StrangersOfManyAddressesHaveNoMoreTogether) {
+  Door door;
+  Connections connections(door.port(), {std::chrono::hours(1), 1, 1});
+  const int one = door.connect(2), other = door.connect(3);
+  connections.opened();
+  EXPECT_NE(first_ended(one, other), -1);
 }
 
 TEST(Connections, EndStrangersWhoWaitTooLong) {
