@@ -38,6 +38,9 @@ TEST(Obstacle, OfOneOfSeveralIsNotWhatItTears) {
   dip.coverage.torn_mm2 = 900;
   dip.air = std::make_shared<const TrappedAir>();
   EXPECT_FALSE(obstacle_of(dip, nullptr, 1.4, 2, 3));
+  dip.coverage.film_on_object_mm2 = 0;  // all of it
+  EXPECT_FALSE(obstacle_of(dip, nullptr, 1.4, 2, 3));
+  dip.coverage.film_on_object_mm2 = 100;
   TrappedAir air;
   air.pockets.resize(1);
   air.pockets[0].area_mm2 = 1000;

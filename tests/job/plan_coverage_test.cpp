@@ -157,6 +157,7 @@ TEST(PlanCoverage, WhatLiesUnderTornFilmIsMissed) {
   ASSERT_GT(missed, 0.5);
   ASSERT_NE(find(told, "tears"), nullptr);
   EXPECT_EQ(find(told, "tears")->concern, Concern::kStop);
+  EXPECT_TRUE(contains(find(told, "tears")->text, "of the surface that comes to a film"));
 }
 
 // A cup with its mouth down keeps its air, whichever of the dips it is.
