@@ -160,6 +160,21 @@ TEST(PlanCoverage, WhatLiesUnderTornFilmIsMissed) {
   EXPECT_TRUE(contains(find(told, "tears")->text, "of the surface that comes to a film"));
 }
 
+// Nearly the same dip again: most of its film tears, as did the first one's, and what it adds is a
+// rim.
+TEST(PlanCoverage, ADipThatIsHardlyWorthItsFilmIsForetold) {
+  JobConfig config = coarse_job();
+  config.design.dip.material.tear_stretch = 1.08;
+  const auto [plan, coverage, told] =
+      planned(sphere(), config,
+              {dip_of(ModelSide::kMinusZ, 28), dip_of(ModelSide::kMinusZ, 28, Vec3(5, 0, 0))});
+  ASSERT_GT(plan.dips[1].blank.coverage.torn_share(), 0.5);
+  ASSERT_GT(gained(coverage.covered_share, 1), 0.002);
+  ASSERT_LT(gained(coverage.covered_share, 1), 0.03);
+  ASSERT_NE(find(told, "poor_dips"), nullptr);
+  EXPECT_EQ(find(told, "poor_dips")->figure, "2");
+}
+
 // A cup with its mouth down keeps its air, whichever of the dips it is.
 TEST(PlanCoverage, AirThatADipWillTrapIsForetold) {
   const shapes::Shape cup = cups::turned(cups::kCup);
