@@ -233,16 +233,20 @@ TEST(NearestNode, OfTwoThatAreAsNearIsTheFirst) {
     EXPECT_EQ(nearest.find(Vec3(i + 0.1, 0, 0), Vec3::UnitZ(), 1).node, i);
 }
 
-// All nodes may lie within reach of a point.
+// All nodes may lie within reach of a point. The quickest of some tries, as machines are busy.
 TEST_F(Plate, AWideFadeCostsLittleMoreThanANarrowOne) {
   const auto seconds = [&](double overlap) {
     const SharedSurface shared = divide(StripedPaint(*mesh_, 0, 0), overlap);
     const std::vector<std::int32_t> at_seam = shared.seam_nodes();
-    const auto begin = std::chrono::steady_clock::now();
-    for (const std::int32_t i : at_seam)
-      shared.shares_at(shared.nodes().nodes()[std::size_t(i)].position, Vec3::UnitZ());
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    return taken.count() / double(at_seam.size());
+    double least = 1e300;
+    for (int tries = 0; tries < 7; ++tries) {
+      const auto begin = std::chrono::steady_clock::now();
+      for (const std::int32_t i : at_seam)
+        shared.shares_at(shared.nodes().nodes()[std::size_t(i)].position, Vec3::UnitZ());
+      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+      least = std::min(least, taken.count());
+    }
+    return least / double(at_seam.size());
   };
   EXPECT_LT(seconds(30), 10 * seconds(2));
 }
