@@ -10,7 +10,6 @@
 #include "job/ways.h"
 #include "plan/hold.h"
 #include "report/findings.h"
-#include "settings/dip_tables.h"
 
 namespace hydrodip {
 namespace {

@@ -7,7 +7,6 @@
 #include "job/dips_report.h"
 #include "job/wanted.h"
 #include "job/ways.h"
-#include "settings/dip_tables.h"
 
 namespace hydrodip {
 namespace {
