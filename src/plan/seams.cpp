@@ -24,7 +24,7 @@ constexpr double kHair = 1 + 1e-9;
 using Corners = std::array<Vec3, 3>;
 
 // Sets of dips.
-static_assert(kMostDips < 30);
+static_assert(kMostDips < 29);
 constexpr std::uint32_t kAllDips = ~std::uint32_t(0);
 constexpr std::uint32_t bit_of(std::size_t dip) { return std::uint32_t(1) << dip; }
 
@@ -139,20 +139,38 @@ class SharedSurface::Triangles {
       : shared_(std::move(shared)), mesh_(std::move(mesh)), known_(mesh_->triangles.size()) {}
 
   float share_at(std::size_t dip, const SurfacePoint& point) const {
-    std::atomic<std::uint32_t>& known = known_[std::size_t(point.triangle)];
-    std::uint32_t near = known.load(std::memory_order_relaxed);
-    if (near == 0) known.store(near = look_at(point.triangle), std::memory_order_relaxed);
-    if (near & kWhole) return near & bit_of(dip) ? 1 : 0;
+    const std::uint32_t near = looked_at(point.triangle);
+    if (const auto share = share_over(dip, near)) return *share;
     const Vec3 position = position_at(*mesh_, point), normal = face_normal(*mesh_, point.triangle);
     const Place place = shared_.place_of(position, normal);
     if (place.alone) return place.dip == dip ? 1 : 0;
     return shared_.faded_at(place, position, normal, near)[dip];
   }
 
- private:
-  static constexpr std::uint32_t kSeen = bit_of(31), kWhole = bit_of(30);
+  // Of all points of a triangle, where they have one.
+  std::optional<float> share_over(std::size_t dip, int triangle) const {
+    return share_over(dip, looked_at(triangle));
+  }
 
-  // The dips that may have a part anywhere in it; kWhole: it is one dip's.
+ private:
+  // Besides the bits of dips: a node is near every point, so that dips further away have no part;
+  // and no seam is near any of it.
+  static constexpr std::uint32_t kSeen = bit_of(31), kWhole = bit_of(30), kCovered = bit_of(29);
+
+  static std::optional<float> share_over(std::size_t dip, std::uint32_t near) {
+    if ((near & (kWhole | kCovered)) && !(near & bit_of(dip))) return 0.0F;
+    if (near & kWhole) return 1.0F;
+    return std::nullopt;
+  }
+
+  std::uint32_t looked_at(int triangle) const {
+    std::atomic<std::uint32_t>& known = known_[std::size_t(triangle)];
+    std::uint32_t near = known.load(std::memory_order_relaxed);
+    if (near == 0) known.store(near = look_at(triangle), std::memory_order_relaxed);
+    return near;
+  }
+
+  // The dips that may have a part anywhere in it.
   std::uint32_t look_at(int triangle) const {
     const Data& d = *shared_.data_;
     const Corners corners = corners_of(triangle);
@@ -161,9 +179,8 @@ class SharedSurface::Triangles {
     double radius = 0;
     for (const Vec3& corner : corners) radius = std::max(radius, (corner - center).norm());
     radius *= kHair;
-    const std::uint32_t whole = whole_part(corners, center, radius, normal);
-    if (whole != 0) return kSeen | kWhole | whole;
-    std::uint32_t near = kSeen;
+    std::uint32_t near = kSeen | whole_or_covered(corners, center, radius, normal);
+    if (near & kWhole) return near;
     for (std::size_t k = 0; k < d.nearest.size(); ++k)
       if (d.nearest[k]
               .find(center, normal, kHair * (d.overlap + 2 * d.nodes->spacing()) + radius)
@@ -172,23 +189,25 @@ class SharedSurface::Triangles {
     return near;
   }
 
-  // The one dip of all nodes that may be the nearest to a point of the triangle, if no seam is near
-  // any of them.
-  std::uint32_t whole_part(const Corners& corners, const Vec3& center, double radius,
-                           const Vec3& normal) const {
+  // kCovered or nothing; kWhole and the one dip of all nodes that may be the nearest to a point of
+  // the triangle, if no seam is near any of them.
+  std::uint32_t whole_or_covered(const Corners& corners, const Vec3& center, double radius,
+                                 const Vec3& normal) const {
     const Data& d = *shared_.data_;
     const double reach = 2 * d.nodes->spacing();
     std::vector<std::int32_t> close;
     d.nodes->near(center, normal, kHair * reach + radius, close);
-    bool is_one_near_all = false;
-    for (const std::int32_t j : close) {
-      if (d.at_seam[std::size_t(j)] || d.dip_of[std::size_t(j)] != d.dip_of[std::size_t(close[0])])
-        return 0;
+    const bool is_covered = std::any_of(close.begin(), close.end(), [&](std::int32_t j) {
       const Vec3& at = d.nodes->nodes()[std::size_t(j)].position;
-      is_one_near_all |= std::all_of(corners.begin(), corners.end(),
-                                     [&](const Vec3& p) { return (at - p).norm() < reach; });
-    }
-    return is_one_near_all ? bit_of(d.dip_of[std::size_t(close[0])]) : 0;
+      return std::all_of(corners.begin(), corners.end(),
+                         [&](const Vec3& p) { return kHair * (at - p).norm() < reach; });
+    });
+    if (!is_covered) return 0;
+    const std::uint8_t dip = d.dip_of[std::size_t(close[0])];
+    const bool is_whole = std::all_of(close.begin(), close.end(), [&](std::int32_t j) {
+      return !d.at_seam[std::size_t(j)] && d.dip_of[std::size_t(j)] == dip;
+    });
+    return is_whole ? kWhole | bit_of(dip) : kCovered;
   }
 
   Corners corners_of(int triangle) const {
@@ -209,7 +228,8 @@ std::vector<Allotment> SharedSurface::allotments(std::shared_ptr<const TriangleM
   std::vector<Allotment> all;
   for (std::size_t k = 0; k < dips(); ++k)
     all.emplace_back(
-        [triangles, k](const SurfacePoint& point) { return triangles->share_at(k, point); });
+        [triangles, k](const SurfacePoint& point) { return triangles->share_at(k, point); },
+        [triangles, k](int triangle) { return triangles->share_over(k, triangle); });
   return all;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "object/object.h"
@@ -16,14 +17,20 @@ inline constexpr int kMostDips = 24;
 class Allotment {
  public:
   Allotment() = default;  // all of it everywhere
-  // Values in [0, 1].
-  explicit Allotment(std::function<float(const SurfacePoint&)> share) : share_(std::move(share)) {}
+  // Values in [0, 1]. `over`: that of all points of a triangle, where they are known to have one.
+  explicit Allotment(std::function<float(const SurfacePoint&)> share,
+                     std::function<std::optional<float>(int triangle)> over = {})
+      : share_(std::move(share)), over_(std::move(over)) {}
 
-  bool is_full() const { return !share_; }
   float at(const SurfacePoint& point) const { return share_ ? share_(point) : 1.0F; }
+  std::optional<float> over(int triangle) const {
+    if (over_) return over_(triangle);
+    return share_ ? std::nullopt : std::optional(1.0F);
+  }
 
  private:
   std::function<float(const SurfacePoint&)> share_;
+  std::function<std::optional<float>(int triangle)> over_;
 };
 
 }  // namespace hydrodip

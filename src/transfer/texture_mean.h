@@ -26,7 +26,7 @@ struct SurfaceGrid {
     const int all = per_axis * per_axis;
     return std::popcount(all < 64 ? counted & ((std::uint64_t(1) << all) - 1) : counted);
   }
-  SurfacePoint at(int column, int row) const {
+  SurfacePoint at(double column, double row) const {
     return {first.triangle, first.u + column * u_across + row * u_down,
             first.v + column * v_across + row * v_down};
   }

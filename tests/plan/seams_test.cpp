@@ -141,13 +141,23 @@ TEST_F(Plate, AnAllotmentIsWhatOneDipGets) {
       const auto tiles = std::make_shared<const TriangleMesh>(tiled(columns, rows));
       const std::vector<Allotment> of = shared.allotments(tiles);
       ASSERT_EQ(of.size(), 2);
+      int known = 0;
       for (int i = 0; i < 4000; ++i) {
         const SurfacePoint point{i * 7 % int(tiles->triangles.size()), (i % 20) / 40.0,
                                  (i / 20 % 20) / 40.0};
         const auto shares = shared.shares_at(position_at(*tiles, point), Vec3::UnitZ());
         ASSERT_EQ(of[0].at(point), shares[0]) << columns << " " << rows << " " << i;
         ASSERT_EQ(of[1].at(point), shares[1]) << columns << " " << rows << " " << i;
+        for (std::size_t k : {0, 1}) {
+          const std::optional<float> over = of[k].over(point.triangle);
+          ASSERT_EQ(over.value_or(shares[k]), shares[k]) << columns << " " << rows << " " << i;
+          known += over.has_value();
+        }
         ASSERT_NEAR(shares[0] + shares[1], 1, 1e-5);
+      }
+      // Of small triangles most are known as a whole, unless all of them fade.
+      if (columns == 100 && overlap < 12) {
+        EXPECT_GT(known, 4000) << overlap;
       }
     }
   }
