@@ -66,11 +66,11 @@ std::filesystem::path behind_links(std::filesystem::path path) {
 
 // Short, as the target's own name may be as long as names can be.
 std::string part_name(int process, int number) {
-  return fmt::format(".hydrodip-{}-{}.part", process, number);
+  return fmt::format("{}{}-{}.part", kStagingPrefix, process, number);
 }
 
 bool is_part_name(const std::string& name) {
-  if (!name.starts_with(".hydrodip-")) return false;  // as nearly all
+  if (!name.starts_with(kStagingPrefix)) return false;  // as nearly all
   static const std::regex kPattern(R"(\.hydrodip-[0-9]+-[0-9]+\.part)");
   return std::regex_match(name, kPattern);
 }

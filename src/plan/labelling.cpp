@@ -149,24 +149,25 @@ std::vector<std::uint8_t> expansion(int labels, const std::vector<std::int32_t>&
   for (const LabelEdge& edge : edges) {
     const int a = number[std::size_t(edge.a)], b = number[std::size_t(edge.b)];
     if (a < 0 && b < 0) continue;
-    // What the pair costs if both keep, if only a takes, if only b takes; nothing if both do.
-    const std::int64_t none =
-        label[std::size_t(edge.a)] != label[std::size_t(edge.b)] ? edge.cost : 0;
-    const std::int64_t only_a = label[std::size_t(edge.b)] != alpha ? edge.cost : 0;
-    const std::int64_t only_b = label[std::size_t(edge.a)] != alpha ? edge.cost : 0;
+    // What the pair costs; nothing if both take.
+    const auto cost = [&](bool a_takes, bool b_takes) -> std::int64_t {
+      const int at_a = a_takes ? alpha : int(label[std::size_t(edge.a)]);
+      const int at_b = b_takes ? alpha : int(label[std::size_t(edge.b)]);
+      return at_a != at_b ? edge.cost : 0;
+    };
     if (a < 0) {
-      keeps[std::size_t(b)] += a == kKeeps ? none : only_a;
-      takes[std::size_t(b)] += a == kKeeps ? only_b : 0;
+      keeps[std::size_t(b)] += cost(a == kTakes, false);
+      takes[std::size_t(b)] += cost(a == kTakes, true);
     } else if (b < 0) {
-      keeps[std::size_t(a)] += b == kKeeps ? none : only_b;
-      takes[std::size_t(a)] += b == kKeeps ? only_a : 0;
+      keeps[std::size_t(a)] += cost(false, b == kTakes);
+      takes[std::size_t(a)] += cost(true, b == kTakes);
     } else {
       // As costs of the nodes alone, and a cut between them (V. Kolmogorov, R. Zabih, "What energy
       // functions can be minimized via graph cuts?", 2004).
-      keeps[std::size_t(a)] += none;
-      takes[std::size_t(a)] += only_a;
-      takes[std::size_t(b)] -= only_a;
-      cut.join(a, b, only_a + only_b - none, 0);
+      keeps[std::size_t(a)] += cost(false, false);
+      takes[std::size_t(a)] += cost(true, false);
+      takes[std::size_t(b)] -= cost(true, false);
+      cut.join(a, b, cost(true, false) + cost(false, true) - cost(false, false), 0);
     }
   }
   for (std::size_t v = 0; v < keeps.size(); ++v) {

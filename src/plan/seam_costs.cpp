@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/run_scope.h"
 #include "image/color_difference.h"
+#include "plan/nearest_node.h"
 
 namespace hydrodip {
 namespace {
@@ -60,16 +61,12 @@ double exposure(const Surface& surface, const Target& node, double step, double 
   return double(open) / kRays;
 }
 
-// How far a point lies from the nearest node of which `is_out` is true, at most `reach`.
-template <class IsOut>
-double distance_to(const SurfaceNodes& nodes, const Target& node, double reach,
-                   std::vector<std::int32_t>& close, const IsOut& is_out) {
-  nodes.near(node.position, node.normal, reach, close);
-  double least = reach;
-  for (const std::int32_t j : close)
-    if (is_out(std::size_t(j)))
-      least = std::min(least, (nodes.nodes()[std::size_t(j)].position - node.position).norm());
-  return least;
+// Nodes where a dip's film is worth nothing.
+NearestNode bare_nodes(const SurfaceNodes& nodes, const std::vector<float>& worth) {
+  std::vector<std::int32_t> bare;
+  for (std::size_t i = 0; i < worth.size(); ++i)
+    if (!(worth[i] > 0)) bare.push_back(std::int32_t(i));
+  return {nodes, bare};
 }
 
 using NodePairs = std::vector<std::array<std::int32_t, 2>>;
@@ -79,7 +76,7 @@ struct NodeMeasures {
   std::vector<Vec3> color;                   // CIELAB
   std::vector<double> exposed;               // share of the half space above
   std::vector<std::vector<float>> depth_in;  // from the film's border: 0 to 1 at kBorder_mm
-  std::vector<std::vector<float>> inside;    // as SharedSurface::Data::inside
+  std::vector<std::vector<float>> inside;    // as SeamCosts::inside
 };
 
 double far_enough(const SurfaceNodes& nodes) {
@@ -95,8 +92,9 @@ NodeMeasures measure_nodes(const SeamTask& task) {
   const double extent = far_enough(nodes);
   const std::vector<std::vector<float>> none(dips, std::vector<float>(count, 0));
   NodeMeasures all{std::vector<Vec3>(count), std::vector<double>(count), none, none};
+  std::vector<NearestNode> bare;
+  for (const std::vector<float>& worth : task.worth) bare.push_back(bare_nodes(nodes, worth));
   parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::int32_t> close;
     for (std::size_t i = begin; i < end; ++i) {
       check_cancelled();
       const Target& node = nodes.nodes()[i];
@@ -104,8 +102,8 @@ NodeMeasures measure_nodes(const SeamTask& task) {
       all.exposed[i] = exposure(task.surface, node, nodes.spacing(), extent);
       for (std::size_t k = 0; k < dips; ++k) {
         if (!(task.worth[k][i] > 0)) continue;
-        const double to_border = distance_to(
-            nodes, node, border, close, [&](std::size_t j) { return !(task.worth[k][j] > 0); });
+        const auto out = bare[k].find(node.position, node.normal, border);
+        const double to_border = out.node >= 0 ? std::sqrt(out.squared) : border;
         all.depth_in[k][i] = float(to_border / border);
         all.inside[k][i] = float(std::clamp(to_border / fade_in, 0.05, 1.0));
       }

@@ -52,12 +52,15 @@ HttpRequest request_of(const httplib::Request& from) {
 Peer peer_of(const httplib::Request& from) { return {from.remote_addr, from.remote_port}; }
 
 // Never packed: cpp-httplib packs what it is given whole, the page's script in a second and more.
-void send_bytes(httplib::Response& to, const std::string& type, std::string bytes) {
-  const auto kept = std::make_shared<const std::string>(std::move(bytes));
-  to.set_content_provider(kept->size(), type,
-                          [kept](std::size_t at, std::size_t left, httplib::DataSink& sink) {
-                            return sink.write(kept->data() + at, left);
-                          });
+template <class Bytes>
+void send_bytes(httplib::Response& to, const std::string& type,
+                std::shared_ptr<const Bytes> bytes) {
+  const std::size_t size = bytes->size();
+  to.set_content_provider(
+      size, type,
+      [bytes = std::move(bytes)](std::size_t at, std::size_t left, httplib::DataSink& sink) {
+        return sink.write(reinterpret_cast<const char*>(bytes->data()) + at, left);
+      });
 }
 
 // A provider that ends in failure is the one way to make cpp-httplib close the connection.
@@ -118,15 +121,11 @@ void send(httplib::Response& to, const HttpAnswer& answer, bool and_close) {
   for (const auto& [name, value] : answer.headers) to.set_header(name, value);
   if (and_close) return send_and_close(to, answer.type, answer.body);
   if (answer.bytes && !answer.bytes->empty()) {
-    to.set_content_provider(
-        answer.bytes->size(), answer.type,
-        [bytes = answer.bytes](std::size_t at, std::size_t left, httplib::DataSink& sink) {
-          return sink.write(reinterpret_cast<const char*>(bytes->data()) + at, left);
-        });
+    send_bytes(to, answer.type, answer.bytes);
   } else if (!answer.file.empty()) {
     send_file(to, answer);
   } else if (!answer.body.empty()) {
-    send_bytes(to, answer.type, answer.body);
+    send_bytes(to, answer.type, std::make_shared<const std::string>(answer.body));
   } else if (!answer.stream) {
     to.set_content("", answer.type.c_str());
   }

@@ -158,14 +158,18 @@ TEST(PreviewGlb, FilmLiesJustOutsideTheObjectAndFacesOutward) {
   }
 }
 
-TEST(PreviewGlb, TextureCarriesEachFilmPointsColour) {
-  const Glb glb = write_and_parse(film_under_ball(), gradient_sheet());
+Image texture_of(const Glb& glb) {
   const Json& view =
       glb.json["bufferViews"][glb.json["images"][0]["bufferView"].get<std::size_t>()];
   const auto begin = glb.binary.begin() + view["byteOffset"].get<std::ptrdiff_t>();
-  const Image texture = decode_image(
+  return decode_image(
       std::vector<std::uint8_t>(begin, begin + view["byteLength"].get<std::ptrdiff_t>()),
       "texture");
+}
+
+TEST(PreviewGlb, TextureCarriesEachFilmPointsColour) {
+  const Glb glb = write_and_parse(film_under_ball(), gradient_sheet());
+  const Image texture = texture_of(glb);
   EXPECT_LT(texture.width_px, 80);  // cropped to the film that lies on the ball
   const Json& film = primitive(glb, 1);
   const std::vector<float> positions = floats(glb, film["attributes"]["POSITION"]);
@@ -191,12 +195,7 @@ TEST(PreviewGlb, BlankFilmIsAsTheBareObject) {
   write_preview_glb(folder / "b.glb", ball, surface_of(ball), film_under_ball(), Image(160, 200),
                     80, 100, base);
   const Glb glb = parse(read_file(folder / "b.glb"));
-  const Json& view =
-      glb.json["bufferViews"][glb.json["images"][0]["bufferView"].get<std::size_t>()];
-  const auto begin = glb.binary.begin() + view["byteOffset"].get<std::ptrdiff_t>();
-  const Image texture = decode_image(
-      std::vector<std::uint8_t>(begin, begin + view["byteLength"].get<std::ptrdiff_t>()),
-      "texture");
+  const Image texture = texture_of(glb);
   const std::uint8_t* p = texture.pixel(texture.width_px / 2, texture.height_px / 2);
   EXPECT_EQ(p[0], linear_to_srgb8(base.r));
   EXPECT_EQ(p[1], linear_to_srgb8(base.g));
