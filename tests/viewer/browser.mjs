@@ -29,8 +29,14 @@ export class Browser {
     const { sessionId } = await browser.send('Target.attachToTarget', { targetId, flatten: true });
     browser.session = sessionId;
     for (const domain of ['Page', 'Runtime', 'Log', 'Network']) await browser.send(`${domain}.enable`);
-    await browser.send('Page.addScriptToEvaluateOnNewDocument', { source: `(${roughEdges})()` });
+    await browser.roughen(true);
     return browser;
+  }
+
+  // Whether pages that are opened draw 3D views without smoothed edges.
+  async roughen(on) {
+    if (on) this.rough = (await this.send('Page.addScriptToEvaluateOnNewDocument', { source: `(${roughEdges})()` })).identifier;
+    else await this.send('Page.removeScriptToEvaluateOnNewDocument', { identifier: this.rough });
   }
 
   read(stream) {

@@ -216,6 +216,24 @@ test('side by side, both views turn together', async () => {
   assert.ok(before.equals(await stage()), 'and back to the front');
 });
 
+test('without a graphics card edges are rough while the view moves, and smooth when it rests', async () => {
+  const fineness = '(() => { const c = document.querySelector("#stage"); return Math.round(c.width / c.clientWidth); })()';
+  const turn = (type, right, buttons) =>
+    browser.send('Input.dispatchMouseEvent', { type, x: 200 + right, y: 300, button: 'left', buttons, clickCount: 1 });
+  await browser.roughen(false);
+  await openView(partial);
+  await browser.until(`${fineness} === 2`, 'smooth edges at rest');
+  await turn('mousePressed', 0, 1);
+  for (let moves = 1; (await browser.value(fineness)) !== 1; ++moves) {
+    assert.ok(moves < 2000, 'edges stay smooth while the view turns');
+    await turn('mouseMoved', moves % 90, 1);
+  }
+  await turn('mouseReleased', 0, 0);
+  await browser.until(`${fineness} === 2`, 'smooth edges again');
+  assert.deepEqual(browser.complaints, []);
+  await browser.roughen(true);
+});
+
 test('the sheet and the object point at each other', async () => {
   await openView(partial);
   await view('predicted');

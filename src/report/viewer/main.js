@@ -1,5 +1,6 @@
 // The report page's 3D view. It takes the place of the still picture if everything it needs works.
 import { make } from './dom.js';
+import { drawsOnProcessor } from './edges.js';
 import { legend } from './legend.js';
 import { OVERLAYS } from './overlays.js';
 import { between, fateOf, locate } from './pick.js';
@@ -23,7 +24,7 @@ const PLAY_SECONDS = 8;
 const FOR_CUSTOMER = document.documentElement.dataset.for === 'customer';
 
 class Viewer {
-  constructor(root, scene, canvas, context) {
+  constructor(root, scene, canvas, context, slow) {
     this.root = root;
     this.scene = scene;
     this.canvas = canvas;
@@ -31,7 +32,7 @@ class Viewer {
     this.sheet = new Sheet(scene, (u) => this.pointAtSheet(u));
     this.build();
     root.hidden = false;
-    this.stage = new Stage(canvas, context, scene, () => this.invalidate());
+    this.stage = new Stage(canvas, context, slow, scene, () => this.invalidate());
     this.listen();
     this.layout();
     this.setView('both');
@@ -235,11 +236,12 @@ async function start() {
   const root = document.getElementById('viewer');
   if (!source || !root || typeof DecompressionStream === 'undefined') return;
   const canvas = make('canvas', { id: 'stage', 'aria-label': 'The object in 3D: drag to turn, wheel or pinch to zoom' });
-  const context = canvas.getContext('webgl2', { antialias: true, alpha: true });
+  const slow = drawsOnProcessor();
+  const context = canvas.getContext('webgl2', { antialias: !slow, alpha: true });
   if (!context) return; // the still picture remains
   const scene = await readScene(source.textContent);
   source.remove();
-  new Viewer(root, scene, canvas, context);
+  new Viewer(root, scene, canvas, context, slow);
   document.documentElement.classList.add('live');
 }
 

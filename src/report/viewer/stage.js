@@ -4,6 +4,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
+import { Edges } from './edges.js';
 import { FilmShape } from './film_shape.js';
 import { OVERLAYS } from './overlays.js';
 import { MODE, dress, pictureTexture, sharedTextures, surfaceMaterial } from './surface.js';
@@ -45,11 +46,12 @@ function turned(index, triangles) {
 }
 
 export class Stage {
-  constructor(canvas, context, scene, invalidate) {
+  // `slow`: the context draws on the processor, without smoothed edges.
+  constructor(canvas, context, slow, scene, invalidate) {
     this.scene = scene;
     this.invalidate = invalidate;
-    this.renderer = new THREE.WebGLRenderer({ canvas, context, antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer = new THREE.WebGLRenderer({ canvas, context });
+    this.edges = new Edges(this.renderer, slow, () => this.draw());
     this.renderer.autoClear = false;
     this.shared = sharedTextures(scene);
     this.makeObject();
@@ -377,6 +379,11 @@ export class Stage {
   }
 
   render(overlay) {
+    this.overlay = overlay;
+    this.edges.show();
+  }
+
+  draw() {
     const { width, height } = this.size;
     const { renderer } = this;
     renderer.setScissorTest(false);
@@ -389,7 +396,7 @@ export class Stage {
       renderer.setScissor(x, 0, w, height);
       this.camera.aspect = w / height;
       this.camera.updateProjectionMatrix();
-      this.dressFor(what, overlay);
+      this.dressFor(what, this.overlay);
       renderer.render(this.root, this.camera);
     }
   }

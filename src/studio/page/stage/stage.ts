@@ -2,12 +2,12 @@
 // side that met the film. It draws when something has changed, never waits for the program, and knows
 // nothing of jobs: it is told what to show and tells what was done to it.
 import * as THREE from 'three';
+import { drawsOnProcessor, Edges } from '../../../report/viewer/edges.js';
 import { dress, MODE, sharedTextures, surfaceMaterial } from '../../../report/viewer/surface.js';
 import { castRay } from '../../../report/viewer/pick.js';
 import type { DipFrames, MeshData, Overlay, Result } from '../api.ts';
 import type { Pose, Vec3 } from '../document.ts';
 import { makeBasin, type BathShape, type SheetShape } from './basin.ts';
-import { drawsOnProcessor, Edges } from './edges.ts';
 import { Eyes, HALF, type LookFrom, type View } from './eyes.ts';
 import { FilmPicture, surfaceOf } from './film.ts';
 import { AIR, overlayOf, sceneOf, type Scene } from './overlays.ts';
@@ -645,8 +645,7 @@ export class Stage {
 
   private show(): void {
     if (this.lost) return;
-    this.edges.changed();
-    this.render();
+    this.edges.show();
     this.events.drawn();
   }
 
