@@ -15,9 +15,9 @@
 #include "base/error.h"
 #include "camera/board.h"
 #include "camera/film_pose.h"
-#include "camera/scene.h"
 #include "camera/tank.h"
 #include "loops.h"
+#include "scene.h"
 #include "sheet/film_marks.h"
 
 namespace hydrodip {

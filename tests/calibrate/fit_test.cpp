@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <random>
+
+#include "base/dense_solvers.h"
 
 namespace hydrodip {
 namespace {
@@ -230,7 +232,7 @@ FilmFit straight_fit(const FitPoint& answer, const Eigen::MatrixX3d& jacobian,
 // Residuals at right angles to all that the parameters do, so that the answer is as it is.
 Eigen::VectorXd unexplained(const Eigen::MatrixX3d& jacobian, double size) {
   const Eigen::VectorXd random = Eigen::VectorXd::Random(jacobian.rows());
-  const Eigen::VectorXd left = random - jacobian * jacobian.householderQr().solve(random).eval();
+  const Eigen::VectorXd left = random - jacobian * MinimumNorm(jacobian).solve(random);
   return size * left / left.norm() * std::sqrt(double(left.size()));
 }
 

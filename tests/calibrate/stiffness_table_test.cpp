@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <random>
+
+#include "base/dense_solvers.h"
 
 namespace hydrodip {
 namespace {
@@ -30,7 +32,7 @@ struct Scan {
     fit.free[1] = !ratio_is_given;
     const Eigen::MatrixXd done = fit.jacobian(
         Eigen::all, ratio_is_given ? std::vector<int>{0, 2} : std::vector<int>{0, 1, 2});
-    residual -= done * done.householderQr().solve(residual).eval();
+    residual -= done * MinimumNorm(done).solve(residual);
     fit.residual = residual;
   }
   // How inks' logarithms change with the ratio by the law.
