@@ -21,6 +21,10 @@ Eigen::VectorXd MinimumNorm::solve(const Eigen::VectorXd& right) const {
 
 Eigen::MatrixXd MinimumNorm::pseudo_inverse() const { return factors_->pseudoInverse(); }
 
+Eigen::VectorXd solve_overdetermined(const Eigen::MatrixXd& tall, const Eigen::VectorXd& right) {
+  return Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(tall).solve(right);
+}
+
 Eigen::MatrixXd column_space(const Eigen::MatrixXd& columns, double threshold) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns.rows(), columns.cols());
   qr.setThreshold(threshold);

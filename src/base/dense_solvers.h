@@ -19,6 +19,9 @@ class MinimumNorm {
   std::shared_ptr<const Factors> factors_;
 };
 
+// Least squares of a tall matrix whose columns may depend on each other.
+Eigen::VectorXd solve_overdetermined(const Eigen::MatrixXd& tall, const Eigen::VectorXd& right);
+
 // Orthonormal columns that span the same space but for what is below `threshold` of the largest.
 Eigen::MatrixXd column_space(const Eigen::MatrixXd& columns, double threshold);
 

@@ -1,6 +1,6 @@
 #include "coat/fixed_point.h"
 
-#include <Eigen/QR>
+#include "base/dense_solvers.h"
 
 namespace hydrodip {
 
@@ -14,7 +14,7 @@ Eigen::VectorXd FixedPoint::next(const Eigen::VectorXd& x, const Eigen::VectorXd
       residual_change.col(i) = residual - residuals_[std::size_t(i)];
       image_change.col(i) = g - images_[std::size_t(i)];
     }
-    result -= image_change * residual_change.colPivHouseholderQr().solve(residual);
+    result -= image_change * solve_overdetermined(residual_change, residual);
   }
   images_.push_back(g);
   residuals_.push_back(residual);
