@@ -11,4 +11,10 @@ std::string percent(double share);
 // To about two digits: "under 0.01", "0.24", "2.4", "280".
 std::string plain_number(double value);
 
+// To three digits: "0.65", "282", "126000"; "0" below 0.0001.
+std::string three_digits(double value);
+
+// The number that is written with so many digits, in any locale.
+double rounded_to_digits(double value, int digits);
+
 }  // namespace hydrodip

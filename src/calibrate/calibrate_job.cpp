@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/json_text.h"
 #include "base/output_folder.h"
+#include "base/plain_number.h"
 #include "base/run_scope.h"
 #include "calibrate/calibrate.h"
 #include "calibrate/pictures.h"
@@ -61,9 +62,7 @@ void make_folder(const std::filesystem::path& folder) {
 
 // ---- what is told ----
 
-std::string plain(double value) {
-  return std::isfinite(value) ? fmt::format("{:.3g}", value) : "unbounded";
-}
+std::string plain(double value) { return std::isfinite(value) ? three_digits(value) : "unbounded"; }
 
 std::string interval(double low, double high) {
   return fmt::format("{} to {}", plain(low), plain(high));
@@ -156,7 +155,9 @@ Json json_of(const GridError& error) {
 
 std::string source_of(const std::vector<Subject>& subjects) {
   std::string text = fmt::format("{} scan{}", subjects.size(), subjects.size() == 1 ? "" : "s");
-  return any_synthetic(subjects) ? text + ", of which some were computed, not scanned" : text;
+  if (!any_synthetic(subjects)) return text;
+  return text + (subjects.size() == 1 ? ", which was computed, not scanned"
+                                      : ", of which some were computed, not scanned");
 }
 
 bool swells(const FilmOptions& film) { return film.swelling_x != 1 || film.swelling_y != 1; }
@@ -182,7 +183,7 @@ std::string profile_toml(const Calibration& calibration, const std::vector<Subje
   for (int k = 0; k < 3; ++k) {
     const ParameterText& p = kParameters[k];
     // A ratio is known to a few digits at most.
-    const double value = std::stod(fmt::format("{:.4g}", all.parameters.*p.member));
+    const double value = rounded_to_digits(all.parameters.*p.member, 4);
     text += fmt::format(
         "{} = {}", names[k],
         value == std::floor(value) ? fmt::format("{:.1f}", value) : fmt::format("{}", value));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/plain_number.h"
 #include "render/canvas.h"
 #include "render/color_ramp.h"
 
@@ -112,9 +113,9 @@ void draw_surface(Image& page, int left, int top, const std::array<Axis, 3>& axe
     draw_text(page, label, x0 - 10 - text_width_px(label, text_style(13, kLabelInk)),
               0.5 * (row(j) + row(j + 1)) + 6, text_style(13, kLabelInk));
   }
-  draw_centered(page, across.name + fmt::format(", found {:.3g}", value_of(answer, x)),
+  draw_centered(page, across.name + ", found " + three_digits(value_of(answer, x)),
                 0.5 * (x0 + left + kSurfacePanel), y1 + 60, text_style(16, kTitleInk));
-  draw_text(page, up.name + fmt::format(", found {:.3g}", value_of(answer, y)), left + 4, top - 14,
+  draw_text(page, up.name + ", found " + three_digits(value_of(answer, y)), left + 4, top - 14,
             text_style(16, kTitleInk));
 }
 
@@ -155,7 +156,7 @@ Along along(const Answer& answer, int k) {
 // The film's own figure for a fitted one.
 std::string label_of(int k, double value) {
   if (k != 1) return fmt::format("{:.4g}", value);
-  return value > 0 ? fmt::format("{:.3g}", 1 / (value * value)) : "no end";
+  return value > 0 ? three_digits(1 / (value * value)) : "no end";
 }
 
 void draw_region(Image& page, int left, int top, const Answer& answer, int x, int y) {
