@@ -30,4 +30,30 @@ inline std::vector<std::string_view> split(std::string_view text, char separator
   return parts;
 }
 
+// Takes the next blank-separated word off the front; empty at the end.
+inline std::string_view take_word(std::string_view& rest) {
+  std::size_t begin = 0;
+  while (begin < rest.size() && is_blank(rest[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < rest.size() && !is_blank(rest[end])) ++end;
+  const std::string_view word = rest.substr(begin, end - begin);
+  rest.remove_prefix(end);
+  return word;
+}
+
+// Takes the next line off the front, without its line end: LF, CR LF, or CR alone.
+inline std::string_view take_line(std::string_view& rest) {
+  const std::size_t end = rest.find_first_of("\n\r");
+  const std::string_view line = rest.substr(0, end);
+  const bool both = rest.substr(line.size(), 2) == "\r\n";
+  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + (both ? 2 : 1));
+  return line;
+}
+
+// Without the byte order mark that some editors put before UTF-8.
+inline std::string_view without_bom(std::string_view text) {
+  if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
+  return text;
+}
+
 }  // namespace hydrodip

@@ -126,11 +126,15 @@ void require_spread(const std::vector<Place>& places) {
   Mat2 spread = Mat2::Zero();
   for (const Place& p : places)
     spread += (p.at - mean) * (p.at - mean).transpose() / double(places.size());
-  if (places.size() < kLeastSamples || !(spread.determinant() > 1))
+  if (places.size() < kLeastSamples)
     throw InputError(fmt::format(
-        "the scans show {} places of the film that can be used: at least {}, not along one line, "
-        "are needed",
-        places.size(), kLeastSamples));
+        "the scans show {} of the film that can be used: at least {} are needed",
+        places.size() == 1 ? "one place" : fmt::format("{} places", places.size()), kLeastSamples));
+  if (!(spread.determinant() > 1))
+    throw InputError(fmt::format(
+        "the {} places of the film that can be used lie along one line, or all within some "
+        "millimetres: they have to be spread over the film; check that they are in mm",
+        places.size()));
 }
 
 }  // namespace

@@ -1,17 +1,23 @@
 #include "register/place_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
-#include <sstream>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
-#include "base/parse_double.h"
 #include "base/run_scope.h"
+#include "base/small_file.h"
+#include "base/table_rows.h"
+#include "base/unicode.h"
+#include "model_io/model_file.h"
+#include "model_io/text.h"
 
 namespace hydrodip {
 namespace {
@@ -20,13 +26,10 @@ constexpr const char* kHeader = "film_x_mm,film_y_mm,x,y,z";
 constexpr double kFarthest_mm = 1e5;
 constexpr std::size_t kLongestHeader = 1000;
 constexpr std::size_t kMostRows = 1000000;
+constexpr std::uintmax_t kLargestFile = 256 << 20;
 
-std::string line_of(std::istream& file, bool& any) {
-  std::string line;
-  any = bool(std::getline(file, line));
-  if (line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
-  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-  return line;
+bool is_header(const std::vector<std::string>& cells) {
+  return fmt::format("{}", fmt::join(cells, ",")) == kHeader;
 }
 
 }  // namespace
@@ -34,40 +37,37 @@ std::string line_of(std::istream& file, bool& any) {
 bool is_place_table(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return false;
-  std::ifstream in(file);
+  std::ifstream in(file, std::ios::binary);
   // No line of another kind of file is read to an end that may be far.
-  std::string start(kLongestHeader, '\0');
-  in.read(start.data(), std::streamsize(start.size()));
+  std::vector<std::uint8_t> start(kLongestHeader);
+  in.read(reinterpret_cast<char*>(start.data()), std::streamsize(start.size()));
   start.resize(std::size_t(std::max<std::streamsize>(in.gcount(), 0)));
-  std::istringstream lines(start);
-  bool any = false;
-  return line_of(lines, any) == kHeader;
+  start = in_utf8(std::move(start));
+  TableRows rows(text_of(start));
+  // One of its columns tells it from a table of corners, also where others are misspelt.
+  return rows.next() && std::ranges::any_of(rows.cells(), [](const std::string& cell) {
+           return cell.starts_with("film_");
+         });
 }
 
 std::vector<PlaceRow> read_place_table(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  bool any = false;
-  line_of(in, any);
+  const std::vector<std::uint8_t> bytes =
+      in_utf8(read_small_file(file, kLargestFile, "a table of places"));
+  TableRows table(text_of(bytes));
+  if (!table.next() || !is_header(table.cells()))
+    throw InputError(
+        fmt::format("{}: a table of places begins with the line {}", file.string(), kHeader));
   std::vector<PlaceRow> rows;
-  for (int number = 2;; ++number) {
-    const std::string line = line_of(in, any);
-    if (!any) break;
+  while (table.next()) {
     check_cancelled();
-    if (line.empty()) continue;
+    const std::vector<std::string>& cells = table.cells();
     std::array<double, 5> value{};
-    std::size_t begin = 0, count = 0;
-    while (begin <= line.size() && count < value.size()) {
-      const std::size_t end = std::min(line.find(',', begin), line.size());
-      const auto [rest, error] = parse_double(line.data() + begin, line.data() + end, value[count]);
-      if (error != std::errc() || rest != line.data() + end ||
-          !(std::abs(value[count]) <= kFarthest_mm))
-        break;
-      ++count;
-      begin = end + 1;
-    }
-    if (count != value.size() || begin <= line.size())
+    bool good = cells.size() == value.size();
+    for (std::size_t k = 0; good && k < value.size(); ++k)
+      good = parse_number(cells[k], value[k]) && std::abs(value[k]) <= kFarthest_mm;
+    if (!good)
       throw InputError(
-          fmt::format("{}:{}: needs five numbers: {}", file.string(), number, kHeader));
+          fmt::format("{}:{}: needs five numbers: {}", file.string(), table.line(), kHeader));
     if (rows.size() == kMostRows)
       throw InputError(fmt::format("{}: has more than {} places; measured places are fewer",
                                    file.string(), kMostRows));

@@ -13,10 +13,11 @@ struct PlaceRow {
   Vec3 position = Vec3::Zero();  // posed-object frame, mm
 };
 
-// Whether the file begins with the header below.
+// Whether the file's first line has columns like those of the header below.
 bool is_place_table(const std::filesystem::path& file);
 
-// CSV: "film_x_mm,film_y_mm,x,y,z", then a line per place. Throws InputError naming file and line.
+// A table (TableRows): "film_x_mm,film_y_mm,x,y,z", then a line per place. Throws InputError naming
+// file and line.
 std::vector<PlaceRow> read_place_table(const std::filesystem::path& file);
 
 }  // namespace hydrodip

@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/small_file.h"
+#include "base/table_rows.h"
 #include "base/unicode.h"
 #include "model_io/load.h"
 #include "model_io/text.h"
@@ -101,54 +105,31 @@ CornerGrid read_colours(const std::filesystem::path& file, double square_mm,
 
 // ---- tables ----
 
-// Blank-separated, whatever separated them. Where commas are decimal ones, as in German, semicolons
-// or tabs separate.
-std::string with_blanks(std::string_view line) {
-  const bool commas_are_decimal = line.find_first_of(";\t") != std::string_view::npos;
-  const auto is_digit = [&](std::size_t at) {
-    return at < line.size() && line[at] >= '0' && line[at] <= '9';
-  };
-  std::string text(line);
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == ',')
-      text[i] = commas_are_decimal && is_digit(i - 1) && is_digit(i + 1) ? '.' : ' ';
-    else if (line[i] == ';' || line[i] == '"')
-      text[i] = ' ';
-  }
-  return text;
-}
-
-bool is_heading(std::string_view line) {
-  return std::any_of(line.begin(), line.end(), [](char c) {
-    return (c >= 'a' && c <= 'z' && c != 'e') || (c >= 'A' && c <= 'Z' && c != 'E');
+bool is_heading(const std::vector<std::string>& cells) {
+  return std::ranges::any_of(cells, [](const std::string& cell) {
+    return std::ranges::any_of(cell, [](char c) {
+      return (c >= 'a' && c <= 'z' && c != 'e') || (c >= 'A' && c <= 'Z' && c != 'E');
+    });
   });
 }
 
 bool in_range(std::int64_t place) { return place > -100000 && place < 100000; }
 
-CornerGrid read_table(const std::filesystem::path& file, std::string_view rest) {
-  rest = without_bom(rest);
+CornerGrid read_table(const std::filesystem::path& file, std::string_view text) {
   CornerGrid grid;
   std::map<GridPlace, std::size_t> line_of;
-  std::size_t number = 0;
   bool heading_allowed = true;
-  while (!rest.empty()) {
-    std::string line = with_blanks(take_line(rest));
-    ++number;
-    std::string_view words = line;
-    std::string_view probe = words;
-    const std::string_view first = take_word(probe);
-    if (first.empty() || first.front() == '#') continue;
-    if (heading_allowed && is_heading(line)) {
-      heading_allowed = false;
-      continue;
-    }
-    heading_allowed = false;
+  for (TableRows rows(text); rows.next();) {
+    const std::vector<std::string>& cells = rows.cells();
+    const std::size_t number = rows.line();
+    const bool heading = std::exchange(heading_allowed, false) && is_heading(cells);
+    if (heading) continue;
     std::int64_t column = 0, row = 0;
     Vec3 p;
-    bool good = parse_integer(take_word(words), column) && parse_integer(take_word(words), row);
-    for (int k = 0; k < 3; ++k) good = good && parse_number(take_word(words), p[k]);
-    good = good && take_word(words).empty() && in_range(column) && in_range(row);
+    bool good =
+        cells.size() == 5 && parse_integer(cells[0], column) && parse_integer(cells[1], row);
+    for (std::size_t k = 0; k < 3; ++k) good = good && parse_number(cells[2 + k], p[int(k)]);
+    good = good && in_range(column) && in_range(row);
     if (!good)
       throw InputError(fmt::format(
           "{}, line {}: a corner is given as column,row,x,y,z: two whole numbers and three lengths",

@@ -1,6 +1,7 @@
 #include "settings/path_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -9,7 +10,11 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/parse_double.h"
+#include "base/small_file.h"
+#include "base/table_rows.h"
 #include "base/text.h"
+#include "base/unicode.h"
+#include "model_io/model_file.h"
 
 namespace hydrodip {
 namespace {
@@ -17,7 +22,7 @@ namespace {
 constexpr std::string_view kHeader =
     "lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_z_deg";
 constexpr std::size_t kMostKeyframes = 10000;
-constexpr std::size_t kLargestFile = 1 << 21;
+constexpr std::uintmax_t kLargestFile = 1 << 21;
 constexpr double kFurthest_mm = 5000, kMostTurn_deg = 3600;
 
 std::vector<std::string_view> trimmed_parts(std::string_view text, char at) {
@@ -35,7 +40,8 @@ double number(std::string_view text, const std::string& origin) {
   return value;
 }
 
-Keyframe keyframe_of(const std::vector<std::string_view>& cells, const std::string& origin) {
+template <class Text>
+Keyframe keyframe_of(const std::vector<Text>& cells, const std::string& origin) {
   if (cells.size() != 6)
     throw InputError(fmt::format("{}: a keyframe has 6 numbers, not {}", origin, cells.size()));
   std::array<double, 6> v{};
@@ -43,14 +49,16 @@ Keyframe keyframe_of(const std::vector<std::string_view>& cells, const std::stri
   return {v[0], v[1], v[2], v[3], v[4], v[5]};
 }
 
+bool is_header(const std::vector<std::string>& cells) {
+  return fmt::format("{}", fmt::join(cells, ",")) == kHeader;
+}
+
 }  // namespace
 
 bool is_path_file(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file(file);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  for (const std::string_view line : split(text, '\n'))
-    if (!line.empty() && line[0] != '#') return line == kHeader;
-  return false;
+  const std::vector<std::uint8_t> bytes = in_utf8(read_file(file));
+  TableRows rows(text_of(bytes));
+  return rows.next() && is_header(rows.cells());
 }
 
 std::vector<Keyframe> path_of_rows(const std::string& text, const std::string& origin) {
@@ -92,29 +100,15 @@ void check_path(const std::vector<Keyframe>& keyframes, const std::string& origi
 }
 
 std::vector<Keyframe> read_path(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file(file);
-  if (bytes.size() > kLargestFile)
-    throw InputError(fmt::format("{}: too large for a path", file.string()));
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const std::vector<std::uint8_t> bytes = in_utf8(read_small_file(file, kLargestFile, "a path"));
+  TableRows rows(text_of(bytes));
+  const auto origin = [&] { return fmt::format("{}:{}", file.string(), rows.line()); };
+  const bool any = rows.next();
+  if (!any || !is_header(rows.cells()))
+    throw InputError(
+        fmt::format("{}: a path begins with the line {}", any ? origin() : file.string(), kHeader));
   std::vector<Keyframe> keyframes;
-  bool header = false;
-  int line_number = 0;
-  for (const std::string_view line : trimmed_parts(text, '\n')) {
-    ++line_number;
-    if (line.empty() || line[0] == '#') continue;
-    const std::string origin = fmt::format("{}:{}", file.string(), line_number);
-    const std::vector<std::string_view> cells = trimmed_parts(line, ',');
-    if (!header) {
-      if (cells != split(kHeader, ','))
-        throw InputError(fmt::format("{}: a path begins with the line {}", origin, kHeader));
-      header = true;
-      continue;
-    }
-    keyframes.push_back(keyframe_of(cells, origin));
-  }
-  if (!header)
-    throw InputError(fmt::format("{}: a path begins with the line {}", file.string(), kHeader));
+  while (rows.next()) keyframes.push_back(keyframe_of(rows.cells(), origin()));
   check_path(keyframes, file.string());
   return keyframes;
 }

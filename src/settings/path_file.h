@@ -9,9 +9,9 @@
 
 namespace hydrodip {
 
-// Reads CSV with the header lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_z_deg and one
-// keyframe a row; empty lines and lines that begin with # are left out. Throws InputError with file
-// and line.
+// Reads a table (TableRows) with the header
+// lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_z_deg and one keyframe a row. Throws
+// InputError with file and line.
 std::vector<Keyframe> read_path(const std::filesystem::path& file);
 
 // Whether a file begins as one of those does; no configuration does.

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "contains.h"
 #include "loop.h"
 #include "refusal.h"
 #include "register/displacement_fit.h"
@@ -82,11 +83,15 @@ TEST(DisplacementFit, ForetellsASampleAsWellAsItsNoiseAllows) {
 
 TEST(DisplacementFit, RefusesWhatTellsNoField) {
   const auto still = [](const Vec2&) -> Vec2 { return {0, 0}; };
-  EXPECT_THROW(fit_displacements({}, {Vec2(-9, -9), Vec2(9, 9)}), InputError);
-  EXPECT_THROW(fit_displacements(scattered(still, 8, 0), {Vec2(-9, -9), Vec2(9, 9)}), InputError);
+  const auto why = [](const std::vector<CorrectionSample>& samples) {
+    return refusal([&] { fit_displacements(samples, {Vec2(-9, -9), Vec2(9, 9)}); });
+  };
+  EXPECT_TRUE(contains(why({}), "0 places of the film that can be used: at least"));
+  EXPECT_TRUE(contains(why(scattered(still, 8, 0)), "8 places of the film that can be used: at"));
+  // Enough of them, but not where they tell anything.
   std::vector<CorrectionSample> line;
   for (int i = 0; i < 40; ++i) line.push_back({Vec2(i, 2 * i), Vec2(0.1, 0)});
-  EXPECT_THROW(fit_displacements(line, {Vec2(-9, -9), Vec2(9, 9)}), InputError);
+  EXPECT_TRUE(contains(why(line), "have to be spread over the film"));
 }
 
 TEST(ClosedLoop, TheSecondPrintIsRightWhateverTheFilmModelMisses) {
@@ -236,6 +241,29 @@ TEST_F(RegisterFiles, PlacesAreReadFromATable) {
                  InputError)
         << bad;
   EXPECT_FALSE(is_place_table(written("column,row,x,y,z\n")));
+}
+
+TEST_F(RegisterFiles, PlacesAreReadAsSpreadsheetsSaveThem) {
+  for (const char* text :
+       {"film_x_mm;film_y_mm;x;y;z\r\n1,5;-2;3,5;-4;5\r\n",
+        "\xef\xbb\xbf"
+        "film_x_mm\tfilm_y_mm\tx\ty\tz\r\n1,5\t-2\t3,5\t-4\t5\r\n",
+        "# measured by "
+        "hand\n\"film_x_mm\",\"film_y_mm\",\"x\",\"y\",\"z\"\n\"1.5\",\"-2\",\"3.5\",-4,5\n",
+        "film_x_mm, film_y_mm, x, y, z\n1.5, -2, 3.5, -4, 5"}) {
+    const auto file = written(text);
+    ASSERT_TRUE(is_place_table(file)) << text;
+    const auto rows = read_place_table(file);
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_EQ(rows[0].on_sheet, Vec2(1.5, -2));
+    EXPECT_EQ(rows[0].position, Vec3(3.5, -4, 5));
+  }
+  // Columns in another order are no table of corners either.
+  const auto swapped = written("film_y_mm,film_x_mm,x,y,z\n1,2,3,4,5\n");
+  ASSERT_TRUE(is_place_table(swapped));
+  EXPECT_EQ(
+      refusal([&] { read_place_table(swapped); }),
+      swapped.string() + ": a table of places begins with the line film_x_mm,film_y_mm,x,y,z");
 }
 
 }  // namespace
