@@ -12,6 +12,7 @@
 #include "base/parse_double.h"
 #include "base/text.h"
 #include "settings/hex_color.h"
+#include "settings/refuse_value.h"
 #include "settings/table_key.h"
 
 namespace hydrodip {
@@ -285,9 +286,7 @@ bool apply_artwork_setting(JobConfig& config, const Setting& setting) {
   const Key& key = find_key(key_of(setting.name), setting);
   ArtworkLayer& layer =
       is_option ? topmost(layers, setting) : numbered(layers, at->number, setting);
-  if (!key.set(layer, setting))
-    throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, told_name(setting),
-                                 key.key.range, setting.shown.empty() ? "empty" : setting.shown));
+  if (!key.set(layer, setting)) refuse_value(setting, key.key.range);
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "settings/refuse_value.h"
 #include "settings/table_key.h"
 
 namespace hydrodip {
@@ -24,8 +25,7 @@ JobConfig checked_as(const std::string& parameter, const Setting& setting) {
 bool checked_flag(const Setting& setting) {
   const auto* text = std::get_if<std::string>(&setting.value);
   if (text && (*text == "true" || *text == "false")) return *text == "true";
-  throw InputError(fmt::format("{}: {} must be true or false, not {}", setting.origin,
-                               told_name(setting), setting.shown));
+  refuse_value(setting, "true or false");
 }
 
 }  // namespace

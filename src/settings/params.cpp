@@ -18,6 +18,7 @@
 #include "settings/hex_color.h"
 #include "settings/part_tables.h"
 #include "settings/path_file.h"
+#include "settings/refuse_value.h"
 #include "settings/table_key.h"
 
 namespace hydrodip {
@@ -84,8 +85,7 @@ std::string expectation(const Parameter& p) {
 }
 
 [[noreturn]] void refuse(const Parameter& p, const Setting& setting) {
-  throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, told_name(setting),
-                               expectation(p), setting.shown.empty() ? "empty" : setting.shown));
+  refuse_value(setting, expectation(p));
 }
 
 bool in_range(const Parameter& p, double value) {

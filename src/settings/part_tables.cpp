@@ -8,17 +8,13 @@
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "base/parse_double.h"
+#include "settings/refuse_value.h"
 #include "settings/table_key.h"
 
 namespace hydrodip {
 namespace {
 
 constexpr int kMostCopies = 100;
-
-[[noreturn]] void refuse(const Setting& setting, const std::string& expected) {
-  throw InputError(fmt::format("{}: {} must be {}, not {}", setting.origin, told_name(setting),
-                               expected, setting.shown.empty() ? "empty" : setting.shown));
-}
 
 PartEntry& numbered(JobConfig& config, std::size_t number, const Setting& setting) {
   if (number > std::min(config.parts.size() + 1, kMostParts))
@@ -34,7 +30,7 @@ int count_of(const Setting& setting) {
   if (const auto* text = std::get_if<std::string>(&setting.value); text && !setting.typed)
     parse_double(text->data(), text->data() + text->size(), value);
   if (!(value >= 1 && value <= kMostCopies && value == std::floor(value)))
-    refuse(setting, fmt::format("a whole number from 1 to {}", kMostCopies));
+    refuse_value(setting, fmt::format("a whole number from 1 to {}", kMostCopies));
   return int(value);
 }
 
@@ -47,7 +43,7 @@ bool apply_part_setting(JobConfig& config, const Setting& setting) {
   if (at->key == "job") {
     const auto* text = std::get_if<std::string>(&setting.value);
     if (!text || text->empty() || text->find('\0') != std::string::npos)
-      refuse(setting, "a file name, of a model or a job");
+      refuse_value(setting, "a file name, of a model or a job");
     part.job = *text;
   } else if (at->key == "count") {
     part.count = count_of(setting);

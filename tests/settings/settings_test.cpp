@@ -160,6 +160,19 @@ TEST_F(Settings, TablesAreNumbered) {
   EXPECT_EQ(set_error("dip[1].down=+z"), "accepted");
 }
 
+// "must be a number from 0 to 500, not '12'" tells nobody what is wrong.
+TEST_F(Settings, AQuotedNumberIsToldToBeText) {
+  const std::string told = "which is text: leave out its quotation marks";
+  EXPECT_TRUE(contains(toml_error("film.margin_mm = '12'"), told));
+  EXPECT_TRUE(contains(toml_error("film.elements = '4000'"), told));
+  EXPECT_TRUE(contains(toml_error("[[part]]\njob = 'a.stl'\ncount = '2'\n"), told));
+  EXPECT_TRUE(contains(toml_error("[[artwork]]\nimage = 'a.png'\nopacity = '0.5'\n"), told));
+  EXPECT_TRUE(contains(toml_error("[[dip]]\ndepth_mm = '5'\n"), told));
+  for (const char* other : {"film.margin_mm = 'wide'", "film.margin_mm = 999999.0",
+                            "film.shape = '3'", "film.margin_mm = '12 mm'"})
+    EXPECT_FALSE(contains(toml_error(other), told)) << other;
+}
+
 TEST_F(Settings, WhatIsOnOrOffMayBeTrueOrFalse) {
   const JobConfig config = from_toml(
       "[preview]\npictures = false\n[plan]\nsuggest = true\n[output]\nno_clobber = true\n"
@@ -388,6 +401,39 @@ TEST_F(Settings, PathsInAFileAreRelativeToIt) {
   EXPECT_EQ(config.object.load.texture, folder_ / "skin.png");
   EXPECT_EQ(from_toml("object.texture = '/abs/skin.png'").object.load.texture, "/abs/skin.png");
   EXPECT_TRUE(from_toml("object.texture = ''").object.load.texture.empty());
+}
+
+// Excel's, in German and as Unicode text; quoted; by hand.
+TEST_F(Settings, PathsAreReadAsSpreadsheetsSaveThem) {
+  const std::string plain =
+      "lower_mm,shift_x_mm,shift_y_mm,turn_x_deg,turn_y_deg,turn_z_deg\n"
+      "0,0,0,0,0,0\n15,2.5,-0.5,0,1e1,0\n";
+  const auto with = [&](char separator, char point, const std::string& line_end) {
+    std::string text;
+    for (const char c : plain)
+      text += c == ','    ? std::string(1, separator)
+              : c == '.'  ? std::string(1, point)
+              : c == '\n' ? line_end
+                          : std::string(1, c);
+    return text;
+  };
+  const auto in_utf16 = [](const std::string& text) {
+    std::string wide = "\xff\xfe";
+    for (const char c : text) wide += {c, '\0'};
+    return wide;
+  };
+  const auto expected = read_path(file(plain, "plain.csv"));
+  ASSERT_EQ(expected.size(), 2U);
+  EXPECT_EQ(expected[1].shift_x_mm, 2.5);
+  EXPECT_EQ(expected[1].shift_y_mm, -0.5);
+  for (const std::string& text :
+       {with(';', ',', "\r\n"), "\xef\xbb\xbf" + with(',', '.', "\r\n"),
+        in_utf16(with('\t', ',', "\r\n")), with(' ', '.', "\n"),
+        "\"lower_mm\",\"shift_x_mm\"" + plain.substr(plain.find(",shift_y_mm"))}) {
+    const auto saved = file(text, "saved.csv");
+    EXPECT_TRUE(is_path_file(saved)) << text;
+    EXPECT_EQ(rows_of(read_path(saved)), rows_of(expected)) << text;
+  }
 }
 
 // A report names every file that a job was made from; of a path none but the rows is left.
