@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/json_text.h"
 #include "base/output_folder.h"
+#include "base/run_scope.h"
 #include "base/shell_word.h"
 #include "sweep/scripts.h"
 #include "sweep/sweep_manifest.h"
@@ -67,14 +68,20 @@ std::string two_digits(double value) {
 // The first run. Returns what was wrong, if it was not done.
 std::string run_trial(const SweepPlanRequest& request, const SweepPlan& plan,
                       const RunContext& context) {
+  const auto leave_nothing = [&] {
+    std::error_code ignored;
+    for (const char* part : {"claims", "runs", "work"})
+      fs::remove(request.folder / part, ignored);  // empty
+  };
   try {
     const SweepWork first{{}, plan.runs.front().id, false, request.version};
     return run_sweep(request.folder, plan, first, context).what_changed;
   } catch (const Cancelled&) {
-    std::error_code ignored;
-    for (const char* part : {"claims", "runs", "work"})
-      fs::remove(request.folder / part, ignored);  // empty
+    leave_nothing();
     throw Cancelled("cancelled; the sweep was not planned");
+  } catch (const NoRoomForResults& why) {
+    leave_nothing();
+    throw InputError(fmt::format("{} The sweep was not planned", why.what()));
   }
 }
 
@@ -157,7 +164,16 @@ JobResult sweep_plan_job(const SweepPlanRequest& request, const RunContext& cont
 
 JobResult sweep_run_job(const fs::path& folder, const SweepWork& work, const RunContext& context) {
   const SweepPlan plan = read_manifest(folder);
-  const SweepDone done = run_sweep(folder, plan, work, context);
+  const SweepDone done = [&] {
+    try {
+      return run_sweep(folder, plan, work, context);
+    } catch (const NoRoomForResults& why) {
+      throw InputError(
+          fmt::format("{} The runs that are done are kept; free space, and 'hydrodip sweep run {}' "
+                      "does the rest",
+                      why.what(), shell_word(folder.string())));
+    }
+  }();
   if (done.changed > 0)
     throw InputError(fmt::format("{} ({}: {} done, {} failed, {} not done for that)",
                                  done.what_changed, folder.string(), done.done + done.before,
@@ -165,9 +181,10 @@ JobResult sweep_run_job(const fs::path& folder, const SweepWork& work, const Run
   JobResult result;
   result.folder = folder;
   result.text = fmt::format("{} done, {} failed", done.done, done.failed);
-  if (done.before > 0) result.text += fmt::format(", {} were done before", done.before);
+  const auto were = [](int runs) { return fmt::format("{} {}", runs, runs == 1 ? "was" : "were"); };
+  if (done.before > 0) result.text += fmt::format(", {} done before", were(done.before));
   if (done.elsewhere > 0)
-    result.text += fmt::format(", {} were taken by another 'sweep run'", done.elsewhere);
+    result.text += fmt::format(", {} taken by another 'sweep run'", were(done.elsewhere));
   if (!done.by_others.empty())
     result.text += fmt::format(
         "\nother versions did some of those before: {}; this is hydrodip {}, and --again does them "
@@ -184,6 +201,7 @@ JobResult sweep_run_job(const fs::path& folder, const SweepWork& work, const Run
 }
 
 JobResult sweep_collect_job(const fs::path& folder, const RunContext& context) {
+  const RunScope scope(context);
   const SweepPlan plan = read_manifest(folder);
   OutputFolder output(folder);
   const SweepTable table = make_table(folder, plan);

@@ -164,7 +164,7 @@ bool is_out_of_space(const std::string& sentence) {
 }
 
 // Whether it went well. What is wrong with a run is its outcome; Cancelled leaves, and what
-// is not the run's fault: ChangedInput, and InputError if there is no room for results.
+// is not the run's fault: ChangedInput and NoRoomForResults.
 bool do_run(const SweepPlan& plan, const SweepRun& run, const fs::path& folder,
             const std::string& version, const RunContext& context) {
   const auto start = std::chrono::steady_clock::now();
@@ -176,10 +176,7 @@ bool do_run(const SweepPlan& plan, const SweepRun& run, const fs::path& folder,
   } catch (const ChangedInput&) {
     throw;
   } catch (const InputError& error) {
-    if (is_out_of_space(error.what()))
-      throw InputError(fmt::format(
-          "{} The runs that are done are kept; free space, and 'hydrodip sweep run' does the rest",
-          error.what()));
+    if (is_out_of_space(error.what())) throw NoRoomForResults(error.what());
     outcome.error = error.what();
     exit_code = 2;
   } catch (const DipError& error) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/context.h"
+#include "base/error.h"
 #include "base/shard.h"
 #include "sweep/sweep_plan.h"
 
@@ -23,6 +24,12 @@ struct SweepOutcome {
 // Nothing, too, if the file is damaged or another run's: the run has to be done again.
 std::optional<SweepOutcome> read_outcome(const std::filesystem::path& folder,
                                          const std::string& id);
+
+// The disk is full, which is no run's fault.
+class NoRoomForResults : public InputError {
+ public:
+  using InputError::InputError;
+};
 
 struct SweepWork {
   Shard shard;
@@ -48,7 +55,7 @@ std::string told_versions(const std::map<std::string, int>& runs_by_version);
 // Does the runs that have no outcome yet, each on one thread, side by side on the context's. No run
 // is done twice, whoever else is at it: a lock on FOLDER/claims/ID tells, and goes with its
 // process. Where the file system has no locks a warning says so. Throws InputError if the folder
-// cannot be written to or its disk is full, Cancelled.
+// cannot be written to, NoRoomForResults, Cancelled.
 SweepDone run_sweep(const std::filesystem::path& folder, const SweepPlan& plan,
                     const SweepWork& work, const RunContext& context);
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.h"
+#include "base/parallel.h"
 #include "sweep/sweep_run.h"
 
 namespace hydrodip {
@@ -18,14 +19,18 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kParts[] = {"coverage", "stretch", "wrinkled_mm2", "lifted_mm2",       "air",
                                   "figures",  "ink",     "seconds",      "peak_memory_bytes"};
 
-void flatten(const Json& value, const std::string& name, std::map<std::string, double>& figures,
-             std::vector<std::string>& order) {
+struct RunFigures {
+  std::map<std::string, double> value;
+  std::vector<std::string> order;  // as the report has them
+};
+
+void flatten(const Json& value, const std::string& name, RunFigures& figures) {
   if (value.is_object()) {
     for (const auto& [key, inner] : value.items())
-      flatten(inner, fmt::format("{}.{}", name, key), figures, order);
+      flatten(inner, fmt::format("{}.{}", name, key), figures);
   } else if (value.is_number() || value.is_boolean()) {
-    figures[name] = value.is_boolean() ? double(value.get<bool>()) : value.get<double>();
-    order.push_back(name);
+    figures.value[name] = value.is_boolean() ? double(value.get<bool>()) : value.get<double>();
+    figures.order.push_back(name);
   }
 }
 
@@ -48,39 +53,45 @@ std::string csv_cell(const std::string& text) {
   return quoted + "\"";
 }
 
+// All but its figures, which come behind the names that all runs together have.
+SweepRow row_of(const std::filesystem::path& folder, const SweepRun& run, RunFigures& figures) {
+  SweepRow row;
+  row.run = &run;
+  const auto outcome = read_outcome(folder, run.id);
+  if (!outcome) return row;
+  row.state = outcome->error.empty() ? RunState::kDone : RunState::kFailed;
+  row.error = outcome->error;
+  row.version = outcome->version;
+  if (row.state == RunState::kFailed) return row;
+  const Json report = Json::parse(outcome->report);
+  if (report.contains("concern") && report["concern"].is_string())
+    row.verdict = report["concern"].get<std::string>();
+  for (const char* part : kParts)
+    if (report.contains(part)) flatten(report[part], part, figures);
+  if (report.contains("poses") && !report["poses"].empty())
+    flatten(report["poses"].front(), "best", figures);
+  return row;
+}
+
 }  // namespace
 
 SweepTable make_table(const std::filesystem::path& folder, const SweepPlan& plan) {
   SweepTable table;
-  std::vector<std::map<std::string, double>> figures(plan.runs.size());
-  for (std::size_t i = 0; i < plan.runs.size(); ++i) {
-    SweepRow row;
-    row.run = &plan.runs[i];
-    if (const auto outcome = read_outcome(folder, row.run->id)) {
-      row.state = outcome->error.empty() ? RunState::kDone : RunState::kFailed;
-      row.error = outcome->error;
-      row.version = outcome->version;
-      if (row.state == RunState::kDone) {
-        const Json report = Json::parse(outcome->report);
-        if (report.contains("concern") && report["concern"].is_string())
-          row.verdict = report["concern"].get<std::string>();
-        std::vector<std::string> order;
-        for (const char* part : kParts)
-          if (report.contains(part)) flatten(report[part], part, figures[i], order);
-        if (report.contains("poses") && !report["poses"].empty())
-          flatten(report["poses"].front(), "best", figures[i], order);
-        for (const std::string& name : order)
-          if (std::ranges::find(table.figure_names, name) == table.figure_names.end())
-            table.figure_names.push_back(name);
-      }
-    }
-    table.rows.push_back(std::move(row));
-  }
+  table.rows.resize(plan.runs.size());
+  std::vector<RunFigures> figures(plan.runs.size());
+  parallel_for(plan.runs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      table.rows[i] = row_of(folder, plan.runs[i], figures[i]);
+  });
+  for (const RunFigures& run : figures)
+    for (const std::string& name : run.order)
+      if (std::ranges::find(table.figure_names, name) == table.figure_names.end())
+        table.figure_names.push_back(name);
   for (std::size_t i = 0; i < table.rows.size(); ++i)
     for (const std::string& name : table.figure_names) {
-      const auto found = figures[i].find(name);
-      table.rows[i].figures.push_back(found == figures[i].end() ? std::nullopt
-                                                                : std::optional(found->second));
+      const auto found = figures[i].value.find(name);
+      table.rows[i].figures.push_back(
+          found == figures[i].value.end() ? std::nullopt : std::optional(found->second));
     }
   return table;
 }

@@ -26,7 +26,8 @@ struct SweepTable {
   std::vector<SweepRow> rows;             // as the plan has its runs
 };
 
-// Of the numbers in each run's report.json. The plan has to outlive the table.
+// Of the numbers in each run's report.json, read on the job's threads. The plan has to outlive the
+// table. Throws Cancelled.
 SweepTable make_table(const std::filesystem::path& folder, const SweepPlan& plan);
 
 // One line a run: id, state, model, the varied values, verdict, figures, version, error.

@@ -120,12 +120,18 @@ if unshare -rm true 2> /dev/null; then
     "$hydrodip" sweep run disk/s --quiet > said.txt 2>&1
     echo $? > code.txt
     ls disk/s/runs | wc -l > runs.txt
+    "$hydrodip" sweep plan sweep.toml -o disk/t > planned.txt 2>&1
+    echo $? >> planned.txt
+    ls disk >> planned.txt
     rm disk/full
     mount -o remount,size=64m disk
     "$hydrodip" sweep run disk/s --quiet > rest.txt 2>&1'
   [ "$(cat code.txt)" -eq 2 ] || fail "a full disk: exit code $(cat code.txt): $(cat said.txt)"
   grep -q 'No space left.*kept' said.txt || fail "a full disk: $(cat said.txt)"
   grep -q '0 failed' rest.txt || fail "after a full disk: $(cat rest.txt)"
+  # What is not planned cannot be run.
+  [ "$(grep -c -x -e 2 -e full -e s planned.txt)" -eq 3 ] && grep -q 'not planned' planned.txt &&
+    ! grep -q -e '^t$' -e 'sweep run' planned.txt || fail "planned on a full disk: $(cat planned.txt)"
 fi
 
 refused '--set' sweep run s --set dip.depth_mm=3

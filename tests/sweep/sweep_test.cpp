@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/run_scope.h"
 #include "contains.h"
 #include "image/files.h"
 #include "job/jobs.h"
@@ -451,6 +452,14 @@ TEST_F(SweepTest, AnOutcomeWithoutItsVersionHasItsReports) {
   const std::optional<SweepOutcome> outcome = read_outcome(sweep(), made.runs[0].id);
   EXPECT_EQ(outcome->version, Json::parse(outcome->report)["tool"]["version"]);
   EXPECT_FALSE(outcome->version.empty());
+}
+
+// Of a hundred thousand runs it takes minutes to read what came of them.
+TEST_F(SweepTest, ReadingWhatCameOfItStopsWhenItIsCancelled) {
+  const SweepPlan made = plan(head_);
+  context_.cancel();
+  const RunScope scope(context_);
+  EXPECT_THROW(make_table(sweep(), made), Cancelled);
 }
 
 // Whoever comes first does a run: together the workers do each once.
