@@ -21,6 +21,10 @@ constexpr double kChecked[] = {0.52, 0.7, 0.86, 1.0, 1.13, 1.4, 1.9};
 constexpr double kWidth = 1e-3;
 constexpr double kAgreement = 1e-3;
 constexpr double kSymmetry = 1e-6;
+// Of the largest energy; less is what a table's spline makes of rounding.
+constexpr double kLeastStiffness = 1e-10;
+// Between these proportions alone count; beyond, the solver's squares leave the range of doubles.
+constexpr double kSoftest = 1e-15, kStiffest = 1e15;
 
 class CorotatedLaw : public MaterialLaw {
  public:
@@ -71,6 +75,24 @@ void check_finite(const MaterialLaw& law, double a, double b) {
                       a, b, 1 / a, 1 / b));
 }
 
+// Film that does not resist being stretched or sheared would stay wherever it began, without a
+// word.
+void check_stiff(const MaterialLaw& law, double largest_energy) {
+  const MaterialLaw::Value v = law.at(1, 1);
+  // Of small waves along the film and across, which energies of area alone change in neither.
+  const double along = v.by_aa, across = v.by_aa - v.by_ab + v.by_a;
+  if (!(std::min(along, across) > kLeastStiffness * largest_energy))
+    throw InputError(fmt::format(
+        "the material law makes film without stiffness: about unstretched film its energy has to "
+        "grow with every deformation (its second derivative along one is {:.3g}, across {:.3g})",
+        along, across));
+  if (!(along >= kSoftest && along <= kStiffest))
+    throw InputError(
+        fmt::format("the material law's energies are too {} to be computed with (its second "
+                    "derivative is {:.3g}): multiply them by {:.0e}; only proportions count",
+                    along < kSoftest ? "small" : "large", along, 1 / along));
+}
+
 }  // namespace
 
 std::shared_ptr<const MaterialLaw> make_corotated_law(double poisson) {
@@ -89,6 +111,7 @@ void check_law(const MaterialLaw& law) {
       slope = std::max({slope, std::abs(v.by_a), std::abs(v.by_b)});
       bend = std::max({bend, std::abs(v.by_aa), std::abs(v.by_ab), std::abs(v.by_bb)});
     }
+  check_stiff(law, energy);
   for (const double a : kChecked)
     for (const double b : kChecked) {
       const MaterialLaw::Value v = law.at(a, b);

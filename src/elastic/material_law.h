@@ -32,9 +32,10 @@ class MaterialLaw {
 // The paper's own: mu ((a - 1)^2 + (b - 1)^2) + lambda / 2 (a + b - 2)^2 for Young's modulus 1.
 std::shared_ptr<const MaterialLaw> make_corotated_law(double poisson);
 
-// Throws InputError if the law has values that are not finite, depends on the order of a and b, or
-// names derivatives that finite differences of its energy contradict; for film that is stretched by
-// less than two and pressed together to more than half.
+// Throws InputError if the law has values that are not finite, depends on the order of a and b,
+// makes unstretched film that does not resist, or names derivatives that finite differences of its
+// energy contradict; for film that is stretched by less than two and pressed together to more than
+// half.
 void check_law(const MaterialLaw& law);
 
 // ---- what the solver makes of it, for one triangle ----

@@ -7,11 +7,13 @@
 
 #include "base/eigenpairs.h"
 #include "base/error.h"
+#include "contains.h"
 #include "elastic/corotated.h"
 #include "elastic/differences.h"
 #include "elastic/linear_solver.h"
 #include "elastic/relaxation.h"
 #include "elastic/table_law.h"
+#include "refusal.h"
 
 namespace hydrodip {
 namespace {
@@ -167,6 +169,27 @@ TEST(MaterialLaw, WhatIsNoLawIsRefused) {
   EXPECT_THROW(make_table_law(few), InputError);
   few.samples = 4;
   EXPECT_THROW(make_table_law(few), InputError);
+}
+
+// A dip of it came out as if nothing pulled at the film, without a word.
+TEST(MaterialLaw, FilmThatDoesNotResistIsRefused) {
+  const auto papers = [](double factor) {
+    return
+        [factor](double a, double b) { return factor * ((a - 1) * (a - 1) + (b - 1) * (b - 1)); };
+  };
+  const auto check = [](const LawEnergy& energy) {
+    return refusal([&] { check_law(*make_table_law(tabulated(energy))); });
+  };
+  for (const double factor : {1e-12, 1.0, 1e12}) EXPECT_EQ(check(papers(factor)), "") << factor;
+  // What is added to every mm^2 of flat film, be it much, moves nothing.
+  EXPECT_EQ(check([&](double a, double b) { return papers(1)(a, b) + 100 * a * b; }), "");
+  for (const LawEnergy& without :
+       {LawEnergy([](double, double) { return 0.0; }),
+        LawEnergy([](double a, double b) { return 5 * a * b; }),
+        LawEnergy([](double a, double b) { return a + b; }), LawEnergy(papers(-1))})
+    EXPECT_TRUE(contains(check(without), "without stiffness"));
+  EXPECT_TRUE(contains(check(papers(1e-200)), "too small"));
+  EXPECT_TRUE(contains(check(papers(1e200)), "too large"));
 }
 
 // The clamped part has no negative eigenvalue, and is the exact one where nothing was negative.
