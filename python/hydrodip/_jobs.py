@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from . import _core, _mesh, _results
+from . import _core, _material, _mesh, _results
 
 if TYPE_CHECKING:
     import numpy as np
@@ -50,6 +50,8 @@ def parameters() -> Tuple[_results.Parameter, ...]:
 
 
 def _numbers(value: Any) -> List[float]:
+    if isinstance(value, (str, bytes)):
+        raise TypeError("not a number")
     if hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0:
         return [float(value)]
     return [x for item in value for x in _numbers(item)]
@@ -109,10 +111,60 @@ def _tables(given: Any, key: str) -> List[Mapping[str, Any]]:
 def _files(given: Any, key: str) -> List[str]:
     if given is None:
         return []
-    files = [given] if isinstance(given, (str, os.PathLike)) or not isinstance(given, Iterable) else list(given)
+    single = isinstance(given, (str, os.PathLike, Mapping)) or not isinstance(given, Iterable)
+    files = [given] if single else list(given)
     if all(isinstance(file, (str, os.PathLike)) for file in files):
         return [os.fspath(file) for file in files]
     raise TypeError(f"{key} is a file or a list of files, not {given!r}")
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+def _is_number(value: Any) -> bool:
+    return hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0
+
+
+def _is_count(value: Any, end: int = 2**31) -> bool:
+    return hasattr(value, "__index__") and 0 <= value < end
+
+
+def _is_switch(value: Any) -> bool:
+    return type(value).__name__ in ("bool", "bool_")
+
+
+def _is_path(value: Any) -> bool:
+    return isinstance(value, (str, os.PathLike))
+
+
+_VALUES = "a text of values to try, as in '0.5:0.8:0.1' or '0.5,0.65'"
+# What arguments that are no parameters have to be; None, where it may be, is left out.
+_KINDS: Dict[str, Tuple[Callable[[Any], bool], str]] = {
+    "quality": (_is_text, "a name: 'draft', 'normal' or 'fine'"),
+    "material": (lambda value: isinstance(value, _material.Material), "a hydrodip.Material"),
+    "progress": (callable, "a function of an activity and a share"),
+    "output": (_is_path, "a folder's name"),
+    "board": (_is_text, "a name: 'tints' or 'black'"),
+    "square_mm": (_is_number, "a number"),
+    "scan_units": (_is_text, "a name: 'mm', 'cm', 'm' or 'in'"),
+    "aligned": (_is_switch, "a choice of True and False"),
+    "mirrored": (_is_switch, "a choice of True and False"),
+    "z_stretch": (_is_text, _VALUES),
+    "ratio": (_is_text, _VALUES),
+    "poisson": (_is_text, _VALUES),
+    "shard": (_is_text, "a text, as in '2/4'"),
+    "torn_rings": (lambda value: isinstance(value, Iterable) and all(map(_is_count, value)), "a list of whole numbers"),
+    "noise_mm": (_is_number, "a number"),
+    "missing_share": (_is_number, "a number"),
+    "seed": (lambda value: _is_count(value, 2**64), "a whole number, 0 or more"),
+}
+
+
+def _require_kinds(given: Dict[str, Any]) -> None:
+    for key, (is_one, kind) in _KINDS.items():
+        if given.get(key) is not None and not is_one(given[key]):
+            raise TypeError(f"{key} is {kind}, not {given[key]!r}")
 
 
 # Where `hydrodip profile` keeps profiles by their names.
@@ -138,6 +190,7 @@ def _film(film: Any) -> str:
 
 
 def _config(given: Dict[str, Any], model: Any = None, output: Any = None, quiet: bool = False) -> Any:
+    _require_kinds(given)
     name, made = ("", None) if model is None else _mesh.resolved(model)
     settings = given.get("settings") or {}
     if not isinstance(settings, Mapping):
@@ -173,6 +226,8 @@ class _Picture:
             return ""
         if isinstance(self._given, (str, os.PathLike)):
             return os.fspath(self._given)
+        if not (hasattr(self._given, "__array__") or isinstance(self._given, Sequence)):
+            raise TypeError(f"film_image is a file or an array of a picture's bytes, not {self._given!r}")
         import tempfile
 
         handle, self._made = tempfile.mkstemp(suffix=".png")
@@ -257,6 +312,7 @@ def plan(given: Dict[str, Any]) -> _results.Plan:
 
 
 def _request(given: Dict[str, Any], scans: List[str]) -> Any:
+    _require_kinds(given)
     request = _core.CalibrationRequest()
     request.scans = scans
     for name in _SCANS:
@@ -269,7 +325,9 @@ def _request(given: Dict[str, Any], scans: List[str]) -> Any:
 
 def _scans(scans: Any) -> List[str]:
     if hasattr(scans, "items"):
-        return [f"{name}={os.fspath(file)}" for name, file in scans.items()]
+        named = list(scans.items())
+        files = _files([file for _, file in named], "scans")
+        return [f"{name}={file}" for (name, _), file in zip(named, files)]
     return _files(scans, "scans")
 
 

@@ -42,6 +42,7 @@ constexpr Format kFormats[] = {
 };
 
 const Format& format_of(const fs::path& path) {
+  if (path.empty()) throw InputError("no model is named: give the file of one.");
   const std::string extension = lower(path.extension().string());
   for (const Format& known : kFormats)
     if (extension == known.extension) return known;

@@ -4,6 +4,10 @@ import json
 import os
 import pathlib
 import re
+import shutil
+import subprocess
+import sys
+import tempfile
 import textwrap
 import unittest
 
@@ -128,6 +132,24 @@ class SameAsTheCommandLine(InFolder):
         self.assertEqual(fit.report, json.loads(read("fit", "calibration.json")))
 
 
+    def test_another_country_writes_the_same_profile(self):
+        folder = tempfile.mkdtemp(dir=".")
+        made = subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", os.path.join(folder, "de_DE.UTF-8")],
+                              capture_output=True) if shutil.which("localedef") else None
+        if made is None or made.returncode != 0:
+            self.skipTest("no German locale can be made")
+        quick = dict(film="110x110", film_elements=1000, dip_step_mm=1.0)
+        hydrodip.synth(["sphere"], output="scans", **quick)
+        code = ("import locale, hydrodip; locale.setlocale(locale.LC_ALL, LANGUAGE); "
+                "hydrodip.calibrate('sphere=scans/sphere-scan.obj', z_stretch='0.6,0.7', ratio='600', "
+                f"poisson='0', output=OUTPUT, **{quick!r})")
+        for language, output in (("C", "plain"), ("de_DE.UTF-8", "german")):
+            subprocess.run([sys.executable, "-c", code.replace("LANGUAGE", repr(language)).replace("OUTPUT", repr(output))],
+                           env=dict(os.environ, LOCPATH=os.path.abspath(folder)), check=True)
+        self.assertEqual(read("german", "profile.toml"), read("plain", "profile.toml"))
+        self.assertRegex(read("german", "profile.toml").decode(), "z_stretch = 0.[5-7]")
+
+
 class Arguments(InFolder):
     def refused(self, pattern, **arguments):
         with self.assertRaisesRegex(hydrodip.InputError, pattern):
@@ -142,6 +164,8 @@ class Arguments(InFolder):
         self.refused("dip_step_mm", dip_step_mm=-1)
         self.refused("object_down", object_down="sideways")
         self.refused("rotate", rotate=(1, 2))
+        self.refused("rotate", rotate=("90", "0", "0"))
+        self.refused("size", size={"mm": 40})
         self.refused("film.elemnts.*film.elements", settings={"film.elemnts": 3})
         self.refused("--film", film="a7")
         self.refused("", quality="superb")
@@ -154,14 +178,28 @@ class Arguments(InFolder):
     def test_what_is_of_no_such_kind_is_told_what_it_should_be(self):
         for keyword, value in (
             ("artwork", "logo.png"), ("artwork", ["logo.png"]), ("artwork", {"image": "logo.png"}), ("artwork", 3),
-            ("dip_tables", [3]), ("film", 3), ("film", (1, 2, 3)), ("profile", 3), ("config", [3]), ("settings", ["film.elements"]),
+            ("dip_tables", [3]), ("film", 3), ("film", (1, 2, 3)), ("profile", 3), ("config", [3]), ("config", {"film.elements": 800}), ("settings", ["film.elements"]), ("quality", 3), ("material", 3.5),
+            ("progress", 3), ("output", 3), ("film_image", 3), ("film", ("100", "80")), ("film", {"width": 100}),
         ):
             with self.subTest(keyword, value=value), self.assertRaisesRegex(TypeError, f"^{keyword} is a .*, not "):
-                hydrodip.print_job(textured_cone(), output="none", **{keyword: value})
+                hydrodip.print_job(textured_cone(), **{"output": "none", keyword: value})
+        for keyword, value in (
+            ("z_stretch", [0.6, 0.7]), ("ratio", 600), ("poisson", 0.1), ("board", 3), ("square_mm", "5"), ("scan_units", 3),
+            ("aligned", "no"), ("mirrored", 2), ("shard", 3), ("torn_rings", 3), ("torn_rings", [1.5]), ("merge", 3), ("progress", 3), ("output", 3),
+        ):
+            with self.subTest(keyword, value=value), self.assertRaisesRegex(TypeError, f"^{keyword} is a .*, not "):
+                hydrodip.calibrate({"sphere": "scan.obj"}, **{keyword: value})
+        with self.assertRaisesRegex(TypeError, "^scans is a .*, not "):
+            hydrodip.measure({"sphere": 3})
+        for keyword, value in (("seed", 0.5), ("seed", -1), ("noise_mm", "1"), ("missing_share", [1])):
+            with self.subTest(keyword, value=value), self.assertRaisesRegex(TypeError, f"^{keyword} is a .*, not "):
+                hydrodip.synth(["sphere"], output="none", **{keyword: value})
 
     def test_no_file_and_no_colours_are_said(self):
         with self.assertRaisesRegex(hydrodip.InputError, "nowhere.obj"):
             hydrodip.simulate("nowhere.obj")
+        with self.assertRaisesRegex(hydrodip.InputError, "^no model is named"):
+            hydrodip.simulate(None)
         with self.assertRaisesRegex(hydrodip.InputError, "nothing to print"):
             bare = textured_cone()
             hydrodip.design(hydrodip.Mesh(bare.vertices, bare.faces), **DESIGN)
