@@ -1,8 +1,15 @@
 #include "calibrate/checkerboard_dip.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include "base/error.h"
+#include "base/nearest_name.h"
 #include "base/parse_double.h"
 #include "calibrate/board_lines.h"
 #include "calibrate/printed_board.h"
@@ -13,6 +20,8 @@
 
 namespace hydrodip {
 namespace {
+
+constexpr double kDeepest_mm = 5000;
 
 // "sphere@12" into "sphere" and 12; 0: no depth given. A '@' in a file's name is left alone.
 std::pair<std::string, double> split_depth(const std::string& text) {
@@ -29,9 +38,22 @@ std::pair<std::string, double> split_depth(const std::string& text) {
                     "'@' out",
                     text, text.substr(0, at)));
   }
-  if (!(depth > 0 && depth < 5000))
-    throw InputError(fmt::format("{}: the depth after '@' must be above 0 mm", text));
+  if (!(depth > 0 && depth < kDeepest_mm))
+    throw InputError(
+        fmt::format("{}: the depth after '@' must be above 0 and below {} mm", text, kDeepest_mm));
   return {text.substr(0, at), depth};
+}
+
+// A word alone means a shape. It is not read as a model's name, of which it would lack the end.
+void require_known_word(const std::string& name) {
+  std::error_code ignored;
+  const std::filesystem::path file(name);
+  const bool is_word = !file.has_parent_path() && !file.has_extension();
+  if (!is_word || std::filesystem::exists(file, ignored)) return;
+  std::vector<std::string> known;
+  for (const KitShape& shape : known_shapes()) known.push_back(shape.name);
+  throw InputError(fmt::format("{}: is neither a model file nor one of the shapes {}{}", name,
+                               fmt::join(known, ", "), did_you_mean(name, known)));
 }
 
 }  // namespace
@@ -101,6 +123,7 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
     result.depth_mm = depth > 0 ? depth : shape->depth_mm;
     require_room_for_shape(result, config);
   } else {
+    require_known_word(name);
     const PosedObject posed = prepare_object(name, config.object, context).posed;
     result.object = posed.mesh();
     size_mm = posed.size_mm();

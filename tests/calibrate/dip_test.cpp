@@ -7,6 +7,7 @@
 #include "calibrate/printed_board.h"
 #include "calibrate/rounded_pyramid.h"
 #include "object/health.h"
+#include "refusal.h"
 #include "scans.h"
 
 namespace hydrodip {
@@ -81,6 +82,11 @@ TEST(CalibrationObjectTest, DepthsAndNames) {
   EXPECT_EQ(calibration_object("sphere@9.5", config, context).depth_mm, 9.5);
   EXPECT_THROW(calibration_object("sphere@-1", config, context), InputError);
   EXPECT_THROW(calibration_object("no-such.obj@3", config, context), InputError);
+  EXPECT_EQ(refusal([&] { calibration_object("sphere@9999", config, context); }),
+            "sphere@9999: the depth after '@' must be above 0 and below 5000 mm");
+  EXPECT_EQ(refusal([&] { calibration_object("spere-90", config, context); }),
+            "spere-90: is neither a model file nor one of the shapes sphere-90, pyramid-90, "
+            "ellipsoid-135, sphere, pyramid, ellipsoid; did you mean 'sphere-90'?");
 }
 
 TEST(SyntheticTest, SameSeedSameScanAndNoiseAsAsked) {

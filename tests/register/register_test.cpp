@@ -90,6 +90,7 @@ TEST(DisplacementFit, RefusesWhatTellsNoField) {
   EXPECT_TRUE(contains(why(scattered(still, 8, 0)), "8 places of the film that can be used: at"));
   // Enough of them, but not where they tell anything.
   std::vector<CorrectionSample> line;
+  line.reserve(40);
   for (int i = 0; i < 40; ++i) line.push_back({Vec2(i, 2 * i), Vec2(0.1, 0)});
   EXPECT_TRUE(contains(why(line), "have to be spread over the film"));
 }
@@ -165,7 +166,7 @@ TEST(TrueSize, IsReadOffAScanHoweverTheSheetLay) {
 class RegisterFiles : public ::testing::Test {
  protected:
   std::filesystem::path written(const std::string& text) {
-    const std::filesystem::path file = folder_ / "file";
+    std::filesystem::path file = folder_ / "file";
     write_file(file, text);
     return file;
   }

@@ -23,7 +23,7 @@ class Settings : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   std::filesystem::path file(const std::string& text, const std::string& name = "job.toml") {
-    const auto path = folder_ / name;
+    auto path = folder_ / name;
     std::ofstream(path, std::ios::binary) << text;
     return path;
   }
