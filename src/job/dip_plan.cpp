@@ -267,6 +267,19 @@ DipPlan plan_dips(const JobConfig& config, const PreparedObject& prepared, const
   return Planning(config, prepared, targets, again, context).run();
 }
 
+std::optional<PoseOptions> told_pose(const DipEntry& entry, const PoseOptions& base) {
+  if (!is_given(entry, false)) return std::nullopt;
+  return pose_of(entry, base);
+}
+
+std::optional<TrajectoryOptions> told_way(const DipEntry& entry, const TrajectoryOptions& base) {
+  if (!entry.path.empty()) return TrajectoryOptions{.path = entry.path, .pivot_mm = base.pivot_mm};
+  if (!entry.depth_mm) return std::nullopt;
+  TrajectoryOptions way = base;
+  way.depth_mm = *entry.depth_mm;
+  return way;
+}
+
 std::shared_ptr<const SurfaceNodes> make_nodes(const PreparedObject& prepared, double overlap_mm) {
   const double spacing_mm = std::max(kLeastSpacing_mm, overlap_mm / kNodesInOverlap);
   const double wanted = prepared.health.area_mm2 / (spacing_mm * spacing_mm);

@@ -30,6 +30,11 @@ struct DipPlan {
 DipPlan plan_dips(const JobConfig& config, const PreparedObject& prepared, const Targets& targets,
                   bool again, const RunContext& context);
 
+// How a dip of the job is held, if it says so; of what it leaves open, the object's own.
+std::optional<PoseOptions> told_pose(const DipEntry& entry, const PoseOptions& base);
+// Its way in, if it says how deep that goes.
+std::optional<TrajectoryOptions> told_way(const DipEntry& entry, const TrajectoryOptions& base);
+
 // The points at which a print of several dips divides and counts the surface.
 std::shared_ptr<const SurfaceNodes> make_nodes(const PreparedObject& prepared, double overlap_mm);
 

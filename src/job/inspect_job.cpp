@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "base/file.h"
 #include "base/json_text.h"
@@ -9,12 +11,14 @@
 #include "base/run_scope.h"
 #include "dip/wetting.h"
 #include "image/files.h"
+#include "job/dip_plan.h"
 #include "job/jobs.h"
 #include "job/output.h"
 #include "job/prepare.h"
 #include "job/print_dips.h"
 #include "job/ways.h"
 #include "object/dip_angles.h"
+#include "plan/hold.h"
 #include "render/maps.h"
 #include "report/report.h"
 #include "settings/settings.h"
@@ -36,12 +40,23 @@ struct FilmChoice {
   bool fits() const { return excess_mm <= 0; }
 };
 
+// One of several dips, as far as the job says how it is made.
+struct ToldDip {
+  std::optional<PoseOptions> pose;
+  std::optional<Vec3> size_mm;  // as posed
+  std::optional<TrajectoryOptions> way;
+  std::optional<double> depth_mm;
+  std::optional<Room> room;  // where pose and way are known
+  std::vector<RoomFit> fit;
+};
+
 struct Inspection {
   const JobConfig& config;
   const PreparedObject& prepared;
   double depth_mm = 0;
   DippingDirection direction_at;
-  std::vector<RoomFit> fit;  // film and bath of this job
+  std::vector<ToldDip> dips;  // of a job of several
+  std::vector<RoomFit> fit;   // film and bath of this job
   std::vector<FilmChoice> films;
   DipAngles angles;
   std::vector<std::string> warnings;
@@ -53,21 +68,52 @@ double worst_excess_mm(const std::vector<RoomFit>& list) {
   return worst;
 }
 
-FilmChoice try_film(const Room& room, FilmOptions film, const BathOptions& bath,
+std::vector<ToldDip> told_dips(const JobConfig& config, const PreparedObject& prepared) {
+  std::vector<ToldDip> dips;
+  for (const DipEntry& entry : config.dips) {
+    ToldDip& dip = dips.emplace_back();
+    dip.pose = told_pose(entry, config.object.pose);
+    dip.way = told_way(entry, config.design.trajectory);
+    if (dip.way && dip.way->path.empty() && dip.way->depth_mm > 0) dip.depth_mm = dip.way->depth_mm;
+    if (!dip.pose) continue;
+    const PosedObject posed(prepared.posed.shared_object(), *dip.pose);
+    const TriangleMesh& mesh = posed.mesh();
+    dip.size_mm = mesh.bounds().size();
+    if (!dip.way) continue;
+    dip.room = room_of(mesh, make_trajectory(*dip.way, mesh.positions));
+    dip.depth_mm = dip.room->depth_mm;
+    dip.fit = fits(posed.size_mm(), *dip.room, config.design.film, config.bath);
+  }
+  if (asks_for_several_dips(config))
+    dips.resize(std::max(dips.size(), std::size_t(std::max(config.plan.dips, 0))));
+  return dips;
+}
+
+// What has to fit film and bath: of several dips each that is known, if one is.
+std::vector<Room> rooms_of(const std::vector<ToldDip>& dips, const Room& alone) {
+  std::vector<Room> rooms;
+  for (const ToldDip& dip : dips)
+    if (dip.room) rooms.push_back(*dip.room);
+  if (rooms.empty()) rooms.push_back(alone);
+  return rooms;
+}
+
+FilmChoice try_film(const std::vector<Room>& rooms, FilmOptions film, const BathOptions& bath,
                     const std::string& name, double width_mm, double height_mm) {
   film.width_mm = width_mm;
   film.height_mm = height_mm;
-  return {name, width_mm, height_mm, worst_excess_mm(film_fits(room, film)),
-          sheet_fits_bath(film, bath)};
+  double worst = -1e300;
+  for (const Room& room : rooms) worst = std::max(worst, worst_excess_mm(film_fits(room, film)));
+  return {name, width_mm, height_mm, worst, sheet_fits_bath(film, bath)};
 }
 
-std::vector<FilmChoice> film_choices(const Room& room, const FilmOptions& film,
+std::vector<FilmChoice> film_choices(const std::vector<Room>& rooms, const FilmOptions& film,
                                      const BathOptions& bath) {
   std::vector<FilmChoice> list;
   for (const FilmFormat& format : film_formats()) {
-    list.push_back(try_film(room, film, bath, format.name, format.width_mm, format.height_mm));
+    list.push_back(try_film(rooms, film, bath, format.name, format.width_mm, format.height_mm));
     list.push_back(
-        try_film(room, film, bath, format.name + "-landscape", format.height_mm, format.width_mm));
+        try_film(rooms, film, bath, format.name + "-landscape", format.height_mm, format.width_mm));
   }
   return list;
 }
@@ -78,10 +124,37 @@ std::string share(double part, double whole) {
 
 std::string describe_size(const Inspection& i) {
   const Vec3 size = i.prepared.posed.mesh().bounds().size();
-  return fmt::format(
-      "size         {:.2f} x {:.2f} x {:.2f} mm (x, y, z as posed; read as {})\n"
-      "dipped       {:.2f} mm deep\n",
-      size.x(), size.y(), size.z(), i.prepared.units, i.depth_mm);
+  std::string text =
+      fmt::format("size         {:.2f} x {:.2f} x {:.2f} mm (x, y, z as posed; read as {})\n",
+                  size.x(), size.y(), size.z(), i.prepared.units);
+  if (i.dips.empty()) text += fmt::format("dipped       {:.2f} mm deep\n", i.depth_mm);
+  return text;
+}
+
+std::string too_much(const RoomFit& fit) {
+  return fmt::format("{:.2f} mm too much", fit.excess_mm());
+}
+
+std::string describe_dip(const ToldDip& dip, ModelSide up) {
+  std::string text = dip.pose ? describe_hold(*dip.pose, up) : "held as plan finds";
+  text += dip.depth_mm ? fmt::format(", {:.2f} mm deep", *dip.depth_mm)
+          : dip.way    ? ", as its table says"
+                       : ", as deep as plan finds";
+  if (dip.fit.empty()) return text;
+  std::string excess;
+  for (const RoomFit& fit : dip.fit)
+    if (fit.excess_mm() > 0)
+      excess += fmt::format("; {:.2f} of {:.2f} mm {}: {}", fit.needed_mm, fit.available_mm,
+                            fit.what, too_much(fit));
+  return text + (excess.empty() ? "; fits" : excess);
+}
+
+std::string describe_dips(const Inspection& i) {
+  std::string text;
+  for (std::size_t k = 0; k < i.dips.size(); ++k)
+    text += fmt::format("{:<12} {}\n", fmt::format("dip {}", k + 1),
+                        describe_dip(i.dips[k], way_up(i.config)));
+  return text;
 }
 
 std::string describe_appearance(const Object& object) {
@@ -103,12 +176,11 @@ std::string describe_mesh(const Inspection& i) {
 
 std::string describe_fit(const Inspection& i) {
   std::string text;
-  for (const RoomFit& fit : i.fit)
-    text +=
-        fmt::format("{:<12} {:.2f} of {:.2f} mm {}: {}\n", fit.room == "the bath" ? "bath" : "film",
-                    fit.needed_mm, fit.available_mm, fit.what,
-                    fit.excess_mm() > 0 ? fmt::format("{:.2f} mm too much", fit.excess_mm())
-                                        : std::string("fits"));
+  // Of several dips each says for itself whether it does.
+  for (const RoomFit& fit : i.dips.empty() ? i.fit : std::vector<RoomFit>())
+    text += fmt::format("{:<12} {:.2f} of {:.2f} mm {}: {}\n",
+                        fit.room == "the bath" ? "bath" : "film", fit.needed_mm, fit.available_mm,
+                        fit.what, fit.excess_mm() > 0 ? too_much(fit) : std::string("fits"));
   std::string fitting;
   for (const FilmChoice& film : i.films)
     if (film.fits())
@@ -134,11 +206,13 @@ std::string describe_angles(const DipAngles& a) {
 }
 
 std::string describe(const Inspection& i) {
-  std::string text =
-      describe_size(i) + describe_mesh(i) + describe_fit(i) + describe_angles(i.angles);
+  std::string text = describe_size(i) + describe_mesh(i) + describe_dips(i) + describe_fit(i) +
+                     describe_angles(i.angles);
   for (const std::string& warning : i.warnings) text += "warning: " + warning + "\n";
   return text;
 }
+
+json triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 json health_json(const MeshHealth& h) {
   return {{"vertices", h.vertices},
@@ -178,20 +252,41 @@ json films_json(const std::vector<FilmChoice>& films) {
   return all;
 }
 
+// What plan has to find is null.
+json dips_json(const std::vector<ToldDip>& dips) {
+  json all = json::array();
+  for (const ToldDip& dip : dips) {
+    json told = {{"down", nullptr},
+                 {"rotate_deg", nullptr},
+                 {"depth_mm", nullptr},
+                 {"size_mm", nullptr},
+                 {"fit", fit_json(dip.fit)}};
+    if (dip.pose) {
+      told["down"] = side_name(dip.pose->down);
+      told["rotate_deg"] = triple(dip.pose->rotate_deg);
+    }
+    if (dip.depth_mm) told["depth_mm"] = *dip.depth_mm;
+    if (dip.size_mm) told["size_mm"] = triple(*dip.size_mm);
+    all.push_back(told);
+  }
+  return all;
+}
+
 std::string machine_readable(const Inspection& i) {
   const Vec3 size = i.prepared.posed.mesh().bounds().size();
-  const json all = {{"schema_version", 1},
-                    {"command", "inspect"},
-                    {"model", i.config.model.string()},
-                    {"units", i.prepared.units},
-                    {"size_mm", {size.x(), size.y(), size.z()}},
-                    {"depth_mm", i.depth_mm},
-                    {"has_appearance", i.prepared.posed.object().has_appearance()},
-                    {"mesh", health_json(i.prepared.health)},
-                    {"fit", fit_json(i.fit)},
-                    {"films", films_json(i.films)},
-                    {"dip_angles", json::parse(dip_angles_json(i.angles))},
-                    {"warnings", i.warnings}};
+  json all = {{"schema_version", 1},
+              {"command", "inspect"},
+              {"model", i.config.model.string()},
+              {"units", i.prepared.units},
+              {"size_mm", triple(size)},
+              {"depth_mm", i.depth_mm},
+              {"has_appearance", i.prepared.posed.object().has_appearance()},
+              {"mesh", health_json(i.prepared.health)},
+              {"fit", fit_json(i.fit)},
+              {"films", films_json(i.films)},
+              {"dip_angles", json::parse(dip_angles_json(i.angles))},
+              {"warnings", i.warnings}};
+  if (!i.dips.empty()) all["dips"] = dips_json(i.dips);
   return json_text(all);
 }
 
@@ -228,7 +323,8 @@ JobResult inspect_job(const JobConfig& given, const RunContext& context) {
   PreparedObject prepared = prepare_object(config.model, config.object, context);
   if (asks_for_several_dips(config))
     context.warn(
-        "This job is of several dips; inspect looks at the object as [object] and [dip] hold it.");
+        "This job is of several dips; size and dip angles are told of the object as [object] and "
+        "[dip] hold it.");
   find_what_is_asked(config, prepared, context);
   const TriangleMesh& mesh = prepared.posed.mesh();
   const FilmOptions& film = config.design.film;
@@ -236,12 +332,15 @@ JobResult inspect_job(const JobConfig& given, const RunContext& context) {
   const DippingDirection direction_at =
       dipping_direction(trajectory, mesh.positions, mesh.triangles);
   const Room room = room_of(mesh, trajectory);
+  std::vector<ToldDip> dips = told_dips(config, prepared);
+  std::vector<FilmChoice> films = film_choices(rooms_of(dips, room), film, config.bath);
   const Inspection inspection{config,
                               prepared,
                               room.depth_mm,
                               direction_at,
+                              std::move(dips),
                               fits(prepared.posed.size_mm(), room, film, config.bath),
-                              film_choices(room, film, config.bath),
+                              std::move(films),
                               dip_angles(mesh, direction_at),
                               context.warnings()};
   JobResult result;

@@ -113,6 +113,50 @@ import json
 dip, way = json.load(open('alone.json'))['dips'][0], json.load(open('ways.json'))['poses'][0]
 assert (dip['rotate_deg'], dip['depth_mm']) == (way['rotate_deg'], way['depth_mm']), (dip, way)
 PY
+# inspect tells of each dip what the job says of it, and whether it fits; what is left to be found is.
+cat > each.toml <<'TOML'
+[object]
+file = "boxes/box.obj"
+[[dip]]
+rotate_deg = [0, 0, 0]
+depth_mm = 3
+[[dip]]
+down = "+x"
+depth_mm = 0
+[[dip]]
+rotate_deg = [0, 90, 0]
+[[dip]]
+depth_mm = 7
+[[dip]]
+path = [[0, 0, 0, 0, 0, 0], [4, 0, 0, 0, 0, 0]]
+TOML
+"$hydrodip" inspect each.toml --film 55x55 --set plan.dips=6 --json --quiet > each.json || fail "inspect each.toml: $?"
+"$hydrodip" inspect each.toml --film 55x55 --set plan.dips=6 --quiet > each.txt || fail "inspect each.toml: $?"
+python3 - <<'PY' || fail "inspect of several dips: $(cat each.txt each.json)"
+import json
+report = json.load(open('each.json'))
+dips = report['dips']
+assert [dip['depth_mm'] for dip in dips] == [3, 40, None, 7, 4, None], dips
+assert [dip['down'] for dip in dips] == ['-z', '+x', '-z', None, '-z', None], dips
+assert dips[2]['rotate_deg'] == [0, 90, 0] and dips[3]['rotate_deg'] is None
+sizes = [dip['size_mm'] and [round(mm, 6) for mm in dip['size_mm']] for dip in dips]
+assert sizes == [[40, 40, 15], [15, 40, 40], [15, 40, 40], None, [40, 40, 15], None], sizes
+assert [bool(dip['fit']) for dip in dips] == [True, True, False, False, True, False]
+# The free film is 35 mm, and both of the box's sides that are told are 40.
+assert not any(all(fit['fits'] for fit in dip['fit']) for dip in dips if dip['fit'])
+assert next(film for film in report['films'] if film['name'] == 'a4')['fits']
+lines = open('each.txt').read().splitlines()
+told = {line.split('  ')[0]: line for line in lines if line.startswith('dip ') and line[4].isdigit()}
+assert ', 3.00 mm deep; ' in told['dip 1'] and '5.00 mm too much' in told['dip 1'], told
+assert ', 40.00 mm deep; ' in told['dip 2'] and ', as deep as plan finds' in told['dip 3'], told
+assert 'held as plan finds, 7.00 mm deep' in told['dip 4'] and ', 4.00 mm deep' in told['dip 5'], told
+assert not any(line.startswith('dipped ') for line in lines), lines
+PY
+# What each dip takes is what its print takes, not what the object takes as it stands.
+printf '[object]\nfile = "boxes/box.obj"\n[[dip]]\ndown = "+x"\ndepth_mm = 40\n[[dip]]\ndown = "-x"\ndepth_mm = 5\n' > deep.toml
+"$hydrodip" inspect deep.toml --set bath.depth_mm=30 --quiet > said.txt || fail "inspect deep.toml: $?"
+grep -q '^dip 1 .*, 40.00 mm deep; .*10.00 mm too much' said.txt && grep -q '^dip 2 .*, 5.00 mm deep; fits$' said.txt ||
+  fail "inspect of a dip deeper than the bath: $(cat said.txt)"
 # Little free film beside the object is told beforehand, dip by dip, as print tells it.
 tight="--set film.elements=800 --set dip.step_mm=1 --set dip.air_cells=0 --set preview.pictures=off --film 66x66"
 printf '[object]\nfile = "boxes/box.obj"\nsize_mm = 40\n[[dip]]\nrotate_deg = [0, 0, 0]\ndepth_mm = 3\nlocked = true\n[[dip]]\nrotate_deg = [0, 0, 90]\ndepth_mm = 0\nlocked = true\n' > tight.toml

@@ -24,6 +24,10 @@ printed() {
   printed inspect inspect tetra.obj -o inspect
   printed plan plan colored.ply $quick_simulate $coarse --dips 2 -o plan
   mv printed/print.report.printed.json printed/one.report.printed.json
+  mv printed/inspect.inspect.printed.json printed/one.inspect.printed.json
+  printf '[[dip]]\ndepth_mm = 5\n' >> plan/plan.toml
+  printed inspect inspect plan/plan.toml -o inspect-dips
+  sed -i '$d' plan/plan.toml && sed -i '$d' plan/plan.toml
   printed report print plan/plan.toml $quick $coarse -o dips
   printed orient orient colored.ply $quick_simulate -o orient
   printed nest nest colored.ply colored.ply --film a4 --set film.elements=800 --set dip.step_mm=1 --dpi 72 \
@@ -37,7 +41,7 @@ case $? in
   77) exit 77 ;;
   *) fail 'something is not as its schema says' ;;
 esac
-[ "$(ls printed | wc -l)" -eq 9 ] || fail "printed: $(ls printed)"
+[ "$(ls printed | wc -l)" -eq 10 ] || fail "printed: $(ls printed)"
 mkdir wrong wrong/print wrong/inspect wrong/new
 for wrong in '[film]\nwidth_mm = 9\n' '[film]\nwidht_mm = 100\n' '[[artwork]]\nprojection = "round"\n' \
   '[object]\nrotate_deg = [1, 2]\n' '[[dip]]\ndepth = 3\n' '[[part]]\ncount = 2\n'; do
