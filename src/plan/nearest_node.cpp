@@ -37,7 +37,7 @@ void NearestNode::sort(std::size_t begin, std::size_t end) {
 }
 
 NearestNode::Found NearestNode::find(const Vec3& position, const Vec3& normal, double reach) const {
-  Looking looking{position, normal, {-1, reach * reach}};
+  Looking looking{position, normal, {-1, reach * reach, 0}};
   look(0, placed_.size(), looking);
   return looking.best;
 }
@@ -48,10 +48,11 @@ void NearestNode::look(std::size_t begin, std::size_t end, Looking& looking) con
   const Placed& placed = placed_[middle];
   const double squared = (placed.position - looking.position).squaredNorm();
   Found& best = looking.best;
+  ++best.looked_at;
   const bool is_first = best.node < 0 || placed.node < best.node;
   if ((squared < best.squared || (squared == best.squared && is_first)) &&
       SurfaceNodes::face_alike(placed.normal, looking.normal))
-    best = {placed.node, squared};
+    best = {placed.node, squared, best.looked_at};
   const double beyond = looking.position[placed.axis] - placed.position[placed.axis];
   const std::pair below(begin, middle), above(middle + 1, end);
   const auto& [near, far] = beyond < 0 ? std::pair(below, above) : std::pair(above, below);

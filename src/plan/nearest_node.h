@@ -18,6 +18,7 @@ class NearestNode {
   struct Found {
     std::int32_t node = -1;  // -1: none is within reach
     double squared = 0;      // its squared distance
+    int looked_at = 0;       // nodes, for that
   };
   // The nearest of those that SurfaceNodes::near finds; of several the first.
   Found find(const Vec3& position, const Vec3& normal, double reach) const;
