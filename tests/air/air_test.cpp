@@ -313,6 +313,21 @@ TEST(Air, ABoreThatCoarseCellsDoNotSeeLetsItOut) {
     }
 }
 
+// A gap between a cup's wall and its lid, lower than the cells of a coarse look.
+TEST(Air, AGapThatCoarseCellsDoNotSeeLetsItOut) {
+  const auto cup = [](double gap) {
+    TriangleMesh mesh = mesh_of(turned({{15, 0}, {18, 0}, {18, 25}, {15, 25}}));
+    append(mesh, mesh_of(turned({{0, 25 + gap}, {24, 25 + gap}, {24, 30}, {0, 30}})));
+    return mesh;
+  };
+  for (const int cells : {500, 1000, 2000, 4000}) {
+    const Trajectory way = Trajectory::straight_down(30);
+    EXPECT_EQ(air_of(cup(-0.5), way, cells).pockets.size(), 1U) << cells;
+    for (const double gap : {1.5, 2.0, 2.5})
+      EXPECT_TRUE(air_of(cup(gap), way, cells).pockets.empty()) << gap << " " << cells;
+  }
+}
+
 TEST(Air, TurningEverythingChangesNothing) {
   const TriangleMesh cup = mesh_of(turned(kCup));
   const Mat3 lean = Eigen::AngleAxisd(15 * kRad, Vec3::UnitY()).toRotationMatrix();
