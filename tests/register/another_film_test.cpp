@@ -1,6 +1,7 @@
 // Photos by code, of film of two jobs on sheets of one size.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 #include <vector>
@@ -87,6 +88,33 @@ TEST(SlowRegister, AnotherJobsFilmIsToldFromTheOwn) {
     EXPECT_NE(another.find("photo.png: the film in it does not look like"), std::string::npos)
         << another;
   }
+}
+
+// Wherever it was to lie before, and however that was turned.
+TEST(SlowRegister, AFilmThatSaysWhereFilmIsToLieLiesThere) {
+  const TemporaryFolder folder;
+  Tank tank = calibrated_tank();
+  tank.place = {{5, -3}, 40};
+  write_file(folder / "camera.json", tank_as_json(tank));
+  save(folder / "photo.png", photo_of(boxes_on_a4(1)));
+  RigJob job;
+  job.folder = folder.path();
+  job.config.design.film.width_mm = 210;
+  job.config.design.film.height_mm = 297;
+  job.config.design.film.margin_mm = 10;
+  RegisterRequest request;
+  request.photo = folder / "photo.png";
+  request.camera = folder / "camera.json";
+  request.set_place = true;
+  request.water_below_mm = kWater_mm + 2;
+  register_job(job, request, RunContext());
+  // How high the water stood for that photo is said of that photo.
+  EXPECT_EQ(read_tank(folder / "camera.json").water_below_mm, kWater_mm);
+  request.set_place = false;
+  const auto found = nlohmann::json::parse(register_job(job, request, RunContext()).json);
+  EXPECT_NEAR(found["shift_mm"]["x"], 0, 1e-3);
+  EXPECT_NEAR(found["shift_mm"]["y"], 0, 1e-3);
+  EXPECT_NEAR(found["turn_deg"]["value"], 0, 1e-3);
 }
 
 }  // namespace
