@@ -255,6 +255,7 @@ TEST_F(Plate, AWideFadeLooksAtHardlyMoreNodesThanANarrowOne) {
   const double narrow = looked_at(2), wide = looked_at(30);
   EXPECT_GT(narrow, 3);  // one of all, and one of each other part
   EXPECT_LT(wide, 3 * narrow);
+  EXPECT_LT(wide, 6000 / 20.0);  // of all nodes
 }
 
 TEST(SurfaceNodes, AThinWallHasTwoSides) {
