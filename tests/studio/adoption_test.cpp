@@ -61,6 +61,8 @@ TEST(Adoption, ASecondModelIsOfNoUse) {
   const Adoption adoption({"one.stl", "two.stl"});
   EXPECT_EQ(adoption.model(), "one.stl");
   EXPECT_EQ(uses(adoption), Json({{"one.stl", "model"}, {"two.stl", "unused"}}));
+  for (const Json& file : adoption.told())  // and why is said
+    EXPECT_EQ(file["text"].get<std::string>().empty(), file["as"] == "model") << file;
 }
 
 }  // namespace

@@ -326,6 +326,44 @@ TEST(Zip, OfAnArchiveThatDoesNotUnpackNothingStays) {
   EXPECT_EQ(bytes_of(folder / "files/kept/a.obj"), "v 0 0 0\n");
 }
 
+TEST(Zip, WhatIsNoPlainNameOrAMacsOwnIsNotUnpacked) {
+  const TemporaryFolder folder;
+  make_zip(
+      folder / "toy.zip",
+      {{"a.obj", "v 0 0 0\n"}, {"../escaped.obj", "v 0 0 0\n"}, {"__MACOSX/a.obj", "v 0 0 0\n"}});
+  std::vector<std::string> asked;
+  unpack_zip(folder / "toy.zip", 1U << 20U, [&](const std::string& name) {
+    asked.push_back(name);
+    return std::filesystem::path();
+  });
+  EXPECT_EQ(asked, std::vector<std::string>{"a.obj"});
+}
+
+TEST(Zip, MoreBytesOrFilesThanAJobMayHaveAreRefused) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::vector<std::pair<std::string, std::string>>& files,
+                           std::uintmax_t most_bytes) {
+    std::filesystem::remove(folder / "toy.zip");
+    make_zip(folder / "toy.zip", files);
+    const std::string said = refusal([&] {
+      unpack_zip(folder / "toy.zip", most_bytes,
+                 [&](const std::string& name) { return folder / "files" / name; });
+    });
+    EXPECT_EQ(std::filesystem::exists(folder / "files"), said.empty()) << said;
+    std::filesystem::remove_all(folder / "files");
+    return said;
+  };
+  const std::vector<std::pair<std::string, std::string>> two = {
+      {"in/a.obj", std::string(600, 'v')}, {"in/b.obj", std::string(400, 'v')}};
+  EXPECT_EQ(refused(two, 1000), "");
+  EXPECT_NE(refused(two, 999), "");
+  std::vector<std::pair<std::string, std::string>> many(2000, {"", "v"});
+  for (std::size_t n = 0; n < many.size(); ++n) many[n].first = std::to_string(n) + ".obj";
+  EXPECT_EQ(refused(many, 1U << 20U), "");
+  many.emplace_back("one-more.obj", "v");
+  EXPECT_NE(refused(many, 1U << 20U), "");
+}
+
 TEST_F(SecurityTest, AnArchiveThatBlowsUpIsRefused) {
   const std::string job = new_job(), at = "/api/jobs/" + job;
   const std::string zeros(std::size_t(200) << 20U, '\0');
