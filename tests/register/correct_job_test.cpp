@@ -16,8 +16,10 @@
 #include "register/printed_film.h"
 #include "register/register.h"
 #include "register/seen_dip.h"
+#include "register/seen_places.h"
 #include "rig/rig_job.h"
 #include "samples/samples.h"
+#include "scan/board.h"
 #include "settings/correction_file.h"
 #include "temporary_folder.h"
 
@@ -33,14 +35,15 @@ Moved by(const Vec2& shift) {
 class SeenOfAJob : public testing::Test {
  protected:
   SeenOfAJob() {
-    write_sample("sphere", make_sample("sphere"), folder_.path());
+    write_sample(model_, make_sample(model_), folder_.path());
     dip("job", {});
   }
 
   // With that correction; none: without.
   void dip(const std::string& name, const std::filesystem::path& correction) {
     JobConfig config;
-    config.model = folder_ / "sphere.obj";
+    config.model = folder_ / (model_ + ".obj");
+    config.object.pose.rotate_deg = rotate_deg_;
     config.output = folder_ / name;
     config.design.film.elements = 2000;
     config.design.film.width_mm = config.design.film.height_mm = 160;
@@ -81,12 +84,32 @@ class SeenOfAJob : public testing::Test {
     write_file(folder_ / name, text);
     return folder_ / name;
   }
+  // As a scan that shows the corners of a board, which landed `off` from where they were meant.
+  std::filesystem::path scan(const PrintedFilm& film, const Board& board, const Vec2& off,
+                             bool mirrored = false) const {
+    std::string text = "column,row,x,y,z\n";
+    constexpr int kMost = 12;
+    for (int column = -kMost; column <= kMost; ++column)
+      for (int row = -kMost; row <= kMost; ++row) {
+        const auto at = film.map->to_object(board.on_film({column, row}) - off);
+        if (!at) continue;
+        Vec3 position = position_at(film.posed.mesh(), *at);
+        if (mirrored) position.x() *= -1;
+        text += fmt::format("{},{},{},{},{}\n", (mirrored ? -column : column) + kMost, row + kMost,
+                            position.x(), position.y(), position.z());
+      }
+    write_file(folder_ / "scan.csv", text);
+    return folder_ / "scan.csv";
+  }
+
   std::string corrected(const RigJob& job, const std::filesystem::path& places) const {
     CorrectRequest request;
     request.scans = {places};
     return correct_job(job, request, RunContext()).text;
   }
 
+  std::string model_ = "sphere";
+  Vec3 rotate_deg_ = Vec3::Zero();
   TemporaryFolder folder_;
   RunContext context_;
 };
@@ -134,6 +157,47 @@ TEST_F(SeenOfAJob, ADipIsNoWitnessTwice) {
   // Two dips 2 mm apart: each 1 mm off their mean, as a sample of two tells it.
   EXPECT_NEAR(between_dips_mm({one, other}), std::sqrt(2.0), 0.02);
   EXPECT_EQ(between_dips_mm({one}), 0);
+}
+
+TEST_F(SeenOfAJob, AScanIsReadAsTheBoardThatFitsClearlyBetter) {
+  const PrintedFilm printed = film();
+  const FilmOptions sheet = job().config.design.film;
+  CorrectRequest request;
+  request.aligned = true;
+  for (const Board& board : {tint_board(5), black_board(5)}) {
+    const SeenPlaces seen =
+        read_seen_places(scan(printed, board, {0.5, 0.3}), printed, sheet, request, context_);
+    EXPECT_EQ(seen.board, board.name);
+    EXPECT_GT(seen.places.size(), 20U);
+    EXPECT_NEAR(seen_dip("scan.csv", seen, printed, context_).rms_off_mm, std::hypot(0.5, 0.3),
+                0.1);
+  }
+  // Halfway from one board to the other.
+  const auto between = scan(printed, tint_board(5), {1.25, 1.25});
+  const auto read = [&] { return read_seen_places(between, printed, sheet, request, context_); };
+  EXPECT_TRUE(contains(refusal([&] { read(); }), "say which one was dipped"));
+  request.board = "tints";
+  EXPECT_EQ(read().board, "tints");
+}
+
+// Of an object that is not its own mirror image.
+TEST_F(SeenOfAJob, AMirroredScanIsRefused) {
+  model_ = "pyramid";
+  write_sample(model_, make_sample(model_), folder_.path());
+  rotate_deg_ = {12, -20, 25};
+  dip("leaning", {});
+  const PrintedFilm printed = film("leaning");
+  const FilmOptions sheet = job("leaning").config.design.film;
+  CorrectRequest request;
+  request.board = "black";
+  const auto read = [&](bool mirrored) {
+    return refusal([&] {
+      read_seen_places(scan(printed, black_board(5), {0.5, 0.3}, mirrored), printed, sheet, request,
+                       context_);
+    });
+  };
+  EXPECT_EQ(read(false), "");
+  EXPECT_TRUE(contains(read(true), "only the scan's mirror image fits")) << read(true);
 }
 
 TEST_F(SeenOfAJob, TheCorrectionIsUndoneWhereItChangesFast) {
