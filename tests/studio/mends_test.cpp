@@ -160,7 +160,18 @@ TEST(TearMends, TheDepthThatIsOfferedIsALittleBeforeMuchIsTorn) {
   EXPECT_EQ(offered(film), 11.5);
   EXPECT_EQ(offered(dipped({3, kNever, kNever}, 20)), 0);  // a thread is none
   EXPECT_EQ(offered(dipped({3, 1.2, kNever}, 20)), 0);     // not worth it
-  config.design.trajectory.tilt_deg = 10;                  // a tilted dip's depth is another's
+  // How much film floats beside the object does not matter.
+  DippedFilm wide = film;
+  auto mesh = std::make_shared<FilmMesh>(film.mesh());
+  mesh->u.insert(mesh->u.end(), {{100, 0}, {200, 0}, {100, 100}});
+  mesh->triangles.push_back({18, 19, 20});
+  wide.shared_mesh = mesh;
+  wide.state.insert(wide.state.end(), 3, VertexState::kUnattached);
+  wide.position.insert(wide.position.end(), 3, Vec3::Zero());
+  wide.torn_at_mm.push_back(kNever);
+  wide.torn.push_back(0);
+  EXPECT_EQ(offered(wide), 11.5);
+  config.design.trajectory.tilt_deg = 10;  // a tilted dip's depth is another's
   EXPECT_EQ(offered(film), 0);
   config.design.trajectory = {.path = {{}, {.lower_mm = 20}}};
   EXPECT_EQ(offered(film), 0);
