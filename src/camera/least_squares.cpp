@@ -3,6 +3,7 @@
 
 #include <cminpack.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -26,14 +27,16 @@ struct Problem {
 constexpr int kWantsResiduals = 1;
 constexpr int kStop = -1;
 
-// By central differences; for unknowns of any size.
+// By central differences; for unknowns of any size. A step of one that is nearly 0 must not be lost
+// in what it is added to.
 Eigen::MatrixXd slope(const Residuals& residuals, Eigen::VectorXd x, Eigen::Index values) {
   static const double kStep = std::cbrt(std::numeric_limits<double>::epsilon());
+  constexpr double kNearlyZero = 1e-4;
   Eigen::MatrixXd j(values, x.size());
   for (Eigen::Index k = 0; k < x.size(); ++k) {
     check_cancelled();
     const double at = x[k];
-    const double step = at == 0 ? kStep : kStep * std::abs(at);
+    const double step = at == 0 ? kStep : kStep * std::max(std::abs(at), kNearlyZero);
     x[k] = at + step;
     j.col(k) = residuals(x);
     x[k] = at - step;
