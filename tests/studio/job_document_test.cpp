@@ -84,6 +84,19 @@ TEST_F(JobDocumentTest, AFileThatIsRefusedChangesNothing) {
   EXPECT_EQ(document.machine_names(), std::vector<std::string>{"output.no_clobber"});
 }
 
+// A job file says nothing of the job's name, nor of what its page shows.
+TEST_F(JobDocumentTest, AFileThatTakesItsPlaceLeavesNameAndPage) {
+  write_file(folder / "box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  Json own = turned("+x");
+  own["name"] = "helmet";
+  own["page"] = {{"dip", 1}};
+  accept(own);
+  const OtherJob other = document.by_file(folder / "box.obj", config_of_file(folder / "box.obj"));
+  EXPECT_EQ(other.document["name"], "helmet");
+  EXPECT_EQ(other.document["page"], own["page"]);
+  EXPECT_FALSE(other.document["object"].contains("down"));
+}
+
 TEST_F(JobDocumentTest, AModelThatIsNotThereIsNoJob) {
   EXPECT_THROW(config_of_file(folder / "none.obj"), InputError);
   write_file(folder / "empty.toml", "[print]\ndpi = 100\n");
