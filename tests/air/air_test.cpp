@@ -14,7 +14,16 @@
 namespace hydrodip {
 namespace {
 
-using namespace cups;
+using cups::kCup;
+using cups::Kept;
+using cups::kept_by_leaning_cup;
+using cups::kRad;
+using cups::kSegments;
+using cups::mesh_of;
+using cups::moved;
+using cups::polygon_area;
+using cups::polygon_outline;
+using cups::turned;
 
 TrappedAir air_of(const TriangleMesh& mesh, const Trajectory& way, int cells = 200000) {
   const Surface surface(mesh.positions, mesh.triangles);

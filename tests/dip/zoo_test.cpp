@@ -14,8 +14,9 @@
 namespace hydrodip {
 namespace {
 
-void expect_sound(const shapes::Shape& shape, const FilmOptions& film_options, DipOptions options,
-                  const RunContext& context, const TrajectoryOptions& way = {}) {
+void expect_sound(const shapes::Shape& shape, const FilmOptions& film_options,
+                  const DipOptions& options, const RunContext& context,
+                  const TrajectoryOptions& way = {}) {
   const FilmMesh mesh = make_film_mesh(film_options);
   const Surface surface(shape.positions, shape.triangles);
   const Trajectory trajectory = make_trajectory(way, shape.positions);

@@ -191,8 +191,9 @@ GrayImage photograph(const Scene& scene) {
           for (int x = x0; x < std::min(width, x0 + kBlock_px); ++x) {
             double sum = 0;
             for (int s = 0; s < kSamples * kSamples; ++s) {
-              const double a = (x - x0 + (s % kSamples + 0.5) / kSamples) / kBlock_px;
-              const double b = (y - y0 + (s / kSamples + 0.5) / kSamples) / kBlock_px;
+              const int across = s % kSamples, down = s / kSamples;
+              const double a = (x - x0 + (across + 0.5) / kSamples) / kBlock_px;
+              const double b = (y - y0 + (down + 0.5) / kSamples) / kBlock_px;
               const Vec3 at =
                   (1 - b) * ((1 - a) * ray[0] + a * ray[1]) + b * ((1 - a) * ray[2] + a * ray[3]);
               double shown = scene.background;

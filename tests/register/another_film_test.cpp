@@ -40,6 +40,7 @@ Tank calibrated_tank() {
   std::mt19937 random(1);
   const auto truth = fixtures::synthetic_tank(false);
   std::vector<SeenPhoto> photos;
+  photos.reserve(12);
   for (int n = 0; n < 12; ++n)
     photos.push_back({"photo", truth.seen(phone_lens(), random_view(random, 28), 0.03, random)});
   Tank tank = calibrate_tank(photos, 4000, 3000, RunContext());

@@ -345,7 +345,7 @@ TEST(Zip, MoreBytesOrFilesThanAJobMayHaveAreRefused) {
                            std::uintmax_t most_bytes) {
     std::filesystem::remove(folder / "toy.zip");
     make_zip(folder / "toy.zip", files);
-    const std::string said = refusal([&] {
+    std::string said = refusal([&] {
       unpack_zip(folder / "toy.zip", most_bytes,
                  [&](const std::string& name) { return folder / "files" / name; });
     });
