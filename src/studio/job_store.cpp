@@ -110,7 +110,14 @@ Json JobStore::read(const std::string& job) const {
 }
 
 void JobStore::write(const std::string& job, const Json& state) const {
-  write_whole(home(job) / kState, text_of(state));
+  const std::filesystem::path file = home(job) / kState;
+  Json before = read(job);
+  std::error_code none;
+  const auto changed = std::filesystem::last_write_time(file, none);
+  write_whole(file, text_of(state));
+  if (!before.is_object() || none) return;
+  before["open"] = state.value("open", false);
+  if (before == state) std::filesystem::last_write_time(file, changed, none);
 }
 
 std::vector<std::string> JobStore::jobs() const {

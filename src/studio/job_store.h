@@ -35,6 +35,8 @@ class JobStore {
 
   // Null if it cannot be read, or is no job's.
   Json read(const std::string& job) const;
+  // A job that only its tabs have left or come to has not changed, and keeps its place among the
+  // recent ones.
   void write(const std::string& job, const Json& state) const;
 
   // RECENT of docs/studio-api.md, latest first.

@@ -60,6 +60,24 @@ TEST_F(OpenJobTest, ATabClosesWhereNothingCanBeKept) {
   EXPECT_NO_THROW(job->say_goodbye("over"));
 }
 
+// Its tab may be known to be gone only when another job has been worked on for a while.
+TEST_F(OpenJobTest, LeavingItIsNoChangeOfIt) {
+  const auto job = open();
+  const auto stream = job->connect("c1");
+  job->put(turned());
+  const auto changed = std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
+  std::filesystem::last_write_time(store.home(name) / "state.json", changed);
+  ASSERT_TRUE(store.read(name)["open"]);
+  job->disconnect("c1", stream);
+  EXPECT_FALSE(store.read(name)["open"]);
+  EXPECT_EQ(std::filesystem::last_write_time(store.home(name) / "state.json"), changed);
+  const auto again = job->connect("c1");
+  auto change = turned();
+  change.document["object"]["down"] = "-x";
+  job->put(change);
+  EXPECT_GT(std::filesystem::last_write_time(store.home(name) / "state.json"), changed);
+}
+
 // The edit holds for everybody who has the job open, whether or not the disk has room for it.
 TEST_F(OpenJobTest, AnEditThatCannotBeKeptIsSaidAndHolds) {
   const auto job = open();
