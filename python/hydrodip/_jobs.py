@@ -49,19 +49,31 @@ def parameters() -> Tuple[_results.Parameter, ...]:
     )
 
 
+def _is_number(value: Any) -> bool:
+    return hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0
+
+
+def _is_path(value: Any) -> bool:
+    return isinstance(value, (str, os.PathLike))
+
+
+def _is_switch(value: Any) -> bool:
+    return type(value).__name__ in ("bool", "bool_")  # numpy's
+
+
 def _numbers(value: Any) -> List[float]:
     if isinstance(value, (str, bytes)):
         raise TypeError("not a number")
-    if hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0:
+    if _is_number(value):
         return [float(value)]
     return [x for item in value for x in _numbers(item)]
 
 
 # As the settings take it: text, a number, or numbers in a row.
 def _value(value: Any, yes_no: Tuple[str, str]) -> Any:
-    if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):  # numpy's
+    if _is_switch(value):
         return yes_no[0] if value else yes_no[1]
-    if isinstance(value, (str, os.PathLike)):
+    if _is_path(value):
         return os.fspath(value)
     try:
         numbers = _numbers(value)
@@ -72,7 +84,7 @@ def _value(value: Any, yes_no: Tuple[str, str]) -> Any:
 
 def _setting(name: str, value: Any, origin: str) -> Tuple[str, Any, str, str]:
     switch = _records().get(name, {}).get("choices") == ["on", "off"]
-    shown = os.fspath(value) if isinstance(value, (str, os.PathLike)) else repr(value)
+    shown = os.fspath(value) if _is_path(value) else repr(value)
     return name, _value(value, ("on", "off") if switch else ("true", "false")), shown, origin
 
 
@@ -113,7 +125,7 @@ def _files(given: Any, key: str) -> List[str]:
         return []
     single = isinstance(given, (str, os.PathLike, Mapping)) or not isinstance(given, Iterable)
     files = [given] if single else list(given)
-    if all(isinstance(file, (str, os.PathLike)) for file in files):
+    if all(_is_path(file) for file in files):
         return [os.fspath(file) for file in files]
     raise TypeError(f"{key} is a file or a list of files, not {given!r}")
 
@@ -122,20 +134,8 @@ def _is_text(value: Any) -> bool:
     return isinstance(value, str)
 
 
-def _is_number(value: Any) -> bool:
-    return hasattr(value, "__float__") and getattr(value, "ndim", 0) == 0
-
-
 def _is_count(value: Any, end: int = 2**31) -> bool:
     return hasattr(value, "__index__") and 0 <= value < end
-
-
-def _is_switch(value: Any) -> bool:
-    return type(value).__name__ in ("bool", "bool_")
-
-
-def _is_path(value: Any) -> bool:
-    return isinstance(value, (str, os.PathLike))
 
 
 _VALUES = "a text of values to try, as in '0.5:0.8:0.1' or '0.5,0.65'"
@@ -303,7 +303,7 @@ def orient(given: Dict[str, Any]) -> _results.Orientation:
 
 
 def plan(given: Dict[str, Any]) -> _results.Plan:
-    if given.get("output") is not None and not isinstance(given["model"], (str, os.PathLike)):
+    if given.get("output") is not None and not _is_path(given["model"]):
         raise _core.InputError(
             "a plan with output= is a job to print, which needs the model's file: save the mesh first"
         )

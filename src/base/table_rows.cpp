@@ -1,5 +1,8 @@
 #include "base/table_rows.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "base/text.h"
 
 namespace hydrodip {
@@ -36,6 +39,10 @@ bool TableRows::next() {
     if (!cells_.empty() && cells_.front().front() != '#') return true;
   }
   return false;
+}
+
+bool TableRows::is(std::string_view header) const {
+  return fmt::format("{}", fmt::join(cells_, ",")) == header;
 }
 
 }  // namespace hydrodip

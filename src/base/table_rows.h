@@ -18,7 +18,9 @@ class TableRows {
 
   bool next();                                                      // false: there are no more
   const std::vector<std::string>& cells() const { return cells_; }  // one at least
-  std::size_t line() const { return line_; }                        // from 1
+  // Whether the cells are those, written with commas between.
+  bool is(std::string_view header) const;
+  std::size_t line() const { return line_; }  // from 1
 
  private:
   std::string_view rest_;

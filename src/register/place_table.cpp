@@ -1,7 +1,6 @@
 #include "register/place_table.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -28,10 +27,6 @@ constexpr std::size_t kLongestHeader = 1000;
 constexpr std::size_t kMostRows = 1000000;
 constexpr std::uintmax_t kLargestFile = 256 << 20;
 
-bool is_header(const std::vector<std::string>& cells) {
-  return fmt::format("{}", fmt::join(cells, ",")) == kHeader;
-}
-
 }  // namespace
 
 bool is_place_table(const std::filesystem::path& file) {
@@ -54,7 +49,7 @@ std::vector<PlaceRow> read_place_table(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes =
       in_utf8(read_small_file(file, kLargestFile, "a table of places"));
   TableRows table(text_of(bytes));
-  if (!table.next() || !is_header(table.cells()))
+  if (!table.next() || !table.is(kHeader))
     throw InputError(
         fmt::format("{}: a table of places begins with the line {}", file.string(), kHeader));
   std::vector<PlaceRow> rows;

@@ -1,7 +1,6 @@
 #include "settings/path_file.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -49,16 +48,12 @@ Keyframe keyframe_of(const std::vector<Text>& cells, const std::string& origin) 
   return {v[0], v[1], v[2], v[3], v[4], v[5]};
 }
 
-bool is_header(const std::vector<std::string>& cells) {
-  return fmt::format("{}", fmt::join(cells, ",")) == kHeader;
-}
-
 }  // namespace
 
 bool is_path_file(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = in_utf8(read_file(file));
   TableRows rows(text_of(bytes));
-  return rows.next() && is_header(rows.cells());
+  return rows.next() && rows.is(kHeader);
 }
 
 std::vector<Keyframe> path_of_rows(const std::string& text, const std::string& origin) {
@@ -104,7 +99,7 @@ std::vector<Keyframe> read_path(const std::filesystem::path& file) {
   TableRows rows(text_of(bytes));
   const auto origin = [&] { return fmt::format("{}:{}", file.string(), rows.line()); };
   const bool any = rows.next();
-  if (!any || !is_header(rows.cells()))
+  if (!any || !rows.is(kHeader))
     throw InputError(
         fmt::format("{}: a path begins with the line {}", any ? origin() : file.string(), kHeader));
   std::vector<Keyframe> keyframes;

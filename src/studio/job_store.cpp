@@ -110,11 +110,15 @@ Json JobStore::read(const std::string& job) const {
 }
 
 void JobStore::write(const std::string& job, const Json& state) const {
+  write_whole(home(job) / kState, text_of(state));
+}
+
+void JobStore::write_left(const std::string& job, const Json& state) const {
   const std::filesystem::path file = home(job) / kState;
   Json before = read(job);
   std::error_code none;
   const auto changed = std::filesystem::last_write_time(file, none);
-  write_whole(file, text_of(state));
+  write(job, state);
   if (!before.is_object() || none) return;
   before["open"] = state.value("open", false);
   if (before == state) std::filesystem::last_write_time(file, changed, none);

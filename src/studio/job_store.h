@@ -35,9 +35,10 @@ class JobStore {
 
   // Null if it cannot be read, or is no job's.
   Json read(const std::string& job) const;
-  // A job that only its tabs have left or come to has not changed, and keeps its place among the
-  // recent ones.
   void write(const std::string& job, const Json& state) const;
+  // Of a job that its tabs have left. If nothing else has changed, it keeps its place among the
+  // recent ones.
+  void write_left(const std::string& job, const Json& state) const;
 
   // RECENT of docs/studio-api.md, latest first.
   Json recent(std::size_t most) const;

@@ -119,12 +119,13 @@ void OpenJob::autosave() const {
   }
 }
 
-// With the lock. Where nobody is left who could be told that it is not.
-void OpenJob::autosave_if_possible() const {
+// With the lock. Nobody is left who could be told that it was not kept; whoever made the changes
+// before was.
+void OpenJob::keep_as_left() const {
+  if (let_go_) return;
   try {
-    autosave();
+    store_.write_left(job_, document_.state(!tabs_.none()));
   } catch (const std::exception&) {
-    // The changes before were kept, or whoever made them was told.
   }
 }
 
@@ -331,7 +332,7 @@ std::shared_ptr<EventStream> OpenJob::connect(const std::string& client) {
 void OpenJob::disconnect(const std::string& client, const std::shared_ptr<EventStream>& stream) {
   const std::lock_guard lock(mutex_);
   if (!tabs_.disconnect(client, stream) || !tabs_.none()) return;
-  autosave_if_possible();  // nobody has it open: what comes later recovers nothing
+  keep_as_left();  // nobody has it open: what comes later recovers nothing
   at_rest_ = true;
   live_->rest();
 }
@@ -361,7 +362,7 @@ void OpenJob::say_goodbye(const std::string& text) {
   work_.cancel();  // before the lock, which may be held for it
   const std::lock_guard lock(mutex_);
   tabs_.close(text);
-  autosave_if_possible();
+  keep_as_left();
 }
 
 bool OpenJob::let_go() {

@@ -117,7 +117,7 @@ class OpenJob {
   void become(const OtherJob& other, const std::string& client);
   void ask(bool live);
   void autosave() const;
-  void autosave_if_possible() const;
+  void keep_as_left() const;
   void tell_saved() const;
   void tell_files() const;
   Json files_json() const;
