@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
+#include <optional>
 
+#include "base/begun.h"
 #include "base/error.h"
 #include "base/run_scope.h"
 #include "base/unicode.h"
 #include "image/files.h"
+#include "image/picture_file.h"
 #include "model_io/model_file.h"
 #include "model_io/model_folder.h"
+#include "model_io/model_pictures.h"
 #include "model_io/text.h"
 #include "object/polygon.h"
 
@@ -85,13 +88,13 @@ Unit unit_for(const std::string& asked, const std::string& in_file, const Format
 // ---- reading ------------------------------------------------------------------------------------
 
 ModelFile read_model(const fs::path& path, const Format& format, ModelFolder& folder,
-                     const RunContext& context) {
+                     ExpectedPictures* expected, const RunContext& context) {
   const std::string shown = path.string(), name = path.filename().string();
   const FileBytes bytes = in_utf8(folder.read_path(path));
   if (bytes.empty())
     throw InputError(fmt::format("{}: the file is empty; export the model again.", shown));
   try {
-    ModelFile file = format.read({shown, name, bytes, folder, context});
+    ModelFile file = format.read({shown, name, bytes, folder, expected, context});
     for (std::size_t v = 0; v < file.positions.size(); ++v) {
       const Vec3& p = file.positions[v];
       if (p.allFinite() && p.cwiseAbs().maxCoeff() <= 1e30) continue;
@@ -106,137 +109,58 @@ ModelFile read_model(const fs::path& path, const Format& format, ModelFolder& fo
   }
 }
 
-// ---- pictures -----------------------------------------------------------------------------------
-
-void apply_range(Image& image, float base, float gain) {
-  if (base == 0 && gain == 1) return;
-  std::array<std::uint8_t, 256> table{};
-  for (std::size_t i = 0; i < 256; ++i)
-    table[i] =
-        std::uint8_t(std::lround(255 * std::clamp(base + gain * float(i) / 255, 0.0F, 1.0F)));
-  CheckEvery check(1 << 20);
-  for (std::size_t i = 0; i < image.rgba.size(); ++i) {
-    check();
-    if (i % 4 != 3) image.rgba[i] = table[image.rgba[i]];
-  }
-}
-
-void apply_alpha(Image& image, Alpha alpha, float cutoff) {
-  if (alpha == Alpha::kBlend) return;
-  CheckEvery check(1 << 20);
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
-    check();
-    const bool shows = alpha == Alpha::kOpaque || float(image.rgba[i]) >= cutoff * 255;
-    image.rgba[i] = shows ? 255 : 0;
-  }
-}
-
-// Reads pictures once each, and tells of those that cannot be had.
-class Pictures {
- public:
-  Pictures(const std::string& path, const ModelFile& file, ModelFolder& folder,
-           LoadedObject& loaded, const RunContext& context)
-      : path_(path), file_(file), folder_(folder), loaded_(loaded), context_(context) {}
-
-  // Index of the material's picture among the object's textures, or -1.
-  int texture(const FileMaterial& material) {
-    const FilePicture& picture = file_.pictures[std::size_t(material.picture)];
-    const bool mask = material.alpha == Alpha::kMask;
-    const auto key =
-        std::make_tuple(picture.embedded ? fmt::format("\n{}", material.picture) : file_of(picture),
-                        int(material.alpha), mask ? material.alpha_cutoff : 0.0F,
-                        material.picture_base, material.picture_gain);
-    const auto [known, is_new] = textures_.try_emplace(key, -1);
-    if (!is_new) return known->second;
-    context_.check_cancelled();
-    try {
-      Image image = read(picture);
-      apply_range(image, material.picture_base, material.picture_gain);
-      apply_alpha(image, material.alpha, material.alpha_cutoff);
-      pixels_ += double(image.width_px) * image.height_px;
-      known->second = int(loaded_.object.textures.size());
-      loaded_.object.textures.push_back(std::make_shared<const Image>(std::move(image)));
-    } catch (const InputError& error) {
-      tell(error.what());
-    }
-    if (pixels_ > kMostPixels)
-      throw InputError(
-          fmt::format("{}: its pictures would take more than {:.0f} GB of memory; scale them down.",
-                      path_, 4 * kMostPixels / 1e9));
-    return known->second;
-  }
-
- private:
-  // Copies for other thresholds of alpha or other ranges count too.
-  static constexpr double kMostPixels = 1U << 30U;
-
-  // One file's names are often written in several ways.
-  std::string file_of(const FilePicture& picture) const {
-    const std::string file = folder_.identity(picture.name);
-    return file.empty() ? picture.name : file;
-  }
-
-  Image read(const FilePicture& picture) {
-    if (picture.embedded) {
-      if (!picture.problem.empty()) throw InputError(picture.problem);
-      return decode_image(picture.bytes, picture.name);
-    }
-    const fs::path path = folder_.find(picture.name);
-    if (path.empty())
-      throw InputError(
-          fmt::format("The texture {} that {} refers to is missing; put it beside the "
-                      "model.",
-                      picture.name.substr(0, 300), picture.asked_by));
-    return decode_image(folder_.read_path(path), path.string());
-  }
-
-  void tell(const std::string& sentence) {
-    constexpr std::size_t kMost = 20;
-    loaded_.picture_problems.push_back(sentence);
-    if (loaded_.picture_problems.size() < kMost) {
-      context_.warn(sentence + " The material's base colour is used instead.");
-    } else if (loaded_.picture_problems.size() == kMost) {
-      context_.warn("More textures are missing or damaged than are named here.");
-    }
-  }
-
-  const std::string path_;  // the model's
-  const ModelFile& file_;
-  ModelFolder& folder_;
-  LoadedObject& loaded_;
-  const RunContext& context_;
-  std::map<std::tuple<std::string, int, float, float, float>, int> textures_;
-  double pixels_ = 0;
-};
-
 // ---- the object ---------------------------------------------------------------------------------
 
 // Materials as they are used first, and each once more without its picture where faces have no
 // texture coordinates.
 class Materials {
  public:
-  // only_texture: one picture that decides the colour alone (--texture), or null.
-  Materials(const ModelFile& file, Pictures& pictures, std::shared_ptr<const Image> only_texture,
-            Object& object)
+  // `only_texture`: one picture decides the colour alone (--texture).
+  Materials(const ModelFile& file, ModelPictures& pictures, bool only_texture, Object& object)
       : file_(file),
         pictures_(pictures),
-        only_texture_(std::move(only_texture)),
+        only_texture_(only_texture),
         object_(object),
         with_picture_(file.materials.size() + 1, -1),
-        without_(file.materials.size() + 1, -1) {
-    if (only_texture_) object_.textures.push_back(only_texture_);
-  }
+        without_(file.materials.size() + 1, -1) {}
 
   int get(std::int32_t number, bool has_uvs) {
     int& index = with_picture_[std::size_t(number + 1)];
     if (index < 0) index = add(number, true);
-    if (has_uvs || object_.materials[std::size_t(index)].texture < 0) return index;
+    if (has_uvs || !has_picture(index)) return index;
     int& bare = without_[std::size_t(number + 1)];
     if (bare < 0) bare = add(number, false);
     return bare;
   }
 
+  // Waits for the picture: whether it can be had.
+  bool has_picture(int index) {
+    if (only_texture_) return object_.materials[std::size_t(index)].texture >= 0;
+    const int picture = picture_of_[std::size_t(index)];
+    return picture >= 0 && pictures_.can_be_had(picture);
+  }
+
+  // texture_of[n]: where the picture of number n is among the object's textures, -1: not there.
+  void show(const std::vector<int>& texture_of) {
+    for (std::size_t m = 0; m < picture_of_.size(); ++m) {
+      if (picture_of_[m] < 0) continue;
+      Material& material = object_.materials[m];
+      material.texture = texture_of[std::size_t(picture_of_[m])];
+      if (material.texture < 0) continue;
+      const Shown& shown = shown_[m];
+      material.base_color = shown.tint;
+      material.wrap_u = shown.wrap_u;
+      material.wrap_v = shown.wrap_v;
+    }
+  }
+
  private:
+  // Of a material whose picture can be had.
+  struct Shown {
+    LinearColor tint;
+    Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
+  };
+
   int add(std::int32_t number, bool with_picture) {
     const FileMaterial* source = number < 0 ? nullptr : &file_.materials[std::size_t(number)];
     Material material;
@@ -245,26 +169,29 @@ class Materials {
       material.base_color = source->base_color;
       material.color_is_default = source->color_is_default;
     }
+    int picture = -1;
+    Shown shown;
     if (with_picture && only_texture_) {
       material.texture = 0;
       material.base_color = kWhite;
     } else if (with_picture && source && source->picture >= 0) {
-      material.texture = pictures_.texture(*source);
-      if (material.texture >= 0) {
-        material.base_color = source->texture_tint;
-        material.wrap_u = source->wrap_u;
-        material.wrap_v = source->wrap_v;
-      }
+      picture = pictures_.show(*source);
+      shown = {source->texture_tint, source->wrap_u, source->wrap_v};
     }
     object_.materials.push_back(material);
+    picture_of_.push_back(picture);
+    shown_.push_back(shown);
     return int(object_.materials.size()) - 1;
   }
 
   const ModelFile& file_;
-  Pictures& pictures_;
-  std::shared_ptr<const Image> only_texture_;
+  ModelPictures& pictures_;
+  const bool only_texture_;
   Object& object_;
   std::vector<int> with_picture_, without_;
+  // Per material of the object: its picture's number among those shown, -1: none.
+  std::vector<int> picture_of_;
+  std::vector<Shown> shown_;
 };
 
 // Cuts the file's polygons into the object's triangles.
@@ -307,7 +234,7 @@ class ObjectMaker {
     const int material = materials_.get(source, has_uvs);
     const bool transformed = !only_texture_ && source >= 0 && has_uvs &&
                              file_.materials[std::size_t(source)].transformed &&
-                             object_.materials[std::size_t(material)].texture >= 0;
+                             materials_.has_picture(material);
     const FileMaterial* moved = transformed ? &file_.materials[std::size_t(source)] : nullptr;
     const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
       object_.triangles.push_back({file_.corners[a], file_.corners[b], file_.corners[c]});
@@ -389,7 +316,7 @@ PolygonMesh load_polygons(const fs::path& path, const RunContext& context) {
         fmt::format("{}: quads are read from OBJ and PLY files; export the mesh as one of them",
                     path.string()));
   ModelFolder folder(path);
-  const ModelFile file = read_model(path, format, folder, context.quiet());
+  const ModelFile file = read_model(path, format, folder, nullptr, context.quiet());
   context.check_cancelled();
   PolygonMesh mesh;
   std::map<std::array<double, 3>, std::int32_t> index;
@@ -416,24 +343,29 @@ LoadedObject load_object(const fs::path& path, const LoadOptions& options,
   const Format& format = format_of(path);
   unit_for(options.units, "", format);  // refuses a bad --units before the long part
   ModelFolder folder(path, options.confined_to);
-  std::shared_ptr<const Image> only_texture;
-  if (!options.texture.empty() && fs::exists(path))
-    only_texture = std::make_shared<const Image>(load_image(options.texture));
+  // What is no picture is refused before the long part.
+  std::vector<std::uint8_t> texture_file;
+  std::optional<Begun<Image>> only_texture;
+  if (!options.texture.empty() && fs::exists(path)) {
+    texture_file = read_picture(options.texture);
+    only_texture.emplace([&] { return decode_image(texture_file, options.texture.string()); });
+  }
+  ModelPictures pictures(path.string(), folder, context);
   context.check_cancelled();
-  ModelFile file = read_model(path, format, folder, context);
+  ModelFile file = read_model(path, format, folder, only_texture ? nullptr : &pictures, context);
   context.check_cancelled();
 
   LoadedObject loaded;
-  loaded.picture_problems = file.color_problems;
-  Pictures pictures(path.string(), file, folder, loaded, context);
-  Materials materials(file, pictures, only_texture, loaded.object);
+  loaded.picture_problems = std::move(file.color_problems);
+  pictures.take_over(std::move(file.pictures));
+  Materials materials(file, pictures, only_texture.has_value(), loaded.object);
   if (only_texture) {
     forget_colors(file, path, options.texture, loaded.object);
     file.colors = {};
     folder.note(options.texture);
   }
   try {
-    ObjectMaker(path.string(), file, materials, only_texture != nullptr, loaded.object, context)
+    ObjectMaker(path.string(), file, materials, only_texture.has_value(), loaded.object, context)
         .make();
     const std::string file_units = file.units;
     const Unit unit = unit_for(options.units, file_units, format);
@@ -443,6 +375,9 @@ LoadedObject load_object(const fs::path& path, const LoadOptions& options,
     loaded.units = unit.name;
     loaded.units_are_told = !options.units.empty() || !file_units.empty() || *format.unit != 0;
     loaded.health = check_and_repair(loaded.object);
+    if (only_texture)
+      loaded.object.textures.push_back(std::make_shared<const Image>(only_texture->take()));
+    materials.show(pictures.take(loaded.object.textures, loaded.picture_problems));
   } catch (const std::bad_alloc&) {
     throw InputError(
         fmt::format("{}: not enough memory for a model of this size; simplify it.", path.string()));

@@ -85,12 +85,21 @@ class SideFiles {
   virtual std::optional<FileBytes> read(const std::string& name) = 0;
 };
 
+// Pictures that will be shown, told while the model is still read: they can be decoded meanwhile.
+class ExpectedPictures {
+ public:
+  virtual ~ExpectedPictures() = default;
+  // A face shows it so. Not an embedded one.
+  virtual void expect(const FilePicture& picture, const FileMaterial& material) = 0;
+};
+
 struct ModelInput {
   const std::string& path;  // for messages
   const std::string& name;  // the file's bare name, for messages about what it refers to
   const FileBytes& bytes;   // not empty
   SideFiles& side_files;
-  const RunContext& context;  // warnings; asked for a cancel every now and then
+  ExpectedPictures* expected;  // none: pictures are not shown
+  const RunContext& context;   // warnings; asked for a cancel every now and then
 };
 
 // All throw InputError and Cancelled. Memory: some tens of bytes per corner.

@@ -227,6 +227,9 @@ class ObjReader {
       if (!found.picture.empty()) {
         found.material.picture = std::int32_t(file_.pictures.size());
         file_.pictures.push_back({found.picture, name, false, {}, ""});
+        // The others of the library may be shown or not.
+        if (input_.expected != nullptr && found.material.picture == 0)
+          input_.expected->expect(file_.pictures.front(), found.material);
       }
       file_.materials[std::size_t(number)] = std::move(found.material);
     }

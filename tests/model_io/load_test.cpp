@@ -1,14 +1,15 @@
 #include "model_io/load.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
-
-#include <fstream>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <random>
+#include <string>
 
 #include "base/error.h"
 #include "model_io/model_files.h"
@@ -162,6 +163,66 @@ TEST(Load, DamagedTextureFallsBackWithAWarning) {
   RunContext context;
   EXPECT_TRUE(load_object((folder / "squares.obj"), {}, context).object.textures.empty());
   EXPECT_EQ(context.warnings().size(), 1u);
+}
+
+// Many pictures, of which some are missing, damaged, named twice or shown by no face: what is
+// shown, told and listed, and in which order, does not depend on the threads that read them.
+TEST(Load, PicturesComeInTheFacesOrderOnAnyNumberOfThreads) {
+  ModelFolder folder;
+  const auto load_on = [&](int threads, const LoadOptions& options) {
+    const RunContext context = RunContext().with_threads(threads);
+    LoadedObject loaded = load_object(folder / "many.obj", options, context);
+    return std::make_pair(std::move(loaded), context.warnings());
+  };
+  std::string obj = "mtllib many.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n", mtl;
+  for (int n = 0; n < 12; ++n) mtl += fmt::format("newmtl m{0}\nmap_Kd {0}.png\n", n);
+  mtl += "newmtl again\nmap_Kd ./8.PNG\n";
+  // The library's first is shown by none, and is missing.
+  for (const char* name : {"m9", "m8", "m2", "again", "m5", "m4", "m3", "m11", "m10", "m7", "m6"}) {
+    obj += fmt::format("usemtl {}\n", name);
+    for (int face = 0; face < 2; ++face)
+      obj += fmt::format("v 0 0 {0}\nv 1 0 {0}\nv 0 1 {0}\nf -3/1 -2/1 -1/1\n", obj.size());
+  }
+  obj += "usemtl m1\nv 0 0 9000\nv 1 0 9000\nv 0 1 9000\nf -3 -2 -1\n";  // without coordinates
+  folder.write("many.obj", obj);
+  folder.write("many.mtl", mtl);
+  for (int n = 1; n < 12; ++n)
+    if (n != 5) folder.write(fmt::format("{}.png", n), fixtures::png_of(1, 1, {{n, 0, 0}}));
+  folder.write("3.png", std::string("not a picture"));
+
+  const auto [one, told_by_one] = load_on(1, {});
+  std::vector<int> reds;
+  for (const auto& picture : one.object.textures) reds.push_back(picture->rgba[0]);
+  EXPECT_EQ(reds, (std::vector<int>{9, 8, 2, 4, 11, 10, 7, 6, 1}));
+  ASSERT_EQ(told_by_one.size(), 2U);
+  EXPECT_NE(told_by_one[0].find("5.png"), std::string::npos) << told_by_one[0];
+  EXPECT_NE(told_by_one[1].find("3.png"), std::string::npos) << told_by_one[1];
+  EXPECT_EQ(one.picture_problems.size(), 2U);
+  std::vector<std::string> files;
+  for (const auto& file : one.files) files.push_back(file.filename().string());
+  EXPECT_EQ(files,
+            (std::vector<std::string>{"many.obj", "many.mtl", "9.png", "8.png", "2.png", "4.png",
+                                      "3.png", "11.png", "10.png", "7.png", "6.png", "1.png"}));
+
+  for (int again = 0; again < 20; ++again) {
+    const auto [all, told] = load_on(0, {});
+    EXPECT_EQ(told, told_by_one);
+    EXPECT_EQ(all.files, one.files);
+    EXPECT_EQ(all.picture_problems, one.picture_problems);
+    EXPECT_EQ(all.object.material_of, one.object.material_of);
+    ASSERT_EQ(all.object.textures.size(), one.object.textures.size());
+    for (std::size_t n = 0; n < reds.size(); ++n)
+      EXPECT_EQ(all.object.textures[n]->rgba, one.object.textures[n]->rgba);
+    ASSERT_EQ(all.object.materials.size(), one.object.materials.size());
+    for (std::size_t n = 0; n < one.object.materials.size(); ++n)
+      EXPECT_EQ(all.object.materials[n].texture, one.object.materials[n].texture);
+  }
+  // With one picture for all, the model's own are not read.
+  const auto [replaced, told] = load_on(0, {.units = "", .texture = folder / "9.png"});
+  EXPECT_TRUE(told.empty());
+  EXPECT_EQ(replaced.files.size(), 3U);
+  ASSERT_EQ(replaced.object.textures.size(), 1U);
+  EXPECT_EQ(replaced.object.textures[0]->rgba[0], 9);
 }
 
 TEST(Load, MissingMtlIsAWarning) {
@@ -545,7 +606,7 @@ TEST(Load, DamagedFilesEndInAResultOrARefusal) {
   obj_in(folder);
   std::mt19937 random(20151);
   const char* count = std::getenv("HYDRODIP_FUZZ");
-  const int variants = count ? std::atoi(count) : 60;
+  const int variants = count ? std::stoi(count) : 60;
   for (const Sample& sample : samples_of_every_kind()) {
     int refused = 0;
     for (int i = 0; i < variants; ++i) {
