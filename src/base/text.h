@@ -43,10 +43,11 @@ inline std::string_view take_word(std::string_view& rest) {
 
 // Takes the next line off the front, without its line end: LF, CR LF, or CR alone.
 inline std::string_view take_line(std::string_view& rest) {
-  const std::size_t end = rest.find_first_of("\n\r");
+  std::size_t end = 0;  // find_first_of asks a function for every character
+  while (end < rest.size() && rest[end] != '\n' && rest[end] != '\r') ++end;
   const std::string_view line = rest.substr(0, end);
-  const bool both = rest.substr(line.size(), 2) == "\r\n";
-  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + (both ? 2 : 1));
+  const bool both = rest.substr(end, 2) == "\r\n";
+  rest.remove_prefix(std::min(rest.size(), end + (both ? 2 : 1)));
   return line;
 }
 
