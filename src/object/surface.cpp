@@ -8,9 +8,11 @@
 #include <cmath>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
+#include "base/begun.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/run_scope.h"
@@ -52,14 +54,26 @@ Closest closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
   return at(vb * scale, vc * scale);
 }
 
+// A tree for so many triangles takes a millisecond.
+constexpr std::size_t kWorthAThread = 4000;
+
 }  // namespace
 
 struct Surface::Impl {
-  RTCScene scene = nullptr;
   std::shared_ptr<const TriangleMesh> mesh;
+  RTCScene made = nullptr;
+  mutable std::once_flag is_built;
+  mutable std::optional<BegunWork> building;
 
   ~Impl() {
-    if (scene) rtcReleaseScene(scene);
+    building.reset();
+    if (made) rtcReleaseScene(made);
+  }
+
+  // Waits for it.
+  RTCScene scene() const {
+    std::call_once(is_built, [&] { building->finish(); });
+    return made;
   }
 
   const Vec3& corner(int triangle, int k) const {
@@ -167,11 +181,18 @@ Surface::Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>
 
 Surface::Surface(std::shared_ptr<const TriangleMesh> mesh) : impl_(std::make_unique<Impl>()) {
   impl_->mesh = std::move(mesh);
-  impl_->scene = rtcNewScene(device());
-  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
-  if (!impl_->mesh->triangles.empty())
-    add_triangles(impl_->scene, impl_->mesh->positions, impl_->mesh->triangles);
-  build(impl_->scene);
+  impl_->made = rtcNewScene(device());
+  rtcSetSceneFlags(impl_->made, RTC_SCENE_FLAG_ROBUST);
+  const auto build_here = [mesh = impl_->mesh.get(), scene = impl_->made] {
+    if (!mesh->triangles.empty()) add_triangles(scene, mesh->positions, mesh->triangles);
+    build(scene);
+  };
+  if (impl_->mesh->triangles.size() < kWorthAThread) {
+    std::call_once(impl_->is_built, build_here);
+    return;
+  }
+  impl_->building.emplace(build_here);
+  if (!impl_->building->has_begun()) impl_->scene();
 }
 
 Surface::~Surface() = default;
@@ -185,7 +206,7 @@ std::optional<SurfaceHit> Surface::first_hit(const Vec3& origin, const Vec3& dir
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect1(impl_->scene, &context, &ray);
+  rtcIntersect1(impl_->scene(), &context, &ray);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   SurfaceHit hit;
@@ -216,7 +237,7 @@ bool Surface::is_hit(const Vec3& origin, const Vec3& direction, double t_min, do
   RTCRay ray = ray_of(origin, direction, t_min, t_max);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded1(impl_->scene, &context, &ray);
+  rtcOccluded1(impl_->scene(), &context, &ray);
   return ray.tfar < 0;  // how Embree says so
 }
 
@@ -246,7 +267,7 @@ std::optional<SurfaceHit> Surface::closest_point(const Vec3& point, double max_d
     args->query->radius = with_slack(s.hit.t);
     return true;
   };
-  rtcPointQuery(impl_->scene, &query, &context, visit, &search);
+  rtcPointQuery(impl_->scene(), &query, &context, visit, &search);
   if (search.hit.triangle < 0) return std::nullopt;
   return search.hit;
 }
@@ -261,7 +282,7 @@ void Surface::triangles_near(const Vec3& point, double max_distance,
     static_cast<std::vector<int>*>(args->userPtr)->push_back(static_cast<int>(args->primID));
     return false;
   };
-  rtcPointQuery(impl_->scene, &query, &context, visit, &triangles);
+  rtcPointQuery(impl_->scene(), &query, &context, visit, &triangles);
 }
 
 Vec3 Surface::position(const SurfaceHit& hit) const {

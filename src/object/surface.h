@@ -21,7 +21,8 @@ struct SurfaceHit {
 // on the surface to about 1e-9 mm.
 class Surface {
  public:
-  // Degenerate triangles are never hit. Throws Cancelled, as check_cancelled() does.
+  // Degenerate triangles are never hit. What it takes to answer is made while the caller goes on;
+  // the first question waits for it. Both throw Cancelled, as check_cancelled() does.
   explicit Surface(std::shared_ptr<const TriangleMesh> mesh);
   // Of copies.
   Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
