@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/parallel.h"
 #include "dip/principal_stretch.h"
 #include "film/film_normals.h"
 #include "film/over_edge.h"
@@ -186,23 +187,25 @@ DippedFilm measured(const SharedFilmMesh& mesh, const DipState& state, const Dip
   // Vertices on the object are measured on the film that lies there; others on all around them.
   std::vector<double> flat(vertices, 0), now(vertices, 0), stretch(vertices, 0),
       weight(vertices, 0);
-  std::vector<TriangleMeasure> measures;
-  measures.reserve(film.triangles.size());
-  for (std::size_t t = 0; t < film.triangles.size(); ++t) {
-    measures.push_back(measure_triangle(film, result, surface, t));
+  std::vector<TriangleMeasure> measures(film.triangles.size());
+  const auto measure = [&](std::size_t t) {
+    measures[t] = measure_triangle(film, result, surface, t);
     const Triangle& v = film.triangles[t];
     const bool on_object = std::all_of(v.begin(), v.end(), [&](std::int32_t i) {
       return state.state[std::size_t(i)] == VertexState::kAttached;
     });
-    if (!on_object) continue;
-    result.wrinkled[t] = measures.back().least_stretch < options.material.wrinkle_stretch;
+    if (!on_object) return;
+    result.wrinkled[t] = measures[t].least_stretch < options.material.wrinkle_stretch;
     const bool told = !options.tears_at_mm.empty();
     const bool tears = (told && state.moment.travelled_mm >= options.tears_at_mm[t]) ||
                        (!told && folded(film, state, surface, t));
-    if (!tears || result.torn[t]) continue;
+    if (!tears || result.torn[t]) return;
     result.torn[t] = 1;
     result.torn_at_mm[t] = state.moment.travelled_mm;
-  }
+  };
+  parallel_for(measures.size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) measure(t);
+  });
   std::vector<std::uint8_t> done(vertices, 0);
   const auto gather = [&](auto counts) {
     for (std::size_t t = 0; t < film.triangles.size(); ++t) {

@@ -69,12 +69,15 @@ Image checkerboard(const SheetRaster& raster) {
   constexpr std::uint8_t kDark[4] = {38, 84, 124, 255};
   constexpr std::uint8_t kLight[4] = {255, 255, 255, 255};
   Image image(raster.width_px(), raster.height_px());
-  for (int y = 0; y < image.height_px; ++y)
-    for (int x = 0; x < image.width_px; ++x) {
-      const Vec2 u = raster.to_film(x + 0.5, y + 0.5) / kCheckerCell_mm;
-      const bool dark = (long(std::floor(u.x())) + long(std::floor(u.y()))) % 2 != 0;
-      std::copy_n(dark ? kDark : kLight, 4, image.pixel(x, y));
-    }
+  const auto cell = [](double at_mm) { return long(std::floor(at_mm / kCheckerCell_mm)); };
+  std::vector<long> column(std::size_t(image.width_px));
+  for (int x = 0; x < image.width_px; ++x)
+    column[std::size_t(x)] = cell(raster.to_film(x + 0.5, 0.5).x());
+  for (int y = 0; y < image.height_px; ++y) {
+    const long row = cell(raster.to_film(0.5, y + 0.5).y());
+    for (int x = 0; x < image.width_px; ++x)
+      std::copy_n((column[std::size_t(x)] + row) % 2 != 0 ? kDark : kLight, 4, image.pixel(x, y));
+  }
   return image;
 }
 

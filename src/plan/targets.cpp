@@ -6,7 +6,7 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/run_scope.h"
+#include "base/parallel.h"
 #include "image/color_difference.h"
 
 namespace hydrodip {
@@ -65,22 +65,23 @@ Targets spread_targets(const TriangleMesh& mesh, int count) {
     area_up_to.push_back(total += area_vector(mesh.positions, t).norm());
   Targets targets;
   if (!(total > 0)) return targets;
-  CheckEvery check(1 << 12);
-  for (int i = 0; i < count; ++i) {
-    check();
-    const auto at =
-        std::upper_bound(area_up_to.begin(), area_up_to.end(), total * (i + 0.5) / count);
-    const auto triangle = std::min(std::size_t(at - area_up_to.begin()), area_up_to.size() - 1);
-    double u = std::fmod(0.5 + 0.7548776662466927 * i, 1.0);
-    double v = std::fmod(0.5 + 0.5698402909980532 * i, 1.0);
-    if (u + v > 1) {
-      u = 1 - u;
-      v = 1 - v;
+  targets.list.resize(std::size_t(count));
+  parallel_for(targets.list.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto at =
+          std::upper_bound(area_up_to.begin(), area_up_to.end(), total * (double(i) + 0.5) / count);
+      const auto triangle = std::min(std::size_t(at - area_up_to.begin()), area_up_to.size() - 1);
+      double u = std::fmod(0.5 + 0.7548776662466927 * double(i), 1.0);
+      double v = std::fmod(0.5 + 0.5698402909980532 * double(i), 1.0);
+      if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+      }
+      const SurfacePoint point{int(triangle), u, v};
+      targets.list[i] = {point, position_at(mesh, point), face_normal(mesh, point.triangle),
+                         total / count};
     }
-    const SurfacePoint point{int(triangle), u, v};
-    targets.list.push_back(
-        {point, position_at(mesh, point), face_normal(mesh, point.triangle), total / count});
-  }
+  });
   sum_up(targets);
   return targets;
 }

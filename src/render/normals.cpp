@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "base/parallel.h"
 
@@ -43,16 +44,34 @@ struct Corner {
   std::size_t corner;
 };
 
-std::vector<std::vector<Corner>> corners_around(const std::vector<Triangle>& triangles,
-                                                const std::vector<int>& welded, int count) {
-  std::vector<std::vector<Corner>> around{std::size_t(count)};
-  CheckEvery check(1 << 14);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    check();
-    for (std::size_t k = 0; k < 3; ++k) {
-      around[std::size_t(welded[std::size_t(triangles[t][k])])].push_back({t, k});
-    }
+// Of every position, one after another.
+struct CornersAround {
+  std::vector<std::size_t> begin;  // and the end of the last
+  std::vector<Corner> corners;
+
+  std::span<const Corner> of(std::size_t position) const {
+    return std::span(corners).subspan(begin[position], begin[position + 1] - begin[position]);
   }
+};
+
+CornersAround corners_around(const std::vector<Triangle>& triangles, const std::vector<int>& welded,
+                             int count) {
+  CornersAround around{std::vector<std::size_t>(std::size_t(count) + 1),
+                       std::vector<Corner>(3 * triangles.size())};
+  const auto every_corner = [&](const auto& visit) {
+    CheckEvery check(1 << 14);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      check();
+      for (std::size_t k = 0; k < 3; ++k)
+        visit(std::size_t(welded[std::size_t(triangles[t][k])]), Corner{t, k});
+    }
+  };
+  every_corner([&](std::size_t position, const Corner&) { ++around.begin[position + 1]; });
+  std::partial_sum(around.begin.begin(), around.begin.end(), around.begin.begin());
+  std::vector<std::size_t> next(around.begin.begin(), around.begin.end() - 1);
+  every_corner([&](std::size_t position, const Corner& corner) {
+    around.corners[next[position]++] = corner;
+  });
   return around;
 }
 
@@ -93,13 +112,13 @@ std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
                                           double crease_deg) {
   int count = 0;
   const std::vector<int> welded = weld(positions, count);
-  const std::vector<std::vector<Corner>> around = corners_around(triangles, welded, count);
+  const CornersAround around = corners_around(triangles, welded, count);
   const std::vector<Vec3> flat = face_normals(positions, triangles);
   const std::vector<std::array<double, 3>> angles = corner_angles(positions, triangles);
   const double crease_cosine = std::cos(crease_deg * std::numbers::pi / 180);
 
   std::vector<CornerNormals> result(triangles.size());
-  const auto smooth = [&](const std::vector<Corner>& fan, const Corner& self) {
+  const auto smooth = [&](std::span<const Corner> fan, const Corner& self) {
     const Vec3& own = flat[self.triangle];
     Vec3 sum = Vec3::Zero();
     if (fan.size() <= kMostFacesAround) {
@@ -113,9 +132,9 @@ std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
     if (sum.norm() < 1e-9) sum = Vec3::UnitZ();
     result[self.triangle][self.corner] = sum.normalized();
   };
-  parallel_for(around.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(std::size_t(count), kElementGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n)
-      for (const Corner& self : around[n]) smooth(around[n], self);
+      for (const Corner& self : around.of(n)) smooth(around.of(n), self);
   });
   return result;
 }
