@@ -24,8 +24,8 @@ py::capsule keep(Held held) {
 }
 
 // A read-only array over memory that `owner` keeps alive.
-template <typename Scalar, typename Item>
-py::array view(const std::vector<Item>& items, std::vector<py::ssize_t> shape_of_item,
+template <typename Scalar, typename Items>
+py::array view(const Items& items, std::vector<py::ssize_t> shape_of_item,
                const py::capsule& owner) {
   shape_of_item.insert(shape_of_item.begin(), py::ssize_t(items.size()));
   py::array array(py::dtype::of<Scalar>(), shape_of_item,

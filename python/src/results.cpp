@@ -335,7 +335,7 @@ py::array matrix_of(const Simulation& s) {
 }
 
 template <typename Owner>
-py::array image_view(const std::vector<std::uint8_t>& bytes, int width_px, int height_px,
+py::array image_view(const BlankArray<std::uint8_t>& bytes, int width_px, int height_px,
                      const Owner& owner) {
   return view<std::uint8_t>(bytes, {}, keep(owner))
       .reshape(std::vector<py::ssize_t>{height_px, width_px, 4});

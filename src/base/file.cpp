@@ -264,7 +264,7 @@ bool lies_in(const std::filesystem::path& file, const std::filesystem::path& fol
          std::mismatch(root.begin(), root.end(), whole.begin(), whole.end()).first == root.end();
 }
 
-std::string sha256_hex(const std::vector<std::uint8_t>& bytes) {
+std::string sha256_hex(std::span<const std::uint8_t> bytes) {
   unsigned char digest[EVP_MAX_MD_SIZE];
   unsigned int size = 0;
   const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> hash(EVP_MD_CTX_new(), EVP_MD_CTX_free);
@@ -279,6 +279,10 @@ std::string sha256_hex(const std::vector<std::uint8_t>& bytes) {
   std::string hex;
   for (unsigned int i = 0; i < size; ++i) hex += fmt::format("{:02x}", digest[i]);
   return hex;
+}
+
+std::string sha256_hex(std::string_view text) {
+  return sha256_hex(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }
 
 }  // namespace hydrodip

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hydrodip {
@@ -35,6 +37,7 @@ void write_whole(const std::filesystem::path& path, const std::string& text);
 bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 // SHA-256 in lower-case hexadecimal.
-std::string sha256_hex(const std::vector<std::uint8_t>& bytes);
+std::string sha256_hex(std::span<const std::uint8_t> bytes);
+std::string sha256_hex(std::string_view text);
 
 }  // namespace hydrodip

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 
-#include "base/blank_pages.h"
+#include "base/blank_array.h"
 #include "base/plain_number.h"
 #include "base/run_scope.h"
 #include "coat/ink_rounds.h"
-#include "image/blank_image.h"
 
 namespace hydrodip {
 namespace {
@@ -22,7 +21,7 @@ constexpr int kBandRows = 256;
 
 // Gives the memory of rows back that nobody asks any more.
 template <class T>
-void forget(std::vector<T>& image, const RowBand& rows, int values_per_row) {
+void forget(BlankArray<T>& image, const RowBand& rows, int values_per_row) {
   const auto per_row = std::size_t(values_per_row);
   give_back(image.data() + std::size_t(rows.begin) * per_row,
             std::size_t(rows.end - rows.begin) * per_row * sizeof(T));
@@ -33,10 +32,10 @@ void forget(std::vector<T>& image, const RowBand& rows, int values_per_row) {
 void print(InkResult& result, const DesignTask& task, const Box2& covered) {
   FilmInk& ink = result.ink;
   const InkingOptions options = inking_of(task, task.options);
-  const std::vector<float>& area_ratio = ink.stretch.area_ratio;
+  const BlankArray<float>& area_ratio = ink.stretch.area_ratio;
   const int width_px = ink.wanted.width_px, height_px = ink.wanted.height_px;
   ink.inking = prepared_inking(ink.wanted, area_ratio, task.model, options);
-  ink.on_object = blank_image(width_px, height_px);
+  ink.on_object = Image(width_px, height_px);
   ReachMeter reach(raster_of(task.options.film, task.options.dpi), covered);
   for (int row = 0; row < height_px; row += kBandRows) {
     const RowBand band{row, std::min(row + kBandRows, height_px)};

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/filled.h"
+#include "base/blank_array.h"
 
 namespace hydrodip {
 
@@ -37,17 +37,18 @@ inline void add_pixel(const std::uint8_t* pixel, float weight, const std::array<
 // Rounds to the nearest byte; clamps.
 std::uint8_t linear_to_srgb8(float linear);
 
-// 8-bit sRGB with straight alpha; the form of every file that people open.
+// 8-bit sRGB with straight alpha; the form of every file that people open. What is never written to
+// takes no memory.
 struct Image {
   int width_px = 0;
   int height_px = 0;
-  std::vector<std::uint8_t> rgba;  // 4 * width_px * height_px
+  BlankArray<std::uint8_t> rgba;  // 4 * width_px * height_px
 
   Image() = default;
   Image(int width, int height)  // fully transparent black
       : width_px(width),
         height_px(height),
-        rgba(filled<std::uint8_t>(std::size_t(4) * std::size_t(width) * std::size_t(height), 0)) {}
+        rgba(std::size_t(4) * std::size_t(width) * std::size_t(height)) {}
 
   std::uint8_t* pixel(int x, int y) {
     return rgba.data() + 4 * (std::size_t(y) * std::size_t(width_px) + std::size_t(x));

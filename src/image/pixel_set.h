@@ -3,9 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
-#include "base/blank_pages.h"
+#include "base/blank_array.h"
 
 namespace hydrodip {
 
@@ -15,7 +14,7 @@ class PixelSet {
   PixelSet() = default;
   PixelSet(int width_px, int height_px)  // none of them
       : words_per_row_((std::size_t(width_px) + kBits - 1) / kBits),
-        words_(blank<std::uint64_t>(words_per_row_ * std::size_t(height_px))) {}
+        words_(words_per_row_ * std::size_t(height_px)) {}
 
   bool contains(int x, int y) const { return (words_[word(x, y)] >> bit(x) & 1U) != 0; }
   // Different rows may be written to at the same time.
@@ -31,7 +30,7 @@ class PixelSet {
   static std::size_t bit(int x) { return std::size_t(x) % kBits; }
 
   std::size_t words_per_row_ = 0;
-  std::vector<std::uint64_t> words_;
+  BlankArray<std::uint64_t> words_;
 };
 
 }  // namespace hydrodip

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "image/blank_image.h"
 #include "image/shown_columns.h"
 #include "image/to_byte.h"
 
@@ -99,7 +98,7 @@ void store(const Premultiplied& sum, std::uint8_t* out) {
 Image resize(const Image& image, int width_px, int height_px) {
   const std::vector<Span> columns = spans(image.width_px, width_px);
   const std::vector<Span> rows = spans(image.height_px, height_px);
-  Image result = blank_image(width_px, height_px);
+  Image result(width_px, height_px);
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
     // The last row of one is often the first one of the next.
     ReducedRow reduced(image, columns);

@@ -5,9 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "base/blank_pages.h"
+#include "base/blank_array.h"
 #include "base/parallel.h"
-#include "image/blank_image.h"
 #include "image/shown_columns.h"
 #include "image/to_byte.h"
 #include "ink/difference.h"
@@ -171,7 +170,7 @@ float compensated_ratio(float area_ratio, const InkingOptions& options) {
 }
 
 // How much too much the neediest point asks for: 1 if everything fits.
-float overshoot(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
+float overshoot(const Image& wanted, const BlankArray<float>& area_ratio, const ColorModel& model,
                 const InkingOptions& options) {
   std::vector<float> of_row(std::size_t(wanted.height_px), 1.0F);
   for_each_row(all_rows(wanted), [&](int y) {
@@ -208,12 +207,12 @@ Inking no_ink(int width_px, int height_px) {
   result.inks.width_px = width_px;
   result.inks.height_px = height_px;
   result.inks.cmyk =
-      blank<std::uint8_t>(std::size_t(4) * std::size_t(width_px) * std::size_t(height_px));
+      BlankArray<std::uint8_t>(std::size_t(4) * std::size_t(width_px) * std::size_t(height_px));
   result.printed = PixelSet(width_px, height_px);
   return result;
 }
 
-Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
+Inking ink_film(const Image& wanted, const BlankArray<float>& area_ratio, const ColorModel& model,
                 const InkingOptions& options, const RunContext& context) {
   const RunScope scope(context);
   Inking result = prepared_inking(wanted, area_ratio, model, options);
@@ -221,7 +220,7 @@ Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const
   return result;
 }
 
-Inking prepared_inking(const Image& wanted, const std::vector<float>& area_ratio,
+Inking prepared_inking(const Image& wanted, const BlankArray<float>& area_ratio,
                        const ColorModel& model, const InkingOptions& options) {
   Inking result = no_ink(wanted.width_px, wanted.height_px);
   if (options.policy == GamutPolicy::kScale)
@@ -230,7 +229,7 @@ Inking prepared_inking(const Image& wanted, const std::vector<float>& area_ratio
   return result;
 }
 
-void ink_rows(const RowBand& rows, const Image& wanted, const std::vector<float>& area_ratio,
+void ink_rows(const RowBand& rows, const Image& wanted, const BlankArray<float>& area_ratio,
               const ColorModel& model, const InkingOptions& options, Inking& result) {
   for_each_row(rows, [&](int y) {
     std::vector<Inks> inks;
@@ -267,14 +266,14 @@ Image look_on_film(InkImage inks, const PixelSet& printed, const ColorModel& mod
   return image;
 }
 
-Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
+Image look_on_object(const InkImage& inks, const BlankArray<float>& area_ratio,
                      const ColorModel& model, const LinearColor& base) {
-  Image image = blank_image(inks.width_px, inks.height_px);
+  Image image(inks.width_px, inks.height_px);
   look_at_rows(all_rows(inks), inks, area_ratio, model, base, image);
   return image;
 }
 
-void look_at_rows(const RowBand& rows, const InkImage& inks, const std::vector<float>& area_ratio,
+void look_at_rows(const RowBand& rows, const InkImage& inks, const BlankArray<float>& area_ratio,
                   const ColorModel& model, const LinearColor& base, Image& image) {
   const bool white = is_white(base);
   const Inks none;
@@ -316,7 +315,7 @@ InkImage inks_of_film(const Image& image, const ColorModel& model) {
 ReachMeter::ReachMeter(const SheetRaster& raster, const Box2& film)
     : pixel_mm2_((kMmPerInch / raster.dpi) * (kMmPerInch / raster.dpi)), means_(raster, film) {
   reach_.out_of_reach =
-      blank<float>(std::size_t(raster.width_px()) * std::size_t(raster.height_px()));
+      BlankArray<float>(std::size_t(raster.width_px()) * std::size_t(raster.height_px()));
 }
 
 void ReachMeter::add(const RowBand& rows, const Image& wanted, const Image& on_object,
@@ -324,7 +323,7 @@ void ReachMeter::add(const RowBand& rows, const Image& wanted, const Image& on_o
   const auto count = static_cast<std::size_t>(rows.end - rows.begin);
   const auto width = static_cast<std::size_t>(wanted.width_px);
   const std::size_t first = static_cast<std::size_t>(rows.begin) * width;
-  if (differences_.size() < count * width) differences_ = blank<float>(count * width);
+  if (differences_.size() < count * width) differences_ = BlankArray<float>(count * width);
   std::vector<Columns> printed(count);
   parallel_for(count, kRowGrain, [&](std::size_t begin, std::size_t end) {
     Differences known;

@@ -48,7 +48,7 @@ Inking no_ink(int width_px, int height_px);
 // The inks to print so that `wanted` (straight alpha: 0 where nothing is to be printed) appears on
 // the object. area_ratio: FilmStretch's. Ink lies on the base as a filter: the light that comes
 // back is that from white film times the base.
-Inking ink_film(const Image& wanted, const std::vector<float>& area_ratio, const ColorModel& model,
+Inking ink_film(const Image& wanted, const BlankArray<float>& area_ratio, const ColorModel& model,
                 const InkingOptions& options, const RunContext& context);
 
 // What a film with these inks looks like before the dip: over white; transparent where nothing is
@@ -57,7 +57,7 @@ Image look_on_film(InkImage inks, const PixelSet& printed, const ColorModel& mod
 
 // The same film pixel by pixel as it will look on the object, paled and over the base colour.
 // Transparent where there is no ink and no film on the object.
-Image look_on_object(const InkImage& inks, const std::vector<float>& area_ratio,
+Image look_on_object(const InkImage& inks, const BlankArray<float>& area_ratio,
                      const ColorModel& model, const LinearColor& base);
 
 // The inks behind an image of a film as `print.png` shows it: transparent means none.
@@ -73,7 +73,7 @@ struct Reach {
   double largest = 0;
   // Per pixel of the film image: CIEDE2000 where it is out of reach, elsewhere 0. Where all is
   // within reach it takes no memory.
-  std::vector<float> out_of_reach;
+  BlankArray<float> out_of_reach;
   FilmCells difference;  // means of the CIEDE2000 where anything is printed; 0 where not compared
 
   double out_of_reach_share() const {
@@ -91,13 +91,13 @@ struct RowBand {
 
 // ink_film() is: this, and ink_rows() of all rows. Nothing is printed yet; how much lighter all
 // inks have to be is known.
-Inking prepared_inking(const Image& wanted, const std::vector<float>& area_ratio,
+Inking prepared_inking(const Image& wanted, const BlankArray<float>& area_ratio,
                        const ColorModel& model, const InkingOptions& options);
-void ink_rows(const RowBand& rows, const Image& wanted, const std::vector<float>& area_ratio,
+void ink_rows(const RowBand& rows, const Image& wanted, const BlankArray<float>& area_ratio,
               const ColorModel& model, const InkingOptions& options, Inking& result);
 
 // look_on_object() is: this of all rows of a transparent image.
-void look_at_rows(const RowBand& rows, const InkImage& inks, const std::vector<float>& area_ratio,
+void look_at_rows(const RowBand& rows, const InkImage& inks, const BlankArray<float>& area_ratio,
                   const ColorModel& model, const LinearColor& base, Image& image);
 
 // Compares the pixels that lie on the object (and are opaque in `wanted`), each weighing its area
@@ -120,7 +120,7 @@ class ReachMeter {
   CellMeans means_;
   Reach reach_;
   double within_ = 0, beyond_ = 0;  // sums of area times difference
-  std::vector<float> differences_;  // of the band
+  BlankArray<float> differences_;   // of the band
 };
 
 }  // namespace hydrodip

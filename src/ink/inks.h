@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/filled.h"
+#include "base/blank_array.h"
 
 namespace hydrodip {
 
@@ -23,13 +23,13 @@ struct Inks {
 struct InkImage {
   int width_px = 0;
   int height_px = 0;
-  std::vector<std::uint8_t> cmyk;  // 4 * width_px * height_px
+  BlankArray<std::uint8_t> cmyk;  // 4 * width_px * height_px
 
   InkImage() = default;
   InkImage(int width, int height)  // no ink
       : width_px(width),
         height_px(height),
-        cmyk(filled<std::uint8_t>(std::size_t(4) * std::size_t(width) * std::size_t(height), 0)) {}
+        cmyk(std::size_t(4) * std::size_t(width) * std::size_t(height)) {}
 
   std::uint8_t* pixel(int x, int y) {
     return cmyk.data() + 4 * (std::size_t(y) * std::size_t(width_px) + std::size_t(x));

@@ -171,7 +171,7 @@ Image seen_on_object(const DippedObject& dipped, const PrintedFilm& printed,
                      const ColorModel& model, const LinearColor& base, bool pales,
                      const RunContext& context) {
   FilmStretch stretch = film_stretch(*dipped.map, printed.raster, 0, context);
-  if (!pales) stretch.area_ratio.assign(stretch.area_ratio.size(), 0);
+  if (!pales) stretch.area_ratio = BlankArray<float>(stretch.area_ratio.size());
   return look_on_object(printed.inks, stretch.area_ratio, model, base);
 }
 

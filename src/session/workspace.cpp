@@ -27,6 +27,11 @@ std::size_t bytes_of(const std::vector<Item>& list) {
   return list.size() * sizeof(Item);
 }
 
+template <class Item>
+std::size_t bytes_of(const BlankArray<Item>& list) {
+  return list.size() * sizeof(Item);
+}
+
 std::size_t bytes_of(const Image& image) { return bytes_of(image.rgba); }
 
 std::size_t bytes_of(const Model& model) {

@@ -242,8 +242,12 @@ CmykFile read_cmyk_tiff(const std::filesystem::path& path) {
     refuse(path, fmt::format("{} x {} px", width, height));
   CmykFile file;
   file.dpi = recorded_tiff_dpi(tiff.get());
-  file.inks.width_px = int(width);
-  file.inks.height_px = int(height);
+  try {
+    file.inks = InkImage(int(width), int(height));  // a header alone takes no memory
+  } catch (const std::bad_alloc&) {
+    throw InputError(fmt::format("{}: not enough memory for its {} x {} px; scale it down.",
+                                 path.string(), width, height));
+  }
   std::vector<std::uint8_t> row(std::size_t(TIFFScanlineSize64(tiff.get())));
   if (row.size() < std::size_t(4) * width) refuse(path, complaints.error);
   // What libtiff says while it reads rows is of rows that do not come out as they should.
@@ -251,9 +255,7 @@ CmykFile read_cmyk_tiff(const std::filesystem::path& path) {
   for (std::uint32_t y = 0; y < height; ++y) {
     check_cancelled();
     if (TIFFReadScanline(tiff.get(), row.data(), y, 0) != 1) refuse(path, complaints.error);
-    // Row by row, so that a header alone makes nobody reserve much memory.
-    file.inks.cmyk.insert(file.inks.cmyk.end(), row.begin(),
-                          row.begin() + std::ptrdiff_t(4) * std::ptrdiff_t(width));
+    std::copy_n(row.begin(), std::size_t(4) * width, file.inks.pixel(0, int(y)));
   }
   if (complaints.warned || !complaints.error.empty()) warn_of_damage(path.string());
   file.inks = upright(std::move(file.inks), tiff.get());

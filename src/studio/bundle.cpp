@@ -8,7 +8,7 @@ namespace hydrodip {
 static_assert(std::endian::native == std::endian::little, "arrays are sent as they lie");
 
 template <class Value>
-void Bundle::add_as(const char* type, const std::string& name, const std::vector<Value>& values,
+void Bundle::add_as(const char* type, const std::string& name, std::span<const Value> values,
                     std::size_t width) {
   constexpr std::size_t kAlign = 8;
   head_["arrays"][name] = {
@@ -18,19 +18,17 @@ void Bundle::add_as(const char* type, const std::string& name, const std::vector
   if (bytes > 0) std::memcpy(data_.data() + at, values.data(), bytes);
 }
 
-void Bundle::add(const std::string& name, const std::vector<float>& values, std::size_t width) {
+void Bundle::add(const std::string& name, std::span<const float> values, std::size_t width) {
   add_as("f32", name, values, width);
 }
-void Bundle::add(const std::string& name, const std::vector<std::uint32_t>& values,
+void Bundle::add(const std::string& name, std::span<const std::uint32_t> values,
                  std::size_t width) {
   add_as("u32", name, values, width);
 }
-void Bundle::add(const std::string& name, const std::vector<std::uint8_t>& values,
-                 std::size_t width) {
+void Bundle::add(const std::string& name, std::span<const std::uint8_t> values, std::size_t width) {
   add_as("u8", name, values, width);
 }
-void Bundle::add(const std::string& name, const std::vector<std::int8_t>& values,
-                 std::size_t width) {
+void Bundle::add(const std::string& name, std::span<const std::int8_t> values, std::size_t width) {
   add_as("i8", name, values, width);
 }
 

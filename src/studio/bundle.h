@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,16 +14,16 @@ class Bundle {
  public:
   explicit Bundle(Json head) : head_(std::move(head)) { head_["arrays"] = Json::object(); }
 
-  void add(const std::string& name, const std::vector<float>& values, std::size_t width);
-  void add(const std::string& name, const std::vector<std::uint32_t>& values, std::size_t width);
-  void add(const std::string& name, const std::vector<std::uint8_t>& values, std::size_t width);
-  void add(const std::string& name, const std::vector<std::int8_t>& values, std::size_t width);
+  void add(const std::string& name, std::span<const float> values, std::size_t width);
+  void add(const std::string& name, std::span<const std::uint32_t> values, std::size_t width);
+  void add(const std::string& name, std::span<const std::uint8_t> values, std::size_t width);
+  void add(const std::string& name, std::span<const std::int8_t> values, std::size_t width);
 
   std::vector<std::uint8_t> finish() const;
 
  private:
   template <class Value>
-  void add_as(const char* type, const std::string& name, const std::vector<Value>& values,
+  void add_as(const char* type, const std::string& name, std::span<const Value> values,
               std::size_t width);
 
   Json head_;

@@ -59,8 +59,8 @@ void add_film(Bundle& bundle, const DippedFilm& film) {
 
 void add_sheet(Bundle& bundle, const FilmInk& ink, const ColorModel& model) {
   bundle.add("sheet.printed", look_on_film(ink.inking.inks, ink.inking.printed, model).rgba, 4);
-  std::vector<std::uint8_t> predicted = ink.on_object.rgba;
-  const std::vector<std::uint8_t>& laid = ink.inking.inks.cmyk;
+  BlankArray<std::uint8_t> predicted = ink.on_object.rgba;
+  const BlankArray<std::uint8_t>& laid = ink.inking.inks.cmyk;
   for (std::size_t i = 0; i < predicted.size(); i += 4)
     predicted[i + 3] = laid[i] || laid[i + 1] || laid[i + 2] || laid[i + 3] ? 255 : 0;
   bundle.add("sheet.predicted", predicted, 4);

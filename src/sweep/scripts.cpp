@@ -19,9 +19,7 @@ constexpr int kMost = 1000;         // Slurm's MaxArraySize is 1001 unless it is
 // Its last line tells whether the lines before it are still as they were written.
 constexpr const char* kSeal = "# as it was made: ";
 
-std::string hash_of(const std::string& text) { return sha256_hex({text.begin(), text.end()}); }
-
-std::string sealed(const std::string& script) { return script + kSeal + hash_of(script) + "\n"; }
+std::string sealed(const std::string& script) { return script + kSeal + sha256_hex(script) + "\n"; }
 
 }  // namespace
 

@@ -85,7 +85,7 @@ std::string id_of(const SweepPlan& plan, const SweepRun& run, const JobConfig& c
                         {"ways", ways_of(config)},
                         {"values", effective_values(run, config)}};
   const std::string text = json_line(content);
-  return sha256_hex({text.begin(), text.end()}).substr(0, kIdDigits);
+  return sha256_hex(text).substr(0, kIdDigits);
 }
 
 bool is_as_planned(const SweepPlan& plan, const std::string& file, const fs::path& folder,

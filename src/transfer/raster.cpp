@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "base/blank_pages.h"
+#include "base/blank_array.h"
 #include "base/parallel.h"
-#include "image/blank_image.h"
 #include "image/to_byte.h"
 #include "transfer/color_sum.h"
 #include "transfer/tile_colors.h"
@@ -149,7 +148,7 @@ SheetRaster raster_of(const FilmOptions& film, double dpi) {
 Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& raster,
                  const InverseOptions& options, const Allotment& allotment,
                  const RunContext& context) {
-  Image image = blank_image(raster.width_px(), raster.height_px());
+  Image image(raster.width_px(), raster.height_px());
   const Printed printed(paint, allotment);
   const FilmUnderTiles film(map, raster);
   for_inked_tiles(map, raster, options.bleed_mm, "rastering", context, [&](const Tile& tile) {
@@ -168,8 +167,8 @@ FilmStretch film_stretch(const FilmMap& map, const SheetRaster& raster, double b
   const auto width = std::size_t(raster.width_px());
   const FilmUnderTiles film(map, raster);
   FilmStretch result;
-  result.area_ratio = blank<float>(width * std::size_t(raster.height_px()));
-  result.on_object = blank<std::uint8_t>(result.area_ratio.size());
+  result.area_ratio = BlankArray<float>(width * std::size_t(raster.height_px()));
+  result.on_object = BlankArray<std::uint8_t>(result.area_ratio.size());
   for_inked_tiles(map, raster, bleed_mm, "measuring the stretch", context, [&](const Tile& tile) {
     const SampleGrid centres = samples_of(tile, raster, 1);
     const auto index = [&](int column, int row) {

@@ -48,9 +48,9 @@ Image film_image(const Paint& paint, const FilmMap& map, const SheetRaster& rast
 
 // How far the film of every pixel ends up stretched.
 struct FilmStretch {
-  std::vector<float> area_ratio;  // deformed over flat; within the bleed that of the nearest film
-                                  // on the object, elsewhere 0: not known
-  std::vector<std::uint8_t> on_object;  // per pixel: its centre lies on the object
+  BlankArray<float> area_ratio;  // deformed over flat; within the bleed that of the nearest film
+                                 // on the object, elsewhere 0: not known
+  BlankArray<std::uint8_t> on_object;  // per pixel: its centre lies on the object
 };
 FilmStretch film_stretch(const FilmMap& map, const SheetRaster& raster, double bleed_mm,
                          const RunContext& context);

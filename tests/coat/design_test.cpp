@@ -112,12 +112,11 @@ TEST(Design, IsTheSameWhateverIsKeptOfTheFilmImage) {
   ASSERT_FALSE(all.ink.wanted.empty());
   for (const KeptImages kept : {KeptImages{false, false}, {true, false}, {false, true}}) {
     const InkResult some = made(kept);
-    EXPECT_EQ(some.ink.wanted.rgba,
-              kept.wanted ? all.ink.wanted.rgba : std::vector<std::uint8_t>());
+    EXPECT_EQ(some.ink.wanted.rgba, kept.wanted ? all.ink.wanted.rgba : BlankArray<std::uint8_t>());
     EXPECT_EQ(some.ink.stretch.area_ratio,
-              kept.stretch ? all.ink.stretch.area_ratio : std::vector<float>());
+              kept.stretch ? all.ink.stretch.area_ratio : BlankArray<float>());
     EXPECT_EQ(some.ink.stretch.on_object,
-              kept.stretch ? all.ink.stretch.on_object : std::vector<std::uint8_t>());
+              kept.stretch ? all.ink.stretch.on_object : BlankArray<std::uint8_t>());
     EXPECT_EQ(some.ink.inking.inks.cmyk, all.ink.inking.inks.cmyk);
     EXPECT_EQ(some.ink.on_object.rgba, all.ink.on_object.rgba);
     EXPECT_EQ(some.reach.out_of_reach, all.reach.out_of_reach);

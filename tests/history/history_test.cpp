@@ -182,7 +182,7 @@ TEST(History, KeepsTheReportThatARunWasMadeBy) {
   const TemporaryFolder job;
   const std::string report = "{\"a\": 1}";
   write_file(job / "report.json", report);
-  const std::string sha = sha256_hex({report.begin(), report.end()});
+  const std::string sha = sha256_hex(report);
   EXPECT_EQ(History(job.path()).report(sha), report);
   write_file(job / "report.json", std::string("{\"a\": 2}"));
   EXPECT_EQ(History(job.path()).report(sha), report);
@@ -256,7 +256,7 @@ TEST(HistoryJob, ChargesEachDipByItsOwnPrint) {
   const auto print = [&](double width_mm) {
     const std::string report = report_of(width_mm, 0.5, 1);
     write_file(folder / "report.json", report);
-    return sha256_hex({report.begin(), report.end()});
+    return sha256_hex(report);
   };
   FixedClock clock;
   write_run(folder, "rig-1", guided_log("2026-01-01T10:00:00Z", "1", kDone, print(200)));

@@ -79,8 +79,10 @@ class OnFilm : public ::testing::Test {
         pixel[2] = std::uint8_t(51 * y);
         pixel[3] = 255;
       }
-    stretch_.area_ratio.assign(wanted_.rgba.size() / 4, 1);
-    stretch_.on_object.assign(wanted_.rgba.size() / 4, 1);
+    stretch_.area_ratio = BlankArray<float>(wanted_.rgba.size() / 4);
+    std::fill(stretch_.area_ratio.begin(), stretch_.area_ratio.end(), 1.0F);
+    stretch_.on_object = BlankArray<std::uint8_t>(stretch_.area_ratio.size());
+    std::fill(stretch_.on_object.begin(), stretch_.on_object.end(), std::uint8_t(1));
   }
 
   Reach reach(const InkingOptions& options) {

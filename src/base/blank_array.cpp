@@ -1,4 +1,4 @@
-#include "base/blank_pages.h"
+#include "base/blank_array.h"
 
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-#include "base/blank_pages.h"
+#include "base/blank_array.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -15,9 +15,9 @@ double resident_mb() {
   return resident * double(sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
-TEST(BlankPages, AreZeroAndTakeWhatIsWrittenTo) {
+TEST(BlankArray, AreZeroAndTakeWhatIsWrittenTo) {
   const double before_mb = resident_mb();
-  std::vector<float> values = blank<float>(std::size_t(75) << 20U);  // 315 MB
+  BlankArray<float> values(std::size_t(75) << 20U);  // 315 MB
   ASSERT_EQ(values.size(), std::size_t(75) << 20U);
   for (std::size_t i = 1000000; i < 2000000; ++i) values[i] = float(i);
   for (std::size_t i = 0; i < values.size(); i += 997)
@@ -27,12 +27,28 @@ TEST(BlankPages, AreZeroAndTakeWhatIsWrittenTo) {
   }
 }
 
-TEST(BlankPages, OfAnySizeAreZero) {
+TEST(BlankArray, OfAnySizeAreZero) {
   for (const std::size_t size : {0, 1, 4095, 4097, 123457}) {
-    const std::vector<std::uint8_t> values = blank<std::uint8_t>(size);
+    const BlankArray<std::uint8_t> values(size);
     EXPECT_EQ(values.size(), size);
     EXPECT_EQ(std::count(values.begin(), values.end(), 0), std::ptrdiff_t(size));
   }
+}
+
+TEST(BlankArray, CopiesAreTheirOwnAndWhatIsMovedIsGone) {
+  BlankArray<std::uint16_t> first{1, 2, 3};
+  BlankArray<std::uint16_t> copy = first;
+  EXPECT_EQ(copy, first);
+  copy[1] = 7;
+  EXPECT_EQ(first[1], 2);
+  EXPECT_FALSE(copy == first);
+  EXPECT_FALSE(copy == BlankArray<std::uint16_t>(2));
+  const BlankArray<std::uint16_t> moved = std::move(copy);
+  EXPECT_TRUE(copy.empty());  // NOLINT(bugprone-use-after-move): that is what is asked
+  EXPECT_EQ(moved[1], 7);
+  first = moved;
+  EXPECT_EQ(first, moved);
+  EXPECT_EQ(BlankArray<std::uint16_t>(), BlankArray<std::uint16_t>(0));
 }
 
 }  // namespace
