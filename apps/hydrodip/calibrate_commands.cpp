@@ -103,15 +103,17 @@ void require_scans(const Request& request, const std::string& command) {
   check_square(request);
 }
 
-JobConfig configure_writing_to(const Request& request, const char* default_folder) {
-  JobConfig config = configure(request);
+JobConfig configure_writing_to(const Request& request, const char* default_folder,
+                               const RunContext& context) {
+  JobConfig config = configure(request, context);
   if (config.output.empty()) config.output = default_folder;
   return config;
 }
 
 JobResult run_calibrate(const Request& request, const RunContext& context) {
   require_scans(request, "calibrate");
-  return calibrate_job(configure_writing_to(request, "calibration"), request.calibration, context);
+  return calibrate_job(configure_writing_to(request, "calibration", context), request.calibration,
+                       context);
 }
 
 void declare_measure(CLI::App& app, Request& request) {
@@ -125,7 +127,7 @@ void declare_measure(CLI::App& app, Request& request) {
 
 JobResult run_measure(const Request& request, const RunContext& context) {
   require_scans(request, "measure");
-  return measure_job(configure(request), request.calibration, context);
+  return measure_job(configure(request, context), request.calibration, context);
 }
 
 // The kit's three unless some are named.
@@ -185,12 +187,13 @@ void declare_pack(CLI::App& app, Request& request) {
 
 JobResult run_pack(const Request& request, const RunContext& context) {
   require_scans(request, "calibrate pack");
-  return pack_job(configure_writing_to(request, "measured-dip"), request.calibration, context);
+  return pack_job(configure_writing_to(request, "measured-dip", context), request.calibration,
+                  context);
 }
 
 JobResult run_synth(const Request& request, const RunContext& context) {
   const CalibrationRequest wanted = with_objects(request);
-  return synth_job(configure_writing_to(request, "synthetic-scans"), wanted, context);
+  return synth_job(configure_writing_to(request, "synthetic-scans", context), wanted, context);
 }
 
 void declare_kit(CLI::App& app, Request& request) {
@@ -209,7 +212,7 @@ void declare_kit(CLI::App& app, Request& request) {
 
 JobResult run_kit(const Request& request, const RunContext& context) {
   const CalibrationRequest wanted = with_objects(request);
-  return kit_job(configure_writing_to(request, "calibration-kit"), wanted, context);
+  return kit_job(configure_writing_to(request, "calibration-kit", context), wanted, context);
 }
 
 }  // namespace

@@ -18,8 +18,9 @@ namespace hydrodip {
 namespace {
 
 // With a model, named by itself or by the job's files.
-JobConfig configure_job(const Request& request, const std::string& command) {
-  JobConfig config = configure(request);
+JobConfig configure_job(const Request& request, const std::string& command,
+                        const RunContext& context) {
+  JobConfig config = configure(request, context);
   if (config.model.empty())
     throw InputError("name the model to " + command + ", as in 'hydrodip " + command +
                      " mask.obj'; 'hydrodip sample' makes one to try");
@@ -74,7 +75,7 @@ void require_no_artwork_option(const Request& request) {
 }
 
 JobResult run_print(const Request& request, const RunContext& context) {
-  JobConfig config = configure_job(request, "print");
+  JobConfig config = configure_job(request, "print", context);
   config.output = output_folder(request, config, "print");
   if (!config.film_image.empty()) {
     require_no_artwork_option(request);
@@ -100,7 +101,7 @@ void declare_pattern_command(CLI::App& app, Request& request) {
 }
 
 JobResult run_pattern(const Request& request, const RunContext& context) {
-  JobConfig config = configure_job(request, "pattern");
+  JobConfig config = configure_job(request, "pattern", context);
   if (request.pattern.tile.empty() || !(request.pattern.tile_mm > 0))
     throw InputError(
         "name the pattern and its true width, as in 'hydrodip pattern grip.stl --tile camo.png "
@@ -123,7 +124,8 @@ void declare_nest_command(CLI::App& app, Request& request) {
 }
 
 // Copies of one part are one part.
-std::vector<NestRequest::Part> parts_of(const Request& request, const JobConfig& sheet) {
+std::vector<NestRequest::Part> parts_of(const Request& request, const JobConfig& sheet,
+                                        const RunContext& context) {
   std::vector<PartEntry> entries = sheet.parts;
   for (const std::string& job : request.jobs) {
     const auto known = std::find_if(entries.begin(), entries.end(),
@@ -139,17 +141,17 @@ std::vector<NestRequest::Part> parts_of(const Request& request, const JobConfig&
     if (entry.job.empty())
       throw InputError(
           "a [[part]] table names no job: give it job = \"FILE\", a model or a job's TOML");
-    parts.push_back({configure_part(request, entry.job.string()), entry.count, entry.job});
+    parts.push_back({configure_part(request, entry.job.string(), context), entry.count, entry.job});
   }
   return parts;
 }
 
 JobResult run_nest(const Request& request, const RunContext& context) {
-  JobConfig sheet = configure(request);
+  JobConfig sheet = configure(request, context);
   sheet.output = request.output.empty() ? "nest" : request.output;
-  const NestRequest nest{parts_of(request, sheet), request.clearance_mm};
+  const NestRequest nest{parts_of(request, sheet, context), request.clearance_mm};
   if (nest.parts.empty())
-    throw InputError("name the parts to nest, as in 'hydrodip nest a.toml b.stl b.stl --film a3'");
+    throw InputError("name the parts to nest, as in 'hydrodip nest a.toml b.toml b.toml --film a3'");
   return nest_job(sheet, nest, context);
 }
 
@@ -168,7 +170,7 @@ void declare_simulate(CLI::App& app, Request& request) {
 }
 
 JobResult run_simulate(const Request& request, const RunContext& context) {
-  JobConfig config = configure_job(request, "simulate");
+  JobConfig config = configure_job(request, "simulate", context);
   config.output = output_folder(request, config, "simulate");
   return simulate_job(config, context);
 }
@@ -183,7 +185,7 @@ void declare_inspect(CLI::App& app, Request& request) {
 }
 
 JobResult run_inspect(const Request& request, const RunContext& context) {
-  return inspect_job(configure_job(request, "inspect"), context);
+  return inspect_job(configure_job(request, "inspect", context), context);
 }
 
 void declare_orient(CLI::App& app, Request& request) {
@@ -197,7 +199,7 @@ void declare_orient(CLI::App& app, Request& request) {
 }
 
 JobResult run_orient(const Request& request, const RunContext& context) {
-  JobConfig config = configure_job(request, "orient");
+  JobConfig config = configure_job(request, "orient", context);
   config.output = output_folder(request, config, "orient");
   return orient_job(config, context);
 }
@@ -214,7 +216,7 @@ void declare_plan(CLI::App& app, Request& request) {
 }
 
 JobResult run_plan(const Request& request, const RunContext& context) {
-  JobConfig config = configure_job(request, "plan");
+  JobConfig config = configure_job(request, "plan", context);
   if (config.plan.dips == 0 && config.dips.empty())
     throw InputError("say how many dips to plan, as in 'hydrodip plan " + config.model.string() +
                      " --dips 4'");
@@ -222,7 +224,7 @@ JobResult run_plan(const Request& request, const RunContext& context) {
   // A look in haste makes no sheets in haste: --quality is for this run, not for the plan's prints.
   Request without = request;
   without.sources.quality.clear();
-  const JobConfig to_print = configure(without);
+  const JobConfig to_print = configure(without, context);
   return plan_job(config, context, &to_print);
 }
 
@@ -246,7 +248,7 @@ void declare_sample_command(CLI::App& app, Request& request) {
 JobResult run_sample(const Request& request, const RunContext& context) {
   if (request.sample.empty()) return list_samples();
   return sample_job(request.sample, request.output.empty() ? "." : request.output, context,
-                    configure(request).earlier_result);
+                    configure(request, context).earlier_result);
 }
 
 std::vector<std::string> sample_names() {

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/run_scope.h"
 #include "command_line.h"
 #include "console.h"
 #include "interrupt.h"
@@ -32,14 +33,20 @@ JobResult run_with_progress(const CommandLine& line, const RunContext& context) 
   return line.command->run(line.request, context);
 }
 
+// Options may name files, and files be pipes that nobody writes to.
+CommandLine parsed(const std::vector<std::string>& arguments, const RunContext& context) {
+  const RunScope scope(context);
+  return parse_command_line(arguments);
+}
+
 int run(const std::vector<std::string>& arguments) {
-  const CommandLine line = parse_command_line(arguments);
+  const RunContext context;
+  const CancelOnInterrupt cancel_on_interrupt(context);
+  const CommandLine line = parsed(arguments, context);
   bool refused = false;
   if (!line.command) {
     print_result(line.text);
   } else {
-    RunContext context;
-    const CancelOnInterrupt cancel_on_interrupt(context);
     const JobResult result = run_with_progress(line, context);
     print_result(line.request.json ? result.json : result.text);
     refused = line.request.strict && result.do_not_dip;

@@ -54,7 +54,7 @@ JobResult run_printer(const Request& request, const RunContext& context) {
   if (!printer.profile.empty() && !request.output.empty())
     throw InputError("--save keeps it in a profile, and -o in a folder: give one of them");
   printer.profile_folder = profile_folder();
-  JobConfig config = configure(request);
+  JobConfig config = configure(request, context);
   if (config.output.empty()) config.output = ".";
   return printer_job(config, printer, context);
 }
@@ -67,7 +67,7 @@ void declare_board(CLI::App& app, Request& request) {
 }
 
 JobResult run_board(const Request& request, const RunContext& context) {
-  JobConfig config = configure(request);
+  JobConfig config = configure(request, context);
   if (config.output.empty()) config.output = ".";
   return board_job(config, request.paper, context);
 }
@@ -136,7 +136,7 @@ JobResult run_register(const Request& request, const RunContext& context) {
         "-o is of --calibrate-camera; what a photo tells is written into the job's folder");
   RegisterRequest registration = request.registration;
   registration.photo = given[0];
-  return register_job(load_rig_job(given[1], request.sources), registration, context);
+  return register_job(configure_printed(request, given[1], context), registration, context);
 }
 
 void declare_correct(CLI::App& app, Request& request) {
@@ -175,7 +175,7 @@ JobResult run_correct(const Request& request, const RunContext& context) {
         "name the job's folder and what came of it, as in 'hydrodip correct mask-print scan.obj'");
   CorrectRequest correction = request.correction;
   correction.scans.assign(request.jobs.begin(), request.jobs.end());
-  return correct_job(load_rig_job(request.model, request.sources), correction, context);
+  return correct_job(configure_printed(request, request.model, context), correction, context);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/parse_double.h"
+#include "base/run_scope.h"
 #include "rig/registration_file.h"
 #include "settings/profiles.h"
 
@@ -448,7 +449,8 @@ void declare_studio(CLI::App& app, Request& request) {
       ->type_name("FILE");
 }
 
-JobConfig configure(const Request& request) {
+JobConfig configure(const Request& request, const RunContext& context) {
+  const RunScope scope(context);
   SettingSources sources = request.sources;
   if (!request.film_state.empty()) sources.profiles.push_back(request.film_state);
   JobConfig config = configured(request.model, std::move(sources));
@@ -458,10 +460,17 @@ JobConfig configure(const Request& request) {
   return config;
 }
 
-JobConfig configure_part(const Request& request, const std::string& model) {
+JobConfig configure_part(const Request& request, const std::string& model,
+                         const RunContext& context) {
   Request part = request;
   part.model = model;
-  return configure(part);
+  return configure(part, context);
+}
+
+RigJob configure_printed(const Request& request, const std::string& folder,
+                         const RunContext& context) {
+  const RunScope scope(context);
+  return load_rig_job(folder, request.sources);
 }
 
 }  // namespace hydrodip

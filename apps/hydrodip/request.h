@@ -9,6 +9,7 @@
 #include "job/jobs.h"
 #include "register/register.h"
 #include "rig/jig.h"
+#include "rig/rig_job.h"
 #include "settings/settings.h"
 #include "studio/studio.h"
 #include "sweep/sweep_jobs.h"
@@ -97,9 +98,15 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
 // Refuses what is no number, or not within these.
 CLI::Validator between(double low, double high);
 
-// The options as a job's configuration. Throws InputError.
-JobConfig configure(const Request& request);
+// The options as a job's configuration. Throws InputError, and Cancelled: a file may be a pipe that
+// nobody writes to.
+JobConfig configure(const Request& request, const RunContext& context);
 // The same with another model, or job's file, as one of several parts.
-JobConfig configure_part(const Request& request, const std::string& model);
+JobConfig configure_part(const Request& request, const std::string& model,
+                         const RunContext& context);
+// The job that `hydrodip print` left in a folder, with the options' settings. Throws as
+// configure().
+RigJob configure_printed(const Request& request, const std::string& folder,
+                         const RunContext& context);
 
 }  // namespace hydrodip

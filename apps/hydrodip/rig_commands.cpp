@@ -38,10 +38,10 @@ void declare_piece(CLI::App& app, Request& request) {
       ->type_name("NAME");
 }
 
-RigJob load_job(const Request& request, const std::string& command) {
+RigJob load_job(const Request& request, const std::string& command, const RunContext& context) {
   if (request.model.empty())
     throw InputError("name the job's folder, as in 'hydrodip " + command + " mask-print'");
-  RigJob job = load_rig_job(request.model, request.sources);
+  RigJob job = configure_printed(request, request.model, context);
   job.batch = request.batch;
   job.label = request.label;
   return job;
@@ -61,7 +61,7 @@ void declare_sheet(CLI::App& app, Request& request) {
 }
 
 JobResult run_sheet(const Request& request, const RunContext& context) {
-  return rig_sheet(load_job(request, "rig sheet"), request.paper, request.output, context);
+  return rig_sheet(load_job(request, "rig sheet", context), request.paper, request.output, context);
 }
 
 // The real bench: this computer's clock, ports and terminal.
@@ -87,7 +87,7 @@ void declare_guide(CLI::App& app, Request& request) {
 }
 
 JobResult run_guide(const Request& request, const RunContext& context) {
-  const RigJob job = load_job(request, "rig guide");
+  const RigJob job = load_job(request, "rig guide", context);
   RealBench real(request, context);
   return rig_guide(job, real.bench, context);
 }
@@ -119,7 +119,7 @@ void declare_jig(CLI::App& app, Request& request) {
 }
 
 JobResult run_jig(const Request& request, const RunContext& context) {
-  const RigJob job = load_job(request, "rig jig");
+  const RigJob job = load_job(request, "rig jig", context);
   return jig_job(
       job, request.jig,
       request.output.empty() ? job.folder / "jig" : std::filesystem::path(request.output), context);
@@ -146,8 +146,8 @@ JobResult run_stage(const Request& request, const RunContext& context) {
     throw InputError(
         "name what the stage is to do: find, status, home, jog, approach, dip or retract");
   std::optional<RigJob> job;
-  if (!request.model.empty()) job = load_rig_job(request.model, request.sources);
-  const StageOptions stage = job ? job->config.stage : configure(request).stage;
+  if (!request.model.empty()) job = configure_printed(request, request.model, context);
+  const StageOptions stage = job ? job->config.stage : configure(request, context).stage;
   if (request.action == "jog" && request.jog_mm == 0)
     throw InputError("rig stage jog: say how far with --by, as in --by 10 (down) or --by -10 (up)");
   RealBench real(request, context);

@@ -10,10 +10,10 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/run_scope.h"
 #include "build_version.h"
 #include "job/profile_jobs.h"
 #include "rig/link.h"
-#include "rig/rig_job.h"
 
 namespace hydrodip {
 namespace {
@@ -57,7 +57,8 @@ void declare_profile_save(CLI::App& app, Request& request) {
   declare_configuration(app, request);
 }
 
-JobResult run_profile_save(const Request& request, const RunContext&) {
+JobResult run_profile_save(const Request& request, const RunContext& context) {
+  const RunScope scope(context);
   require_name(request, "save");
   const SettingSources& add = request.sources;
   if (add.quality.empty() && add.profiles.empty() && add.configs.empty() && add.options.empty() &&
@@ -73,7 +74,8 @@ void declare_profile_import(CLI::App& app, Request& request) {
   declare_reporting(app, request);
 }
 
-JobResult run_profile_import(const Request& request, const RunContext&) {
+JobResult run_profile_import(const Request& request, const RunContext& context) {
+  const RunScope scope(context);
   if (request.file.empty())
     throw InputError("name the file, as in 'hydrodip profile import a-friends.toml'");
   return import_profile(profile_folder(), request.file, request.name);
@@ -161,11 +163,11 @@ HistoryRequest history_request(const Request& request) {
   return history;
 }
 
-JobResult run_history(const Request& request, const RunContext&) {
+JobResult run_history(const Request& request, const RunContext& context) {
   if (request.model.empty())
     throw InputError("name the job's folder, as in 'hydrodip history mask-print'");
   const HistoryRequest history = history_request(request);
-  return history_job(load_rig_job(request.model, request.sources), history, *system_clock());
+  return history_job(configure_printed(request, request.model, context), history, *system_clock());
 }
 
 void declare_sweep_folder(CLI::App& app, Request& request) {
@@ -242,7 +244,8 @@ JobResult run_sweep_run(const Request& request, const RunContext& context) {
     work.shard = parse_shard(request.shard);
   else if (const auto shard = slurm_shard(); shard && work.id.empty())
     work.shard = *shard;
-  return sweep_run_job(request.folder, work, context.with_threads(configure(request).threads));
+  return sweep_run_job(request.folder, work,
+                       context.with_threads(configure(request, context).threads));
 }
 
 void declare_sweep_collect(CLI::App& app, Request& request) {

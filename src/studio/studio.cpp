@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_text.h"
+#include "base/run_scope.h"
 #include "job/browser.h"
 #include "studio/api.h"
 #include "studio/api_error.h"
@@ -28,7 +29,7 @@ bool is_here(const std::string& address) {
   return address == "127.0.0.1" || address == "localhost";
 }
 
-std::string password_of(const StudioOptions& options) {
+std::string password_of(const StudioOptions& options, const RunContext& context) {
   if (options.password_file.empty()) {
     if (is_here(options.address)) return "";
     throw InputError(fmt::format(
@@ -36,6 +37,7 @@ std::string password_of(const StudioOptions& options) {
         "holds a password, with --password-file FILE",
         options.address));
   }
+  const RunScope scope(context);
   const std::vector<std::uint8_t> bytes = read_file(options.password_file);
   std::string line(bytes.begin(), bytes.end());
   line = line.substr(0, line.find_first_of("\r\n"));
@@ -121,7 +123,7 @@ JobResult studio_job(const StudioOptions& options, const RunContext& context) {
   if (studio_script().empty())
     throw InputError(
         "this hydrodip was built without the studio's page: build it with -DHYDRODIP_VIEWER=ON");
-  const std::string password = password_of(options);
+  const std::string password = password_of(options, context);
   const std::filesystem::path folder = studio_folder();
   RunFile run_file(folder);
   const RunFile::Run& earlier = run_file.earlier();

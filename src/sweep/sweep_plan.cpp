@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/run_scope.h"
 #include "settings/settings.h"
 #include "sweep/sweep_axes.h"
 #include "sweep/sweep_file.h"
@@ -109,6 +110,7 @@ bool sets(const SweepRun& run, const std::string& name) {
 }  // namespace
 
 SweepPlan read_sweep(const fs::path& file, const fs::path& folder, const RunContext& context) {
+  const RunScope scope(context);
   const SweepFile sweep(file);
   SweepPlan plan;
   plan.command = sweep_command_of(sweep.choice("command", sweep_command_names()));
