@@ -104,23 +104,65 @@ RunFields fields_of(const DipRun& run) {
   return fields;
 }
 
+// The file cannot be written, or be read.
+struct CannotWrite : InputError {
+  using InputError::InputError;
+};
+
 }  // namespace
 
 struct History::Database {
   explicit Database(const fs::path& path) : file(path) {
-    sqlite3* opened = nullptr;
-    const int result = sqlite3_open(file.string().c_str(), &opened);
-    handle.reset(opened);
-    if (result != SQLITE_OK) fail();
-    sqlite3_busy_timeout(handle.get(), kPatience_ms);
-    require_known_version();
-    execute(kSchema);
+    std::error_code ignored;
+    const bool is_new = !fs::exists(file, ignored);
+    open(SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, file);
+    made = is_new;
+  }
+  // What the file holds, and what is written goes nowhere; no file: nothing.
+  struct Copy {};
+  Database(const fs::path& path, Copy) : file(path) {
+    std::error_code ignored;
+    const bool is_there = fs::exists(file, ignored);
+    if (is_there) open(SQLITE_OPEN_READONLY, file);
+    const Handle from = std::move(handle);
+    open(SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, ":memory:");
+    if (!is_there) return;
+    sqlite3_backup* const copying = sqlite3_backup_init(handle.get(), "main", from.get(), "main");
+    if (copying) sqlite3_backup_step(copying, -1);
+    if (sqlite3_backup_finish(copying) != SQLITE_OK) fail();
   }
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
+  ~Database() {
+    if (!made || !out_of_room || !is_empty()) return;
+    handle.reset();
+    std::error_code ignored;
+    fs::remove(file, ignored);
+  }
 
-  // Before anything is written into the file. A process that is just making it may not have noted
-  // the version yet.
+  void open(int how, const fs::path& from) {
+    sqlite3* opened = nullptr;
+    const int result = sqlite3_open_v2(from.string().c_str(), &opened, how, nullptr);
+    handle.reset(opened);
+    if (result != SQLITE_OK) fail();
+    sqlite3_busy_timeout(handle.get(), kPatience_ms);
+  }
+
+  bool is_empty() const noexcept {
+    try {
+      if (query("SELECT name FROM sqlite_master").empty()) return true;
+      return query("SELECT id FROM runs UNION ALL SELECT sha256 FROM reports LIMIT 1").empty();
+    } catch (...) {
+      return false;
+    }
+  }
+
+  // Throws InputError before anything is written into a file of another version.
+  void prepare() const {
+    require_known_version();
+    execute(kSchema);
+  }
+
   void require_known_version() const {
     if (query("SELECT name FROM sqlite_master WHERE name = 'hydrodip'").empty()) return;
     const auto version = query("SELECT schema_version FROM hydrodip");
@@ -129,24 +171,38 @@ struct History::Database {
   }
 
   [[noreturn]] void fail() const {
-    throw InputError(fmt::format("{}: the history cannot be read or written ({}); {}",
-                                 file.string(), sqlite3_errmsg(handle.get()),
-                                 way_out(sqlite3_errcode(handle.get()))));
+    const int code = sqlite3_errcode(handle.get());
+    out_of_room = out_of_room || is_about_room(code);
+    const std::string why = fmt::format("{}: the history cannot be read or written ({}); {}",
+                                        file.string(), sqlite3_errmsg(handle.get()), way_out(code));
+    if (is_about_room(code) || is_about_permission(code)) throw CannotWrite(why);
+    throw InputError(why);
   }
 
-  static const char* way_out(int code) {
+  static bool is_about_room(int code) {
+    return (code & 0xff) == SQLITE_FULL || (code & 0xff) == SQLITE_IOERR;
+  }
+
+  static bool is_about_permission(int code) {
     switch (code & 0xff) {
-      case SQLITE_BUSY:
-      case SQLITE_LOCKED:
-        return "another program is at it: try again when it has ended";
       case SQLITE_READONLY:
       case SQLITE_CANTOPEN:
       case SQLITE_PERM:
       case SQLITE_AUTH:
-        return "it is kept in the job's folder, which has to be writable, and so has the file";
-      case SQLITE_FULL:
-      case SQLITE_IOERR:
-        return "free space on its disk";
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  static const char* way_out(int code) {
+    if (is_about_permission(code))
+      return "it is kept in the job's folder, which has to be writable, and so has the file";
+    if (is_about_room(code)) return "free space on its disk";
+    switch (code & 0xff) {
+      case SQLITE_BUSY:
+      case SQLITE_LOCKED:
+        return "another program is at it: try again when it has ended";
       default:
         return "move the file away, and the dips are read from the runs' logs again; what people "
                "told later (outcomes, notes, corrections, dips without the guide) and the reports "
@@ -201,8 +257,11 @@ struct History::Database {
       query("INSERT INTO readings VALUES (?, ?, ?)", {run.id, field, value});
   }
 
+  using Handle = std::unique_ptr<sqlite3, int (*)(sqlite3*)>;
   fs::path file;
-  std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle{nullptr, sqlite3_close};
+  Handle handle{nullptr, sqlite3_close};
+  bool made = false;                 // the file was not there
+  mutable bool out_of_room = false;  // something could not be written for want of room
 };
 
 History::History(const fs::path& job_folder, bool only_look) : folder_(job_folder) {
@@ -216,16 +275,30 @@ History::History(const fs::path& job_folder, bool only_look) : folder_(job_folde
       else if (!is_begun_log(entry->path()))
         unread_.push_back(entry->path().filename().string());
     }
-  const bool keeps = !only_look || !logged.empty() || fs::exists(folder_ / kFile, error);
-  database_ = std::make_unique<Database>(keeps ? folder_ / kFile : fs::path(":memory:"));
   std::vector<std::uint8_t> report;
   if (fs::exists(folder_ / "report.json", error)) report = read_file(folder_ / "report.json");
-  database_->transact([&] {
-    for (const DipRun& run : logged) database_->put(run);
-    if (!report.empty())
-      database_->query("INSERT OR IGNORE INTO reports VALUES (?, ?)",
-                       {sha256_hex(report), std::string(report.begin(), report.end())});
-  });
+  const auto take_in = [&](std::unique_ptr<Database> database) {
+    database_ = std::move(database);
+    database_->transact([&] {
+      database_->prepare();
+      for (const DipRun& run : logged) database_->put(run);
+      if (!report.empty())
+        database_->query("INSERT OR IGNORE INTO reports VALUES (?, ?)",
+                         {sha256_hex(report), std::string(report.begin(), report.end())});
+    });
+  };
+  const auto look_at_copy = [&] {
+    take_in(std::make_unique<Database>(folder_ / kFile, Database::Copy{}));
+  };
+  if (only_look && logged.empty() && !fs::exists(folder_ / kFile, error))
+    look_at_copy();
+  else
+    try {
+      take_in(std::make_unique<Database>(folder_ / kFile));
+    } catch (const CannotWrite&) {
+      if (!only_look) throw;
+      look_at_copy();
+    }
   // What an earlier look took in is there.
   std::erase_if(unread_, [&](const std::string& run) {
     return !database_->query("SELECT id FROM runs WHERE id = ?", {run}).empty();
@@ -272,6 +345,10 @@ std::string History::add(const std::string& started_utc, const std::string& repo
   return run.id;
 }
 
+void History::require_fields(const RunFields& fields) {
+  for (const auto& [name, value] : fields) check_field(name, value);
+}
+
 void History::require_run(const std::string& id) const {
   std::vector<std::string> known;
   for (const auto& row : database_->query("SELECT id FROM runs")) known.push_back(row[0]);
@@ -296,7 +373,7 @@ void History::remove(const std::string& id) {
 }
 
 void History::amend(const std::string& id, const RunFields& fields) {
-  for (const auto& [name, value] : fields) check_field(name, value);
+  require_fields(fields);
   require_run(id);
   database_->transact([&] {
     for (const auto& [name, value] : fields)

@@ -34,8 +34,9 @@ using RunFields = std::map<std::string, std::string>;
 class History {
  public:
   // Opens or makes JOB/history.sqlite and takes in what the logs of JOB/rig-N say. Throws
-  // InputError if the file is none of ours, of a newer version, or cannot be written. `only_look`:
-  // nothing will be added or amended; a folder in which nothing was dipped stays as it is.
+  // InputError if the file is none of ours, of a newer version, or cannot be written; one that was
+  // made for nothing is gone again. `only_look`: nothing will be added or amended; a folder in
+  // which nothing was dipped stays as it is, and so does one that cannot be written to.
   explicit History(const std::filesystem::path& job_folder, bool only_look = false);
   ~History();
   History(const History&) = delete;
@@ -49,6 +50,9 @@ class History {
   // or values that are none.
   std::string add(const std::string& started_utc, const std::string& report_sha256,
                   const RunFields& fields);
+  // Throws InputError as add and amend do.
+  static void require_fields(const RunFields& fields);
+  void require_run(const std::string& id) const;
   // Corrects what a run's log says, or judges the piece. Throws InputError as add, or if there is
   // no such run.
   void amend(const std::string& id, const RunFields& fields);
@@ -60,7 +64,6 @@ class History {
 
  private:
   struct Database;
-  void require_run(const std::string& id) const;
   std::filesystem::path folder_;
   std::vector<std::string> unread_;
   std::unique_ptr<Database> database_;

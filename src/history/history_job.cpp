@@ -77,7 +77,7 @@ Totals totals_of(const std::vector<CostedRun>& runs) {
     totals.use.cost += use.cost;
     if (is_judged(run)) totals.judged_cost += use.cost;
   }
-  if (totals.without_ink == totals.dips) totals.use.ink_ml.reset();
+  if (totals.dips > 0 && totals.without_ink == totals.dips) totals.use.ink_ml.reset();
   return totals;
 }
 
@@ -271,6 +271,10 @@ DipUse use_of(const DipRun& run, const SheetUse& sheet, const CostOptions& cost)
 }
 
 JobResult history_job(const RigJob& job, const HistoryRequest& request, Clock& clock) {
+  // Before a history is made for it.
+  History::require_fields(request.fields);
+  for (const std::string& id : {request.amend_run, request.remove_run})
+    if (!id.empty()) History(job.folder, true).require_run(id);
   History history(job.folder,
                   !request.add && request.amend_run.empty() && request.remove_run.empty());
   if (!request.settings_run.empty()) return report_of_run(history, request.settings_run);

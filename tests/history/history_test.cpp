@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
 #include "contains.h"
+#include "full_disk.h"
 #include "history/history_job.h"
 #include "refusal.h"
 #include "temporary_folder.h"
@@ -189,6 +191,50 @@ TEST(History, KeepsTheReportThatARunWasMadeBy) {
   EXPECT_EQ(History(job.path()).report("none"), "");
 }
 
+// A full disk, a medium that cannot be written to: what is there can be looked at, new runs too.
+TEST(History, LookingNeedsNoRoomAndNoPermission) {
+  const TemporaryFolder job;
+  write_file(job / "report.json", std::string("{}"));
+  History(job.path()).add("2026-01-01T10:00:00Z", "", {{"notes", "by hand"}});
+  write_run(job, "rig-1", guided_log("2026-01-02T10:00:00Z", "7", kDone));
+  const auto before = read_file(job / "history.sqlite");
+  write_file(job / "report.json", std::string("{\"new\": 1}"));
+  const auto expect_shown = [&] {
+    const std::vector<DipRun> runs = History(job.path(), true).runs();
+    ASSERT_EQ(runs.size(), 2U);
+    EXPECT_EQ(runs[0].notes, "by hand");
+    EXPECT_EQ(runs[1].label, "7");
+    EXPECT_NE(refusal([&] { History(job.path()).amend("hand-1", {{"notes", "none"}}); }), "");
+  };
+  {
+    const FullDisk full(0);
+    expect_shown();
+  }
+  EXPECT_EQ(read_file(job / "history.sqlite"), before);
+  fs::permissions(job / "history.sqlite", fs::perms::owner_read);
+  // Nothing is kept from root.
+  if (::access((job / "history.sqlite").c_str(), W_OK) != 0) expect_shown();
+  EXPECT_EQ(read_file(job / "history.sqlite"), before);
+}
+
+TEST(History, AFullDiskKeepsNoFileInWhichNothingIs) {
+  const std::string report = "{\"a\": \"" + std::string(100000, 'x') + "\"}";
+  for (const rlim_t most_bytes : {0, 5000, 30000, 60000, 120000}) {
+    const TemporaryFolder job;
+    write_file(job / "report.json", report);
+    const auto entries = [&] {
+      return std::distance(fs::directory_iterator(job.path()), fs::directory_iterator());
+    };
+    {
+      const FullDisk full(most_bytes);
+      const std::string said = refusal([&] { History(job.path()).add("", "", {}); });
+      EXPECT_TRUE(contains(said, "free space")) << said;
+    }
+    EXPECT_EQ(entries(), 1) << most_bytes;
+    EXPECT_EQ(History(job.path()).add("", "", {}), "hand-1");
+  }
+}
+
 RigJob priced_job() {
   RigJob job;
   job.sheet = {0.06, 0.5};
@@ -300,6 +346,37 @@ TEST(HistoryJob, ALookLeavesAFolderWithoutDipsAsItIs) {
   history_job(job, {}, clock);
   write_run(folder, "rig-1", "");
   EXPECT_FALSE(contains(history_job(job, {}, clock).text, "nothing was dipped yet"));
+}
+
+TEST(HistoryJob, WhatIsRefusedMakesNoHistory) {
+  const TemporaryFolder folder;
+  write_file(folder / "report.json", std::string("{}"));
+  RigJob job = priced_job();
+  job.folder = folder.path();
+  FixedClock clock;
+  HistoryRequest bad, of_none, remove_none;
+  bad.add = true;
+  bad.fields = {{"outcome", "bad"}};
+  of_none.amend_run = "rig-3";
+  of_none.fields = {{"outcome", "good"}};
+  remove_none.remove_run = "hand-1";
+  for (const HistoryRequest& request : {bad, of_none, remove_none})
+    EXPECT_NE(refusal([&] { history_job(job, request, clock); }), "");
+  EXPECT_FALSE(fs::exists(folder / "history.sqlite"));
+}
+
+// Of no dips all is known.
+TEST(HistoryJob, NoDipsUseNoInk) {
+  const TemporaryFolder folder;
+  RigJob job = priced_job();
+  job.folder = folder.path();
+  write_run(folder, "rig-1",
+            "{\"time\":\"t\",\"event\":\"start\",\"depth_mm\":12.0}\n"
+            "{\"time\":\"t\",\"event\":\"end\",\"outcome\":\"cancelled\",\"guided\":true}\n");
+  FixedClock clock;
+  const JobResult told = history_job(job, {}, clock);
+  EXPECT_TRUE(contains(told.text, "0.000 m2 of film, about 0.00 ml of ink")) << told.text;
+  EXPECT_EQ(nlohmann::json::parse(told.json)["totals"]["ink_ml"], 0);
 }
 
 TEST(HistoryJob, SaysWhichRunsItCannotRead) {
