@@ -51,14 +51,30 @@ std::vector<std::filesystem::path> store_files(const std::vector<std::string>& m
   return files;
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw InputError(
-        fmt::format("{}: the output folder cannot be made ({}); choose another with -o",
-                    folder.string(), error.message()));
-}
+// The folder, made if needed; what was made of it goes again if it stays empty.
+class StoreFolder {
+ public:
+  explicit StoreFolder(const std::filesystem::path& folder) {
+    std::error_code error;
+    for (auto path = folder; !path.empty() && !std::filesystem::exists(path, error);
+         path = path.parent_path())
+      made_.push_back(path);
+    std::filesystem::create_directories(folder, error);
+    if (error)
+      throw InputError(
+          fmt::format("{}: the output folder cannot be made ({}); choose another with -o",
+                      folder.string(), error.message()));
+  }
+  ~StoreFolder() {
+    std::error_code ignored;
+    for (const std::filesystem::path& path : made_) std::filesystem::remove(path, ignored);
+  }
+  StoreFolder(const StoreFolder&) = delete;
+  StoreFolder& operator=(const StoreFolder&) = delete;
+
+ private:
+  std::vector<std::filesystem::path> made_;  // innermost first
+};
 
 // ---- what is told ----
 
@@ -411,7 +427,7 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
 JobResult calibrated(const JobConfig& config, const CalibrationRequest& request, const Board& board,
                      const GridSearchOptions& options, const Shard& shard,
                      const std::vector<Subject>& subjects, const RunContext& context) {
-  make_folder(config.output);
+  const StoreFolder made(config.output);
   SimulationStore store(config.output / kStoreName, store_files(request.merged));
   std::vector<std::string> fingerprints;
   fingerprints.reserve(subjects.size());

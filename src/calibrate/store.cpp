@@ -110,6 +110,8 @@ bool SimulationKey::operator<(const SimulationKey& other) const {
 SimulationStore::SimulationStore(const std::filesystem::path& file,
                                  const std::vector<std::filesystem::path>& others)
     : file_(file) {
+  std::error_code ignored;
+  const bool is_new = !std::filesystem::exists(file, ignored);
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor < 0)
     refuse(file,
@@ -119,9 +121,23 @@ SimulationStore::SimulationStore(const std::filesystem::path& file,
     refuse(file, "another calibration is writing to it; wait for it, or choose another folder");
   if (lock_.state() == FileLock::State::kGone)
     refuse(file, "it was removed just now; calibrate again");
-  drop_torn_line();
-  read(file);
-  for (const auto& other : others) read(other);
+  made_ = is_new && lock_.state() == FileLock::State::kHeld;
+  try {
+    drop_torn_line();
+    read(file);
+    for (const auto& other : others) read(other);
+  } catch (...) {
+    remove_if_made_for_nothing();
+    throw;
+  }
+}
+
+SimulationStore::~SimulationStore() { remove_if_made_for_nothing(); }
+
+void SimulationStore::remove_if_made_for_nothing() const {
+  std::error_code ignored;
+  if (made_ && std::filesystem::file_size(file_, ignored) == 0)
+    std::filesystem::remove(file_, ignored);
 }
 
 void SimulationStore::drop_torn_line() {
@@ -201,9 +217,12 @@ void SimulationStore::add(const SimulationKey& key, const SimulationResult& resu
   while (written < line.size()) {
     const ssize_t count = ::write(lock_.descriptor(), line.data() + written, line.size() - written);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0)
+    if (count <= 0) {
+      const int error = errno;
+      drop_torn_line();
       refuse(file_, fmt::format("a result cannot be kept ({}); free space and run it again",
-                                std::strerror(errno)));
+                                std::strerror(error)));
+    }
     written += std::size_t(count);
   }
   ::fdatasync(lock_.descriptor());

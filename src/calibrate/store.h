@@ -33,6 +33,8 @@ class SimulationStore {
   // if it cannot be read or written, has no line that a store has, or another process has it open.
   SimulationStore(const std::filesystem::path& file,
                   const std::vector<std::filesystem::path>& others);
+  // A file that it made and into which nothing came goes again.
+  ~SimulationStore();
   SimulationStore(const SimulationStore&) = delete;
   SimulationStore& operator=(const SimulationStore&) = delete;
 
@@ -48,8 +50,10 @@ class SimulationStore {
  private:
   void read(const std::filesystem::path& file);
   void drop_torn_line();
+  void remove_if_made_for_nothing() const;
 
   std::filesystem::path file_;
+  bool made_ = false;
   FileLock lock_;
   struct FileRead {
     std::filesystem::path file;

@@ -113,11 +113,19 @@ void RunRecord::note(const std::string& event, const LogFields& fields) {
   errno = 0;
   log_.clear();
   log_ << lines_.back() << '\n' << std::flush;
-  if (!log_)
+  if (!log_) {
+    const int error = errno;
+    if (lines_.size() == 1) {  // of a run that has not begun
+      log_.close();
+      std::error_code ignored;
+      std::filesystem::remove(folder_ / "log.jsonl", ignored);
+      std::filesystem::remove(folder_, ignored);
+    }
     throw InputError(fmt::format(
         "{}: '{}' cannot be written ({}); free space, and begin again: a dip without its log is "
         "not in the history",
-        (folder_ / "log.jsonl").string(), event, std::generic_category().message(errno)));
+        (folder_ / "log.jsonl").string(), event, std::generic_category().message(error)));
+  }
 }
 
 std::vector<std::string> RunRecord::finish(const Trace& trace) {

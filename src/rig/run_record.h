@@ -25,7 +25,7 @@ class RunRecord {
 
   const std::filesystem::path& folder() const { return folder_; }
   // One line of JSON, on disk when this returns: time, elapsed_s, event, fields. Throws InputError
-  // if it cannot be written: what is not logged is lost.
+  // if it cannot be written: what is not logged is lost. If it is the first, the folder goes again.
   void note(const std::string& event, const LogFields& fields = {});
   // trace.csv, trace.svg and report.html (figures, plot, log); nothing of the trace if it is empty.
   // Returns the names of the files in the folder, the log first.

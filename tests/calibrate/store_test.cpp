@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "contains.h"
+#include "full_disk.h"
 #include "no_locks.h"
 #include "temporary_folder.h"
 
@@ -87,6 +88,22 @@ TEST_F(StoreTest, StoresMergeByFileAndByConcatenation) {
   std::ifstream in(other);
   write(both + std::string(std::istreambuf_iterator<char>(in), {}));
   EXPECT_EQ(SimulationStore(file_, {}).size(), 2u);
+}
+
+TEST_F(StoreTest, AFileThatItMadeForNothingGoesAgain) {
+  { const SimulationStore store(file_, {}); }
+  EXPECT_FALSE(std::filesystem::exists(file_));
+  EXPECT_THROW(SimulationStore(file_, {folder_ / "missing"}), InputError);
+  EXPECT_FALSE(std::filesystem::exists(file_));
+  {
+    const FullDisk disk(100);  // of a line, the beginning
+    SimulationStore store(file_, {});
+    EXPECT_THROW(store.add(key(0.1), result(1)), InputError);
+  }
+  EXPECT_FALSE(std::filesystem::exists(file_));
+  write("");
+  { const SimulationStore store(file_, {}); }
+  EXPECT_TRUE(std::filesystem::exists(file_));  // somebody else's
 }
 
 TEST_F(StoreTest, OnlyOneMayWrite) {
