@@ -203,10 +203,13 @@ void Mover::require_permission() const {
   if (!allowed_) throw std::logic_error("a stage was to move without permission");
 }
 
-void Mover::require_within_limits(double position_mm) const {
+bool Mover::is_within_limits(double position_mm) const {
   const double slack_mm = identity_.step_mm;
-  if (position_mm >= identity_.min_mm - slack_mm && position_mm <= identity_.max_mm + slack_mm)
-    return;
+  return position_mm >= identity_.min_mm - slack_mm && position_mm <= identity_.max_mm + slack_mm;
+}
+
+void Mover::require_within_limits(double position_mm) const {
+  if (is_within_limits(position_mm)) return;
   throw StageError(fmt::format(
       "{:.2f} mm is beyond the stage's travel of {:.2f} to {:.2f} mm: hang the object higher or "
       "lower, or dip less of it",

@@ -40,6 +40,7 @@ class Mover {
 
   const StageIdentity& identity() const { return identity_; }
   StageState state();
+  bool is_within_limits(double position_mm) const;
   // Throws StageError for a place beyond the stage's travel.
   void require_within_limits(double position_mm) const;
   // The operator has said yes.

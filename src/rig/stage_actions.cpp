@@ -97,6 +97,7 @@ void perform(StageSession& session, const StageAction& action, const RigJob* job
   if (action.action == "home") return session.ensure_home(true);
   session.ensure_home();
   if (action.action == "jog") {
+    session.require_jog(action.jog_mm);
     session.require_yes(fmt::format("The stage will move by {:g} mm.", action.jog_mm));
     return session.jog(action.jog_mm);
   }

@@ -80,9 +80,27 @@ void StageSession::ensure_home(bool always) {
   bench_.person.say("The stage is at home.");
 }
 
+double StageSession::jogged_mm(double down_mm) {
+  return position_mm() + (options_.down == StageDown::kPlus ? down_mm : -down_mm);
+}
+
+void StageSession::require_jog(double down_mm) {
+  const double to_mm = jogged_mm(down_mm);
+  const StageIdentity& stage = mover_.identity();
+  if (!mover_.is_within_limits(to_mm))
+    throw InputError(
+        fmt::format("{:+g} mm from {:.2f} mm leads to {:.2f} mm, beyond the stage's travel of "
+                    "{:.2f} to {:.2f} mm: move it by less",
+                    down_mm, position_mm(), to_mm, stage.min_mm, stage.max_mm));
+  if (is_too_low(to_mm))
+    throw InputError(fmt::format(
+        "{:+g} mm leads to {:.2f} mm, lower than stage.lowest_mm = {:g} allows: move it by less",
+        down_mm, to_mm, options_.lowest_mm));
+}
+
 void StageSession::jog(double down_mm) {
-  const double down = options_.down == StageDown::kPlus ? down_mm : -down_mm;
-  move("jog", position_mm() + down, options_.travel_mm_per_min / 2, false);
+  require_jog(down_mm);
+  move("jog", jogged_mm(down_mm), options_.travel_mm_per_min / 2, false);
 }
 
 double StageSession::find_water_level() {
@@ -102,8 +120,10 @@ double StageSession::find_water_level() {
       jog(*down_mm);
     } catch (const LinkError&) {
       throw;
-    } catch (const StageError& error) {
+    } catch (const InputError& error) {
       bench_.person.say(error.what());  // beyond its travel: ask again
+    } catch (const StageError& error) {
+      bench_.person.say(error.what());
       if (!mover_.state().fault.empty()) throw;
     }
   }
@@ -148,10 +168,14 @@ void StageSession::require_reach(double water_mm, const PlannedMove& move) const
   mover_.require_within_limits(position_mm);
 }
 
-void StageSession::require_above_lowest(const std::string& phase, double position_mm) const {
+bool StageSession::is_too_low(double position_mm) const {
   const bool down_is_plus = options_.down == StageDown::kPlus;
-  if (options_.lowest_mm > 0 &&
-      (down_is_plus ? position_mm > options_.lowest_mm : position_mm < options_.lowest_mm))
+  return options_.lowest_mm > 0 &&
+         (down_is_plus ? position_mm > options_.lowest_mm : position_mm < options_.lowest_mm);
+}
+
+void StageSession::require_above_lowest(const std::string& phase, double position_mm) const {
+  if (is_too_low(position_mm))
     throw StageError(fmt::format("{}: {:.2f} mm is lower than stage.lowest_mm = {:g} allows", phase,
                                  position_mm, options_.lowest_mm));
 }

@@ -25,7 +25,9 @@ class StageSession {
   // "at 12.3 mm, homed, standing still".
   std::string describe_state();
   double position_mm();
-  // Positive lowers the object.
+  // Throws InputError if the stage cannot go so far from where it stands.
+  void require_jog(double down_mm);
+  // Positive lowers the object. Throws as require_jog, without moving.
   void jog(double down_mm);
   // Lets the operator bring the object's lowest point to the water; the position there.
   double find_water_level();
@@ -43,6 +45,8 @@ class StageSession {
  private:
   void show(const TracePoint& point);
   void move(const std::string& phase, double position_mm, double mm_per_min, bool steady);
+  double jogged_mm(double down_mm);
+  bool is_too_low(double position_mm) const;
   void require_above_lowest(const std::string& phase, double position_mm) const;
   void note(const std::string& event, const LogFields& fields);
 

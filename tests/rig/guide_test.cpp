@@ -7,6 +7,7 @@
 #include "contains.h"
 #include "full_disk.h"
 #include "guided.h"
+#include "refusal.h"
 #include "rig/run_record.h"
 
 namespace hydrodip {
@@ -251,6 +252,34 @@ TEST_F(GuideTest, JoggingLowersWhicheverWayTheScaleRuns) {
   }
 }
 
+// The stage and the dip are fine: the person asked for too much, and is not even asked for a yes.
+TEST_F(GuideTest, AJogBeyondTheTravelIsBadInputAndMovesNothing) {
+  for (const StageDown down : {StageDown::kPlus, StageDown::kMinus}) {
+    GuidedBench guided;
+    StageOptions stage = this->job(guided.emulator->port()).config.stage;
+    stage.down = down;
+    guided.bench.yes_given = true;
+    rig_stage({"home"}, nullptr, stage, guided.bench, guided.context);
+    const double home_mm = guided.emulator->position_mm();
+    const auto refusal_of = [&](double down_mm) {
+      StageAction action{"jog"};
+      action.jog_mm = down_mm;
+      return refusal([&] { rig_stage(action, nullptr, stage, guided.bench, guided.context); });
+    };
+    for (const double beyond_mm : {2000.0, -2000.0}) {
+      const std::string said = refusal_of(beyond_mm);
+      EXPECT_TRUE(contains(said, "beyond the stage's travel")) << said;
+      EXPECT_FALSE(contains(said, "object")) << said;
+    }
+    EXPECT_NEAR(guided.emulator->position_mm(), home_mm, 0.001);
+    // Where the scale falls as the object goes down, home is at its lower end already.
+    stage.lowest_mm = down == StageDown::kPlus ? 30 : 60;
+    const double off_mm = down == StageDown::kPlus ? 40 : -50;
+    EXPECT_TRUE(contains(refusal_of(off_mm), "stage.lowest_mm"));
+    EXPECT_NEAR(guided.emulator->position_mm(), home_mm, 0.001);
+  }
+}
+
 TEST_F(GuideTest, ProgramsLearnWhereTheStageStands) {
   GuidedBench guided;
   guided.bench.yes_given = true;
@@ -333,6 +362,16 @@ TEST_F(GuideTest, StopsAtTheFirstLineThatCannotBeLogged) {
   disk.reset();
   EXPECT_TRUE(contains(why, "log.jsonl: 'water' cannot be written")) << why;
   EXPECT_EQ(guided.person.times_asked("Enter the moment it lies"), 0);
+}
+
+TEST_F(GuideTest, ARunThatCannotEvenBeginLeavesNoFolder) {
+  GuidedBench guided;
+  {
+    const FullDisk disk(1);
+    EXPECT_TRUE(contains(refusal([&] { rig_guide(job(""), guided.bench, guided.context); }),
+                         "'start' cannot be written"));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "rig-1"));
 }
 
 TEST_F(GuideTest, AGunThatIsHeavierAfterwardsIsWeighedAgain) {
