@@ -92,14 +92,18 @@ std::string text_of(const Subject& subject, const std::vector<Measurement>& meas
   return text;
 }
 
-void warn_of_bare_corners(const Subject& subject, const Measurement& full,
+// An error of what few corners are left would look the better, the less of the dip is right.
+void require_film_on_most(const Subject& subject, const Measurement& full,
                           const RunContext& context) {
-  if (5 * full.unknown > subject.scan.grid.position.size())
-    context.warn(fmt::format(
-        "{}: {} of {} corners lie where the simulated dip lays no film; check the depth ('{}@DEPTH="
-        "...').",
-        subject.file.string(), full.unknown, subject.scan.grid.position.size(),
-        subject.object.name));
+  const std::size_t corners = subject.scan.grid.position.size();
+  const std::string bare =
+      fmt::format("{}: {} of {} corners lie where the simulated dip lays no film",
+                  subject.file.string(), full.unknown, corners);
+  const std::string check = fmt::format("check the depth ('{}@DEPTH=...')", subject.object.name);
+  if (full.error.edges == 0 || 2 * full.unknown > corners)
+    throw InputError(
+        fmt::format("{}, too many for an error of the others to mean anything; {}", bare, check));
+  if (5 * full.unknown > corners) context.warn(fmt::format("{}; {}.", bare, check));
 }
 
 }  // namespace
@@ -122,12 +126,7 @@ JobResult measure_job(const JobConfig& given, const CalibrationRequest& request,
     for (const Method& method : kMethods)
       measurements.push_back(
           measure(subject, film, config.design, method, board.square_mm, context));
-    if (measurements.front().error.edges == 0)
-      throw InputError(fmt::format(
-          "{}: the simulated dip lays no film on any two neighbouring corners; check the depth "
-          "('{}@DEPTH=...')",
-          subject.file.string(), subject.object.name));
-    warn_of_bare_corners(subject, measurements.front(), context);
+    require_film_on_most(subject, measurements.front(), context);
     scans.push_back(json_of(subject, measurements));
     result.text += text_of(subject, measurements);
     maps.emplace_back();

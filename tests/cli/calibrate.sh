@@ -166,6 +166,30 @@ grep -q 'wrong way round' said.txt || fail "does not say that the scan is mirror
 refuse 'sphere-90=scan.obj' calibrate
 refuse 'which object' calibrate unknown.obj
 refuse 'no-such.csv' calibrate sphere=no-such.csv
+# The fewer corners are left to compare, the better they may look: a scan in pieces, dipped deeper
+# than it is told, of whose pieces only the one about the lowest point has film.
+python3 - << 'PY' || fail "a scan in pieces"
+rows = [line.strip().split(',') for line in open('scans/sphere-scan.csv') if line[0] in '-0123456789']
+places = {(int(c), int(r)): xyz for c, r, *xyz in rows}
+low, high = min(c for c, _ in places), max(c for c, _ in places)
+def squares():
+    for c, r in places:
+        square = [(c, r), (c, r + 1), (c + 1, r + 1), (c + 1, r)]
+        inner = all(low + 3 <= value <= high - 3 for place in square for value in place)
+        if all(place in places for place in square) and (inner or {c, r} & {low, high - 1}):
+            yield square
+kept = list(squares())
+used = sorted({place for square in kept for place in square})
+with open('pieces.obj', 'w') as scan:
+    for place in used:
+        scan.write('v ' + ' '.join(places[place]) + '\n')
+    for square in kept:
+        scan.write('f ' + ' '.join(str(used.index(place) + 1) for place in square) + '\n')
+PY
+# shellcheck disable=SC2086
+refuse 'corners lie where the simulated dip lays no film, too many' \
+  measure sphere@4=pieces.obj $film -o shallow
+[ ! -e shallow ] || fail "an error of a few corners was written"
 refuse "depth in mm after '@'" measure sphere@=scans/sphere-scan.csv
 refuse 'begin above 0' calibrate sphere=scans/sphere-scan.csv --ratio 0:100:x2
 refuse 'factor has to be above 1' calibrate sphere=scans/sphere-scan.csv --ratio 3:100:x1
@@ -173,6 +197,9 @@ refuse 'larger --film' calibrate kit --film 90x90 -o small
 grep -q -- '--size\|--rotate' stderr.txt && fail "the kit is mended by what it has not: $(cat stderr.txt)"
 refuse '--poisson' calibrate sphere=scans/sphere-scan.csv --poisson 0:1:0.1
 cp scans/sphere-scan.csv copy.csv
+# shellcheck disable=SC2086
+refuse 'no-such' calibrate sphere=scans/sphere-scan.csv $film $grid --merge no-such -o new/er
+[ ! -e new ] || fail "a refused calibration left $(find new)"
 # shellcheck disable=SC2086
 refuse 'give each dip once' calibrate sphere=scans/sphere-scan.csv sphere=copy.csv $film $grid
 refuse '--shard' calibrate sphere=scans/sphere-scan.csv --shard 3/2
