@@ -28,6 +28,7 @@ struct Key {
   // False: the value is none that it can have.
   std::function<bool(ArtworkLayer&, const Setting&)> set;
   std::function<std::string(const ArtworkLayer&)> get;
+  Wanted wanted = Wanted::kOther;
 };
 
 // ---- values ----
@@ -80,7 +81,8 @@ Key number(const char* name, const char* unit, double min, double max, double Ar
             layer.*member = (*values)[0] + 0.0;
             return true;
           },
-          [=](const ArtworkLayer& layer) { return fmt::format("{}", layer.*member); }};
+          [=](const ArtworkLayer& layer) { return fmt::format("{}", layer.*member); },
+          Wanted::kNumber};
 }
 
 Key vector(const char* name, const char* unit, std::optional<Vec3> ArtworkLayer::*member,
@@ -124,7 +126,8 @@ Key size() {
         if (!(layer.width_mm > 0)) return std::string();
         return layer.height_mm > 0 ? fmt::format("{},{}", layer.width_mm, layer.height_mm)
                                    : fmt::format("{}", layer.width_mm);
-      }};
+      },
+      Wanted::kNumber};
 }
 
 template <class Enum>
@@ -286,7 +289,7 @@ bool apply_artwork_setting(JobConfig& config, const Setting& setting) {
   const Key& key = find_key(key_of(setting.name), setting);
   ArtworkLayer& layer =
       is_option ? topmost(layers, setting) : numbered(layers, at->number, setting);
-  if (!key.set(layer, setting)) refuse_value(setting, key.key.range);
+  if (!key.set(layer, setting)) refuse_value(setting, key.wanted, key.key.range);
   return true;
 }
 

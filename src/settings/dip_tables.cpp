@@ -25,7 +25,7 @@ JobConfig checked_as(const std::string& parameter, const Setting& setting) {
 bool checked_flag(const Setting& setting) {
   const auto* text = std::get_if<std::string>(&setting.value);
   if (text && (*text == "true" || *text == "false")) return *text == "true";
-  refuse_value(setting, "true or false");
+  refuse_value(setting, Wanted::kOther, "true or false");
 }
 
 }  // namespace

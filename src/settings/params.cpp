@@ -85,7 +85,8 @@ std::string expectation(const Parameter& p) {
 }
 
 [[noreturn]] void refuse(const Parameter& p, const Setting& setting) {
-  refuse_value(setting, expectation(p));
+  const bool number = p.type == ParameterType::kNumber || p.type == ParameterType::kInteger;
+  refuse_value(setting, number ? Wanted::kNumber : Wanted::kOther, expectation(p));
 }
 
 bool in_range(const Parameter& p, double value) {

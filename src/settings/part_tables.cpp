@@ -30,7 +30,7 @@ int count_of(const Setting& setting) {
   if (const auto* text = std::get_if<std::string>(&setting.value); text && !setting.typed)
     parse_double(text->data(), text->data() + text->size(), value);
   if (!(value >= 1 && value <= kMostCopies && value == std::floor(value)))
-    refuse_value(setting, fmt::format("a whole number from 1 to {}", kMostCopies));
+    refuse_value(setting, Wanted::kNumber, fmt::format("a whole number from 1 to {}", kMostCopies));
   return int(value);
 }
 
@@ -43,7 +43,7 @@ bool apply_part_setting(JobConfig& config, const Setting& setting) {
   if (at->key == "job") {
     const auto* text = std::get_if<std::string>(&setting.value);
     if (!text || text->empty() || text->find('\0') != std::string::npos)
-      refuse_value(setting, "a file name, of a model or a job");
+      refuse_value(setting, Wanted::kOther, "a file name, of a model or a job");
     part.job = *text;
   } else if (at->key == "count") {
     part.count = count_of(setting);

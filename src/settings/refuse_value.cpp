@@ -20,8 +20,8 @@ bool is_quoted_number(const Setting& setting) {
 
 }  // namespace
 
-void refuse_value(const Setting& setting, const std::string& expected) {
-  const bool quoted = expected.find("from ") != std::string::npos && is_quoted_number(setting);
+void refuse_value(const Setting& setting, Wanted wanted, const std::string& expected) {
+  const bool quoted = wanted == Wanted::kNumber && is_quoted_number(setting);
   throw InputError(fmt::format("{}: {} must be {}, not {}{}", setting.origin, told_name(setting),
                                expected, setting.shown.empty() ? "empty" : setting.shown,
                                quoted ? ", which is text: leave out its quotation marks" : ""));

@@ -167,8 +167,11 @@ TEST_F(Settings, AQuotedNumberIsToldToBeText) {
   EXPECT_TRUE(contains(toml_error("film.elements = '4000'"), told));
   EXPECT_TRUE(contains(toml_error("[[part]]\njob = 'a.stl'\ncount = '2'\n"), told));
   EXPECT_TRUE(contains(toml_error("[[artwork]]\nimage = 'a.png'\nopacity = '0.5'\n"), told));
+  EXPECT_TRUE(contains(toml_error("[[artwork]]\nimage = 'a.png'\nsize_mm = '40'\n"), told));
   EXPECT_TRUE(contains(toml_error("[[dip]]\ndepth_mm = '5'\n"), told));
-  for (const char* other : {"film.margin_mm = 'wide'", "film.margin_mm = 999999.0",
+  // Of three numbers one alone is as wrong without them.
+  for (const char* other : {"object.rotate_deg = '90'", "[[artwork]]\ntext = 'a'\nat_mm = '5'\n",
+                            "film.margin_mm = 'wide'", "film.margin_mm = 999999.0",
                             "film.shape = '3'", "film.margin_mm = '12 mm'"})
     EXPECT_FALSE(contains(toml_error(other), told)) << other;
 }
