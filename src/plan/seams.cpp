@@ -87,24 +87,21 @@ SharedSurface::SharedSurface(const SeamTask& task, const RunContext& context) {
 SharedSurface::Place SharedSurface::place_of(const Vec3& position, const Vec3& normal) const {
   const Data& d = *data_;
   const auto found = d.nearest_of_all.find(position, normal, kFarthest * d.nodes->spacing());
-  if (found.node < 0) return {-1, 0, 0, true, found.looked_at};
+  if (found.node < 0) return {-1, 0, 0, true};
   const auto node = std::size_t(found.node);
-  return {found.node, found.squared, d.dip_of[node], !d.at_seam[node], found.looked_at};
+  return {found.node, found.squared, d.dip_of[node], !d.at_seam[node]};
 }
 
-std::vector<float> SharedSurface::shares_at(const Vec3& position, const Vec3& normal,
-                                            std::size_t* looked_at) const {
+std::vector<float> SharedSurface::shares_at(const Vec3& position, const Vec3& normal) const {
   const Place place = place_of(position, normal);
-  if (looked_at) *looked_at += std::size_t(place.looked_at);
-  if (!place.alone) return faded_at(place, position, normal, kAllDips, looked_at);
+  if (!place.alone) return faded_at(place, position, normal, kAllDips);
   std::vector<float> shares(dips(), 0);
   shares[place.dip] = 1;
   return shares;
 }
 
 std::vector<float> SharedSurface::faded_at(const Place& place, const Vec3& position,
-                                           const Vec3& normal, std::uint32_t near,
-                                           std::size_t* looked_at) const {
+                                           const Vec3& normal, std::uint32_t near) const {
   const Data& d = *data_;
   std::vector<float> shares(dips(), 0);
   // How far each dip's part is; equally far from two is on the seam. What is further than a fade
@@ -118,7 +115,6 @@ std::vector<float> SharedSurface::faded_at(const Place& place, const Vec3& posit
     if (k == place.dip || !(near & bit_of(k))) continue;
     const auto found = d.nearest[k].find(position, normal, within);
     if (found.node >= 0) distance[k] = std::sqrt(found.squared);
-    if (looked_at) *looked_at += std::size_t(found.looked_at);
   }
   double sum = 0;
   for (std::size_t k = 0; k < shares.size(); ++k) {

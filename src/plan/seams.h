@@ -38,9 +38,7 @@ class SharedSurface {
 
   // Which part of its ink a point gets from each dip: they add up to 1 wherever any film lies, and
   // none comes from a dip whose film does not lie there.
-  // `looked_at`, if given, grows by the nodes that it took.
-  std::vector<float> shares_at(const Vec3& position, const Vec3& normal,
-                               std::size_t* looked_at = nullptr) const;
+  std::vector<float> shares_at(const Vec3& position, const Vec3& normal) const;
   // The same as each dip sees it; `mesh`: the object's, in its own frame.
   std::vector<Allotment> allotments(std::shared_ptr<const TriangleMesh> mesh) const;
 
@@ -70,13 +68,12 @@ class SharedSurface {
     double squared;
     std::size_t dip;
     bool alone;
-    int looked_at;
   };
   class Triangles;
   Place place_of(const Vec3& position, const Vec3& normal) const;
   // Dips whose bit in `near` is not set lie too far away.
   std::vector<float> faded_at(const Place& place, const Vec3& position, const Vec3& normal,
-                              std::uint32_t near, std::size_t* looked_at = nullptr) const;
+                              std::uint32_t near) const;
 
   std::shared_ptr<const Data> data_;
 };

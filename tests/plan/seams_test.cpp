@@ -242,20 +242,27 @@ TEST(NearestNode, OfTwoThatAreAsNearIsTheFirst) {
     EXPECT_EQ(nearest.find(Vec3(i + 0.1, 0, 0), Vec3::UnitZ(), 1).node, i);
 }
 
-// All nodes may lie within reach of a point.
-TEST_F(Plate, AWideFadeLooksAtHardlyMoreNodesThanANarrowOne) {
-  const auto looked_at = [&](double overlap) {
-    const SharedSurface shared = divide(StripedPaint(*mesh_, 0, 0), overlap);
-    const std::vector<std::int32_t> at_seam = shared.seam_nodes();
-    std::size_t count = 0;
+// As a wide fade asks, for which all nodes may lie within reach: each part for what is nearest to
+// nodes of the other.
+TEST_F(Plate, OfAllNodesWithinReachFewAreLookedAt) {
+  const SharedSurface shared = divide(StripedPaint(*mesh_, 0, 0), 2);
+  std::vector<std::int32_t> part;
+  for (std::size_t i = 0; i < shared.dip_of().size(); ++i)
+    if (shared.dip_of()[i] == 0) part.push_back(std::int32_t(i));
+  const NearestNode nearest(shared.nodes(), part);
+  const std::vector<std::int32_t> at_seam = shared.seam_nodes();
+  ASSERT_GT(at_seam.size(), 100U);
+  const auto looked_at = [&](double reach) {
+    double count = 0;
     for (const std::int32_t i : at_seam)
-      shared.shares_at(shared.nodes().nodes()[std::size_t(i)].position, Vec3::UnitZ(), &count);
-    return double(count) / double(at_seam.size());
+      count += nearest.find(shared.nodes().nodes()[std::size_t(i)].position, Vec3::UnitZ(), reach)
+                   .looked_at;
+    return count / double(at_seam.size());
   };
-  const double narrow = looked_at(2), wide = looked_at(30);
-  EXPECT_GT(narrow, 3);  // one of all, and one of each other part
-  EXPECT_LT(wide, 3 * narrow);
-  EXPECT_LT(wide, 6000 / 20.0);  // of all nodes
+  const double narrow = looked_at(3), wide = looked_at(60);
+  EXPECT_GT(narrow, 2);
+  EXPECT_LT(wide, 2 * narrow);
+  EXPECT_LT(wide, double(part.size()) / 20);
 }
 
 TEST(SurfaceNodes, AThinWallHasTwoSides) {
