@@ -4,10 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "base/shell_word.h"
 #include "build_version.h"
 
 namespace hydrodip {
@@ -24,8 +26,9 @@ std::string general_help() {
   help += "\nTry it:\n";
   for (const std::string& command : first_commands()) help += "  " + command + "\n";
   help +=
-      "\n'hydrodip COMMAND --help' shows a command's options. Lengths are in mm, angles in "
-      "degrees.\nExit codes:\n";
+      "\n'hydrodip COMMAND --help' shows a command's options, 'hydrodip --version' which version "
+      "this "
+      "is.\nLengths are in mm, angles in degrees.\nExit codes:\n";
   for (const Remark& code : exit_codes())
     help += fmt::format("  {:<4} {}\n", code.what, code.means);
   for (const Remark& variable : environment_variables())
@@ -100,13 +103,22 @@ std::size_t count_name_words(const std::vector<std::string>& arguments) {
   return 2;
 }
 
+bool is_file(const std::string& name) {
+  std::error_code ignored;
+  return std::filesystem::exists(name, ignored);
+}
+
 const Command& find_command(const std::string& name) {
   std::vector<std::string> names;
   for (const Command& command : commands()) {
     if (command.name == name) return command;
     names.push_back(command.name);
   }
-  const std::string hint = did_you_mean(name, names);
+  const std::string hint = is_file(name) ? fmt::format(
+                                               ": name what to do with that file, as in 'hydrodip "
+                                               "print {}'",
+                                               shell_word(name))
+                                         : did_you_mean(name, names);
   throw InputError(fmt::format("unknown {} '{}'{}", name.starts_with("-") ? "option" : "command",
                                name,
                                hint.empty() ? "; 'hydrodip --help' lists the commands" : hint));
@@ -127,12 +139,30 @@ void refuse_rest(const CLI::App& app, const Command& command, std::vector<std::s
   for (const std::string& argument : rest) {
     if (ended || !argument.starts_with("-")) continue;
     const std::string name = argument.substr(0, argument.find('='));
-    const std::string hint = did_you_mean(name, option_names(app));
+    const std::string hint = is_file(argument)
+                                 ? fmt::format("; for the file of that name write ./{}", argument)
+                                 : did_you_mean(name, option_names(app));
     throw InputError(fmt::format("unknown option '{}'{}", name,
                                  hint.empty() ? "; " + usage(command) + " lists them" : hint));
   }
   if (!rest.empty())
     throw InputError(fmt::format("unexpected argument '{}'; see {}", rest.front(), usage(command)));
+}
+
+// CLI11 takes whatever comes next for an option's value.
+void refuse_options_as_values(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const auto option_of = [&](const std::string& argument) {
+    return argument.starts_with("-") ? app.get_option_no_throw(argument) : nullptr;
+  };
+  for (std::size_t i = 0; i + 1 < arguments.size() && arguments[i] != "--"; ++i) {
+    const CLI::Option* option = option_of(arguments[i]);
+    if (!option || option->get_items_expected_min() == 0) continue;
+    const std::string& value = arguments[++i];
+    if (option_of(value))
+      throw InputError(
+          fmt::format("{0}: a value is missing, as {1} is an option; {2}={1} if that is the value",
+                      arguments[i - 1], value, option->get_name()));
+  }
 }
 
 CommandLine parse_command(const Command& command, std::vector<std::string> arguments) {
@@ -141,6 +171,7 @@ CommandLine parse_command(const Command& command, std::vector<std::string> argum
   line.request.command_line.insert(line.request.command_line.end(), arguments.begin(),
                                    arguments.end());
   const std::unique_ptr<CLI::App> app = command_options(command, line.request);
+  refuse_options_as_values(*app, arguments);
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
   try {
     app->parse(arguments);

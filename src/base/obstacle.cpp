@@ -21,4 +21,11 @@ std::string obstacle_at(const std::filesystem::path& path) {
   }
 }
 
+std::string why_absent(const std::filesystem::path& folder, const std::string& name) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder, ignored)) return "there is no such folder";
+  if (!std::filesystem::is_directory(folder, ignored)) return "it is a file, not a folder";
+  return "there is no " + name + " in it";
+}
+
 }  // namespace hydrodip

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/obstacle.h"
 #include "job/browser.h"
 #include "job/jobs.h"
 
@@ -18,15 +19,9 @@ std::filesystem::path find_report(const std::filesystem::path& where) {
   const std::filesystem::path report = where / "report.html";
   if (std::filesystem::is_regular_file(report, ignored))
     return std::filesystem::weakly_canonical(report);
-  if (!std::filesystem::exists(where, ignored))
-    throw InputError(
-        fmt::format("{}: there is no such folder; name the output folder of a job, as "
-                    "in 'hydrodip view mask-print'",
-                    where.string()));
   throw InputError(
-      fmt::format("{}: there is no report.html here; name the output folder of a "
-                  "'hydrodip print' or 'hydrodip simulate'",
-                  where.string()));
+      fmt::format("{}: {}; name the output folder of a job, as in 'hydrodip view mask-print'",
+                  where.string(), why_absent(where, "report.html")));
 }
 
 }  // namespace

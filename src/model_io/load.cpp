@@ -308,6 +308,8 @@ void warn_of_one_color(const Object& object, const RunContext& context) {
 
 }  // namespace
 
+void require_model_file(const fs::path& path) { format_of(path); }
+
 PolygonMesh load_polygons(const fs::path& path, const RunContext& context) {
   const RunScope scope(context);
   const Format& format = format_of(path);

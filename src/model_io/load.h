@@ -49,6 +49,9 @@ struct LoadedObject {
 LoadedObject load_object(const std::filesystem::path& path, const LoadOptions& options,
                          const RunContext& context);
 
+// Throws InputError for what load_object reads nothing of by its name, and for a folder.
+void require_model_file(const std::filesystem::path& path);
+
 // Faces as the file has them, not cut into triangles. Equal positions are one vertex.
 struct PolygonMesh {
   std::vector<Vec3> positions;                   // in the file's unit

@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/json_nesting.h"
 #include "base/json_text.h"
+#include "base/obstacle.h"
 #include "base/schema_version.h"
 #include "base/small_file.h"
 #include "job/sheet_of.h"
@@ -41,9 +42,8 @@ ReadReport read_report(const std::filesystem::path& folder) {
     throw InputError(
         std::filesystem::exists(nest, ignored)
             ? fmt::format("{}: this is a nest; its run sheet is {}", folder.string(), nest.string())
-            : fmt::format(
-                  "{}: there is no report.json; name the folder that 'hydrodip print' wrote",
-                  folder.string()));
+            : fmt::format("{}: {}; name the folder that 'hydrodip print' wrote", folder.string(),
+                          why_absent(folder, "report.json")));
   }
   const std::vector<std::uint8_t> bytes = read_small_file(file, kLargestReport, "a report");
   Json report = parsed_json<Json>(bytes);

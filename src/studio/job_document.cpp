@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "model_io/load.h"
 #include "settings/job_file.h"
 #include "settings/params.h"
 #include "settings/settings.h"
@@ -49,8 +50,12 @@ JobConfig config_of_file(const std::filesystem::path& file) {
     config.model = whole;
   }
   std::error_code error;
+  if (!std::filesystem::exists(config.model, error))
+    throw InputError(
+        fmt::format("{}: there is no such file; check its name", config.model.string()));
+  require_model_file(config.model);
   if (!std::filesystem::is_regular_file(config.model, error))
-    throw InputError(fmt::format("{}: there is no such file", config.model.string()));
+    throw InputError(fmt::format("{}: it is no file; name the model's own", config.model.string()));
   return config;
 }
 

@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/json_nesting.h"
 #include "base/json_text.h"
+#include "base/obstacle.h"
 #include "sweep/sweep_command.h"
 #include "sweep/sweep_inputs.h"
 
@@ -49,8 +50,8 @@ SweepPlan read_manifest(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::exists(file, ignored))
     throw InputError(
-        fmt::format("{}: there is no sweep.json; 'hydrodip sweep plan FILE.toml -o DIR' makes one",
-                    folder.string()));
+        fmt::format("{}: {}; name the folder that 'hydrodip sweep plan FILE.toml -o DIR' made",
+                    folder.string(), why_absent(folder, "sweep.json")));
   const std::vector<std::uint8_t> bytes = read_file(file);
   try {
     const Json json = parsed_json<Json>(bytes);

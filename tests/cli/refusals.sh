@@ -49,6 +49,38 @@ done
 refused 'nowhere.obj' print nowhere.obj -o out
 refused 'nowhere.obj' inspect nowhere.obj
 refused 'inputs' print inputs -o out
+refused 'it is a folder' studio --no-browser inputs
+refused "unknown kind of model file '.bin'" studio --no-browser inputs/noise.bin
+
+# What is named is a file where a folder is meant, or lacks what a job's folder has.
+for command in 'rig sheet' history view 'sweep run' 'sweep collect'; do
+  # shellcheck disable=SC2086
+  refused 'it is a file, not a folder' $command tetra.obj
+  # shellcheck disable=SC2086
+  refused 'there is no such folder' $command nowhere
+  # shellcheck disable=SC2086
+  refused ' in it; name the' $command inputs
+done
+
+# What mends a part is in its job file: 'nest' has no options for it.
+printf '[object]\nfile = "tetra.obj"\n' > plain.toml
+refused 'write one that names the model, and nest that' nest tetra.obj
+refused 'under [[artwork]]: put it there' nest plain.toml
+rm plain.toml
+
+# A value that was forgotten is not the option behind it.
+refused '--output: a value is missing, as --quiet is an option' print tetra.obj --output --quiet
+refused '-o: a value is missing, as --json is an option; --output=--json if' print tetra.obj -o --json
+refused '--film: a value is missing, as -o is an option' inspect tetra.obj --film -o out
+"$hydrodip" sample box --output=--quiet > /dev/null || fail 'a folder named as an option is'
+[ -f ./--quiet/box.obj ] || fail 'the folder --quiet is not there'
+rm -r ./--quiet
+
+# A file where a command or an option stands.
+refused "unknown command 'tetra.obj': name what to do with that file, as in 'hydrodip print tetra.obj'" tetra.obj
+cp tetra.obj ./-tetra.obj
+refused "for the file of that name write ./-tetra.obj" inspect -tetra.obj
+rm ./-tetra.obj
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 9\n' > inputs/index.obj
 refused 'inputs/index.obj' simulate inputs/index.obj -o out
 printf 'v 0 0 0\nv nan 0 0\nv 0 1 1\nf 1 2 3\n' > inputs/nan.obj

@@ -24,7 +24,7 @@ expect 0 'wrote job/other.pdf' rig sheet job -o job/other.pdf --paper letter
 expect 2 'rig sheet' rig
 expect 0 'rig guide' rig --help
 expect 2 'did you mean' rig shet job
-expect 2 'no report.json' rig sheet nowhere
+expect 2 'there is no such folder' rig sheet nowhere
 expect 2 'job' rig guide
 expect 2 'approach' rig stage dance
 expect 2 '--port' rig stage status

@@ -147,7 +147,7 @@ python3 -c 'import sqlite3; d = sqlite3.connect("future/history.sqlite"); d.exec
 refused 'newer hydrodip' history future
 printf 'no database, but longer than its header is, which has a hundred bytes and begins with a magic word of sixteen' > future/history.sqlite
 refused 'told later' history future
-refused 'report.json' history nowhere
+refused 'there is no such folder' history nowhere
 
 # Labels on the run sheet.
 "$hydrodip" rig sheet job --batch B7 --label 5 > /dev/null || fail 'rig sheet'
