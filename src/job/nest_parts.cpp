@@ -55,6 +55,21 @@ MadePart make_part(const NestPart& part, Timings& timings, const RunContext& con
   return {std::move(made), std::move(report)};
 }
 
+// There are no options that put one on.
+void require_picture(const PreparedObject& prepared, const std::filesystem::path& part,
+                     const std::filesystem::path& model) {
+  if (prepared.artwork.empty() && prepared.picture_problems.empty() &&
+      !prepared.posed.object().has_appearance())
+    throw InputError(fmt::format(
+        "{}: the model has no colours, so there is nothing to print; a part's picture stands in "
+        "its job file, as texture = \"IMG\" under [object] or image = \"IMG\" under [[artwork]]: "
+        "{}",
+        part.string(),
+        part.extension() == ".toml" ? "put it there"
+                                    : "write one that names the model, and nest that"));
+  require_appearance(prepared, model);
+}
+
 }  // namespace
 
 NestPart prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet,
@@ -72,7 +87,7 @@ NestPart prepare_part(const NestRequest::Part& wanted, const JobConfig& sheet,
   config.design.dpi = sheet.design.dpi;
   PreparedObject prepared = prepare_object(config.model, config.object, context, config.design.dpi,
                                            config.design.inverse.samples_per_axis);
-  require_appearance(prepared, config.model);
+  require_picture(prepared, wanted.file, config.model);
   find_what_is_asked(config, prepared, context);
   const TriangleMesh& mesh = prepared.posed.mesh();
   Trajectory trajectory = make_trajectory(config.design.trajectory, mesh.positions);
