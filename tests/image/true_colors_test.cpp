@@ -645,7 +645,7 @@ TEST(GifProfile, Counts) {
   const Bytes pixel = {',', 0, 0, 0, 0, 1, 0, 1, 0, 0, 2, 2, 0x44, 0x01, 0, ';'};
   Bytes plain = gif;
   plain.insert(plain.end(), pixel.begin(), pixel.end());
-  EXPECT_EQ(read(plain).image.rgba, (Bytes{255, 0, 0, 255}));
+  EXPECT_EQ(read(plain).image.rgba, (BlankArray<std::uint8_t>{255, 0, 0, 255}));
   const std::string label = "ICCRGBG1012";
   gif.insert(gif.end(), {'!', 0xff, 11});
   gif.insert(gif.end(), label.begin(), label.end());
