@@ -237,6 +237,16 @@ std::vector<DipRun> of_batch(std::vector<DipRun> runs, const std::string& batch)
   return runs;
 }
 
+// What else is asked for would be passed over.
+void require_settings_alone(const HistoryRequest& request) {
+  const bool alone = !request.add && request.amend_run.empty() && request.remove_run.empty() &&
+                     request.fields.empty() && request.batch_only.empty();
+  if (!request.settings_run.empty() && !alone)
+    throw InputError(fmt::format(
+        "--settings {} only prints what that dip was made by: leave out what else is said or asked",
+        request.settings_run));
+}
+
 // The report.json that a run was dipped by, as it was then.
 JobResult report_of_run(const History& history, const std::string& id) {
   const std::vector<DipRun> runs = history.runs();
@@ -271,6 +281,7 @@ DipUse use_of(const DipRun& run, const SheetUse& sheet, const CostOptions& cost)
 }
 
 JobResult history_job(const RigJob& job, const HistoryRequest& request, Clock& clock) {
+  require_settings_alone(request);
   // Before a history is made for it.
   History::require_fields(request.fields);
   for (const std::string& id : {request.amend_run, request.remove_run})

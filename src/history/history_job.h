@@ -17,7 +17,7 @@ struct HistoryRequest {
   std::string remove_run;  // that was added by mistake; empty: none
   RunFields fields;
   std::string batch_only;    // shows this batch; empty: all
-  std::string settings_run;  // whose report.json is wanted instead; empty: none
+  std::string settings_run;  // whose report.json is wanted, and nothing else; empty: none
 };
 
 // What one dip uses, by the sheet that it was dipped with and what was weighed, and what that costs

@@ -334,6 +334,32 @@ TEST(HistoryJob, SaysWhichInkIsNotInTheCost) {
   EXPECT_TRUE(contains(history_job(job, request, clock).text, "without the ink of 1 dip"));
 }
 
+TEST(HistoryJob, WhoAsksForADipsSettingsChangesNothing) {
+  const TemporaryFolder folder;
+  const std::string report = report_of(200, 0.5, 1);
+  write_file(folder / "report.json", report);
+  write_run(
+      folder, "rig-1",
+      guided_log("2026-01-01T10:00:00Z", "1", kDone, sha256_hex({report.begin(), report.end()})));
+  const RigJob job = load_rig_job(folder.path(), {});
+  FixedClock clock;
+  HistoryRequest asks;
+  asks.settings_run = "rig-1";
+  EXPECT_EQ(history_job(job, asks, clock).text, report);
+  // It was printed, and what was said beside it was lost.
+  HistoryRequest adds = asks, amends = asks, removes = asks, chooses = asks;
+  adds.add = true;
+  amends.amend_run = "rig-1";
+  amends.fields = {{"outcome", "failed"}};
+  removes.remove_run = "rig-1";
+  chooses.batch_only = "B1";
+  for (const HistoryRequest& request : {adds, amends, removes, chooses})
+    EXPECT_TRUE(contains(refusal([&] { history_job(job, request, clock); }), "--settings rig-1"));
+  const std::vector<DipRun> runs = History(folder.path()).runs();
+  ASSERT_EQ(runs.size(), 1U);
+  EXPECT_EQ(runs[0].outcome, "done");
+}
+
 TEST(HistoryJob, ALookLeavesAFolderWithoutDipsAsItIs) {
   const TemporaryFolder folder;
   RigJob job = priced_job();
