@@ -110,6 +110,13 @@ void require_room_for_shape(const CalibrationObject& shape, const JobConfig& con
           shape.name, fit.needed_mm, fit.what, fit.excess_mm(), fit.room));
 }
 
+void require_no_correction_of_board(const JobConfig& config) {
+  if (config.design.film.correction)
+    throw InputError(
+        "film.correction: a correction is of one job's print, and a calibration's board is printed "
+        "without: leave it out");
+}
+
 CalibrationObject calibration_object(const std::string& text, const JobConfig& config,
                                      const RunContext& context) {
   const auto [name, depth] = split_depth(text);

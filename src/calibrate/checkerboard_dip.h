@@ -58,6 +58,9 @@ CalibrationObject calibration_object(const std::string& text, const JobConfig& c
 // mends it is not what mends a model of one's own.
 void require_room_for_shape(const CalibrationObject& shape, const JobConfig& config);
 
+// Throws InputError if a print's correction is set: the board is printed without one.
+void require_no_correction_of_board(const JobConfig& config);
+
 // Everything about a film that its parameters leave alone. Immutable.
 struct CheckeredFilm {
   SharedFilmMesh mesh;

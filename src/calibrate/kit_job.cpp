@@ -247,6 +247,7 @@ void require_enough_squares(const Board& board, const FilmOptions& film) {
 JobResult kit_job(const JobConfig& config, const CalibrationRequest& request,
                   const RunContext& context) {
   const RunScope scope(context.with_threads(config.threads));
+  require_no_correction_of_board(config);
   const Board board = board_named(request.board, request.square_mm);
   require_enough_squares(board, config.design.film);
   std::vector<CalibrationObject> objects;

@@ -166,6 +166,7 @@ std::string fingerprint_of(const CalibrationObject& object, const Board& board,
         design.stiffness.filter_mm})
     print.add(value);
   for (const std::uint8_t ink : board.ink) print.add(ink);
+  if (design.dip.even_steps) print.add(1);  // what older programs have simulated stays of use
   return print.text();
 }
 
@@ -336,6 +337,7 @@ void require_scans_to_read(const CalibrationRequest& request) {
 }  // namespace
 
 ScanSetup scan_setup(const JobConfig& config, const CalibrationRequest& request) {
+  require_no_correction_of_board(config);
   require_scans_to_read(request);
   ScanSetup setup = {config,
                      {{request.scan_units, request.square_mm, request.mirrored},

@@ -36,6 +36,7 @@ std::string truth_toml(const FilmParameters& truth, const FilmOptions& film) {
 JobResult synth_job(const JobConfig& config, const CalibrationRequest& request,
                     const RunContext& context) {
   check(request);
+  require_no_correction_of_board(config);
   const RunScope scope(context.with_threads(config.threads));
   // Finer than any film that calibrate dips with the same configuration.
   const DesignOptions fine = finer_film(finer_film(config.design));
