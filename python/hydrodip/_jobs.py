@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
@@ -167,11 +168,22 @@ def _require_kinds(given: Dict[str, Any]) -> None:
             raise TypeError(f"{key} is {kind}, not {given[key]!r}")
 
 
+# Services and cron jobs have no HOME, or none that is one.
+def _home() -> str:
+    home = os.environ.get("HOME", "")
+    if not os.path.isabs(home):
+        import pwd
+
+        with contextlib.suppress(KeyError):
+            home = pwd.getpwuid(os.getuid()).pw_dir
+    return home
+
+
 # Where `hydrodip profile` keeps profiles by their names.
 def _profile_folder() -> str:
     configured = os.environ.get("XDG_CONFIG_HOME", "")
     if not os.path.isabs(configured):
-        configured = os.path.join(os.environ.get("HOME", ""), ".config")
+        configured = os.path.join(_home(), ".config")
     return os.path.join(configured, "hydrodip", "profiles")
 
 

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import textwrap
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -131,6 +132,13 @@ class SameAsTheCommandLine(InFolder):
         self.assertAlmostEqual(fit.parameters.z_stretch, 0.65, delta=0.05)
         self.assertEqual(fit.report, json.loads(read("fit", "calibration.json")))
 
+    def test_profiles_are_kept_in_one_place_whatever_is_said_of_home(self):
+        for said in ({"HOME": os.getcwd()}, {"HOME": "/elsewhere", "XDG_CONFIG_HOME": os.getcwd()}, {},
+                     {"HOME": "relative", "XDG_CONFIG_HOME": "relative"}):
+            with unittest.mock.patch.dict(os.environ, said):
+                for name in {"HOME", "XDG_CONFIG_HOME"} - said.keys():
+                    os.environ.pop(name, None)
+                self.assertIn(hydrodip._jobs._profile_folder(), run("profile", "list", "--json").stdout.decode())
 
     def test_another_country_writes_the_same_profile(self):
         folder = tempfile.mkdtemp(dir=".")
