@@ -75,9 +75,9 @@ void set_uvs(Object& object, const py::object& given) {
   for (std::size_t t = 0; t < object.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t n = per_corner ? 3 * t + k : std::size_t(object.triangles[t][k]);
-      if (!std::isfinite(at[2 * n]) || !std::isfinite(at[2 * n + 1]))
-        throw InputError("the uv has a number that is not finite");
       object.uvs[t][k] = Eigen::Vector2f(float(at[2 * n]), float(at[2 * n + 1]));
+      if (!object.uvs[t][k].allFinite())
+        throw InputError("the uv has a number that is not finite, or beyond single precision");
     }
 }
 

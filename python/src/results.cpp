@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "arrays.h"
@@ -291,7 +292,7 @@ py::tuple see(const Simulation& s, const Rows& origins, const std::array<double,
       taken<double>(std::move(film_point), {2}));
 }
 
-// sRGB bytes at points of the surface; black where there is no face.
+// sRGB bytes at points of the surface; black where there is no face, or weights are no numbers.
 py::array colors_at(
     const Simulation& s,
     const py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>& face,
@@ -308,8 +309,9 @@ py::array colors_at(
     const py::gil_scoped_release release;
     parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
-        if (of[n] < 0 || of[n] >= faces) continue;
         const SurfacePoint point{of[n], w[2 * n], w[2 * n + 1]};
+        if (of[n] < 0 || of[n] >= faces || !std::isfinite(point.u) || !std::isfinite(point.v))
+          continue;
         const LinearColor c = predicted ? finish.color_at(point) : finish.paint().color_at(point);
         colors[n] = {linear_to_srgb8(c.r), linear_to_srgb8(c.g), linear_to_srgb8(c.b)};
       }

@@ -29,16 +29,17 @@ TexelPair texels(float coordinate, int size, Wrap wrap) {
   float t = coordinate;
   switch (wrap) {
     case Wrap::kRepeat:
-      // Those so far out that they may have grown to infinity between corners mean nothing.
-      t -= std::abs(t) < kPlain ? floored(t) : std::abs(t) < kFarthest ? std::floor(t) : t;
+      // Those so far out that they may have grown to infinity between corners mean nothing, as does
+      // what is no number.
+      t = std::abs(t) < kPlain ? t - floored(t) : std::abs(t) < kFarthest ? t - std::floor(t) : 0;
       break;
     case Wrap::kMirror:
-      t -= std::abs(t) < kFarthest ? 2 * std::floor(t / 2) : t;
+      t = std::abs(t) < kFarthest ? t - 2 * std::floor(t / 2) : 0;
       if (t > 1) t = 2 - t;
       break;
     case Wrap::kClamp:
     case Wrap::kDecal:
-      t = std::clamp(t, 0.0f, 1.0f);
+      t = t > 0 ? std::min(t, 1.0f) : 0;
       break;
   }
   const float x = t * float(size) - 0.5f;

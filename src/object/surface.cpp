@@ -161,6 +161,14 @@ RTCRay ray_of(const Vec3& origin, const Vec3& direction, double t_min, double t_
   return ray;
 }
 
+// Embree ends the process at others.
+bool can_be_traced(const RTCRay& ray) {
+  constexpr float kFarthest = 1e18F;
+  for (const float x : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z})
+    if (!(std::abs(x) < kFarthest)) return false;
+  return true;
+}
+
 // Half a micron of slack: the sphere is tested in single precision.
 float with_slack(double radius) { return float(radius) * 1.0001f + 5e-4f; }
 
@@ -204,6 +212,7 @@ std::optional<SurfaceHit> Surface::first_hit(const Vec3& origin, const Vec3& dir
   RTCRayHit ray{};
   ray.ray = ray_of(origin, direction, t_min, t_max);
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  if (!can_be_traced(ray.ray)) return std::nullopt;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(impl_->scene(), &context, &ray);
@@ -235,6 +244,7 @@ std::optional<SurfaceHit> Surface::first_hit(const Vec3& origin, const Vec3& dir
 
 bool Surface::is_hit(const Vec3& origin, const Vec3& direction, double t_min, double t_max) const {
   RTCRay ray = ray_of(origin, direction, t_min, t_max);
+  if (!can_be_traced(ray)) return false;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(impl_->scene(), &context, &ray);

@@ -30,7 +30,8 @@ class Surface {
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;
 
-  // First hit of origin + t direction with t in [t_min, t_max], either side of a triangle.
+  // First hit of origin + t direction with t in [t_min, t_max], either side of a triangle. None
+  // where one of them is no number, or further than any object.
   std::optional<SurfaceHit> first_hit(const Vec3& origin, const Vec3& direction, double t_min,
                                       double t_max) const;
 

@@ -137,6 +137,16 @@ TEST(ColorAt, HugeCoordinatesStayInThePicture) {
   }
 }
 
+// Whoever asks for a point that is none gets a colour of the picture, not a crash.
+TEST(ColorAt, WhatIsNoNumberStaysInThePicture) {
+  for (const Wrap wrap : {Wrap::kRepeat, Wrap::kMirror, Wrap::kClamp, Wrap::kDecal}) {
+    Object object = triangle_with(picture(2, 2, {kRed, kRed, kRed, kRed}), wrap, wrap);
+    object.materials[0].base_color = {1, 0, 0, 1};
+    for (const double u : {std::nan(""), std::numeric_limits<double>::infinity(), 1e300, -1e300})
+      expect_opaque(color_at(object, {0, u, 0.5}, kBase), 1, 0, 0);
+  }
+}
+
 TEST(Object, AppearanceNeedsMoreThanOnePlainColour) {
   Object object = triangle_with(picture(1, 1, {kRed}));
   EXPECT_TRUE(object.has_appearance());

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -64,6 +65,24 @@ TEST(Surface, LeavesAllThreadsToOthersWhileItLives) {
   const int before = available_threads();
   const Surface surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   EXPECT_EQ(available_threads(), before);
+}
+
+// Embree would end the process.
+TEST(Surface, NothingIsMetFromWhatIsNoPlaceOrInNoDirection) {
+  const Surface surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  const Vec3 above(0.2, 0.2, 1), down = -Vec3::UnitZ();
+  ASSERT_TRUE(surface.first_hit(above, down, 0, 2));
+  ASSERT_TRUE(surface.is_hit(above, down, 0, 2));
+  for (const double none : {std::nan(""), std::numeric_limits<double>::infinity(), 1e300})
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 place = above, way = down;
+      place[axis] = way[axis] = none;
+      EXPECT_FALSE(surface.first_hit(place, down, 0, 2));
+      EXPECT_FALSE(surface.is_hit(place, down, 0, 2));
+      EXPECT_FALSE(surface.first_hit(above, way, 0, 2));
+      EXPECT_FALSE(surface.is_hit(above, way, 0, 2));
+      EXPECT_FALSE(surface.closest_point(place, 2));
+    }
 }
 
 }  // namespace

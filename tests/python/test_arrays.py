@@ -94,6 +94,7 @@ class Meshes(InFolder):
             hydrodip.Mesh(vertices, faces, uv=uv[:-1], texture=texture),
             hydrodip.Mesh(vertices, faces, texture=texture),
             hydrodip.Mesh(np.where(vertices > 19, np.nan, vertices), faces),
+            hydrodip.Mesh(vertices, faces, uv=np.where(uv > 0.5, 1e300, uv), texture=texture),
         ):
             with self.assertRaises(hydrodip.InputError):
                 hydrodip.simulate(bad, **QUICK)
@@ -133,6 +134,31 @@ def wanted(mesh):
     """The colour that is wanted in each face, as bytes."""
     dip = hydrodip.simulate(mesh, **QUICK)
     return dip.colors_at(np.arange(len(dip.faces)), np.full((len(dip.faces), 2), 0.3), predicted=False)
+
+
+class Points(InFolder):
+    """Places that are none have no colour, and nothing there: rows of NaN, as see() tells them, or far away."""
+
+    def test_what_is_no_point_has_no_colour(self):
+        dip = hydrodip.simulate(textured_cone(), **QUICK)
+        faces = np.arange(4, dtype=np.int32)
+        for none in (np.nan, np.inf, -np.inf):
+            for predicted in (True, False):
+                colors = dip.colors_at(faces, np.array([[0.3, 0.3], [none, 0.3], [0.3, none], [0.3, 0.3]]), predicted)
+                np.testing.assert_array_equal(colors[1:3], np.zeros((2, 3)))
+                self.assertTrue(colors[0].any() and colors[3].any())
+        far = dip.colors_at(faces, np.full((4, 2), 1e300), False)
+        self.assertEqual(far.shape, (4, 3))
+
+    def test_nothing_is_found_at_what_is_no_point(self):
+        dip = hydrodip.simulate(textured_cone(), **QUICK)
+        for none in (np.nan, np.inf, 1e300):
+            self.assertTrue(np.isnan(dip.to_object(np.array([[none, 0], [0, none]]))).all())
+            self.assertTrue(np.isnan(dip.to_film(np.array([[none, 0, 0], [0, 0, none]]))).all())
+            faces = dip.see(np.array([[none, 0, 100.0], [0, none, 100.0]]), (0, 0, -1))[0]
+            np.testing.assert_array_equal(faces, [-1, -1])
+        normals = np.full((len(dip.vertices), 3), np.nan)
+        dip.to_film(dip.vertices, normals)
 
 
 TETRAHEDRON = "v 0 0 0\nv 40 0 0\nv 0 40 0\nv 0 0 40\nvt 0 0\nvt 1 0\nvt 0 1\n"
