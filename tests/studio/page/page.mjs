@@ -1078,6 +1078,10 @@ test('the report can be a customer\'s, with a logo', async () => {
 });
 
 test('print: progress, cancel, then the sheet and the run sheet', async () => {
+  // So fine that it is not done before it is cancelled, however long a click takes here.
+  await dome.keyboard.press('4');
+  await type(dome, 'print-dpi', 600);
+  await kept(dome);
   await blur(dome);
   await dome.keyboard.press('Control+p');
   await dome.waitForSelector('[data-name="cancel-print"]');
@@ -1088,6 +1092,9 @@ test('print: progress, cancel, then the sheet and the run sheet', async () => {
   await dome.click('[data-name="print"]');
   await dome.click('[data-name="cancel-print"]', { force: true }); // it need not stand still
   await dome.waitForSelector('[data-name="print-again"]');
+  assert.equal(await dome.locator('[data-file="print.pdf"]').count(), 0);
+  await type(dome, 'print-dpi', 72);
+  await kept(dome);
   await dome.click('[data-name="print-again"]');
   await dome.waitForSelector('[data-name="cancel-print"]');
   await dome.keyboard.press('Escape');
