@@ -66,6 +66,25 @@ TEST(History, TakesInWhatTheLogsSay) {
   EXPECT_EQ(runs[1].label, "8");
 }
 
+TEST(History, TakesInWhereTheFilmLayAndWhatWasNoted) {
+  const TemporaryFolder job;
+  write_run(job, "rig-1",
+            guided_log("2026-01-01T10:00:00Z", "7",
+                       "{\"time\":\"t\",\"event\":\"registered\",\"x_mm\":-0.4,\"y_mm\":1.2,"
+                       "\"turn_deg\":0.25}\n"
+                       "{\"time\":\"t\",\"event\":\"notes\",\"text\":\"slid a little\"}\n" +
+                           kDone));
+  const DipRun run = History(job.path()).runs().front();
+  EXPECT_EQ(run.registration_x_mm, -0.4);
+  EXPECT_EQ(run.registration_y_mm, 1.2);
+  EXPECT_EQ(run.registration_deg, 0.25);
+  EXPECT_EQ(run.notes, "slid a little");
+  RigJob shown;
+  shown.folder = job.path();
+  FixedClock clock;
+  EXPECT_TRUE(contains(history_job(shown, {}, clock).text, " -0.40 +1.20"));
+}
+
 // The computer went off in mid-line; and later the same run is read again.
 // What breaks off before film is on the water spoils nothing; what is given up afterwards does.
 TEST(History, FilmIsUsedUpFromTheMomentItLiesOnTheWater) {
@@ -318,6 +337,12 @@ TEST(HistoryJob, ChargesEachDipByItsOwnPrint) {
   EXPECT_NEAR(json["runs"][0]["cost"], alone, 1e-9);
   EXPECT_NEAR(json["runs"][1]["cost"], 0.6 + 0.075 + 0.325 + 2, 1e-9);
   EXPECT_NEAR(json["totals"]["film_m2"], 0.09, 1e-9);
+  EXPECT_EQ(json["runs"][0]["same_print"], false);
+  EXPECT_EQ(json["runs"][1]["same_print"], true);
+  HistoryRequest first;
+  first.settings_run = "rig-1";
+  EXPECT_EQ(history_job(load_rig_job(folder.path(), {}), first, clock).text,
+            report_of(200, 0.5, 1));
   // Of a print that nobody looked at while it was there, no more is known than today's.
   write_run(folder, "rig-3", guided_log("2026-01-03T10:00:00Z", "3", kDone, "gone"));
   EXPECT_TRUE(contains(look().text, "today's stands for them: rig-3")) << look().text;
@@ -331,7 +356,22 @@ TEST(HistoryJob, SaysWhichInkIsNotInTheCost) {
   FixedClock clock;
   HistoryRequest request;
   request.add = true;
-  EXPECT_TRUE(contains(history_job(job, request, clock).text, "without the ink of 1 dip"));
+  const JobResult result = history_job(job, request, clock);
+  EXPECT_TRUE(contains(result.text, "without the ink of 1 dip"));
+  EXPECT_TRUE(nlohmann::json::parse(result.json)["totals"]["ink_ml"].is_null());
+  EXPECT_TRUE(contains(result.text, "ink not known")) << result.text;
+}
+
+TEST(HistoryJob, APieceThatCostsSomethingIsAPrice) {
+  const TemporaryFolder folder;
+  RigJob job;
+  job.folder = folder.path();
+  job.config.cost.per_piece = 2;
+  FixedClock clock;
+  HistoryRequest request;
+  request.add = true;
+  request.fields = {{"outcome", "good"}};
+  EXPECT_TRUE(contains(history_job(job, request, clock).text, "cost: 2.00; a good piece: 2.00"));
 }
 
 TEST(HistoryJob, WhoAsksForADipsSettingsChangesNothing) {

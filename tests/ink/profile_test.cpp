@@ -11,6 +11,8 @@
 #include "base/file.h"
 #include "ink/color_model.h"
 #include "ink/difference.h"
+#include "ink/printer.h"
+#include "ink/profiles.h"
 #include "ink/rgb_profile.h"
 #include "temporary_folder.h"
 
@@ -194,6 +196,61 @@ TEST_F(Profiles, OnlyRgbProfilesAreRgb) {
   EXPECT_FALSE(is_rgb_profile(make_device_model()->profile()));
   EXPECT_FALSE(is_rgb_profile(std::vector<std::uint8_t>(500, 7)));
   EXPECT_FALSE(is_rgb_profile({}));
+}
+
+// Each with its own table, and black point compensation where transicc's users switch it on.
+TEST_F(Profiles, TransiccGivesTheSameInksByEveryIntent) {
+  if (!has_tool("transicc")) GTEST_SKIP() << "needs transicc";
+  const std::filesystem::path installed = installed_cmyk_profile();
+  if (installed.empty()) GTEST_SKIP() << "no CMYK profile is installed";
+  const std::vector<SrgbColor> colors = color_cube(3);
+  std::vector<std::vector<double>> rows;
+  for (const SrgbColor& c : colors)
+    rows.push_back({255.0 * double(c.r), 255.0 * double(c.g), 255.0 * double(c.b)});
+  const std::pair<RenderingIntent, const char*> intents[] = {
+      {RenderingIntent::kPerceptual, " -t0"},
+      {RenderingIntent::kRelative, " -t1 -b"},
+      {RenderingIntent::kSaturation, " -t2"},
+      {RenderingIntent::kAbsolute, " -t3"}};
+  for (const auto& [intent, option] : intents) {
+    const auto theirs = transicc("-i*sRGB -o" + installed.string() + option, rows);
+    ASSERT_EQ(theirs.size(), colors.size());
+    std::vector<Inks> ours(colors.size());
+    make_profile_model(read_file(installed), "installed", intent)
+        ->separate(colors.data(), ours.data(), colors.size());
+    for (std::size_t i = 0; i < colors.size(); ++i) {
+      const double inks[] = {ours[i].c, ours[i].m, ours[i].y, ours[i].k};
+      for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_NEAR(100 * inks[k], theirs[i][k], 0.5) << option << " " << i;
+    }
+  }
+}
+
+// The same bytes whenever they are made.
+TEST_F(Profiles, OwnProfilesHaveNoTime) {
+  for (const auto& bytes : {make_device_profile(), srgb_profile()}) {
+    ASSERT_GT(bytes.size(), 128U);
+    const std::vector<std::uint8_t> date(bytes.begin() + 24, bytes.begin() + 36);
+    EXPECT_EQ(date, (std::vector<std::uint8_t>{0x07, 0xE8, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0}));
+  }
+}
+
+// A named profile wins over the formula, and which inks an RGB printer takes nobody knows.
+TEST_F(Profiles, APrinterIsWhatItsProfileSays) {
+  const TemporaryFolder folder;
+  const auto written = [&](const char* name, const std::vector<std::uint8_t>& bytes) {
+    write_file(folder / name, bytes.data(), bytes.size());
+    return folder / name;
+  };
+  PrinterOptions options;
+  EXPECT_EQ(make_printer(options).model->name(), "device formula");
+  options.profile = written("cmyk.icc", make_device_profile());
+  EXPECT_EQ(make_printer(options).model->name(), "hydrodip device formula");  // its description
+  options.profile = written("rgb.icc", srgb_profile());
+  EXPECT_TRUE(make_printer(options).is_rgb);
+  EXPECT_EQ(make_printer(options).model->name(), "device formula");
+  options.color = PrintColor::kCmyk;
+  EXPECT_THROW(make_printer(options), InputError);
 }
 
 TEST_F(Profiles, WhatIsNoCmykProfileIsRefused) {

@@ -40,6 +40,16 @@ TEST(Stiffness, AHalfInkedTriangleHasHalfTheDensity) {
   EXPECT_NEAR(mean_density(half_inked(), kRaster, symmetric, 1.016), 0.5, 1e-12);
 }
 
+// Wherever in a triangle its ink begins.
+TEST(Stiffness, InkBelowOrAboveABlankHalfCounts) {
+  const Corners triangle = {Vec2(-2, -2), Vec2(2, -2), Vec2(0, 2)};
+  // The upper half is a quarter of the area.
+  const InkImage above = painted([](const Vec2&u) { return u.y() > 0 ? 255 : 0; }),
+                 below = painted([](const Vec2&u) { return u.y() < 0 ? 255 : 0; });
+  EXPECT_NEAR(mean_density(above, kRaster, triangle, 0.01), 0.25, 1e-4);
+  EXPECT_NEAR(mean_density(below, kRaster, triangle, 0.01), 0.75, 1e-4);
+}
+
 // Height of the triangle (-2, 0) (2, 0) (-2, 4) at x is 2 - x. Smearing the ink's edge by a box is
 // taking the mean over all places s of the edge within w / 2: the mean of (2 - s)^2 / 2.
 TEST(Stiffness, TheBoxFilterSmearsExactly) {

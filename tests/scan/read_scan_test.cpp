@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "base/error.h"
@@ -158,6 +160,38 @@ TEST_F(ReadScanTest, EndsWhenTheJobIsCancelled) {
   job.cancel();
   EXPECT_THROW(read_corner_scan(folder_ / "a.obj", {}, job), Cancelled);
   EXPECT_THROW(read_scan(folder_ / "a.obj", {}, job), Cancelled);
+}
+
+TEST_F(ReadScanTest, ACornerThatIsGivenTwiceIsToldWithItsLines) {
+  const std::string corners = "0,0,0,0,0\n1,0,5,0,0\n0,1,0,5,0\n1,1,5,5,0\n2,0,10,0,0\n";
+  EXPECT_EQ(complaint(file("a.csv", corners)), "");
+  const std::string why = complaint(file("a.csv", corners + "1,1,5,5,0.1\n"));
+  EXPECT_NE(why.find("lines 4 and 6 give the same corner (column 1, row 1)"), std::string::npos)
+      << why;
+}
+
+// Columns and rows turn the same way in space as on the scan that nobody mirrored.
+TEST_F(ReadScanTest, AMirroredMeshTurnedBackHasItsRowsTurnedBack) {
+  const CornerGrid board = bent_board(5, 4);
+  CornerGrid mirror = board;
+  for (Vec3& p : mirror.position) p.x() = -p.x();
+  for (GridPlace& place : mirror.place) place[0] = -place[0];  // its faces look outwards again
+  const auto turns = [](const CornerGrid& grid) {
+    std::map<GridPlace, Vec3> at;
+    for (std::size_t c = 0; c < grid.place.size(); ++c) at[grid.place[c]] = grid.position[c];
+    double sum = 0;
+    for (const auto& [place, p] : at) {
+      const auto right = at.find({place[0] + 1, place[1]}), up = at.find({place[0], place[1] + 1});
+      if (right != at.end() && up != at.end()) sum += (right->second - p).cross(up->second - p).z();
+    }
+    return sum;
+  };
+  write_scan_quads(folder_ / "a.obj", board, "as it is");
+  write_scan_quads(folder_ / "m.obj", mirror, "mirrored");
+  const double as_it_is = turns(read(folder_ / "a.obj").grid);
+  EXPECT_NEAR(turns(read(folder_ / "m.obj", {.mirrored = true}).grid), as_it_is, 1e-3);
+  EXPECT_NEAR(turns(read(folder_ / "m.obj").grid), as_it_is, 1e-3);  // alike, but not the object
+  EXPECT_GT(std::abs(as_it_is), 100);
 }
 
 TEST_F(ReadScanTest, MirroringTwiceIsNothing) {

@@ -161,6 +161,56 @@ TEST(RegistrationTest, TheLargestPatchIsMatched) {
   EXPECT_LT(match_grid(scan, std::cref(landed), {6, 6}, kBoardSquare_mm, "scan").rms_mm, 1e-6);
 }
 
+TEST(RegistrationTest, AScanOfMoreThanLandsIsRefused) {
+  const Landed whole("sphere");
+  const GridLanding middle = [&](const GridPlace& place) -> std::optional<Vec3> {
+    if (std::abs(place[0]) > 1 || std::abs(place[1]) > 1) return std::nullopt;
+    return whole(place);
+  };
+  std::string why;
+  try {
+    match_grid(landed_grid(whole), middle, {6, 6}, kBoardSquare_mm, "scan");
+  } catch (const InputError& error) {
+    why = error.what();
+  }
+  EXPECT_NE(why.find("more squares than can come to lie"), std::string::npos) << why;
+}
+
+// Whichever way round somebody counted.
+TEST(RegistrationTest, RowsMayRunAlongAnySideOfTheFilm) {
+  const Landed landed("sphere", true);
+  const CornerGrid truth = landed_grid(landed);
+  for (int turns = 0; turns < 4; ++turns) {
+    CornerGrid scan = truth;
+    for (GridPlace& place : scan.place)
+      for (int k = 0; k < turns; ++k) place = {place[1], -place[0]};
+    const GridMatch match = match_grid(scan, std::cref(landed), {6, 6}, kBoardSquare_mm, "scan");
+    EXPECT_LT(match.rms_mm, 1e-6) << turns;
+    EXPECT_FALSE(match.turned || match.mirrored);
+    for (std::size_t c = 0; c < truth.place.size(); ++c)
+      EXPECT_EQ(match.place[c].value(), truth.place[c]) << turns;
+  }
+}
+
+TEST(RegistrationTest, ALittleMotionIsATurnAboutTheOriginAndAShift) {
+  const Eigen::Isometry3d pose = some_pose(3);
+  const Vec3 shift(1, -2, 3), turn(0, 0, 0.1), p(4, 5, 6);
+  const Vec3 at = pose * p;
+  const Vec3 turned(std::cos(0.1) * at.x() - std::sin(0.1) * at.y(),
+                    std::sin(0.1) * at.x() + std::cos(0.1) * at.y(), at.z());
+  EXPECT_LT((moved_a_little(pose, shift, turn) * p - (turned + shift)).norm(), 1e-12);
+  EXPECT_LT((moved_a_little(pose, shift, Vec3::Zero()) * p - (at + shift)).norm(), 1e-12);
+}
+
+TEST(AlignedScan, TellsTheWorstCornerAndTheMean) {
+  const Surface surface({{-99, -99, 0}, {99, -99, 0}, {0, 99, 0}}, {{0, 1, 2}});
+  CornerGrid grid;
+  grid.position = {{0, 0, 4}, {1, 0, -3}, {2, 0, 0}};
+  const Alignment alignment = as_it_lies(grid, surface);
+  EXPECT_NEAR(alignment.worst_mm, 4, 1e-9);
+  EXPECT_NEAR(alignment.rms_mm, std::sqrt(25 / 3.0), 1e-9);
+}
+
 TEST(RegistrationTest, RefusesScatteredSquares) {
   const Landed sphere("sphere");
   CornerGrid scan = landed_grid(sphere);

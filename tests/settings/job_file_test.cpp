@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "contains.h"
+#include "settings/artwork_tables.h"
 #include "settings/dip_tables.h"
 #include "settings/settings.h"
 
@@ -187,6 +188,58 @@ TEST_F(JobFile, ReadsWhatItWrites) {
     EXPECT_EQ(again.dips[k].locked, config.dips[k].locked);
   }
   EXPECT_EQ(again.dips[2].path[1].turn_z_deg, 5);
+}
+
+// One table for each layer, the bottom one first, with the ways in and what letters there are.
+TEST_F(JobFile, ReadsLayersAndWaysThatItWrites) {
+  JobConfig config;
+  config.model = folder_ / "a.obj";
+  config.design.trajectory.path = {{1, 2, 3, 4, 5, 6}, {7, 8, 9, 10, 11, 12}};
+  config.object.artwork.resize(2);
+  config.object.artwork[0].image = folder_ / "a.png";
+  config.object.artwork[0].width_mm = 40;
+  config.object.artwork[0].height_mm = 25;
+  config.object.artwork[0].at_mm = Vec3(1, 2, 3);
+  config.object.artwork[0].through = true;
+  config.object.artwork[1].text = "one\ntwo\t\x7f \"three\"";
+  config.object.artwork[1].width_mm = 30;
+  config.dips.resize(1);
+  config.dips[0].path = {{1, 2, 3, 4, 5, 6}, {7, 8, 9, 10, 11, 12}};
+  const JobConfig again = read(job_file(config, folder_));
+  ASSERT_EQ(again.object.artwork.size(), 2U);
+  for (std::size_t n = 0; n < 2; ++n) {
+    ArtworkLayer layer = again.object.artwork[n];
+    if (n == 0) layer.image = std::filesystem::weakly_canonical(layer.image);
+    ArtworkLayer wanted = config.object.artwork[n];
+    if (n == 0) wanted.image = std::filesystem::weakly_canonical(wanted.image);
+    EXPECT_EQ(layer_values(layer), layer_values(wanted));
+  }
+  EXPECT_EQ(again.object.artwork[0].height_mm, 25);
+  EXPECT_EQ(again.object.artwork[1].height_mm, 0);
+  EXPECT_EQ(path_text(again.design.trajectory.path), "[[1, 2, 3, 4, 5, 6], [7, 8, 9, 10, 11, 12]]");
+  EXPECT_EQ(path_text(again.dips.at(0).path), "[[1, 2, 3, 4, 5, 6], [7, 8, 9, 10, 11, 12]]");
+}
+
+TEST_F(JobFile, ALaterDepthToBeFoundTakesAnEarlierOneAway) {
+  JobConfig config;
+  config.dips.resize(1);
+  config.dips[0].depth_mm = 5;
+  apply_settings(config, {{"dip[1].depth_mm", std::string("auto"), false, "'auto'", "--set"}});
+  EXPECT_FALSE(config.dips[0].depth_mm);
+}
+
+TEST_F(JobFile, ATextIsOneLine) {
+  EXPECT_EQ(refusal("[print]\njob_name = \"one\"\n"), "accepted");
+  for (const char* text : {"one\\ntwo", "one\\rtwo"})
+    EXPECT_TRUE(
+        contains(refusal(fmt::format("[print]\njob_name = \"{}\"\n", text)), "text of one line"));
+}
+
+// Twelve numbers are two keyframes only if each row has six.
+TEST_F(JobFile, RowsOfAWayHaveSixNumbersEach) {
+  EXPECT_EQ(refusal("path = [[0, 0, 0, 0, 0, 0], [9, 0, 0, 0, 0, 0]]\n"), "accepted");
+  EXPECT_TRUE(contains(refusal("path = [[0, 0, 0, 0, 0], [9, 0, 0, 0, 0, 0, 0]]\n"),
+                       "rows of six numbers"));
 }
 
 // A job's folder may be moved: its files are named from there.

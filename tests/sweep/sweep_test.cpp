@@ -18,7 +18,9 @@
 #include "job/jobs.h"
 #include "no_locks.h"
 #include "refusal.h"
+#include "settings/params.h"
 #include "sweep/scripts.h"
+#include "sweep/sweep_inputs.h"
 #include "sweep/sweep_jobs.h"
 #include "sweep/sweep_manifest.h"
 #include "sweep/sweep_table.h"
@@ -92,6 +94,21 @@ TEST_F(SweepTest, ARangeByEqualFactors) {
   EXPECT_EQ(values, (std::vector<std::string>{"1", "10", "100", "1000"}));
 }
 
+std::vector<std::string> values_of(const SweepPlan& plan, const std::string& name) {
+  std::vector<std::string> values;
+  for (const SweepRun& run : plan.runs) values.push_back(value_of(run, name));
+  return values;
+}
+
+TEST_F(SweepTest, WholeNumbersOfARangeAreTheNearestAndOnceEach) {
+  const std::string one = "[sweep]\nmodels = [\"tetrahedron.obj\"]\n[vary]\n\"film.elements\" = ";
+  EXPECT_EQ(values_of(plan(one + "{ from = 300, to = 305, count = 4 }\n"), "film.elements"),
+            (std::vector<std::string>{"300", "302", "303", "305"}));
+  const SweepPlan few = plan(one + "{ from = 300, to = 302, count = 9 }\n");
+  EXPECT_EQ(values_of(few, "film.elements"), (std::vector<std::string>{"300", "301", "302"}));
+  EXPECT_EQ(few.same, 0U);
+}
+
 // Each of N equal parts of every range is used once.
 TEST_F(SweepTest, ALatinHypercubeUsesEveryPartOfEveryAxisOnce) {
   const SweepPlan latin = plan(
@@ -107,6 +124,78 @@ TEST_F(SweepTest, ALatinHypercubeUsesEveryPartOfEveryAxisOnce) {
   };
   EXPECT_EQ(parts("material.z_stretch", 0.2, 1).size(), 40U);
   EXPECT_EQ(parts("material.tear_stretch", 1.2, 2).size(), 40U);
+}
+
+TEST_F(SweepTest, AxesOfALatinHypercubeAreNotAlikeAndItsSeedMatters) {
+  const auto latin = [&](int seed) {
+    return plan("[sweep]\nmethod = \"latin\"\nruns = 40\nseed = " + std::to_string(seed) +
+                "\nmodels = [\"tetrahedron.obj\"]\n"
+                "[vary]\n\"material.z_stretch\" = { from = 0.2, to = 1 }\n"
+                "\"material.tear_stretch\" = { from = 1.2, to = 2 }\n"
+                "\"material.poisson\" = [0, 0.1, 0.2, 0.3]\n");
+  };
+  const SweepPlan first = latin(1);
+  int alike = 0;
+  std::map<std::string, int> poisson;
+  for (const SweepRun& run : first.runs) {
+    const double z = std::stod(value_of(run, "material.z_stretch")),
+                 tear = std::stod(value_of(run, "material.tear_stretch"));
+    alike += int(40 * (z - 0.2) / 0.8) == int(40 * (tear - 1.2) / 0.8) ? 1 : 0;
+    ++poisson[value_of(run, "material.poisson")];
+  }
+  EXPECT_LT(alike, 10);
+  EXPECT_EQ(poisson,
+            (std::map<std::string, int>{{"0", 10}, {"0.1", 10}, {"0.2", 10}, {"0.3", 10}}));
+  EXPECT_EQ(ids(latin(1)), ids(first));
+  EXPECT_NE(ids(latin(2)), ids(first));
+}
+
+// What is said of all runs, of some and of one.
+TEST_F(SweepTest, WhatARunSaysStandsInPlaceOfWhatHoldsForAll) {
+  write_file(folder_ / "other.obj", std::string("v 0 0 0\nv 30 -20 14\nv 20 20 14\nv -20 0 14\n"
+                                                "f 1 3 2\nf 1 4 3\nf 1 2 4\nf 2 3 4\n"));
+  const SweepPlan list = plan(head_ +
+                              "[[run]]\n\"dip.depth_mm\" = 5\n[[run]]\nmodel = \"other.obj\"\n"
+                              "[[run]]\n\"material.poisson\" = 0.1\n");
+  ASSERT_EQ(list.runs.size(), 3U);
+  EXPECT_EQ(value_of(list.runs[0], "dip.depth_mm"), "5");
+  EXPECT_EQ(value_of(list.runs[1], "dip.depth_mm"), "9");
+  EXPECT_EQ(value_of(list.runs[2], "material.poisson"), "0.1");
+  EXPECT_EQ(sweep_config(list, list.runs[0], sweep()).design.trajectory.depth_mm, 5);
+  EXPECT_EQ(fs::path(list.runs[1].model).filename(), "other.obj");
+  EXPECT_EQ(sweep_config(list, list.runs[1], sweep()).model.filename(), "other.obj");
+  EXPECT_EQ(sweep_config(list, list.runs[2], sweep()).model.filename(), "tetrahedron.obj");
+  EXPECT_EQ(list.varied, (std::vector<std::string>{"model", "dip.depth_mm", "material.poisson"}));
+  EXPECT_TRUE(contains(table_csv(make_table(sweep(), list), list),
+                       "id,state,model,dip.depth_mm,material.poisson,verdict"));
+}
+
+TEST_F(SweepTest, ARunHasTheSweepsQualityAndLooksForNoOtherPose) {
+  for (const auto& [quality, elements] :
+       {std::pair("normal", 40000), {"draft", kDraftElements}, {"fine", 160000}}) {
+    const SweepPlan made = plan("[sweep]\nmodels = [\"tetrahedron.obj\"]\nquality = \"" +
+                                std::string(quality) + "\"\n");
+    ASSERT_EQ(made.runs.size(), 1U);
+    const JobConfig config = sweep_config(made, made.runs[0], sweep());
+    EXPECT_EQ(config.design.film.elements, elements) << quality;
+    EXPECT_FALSE(config.plan.suggest);
+  }
+}
+
+TEST_F(SweepTest, AWayMayStandInTheSweepItself) {
+  const SweepPlan made = plan(any_depth_ + "path = \"0, 0, 0, 0, 0, 0; 9, 1, 0, 0, 0, 0\"\n");
+  const std::vector<Keyframe> path =
+      sweep_config(made, made.runs[0], sweep()).design.trajectory.path;
+  ASSERT_EQ(path.size(), 2U);
+  EXPECT_EQ(path[1].shift_x_mm, 1);
+}
+
+TEST_F(SweepTest, ARunThatThereIsNotIsRefused) {
+  const SweepPlan made = plan(head_);
+  EXPECT_TRUE(contains(refusal([&] {
+                         run_sweep(sweep(), made, {{}, "0123456789abcdef", false, ""}, context_);
+                       }),
+                       "no run '0123456789abcdef'"));
 }
 
 TEST_F(SweepTest, AnIdIsWhatTheRunIsMadeOf) {
@@ -185,6 +274,50 @@ TEST_F(SweepInputsTest, WhatAValueNamesIsPartOfTheRun) {
   EXPECT_NE(ids(plan(job)), before);
 }
 
+TEST_F(SweepInputsTest, APrintIsPrinted) {
+  const auto made_by = [&](const std::string& command, const std::string& quality) {
+    return plan("[sweep]\nmodels = [\"red/box.obj\"]\ncommand = \"" + command + "\"\nquality = \"" +
+                quality + "\"\n" + values_ + "\"print.dpi\" = 72\n");
+  };
+  const SweepPlan made = made_by("print", "draft");
+  EXPECT_EQ(run_sweep(sweep(), made, {}, context_).done, 1);
+  EXPECT_EQ(Json::parse(read_outcome(sweep(), made.runs[0].id)->report)["command"], "print");
+  // Of a simulation and another quality nothing is taken for it.
+  EXPECT_NE(ids(made_by("simulate", "draft")), ids(made));
+  EXPECT_NE(ids(made_by("print", "fine")), ids(made));
+}
+
+// Of a job: its values, the pictures on its model, what its dips are corrected by.
+TEST_F(SweepInputsTest, WhatAJobNamesIsPartOfTheRun) {
+  const std::string job = "[sweep]\njob = \"job.toml\"\nquality = \"draft\"\n";
+  const auto ids_with = [&](const std::string& toml) {
+    write_file(folder_ / "job.toml", "[object]\nfile = \"red/box.obj\"\n" + toml);
+    return ids(plan(job));
+  };
+  const std::string art = "[[artwork]]\nimage = \"blue/box.png\"\n",
+                    dips = "[[dip]]\n[[dip]]\ncorrection = \"c.json\"\n";
+  write_file(folder_ / "c.json", std::string("one"));
+  const auto shallow = ids_with("[dip]\ndepth_mm = 5\n"), pictured = ids_with(art),
+             corrected = ids_with(dips);
+  EXPECT_NE(ids_with("[dip]\ndepth_mm = 6\n"), shallow);
+  EXPECT_EQ(ids_with("[dip]\ndepth_mm = 5\n"), shallow);
+  paint("blue", 99);
+  EXPECT_NE(ids_with(art), pictured);
+  write_file(folder_ / "c.json", std::string("other"));
+  EXPECT_NE(ids_with(dips), corrected);
+}
+
+TEST_F(SweepTest, AFileIsWhatIsInItNow) {
+  FileHashes hashes;
+  write_file(folder_ / "a", std::string("one"));
+  const std::string one = hashes.of(folder_ / "a");
+  EXPECT_EQ(one, sha256_hex({'o', 'n', 'e'}));
+  EXPECT_EQ(hashes.of(folder_ / "a"), one);
+  write_file(folder_ / "a", std::string("other"));
+  EXPECT_EQ(hashes.of(folder_ / "a"), sha256_hex({'o', 't', 'h', 'e', 'r'}));
+  EXPECT_EQ(hashes.of(folder_ / "nowhere"), "");
+}
+
 TEST_F(SweepTest, WhatIsOnOrOffMayBeTrueOrFalse) {
   const SweepPlan made = plan(any_depth_ +
                               "\"preview.pictures\" = false\n"
@@ -229,6 +362,48 @@ TEST_F(SweepInputsTest, WhatChangedSinceItWasPlannedIsNotDone) {
   edited.runs[0].values.emplace_back("dip.depth_mm", "5");
   fs::remove_all(sweep() / "runs");
   EXPECT_EQ(run_sweep(sweep(), edited, {}, context_).changed, 1);
+}
+
+// Not even to say what is wrong with it now.
+TEST_F(SweepInputsTest, WhatIsNoModelOrJobAnyMoreIsNotARunsFailure) {
+  const SweepPlan made = plan(boxes_);
+  write_file(folder_ / "red/box.obj", std::string("no model\n"));
+  const SweepDone done = run_sweep(sweep(), made, {}, context_);
+  EXPECT_EQ(done.changed, 1);
+  EXPECT_EQ(done.failed, 0);
+  write_file(folder_ / "job.toml", std::string("[object]\nfile = \"blue/box.obj\"\n"));
+  const SweepPlan job = plan("[sweep]\njob = \"job.toml\"\nquality = \"draft\"\n" + values_);
+  write_file(folder_ / "job.toml", std::string("[object\n"));
+  EXPECT_TRUE(contains(run_sweep(sweep(), job, {}, context_).what_changed,
+                       "job.toml has changed since the sweep was planned"));
+}
+
+// While it ran: then what it says that it has read is not what was planned.
+TEST_F(SweepInputsTest, WhatAReportHasReadIsWhatWasPlanned) {
+  const SweepPlan made = plan(boxes_);
+  const fs::path model = fs::weakly_canonical(folder_ / "red/box.obj");
+  const auto reads = [&](const fs::path& file, const std::string& role, const std::string& hash) {
+    const Json report = {{"inputs", {{{"path", file.string()}, {"role", role}, {"sha256", hash}}}}};
+    return refusal([&] { require_as_planned(made, report.dump(), sweep()); });
+  };
+  EXPECT_EQ(reads(model, "model", made.inputs.at(made.runs[0].model)), "");
+  EXPECT_TRUE(contains(reads(model, "model", "another"), "box.obj has changed"));
+  EXPECT_TRUE(contains(reads(folder_ / "new.png", "texture", "any"), "new.png has changed"));
+  EXPECT_EQ(reads("/usr/share/a.ttf", "font", "any"), "");  // this machine's
+}
+
+// Known when all is done: no result, and no files that would be taken for one.
+TEST_F(SweepInputsTest, WhatWasReadBesideThePlanLeavesNothing) {
+  std::string all = boxes_;
+  SweepPlan made = plan(all.replace(all.find("quality"), 0, "keep = \"all\"\n"));
+  made.runs.resize(1);
+  made.model_files[made.runs[0].model].resize(1);
+  std::erase_if(made.inputs, [](const auto& file) { return !file.first.ends_with(".obj"); });
+  FileHashes hashes;
+  note_inputs(made, made.runs[0], sweep(), hashes, context_);
+  EXPECT_EQ(run_sweep(sweep(), made, {}, context_).changed, 1);
+  EXPECT_FALSE(read_outcome(sweep(), made.runs[0].id));
+  EXPECT_FALSE(fs::exists(sweep() / "files" / made.runs[0].id));
 }
 
 // A picture that was missing when the sweep was planned.
@@ -277,6 +452,9 @@ TEST_F(SweepTest, RefusesWhatItWouldPassOver) {
   EXPECT_TRUE(contains(range("", ", count = 4294967298"), "4294967298"));
   EXPECT_TRUE(contains(range("", ", count = 1"), "from 2"));
   EXPECT_TRUE(contains(range("", ", count = 3, log = \"yes\""), "true or false"));
+  EXPECT_TRUE(contains(why(one + "[vary]\n\"material.poisson\" = { from = 0, to = 0.3, count = 3, "
+                                 "log = true }\n"),
+                       "equal factors need from and to above 0"));
   EXPECT_TRUE(contains(why(one + "[vary]\n\"dip.step_mm\" = [nan]\n"), "nan"));
   for (const char* vary :
        {"[vary]\n\"dip.depth_mm\" = [3, 6]\n", "[vary.dip]\ndepth_mm = [3, 6]\n"})
@@ -310,6 +488,40 @@ TEST_F(SweepTest, ADamagedOutcomeIsDoneAgain) {
   const SweepDone done = run_sweep(sweep(), made, {{}, "", true}, context_);
   EXPECT_EQ(done.done, 2);
   EXPECT_EQ(done.before, 1);
+}
+
+TEST_F(SweepTest, APlanSaysWhetherItsFirstRunWorksAndHowManyTasksThereAre) {
+  const auto planned = [&](const std::string& vary) {
+    write_file(folder_ / "sweep.toml", head_ + vary);
+    return sweep_plan_job({folder_ / "sweep.toml", sweep(), true, 7, "1.0"}, context_);
+  };
+  const JobResult good = planned("[vary]\n\"film.margin_mm\" = [10, 12]\n");
+  EXPECT_EQ(Json::parse(good.json)["tasks"], 2);  // no more than there are runs
+  EXPECT_GT(Json::parse(good.json)["seconds_each"], 0.0);
+  EXPECT_TRUE(contains(good.text, "2 runs, about ")) << good.text;
+  const auto mode = fs::status(sweep() / "slurm.sh").permissions();
+  EXPECT_NE(mode & fs::perms::owner_exec, fs::perms::none);
+  const JobResult bad = planned("[vary]\n\"film.margin_mm\" = [200, 12]\n");
+  EXPECT_TRUE(Json::parse(bad.json)["seconds_each"].is_null());
+  EXPECT_TRUE(contains(bad.text, "the first run failed: ")) << bad.text;
+}
+
+TEST_F(SweepTest, TenOfManyFailuresAreTold) {
+  write_file(folder_ / "sweep.toml",
+             head_ + "[vary]\n\"film.margin_mm\" = { from = 200, to = 211, count = 12 }\n");
+  sweep_plan_job({folder_ / "sweep.toml", sweep(), false, 1, "1.0"}, context_);
+  run_sweep(sweep(), read_manifest(sweep()), {}, context_);
+  const std::string told = sweep_collect_job(sweep(), context_).text;
+  EXPECT_TRUE(contains(told, "12 runs: 0 done, 12 failed, 0 missing")) << told;
+  EXPECT_TRUE(contains(told, "and 2 more, see table.csv")) << told;
+}
+
+TEST_F(SweepTest, AChangedInputIsNoEnd) {
+  write_file(folder_ / "sweep.toml", head_ + "[vary]\n\"film.margin_mm\" = [10, 12]\n");
+  sweep_plan_job({folder_ / "sweep.toml", sweep(), false, 1, "1.0"}, context_);
+  std::ofstream(folder_ / "tetrahedron.obj", std::ios::app) << "# changed\n";
+  EXPECT_TRUE(contains(refusal([&] { sweep_run_job(sweep(), {}, context_); }),
+                       "0 done, 0 failed, 2 not done for that"));
 }
 
 // What people have changed in a script, or put beside the results, stays theirs.
@@ -363,6 +575,14 @@ TEST_F(SweepTest, TheManifestIsThePlan) {
   write_file(sweep() / "sweep.json", manifest_json(made));
   const SweepPlan read = read_manifest(sweep());
   EXPECT_EQ(manifest_json(read), manifest_json(made));
+  SweepPlan kept = made;
+  kept.keep_files = true;
+  write_file(sweep() / "sweep.json", manifest_json(kept));
+  EXPECT_TRUE(read_manifest(sweep()).keep_files);
+  std::string other = manifest_json(made);
+  other.replace(other.find("\"hydrodip_sweep\": 2"), 19, "\"hydrodip_sweep\": 1");
+  write_file(sweep() / "sweep.json", other);
+  EXPECT_TRUE(contains(refusal([&] { read_manifest(sweep()); }), "made by another version"));
   write_file(sweep() / "sweep.json", std::string("{\"hydrodip_sweep\": 2}"));
   EXPECT_NE(refusal([&] { read_manifest(sweep()); }), "");
   std::string escaping = manifest_json(made);
@@ -499,6 +719,12 @@ TEST_F(SweepTest, ARunThatFailsIsAnOutcomeWithItsSentence) {
   const SweepTable table = make_table(sweep(), made);
   EXPECT_EQ(table.rows[1].state, RunState::kFailed);
   EXPECT_TRUE(contains(table.rows[1].error, "film")) << table.rows[1].error;
+  for (const std::optional<double>& figure : table.rows[1].figures) EXPECT_FALSE(figure);
+  EXPECT_EQ(table.rows[0].verdict,
+            Json::parse(read_outcome(sweep(), made.runs[0].id)->report)["concern"]);
+  const std::vector<std::uint8_t> outcome =
+      read_file(sweep() / "runs" / (made.runs[1].id + ".json"));
+  EXPECT_EQ(Json::parse(outcome)["exit_code"], 2);
   EXPECT_TRUE(contains(table_csv(table, made), table.rows[1].run->id + ",failed"));
 }
 
@@ -510,6 +736,9 @@ TEST_F(SweepTest, OrientsManyModels) {
   EXPECT_EQ(run_sweep(sweep(), made, {}, context_).done, 1);
   const Json table = Json::parse(table_json(make_table(sweep(), made), made));
   for (const Json& run : table["runs"]) EXPECT_GT(run["figures"]["best.covered_share"], 0.0);
+  const Json poses = Json::parse(read_outcome(sweep(), made.runs[0].id)->report)["poses"];
+  EXPECT_EQ(table["runs"][0]["figures"]["best.score"], poses[0]["score"]);
+  EXPECT_GT(poses.size(), 1U);
 }
 
 TEST_F(SweepTest, CancelledItLeavesNothingHalf) {
@@ -548,6 +777,68 @@ TEST_F(SweepTest, TheTableHasALineForEveryRun) {
   };
   EXPECT_GT(covered(2), covered(0));
   EXPECT_TRUE(contains(response_svg(table, made), "dip.depth_mm"));
+}
+
+// The sweep's folder may be seen under another name by whoever puts it together.
+TEST_F(SweepTest, AResultNamesItsFilesFromTheSweepsFolder) {
+  const SweepPlan made = plan(head_);
+  run_sweep(sweep(), made, {}, context_);
+  const Json report = Json::parse(read_outcome(sweep(), made.runs[0].id)->report);
+  EXPECT_EQ(report["inputs"][0]["path"], "../tetrahedron.obj");
+  EXPECT_FALSE(contains(report.dump(), folder_.path().string())) << report.dump();
+}
+
+// Rows as they come, one without a result.
+class SweepPicture : public ::testing::Test {
+ protected:
+  SweepPicture() {
+    plan_.varied = {"dip.depth_mm"};
+    table_.figure_names = {"coverage.torn_mm2"};
+    for (const char* depth : {"10", "5", "5", "20", "7"})
+      plan_.runs.push_back({"", "", {{"dip.depth_mm", depth}}});
+    const double torn[] = {4, 2, 6, 100, 0};
+    for (std::size_t k = 0; k < plan_.runs.size(); ++k) {
+      SweepRow& row = table_.rows.emplace_back();
+      row.run = &plan_.runs[k];
+      row.state = RunState::kDone;
+      row.figures = {torn[k]};
+    }
+    table_.rows[3].state = RunState::kFailed;
+    table_.rows[4].state = RunState::kMissing;
+    table_.rows[4].figures = {std::nullopt};
+  }
+  SweepPlan plan_;
+  SweepTable table_;
+};
+
+TEST_F(SweepPicture, DrawsMuchAboveLittleFromLeftToRight) {
+  const std::string svg = response_svg(table_, plan_);
+  // Depths 5 to 10 from x = 70 to 298, areas 2 to 6 from y = 178 up to 40.
+  EXPECT_TRUE(contains(svg, "<circle cx=\"298.0\" cy=\"109.0\"")) << svg;
+  EXPECT_TRUE(contains(svg, "<circle cx=\"70.0\" cy=\"178.0\"")) << svg;
+  EXPECT_TRUE(contains(svg, "<circle cx=\"70.0\" cy=\"40.0\"")) << svg;
+  EXPECT_TRUE(contains(svg, "<polyline points=\"70.0,109.0 298.0,109.0 \"/>")) << svg;
+}
+
+TEST_F(SweepPicture, HasNoneOfWhatIsTheSameEverywhereOrNoNumber) {
+  for (SweepRow& row : table_.rows) row.figures = {3.0};
+  EXPECT_EQ(response_svg(table_, plan_), "");
+  for (std::size_t k = 0; k < 3; ++k) table_.rows[k].figures = {double(k)};
+  plan_.runs[1].values = {{"dip.depth_mm", "auto"}};
+  EXPECT_EQ(response_svg(table_, plan_), "");
+}
+
+TEST_F(SweepPicture, ATablesCellIsOneWhateverStandsInIt) {
+  plan_.runs[0].values = {{"dip.depth_mm", "1,2"}};
+  table_.rows[3].error = "\"a\", b";
+  const std::string csv = table_csv(table_, plan_);
+  EXPECT_TRUE(contains(csv, ",done,\"1,2\",")) << csv;
+  EXPECT_TRUE(contains(csv, ",\"\"\"a\"\", b\"\n")) << csv;
+}
+
+TEST(SweepScripts, AFoldersNameIsOneWord) {
+  EXPECT_TRUE(contains(slurm_script(2, "/a b/c"), "cd '/a b/c'\n")) << slurm_script(2, "/a b/c");
+  EXPECT_TRUE(is_as_made(slurm_script(2, "/a b/c")));
 }
 
 TEST(SweepScripts, PackShortRunsSoThatTasksLast) {
