@@ -160,6 +160,13 @@ TEST(Air, WhatTurnsOverUnderWaterLetsItsAirGo) {
   ASSERT_EQ(air.pockets.size(), 1U);
   EXPECT_NEAR(air.volume_mm3(), 25 * polygon_area(15), 1);
   EXPECT_GT(air.pockets[0].escapes_share, 0.95);
+  // Nor does it come back when the cup does.
+  const TrappedAir back =
+      air_of(cup, Trajectory::through(
+                      {{}, {.lower_mm = 60}, {.lower_mm = 60, .turn_x_deg = 170}, {.lower_mm = 60}},
+                      Vec3(0, 0, 14)));
+  ASSERT_EQ(back.pockets.size(), 1U);
+  EXPECT_GT(back.pockets[0].escapes_share, 0.95);
 }
 
 TEST(Air, HollowsWithinHollowsCloseOneByOne) {
@@ -220,13 +227,13 @@ TEST(Air, WhatIsOpenAboveKeepsNone) {
 // A bowl of 20 mm radius as a sheet, mouth down; and the same with a hole of a fifth of a
 // millimetre.
 TEST(Air, SmallHolesInScansAreVentsAndSaidToBe) {
-  const auto bowl = [](double hole_radius) {
+  const auto bowl = [](double hole_radius, double radius = 20) {
     return mesh_of(shapes::revolve(
         [&](double s) {
           const double a = 0.5 * std::numbers::pi * s;
-          const double end = std::asin(hole_radius / 20);
+          const double end = std::asin(hole_radius / radius);
           const double b = a * (1 - 2 * end / std::numbers::pi);
-          return Vec2(20 * std::cos(b), 20 * std::sin(b));
+          return Vec2(radius * std::cos(b), radius * std::sin(b));
         },
         64, kSegments));
   };
@@ -242,6 +249,16 @@ TEST(Air, SmallHolesInScansAreVentsAndSaidToBe) {
   EXPECT_NEAR(pierced.vents[0].width_mm, 0.2, 0.01);
   EXPECT_NEAR(pierced.vents[0].area_mm2, 2 * std::numbers::pi * 400, 10);
   EXPECT_NEAR((pierced.vents[0].at - Vec3(0, 0, 20)).norm(), 0, 0.02);
+
+  // Of two the one that lets more out comes first.
+  TriangleMesh both = bowl(0.1, 12);
+  for (Vec3& p : both.positions) p.x() -= 40;
+  append(both, bowl(0.1));
+  const TrappedAir two = air_of(both);
+  EXPECT_TRUE(two.pockets.empty());
+  ASSERT_EQ(two.vents.size(), 2U);
+  EXPECT_NEAR(two.vents[0].area_mm2, 2 * std::numbers::pi * 400, 15);
+  EXPECT_NEAR(two.vents[1].area_mm2, 2 * std::numbers::pi * 144, 15);
 }
 
 // A shallow dish: air gets out once its rim's far side is the highest point of it.

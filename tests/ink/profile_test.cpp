@@ -257,6 +257,11 @@ TEST_F(Profiles, WhatIsNoCmykProfileIsRefused) {
   const std::vector<std::uint8_t> rubbish(500, 7);
   for (const auto& bytes : {rubbish, std::vector<std::uint8_t>{}, srgb_profile()})
     EXPECT_THROW(make_profile_model(bytes, "some.icc", RenderingIntent::kRelative), InputError);
+  try {
+    make_profile_model(srgb_profile(), "some.icc", RenderingIntent::kRelative);
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what()).find("neither CMYK inks nor RGB") != std::string::npos);
+  }
   auto cut = make_device_model()->profile();
   cut.resize(cut.size() / 2);
   EXPECT_THROW(make_profile_model(cut, "some.icc", RenderingIntent::kRelative), InputError);

@@ -34,6 +34,19 @@ TEST(Targets, AreNoneOnNothing) {
   EXPECT_EQ(spread_targets({}, 100).area, 0);
 }
 
+TEST(Targets, InAPoseLieOnTheSurfaceAsItHangs) {
+  const auto sphere = std::make_shared<const Object>(make_sample("sphere"));
+  PoseOptions pose;
+  pose.size_mm = 25;
+  pose.rotate_deg = {30, 40, 50};
+  const PosedObject posed(sphere, pose);
+  for (const Target& target : spread_targets(*sphere, 50).list) {
+    const Target hung = in_pose(target, posed);
+    EXPECT_LT((hung.position - position_at(posed.mesh(), target.point)).norm(), 1e-9);
+    EXPECT_LT((hung.normal - face_normal(posed.mesh(), target.point.triangle)).norm(), 1e-9);
+  }
+}
+
 class HalfPainted : public Paint {
  public:
   // `off`: from the middle, in shares of half the size; nearer to 1, less is painted.

@@ -134,6 +134,30 @@ TEST_F(SphereTrial, CountsWhatIsTornAsTheJobDoes) {
   }
 }
 
+// By the area that was printed for it, parts of triangles with their part.
+TEST_F(SphereTrial, PaysForTheFilmThatTears) {
+  const DippedObject dipped = dipped_to(16);
+  const DippedFilm& film = *dipped.film;
+  double torn_mm2 = 0;
+  for (std::size_t t = 0; t < film.torn.size(); ++t) {
+    const Triangle& v = film.mesh().triangles[t];
+    const Vec2& a = film.mesh().u[std::size_t(v[0])];
+    const double flat_mm2 = 0.5 * std::abs(cross2(film.mesh().u[std::size_t(v[1])] - a,
+                                                  film.mesh().u[std::size_t(v[2])] - a));
+    if (film.torn[t])
+      torn_mm2 += flat_mm2;
+    else if (film.lies_on_object(t))
+      torn_mm2 += flat_mm2 * (1 - film.whole_part(t).share);
+  }
+  TrialTask free_of_charge = task(), paid = task();
+  free_of_charge.torn_price = 0;
+  paid.torn_price = 1;
+  const double price = judge_dip(free_of_charge, {}, dipped).figures.score -
+                       judge_dip(paid, {}, dipped).figures.score;
+  EXPECT_GT(price, 0.01);
+  EXPECT_NEAR(price, torn_mm2 / targets_.area, 1e-9);
+}
+
 // A picture drawn from the film shows what the figures say.
 TEST_F(SphereTrial, KeepsTheFilmAsItLiesAtItsDepth) {
   TrialTask keeping = task();

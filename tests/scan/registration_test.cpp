@@ -163,13 +163,13 @@ TEST(RegistrationTest, TheLargestPatchIsMatched) {
 
 TEST(RegistrationTest, AScanOfMoreThanLandsIsRefused) {
   const Landed whole("sphere");
-  const GridLanding middle = [&](const GridPlace& place) -> std::optional<Vec3> {
-    if (std::abs(place[0]) > 1 || std::abs(place[1]) > 1) return std::nullopt;
+  const GridLanding cross = [&](const GridPlace& place) -> std::optional<Vec3> {
+    if (place[0] != 0 && place[1] != 0) return std::nullopt;
     return whole(place);
   };
   std::string why;
   try {
-    match_grid(landed_grid(whole), middle, {6, 6}, kBoardSquare_mm, "scan");
+    match_grid(landed_grid(whole), cross, {6, 6}, kBoardSquare_mm, "scan");
   } catch (const InputError& error) {
     why = error.what();
   }

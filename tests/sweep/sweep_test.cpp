@@ -796,7 +796,7 @@ class SweepPicture : public ::testing::Test {
     table_.figure_names = {"coverage.torn_mm2"};
     for (const char* depth : {"10", "5", "5", "20", "7"})
       plan_.runs.push_back({"", "", {{"dip.depth_mm", depth}}});
-    const double torn[] = {4, 2, 6, 100, 0};
+    const double torn[] = {5, 2, 6, 100, 0};
     for (std::size_t k = 0; k < plan_.runs.size(); ++k) {
       SweepRow& row = table_.rows.emplace_back();
       row.run = &plan_.runs[k];
@@ -814,10 +814,10 @@ class SweepPicture : public ::testing::Test {
 TEST_F(SweepPicture, DrawsMuchAboveLittleFromLeftToRight) {
   const std::string svg = response_svg(table_, plan_);
   // Depths 5 to 10 from x = 70 to 298, areas 2 to 6 from y = 178 up to 40.
-  EXPECT_TRUE(contains(svg, "<circle cx=\"298.0\" cy=\"109.0\"")) << svg;
+  EXPECT_TRUE(contains(svg, "<circle cx=\"298.0\" cy=\"74.5\"")) << svg;
   EXPECT_TRUE(contains(svg, "<circle cx=\"70.0\" cy=\"178.0\"")) << svg;
   EXPECT_TRUE(contains(svg, "<circle cx=\"70.0\" cy=\"40.0\"")) << svg;
-  EXPECT_TRUE(contains(svg, "<polyline points=\"70.0,109.0 298.0,109.0 \"/>")) << svg;
+  EXPECT_TRUE(contains(svg, "<polyline points=\"70.0,109.0 298.0,74.5 \"/>")) << svg;
 }
 
 TEST_F(SweepPicture, HasNoneOfWhatIsTheSameEverywhereOrNoNumber) {
