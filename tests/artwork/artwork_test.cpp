@@ -472,6 +472,13 @@ TEST_F(Layers, TextIsSet) {
   EXPECT_NE(describe(artwork.layers[0]).find("set in " + artwork.layers[0].fonts[0].name),
             std::string::npos);
   EXPECT_TRUE(context.warnings().empty());
+  // And that it is another one than was asked for.
+  layers[0].font = "No Font Of This Name";
+  lay_artwork({layers, read_pictures(layers), model_paint(object.shared_object()), true, 300, 3},
+              object, context);
+  ASSERT_EQ(context.warnings().size(), 1U);
+  EXPECT_NE(context.warnings()[0].find("'No Font Of This Name' is not installed"),
+            std::string::npos);
   layer.text = " ";
   EXPECT_THROW(laid(object, {layer}), InputError);
 }

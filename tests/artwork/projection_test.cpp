@@ -227,6 +227,58 @@ TEST(Sphere, OnASphereIsLongitudeAndLatitude) {
   });
 }
 
+// At a height the picture is as wide as it is there.
+TEST(Sphere, NearAPoleAPictureIsAsWideAsAtTheEquator) {
+  constexpr double kRadius = 30, kLatitude = kPi / 3;
+  const PosedObject object = posed(ball(kRadius, 720, 360));
+  ArtworkLayer layer = layer_of(Projection::kSphere, 10);
+  layer.toward = Vec3(0, 0, 1);
+  layer.at_mm = Vec3(0, -kRadius * std::cos(kLatitude), kRadius * std::sin(kLatitude));
+  const Placed placed = place(layer, object);
+  const Vec3 centre = moved(object, Vec3::Zero());
+  int seen = 0;
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    Spot spot;
+    if (!placed.placement->find(point, spot) || !placed.placement->is_lit(point)) return;
+    const Vec3 p = (position_at(object.mesh(), point) - centre).normalized();
+    if (p.z() < 0.7 || p.z() > 0.95) return;
+    ++seen;
+    EXPECT_NEAR(spot.place_mm.x(), kRadius * std::cos(kLatitude) * std::atan2(p.x(), -p.y()), 0.02);
+    EXPECT_NEAR(spot.place_mm.y(), kRadius * (std::asin(p.z()) - kLatitude), 0.02);
+  });
+  EXPECT_GT(seen, 100);
+}
+
+TEST(Cylinder, OfWhatLiesTheAxisLies) {
+  TriangleMesh lying = tube(20, 50, 180, 10);
+  for (Vec3& p : lying.positions) p = Vec3(p.z(), p.x(), p.y());
+  const PosedObject object = posed(lying);
+  ArtworkLayer layer = layer_of(Projection::kCylinder, 30);
+  layer.at_mm = Vec3(25, -20, 0);
+  const Placed placed = place(layer, object, 1, false);
+  int seen = 0;
+  each_point(object.mesh(), [&](const SurfacePoint& point) {
+    Spot spot;
+    if (!placed.placement->find(point, spot) || !placed.placement->is_lit(point)) return;
+    ++seen;
+    EXPECT_NEAR(spot.place_mm.y(),
+                (position_at(object.mesh(), point) - moved(object, Vec3::Zero())).x() - 25,
+                kExact_mm);
+  });
+  EXPECT_GT(seen, 100);
+}
+
+TEST(Planar, BesideTheMiddleAPictureFitsToTheNearerEdge) {
+  const PosedObject object = posed(box({0, 0, 0}, {60, 40, 30}));
+  ArtworkLayer layer = layer_of(Projection::kPlanar, 0);
+  layer.toward = Vec3(0, 0, 1);
+  layer.up = Vec3(0, 1, 0);
+  layer.at_mm = Vec3(15, 20, 0);
+  EXPECT_NEAR(place(layer, object, 1).size_mm.x(), 30, 1e-9);
+  layer.at_mm = Vec3(30, 32, 0);
+  EXPECT_NEAR(place(layer, object, 1).size_mm.y(), 16, 1e-9);
+}
+
 TEST(Box, PutsThePictureOnEverySideUnmirrored) {
   const PosedObject object = posed(box({-20, -20, -20}, {20, 20, 20}));
   ArtworkLayer layer = layer_of(Projection::kBox, 0);
