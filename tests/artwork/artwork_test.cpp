@@ -537,6 +537,19 @@ TEST_F(Layers, OnTheFilmShowWhereFilmLies) {
   EXPECT_LT(paint->color_on_film(anywhere, {-5, 3}).g, kBlack);
   EXPECT_GT(paint->color_on_film(anywhere, {5, 3}).g, kWhite);
   EXPECT_LT(paint->color_on_film(anywhere, {15, 3}).g, kBlack);
+  // Its centre is where it is told to lie.
+  layer.at_mm = Vec3(5, 1, 0);
+  const auto moved_right = laid(object, {layer});
+  EXPECT_LT(moved_right->color_on_film(anywhere, {2, 3}).g, kBlack);
+  EXPECT_GT(moved_right->color_on_film(anywhere, {8, 3}).g, kWhite);
+  // What is written on it is read from its other side.
+  layer.image.clear();
+  layer.text = "H";
+  const RunContext context;
+  lay_artwork({{layer}, read_pictures({layer}), model_paint(object.shared_object()), true, 100, 1},
+              object, context);
+  ASSERT_EQ(context.warnings().size(), 1U);
+  EXPECT_NE(context.warnings()[0].find("mirror writing"), std::string::npos);
 }
 
 // A drawing that says how large it is, in whatever unit; in pixels it says nothing.
