@@ -151,7 +151,8 @@ JobResult run_nest(const Request& request, const RunContext& context) {
   sheet.output = request.output.empty() ? "nest" : request.output;
   const NestRequest nest{parts_of(request, sheet, context), request.clearance_mm};
   if (nest.parts.empty())
-    throw InputError("name the parts to nest, as in 'hydrodip nest a.toml b.toml b.toml --film a3'");
+    throw InputError(
+        "name the parts to nest, as in 'hydrodip nest a.toml b.toml b.toml --film a3'");
   return nest_job(sheet, nest, context);
 }
 
