@@ -26,9 +26,8 @@ std::string general_help() {
   help += "\nTry it:\n";
   for (const std::string& command : first_commands()) help += "  " + command + "\n";
   help +=
-      "\n'hydrodip COMMAND --help' shows a command's options, 'hydrodip --version' which version "
-      "this "
-      "is.\nLengths are in mm, angles in degrees.\nExit codes:\n";
+      "\n'hydrodip COMMAND --help' shows a command's options, 'hydrodip --version' the version.\n"
+      "Lengths are in mm, angles in degrees.\nExit codes:\n";
   for (const Remark& code : exit_codes())
     help += fmt::format("  {:<4} {}\n", code.what, code.means);
   for (const Remark& variable : environment_variables())
@@ -114,11 +113,10 @@ const Command& find_command(const std::string& name) {
     if (command.name == name) return command;
     names.push_back(command.name);
   }
-  const std::string hint = is_file(name) ? fmt::format(
-                                               ": name what to do with that file, as in 'hydrodip "
-                                               "print {}'",
-                                               shell_word(name))
-                                         : did_you_mean(name, names);
+  const std::string hint =
+      is_file(name)
+          ? ": name what to do with that file, as in 'hydrodip print " + shell_word(name) + "'"
+          : did_you_mean(name, names);
   throw InputError(fmt::format("unknown {} '{}'{}", name.starts_with("-") ? "option" : "command",
                                name,
                                hint.empty() ? "; 'hydrodip --help' lists the commands" : hint));
