@@ -378,9 +378,7 @@ TEST(HistoryJob, WhoAsksForADipsSettingsChangesNothing) {
   const TemporaryFolder folder;
   const std::string report = report_of(200, 0.5, 1);
   write_file(folder / "report.json", report);
-  write_run(
-      folder, "rig-1",
-      guided_log("2026-01-01T10:00:00Z", "1", kDone, sha256_hex({report.begin(), report.end()})));
+  write_run(folder, "rig-1", guided_log("2026-01-01T10:00:00Z", "1", kDone, sha256_hex(report)));
   const RigJob job = load_rig_job(folder.path(), {});
   FixedClock clock;
   HistoryRequest asks;

@@ -311,10 +311,10 @@ TEST_F(SweepTest, AFileIsWhatIsInItNow) {
   FileHashes hashes;
   write_file(folder_ / "a", std::string("one"));
   const std::string one = hashes.of(folder_ / "a");
-  EXPECT_EQ(one, sha256_hex({'o', 'n', 'e'}));
+  EXPECT_EQ(one, sha256_hex("one"));
   EXPECT_EQ(hashes.of(folder_ / "a"), one);
   write_file(folder_ / "a", std::string("other"));
-  EXPECT_EQ(hashes.of(folder_ / "a"), sha256_hex({'o', 't', 'h', 'e', 'r'}));
+  EXPECT_EQ(hashes.of(folder_ / "a"), sha256_hex("other"));
   EXPECT_EQ(hashes.of(folder_ / "nowhere"), "");
 }
 
