@@ -16,15 +16,17 @@ double resident_mb() {
 }
 
 TEST(BlankArray, AreZeroAndTakeWhatIsWrittenTo) {
-  const double before_mb = resident_mb();
+  [[maybe_unused]] const double before_mb = resident_mb();
   BlankArray<float> values(std::size_t(75) << 20U);  // 315 MB
   ASSERT_EQ(values.size(), std::size_t(75) << 20U);
   for (std::size_t i = 1000000; i < 2000000; ++i) values[i] = float(i);
   for (std::size_t i = 0; i < values.size(); i += 997)
     ASSERT_EQ(values[i], i >= 1000000 && i < 2000000 ? float(i) : 0.0F) << i;
+#if !defined(__SANITIZE_THREAD__)  // it keeps books of whatever is looked at
   if (before_mb > 0) {
     EXPECT_LT(resident_mb() - before_mb, 40);
   }
+#endif
 }
 
 TEST(BlankArray, OfAnySizeAreZero) {
