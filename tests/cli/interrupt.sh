@@ -36,15 +36,15 @@ gives_up() {
   waited=0
   # shellcheck disable=SC2012
   while kill -0 "$job" 2> /dev/null && ! ls -l "/proc/$job/fd" 2> /dev/null | grep -q 'pipe[a-z.]*$'; do
-    sleep 0.05
+    sleep 0.02
     waited=$((waited + 1))
-    [ "$waited" -lt 200 ] || break
+    [ "$waited" -lt 500 ] || break
   done
-  [ "$waited" -lt 200 ] || fail "$*: does not read the pipe"
+  [ "$waited" -lt 500 ] || fail "$*: does not read the pipe"
   kill -s INT "$job" 2> /dev/null
   waited=0
-  while kill -0 "$job" 2> /dev/null && [ "$waited" -lt 100 ]; do
-    sleep 0.1
+  while kill -0 "$job" 2> /dev/null && [ "$waited" -lt 500 ]; do
+    sleep 0.02
     waited=$((waited + 1))
   done
   kill -s KILL "$job" 2> /dev/null
