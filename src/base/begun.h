@@ -48,6 +48,7 @@ class Begun {
   explicit Begun(std::function<T()> work)
       : work_([this, work = std::move(work)] { result_ = work(); }) {}
 
+  bool has_begun() const { return work_.has_begun(); }
   void wait() { work_.wait(); }
   bool has_failed() const { return work_.has_failed(); }
   T take() {

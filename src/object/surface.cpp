@@ -11,6 +11,7 @@
 #include <optional>
 #include <stdexcept>
 #include <thread>
+#include <type_traits>
 
 #include "base/begun.h"
 #include "base/error.h"
@@ -53,36 +54,6 @@ Closest closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
   const double scale = 1.0 / (va + vb + vc);
   return at(vb * scale, vc * scale);
 }
-
-// A tree for so many triangles takes a millisecond.
-constexpr std::size_t kWorthAThread = 4000;
-
-}  // namespace
-
-struct Surface::Impl {
-  std::shared_ptr<const TriangleMesh> mesh;
-  RTCScene made = nullptr;
-  mutable std::once_flag is_built;
-  mutable std::optional<BegunWork> building;
-
-  ~Impl() {
-    building.reset();
-    if (made) rtcReleaseScene(made);
-  }
-
-  // Waits for it.
-  RTCScene scene() const {
-    std::call_once(is_built, [&] { building->finish(); });
-    return made;
-  }
-
-  const Vec3& corner(int triangle, int k) const {
-    return mesh->positions[static_cast<std::size_t>(
-        mesh->triangles[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(k)])];
-  }
-};
-
-namespace {
 
 // One device for all surfaces of the process: it holds Embree's settings and is never changed.
 // Begun by whoever comes first; never ended, for a surface may live as long as the process.
@@ -145,6 +116,22 @@ void build(RTCScene scene) {
   if (rtcGetDeviceError(device()) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
 }
 
+struct Release {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>;
+
+Scene built_scene(const TriangleMesh& mesh) {
+  Scene scene(rtcNewScene(device()));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  if (!mesh.triangles.empty()) add_triangles(scene.get(), mesh.positions, mesh.triangles);
+  build(scene.get());
+  return scene;
+}
+
+// A tree for so many triangles takes a millisecond.
+constexpr std::size_t kWorthAThread = 4000;
+
 RTCRay ray_of(const Vec3& origin, const Vec3& direction, double t_min, double t_max) {
   RTCRay ray{};
   // Embree wants t >= 0: start at t_min and shift.
@@ -184,23 +171,36 @@ RTCPointQuery query_around(const Vec3& point, double max_distance) {
 
 }  // namespace
 
+struct Surface::Impl {
+  std::shared_ptr<const TriangleMesh> mesh;
+  mutable std::optional<Begun<Scene>> building;
+  mutable std::once_flag is_built;
+  mutable Scene built;
+
+  // Waits for it. What has failed may have been cancelled with the job that made the surface:
+  // others may ask it later.
+  RTCScene scene() const {
+    std::call_once(is_built, [&] {
+      if (building) building->wait();
+      built = building && !building->has_failed() ? building->take() : built_scene(*mesh);
+    });
+    return built.get();
+  }
+
+  const Vec3& corner(int triangle, int k) const {
+    return mesh->positions[static_cast<std::size_t>(
+        mesh->triangles[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(k)])];
+  }
+};
+
 Surface::Surface(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles)
     : Surface(std::make_shared<const TriangleMesh>(TriangleMesh{positions, triangles})) {}
 
 Surface::Surface(std::shared_ptr<const TriangleMesh> mesh) : impl_(std::make_unique<Impl>()) {
   impl_->mesh = std::move(mesh);
-  impl_->made = rtcNewScene(device());
-  rtcSetSceneFlags(impl_->made, RTC_SCENE_FLAG_ROBUST);
-  const auto build_here = [mesh = impl_->mesh.get(), scene = impl_->made] {
-    if (!mesh->triangles.empty()) add_triangles(scene, mesh->positions, mesh->triangles);
-    build(scene);
-  };
-  if (impl_->mesh->triangles.size() < kWorthAThread) {
-    std::call_once(impl_->is_built, build_here);
-    return;
-  }
-  impl_->building.emplace(build_here);
-  if (!impl_->building->has_begun()) impl_->scene();
+  if (impl_->mesh->triangles.size() >= kWorthAThread)
+    impl_->building.emplace([mesh = impl_->mesh.get()] { return built_scene(*mesh); });
+  if (!impl_->building || !impl_->building->has_begun()) impl_->scene();
 }
 
 Surface::~Surface() = default;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/error.h"
@@ -59,6 +60,19 @@ TEST(Surface, OfACancelledJobAnswersNothing) {
   };
   EXPECT_THROW(ask(), Cancelled);
   { const Surface never_asked(mesh); }
+}
+
+// Objects are kept for the next question: the job that made one may be cancelled meanwhile.
+TEST(Surface, AnswersOthersWhenTheJobThatMadeItWasCancelled) {
+  if (available_threads() < 2) GTEST_SKIP() << "one thread";
+  const RunContext context;
+  context.cancel();
+  std::optional<Surface> surface;
+  {
+    const RunScope scope(context);
+    surface.emplace(large_square());
+  }
+  EXPECT_TRUE(surface->is_hit({0.75, 0.25, 1}, -Vec3::UnitZ(), 0, 10));
 }
 
 TEST(Surface, LeavesAllThreadsToOthersWhileItLives) {
