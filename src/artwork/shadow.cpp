@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "artwork/incidence.h"
@@ -23,6 +24,9 @@ constexpr double kCornerStart_mm = 5e-3;
 constexpr double kWithin_mm = 0.02, kWithin = 0.1;
 // Between corners so near each other no shadow falls that could be seen.
 constexpr double kSmall_mm = 0.5;
+// Where more than such a share of the triangles that may be met would have to be asked everywhere,
+// looking for what hangs over them is worth while.
+constexpr std::size_t kWorthOneOf = 16;
 // Spreads numbers over all bits.
 constexpr std::size_t kScatter = 0x9e3779b97f4a7c15U;
 // Edges blunter than this are rounded.
@@ -57,6 +61,53 @@ Shadow::Shadow(const PosedObject& posed, const Projector& projector, const Pictu
   if (through_) return;
   if (!projector_.has_sides()) settle_small_triangles();
   if (!projector_.has_sides()) darken_what_shows_through_holes();
+  look_for_overhangs();
+}
+
+void Shadow::look_for_overhangs() {
+  const auto dark = std::size_t(std::count(states_.begin(), states_.end(), State::kDark));
+  const auto asked = std::size_t(std::count(states_.begin(), states_.end(), State::kAsk));
+  if (asked > 0 && asked * kWorthOneOf >= states_.size() - dark) overhang_.emplace(posed_.mesh());
+}
+
+Shadow::State Shadow::state_of(int triangle) const {
+  return std::atomic_ref(states_[std::size_t(triangle)]).load(std::memory_order_relaxed);
+}
+
+// What of a triangle can be known without asking for every point.
+Shadow::State Shadow::settled(int triangle) const {
+  const State state = state_of(triangle);
+  if (state != State::kAsk || !overhang_) return state;
+  settle_together(triangle);
+  return state_of(triangle);
+}
+
+// All near it, as they are asked about next.
+void Shadow::settle_together(int triangle) const {
+  const TriangleMesh& mesh = posed_.mesh();
+  std::vector<LeavingRays> leaving;
+  const auto settle = [&](int t, State state) {
+    std::atomic_ref(states_[std::size_t(t)]).store(state, std::memory_order_relaxed);
+  };
+  for (const int t : overhang_->together(triangle)) {
+    if (state_of(t) != State::kAsk) continue;
+    const Vec3 normal = face_normal(mesh, t);
+    const std::array<Vec3, 3> corners = corners_of(mesh, std::size_t(t));
+    LeavingRays rays{t, {}};
+    bool all = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      rays.ways[k] = projector_.back(corners[k], normal);
+      all &= faces(normal.dot(rays.ways[k]));
+    }
+    if (all)
+      leaving.push_back(rays);
+    else
+      settle(t, State::kAskRays);
+  }
+  std::vector<std::uint8_t> clear;
+  overhang_->are_clear(leaving, clear);
+  for (std::size_t i = 0; i < leaving.size(); ++i)
+    settle(leaving[i].triangle, clear[i] ? State::kLit : State::kAskRays);
 }
 
 // Before anything is in the way.
@@ -111,8 +162,8 @@ bool Shadow::is_met(const Vec3& position, const Vec3& back, double cosine) const
 }
 
 bool Shadow::is_lit(const SurfacePoint& point, const Vec3& position) const {
-  const State state = states_[std::size_t(point.triangle)];
-  if (state != State::kAsk) return state == State::kLit;
+  const State state = settled(point.triangle);
+  if (state == State::kDark || state == State::kLit) return state == State::kLit;
   const Vec3 normal = face_normal(posed_.mesh(), point.triangle);
   const Vec3 back = projector_.back(position, normal);
   const double cosine = normal.dot(back);

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "artwork/overhang.h"
 #include "artwork/picture.h"
 #include "artwork/projector.h"
 #include "object/posed_object.h"
@@ -21,20 +23,25 @@ class Shadow {
          bool closed, bool through);
 
   // Whether the picture cannot reach a triangle at all.
-  bool is_dark(int triangle) const { return states_[std::size_t(triangle)] == State::kDark; }
+  bool is_dark(int triangle) const { return state_of(triangle) == State::kDark; }
   // Whether it meets this point of it, at `position`.
   bool is_lit(const SurfacePoint& point, const Vec3& position) const;
 
  private:
-  // kAsk: of small triangles all of whose corners are lit or dark, nothing has to be asked.
-  enum class State : std::uint8_t { kDark, kLit, kAsk };
+  // kAsk: nothing is known yet; of small triangles all of whose corners are lit or dark, nothing
+  // has to be asked, nor of those over which nothing hangs. kAskRays: every point has to be.
+  enum class State : std::uint8_t { kDark, kLit, kAsk, kAskRays };
 
+  State state_of(int triangle) const;
+  State settled(int triangle) const;
+  void settle_together(int triangle) const;
   State reach_of(std::size_t triangle) const;
   bool faces(double cosine) const;
   bool is_met(const Vec3& position, const Vec3& back, double cosine) const;
   int side_met() const;
   void settle_small_triangles();
   void darken_what_shows_through_holes();
+  void look_for_overhangs();
 
   const PosedObject& posed_;
   const Projector& projector_;
@@ -42,7 +49,9 @@ class Shadow {
   bool through_;
   double far_mm_;
   int side_ = 0;  // 1: only what faces the projector is met; -1: only what faces away; 0: both
-  std::vector<State> states_;
+  // Settled when first asked about; by whomever, the answer is the same.
+  mutable std::vector<State> states_;
+  std::optional<Overhang> overhang_;
 };
 
 // How squarely a surface faces the projector, rounded where its edges are blunt.

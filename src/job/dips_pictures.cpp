@@ -142,11 +142,13 @@ class FinishPictures {
 
   std::string scene(const std::vector<SurfacePatch>& told, const RunContext& context) const {
     const TriangleMesh& mesh = posed_.mesh();
-    constexpr int kColors_px = 1024, kOthers_px = 512;
+    constexpr int kWanted_px = 2048, kColors_px = 1024, kOthers_px = 512;
     const auto baked = [&](const Look& look, int most_px) {
-      return painted_object(mesh, LookPaint(finish_.paint().base(), look), most_px);
+      return painted_object(mesh, LookPaint(finish_.paint().base(), look),
+                            {.most_px = most_px, .finest = kFinestTexels_per_mm});
     };
-    const Object wanted = painted_object(mesh, finish_.paint());
+    const Object wanted = painted_object(mesh, finish_.paint(),
+                                         {.most_px = kWanted_px, .finest = kFinestTexels_per_mm});
     const DippedFilm no_film;
     const DipHistory no_history;
     SceneSource source{wanted, no_film, no_history, Image()};
@@ -186,12 +188,14 @@ PaintedFinish paint_finish(const MadeDips& all, const SharedSurface& shared, con
                            int texture_px) {
   const TriangleMesh& model = all.prepared.posed.object();
   const LinearColor base = finish.paint().base();
+  const TextureSize size{.most_px = texture_px,
+                         .finest = kFinestTexels_per_mm * all.prepared.posed.scale()};
   return {
       painted_object(model, LookPaint(base, [&](const auto& p) { return finish.color_at(p); }),
-                     texture_px),
+                     size),
       painted_object(
           model, LookPaint(base, [&](const auto& p) { return part_at(p, all, shared, finish); }),
-          texture_px)};
+          size)};
 }
 
 DipsPictures draw_dips(const MadeDips& all, const SharedSurface& shared, const Finish& finish,

@@ -218,7 +218,11 @@ Previews write_previews(OutputFolder& folder, const JobRecord& record,
   const auto add = [&](const std::string& name, const auto& write) {
     tasks.emplace_back([path = folder.path(name), write] { write(path); });
   };
-  const Object looks = painted_object(dipped.posed.mesh(), record.paint());
+  const int looks_px = record.config.pictures
+                           ? std::max(record.config.preview_texture_px, kPageTextureSide_px)
+                           : record.config.preview_texture_px;
+  const Object looks = painted_object(dipped.posed.mesh(), record.paint(),
+                                      {.most_px = looks_px, .finest = kFinestTexels_per_mm});
   const Appearance shown = appearance_of(record.finish);
   std::vector<FilmLayer> layers;
   // Once for all who want as many pixels.

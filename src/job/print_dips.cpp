@@ -46,8 +46,9 @@ void require_some_ink(const MadeDips& all) {
                         "colours"));
 }
 
-// What the wet bench needs of one dip, whose inks are spent on it.
-void write_dip(OutputFolder& folder, MadeDip& dip, const MadeDips& all,
+// What the wet bench needs of one dip, whose inks are spent on it. `painted`: the object in any
+// pose.
+void write_dip(OutputFolder& folder, MadeDip& dip, const MadeDips& all, const Object& painted,
                const std::vector<ReportInput>& inputs, const Printer& printer, const Timings& times,
                const RunContext& context) {
   const std::string inside = dip.folder + "/";
@@ -55,7 +56,8 @@ void write_dip(OutputFolder& folder, MadeDip& dip, const MadeDips& all,
   write_film_ply(folder.path(inside + "film.ply"), *dip.made.dipped.film);
   const PosedObject& posed = dip.made.dipped.posed;
   const int texture_px = dip.config.preview_texture_px;
-  const Object looks = painted_object(posed.mesh(), *all.prepared.paint);
+  Object looks = painted;
+  looks.positions = posed.mesh().positions;
   write_preview_glb(folder.path(inside + "preview.glb"), looks, posed.surface(),
                     *dip.made.dipped.film, shrink_to(dip.made.ink.ink.on_object, 2 * texture_px),
                     dip.made.raster.width_mm, dip.made.raster.height_mm, all.prepared.paint->base(),
@@ -131,7 +133,11 @@ JobResult print_dips(const JobConfig& config, const RunContext& context) {
   require_some_ink(all);
   warn_of(dry_layers_of(all), context);
   times.measure("sheet", [&] {
-    for (MadeDip& dip : all.dips) write_dip(folder, dip, all, inputs, printer, times, context);
+    const Object painted =
+        painted_object(prepared.posed.mesh(), *prepared.paint,
+                       {.most_px = config.preview_texture_px, .finest = kFinestTexels_per_mm});
+    for (MadeDip& dip : all.dips)
+      write_dip(folder, dip, all, painted, inputs, printer, times, context);
   });
   const FinishCheck check =
       times.measure("check", [&] { return FinishCheck(finish, shared, context); });

@@ -350,7 +350,7 @@ std::vector<CornerColor> corner_colors(const TriangleMesh& mesh, const Paint& pa
   return colors;
 }
 
-Object baked(const TriangleMesh& mesh, const Paint& paint, int most_px) {
+Object baked(const TriangleMesh& mesh, const Paint& paint, const TextureSize& size) {
   Object object;
   static_cast<TriangleMesh&>(object) = mesh;
   object.materials.resize(1);
@@ -362,9 +362,11 @@ Object baked(const TriangleMesh& mesh, const Paint& paint, int most_px) {
   Patches patches = patches_of(mesh);
   double total_mm2 = 0;
   for (const Patch& patch : patches.list) total_mm2 += patch.size_mm.prod();
-  double density = total_mm2 > 0 ? 2 * most_px / std::sqrt(total_mm2) : 1;
+  double density = total_mm2 > 0 ? 2 * size.most_px / std::sqrt(total_mm2) : 1;
+  density = std::min(density, kFiner * size.finest);
+  const double most_texels = double(size.most_px) * size.most_px;
   std::uint64_t texels = std::numeric_limits<std::uint64_t>::max();
-  for (int smaller = 0; double(texels) > double(most_px) * most_px && smaller < 96; ++smaller) {
+  for (int smaller = 0; double(texels) > most_texels && smaller < 96; ++smaller) {
     density /= kFiner;
     size_patches(patches.list, density);
     texels = lay_out(patches.list);
@@ -395,13 +397,13 @@ Object baked(const TriangleMesh& mesh, const Paint& paint, int most_px) {
 
 }  // namespace
 
-Object painted_object(const TriangleMesh& mesh, const Paint& paint, int most_px) {
+Object painted_object(const TriangleMesh& mesh, const Paint& paint, const TextureSize& size) {
   if (const Object* given = paint.as_object()) {
     Object object = *given;
     object.positions = mesh.positions;
     return object;
   }
-  return baked(mesh, paint, most_px);
+  return baked(mesh, paint, size);
 }
 
 }  // namespace hydrodip

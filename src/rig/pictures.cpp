@@ -12,6 +12,9 @@
 namespace hydrodip {
 namespace {
 
+// Of a painted object whose pictures are a few hundred pixels wide.
+constexpr int kTexture_px = 1024;
+
 // How the camera's frame (+y up) sees the posed-object frame (z up): as it is, or lying on its back
 // so that up is up.
 enum class Turn { kNone, kUpright };
@@ -47,7 +50,8 @@ Object hanging_object(const RigJob& job, const RunContext& context) {
   const bool is_shown = std::filesystem::exists(job.folder / "preview.glb", ignored);
   if (is_as_printed(job) && !(job.has_artwork && is_shown)) {
     const PreparedObject prepared = prepare_object(job.config.model, job.config.object, unheard);
-    return painted_object(prepared.posed.mesh(), *prepared.paint);
+    return painted_object(prepared.posed.mesh(), *prepared.paint,
+                          {.most_px = kTexture_px, .finest = kFinestTexels_per_mm});
   }
   Object object = load_object(job.folder / "preview.glb", {}, unheard).object;
   for (Vec3& p : object.positions) p = posed(p);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kMargin_mm = PageWriter::kMargin_mm;
 constexpr double kGap_mm = PageWriter::kGap_mm;
-constexpr int kPictureWidth_px = 720;
+constexpr int kPictureWidth_px = 480;
 constexpr double kPictureAspect = 1.15;
 constexpr double kBody_pt = PageWriter::kBody_pt, kSmall_pt = PageWriter::kSmall_pt;
 constexpr double kHead_pt = PageWriter::kHead_pt, kTitle_pt = PageWriter::kTitle_pt;

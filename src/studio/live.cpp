@@ -237,7 +237,7 @@ void Live::show_painted(const Turn& turn, const Look& look) {
   const RunScope scope(turn.context);
   const bool sketch = look.quality == LookQuality::kSketch;
   const int px = sketch ? kBakedSketch_px : kBaked_px;
-  const Object painted = painted_object(*look.model->object, *look.paint, px);
+  const Object painted = painted_object(*look.model->object, *look.paint, {px});
   // A sketch is baked again.
   shown_paint_ = sketch ? nullptr : look.paint;
   sinks_.painted(turn.request.revision, *look.model, painted);

@@ -72,7 +72,7 @@ TriangleMesh dome(int n) {
 
 void shows_the_paint_everywhere(const TriangleMesh& mesh) {
   const GradientPaint paint(mesh);
-  const Object object = painted_object(mesh, paint, 512);
+  const Object object = painted_object(mesh, paint, {512});
   ASSERT_EQ(object.uvs.size(), mesh.triangles.size());
   EXPECT_LE(object.textures.at(0)->width_px, 512);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -118,7 +118,7 @@ TEST(Bake, LongThinTrianglesHaveTexelsAlongTheirLength) {
     }
   };
   const StripePaint paint(mesh);
-  const Object object = painted_object(mesh, paint, 512);
+  const Object object = painted_object(mesh, paint, {512});
   ASSERT_FALSE(object.textures.empty());
   int wrong = 0, all = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -151,7 +151,7 @@ class MosaicPaint : public Paint {
 TEST(Bake, ASmallerCopyOfTheTextureKeepsTrianglesApart) {
   const TriangleMesh mesh = apart(crumpled(square(5)));
   const MosaicPaint paint;
-  Object object = painted_object(mesh, paint, 1024);
+  Object object = painted_object(mesh, paint, {1024});
   const Image& whole = *object.textures.at(0);
   object.textures[0] =
       std::make_shared<const Image>(resize(whole, whole.width_px / 4, whole.height_px / 4));
@@ -170,7 +170,7 @@ TEST(Bake, ASmallerCopyOfTheTextureKeepsTrianglesApart) {
 TEST(Bake, FineMeshesLookAsWantedFromAnyDistance) {
   const TriangleMesh mesh = dome(100);
   const GradientPaint paint(mesh);
-  Object object = painted_object(mesh, paint, 1024);
+  Object object = painted_object(mesh, paint, {1024});
   ASSERT_FALSE(object.textures.empty());
   const Image whole = *object.textures.at(0);
   for (int smaller = 1; smaller <= 16; smaller *= 2) {
@@ -192,7 +192,7 @@ TEST(Bake, FineMeshesLookAsWantedFromAnyDistance) {
 
 TEST(Bake, NoTexelIsLeftBlank) {
   const TriangleMesh mesh = dome(9);
-  const Object object = painted_object(mesh, GradientPaint(mesh), 512);
+  const Object object = painted_object(mesh, GradientPaint(mesh), {512});
   const Image& texture = *object.textures.at(0);
   for (std::size_t i = 3; i < texture.rgba.size(); i += 4) ASSERT_EQ(texture.rgba[i], 255) << i;
 }
@@ -200,7 +200,7 @@ TEST(Bake, NoTexelIsLeftBlank) {
 TEST(Bake, TrianglesSmallerThanTexelsHaveTheirColorsAtTheCorners) {
   const TriangleMesh mesh = apart(crumpled(square(60)));
   const GradientPaint paint(mesh);
-  const Object object = painted_object(mesh, paint, 64);
+  const Object object = painted_object(mesh, paint, {64});
   EXPECT_TRUE(object.textures.empty());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const SurfacePoint point{int(t), 0.2, 0.5};
@@ -209,6 +209,29 @@ TEST(Bake, TrianglesSmallerThanTexelsHaveTheirColorsAtTheCorners) {
     EXPECT_NEAR(shown.r, wanted.r, 1e-5) << t;
     EXPECT_NEAR(shown.g, wanted.g, 1e-5) << t;
   }
+}
+
+TEST(Bake, TexelsLieAsCloseAsAskedFor) {
+  TriangleMesh mesh = square(4);
+  for (Vec3& p : mesh.positions) p *= 0.5;
+  const GradientPaint paint(mesh);
+  for (const double finest : {50.0, 100.0, 400.0}) {
+    const Object object = painted_object(mesh, paint, {.most_px = 2048, .finest = finest});
+    const int side_px = object.textures.at(0)->width_px;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Triangle& corners = mesh.triangles[t];
+        const double apart = (mesh.positions[std::size_t(corners[k])] -
+                              mesh.positions[std::size_t(corners[(k + 1) % 3])])
+                                 .norm();
+        const double texels = side_px * (object.uvs[t][k] - object.uvs[t][(k + 1) % 3]).norm();
+        // Sides are powers of two, with a margin.
+        EXPECT_LT(texels, 1.01 * finest * apart);
+        EXPECT_GT(texels, 0.35 * finest * apart);
+      }
+  }
+  const Object coarse = painted_object(mesh, paint, {.most_px = 32, .finest = 400});
+  EXPECT_LE(coarse.textures.at(0)->width_px, 32);
 }
 
 TEST(Bake, WhatAModelSaysIsPassedOn) {
@@ -220,7 +243,7 @@ TEST(Bake, WhatAModelSaysIsPassedOn) {
   model->colors = {{LinearColor{1, 0, 0, 1}, LinearColor{0, 1, 0, 1}, LinearColor{0, 0, 1, 1}}};
   TriangleMesh posed = *model;
   for (Vec3& p : posed.positions) p *= 2;
-  const Object object = painted_object(posed, *model_paint(model));
+  const Object object = painted_object(posed, *model_paint(model), {64});
   EXPECT_EQ(object.positions[1], Vec3(2, 0, 0));
   EXPECT_EQ(object.colors.size(), 1U);
   EXPECT_TRUE(object.textures.empty());

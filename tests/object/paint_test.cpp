@@ -31,7 +31,7 @@ TEST(ModelPaint, AModelThatSaysNothingIsWantedBare) {
   EXPECT_FALSE(paint->says_anything());
   EXPECT_EQ(rgb(paint->color_at({0, 0.3, 0.3})), rgb(kGrey));
   EXPECT_EQ(rgb(model_paint(object)->color_at({0, 0.3, 0.3})), (std::array<float, 3>{1, 1, 1}));
-  const Object shown = painted_object(*object, *paint);
+  const Object shown = painted_object(*object, *paint, {512});
   const LinearColor seen = color_at(shown, {0, 0.3, 0.3}, {1, 1, 1, 1});
   EXPECT_NEAR(seen.r, kGrey.r, 0.01F);
   EXPECT_NEAR(seen.b, kGrey.b, 0.01F);
