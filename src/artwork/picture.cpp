@@ -39,24 +39,26 @@ double repeated(double t, Repeat repeat) {
   return t > 1 ? 2 - t : t;
 }
 
-// The two pixels around it.
+// The two pixels around it along the width or height, and the weight of the second.
 struct Pair {
   int first, second;
-  float weight;  // of the second
-};
+  float weight;
 
-Pair pair_at(double t, int size, Repeat repeat) {
-  const double x = t * size - 0.5;
-  const double cell = std::floor(x);
-  Pair pair{int(cell), int(cell) + 1, float(x - cell)};
-  if (repeat == Repeat::kTile) {
-    if (pair.first < 0) pair.first += size;
-    if (pair.second >= size) pair.second -= size;
+  Pair(double t, int size, Repeat repeat) {
+    const double x = t * size - 0.5;
+    // std::floor is a call for processors without SSE 4.
+    first = int(x);
+    if (first > x) --first;
+    weight = float(x - first);
+    second = first + 1;
+    if (repeat == Repeat::kTile) {
+      if (first < 0) first += size;
+      if (second >= size) second -= size;
+    }
+    first = std::clamp(first, 0, size - 1);
+    second = std::clamp(second, 0, size - 1);
   }
-  pair.first = std::clamp(pair.first, 0, size - 1);
-  pair.second = std::clamp(pair.second, 0, size - 1);
-  return pair;
-}
+};
 
 template <class Source>
 LinearColor sampled(const Source& image, int width_px, int height_px, const PictureFrame& frame,
@@ -65,8 +67,8 @@ LinearColor sampled(const Source& image, int width_px, int height_px, const Pict
   const Repeat repeat = frame.repeat();
   if (repeat == Repeat::kOnce && !(t.x() >= 0 && t.x() <= 1 && t.y() >= 0 && t.y() <= 1))
     return {0, 0, 0, 0};
-  const Pair x = pair_at(repeated(t.x(), repeat), width_px, repeat);
-  const Pair y = pair_at(repeated(t.y(), repeat), height_px, repeat);
+  const Pair x(repeated(t.x(), repeat), width_px, repeat);
+  const Pair y(repeated(t.y(), repeat), height_px, repeat);
   const std::array<float, 256>& decode = srgb8_table();
   LinearColor sum{0, 0, 0, 0};
   add_pixel(image.pixel(x.first, y.first), (1 - x.weight) * (1 - y.weight), decode, sum);

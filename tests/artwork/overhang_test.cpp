@@ -126,6 +126,22 @@ TEST(Overhang, InABowlNeighboursAreNotInTheWay) {
   for (const auto& [t, is_clear] : clear) EXPECT_TRUE(is_clear) << t;
 }
 
+TEST(Overhang, UprightWallsAreNotInTheWayOfTheFloorBetweenThem) {
+  // A tray without a lid, in any position: walls stand in the planes that bound the floor's rays.
+  TriangleMesh tray = sheet(4, 3, [](double s, double t) { return Vec3(40 * s, 30 * t, 0); });
+  const auto floor = tray.triangles.size();
+  append(tray, sheet(4, 2, [](double s, double t) { return Vec3(40 * s, 0, 9 * t); }));
+  append(tray, sheet(4, 2, [](double s, double t) { return Vec3(40 * s, 30, 9 * t); }));
+  append(tray, sheet(3, 2, [](double s, double t) { return Vec3(0, 30 * s, 9 * t); }));
+  append(tray, sheet(3, 2, [](double s, double t) { return Vec3(40, 30 * s, 9 * t); }));
+  const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
+  for (Vec3& p : tray.positions) p = turn * p + Vec3(17.3, -4.1, 60.7);
+  const std::map<int, bool> clear =
+      clear_of(tray, [&](const Vec3&) -> Vec3 { return turn.col(2); });
+  EXPECT_EQ(clear.size(), floor);
+  for (const auto& [t, is_clear] : clear) EXPECT_TRUE(is_clear) << t;
+}
+
 TEST(Overhang, FromAnAxisAndACentreTheOutermostWallIsClear) {
   TriangleMesh tubes = tube(10, 40, 36, 7);
   const auto inner = int(tubes.triangles.size());
