@@ -29,8 +29,9 @@ class Overhang {
 
   // In place of what `clear` held, for each of them: 1 if no ray that leaves the triangle meets
   // another one further away from its plane than 2e-5 mm; 0 if some may, or if one leaves it at too
-  // flat an angle to tell. What only touches the space that rays go through is not met. The answer
-  // about a triangle does not depend on which others are asked with it.
+  // flat an angle to tell, or on another side than others. What only touches the space that rays go
+  // through is not met. The answer about a triangle does not depend on which others are asked with
+  // it.
   void are_clear(std::span<const LeavingRays> leaving, std::vector<std::uint8_t>& clear) const;
 
  private:

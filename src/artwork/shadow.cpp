@@ -82,32 +82,24 @@ Shadow::State Shadow::settled(int triangle) const {
   return state_of(triangle);
 }
 
-// All near it, as they are asked about next.
+// All near it, as they are asked about next. Those that face away at all their corners are dark
+// already; of one that does at some, rays leave both sides, so that it is not clear.
 void Shadow::settle_together(int triangle) const {
   const TriangleMesh& mesh = posed_.mesh();
   std::vector<LeavingRays> leaving;
-  const auto settle = [&](int t, State state) {
-    std::atomic_ref(states_[std::size_t(t)]).store(state, std::memory_order_relaxed);
-  };
   for (const int t : overhang_->together(triangle)) {
     if (state_of(t) != State::kAsk) continue;
     const Vec3 normal = face_normal(mesh, t);
     const std::array<Vec3, 3> corners = corners_of(mesh, std::size_t(t));
-    LeavingRays rays{t, {}};
-    bool all = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      rays.ways[k] = projector_.back(corners[k], normal);
-      all &= faces(normal.dot(rays.ways[k]));
-    }
-    if (all)
-      leaving.push_back(rays);
-    else
-      settle(t, State::kAskRays);
+    leaving.push_back({t,
+                       {projector_.back(corners[0], normal), projector_.back(corners[1], normal),
+                        projector_.back(corners[2], normal)}});
   }
   std::vector<std::uint8_t> clear;
   overhang_->are_clear(leaving, clear);
   for (std::size_t i = 0; i < leaving.size(); ++i)
-    settle(leaving[i].triangle, clear[i] ? State::kLit : State::kAskRays);
+    std::atomic_ref(states_[std::size_t(leaving[i].triangle)])
+        .store(clear[i] ? State::kLit : State::kAskRays, std::memory_order_relaxed);
 }
 
 // Before anything is in the way.
