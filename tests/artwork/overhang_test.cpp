@@ -161,6 +161,52 @@ TEST(Overhang, FromAnAxisAndACentreTheOutermostWallIsClear) {
   for (const auto& [t, is_clear] : clear) EXPECT_EQ(is_clear, t >= outer) << t;
 }
 
+TEST(Overhang, WhateverStandsOnARayIsInTheWay) {
+  // A triangle around the axis whose rays go apart, and on one of them something tiny.
+  const TriangleMesh alone = [] {
+    TriangleMesh mesh;
+    for (const auto& [turn, z] : {std::pair(-0.3, -8.0), {0.5, 3.0}, {-0.1, 9.0}})
+      mesh.positions.emplace_back(10 * std::cos(turn), 10 * std::sin(turn), z);
+    mesh.triangles = {{0, 1, 2}};
+    return mesh;
+  }();
+  for (const Way& way : {kFromAxis, kFromCentre, Way([](const Vec3&) { return Vec3(1, 0, 0); })}) {
+    EXPECT_TRUE(clear_of(alone, way).at(0));
+    for (const auto& [u, v] : {std::pair(0.002, 0.4),
+                               {0.5, 0.002},
+                               {0.499, 0.499},
+                               {0.3, 0.3},
+                               {0.002, 0.002},
+                               {0.99, 0.005},
+                               {0.005, 0.99}})
+      for (const double far : {0.01, 3.0, 300.0}) {
+        TriangleMesh mesh = alone;
+        const Vec3 p = position_at(mesh, {0, u, v}), there = p + far * way(p);
+        const double size = 1e-3;
+        append(mesh, {{there, there + Vec3(size, 0, 0), there + Vec3(0, size, size)}, {{0, 1, 2}}});
+        EXPECT_FALSE(clear_of(mesh, way).at(0)) << u << ' ' << v << ' ' << far;
+      }
+  }
+}
+
+TEST(Overhang, OfFlatRaysAndOfThoseOnBothSidesNothingIsTold) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  const Overhang overhang(mesh);
+  const Vec3 up(0.6, 0, 0.8), down(0.6, 0, -0.8), flat = Vec3(1, 0, 0.005).normalized();
+  const auto is_clear = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    std::vector<std::uint8_t> clear;
+    overhang.are_clear(std::vector<LeavingRays>{{0, {a, b, c}}}, clear);
+    return clear.at(0) != 0;
+  };
+  EXPECT_TRUE(is_clear(up, up, up));
+  EXPECT_TRUE(is_clear(down, down, down));
+  EXPECT_FALSE(is_clear(flat, flat, flat));
+  EXPECT_FALSE(is_clear(up, up, down));
+  EXPECT_FALSE(is_clear(down, up, up));
+}
+
 TEST(Overhang, DoesNotDependOnWhoIsAskedTogether) {
   const TriangleMesh mesh = plain_with_slab();
   const Overhang overhang(mesh);

@@ -60,9 +60,9 @@ same() {
 same --version
 same params
 same params --json
-same sample mask -o samples
-same inspect samples/mask.obj --set preview.width_px=200 -o inspected --quiet
-same inspect samples/mask.obj --size 99.5 --json --quiet
+same sample sphere -o samples
+same inspect samples/sphere.obj --set preview.width_px=200 -o inspected --quiet
+same inspect samples/sphere.obj --size 99.5 --json --quiet
 # shellcheck disable=SC2086
 same print ../inputs/colored.ply $quick --set material.poisson=0.25 -o printed --quiet
 # shellcheck disable=SC2086

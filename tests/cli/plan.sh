@@ -39,6 +39,7 @@ grep -q '^warning: The film of .* is larger than the bath' said.txt || fail 'ori
 # Several dips: the plan is a job; the job and its parts print; the same bytes from anywhere.
 # shellcheck disable=SC2086
 "$hydrodip" plan colored.ply $small --dips 2 -o plan --json > plan.json || fail "plan: $?"
+cmp plan.json plan/plan.json || fail 'plan --json is not plan.json'
 grep -q '"gained_share"' plan.json || fail 'plan --json'
 [ "$(grep -c '^\[\[dip\]\]' plan/plan.toml)" -le 2 ] || fail 'plan.toml has too many dips'
 # A look in haste makes no sheets in haste, and what it ends with can be typed.
@@ -64,14 +65,12 @@ printf '[object]\nfile = "boxes/box.obj"\nsize_mm = 40\n[[dip]]\nrotate_deg = [3
 for bears in 1.4 1.3; do
   torn="--film 120x120 --set film.elements=3000 --set dip.step_mm=1 --set material.tear_stretch=$bears --set preview.pictures=off"
   # shellcheck disable=SC2086
-  "$hydrodip" plan torn.toml $torn --quality draft -o foretold --json --quiet > foretold.json || fail "plan torn.toml: $?"
-  # shellcheck disable=SC2086
   "$hydrodip" plan torn.toml $torn --quality draft -o foretold --quiet > said.txt || fail "plan torn.toml: $?"
   # shellcheck disable=SC2086
   "$hydrodip" print foretold/plan.toml $torn --quality draft --dpi 72 -o told --quiet > /dev/null || fail "print of foretold: $?"
   python3 - "$(grep -c '^warning: The print of these dips will advise against' said.txt)" <<'PY' || fail "what plan foretells of film that bears $bears"
 import json, sys
-plan, report = json.load(open('foretold.json')), json.load(open('told/report.json'))
+plan, report = json.load(open('foretold/plan.json')), json.load(open('told/report.json'))
 assert abs(plan['missed_share'] - report['missed_share']) < 1e-9, (plan['missed_share'], report['missed_share'])
 assert (report['concern'] == 'stop') == (sys.argv[1] == '1'), (report['verdict'], sys.argv[1])
 print(report['concern'])
@@ -84,8 +83,6 @@ printf '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm"><rect w
 side="--set preview.pictures=off --quality draft --film 120x120 --set film.elements=3000"
 pictured="boxes/bare.obj --size 40 --art picture.svg --art-toward 0,0,1"
 # shellcheck disable=SC2086
-"$hydrodip" plan $pictured --dips 2 $side -o side --json --quiet > side.json || fail "plan of one side: $?"
-# shellcheck disable=SC2086
 "$hydrodip" plan $pictured --dips 2 $side -o side --quiet > said.txt || fail "plan of one side: $?"
 grep -q '^covered after so many dips: .* of the surface; of what shall be printed: 1: ' said.txt ||
   fail 'plan does not say how much of the picture it covers'
@@ -97,7 +94,7 @@ grep -q 'A dip for nothing: 2 ' said.txt || fail "print of side: $(cat said.txt)
 ! grep -q -e '--dips 3' said.txt || fail 'more dips are said to help where one is for nothing'
 python3 - <<'PY' || fail 'what plan says of the picture'
 import json
-plan, report = json.load(open('side.json')), json.load(open('side-print/report.json'))
+plan, report = json.load(open('side/plan.json')), json.load(open('side-print/report.json'))
 assert abs(plan['missed_share'] - report['missed_share']) < 1e-9, (plan['missed_share'], report['missed_share'])
 covered = [count['covered_wanted_share'] for count in plan['coverage']]
 assert abs(covered[1] - report['wanted']['covered_share']) < 1e-9 and covered[0] <= covered[1], (covered, report['wanted'])

@@ -142,9 +142,12 @@ TEST(Bmp, NoRunLeavesThePicture) {
   std::fill_n(palette.begin(), 4, std::uint8_t(0));
   for (const Bytes& step : {Bytes{0, 2, 255, 0}, Bytes{0, 2, 0, 255}, Bytes{255, 1}}) {
     const std::size_t enough = (std::size_t(1) << 31U) / 255 + 2;
-    Bytes data;
+    Bytes data = step;
     data.reserve(step.size() * enough + 4);
-    for (std::size_t i = 0; i < enough; ++i) data.insert(data.end(), step.begin(), step.end());
+    while (data.size() < step.size() * enough) {
+      const std::size_t more = std::min(data.size(), step.size() * enough - data.size());
+      data.insert(data.end(), data.begin(), data.begin() + std::ptrdiff_t(more));
+    }
     data.insert(data.end(), {1, 1, 0, 1});
     const Image image = decode_image(bmp(8, 2, 1, palette, data), "a.bmp");
     EXPECT_EQ(at(image, 0, 0), (Rgba{0, 0, 0, 255}));
