@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -65,8 +66,7 @@ Overhang::Overhang(const TriangleMesh& mesh)
           int(t)};
     }
   });
-  std::sort(along.begin(), along.end());
-  check_cancelled();
+  sort_unless_cancelled(along.begin(), along.end(), std::less<>());
   std::vector<Box3> boxes((order_.size() + kTogether - 1) / kTogether);
   parallel_for(boxes.size(), kElementGrain / kTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin * kTogether; i < std::min(end * kTogether, order_.size()); ++i) {
