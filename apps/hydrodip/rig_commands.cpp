@@ -150,6 +150,9 @@ JobResult run_stage(const Request& request, const RunContext& context) {
   const StageOptions stage = job ? job->config.stage : configure(request, context).stage;
   if (request.action == "jog" && request.jog_mm == 0)
     throw InputError("rig stage jog: say how far with --by, as in --by 10 (down) or --by -10 (up)");
+  if (request.action != "jog" && request.jog_mm != 0)
+    throw InputError(fmt::format("rig stage {}: --by says how far a jog goes; leave it out, or jog",
+                                 request.action));
   RealBench real(request, context);
   return rig_stage({request.action, request.jog_mm, request.dry_run}, job ? &*job : nullptr, stage,
                    real.bench, context);

@@ -114,6 +114,8 @@ std::string bash_action(const ValueText& value) {
              (value.profiles ? "; _hydrodip_profiles" : "");
     case ValueKind::kFolder:
       return "_hydrodip_folders";
+    case ValueKind::kProfile:
+      return "_hydrodip_profiles";
     case ValueKind::kParameter:
       return "_hydrodip_parameters";
   }
@@ -152,11 +154,14 @@ std::string zsh_action(const ValueText& value) {
     case ValueKind::kWords:
       return ":" + zsh_text(value.shown) + ":(" + joined(value.words, " ") + ")";
     case ValueKind::kFile:
+      if (value.profiles) return ":" + zsh_text(value.shown) + ":_hydrodip_profiles_or_files";
       if (value.extensions.empty()) return ":" + zsh_text(value.shown) + ":_files";
       return ":" + zsh_text(value.shown) + ":_files -g \"*.(#i)(" + joined(value.extensions, "|") +
              ")\"";
     case ValueKind::kFolder:
       return ":" + zsh_text(value.shown) + ":_files -/";
+    case ValueKind::kProfile:
+      return ":" + zsh_text(value.shown) + ":_hydrodip_profiles";
     case ValueKind::kParameter:
       return ":" + zsh_text(value.shown) + ":_hydrodip_parameters";
   }
@@ -204,9 +209,11 @@ std::string fish_value(const ValueText& value) {
     case ValueKind::kWords:
       return " -x -a " + quoted(joined(value.words, " "));
     case ValueKind::kFile:
-      return " -r -F";
+      return value.profiles ? " -r -F -a '(__hydrodip_profiles)'" : " -r -F";
     case ValueKind::kFolder:
       return " -x -a '(__fish_complete_directories)'";
+    case ValueKind::kProfile:
+      return " -x -a '(__hydrodip_profiles)'";
     case ValueKind::kParameter:
       return " -x -a '(__hydrodip_parameters)'";
   }
@@ -231,6 +238,7 @@ std::string fish_command(const CommandText& command) {
   const ValueText& value = command.arguments.front().value;
   if (value.kind == ValueKind::kFile) text += at + " -F\n";
   if (value.kind == ValueKind::kFolder) text += at + " -a '(__fish_complete_directories)'\n";
+  if (value.kind == ValueKind::kProfile) text += at + " -a '(__hydrodip_profiles)'\n";
   if (value.kind == ValueKind::kWords)
     text += at + " -a " + fish_quoted(joined(value.words, " ")) + "\n";
   return text;
@@ -318,6 +326,14 @@ _hydrodip() {
 
 std::string zsh_completion(const std::vector<CommandText>& commands) {
   std::string text = std::string("#compdef hydrodip\n") + kMadeFrom + R"(
+_hydrodip_profiles() {
+  compadd -- ${XDG_CONFIG_HOME:-$HOME/.config}/hydrodip/profiles/*.toml(N:t:r)
+}
+
+_hydrodip_profiles_or_files() {
+  _alternative 'profiles:profile:_hydrodip_profiles' 'files:file:_files -g "*.(#i)toml"'
+}
+
 _hydrodip_parameters() {
   if compset -P '*='; then
     case ${IPREFIX#*set=} in
@@ -385,6 +401,15 @@ end
 function __hydrodip_second
     set -l words (commandline -opc)
     test (count $words) -eq 2 -a "$words[2]" = "$argv[1]"
+end
+
+# The profiles in the user's folder, by name.
+function __hydrodip_profiles
+    set -l folder "$HOME/.config"
+    set -q XDG_CONFIG_HOME; and set folder "$XDG_CONFIG_HOME"
+    for file in "$folder"/hydrodip/profiles/*.toml
+        string replace -r '.*/(.*)[.]toml$' '$1' -- "$file"
+    end
 end
 
 function __hydrodip_parameters

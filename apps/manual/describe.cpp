@@ -61,6 +61,9 @@ ArgumentText argument_of(const CLI::Option& option, const Command& command, bool
                         option.get_expected_max() > 1, value_of(option.get_name(true))};
   if (first && !command.words.empty())
     argument.value = {ValueKind::kWords, argument.name, command.words, {}, false};
+  // Of one that is brought in, a new name.
+  if (argument.name == "NAME" && command.name.starts_with("profile ") && first)
+    argument.value.kind = ValueKind::kProfile;
   return argument;
 }
 

@@ -14,6 +14,7 @@ enum class ValueKind {
   kWords,  // one of `words`, or free text where `words` is not all
   kFile,   // any file, or one with an extension of `extensions`
   kFolder,
+  kProfile,    // the name of a profile in the user's folder
   kParameter,  // NAME=VALUE of a parameter
 };
 

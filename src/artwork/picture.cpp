@@ -108,7 +108,7 @@ PictureSource::PictureSource(const ArtworkLayer& layer) : name_(name_of(layer)) 
     natural_width_mm_ = drawing_->natural_width_mm();
     return;
   }
-  image_ = std::make_shared<const Image>(decode_image(bytes, name_));
+  image_ = std::make_shared<const Image>(decode_image(bytes, name_, "SVG"));
   const double dpi = scan_dpi(bytes);
   if (dpi > 0) natural_width_mm_ = image_->width_px * kMmPerInch / dpi;
 }

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_text.h"
+#include "base/made_folder.h"
 #include "base/output_folder.h"
 #include "base/plain_number.h"
 #include "base/run_scope.h"
@@ -50,31 +51,6 @@ std::vector<std::filesystem::path> store_files(const std::vector<std::string>& m
     files.push_back(std::filesystem::is_directory(path, ignored) ? path / kStoreName : path);
   return files;
 }
-
-// The folder, made if needed; what was made of it goes again if it stays empty.
-class StoreFolder {
- public:
-  explicit StoreFolder(const std::filesystem::path& folder) {
-    std::error_code error;
-    for (auto path = folder; !path.empty() && !std::filesystem::exists(path, error);
-         path = path.parent_path())
-      made_.push_back(path);
-    std::filesystem::create_directories(folder, error);
-    if (error)
-      throw InputError(
-          fmt::format("{}: the output folder cannot be made ({}); choose another with -o",
-                      folder.string(), error.message()));
-  }
-  ~StoreFolder() {
-    std::error_code ignored;
-    for (const std::filesystem::path& path : made_) std::filesystem::remove(path, ignored);
-  }
-  StoreFolder(const StoreFolder&) = delete;
-  StoreFolder& operator=(const StoreFolder&) = delete;
-
- private:
-  std::vector<std::filesystem::path> made_;  // innermost first
-};
 
 // ---- what is told ----
 
@@ -427,7 +403,11 @@ JobResult shard_result(const JobConfig& config, const Shard& shard, const Search
 JobResult calibrated(const JobConfig& config, const CalibrationRequest& request, const Board& board,
                      const GridSearchOptions& options, const Shard& shard,
                      const std::vector<Subject>& subjects, const RunContext& context) {
-  const StoreFolder made(config.output);
+  const MadeFolder made(config.output);
+  if (made.error())
+    throw InputError(
+        fmt::format("{}: the output folder cannot be made ({}); choose another with -o",
+                    config.output.string(), made.error().message()));
   SimulationStore store(config.output / kStoreName, store_files(request.merged));
   std::vector<std::string> fingerprints;
   fingerprints.reserve(subjects.size());

@@ -41,16 +41,19 @@ const char* foreign_kind(const Bytes& bytes) {
   if (begins(bytes, "\x76\x2f\x31\x01")) return "an OpenEXR picture";
   if (begins(bytes, "#?RADIANCE")) return "a Radiance HDR picture";
   if (begins(bytes, "\xff\x0a") || begins(bytes, "JXL ", 4)) return "a JPEG XL picture";
-  if (begins(bytes, "<svg") || begins(bytes, "<?xml")) return "an SVG drawing";
+  if (begins(bytes, "<svg")) return "an SVG drawing";
+  if (begins(bytes, "<?xml")) return "a text in XML, as SVG drawings are";
   if (begins(bytes, "\x1f\x8b")) return "a file packed by gzip";
   return bytes.empty() ? "an empty file" : nullptr;
 }
 
-[[noreturn]] void refuse_kind(const Bytes& bytes, const std::string& name) {
+[[noreturn]] void refuse_kind(const Bytes& bytes, const std::string& name,
+                              const std::string& other_kind) {
   const char* foreign = foreign_kind(bytes);
-  throw InputError(fmt::format("{}: {}; give a PNG, JPEG, WebP, TIFF, GIF, BMP or TGA file.", name,
+  throw InputError(fmt::format("{}: {}; give a PNG, JPEG, WebP, TIFF, GIF, BMP{} file.", name,
                                foreign ? fmt::format("{}, which is not read", foreign)
-                                       : "not a picture of a kind that is read"));
+                                       : "not a picture of a kind that is read",
+                               other_kind.empty() ? " or TGA" : ", TGA or " + other_kind));
 }
 
 bool is_webp(const Bytes& bytes) { return begins(bytes, "RIFF") && begins(bytes, "WEBP", 8); }
@@ -62,7 +65,8 @@ bool may_be_picture(const Bytes& bytes) {
          (foreign_kind(bytes) == nullptr && looks_like_tga(bytes));
 }
 
-StoredPicture decode_any(const Bytes& bytes, const std::string& name) {
+StoredPicture decode_any(const Bytes& bytes, const std::string& name,
+                         const std::string& other_kind) {
   if (is_png(bytes)) return decode_png(bytes, name);
   if (is_jpeg(bytes)) return decode_jpeg(bytes, name);
   if (is_webp(bytes)) return decode_webp(bytes, name);
@@ -70,7 +74,7 @@ StoredPicture decode_any(const Bytes& bytes, const std::string& name) {
   if (is_tiff(bytes)) return decode_tiff(bytes, name);
   if (begins(bytes, "BM")) return decode_bmp(bytes, name);
   if (foreign_kind(bytes) == nullptr && looks_like_tga(bytes)) return decode_tga(bytes, name);
-  refuse_kind(bytes, name);
+  refuse_kind(bytes, name, other_kind);
 }
 
 void bring_inks_to_srgb(StoredPicture& picture) {
@@ -133,9 +137,9 @@ void warn_of_damage(const std::string& name) {
       name));
 }
 
-Image decode_image(const Bytes& bytes, const std::string& name) {
+Image decode_image(const Bytes& bytes, const std::string& name, const std::string& other_kind) {
   try {
-    StoredPicture picture = decode_any(bytes, name);
+    StoredPicture picture = decode_any(bytes, name, other_kind);
     if (picture.damaged) warn_of_damage(name);
     if (picture.has_more)
       warn(fmt::format("{}: the file holds several pictures (pages or frames); the first is taken.",
@@ -159,7 +163,7 @@ std::vector<std::uint8_t> read_picture(const std::filesystem::path& path) {
   file.read(reinterpret_cast<char*>(first.data()), kFirst);
   first.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
   // What cannot be opened is said by read_file.
-  if (!first.empty() && !may_be_picture(first)) refuse_kind(first, path.string());
+  if (!first.empty() && !may_be_picture(first)) refuse_kind(first, path.string(), {});
   if (size > kLargest)
     throw InputError(
         fmt::format("{}: has {:.1f} GB, more than any picture that is read; scale it "

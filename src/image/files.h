@@ -16,8 +16,10 @@ namespace hydrodip {
 // orientation is applied; a PNG's bare gamma is not. A job that this thread works for (run_scope.h)
 // is warned of colours that may be wrong: a damaged profile, damaged data, channels left out.
 // `name` is what it is called there and in errors. Throws InputError: not an image, truncated, over
-// 2^15 px a side or 2^28 px in all (refused before it is unpacked).
-Image decode_image(const std::vector<std::uint8_t>& bytes, const std::string& name);
+// 2^15 px a side or 2^28 px in all (refused before it is unpacked). `other_kind`: what else its
+// caller reads, and found not to be that, as errors name it ("SVG").
+Image decode_image(const std::vector<std::uint8_t>& bytes, const std::string& name,
+                   const std::string& other_kind = {});
 
 // read_file + decode_image.
 Image load_image(const std::filesystem::path& path);

@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/folder_lock.h"
 #include "base/json_text.h"
+#include "base/made_folder.h"
 #include "base/nearest_name.h"
 #include "base/output_folder.h"
 #include "base/shell_word.h"
@@ -56,13 +57,17 @@ std::string summary(const std::vector<std::string>& names) {
   return parts.empty() ? "sets nothing" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-// While a profile is read, changed and written: what another process changes meanwhile would be
-// lost. Makes the folder.
-FolderLock locked(const fs::path& folder) {
-  std::error_code ignored;  // who writes into it says what is wrong
-  fs::create_directories(folder, ignored);
-  return FolderLock::waited_for(folder);
-}
+// The folder while a profile is read, changed and written: what another process changes meanwhile
+// would be lost. Who writes into it says what is wrong with it.
+class ProfilesInHand {
+ public:
+  explicit ProfilesInHand(const fs::path& folder)
+      : made_(folder), lock_(FolderLock::waited_for(folder)) {}
+
+ private:
+  MadeFolder made_;
+  FolderLock lock_;
+};
 
 JobResult written(const char* command, const fs::path& file, const std::string& what,
                   const std::string& text) {
@@ -151,7 +156,7 @@ JobResult save_profile(const fs::path& folder, const std::string& name, const Pr
     edited_profile({}, edit);
     require_files(edit);
   }
-  const FolderLock lock = locked(folder);
+  const ProfilesInHand in_hand(folder);
   const bool exists = fs::exists(file, ignored);
   const std::string text = edited_profile(exists ? file : fs::path(), edit);
   require_files(edit);
@@ -162,7 +167,7 @@ JobResult import_profile(const fs::path& folder, const fs::path& file, const std
   require_bare_name(name);
   const fs::path to = profile_path(folder, name.empty() ? file.stem().string() : name);
   const std::string text = edited_profile(file, {});
-  const FolderLock lock = locked(folder);
+  const ProfilesInHand in_hand(folder);
   std::error_code ignored;
   if (fs::exists(to, ignored))
     throw InputError(fmt::format(

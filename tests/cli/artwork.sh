@@ -295,6 +295,7 @@ done
 
 head -c 300 photo.png > broken.png
 echo '<svg xmlns="http://www.w3.org/2000/svg"><rect' > broken.svg
+refused 'TGA or SVG file' print plate.stl --art plate.stl -o nothing
 refused 'nowhere.png' print plate.stl --art nowhere.png -o nothing
 refused 'broken.png.*PNG' print plate.stl --art broken.png --projection uv -o nothing
 refused 'broken.svg.*SVG' print plate.stl --art broken.svg -o nothing

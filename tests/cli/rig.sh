@@ -27,6 +27,7 @@ expect 2 'did you mean' rig shet job
 expect 2 'there is no such folder' rig sheet nowhere
 expect 2 'job' rig guide
 expect 2 'approach' rig stage dance
+expect 2 'a jog goes; leave it out' rig stage home --by 5 --port /dev/no-such-port
 expect 2 '--port' rig stage status
 expect 2 'no-such-port' rig stage status --port /dev/no-such-port
 expect 2 'not a serial port' rig stage status --port job/report.json

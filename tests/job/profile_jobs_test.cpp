@@ -6,6 +6,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/error.h"
+#include "full_disk.h"
 #include "settings/profiles.h"
 #include "temporary_folder.h"
 
@@ -32,6 +34,17 @@ TEST(ProfileJobsTest, WhatSeveralSaveAtOnceIsKeptOfAll) {
     for (std::thread& person : people) person.join();
     EXPECT_EQ(names_in_profile(folder / "profiles" / (profile + ".toml")).size(), names.size());
   }
+}
+
+TEST(ProfileJobsTest, AFullDiskLeavesNoFolder) {
+  const TemporaryFolder folder;
+  ProfileEdit edit;
+  edit.add.sets = {{"film.margin_mm", std::string("1"), false, "'1'", "--set"}};
+  {
+    const FullDisk full(0);
+    EXPECT_THROW(save_profile(folder / "config" / "profiles", "shop", edit), InputError);
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 }  // namespace

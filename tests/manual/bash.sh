@@ -39,6 +39,8 @@ offers 'config folder job.toml part.stl' hydrodip print ''
 offers 'config folder job.toml our-film' hydrodip print part.stl --profile ''
 offers 'our-film' hydrodip print part.stl --profile o
 offers 'show' hydrodip profile sh
+offers 'our-film' hydrodip profile show ''
+offers 'our-film' hydrodip profile save our
 offers 'a3 a4' hydrodip print part.stl --film a
 offers 'a3 a4' hydrodip print part.stl --film = a
 offers 'letter' hydrodip print part.stl --film l

@@ -6,7 +6,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 export HOME="$work" XDG_CONFIG_HOME="$work/config" XDG_DATA_HOME="$work/data"
-touch part.stl
+mkdir -p config/hydrodip/profiles
+touch part.stl config/hydrodip/profiles/our-film.toml
 failures=0
 # offers EXPECTED LINE: the candidates' words, without what is said of them, on one line.
 offers() {
@@ -24,5 +25,7 @@ offers 'material.tear_stretch=' 'hydrodip print part.stl --set material.te'
 offers 'part.stl' 'hydrodip print par'
 offers 'mask' 'hydrodip sample ma'
 offers 'dip.method=full' 'hydrodip print part.stl --set dip.method=f'
+offers 'our-film' 'hydrodip profile show '
+offers 'our-film' 'hydrodip print part.stl --profile ou'
 [ "$failures" -eq 0 ] || exit 1
 echo 'all passed'

@@ -5,7 +5,9 @@ completion=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-touch part.stl
+mkdir -p config/hydrodip/profiles
+touch part.stl config/hydrodip/profiles/our-film.toml
+export XDG_CONFIG_HOME="$work/config"
 mkdir functions
 cp "$completion" functions/_hydrodip
 cat > ask.zsh <<'ZSH'
@@ -37,5 +39,7 @@ becomes() {
 becomes '<inspect> <part.stl> <--film=letter>' 'hydrodip insp' 'part.s' '--film=lett'
 becomes '<rig> <stage> <find>' 'hydrodip rig sta' 'fin'
 becomes '<simulate> <part.stl> <--set> <dip.method=single-step>' 'hydrodip simul' 'part.s' '--set dip.meth' 'sing'
+becomes '<profile> <show> <our-film>' 'hydrodip profile sho' 'ou'
+becomes '<print> <part.stl> <--profile=our-film>' 'hydrodip prin' 'part.s' '--profile=ou'
 [ "$failures" -eq 0 ] || exit 1
 echo 'all passed'
