@@ -74,4 +74,15 @@ inline py::ssize_t require_rows(const Rows& rows, py::ssize_t width, const std::
   return rows.shape(0);
 }
 
+// Whole numbers in a row, as they are or converted. Others are refused, not cut to whole ones.
+using WholeNumbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+inline WholeNumbers whole_numbers(const py::object& given, const std::string& what) {
+  const py::array array = py::array::ensure(given);
+  if (!array || array.ndim() != 1) throw InputError(what + " have to be an array of shape (n,)");
+  const char kind = array.dtype().kind();
+  if (array.size() > 0 && kind != 'i' && kind != 'u' && kind != 'b')
+    throw InputError(what + " have to be whole numbers");
+  return WholeNumbers(array);
+}
+
 }  // namespace hydrodip::python

@@ -126,9 +126,7 @@ void set_face_materials(Object& object, const py::object& numbers) {
     object.material_of.assign(object.triangles.size(), 0);
     return;
   }
-  const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> given(numbers);
-  if (given.ndim() != 1)
-    throw InputError("the face_materials have to be an array of shape (faces,)");
+  const WholeNumbers given = whole_numbers(numbers, "the face_materials");
   const auto materials = std::int64_t(object.materials.size());
   object.material_of.clear();
   for (py::ssize_t n = 0; n < given.size(); ++n) {

@@ -293,25 +293,24 @@ py::tuple see(const Simulation& s, const Rows& origins, const std::array<double,
 }
 
 // sRGB bytes at points of the surface; black where there is no face, or weights are no numbers.
-py::array colors_at(
-    const Simulation& s,
-    const py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>& face,
-    const Rows& weights, bool predicted) {
+py::array colors_at(const Simulation& s, const py::object& face_numbers, const Rows& weights,
+                    bool predicted) {
   const auto count = std::size_t(require_rows(weights, 2, "the weights"));
-  if (face.ndim() != 1 || std::size_t(face.size()) != count)
+  const WholeNumbers face = whole_numbers(face_numbers, "the faces");
+  if (std::size_t(face.size()) != count)
     throw InputError("there have to be as many faces as weights");
-  const auto faces = std::int32_t(s.dipped.posed.mesh().triangles.size());
+  const auto faces = std::int64_t(s.dipped.posed.mesh().triangles.size());
   std::vector<std::array<std::uint8_t, 3>> colors(count, {0, 0, 0});
   const Finish& finish = *s.finish;
-  const std::int32_t* of = face.data();
+  const std::int64_t* of = face.data();
   const double* w = weights.data();
   {
     const py::gil_scoped_release release;
     parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
-        const SurfacePoint point{of[n], w[2 * n], w[2 * n + 1]};
-        if (of[n] < 0 || of[n] >= faces || !std::isfinite(point.u) || !std::isfinite(point.v))
-          continue;
+        if (of[n] < 0 || of[n] >= faces) continue;
+        const SurfacePoint point{int(of[n]), w[2 * n], w[2 * n + 1]};
+        if (!std::isfinite(point.u) || !std::isfinite(point.v)) continue;
         const LinearColor c = predicted ? finish.color_at(point) : finish.paint().color_at(point);
         colors[n] = {linear_to_srgb8(c.r), linear_to_srgb8(c.g), linear_to_srgb8(c.b)};
       }

@@ -150,6 +150,17 @@ class Points(InFolder):
         far = dip.colors_at(faces, np.full((4, 2), 1e300), False)
         self.assertEqual(far.shape, (4, 3))
 
+    def test_a_face_that_is_none_has_no_colour(self):
+        dip = hydrodip.simulate(textured_cone(), **QUICK)
+        weights = np.full((4, 2), 0.3)
+        faces = np.array([0, 2**32, -(2**32), 2**32 + 1])
+        colors = dip.colors_at(faces, weights, False)
+        self.assertTrue(colors[0].any())
+        np.testing.assert_array_equal(colors[1:], np.zeros((3, 3)))
+        np.testing.assert_array_equal(dip.colors_at([0], weights[:1], False), colors[:1])
+        with self.assertRaisesRegex(hydrodip.InputError, "faces have to be whole numbers"):
+            dip.colors_at(np.array([0.5]), weights[:1], False)
+
     def test_nothing_is_found_at_what_is_no_point(self):
         dip = hydrodip.simulate(textured_cone(), **QUICK)
         for none in (np.nan, np.inf, 1e300):
@@ -216,6 +227,12 @@ class LoadedMeshes(InFolder):
         self.assertEqual(wanted(mesh).tolist(), [RED, RED, GREEN, GREEN])
         mesh.face_materials[1] = 1
         self.assertEqual(wanted(mesh).tolist(), [RED, GREEN, GREEN, GREEN])
+
+    def test_halves_of_a_material_are_refused(self):
+        mesh = two_textures()
+        mesh.face_materials = np.array([0, 0.5, 1, 1])
+        with self.assertRaisesRegex(hydrodip.InputError, "face_materials have to be whole numbers"):
+            wanted(mesh)
 
     def test_what_other_faces_leave_open_is_asked_for(self):
         mesh = two_textures()
