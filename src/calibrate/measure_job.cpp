@@ -92,20 +92,6 @@ std::string text_of(const Subject& subject, const std::vector<Measurement>& meas
   return text;
 }
 
-// An error of what few corners are left would look the better, the less of the dip is right.
-void require_film_on_most(const Subject& subject, const Measurement& full,
-                          const RunContext& context) {
-  const std::size_t corners = subject.scan.grid.position.size();
-  const std::string bare =
-      fmt::format("{}: {} of {} corners lie where the simulated dip lays no film",
-                  subject.file.string(), full.unknown, corners);
-  const std::string check = fmt::format("check the depth ('{}@DEPTH=...')", subject.object.name);
-  if (full.error.edges == 0 || 2 * full.unknown > corners)
-    throw InputError(
-        fmt::format("{}, too many for an error of the others to mean anything; {}", bare, check));
-  if (5 * full.unknown > corners) context.warn(fmt::format("{}; {}.", bare, check));
-}
-
 }  // namespace
 
 JobResult measure_job(const JobConfig& given, const CalibrationRequest& request,
@@ -126,7 +112,10 @@ JobResult measure_job(const JobConfig& given, const CalibrationRequest& request,
     for (const Method& method : kMethods)
       measurements.push_back(
           measure(subject, film, config.design, method, board.square_mm, context));
-    require_film_on_most(subject, measurements.front(), context);
+    const Measurement& full = measurements.front();
+    const std::size_t corners = subject.scan.grid.position.size();
+    require_film_on_most(subject, {full.error.edges > 0 ? full.unknown : corners, corners},
+                         context);
     scans.push_back(json_of(subject, measurements));
     result.text += text_of(subject, measurements);
     maps.emplace_back();

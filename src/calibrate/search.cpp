@@ -56,6 +56,21 @@ std::vector<std::size_t> common_lengths(const std::vector<std::vector<double>>& 
   return common;
 }
 
+// By the dip that reaches most of a scan's corners. What hangs together with none of these has no
+// place on the board. A row of results is of all subjects.
+CornersWithoutFilm without_film(const Subject& subject, const std::vector<SimulationResult>& rows,
+                                std::size_t column, std::size_t columns) {
+  CornersWithoutFilm least{subject.place.size(), subject.place.size()};
+  for (std::size_t i = column; i < rows.size(); i += columns) {
+    if (!rows[i]) continue;
+    const auto bare = std::size_t(std::ranges::count_if(subject.place, [&](const auto& place) {
+      return !place || rows[i]->find(*place) == nullptr;
+    }));
+    least.bare = std::min(least.bare, bare);
+  }
+  return least;
+}
+
 double sum_of_squares(const std::vector<double>& errors, const std::vector<std::size_t>& which) {
   double sum = 0;
   for (const std::size_t i : which) sum += errors[i] * errors[i];
@@ -177,6 +192,8 @@ std::vector<GridPointError> Search::grid_errors(const RunContext& context) {
       for (std::size_t p = begin; p < end; ++p)
         rows[p] = lengths_by(subjects_[s], board_, results[p * subjects_.size() + s]);
     });
+    require_film_on_most(subjects_[s], without_film(subjects_[s], results, s, subjects_.size()),
+                         context);
     compared_.push_back(common_lengths(rows));
     const auto number = double(compared_.back().size());
     if (number < 4)

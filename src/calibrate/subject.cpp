@@ -405,6 +405,17 @@ std::vector<Subject> load_subjects(const std::vector<std::string>& texts,
   return subjects;
 }
 
+void require_film_on_most(const Subject& subject, const CornersWithoutFilm& corners,
+                          const RunContext& context) {
+  const std::string bare =
+      fmt::format("{}: {} of {} corners lie where the simulated dip lays no film",
+                  subject.file.string(), corners.bare, corners.of);
+  const std::string check = fmt::format("check the depth ('{}@DEPTH=...')", subject.object.name);
+  if (2 * corners.bare > corners.of)
+    throw InputError(fmt::format("{}, too many for the others to say anything; {}", bare, check));
+  if (5 * corners.bare > corners.of) context.warn(fmt::format("{}; {}.", bare, check));
+}
+
 bool any_synthetic(const std::vector<Subject>& subjects) {
   return std::any_of(subjects.begin(), subjects.end(),
                      [](const Subject& subject) { return subject.scan.synthetic; });

@@ -63,6 +63,15 @@ WarpedGrid warped_near(const Subject& subject, const Board& board, const Landing
 std::vector<double> errors_by_length(const Subject& subject,
                                      const std::optional<WarpedGrid>& warped, double square_mm);
 
+// That a simulated dip lays film at most of the scan's corners: what is said of the few others
+// would look the better, the less of the dip is right. Throws InputError; warns where many are left
+// out.
+struct CornersWithoutFilm {
+  std::size_t bare = 0, of = 0;
+};
+void require_film_on_most(const Subject& subject, const CornersWithoutFilm& corners,
+                          const RunContext& context);
+
 // How far the scan's corners lie from where dips lay them, three rows per corner of the scan.
 struct ScanMisfits {
   Misfits misfits;

@@ -190,6 +190,11 @@ PY
 refuse 'corners lie where the simulated dip lays no film, too many' \
   measure sphere@4=pieces.obj $film -o shallow
 [ ! -e shallow ] || fail "an error of a few corners was written"
+# shellcheck disable=SC2086
+refuse 'corners lie where the simulated dip lays no film, too many' \
+  calibrate sphere@4=pieces.obj $film $grid -o shallow
+[ ! -e shallow/profile.toml ] || fail "parameters by a few corners were written"
+rm -rf shallow
 refuse "depth in mm after '@'" measure sphere@=scans/sphere-scan.csv
 refuse 'begin above 0' calibrate sphere=scans/sphere-scan.csv --ratio 0:100:x2
 refuse 'factor has to be above 1' calibrate sphere=scans/sphere-scan.csv --ratio 3:100:x1

@@ -230,9 +230,8 @@ class LoadedMeshes(InFolder):
 
     def test_halves_of_a_material_are_refused(self):
         mesh = two_textures()
-        mesh.face_materials = np.array([0, 0.5, 1, 1])
         with self.assertRaisesRegex(hydrodip.InputError, "face_materials have to be whole numbers"):
-            wanted(mesh)
+            mesh.face_materials = np.array([0, 0.5, 1, 1])
 
     def test_what_other_faces_leave_open_is_asked_for(self):
         mesh = two_textures()
