@@ -34,8 +34,9 @@ constexpr double kFontSize = 4000, kLargestLetter_px = 15000;
 constexpr double kLineSpacing = 1.2;
 // Around the letters, so that no outline is cut.
 constexpr double kTextPad = 0.01 * kFontSize;
-// cairo's, and as many as fit half a GiB, for each of the surfaces that librsvg mixes them on.
-constexpr double kLongestSide_px = 32767, kMostPixelsAtOnce = 1U << 27U;
+// cairo's, one of which librsvg needs around what it mixes as a whole, and as many as fit half a
+// GiB, for each of the surfaces on which it does.
+constexpr double kLongestSide_px = 32767 - 1, kMostPixelsAtOnce = 1U << 27U;
 // What cannot be drawn at this size is broken.
 constexpr int kSafeSide_px = 4096;
 // Of drawings that need not be drawn at once: more than A3 at 3600 pixels an inch has.

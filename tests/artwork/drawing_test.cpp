@@ -123,6 +123,19 @@ TEST(Drawing, IsSharpAcrossALargeSheet) {
   EXPECT_EQ(alpha(411.26), 0);
 }
 
+// As large as its limits let it be: there it came out transparent.
+TEST(Drawing, WhatIsMixedAsAWholeShowsAtItsLongest) {
+  const Drawing drawing = Drawing::from_svg(
+      bytes_of("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 1000 1'><g opacity='0.5'>"
+               "<rect width='1000' height='1' fill='red'/></g></svg>"),
+      "line.svg");
+  const int side_px = int(drawing.limits().side_px);
+  const std::optional<TiledImage> tiles =
+      drawing.tiles(side_px, side_px / 1000, std::size_t(1) << 30U);
+  ASSERT_TRUE(tiles.has_value());
+  for (const int x : {0, side_px / 2, side_px - 1}) EXPECT_NEAR(tiles->pixel(x, 9)[3], 128, 1) << x;
+}
+
 // Letters of 70 mm, for a print of 1200 dpi: FreeType has a limit, and is not driven to
 // it.
 TEST(Drawing, LettersCanBeLarge) {
