@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/parallel.h"
 #include "image/files.h"
 #include "shapes.h"
 
@@ -126,6 +127,38 @@ TEST_F(Layers, WhatIsHiddenStaysBareUnlessToldOtherwise) {
   const auto through = laid(object, {layer});
   EXPECT_LT(seen(object, *through, {30, 30, 2}), kBlack);
   EXPECT_LT(seen(object, *through, {30, 30, 0}), kBlack);
+}
+
+// What is known of whole triangles is what a ray from every point says, whoever asks first.
+TEST_F(Layers, ShadowsAreAsRaysHaveThemInAnyOrderOnAnyThreads) {
+  TriangleMesh mesh = sheet(30, 25, [](double s, double t) {
+    return Vec3(60 * s, 60 * t, 4 * std::sin(9 * s) * std::cos(7 * t));
+  });
+  TriangleMesh over = ball(11, 14, 9);
+  for (Vec3& p : over.positions) p += Vec3(33, 25, 30);
+  append(mesh, over);
+  const PosedObject object = posed(mesh);
+  std::vector<SurfacePoint> points;
+  each_point(object.mesh(), [&](const SurfacePoint& p) { points.push_back(p); });
+  const auto one = laid(object, {downward(black(), 200)}, false);
+  const auto many = laid(object, {downward(black(), 200)}, false);
+  std::vector<double> seen_by_many(points.size());
+  parallel_for(points.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      seen_by_many[points.size() - 1 - i] = many->color_at(points[points.size() - 1 - i]).r;
+  });
+  int lit = 0, hidden = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(one->color_at(points[i]).r, seen_by_many[i]) << i;
+    const Vec3 normal = face_normal(object.mesh(), points[i].triangle);
+    if (normal.z() < 0.05) continue;
+    const Vec3 p = position_at(object.mesh(), points[i]);
+    const bool is_hidden = object.surface().is_hit(p, Vec3(0, 0, 1), 1e-2, 1e4);
+    EXPECT_EQ(seen_by_many[i] > 0.5, is_hidden) << p.transpose();
+    ++(is_hidden ? hidden : lit);
+  }
+  EXPECT_GT(lit, 5000);
+  EXPECT_GT(hidden, 500);
 }
 
 // A profile turned about z, from the axis and back to it; outward if it goes round the solid with
