@@ -225,7 +225,8 @@ export class Job {
   }
 
   private async flush(): Promise<void> {
-    if (this.sending || !this.next || ['lost', 'ended', 'shut'].includes(this.link.value)) return;
+    // Before the program has said whose the pen is, it would refuse what is another tab's to change.
+    if (this.sending || !this.next || this.link.value !== 'open' || !this.pen.value) return;
     this.sending = true;
     await this.busy;
     const live = this.next?.live ?? true;
@@ -267,8 +268,7 @@ export class Job {
       return;
     }
     if (error.code === 'no-pen') {
-      this.losePen();
-      void this.load().catch((failed: unknown) => this.complain(failed));
+      this.yieldToOther();
       return;
     }
     if (live) return;
@@ -363,7 +363,7 @@ export class Job {
 
   // Until what was changed has arrived there.
   private async arrived(): Promise<void> {
-    while ((this.sending || this.next) && this.link.value === 'open') await new Promise((done) => setTimeout(done, 20));
+    while ((this.sending || this.next) && ['connecting', 'open'].includes(this.link.value)) await new Promise((done) => setTimeout(done, 20));
   }
 
   async save(): Promise<void> {
@@ -408,6 +408,12 @@ export class Job {
     this.next = null;
     this.beforeDrag = null;
     this.acknowledged();
+  }
+
+  // What was changed here is taken back: that it is another tab's to change was not known.
+  private yieldToOther(): void {
+    this.losePen();
+    void this.load().catch((failed: unknown) => this.complain(failed));
   }
 
   // The other tab was closed.
@@ -497,6 +503,7 @@ export class Job {
     } else if (this.unsent.value) {
       this.next ??= { live: false };
     }
+    if (!pen && this.next) this.yieldToOther();
     void this.flush();
   }
 

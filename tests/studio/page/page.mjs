@@ -1308,7 +1308,7 @@ test('nothing is cut off at 1024 x 768, and dark is dark', async () => {
 
 part = wanted ?? 'object';
 test('no complaint on the console, and no request to anybody else', async () => {
-  assert.deepEqual(session.complaints, []);
+  assert.deepEqual(session.complaints, [], [...session.complaints, 'refused:', ...session.refusals].join('\n'));
 });
 
 // ---- Running them ----
