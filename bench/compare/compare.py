@@ -351,7 +351,10 @@ def compare_times(old, new, options, work, model_folder):
             cells = sum((ratios([o[k] for o in olds], [n[k] for n in news]) for k in (0, 1, 2)), [])
             print("| %s | %s |" % (name, " | ".join(cells)), flush=True)
 
-        if fnmatch.fnmatch("bench_dip_step", options.only):
+        unbuilt = [str(v.build) for v in (old, new) if not v.dip_step.is_file()]
+        if unbuilt:
+            print("\nbench_dip_step is left out: it is not in %s" % " and ".join(unbuilt))
+        elif fnmatch.fnmatch("bench_dip_step", options.only):
 
             def figures(version):
                 log = work / ("bench_dip_step-%s.log" % version.side)

@@ -131,6 +131,8 @@ bool Connections::look() {
   for_each_connection(port_, [&](int descriptor) {
     if (const auto peer = peer_of(descriptor)) open.push_back(*peer);
   });
+  // Of those first seen together, whoever has the higher descriptor mostly came later.
+  std::ranges::reverse(open);
   std::vector<Stranger> strangers = strangers_among(open);
   // The newest first: who comes now is not kept out by those who wait.
   std::ranges::stable_sort(strangers, std::greater(), &Stranger::since);
