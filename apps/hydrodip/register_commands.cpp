@@ -116,10 +116,15 @@ void declare_register(CLI::App& app, Request& request) {
 JobResult run_register(const Request& request, const RunContext& context) {
   const std::vector<std::string>& given = request.photos;
   if (request.calibrate_camera) {
+    const RegisterRequest untold;
     if (!request.registration.camera.empty() || request.registration.set_place)
       throw InputError(
           "--camera and --set-place are of a photo of film; --calibrate-camera writes to the file "
           "of -o");
+    if (request.registration.water_sigma_mm != untold.water_sigma_mm ||
+        request.registration.tolerance_mm != untold.tolerance_mm)
+      throw InputError(
+          "--water-sigma and --tolerance are of a photo of film; the camera's file keeps neither");
     if (given.empty())
       throw InputError("name the photos, as in 'hydrodip register --calibrate-camera board-*.jpg'");
     CameraRequest camera;

@@ -102,6 +102,8 @@ expect 2 'a pipe of that name' rig sheet job -o pipe.pdf
 expect 2 'cannot be written' rig sheet job -o board
 expect 2 'is of --calibrate-camera' register scan.png job -o here.json
 expect 2 '--set-place are of a photo' register --calibrate-camera --set-place scan.png
+expect 2 '--tolerance are of a photo' register --calibrate-camera --water-sigma 1 scan.png
+expect 2 '--tolerance are of a photo' register --calibrate-camera --tolerance 2 scan.png
 truncate -s 3G large.bin
 expect 2 'not a picture' calibrate printer --scan large.bin
 expect 2 'not a picture' register --calibrate-camera large.bin
