@@ -212,6 +212,7 @@ TEST(Overhang, DoesNotDependOnWhoIsAskedTogether) {
   const Overhang overhang(mesh);
   std::vector<std::uint8_t> one, all;
   std::vector<LeavingRays> rays;
+  rays.reserve(mesh.triangles.size());
   for (int t = 0; t < int(mesh.triangles.size()); ++t) rays.push_back(leaving(mesh, t, kUp));
   overhang.are_clear(rays, all);
   for (std::size_t t = 0; t < rays.size(); ++t) {
