@@ -71,6 +71,21 @@ TEST(TearLimitTest, SeveralReadingsAreSurerAndOthersAreRefused) {
     EXPECT_THROW(tear_limit(stretches, {ring}), InputError);
 }
 
+// A reading is off by a ring, as a standard deviation, and the limit lies somewhere in its ring's
+// width; readings that differ by more than that say how sure they are themselves.
+TEST(TearLimitTest, IsAsSureAsItsReadings) {
+  constexpr double kRing = 0.02;
+  std::vector<double> stretches;
+  for (int ring = 1; ring <= kDomeRings; ++ring) stretches.push_back(1 + kRing * ring);
+  const TearLimit one = tear_limit(stretches, {12}).value();
+  EXPECT_NEAR(one.high - one.stretch, 1.96 * kRing * std::sqrt(1 + 1.0 / 12), 1e-12);
+  EXPECT_NEAR(one.stretch - one.low, one.high - one.stretch, 1e-12);
+  const TearLimit two = tear_limit(stretches, {6, 18}).value();
+  EXPECT_NEAR(two.stretch, one.stretch, 1e-12);
+  EXPECT_NEAR(two.high - two.stretch, 1.96 * 0.5 * 12 * kRing, 1e-12);
+  EXPECT_EQ(tear_limit(stretches, {2}).value().low, 1);  // no film tears before it is stretched
+}
+
 // Stretches never fall, and may stand still from one ring to the next.
 TEST(TearLimitTest, IsNeverSaidWithoutDoubt) {
   std::vector<double> stretches;
