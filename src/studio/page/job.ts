@@ -228,15 +228,19 @@ export class Job {
     // Before the program has said whose the pen is, it would refuse what is another tab's to change.
     if (this.sending || !this.next || this.link.value !== 'open' || !this.pen.value) return;
     this.sending = true;
-    await this.busy;
-    const live = this.next?.live ?? true;
-    const document = this.document.value;
-    const wanted = this.next !== null; // not if another tab has taken the pen meanwhile
-    this.next = null;
-    if (!wanted) {
+    try {
+      await this.alone(() => this.put());
+    } finally {
       this.sending = false;
-      return;
     }
+    if (this.next) void this.flush();
+  }
+
+  private async put(): Promise<void> {
+    if (!this.next) return; // another tab has taken the pen meanwhile
+    const live = this.next.live;
+    const document = this.document.value;
+    this.next = null;
     try {
       const answer = await api.put(this.id, { client: this.client, base: this.revision.value, document, live, dip: this.dip.value });
       this.revision.value = Math.max(this.revision.value, answer.revision);
@@ -246,8 +250,6 @@ export class Job {
     } catch (error) {
       this.refused(error, document, live);
     }
-    this.sending = false;
-    if (this.next) void this.flush();
   }
 
   private acknowledged(): void {
@@ -281,7 +283,7 @@ export class Job {
     this.take(last.document);
   }
 
-  // Requests that change the document there wait for each other.
+  // Requests that change the document there wait for each other, and for what is made of the answers.
   private async alone<T>(work: () => Promise<T>): Promise<T> {
     const turn = this.busy.then(work, work);
     this.busy = turn.catch(() => undefined);
@@ -297,9 +299,10 @@ export class Job {
         const name = file.webkitRelativePath || file.name;
         names.push((await api.upload(this.id, file, name)).file);
       }
-      const before = this.document.value;
-      const answer = await this.alone(() => api.adopt(this.id, names, this.client));
-      this.adopted(before, answer, at_mm);
+      await this.alone(async () => {
+        const before = this.document.value;
+        this.adopted(before, await api.adopt(this.id, names, this.client), at_mm);
+      });
     } catch (error) {
       this.complain(error);
     }

@@ -757,6 +757,29 @@ test('air is let out of one dip among several by turning that one', async () => 
   assert.equal(all.tilt_deg, undefined);
 });
 
+test('what is changed while files are taken in waits for them, and is not refused', async () => {
+  const dip = { down: '-z', rotate_deg: [0, 0, 0], depth_mm: 12 };
+  await openQuick(lone, 'pyramid', { dips: [dip, dip] });
+  let answer;
+  const taken = new Promise((done) => {
+    lone.route('**/adopt', async (route) => {
+      const response = await route.fetch();
+      answer = () => route.fulfill({ response });
+      done();
+    }, { times: 1 });
+  });
+  const refused = session.refusals.length;
+  await lone.keyboard.press('1');
+  await lone.setInputFiles('[name="open-model"]', join(work, 'bell.stl'));
+  await taken;
+  await lone.keyboard.press('3');
+  await lone.click('[data-dip="1"]');
+  await answer();
+  await until('the model', async () => (await documentOf(lone)).object.file === 'bell.stl');
+  await kept(lone);
+  assert.deepEqual(session.refusals.slice(refused), []);
+});
+
 test('the dip that is shown becomes final: after a reload, with new artwork, and without another tab', async () => {
   const dip = (angle) => ({ down: '-z', rotate_deg: [0, 0, angle], depth_mm: 12 });
   await openQuick(lone, 'pyramid', { dips: [dip(0), dip(45)] });
